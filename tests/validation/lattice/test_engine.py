@@ -83,22 +83,6 @@ def test_the_peak_force_of_the_560_beads(method):
     assert abs(run.energy_drift) < 1e-5
 
 
-@pytest.mark.parametrize("opens", [False, True])
-@pytest.mark.parametrize("rtol", [1e-6, 1e-9])
-def test_sampled_forces_are_as_good_as_the_steps(rtol, opens):
-    """Samples are good at all times, though steps are far longer than their distance."""
-    velocities = (1.5, -2.5, 2.0, -2.0) if opens else (0.0, 0.1, -0.05)
-    scene = loaded(1.5, samples=2001, velocities=velocities)
-    exact = simulate(scene, method="DOP853", rtol=1e-13, atol=1e-13)
-    assert (exact.compression.min() < 0) == opens
-    run = simulate(scene, rtol=rtol)
-    assert run.step > 5 * scene.duration / scene.samples
-    scale = exact.contact_force.max()
-    assert np.abs(run.contact_force - exact.contact_force).max() < 10 * rtol * scale
-    if not opens:
-        assert np.abs(run.bead_velocity - exact.bead_velocity).max() < 10 * rtol
-
-
 @pytest.mark.parametrize("k", [1.2, 1.5, 2.0, 3.0])
 def test_beads_that_meet_after_a_long_flight(k):
     """A first step through the flight ends in the contact, which only its last stage meets."""

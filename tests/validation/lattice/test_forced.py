@@ -183,20 +183,6 @@ def test_errors_of_a_measured_pulse_cover_with_damping_and_a_drive():
                 assert measured.error < 30 * LESS * 1e-6 * abs(measured.value)
 
 
-@pytest.mark.parametrize("law", [dict(k="3/2"), dict(law=named("exponential", 1))])
-def test_a_piston_is_a_wall_in_a_moving_frame(law):
-    """Galilei: the same contacts, until a wave comes back from the far end."""
-    n, v, end = 60, 0.5, 15.0
-    chain = dict(stiffnesses=(1.0,) * (n - 1), wall=1.0, precompression=1.0, duration=end, **law)
-    push = Scene(masses=(1.0,) * n, drive=Drive(velocity=v), contact_sensors=(0, 5, 12), **chain)
-    thrown = Scene(
-        masses=(1.0,) * n, velocities=(v,) * n, contact_sensors=(n - 1, n - 6, n - 13), **chain
-    )
-    one, other = (simulate(scene, rtol=1e-10).compression for scene in (push, thrown))
-    assert np.ptp(one[2]) > 0.1
-    assert one == pytest.approx(other, abs=1e-8)
-
-
 def test_a_shaken_linear_bead_oscillates_with_the_exact_amplitude():
     """One free bead between the driven bead and a wall, k = 1: y = a κ/(2κ - w²) sin(wt), in steady
     motion, with a resonant part that a long ramp does not excite."""

@@ -6,7 +6,6 @@ condition of order p holds (Hairer, Nørsett and Wanner, Solving Ordinary Differ
 II.14), as a missed condition adds a term of its own to the difference.
 """
 
-from dataclasses import replace
 from fractions import Fraction
 from math import isqrt
 
@@ -60,9 +59,3 @@ def test_the_order_of_both_solutions():
     assert order(RKN86, RKN86.a[-1], RKN86.speeds) == RKN86.order
     assert order(RKN86, RKN86.low, RKN86.low_speeds) == RKN86.lower
     assert sum(RKN86.a[-1]) == Fraction(1, 2)
-
-
-def test_a_wrong_digit_is_found():
-    a = RKN86.a.copy()
-    a[4, 1:3] += Fraction(1, 10**12), Fraction(-1, 10**12)  # the node stays
-    assert order(replace(RKN86, a=a), a[-1], RKN86.speeds) < RKN86.order
