@@ -16,16 +16,14 @@ def test_edges_and_peak_of_a_loaded_chain(capsys):
     found = result(capsys, *EQUAL, "--behind", "2", "--ahead", "1")
     expected = shock(Cell([1], spacing=1), Power("3/2"), 2, 1)
     assert found["kind"] == "shock"
-    assert found["plateau_value"] == pytest.approx(float(expected.plateau))
-    assert found["trailing_speed_value"] == pytest.approx(float(expected.trailing_speed))
     for rule, speed in found["leading_speed_value"].items():
         assert speed == pytest.approx(float(expected.leading_speed(rule)))
         error = found["leading_speed_error_value"][rule]
         assert error == pytest.approx(speed * expected.errors[rule])
     for name in ("plateau", "trailing_speed", "peak", "peak_force"):
-        error = found[f"{name}_error_value"] / found[f"{name}_value"]
-        assert error == pytest.approx(expected.errors[name])
-    assert found["peak_value"] == pytest.approx(float(expected.peak))
+        value = float(getattr(expected, name))
+        assert found[f"{name}_value"] == pytest.approx(value)
+        assert found[f"{name}_error_value"] == pytest.approx(value * expected.errors[name])
     assert "acosh" in found["leading_speed"]["dispersion"]
     assert "doubling" not in found["leading_speed"]
     assert "peak" not in found

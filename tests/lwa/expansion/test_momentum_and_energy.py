@@ -1,8 +1,7 @@
-"""Energy, momentum and losses of the expansion's wave, and the pulse of a strike."""
+"""Energy, momentum and units of the expansion's wave, and the pulse of a strike."""
 
 import numpy as np
 import pytest
-import scipy
 
 from lwa import Cell, Dimer, ExpandedWave, InputError, canonical_wave, expand, pulse_of_strike
 
@@ -59,48 +58,6 @@ def test_only_positive_forces_are_accepted(force):
         wave(force=force)
     with pytest.raises(InputError, match="spacing is D: a number is wanted"):
         wave(cell=Cell([1]))
-
-
-def damped_speeds(kind, gamma, k=1.5, beads=80):
-    """Speeds of a pulse between contacts 20, 22, … of a damped chain, by SciPy."""
-
-    def motion(t, y):
-        u, v = y[:beads], y[beads:]
-        delta, rate = np.maximum(u[:-1] - u[1:], 0), v[:-1] - v[1:]
-        factor = (delta > 0) if kind == "linear" else delta ** (k - 1)
-        force = delta**k + gamma * factor * rate
-        a = np.zeros(beads)
-        a[:-1] -= force
-        a[1:] += force
-        return np.append(v, a)
-
-    start = np.zeros(2 * beads)
-    start[beads] = 1
-    run = scipy.integrate.solve_ivp(
-        motion, (0, 90), start, "DOP853", rtol=1e-7, atol=1e-9, dense_output=True
-    )
-    time = np.linspace(0, 90, 9001)
-    u = run.sol(time)[:beads]
-    arrivals = []
-    for i in range(20, 62, 2):
-        delta = u[i] - u[i + 1]
-        top = int(np.argmax(delta))
-        a, b, _ = np.polyfit(time[top - 3 : top + 4] - time[top], delta[top - 3 : top + 4], 2)
-        arrivals.append(time[top] - b / (2 * a))
-    return 2 / np.diff(arrivals)
-
-
-@pytest.mark.parametrize("kind", ["linear", "kuwabara_kono"])
-def test_a_damped_pulse_slows_down_as_its_dissipation_says(kind):
-    """V falls, or 1/V rises, linearly; the error of the rate vanishes with γ."""
-    errors = []
-    for gamma in (0.01, 0.0025):
-        V = damped_speeds(kind, gamma)
-        n = np.arange(len(V)) * 2.0
-        rate, _ = np.polyfit(n, -V if kind == "linear" else 1 / V, 1)
-        errors.append(rate / gamma / wave().slowdown(kind).value - 1)
-    assert abs(errors[0]) < 0.07
-    assert abs(errors[1]) < 0.35 * abs(errors[0])
 
 
 @pytest.mark.parametrize("cell", [EQUAL, Dimer(2, 1, spacing=1)], ids=["equal", "dimer"])
