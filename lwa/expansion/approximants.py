@@ -10,8 +10,7 @@ The series of equal beads sums well. The difference that unlike beads make is su
 its terms grow from the first on where masses are nearly equal. If every approximant has a pole, the
 series is only asymptotic: the sum ends before the first term that is smaller than the next, and the
 error is `LEFT_OUT` times that term. A series whose later windows spread more is called asymptotic
-too. The error by radiation
-(`lwa.expansion.radiation`) is added.
+too. The error by radiation (`lwa.expansion.radiation`) is added.
 """
 
 from __future__ import annotations

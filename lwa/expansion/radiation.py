@@ -16,8 +16,8 @@ exponentially small in 1/ε where K_0 is large. R is computed with log F = φ_0 
 terms in X = √ε ξ (`lwa.Expansion.log_force`, φ_0 = -X²/(4I)), and is the largest value for a few
 K_0 nearby, since the integral vanishes at the mass ratios without a tail.
 
-`radiated`, a bound on the relative error of c², was fitted to exact waves of dimers with
-tails from 1e-9 to 0.1 and to pulses of struck chains. It is measured, not proved.
+`radiated`, a bound on the relative error of c², was fitted to exact waves of dimers with tails from
+1e-9 to 0.1 and to pulses of struck chains. It is measured, not proved.
 """
 
 from __future__ import annotations

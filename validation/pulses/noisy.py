@@ -1,10 +1,10 @@
 """Pulses of measured records: a spline fitted to noisy samples, and errors from the noise.
 
 The noise is the standard deviation σ of the samples before the pulse. The first pulse is located in
-a moving mean, and a spline of degree 5 is fitted to the samples about it, by
-least squares: arrival, peak and FWHM are those of the spline. The number of its coefficients is the
-best by Schwarz's criterion (Ann. Statist. 6, 461, 1978) times `_FINER`, and at least `_MORE` more:
-where the criterion stops a bias is as large as the scatter.
+a moving mean, and a spline of degree 5 is fitted to the samples about it by least squares: arrival,
+peak and FWHM are those of the spline. The number of its coefficients is the best by Schwarz's
+criterion (Ann. Statist. 6, 461, 1978) times `_FINER`, and at least `_MORE` more: where the
+criterion stops a bias is as large as the scatter.
 
 Errors are one standard deviation, for white noise: `_DRAWS` splines are drawn from the distribution
 of the coefficients, and `_WITHIN` of their numbers lie within the error. So an arrival is uncertain

@@ -1,9 +1,9 @@
 """Speed against error: CPU time and error of integrators on fixed tasks.
 
 A task is a pulse that is measured at one contact far away. The engine's methods and SciPy's run at
-several tolerances each. The error is the largest relative one of arrival time,
-peak force and FWHM, against the exact wave or the engine at its finest tolerance. The cost is CPU
-time without compilation. `tests/benchmarks` measures another package.
+several tolerances each. The error is the largest relative one of arrival time, peak force and FWHM,
+against the exact wave or the engine at its finest tolerance. The cost is CPU time without
+compilation. `tests/benchmarks` measures another package.
 """
 
 from __future__ import annotations

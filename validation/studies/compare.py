@@ -72,6 +72,7 @@ def compare(
     run_progress: RunProgress = silent,
 ) -> Report:
     """Measured forces at the sensors of a scene beside the simulated ones: arrival, peak, FWHM.
+
     SCENE is a scene file, as of `lwa-validate run`. MEASURED, a CSV file, has the columns time and,
     for each sensor, such as "bead 15 force" (static force included) or "bead 15 dynamic force"; for
     a single sensor also "force" or "dynamic force". Units in the header are read.

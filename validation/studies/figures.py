@@ -92,10 +92,9 @@ def figures(
     chains: N of the N:1 chains. moduli: of PTFE, in Pa.
 
     ``speeds``: ``N``, ``formation``, and ``speed``, ``force``, ``width``, ``decay`` and ``theory``,
-    each ``_value``; ``scalings``:
-    ``modulus_value``, ``exponent_value`` and lists over the drop heights ``speed_value``,
-    ``force_value``, each with its error, and ``theory_value``; ``scaling``: the first of them;
-    ``forces``: ``N``, ``beads``, ``time_value``, ``force_value``.
+    each ``_value``; ``scalings``: ``modulus_value``, ``exponent_value`` and lists over the drop
+    heights ``speed_value``, ``force_value``, each with its error, and ``theory_value``;
+    ``scaling``: the first of them; ``forces``: ``N``, ``beads``, ``time_value``, ``force_value``.
     """
     records = {N: forces(N) for N in progress([*RECORDED])}
     speeds = {N: chain_speed(N) for N in progress(chains)}
