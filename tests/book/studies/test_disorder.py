@@ -44,6 +44,14 @@ def test_the_decay_is_the_mean_loss_at_single_beads(spread, chains, share):
     assert last["theory_value"] == pytest.approx(line, rel=1e-12)
 
 
+@pytest.mark.slow
+def test_a_decay_that_changes_along_the_chain_fails():
+    """The pulse disintegrates at spread 0.5; its local decays: the check of `book/disorder.md`."""
+    wide = disorder(spread=0.5, chains=20)
+    assert not wide.ok
+    assert wide.document()["decay_change_value"] < -2e-3
+
+
 def test_more_chains_go_on_with_the_same_ones():
     """The scatter of three is that of the first two, as mean and scatter tell them, and a third."""
     few, more = (disorder(chains=n, sites=60).document()["rows"][-1] for n in (2, 3))
