@@ -16,9 +16,7 @@ def test_all_names_exist_and_are_sorted():
         assert getattr(lwa, name) is not None
     with pytest.raises(AttributeError, match="nothing"):
         lwa.nothing  # noqa: B018
-
-
-def test_short_names_are_bound_by_name_only():
+    # bound by name only
     assert (lwa.D.name, lwa.k.name) == ("D", "k")
     assert not {"D", "k"} & set(lwa.__all__)
     assert set(lwa.__all__) <= set(dir(lwa))

@@ -20,8 +20,6 @@ THEORIES = (
     homogenize(Dimer(3, 1, spacing="1/2"), k="5/4").pde.traveling_wave(),
 )
 
-ROUNDING = 1e-13
-
 
 @pytest.mark.parametrize("wave", THEORIES)
 def test_a_curve_is_the_profile_as_it_passes(wave):
@@ -46,7 +44,7 @@ def test_a_curve_has_the_given_peak_and_the_fwhm(wave, of):
     width = float(answer.fwhm("force", "time"))
     t = np.linspace(-2 * width, 2 * width, 4001)
     found = answer.curve(t)
-    assert found.max() == pytest.approx(12, rel=ROUNDING)
+    assert found.max() == pytest.approx(12, rel=1e-13)
     assert np.argmax(found) == 2000
     assert max(found[0], found[-1]) < 1e-5
     if of == "contact":
