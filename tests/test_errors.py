@@ -28,6 +28,8 @@ from tests.lwa.expansion.test_exact_waves import lattice, series
 from tests.passage import peaks
 from validation import Scene, measure, simulate
 
+pytestmark = pytest.mark.usefixtures("engine")
+
 LOOSE = 30
 EQUAL = Cell([1], spacing=1)
 
