@@ -14,13 +14,13 @@ import sympy as sp
 
 from lwa.base.calculus import real_function
 from lwa.base.exact import InputError
+from lwa.loaded.background import Background
 from lwa.shocks.edges import SHOCK_DIGITS
-from lwa.wave.background import BackgroundWave
 
 _PLACES = 128  # intervals on which F″ that is no polynomial is checked
 
 
-def demand_one_sign(field: BackgroundWave, start: sp.Expr, end: sp.Expr) -> None:
+def demand_one_sign(field: Background, start: sp.Expr, end: sp.Expr) -> None:
     """Raise `lwa.InputError` unless F″ keeps its sign between two strains.
 
     F″ is checked exactly where it is a polynomial, else at 127 places. Powers pass, and so do laws

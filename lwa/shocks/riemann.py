@@ -30,9 +30,9 @@ from lwa.expansion.approximants import Resummed
 from lwa.expansion.expand import expand
 from lwa.expansion.physical import ORDER, ExpandedWave, wave_of_velocity
 from lwa.force import ContactLaw, for_cell
+from lwa.loaded.background import Background
 from lwa.shocks import bounds, edges, waves
 from lwa.shocks.convexity import demand_one_sign
-from lwa.wave.background import BackgroundWave
 
 RULES = ("dispersion", "doubling")  # El's leading edge; the solitary wave with beads at 2 v_p
 
@@ -267,9 +267,9 @@ class Shock(Value):
         return total.error / total.value
 
     @cached_property
-    def _field(self) -> BackgroundWave:
+    def _field(self) -> Background:
         """The waves of the chain on the strain ahead."""
-        return BackgroundWave(self.cell, self.law, self.ahead)
+        return Background(self.cell, self.law, self.ahead)
 
     @property
     def _toda(self) -> bool:
@@ -345,6 +345,6 @@ def piston(cell: Cell, law: ContactLaw, velocity: Any, ahead: Any = 0) -> Shock:
     >>> piston(Cell([1], spacing=1), Power(3), "v").behind
     sqrt(2)*3**(3/4)*sqrt(v)/3
     """
-    field = BackgroundWave(cell, _read(law, cell), read_exact(ahead, "ahead"))
+    field = Background(cell, _read(law, cell), read_exact(ahead, "ahead"))
     gained = positive(velocity, "velocity") / field.time_scale
     return shock(cell, law, waves.strain(field, gained), field.p0)

@@ -5,7 +5,7 @@ u_ττ = ∂_x F(u_x) one is the same everywhere: while the strain rises from p0
 ∫ c dp, c = √F′(p), in the units du/dτ of the wave equation.
 
 A solitary wave of speed V whose slope u_x rises by B moves its beads at w = V B at most, so that
-for the canonical wave (`lwa.wave.background`)
+for the canonical wave (`lwa.loaded.background`)
 
     W(p0+B) - W(p0) - F(p0) B = w²/2.
 
@@ -30,19 +30,19 @@ import sympy as sp
 from lwa.base.calculus import growing_root
 from lwa.base.exact import InputError, demand_numbers, evaluated
 from lwa.base.frozen import Value
+from lwa.loaded.background import Background
 from lwa.shocks.edges import SHOCK_DIGITS
-from lwa.wave.background import BackgroundWave
 
 _LONGEST = 600  # bits of exact powers; SymPy fails from 1024 on
 
 
-def velocity(field: BackgroundWave, p: sp.Expr) -> sp.Expr:
+def velocity(field: Background, p: sp.Expr) -> sp.Expr:
     """Velocity du/dτ that the beads gain while the strain rises from p0 to p, ∫ √F′ dp.
 
     In closed form for powers and where √F′ is an exponential, else an integral or its value.
 
-    >>> from lwa import background_wave, Cell, Power
-    >>> velocity(background_wave(Cell([1]), 0, law=Power(3)), sp.Symbol("p"))
+    >>> from lwa import Cell, Power
+    >>> velocity(Background(Cell([1]), Power(3), 0), sp.Symbol("p"))
     p**2/2
     """
     law, x = field.law, sp.Dummy("p", positive=True)
@@ -61,7 +61,7 @@ def velocity(field: BackgroundWave, p: sp.Expr) -> sp.Expr:
     return gained if gained.free_symbols else gained.evalf(SHOCK_DIGITS)
 
 
-def strain(field: BackgroundWave, gained: sp.Expr) -> sp.Expr:
+def strain(field: Background, gained: sp.Expr) -> sp.Expr:
     """The strain p at which the beads have gained the velocity ``gained`` > 0, du/dτ.
 
     Raises `lwa.InputError` for a law that does not reach it, and for symbols unless in a power law.
@@ -114,13 +114,13 @@ class Pulse(Value):
 
     Raises `lwa.InputError` unless the beads and contacts are equal.
 
-    >>> from lwa import background_wave, Cell, Power
-    >>> wave = Pulse(background_wave(Cell([1]), 0, law=Power(2)), sp.Symbol("w", positive=True))
+    >>> from lwa import Cell, Power
+    >>> wave = Pulse(Background(Cell([1]), Power(2), 0), sp.Symbol("w", positive=True))
     >>> wave.rise, wave.contact_rise
     (3**(1/3)*w**(2/3), 11*3**(1/3)*w**(2/3)/12)
     """
 
-    field: BackgroundWave
+    field: Background
     velocity: sp.Expr
 
     def __post_init__(self) -> None:

@@ -1,0 +1,1 @@
+"""Any lattice at rest under a load, and the solitary waves that run in it."""

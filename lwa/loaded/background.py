@@ -1,0 +1,159 @@
+"""The long-wave field of a chain on a static strain, in closed form.
+
+The canonical field obeys u_ττ = ∂_x [F(u_x) + I (F′ u_xxx + ½ F″ u_xx²)]: F is the force in the
+units of `lwa.equation.pde` (p^k/k for a power), W its energy, W′ = F, and I the coefficient of
+dispersion, D² included. A wave v on a strain p0, u_x = p0 + v(ξ), ξ = x - V τ, obeys (Nesterenko,
+*Dynamics of Heterogeneous Materials*, 2001, ch. 1, for equal spheres)
+
+    I F′(p0 + v) v′² = v² (Q(B) - Q(v)),    Q(v) = 2 [W(p0+v) - W(p0) - F(p0) v] / v²,
+
+so that V² = Q(B) for the wave that rises by B. It exists where F′ > 0 and Q(v) < Q(B) for all v
+between 0 and B, and B Q′(B) > 0: at Q′(B) = 0, the limiting amplitude of a law that softens, the
+wave is infinitely long. Its limit B → 0 is the wave of Korteweg and de Vries.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, Self
+
+import sympy as sp
+
+from lwa.base import latex
+from lwa.base.exact import InputError, power, read_exact, shorten, signed
+from lwa.base.frozen import Value
+from lwa.base.quantities import FALL, RISE, NoSolitaryWave
+from lwa.cell import Cell
+from lwa.force import ContactLaw, for_cell
+from lwa.linear.dispersion import Dispersion
+
+
+@dataclass(frozen=True)
+class Background(Value):
+    """The canonical field of a chain on the static strain p0, a number or a symbol.
+
+    Speeds are dx/dτ in the wave equation's units; times `time_scale` they are dx/dt.
+
+    Raises `lwa.InputError` for a negative strain under a power law, whose contacts only push, for
+    unlike contacts under a law that is no power, and unless F′ > 0 at a strain other than 0.
+    """
+
+    cell: Cell
+    law: ContactLaw
+    p0: sp.Expr
+
+    def __post_init__(self) -> None:
+        for_cell(self.law, self.cell)
+        object.__setattr__(self, "p0", read_exact(self.p0, "background"))
+        if self.law.homogeneous and self.p0.is_negative:
+            raise InputError(
+                f"background is {shorten(self.p0)}: under a power law it must not be negative"
+            )
+        self.law.check_strain(self.p0, self.cell)
+
+    @cached_property
+    def linear(self) -> Dispersion:
+        """The dispersion of small waves in the units of the wave equation, at any strain."""
+        return Dispersion(self.cell, self.law.exponent)
+
+    @cached_property
+    def I(self) -> sp.Expr:
+        """Coefficient I in the linear chain's Ω² = κ² - I κ⁴ + …, D² included."""
+        return self.linear.I * self.cell.spacing**2
+
+    @property
+    def time_scale(self) -> sp.Expr:
+        """The ratio τ/t, by which dx/dt = V τ/t."""
+        return self.cell.time_scale(self.law.exponent)
+
+    def force(self, p: sp.Expr, n: int = 0) -> sp.Expr:
+        """Force F(p) in the wave equation's units, its n-th derivative, or energy W(p): n = -1."""
+        return self.law.of_strain(p, self.cell.spacing, n)
+
+    @cached_property
+    def sound_speed(self) -> sp.Expr:
+        """The speed c0 = √F′(p0) of long small waves."""
+        return power(self.force(self.p0, 1), sp.S.Half)
+
+    @property
+    def rise(self) -> sp.Symbol:
+        """The symbol B: positive, negative under a power with k < 1, real under other laws."""
+        if not self.law.homogeneous:
+            return sp.Symbol("B", real=True)
+        return FALL if (self.law.exponent - 1).is_negative else RISE
+
+    def stiffness(self, v: sp.Expr) -> sp.Expr:
+        """The square Q(v) of the speed of the wave that rises by v, whether it exists or not."""
+        linear_part = self.force(self.p0, -1) + self.force(self.p0) * v
+        rise = self.force(sp.expand(self.p0 + v), -1) - linear_part
+        return sp.powsimp(2 * rise / v**2)
+
+    def speed(self, B: sp.Expr) -> sp.Expr:
+        """Speed V = √Q(B) of the wave that rises by B, whether it exists or not."""
+        square = self.stiffness(B)
+        if self.law.homogeneous and self.law.exponent.is_Integer:  # a polynomial in p0 and B
+            square = sp.expand(sp.cancel(square))
+        return power(square, sp.S.Half)
+
+    @cached_property
+    def kdv(self) -> KdV:
+        """The equation of Korteweg and de Vries of the limit B → 0, in the time τ.
+
+        Raises `lwa.NoSolitaryWave` where no sound runs (p0 = 0 under most laws), and at F″ = 0 as
+        at k = 1, where small waves of any amplitude run at one speed.
+        """
+        c0, bend = self.sound_speed, self.force(self.p0, 2)
+        if c0.is_zero or c0.is_finite is False:
+            raise NoSolitaryWave(f"p0 is {self.p0}: no sound runs there, so that no wave is small")
+        if bend.is_zero:
+            raise NoSolitaryWave(f"F″ is 0 at p0 = {self.p0}: waves of small amplitude disperse")
+        # V² = Q(B) = c0² + F″ B/3 + …, hence V = c0 + α B/3; Ω² = κ² - I κ⁴ gives γ = I c0/2.
+        return KdV(c0, sp.powsimp(bend / (2 * c0)), self.I * c0 / 2)
+
+    def on(self, p0: Any) -> Self:
+        """The field of the same chain on another static strain p0."""
+        return replace(self, p0=p0)
+
+
+@dataclass(frozen=True)
+class KdV(Value):
+    """The limit of small waves, v_t + c0 v_x + α v v_x + γ v_xxx = 0, and its sech² wave.
+
+    v is the strain above p0, c0 the speed of sound, α the nonlinearity and γ the dispersion.
+    For a power α = (k-1) c0/(2 p0), γ = I c0/2, in time τ with c0 = p0^{(k-1)/2}.
+    """
+
+    sound_speed: sp.Expr
+    nonlinearity: sp.Expr
+    dispersion: sp.Expr
+
+    def latex_rows(self) -> list[str]:
+        names = {"c_{0}": self.sound_speed, r"\alpha": self.nonlinearity}
+        names[r"\gamma"] = self.dispersion
+        equation = r"v_{\tau} + c_{0} v_{x} + \alpha v v_{x} + \gamma v_{xxx} = 0"
+        return [equation, *latex.rows(names)]
+
+    @property
+    def rise(self) -> sp.Symbol:
+        """The symbol B: positive, or negative where α < 0, as waves have the sign of α."""
+        return FALL if (self.nonlinearity * self.sound_speed).is_negative else RISE
+
+    def _rise(self, B: Any) -> sp.Expr:
+        """Read the rise of a wave, of the sign of α."""
+        B = self.rise if B is None else read_exact(B, "B")
+        if (B * self.nonlinearity).is_nonpositive:
+            raise NoSolitaryWave(f"B is {shorten(B)}: a small wave has the sign of α")
+        return B
+
+    def speed(self, B: Any = None) -> sp.Expr:
+        """Speed V = c0 + α B/3 of the wave v = B sech²(ξ/L); B is a symbol unless given."""
+        return self.sound_speed + self.nonlinearity * self._rise(B) / 3
+
+    def width(self, B: Any = None) -> sp.Expr:
+        """Width L = √(12 γ / (α B)) of v = B sech²(ξ/L); the FWHM is 2 arcosh(√2) L."""
+        return sp.sqrt(12 * sp.simplify(self.dispersion / self.nonlinearity) / self._rise(B))
+
+    def profile(self, xi: Any, B: Any = None) -> sp.Expr:
+        """Strain v = B sech²(ξ/L) above the background."""
+        return self._rise(B) * sp.sech(signed(xi, "xi") / self.width(B)) ** 2
