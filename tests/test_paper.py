@@ -128,16 +128,11 @@ def test_the_page_wide_beta_of_hertz_contacts(wave):
         assert abs(sp.N(value, 50) - 1) < 1e-40
 
 
-def test_equal_masses_extend_to_five_sites(wave):
-    limit = wave.at(k="3/2", m1=1, m2=1)
-    assert limit.beta == sp.sqrt(10) / (5 * D)
-    assert round(float(limit.sites), 1) == 5.0
-
-
-def test_one_light_mass_extends_to_ten_sites(wave):
-    beta = sp.limit(wave.at(k="3/2", m1=1, m2=omega).beta, omega, 0)
-    assert beta == sp.sqrt(10) / (10 * D)
-    assert round(float(sp.pi / (beta * D)), 0) == 10
+@pytest.mark.parametrize(("ratio", "width", "sites"), [(1, 5, 5), (0, 10, 10)])
+def test_equal_masses_extend_to_five_sites_and_a_light_mass_to_ten(wave, ratio, width, sites):
+    beta = sp.limit(wave.at(k="3/2", m1=1, m2=omega).beta, omega, ratio)
+    assert beta == sp.sqrt(10) / (width * D)
+    assert round(float(sp.pi / (beta * D))) == sites
 
 
 def test_amplitude_and_speed_scale_as_stated(wave):

@@ -7,7 +7,6 @@ Everything else about a command is tested by a call of its ``main`` in the proce
 import contextlib
 import os
 import pty
-import re
 import select
 import signal
 import subprocess
@@ -69,11 +68,6 @@ def test_a_package_is_loaded_where_it_is_used(loaded, statement):
     assert not {*STEPS[statement].split()} & {*loaded[statement].split()}
 
 
-def test_the_last_statement_loads_scipy(loaded):
-    """The names of `STEPS` are spelled as `sys.modules` spells them."""
-    assert "scipy.optimize" in loaded[list(STEPS)[-1]].split()
-
-
 @pytest.mark.parametrize(
     "program",
     [("lwa",), ("lwa-validate",), (sys.executable, "-m", "validation")],
@@ -110,17 +104,6 @@ def test_ctrl_c_while_a_command_is_loaded_is_one_line(tmp_path):
     paths = os.pathsep.join((str(tmp_path), *filter(None, sys.path)))
     found = ended(sys.executable, "-u", "-c", code, env=os.environ | {"PYTHONPATH": paths})
     assert found == (INTERRUPTED, "default_int_handler\n", "lwa: interrupted\n")
-
-
-def test_a_long_expansion_says_so_and_stops_at_ctrl_c():
-    command = (*LWA, "expansion", "--masses", "1,1/50", "--order", "100")
-    with started(*command, stdout=subprocess.DEVNULL) as running:
-        first = running.stderr.readline()
-        running.send_signal(signal.SIGINT)
-        _, rest = running.communicate()
-    assert re.fullmatch(r"the expansion to ε\^100: this may take minutes\n", first)
-    assert rest.strip() == "lwa: interrupted"
-    assert running.returncode == INTERRUPTED
 
 
 CHAIN = """
