@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from validation.scenes.scene import Scene as Scene
     from validation.scenes.scene import SceneError as SceneError
     from validation.scenes.scenefile import read_scene as read_scene
-    from validation.studies.run import load as load
     from validation.waves.profile import ExactWave as ExactWave
     from validation.waves.solver import exact_wave as exact_wave
 

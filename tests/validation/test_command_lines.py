@@ -30,7 +30,7 @@ OPTIONS = {
         "": FILES, "--method": ("RKN86", "SRKN14", "x"), "--rtol": NUMBERS,
         "--out": ("o.csv", "o.json", "o.npz", "x/y.csv", ""),
     },
-    "compare": {"": FILES, " ": FILES, "--time-constant": NUMBERS, "--column": RENAMED},
+    "compare": {"": FILES, " ": FILES, "--column": RENAMED},
     "pulses": {"": FILES, "--distance": NUMBERS, "--of": ("bead", "x"), "--column": RENAMED},
     "sweep": {
         "--k": ("3/2", "x", "1:2", "0", "7"), "--omega": ("1", "x", "0", "1e300"),

@@ -35,9 +35,6 @@ from validation.pulses.signals import Piecewise, Signal, sampled
 from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
 
-Instrument = Callable[[Signal], Signal]
-"""A function from a force to the reading of the force by an instrument."""
-
 TOLERANCE = 1e-10  # default tolerance of the accurate run
 LESS = 10.0  # tolerance of the less accurate run over that of the accurate one
 _ROUNDING = 10  # rounding of the static compression over rtol; with more, steps follow the noise
@@ -94,14 +91,12 @@ def record(
     method: str = COMPILED[0],
     rtol: Any = TOLERANCE,
     every: bool = False,
-    through: Instrument | None = None,
     progress: RunProgress = silent,
 ) -> Recording:
     """Simulate a scene and measure the pulses at its sensors.
 
     rtol : relative tolerance, from 1e-13 to 1e-5. every : True for all pulses at each sensor
-    instead of the first. through : instrument that the dynamic forces pass. Other
-    options, and errors raised, are those of `validation.simulate`.
+    instead of the first. Other options, and errors raised, are those of `validation.simulate`.
     Raises `SceneError` where rounding hides the motion at this tolerance.
     """
     rtol = between(rtol, "rtol", 1e-13, 1e-5)
@@ -112,7 +107,7 @@ def record(
             f"{lost:.1g} of the motion; {lost / _ROUNDING:.1g} or more is wanted"
         )
     run, check = twice(scene, rtol, LESS * rtol, method=method, progress=progress)
-    pairs = tuple(zip(tracks(run, 1, through), tracks(check, 2, through), strict=True))
+    pairs = tuple(zip(tracks(run, 1), tracks(check, 2), strict=True))
     firsts = [next(_readings(pair, False, rtol)) for pair in pairs]
     fine = tuple(track for track, _ in pairs)
     # Errors of both arrivals are added: in the less accurate speed they may cancel.
@@ -121,8 +116,8 @@ def record(
     return Recording(run, fine, tuple(found if every else firsts), speeds)
 
 
-def tracks(run: Run, every: int = 1, through: Instrument | None = None) -> tuple[Track, ...]:
-    """Return the dynamic forces at the sensors of a run, as an instrument shows them; beads first.
+def tracks(run: Run, every: int = 1) -> tuple[Track, ...]:
+    """Return the dynamic forces at the sensors of a run; beads first.
 
     If the motion of a run takes too much memory, the forces are splines through the samples, or
     through every other sample (``every=2``).
@@ -141,7 +136,6 @@ def tracks(run: Run, every: int = 1, through: Instrument | None = None) -> tuple
             else run.signal(kind, i)
         )
         dynamic: Signal = Piecewise(force.times, lambda t: force(t) - static) if static else force
-        dynamic = dynamic if through is None else through(dynamic)
         return Track(kind, i + 1, dynamic, place, static)
 
     beads = zip(scene.bead_sensors, run.bead_force, strict=True)

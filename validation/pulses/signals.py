@@ -6,7 +6,6 @@ spline through samples.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
@@ -66,28 +65,6 @@ def sampled(time: ArrayLike, values: ArrayLike) -> Piecewise:
     """Return the cubic spline through samples; `MeasureError` for others than `samples` takes."""
     t, f = samples(time, values)
     return Piecewise(t, scipy.interpolate.CubicSpline(t, f))
-
-
-def high_passed(signal: Signal, time_constant: float) -> Piecewise:
-    """Return what a first-order high-pass, such as a charge amplifier, makes of a signal f.
-
-    The output is f - g, where T g′ = f - g and g = 0 at the start, with the time constant T.
-    """
-    # Steps of T/4 or less, so that the Hermite spline between them follows the lag g.
-    first, last = signal.times[[0, -1]]
-    even = np.linspace(first, last, 1 + math.ceil(4 * (last - first) / time_constant))
-    times = np.union1d(signal.times, even)
-    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
-    half = np.diff(times) / 2
-    places = times[:-1] + half * (nodes[:, None] + 1)
-    kept = np.exp((places - times[1:]) / time_constant)
-    gained = half / time_constant * (weights @ (kept * signal(places)))
-    lag = np.zeros(len(times))
-    for i, (fade, gain) in enumerate(zip(np.exp(-2 * half / time_constant), gained, strict=True)):
-        lag[i + 1] = fade * lag[i] + gain
-    rate = (signal(times) - lag) / time_constant
-    spline = scipy.interpolate.CubicHermiteSpline(times, lag, rate)
-    return Piecewise(times, lambda t: np.asarray(signal(t) - spline(t)))
 
 
 def integral(signal: Signal, low: float, high: float) -> float:

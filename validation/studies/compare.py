@@ -4,30 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass
 from typing import Any
 
 import click
-import numpy as np
-import scipy
 
 from lwa.base.arrays import Array
 from validation.lattice.cost import RunProgress, silent
-from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
 from validation.pulses.noisy import noisy_pulse
 from validation.pulses.pulse import Measured, MeasureError
-from validation.pulses.sensors import READINGS, Instrument, record, static_forces, tracks
-from validation.pulses.signals import high_passed
-from validation.report.command import column_option, option, study
+from validation.pulses.sensors import READINGS, record, static_forces
+from validation.report.command import column_option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError
 from validation.scenes.columns import (
-    TIME,
     MeasuredFile,
-    amount,
     check_span,
     refuse_unknown,
     sensor_columns,
@@ -45,29 +38,16 @@ _NOTE = (
     "together at {}. ±: of the simulation, difference to a less accurate run; of the measurement, "
     "one standard deviation, from the noise before the pulse."
 )
-_FITTED = "Damping {} fitted to the peak forces: {}, one standard deviation."
-_FIT_TOLERANCE = 1e-8  # of the runs from which the damping is fitted
-_RUN_ERROR = 1e-6  # bound on the relative error of their peaks
-_SHORTEST = 1e-5  # time constant over the duration of a scene
-_PART = 1e-3  # change of the damping, as a part of it, that gives the derivatives of the peaks
 
 
 @study(
     click.argument("scene"),
     click.argument("measured"),
-    option(
-        "--time-constant",
-        metavar="TIME",
-        says="Time constant of the amplifier, a high-pass, as in '1 ms': the simulation passes it.",
-    ),
-    option("--damping", is_flag=True, default=False, says="Fit the value of the scene's damping."),
     column_option(),
 )
 def compare(
     scene: str,
     measured: str,
-    time_constant: str | None = None,
-    damping: bool = False,
     renamed: Mapping[str, str] | None = None,
     run_progress: RunProgress = silent,
 ) -> Report:
@@ -79,20 +59,11 @@ def compare(
 
     ``rows``: ``kind``, ``number``, ``quantity`` ("arrival", "peak" or "fwhm"), ``simulated_value``,
     ``measured_value`` and ``difference_value``, measured less simulated, with errors;
-    ``shift_value``; with ``damping`` the fitted ``damping_value`` and its error.
+    ``shift_value``.
     """
     chain = read_scene(scene)
-    through = None
-    if time_constant is not None:
-        T = amount(str(time_constant), "time_constant", TIME)
-        if (least := _SHORTEST * chain.duration) > T:
-            raise SceneError(f"time_constant is {T:g}: at least {least:g} is wanted")
-        through = partial(high_passed, time_constant=T)
     records = _Records.read(measured, chain, renamed)
-    fitted = None
-    if damping:
-        chain, fitted = _damped(chain, records, through)
-    simulation = record(chain, through=through, progress=run_progress)
+    simulation = record(chain, progress=run_progress)
     label, t = simulation.run.label, simulation.run.time
     rows: list[tuple[Any, ...]] = []
     curves: list[Curve] = []
@@ -120,16 +91,12 @@ def compare(
             Curve("measured", records.time + shift, force, f"C{i}."),
         ]
     unit = f"{shift:.6g} s" if chain.units else f"{shift:.6g}"
-    data, notes = {"shift_value": shift}, [_NOTE.format(unit, first)]
-    if fitted is not None and chain.damping is not None:
-        data |= {"damping_value": fitted.value, "damping_error_value": fitted.error}
-        notes.insert(0, _FITTED.format(chain.damping.kind, fitted))
     return Report(
         str(chain),
         (Table(_COLUMNS, tuple(rows), "rows"),),
         panels=(Panel(label("time"), label("dynamic force"), tuple(curves), legend_above=True),),
-        notes=tuple(notes),
-        data=data,
+        notes=(_NOTE.format(unit, first),),
+        data={"shift_value": shift},
     )
 
 
@@ -165,36 +132,3 @@ class _Records:
         except MeasureError as error:
             raise MeasureError(f"{file}: {error}") from None
         return cls(time, forces, pulses)
-
-
-def _damped(chain: Scene, records: _Records, through: Instrument | None) -> tuple[Scene, Measured]:
-    """Fit the value of a scene's damping to measured peaks; return the scene with it, and it.
-
-    The error is the standard deviation by the peaks' errors, or by their scatter if this is larger.
-    """
-    if (damping := chain.damping) is None:
-        raise SceneError("damping is to be fitted, but the scene has no table damping")
-
-    def scene(value: float) -> Scene:
-        return replace(chain, damping=replace(damping, value=value))
-
-    def residuals(value: Array) -> Array:
-        run = simulate(scene(float(value[0])), rtol=_FIT_TOLERANCE)
-        peaks = {f"{t.kind} {t.number}": t.first.peak for t in tracks(run, 1, through)}
-        pairs = ((peaks[name], pulse["peak"]) for name, pulse in records.pulses.items())
-        return np.array(
-            [
-                math.log(ours / p.value) / math.hypot(p.relative_error, _RUN_ERROR)
-                for ours, p in pairs
-            ]
-        )
-
-    most = 1.0 if damping.kind == "restitution" else math.inf
-    least = 0.01 if damping.kind == "restitution" else 0.0
-    found = scipy.optimize.least_squares(
-        residuals, damping.value, bounds=(least, most), x_scale=damping.value, diff_step=_PART
-    )
-    value, freedom = float(found.x[0]), max(len(found.fun) - 1, 1)
-    scatter = max(1.0, math.sqrt(2 * found.cost / freedom)) if len(found.fun) > 1 else 1.0
-    error = scatter / float(np.linalg.norm(found.jac))
-    return scene(value), Measured(value, value + error)

@@ -24,22 +24,15 @@ from validation.report.command import column_option, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.chains import numeric_cell
-from validation.scenes.checks import SceneError, integer, one_of
+from validation.scenes.checks import SceneError, one_of
 from validation.scenes.columns import columns
-from validation.waves.contact_law import Medium, fit_power, free_law, weights
+from validation.waves.contact_law import Medium, fit_power, weights
 
 _ROOT = 1e-13  # error of ln E, beside rounding
 _POWER = (Column("", "F = A δ^k"), Column("", "value", error=True))
-_FREE = (
-    Column("compression_value", "compression", format=".6g"),
-    Column("force", "force", error=True),
-    Column("", "of the power law", format=".6g"),
-)
 _UNITS = "A bead's mass or the distance is 1 as none is given: see --masses, --spacing, --spheres."
-_NOTE = (
-    "±: 95 % intervals by the scatter of the data; the long-wave theory's own error in the free "
-    "law is not included. Its compression is that of a contact."
-)
+_NOTE = "±: 95 % intervals by the scatter of the data."
+_LEAST = 6  # pulses: three more than the coefficients of the curvature's fit
 
 
 @study(
@@ -55,7 +48,6 @@ _NOTE = (
         says="Where the sensors sit; the force of a bead is the mean of its two contacts'.",
     ),
     column_option(),
-    option("--degree", default=3, says="Degree of the free law's polynomial ln V(ln F)."),
 )
 def law(
     data: str,
@@ -65,24 +57,21 @@ def law(
     material: str | None = None,
     of: str = "contact",
     renamed: Mapping[str, str] | None = None,
-    degree: int = 3,
 ) -> Report:
     """Contact law from pulses. DATA, a CSV file, has the columns force (peak force) and speed.
     Columns force_error and speed_error, if both are there, are standard deviations that weight the
     pulses. Units in the header are read.
 
-    of: "contact", or "bead" for forces of equal beads; the free law divides them by the share of a
+    of: "contact", or "bead" for forces of equal beads; they are divided by the share of a
     contact's force that a bead feels at the fitted k. From k = 1.9 on the force of a bead has two
     humps, of which either may be the higher: time pulses at contacts then.
 
     Peak contact forces and speeds are in the units of the masses and the spacing, by default those
     of unit mass and spacing; with spheres they are in N and m/s. ``k_value``, ``A_value`` and, of
     an unknown material, ``E_value``, with their errors; ``correlation_value`` of k and ln A;
-    ``residual_value`` of ln V; ``one_power``; ``rows`` of the free law: ``compression_value``,
-    ``force_value``, ``force_error_value``.
+    ``residual_value`` of ln V; ``one_power``.
     """
-    degree = integer(degree, "degree", 1, 6)
-    force, speed, weight = _pulses(data, degree + 3, renamed)
+    force, speed, weight = _pulses(data, renamed)
     content: dict[str, Any] = {}
     if spheres is None:
         cell = Cell(numeric_cell(masses or (1,)).masses, spacing=1 if spacing is None else spacing)
@@ -96,23 +85,11 @@ def law(
         if spheres is None:
             raise SceneError("material is given: its E needs --spheres")
         numbers["E"] = _modulus(content, material, fit.hertz)
-    measured, force = force, force / float(medium.share(fit.k.value))
-    compression, error = free_law(medium, force, speed, degree, weight=weight)
-    power_law = fit.A.value * compression**fit.k.value
-    forces = map(Measured, force.tolist(), (force + error).tolist())
-    rows = tuple(zip(compression.tolist(), forces, power_law.tolist(), strict=True))
-    laws = (
-        Curve("free law", compression, force, "C0o", error),
-        Curve("one power", compression, power_law, "C1-"),
-    )
     bend = f"curvature of ln V against ln F {fit.curvature.value:.2g} ± {fit.curvature.error:.1g}"
     return Report(
         f"{len(force)} pulses, forces {force[0]:.4g} … {force[-1]:.4g}",
-        (
-            Table(_POWER, tuple(numbers.items())),
-            Table(_FREE, rows, "rows", "free law F(δ)"),
-        ),
-        panels=(_speeds(measured, speed), Panel("compression", "contact force", laws, "xy")),
+        (Table(_POWER, tuple(numbers.items())),),
+        panels=(_speeds(force, speed),),
         notes=(
             f"One power is {'enough' if fit.one_power else 'not enough'}: {bend}.",
             *([] if spheres or (masses and spacing) else [_UNITS]),
@@ -135,17 +112,15 @@ def _speeds(force: Array, speed: Array) -> Panel:
     return Panel("peak contact force", "speed", curves, "xy")
 
 
-def _pulses(
-    data: str, least: int, renamed: Mapping[str, str] | None
-) -> tuple[Array, Array, Array | None]:
-    """Read ``least`` or more pulses; return rising forces, speeds and weights (None if none)."""
+def _pulses(data: str, renamed: Mapping[str, str] | None) -> tuple[Array, Array, Array | None]:
+    """Read `_LEAST` or more pulses; return rising forces, speeds and weights (None if none)."""
     read = columns(data, "force", "speed", optional=("force_error", "speed_error"), renamed=renamed)
     order = np.argsort(read["force"])
     force, speed, *deviations = (values[order] for values in read.values())
-    if len(force) < least or not (force[0] > 0 and speed.min() > 0):
-        raise SceneError(f"{data}: at least {least} pulses of positive force and speed are wanted")
-    if (different := len(np.unique(force))) < least - 2:
-        raise SceneError(f"{data}: {different} different forces: {least - 2} or more are wanted")
+    if len(force) < _LEAST or not (force[0] > 0 and speed.min() > 0):
+        raise SceneError(f"{data}: at least {_LEAST} pulses of positive force and speed are wanted")
+    if (different := len(np.unique(force))) < _LEAST - 2:
+        raise SceneError(f"{data}: {different} different forces: {_LEAST - 2} or more are wanted")
     if not deviations:
         return force, speed, None
     if len(deviations) != 2 or not min(map(np.min, deviations)) > 0:

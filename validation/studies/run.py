@@ -17,7 +17,6 @@ from typing import Any
 import click
 import numpy as np
 
-from lwa.base import files
 from validation.lattice.cost import RunProgress
 from validation.lattice.result import Records, Run
 from validation.lattice.simulate import COMPILED, METHODS
@@ -112,20 +111,6 @@ def store(run: Run, document: Mapping[str, Any], file: Path) -> None:
         else:
             records = {f"{name}_value": plain(getattr(run, name)) for name in RECORDS}
             stream.write(json.dumps({**document, "records": records}).encode())
-
-
-def load(path: str | Path) -> Records:
-    """Read the records from a .json file written by `lwa-validate run --out`.
-
-    Raises `SceneError`, in one line, for a file that cannot be read or was written otherwise.
-    """
-    document = files.load(path, "a stored run", dict)
-    try:
-        records = document["records"]
-        arrays = {name: np.array(records[f"{name}_value"], float) for name in RECORDS}
-        return Records(scenefile.scene(document["scene"]), **arrays)
-    except (KeyError, TypeError, ValueError):
-        raise SceneError(f"{path}: not what `lwa-validate run --out` writes") from None
 
 
 _METHODS = click.Choice((*COMPILED, *METHODS))

@@ -8,9 +8,6 @@ where R is the squared speed of the lattice's wave divided by that of the long-w
 is linear in ln F; least squares give k and A, and with k = 3/2 (Hertz) the unknown Young's modulus
 E of one material.
 
-**Any law** F(δ) = W'(δ). In the long-wave theory S = m̄ V²/(R D²) is 2 W/δ², δ the peak
-compression. ln V is a polynomial of ln F, and R = R(k) with the local exponent k.
-
 Errors are 95 % intervals. The size of the noise is estimated from the residuals. Standard
 deviations of the data, if known, weight the data, and the noise is at least theirs: the residuals
 of few pulses may be small by chance.
@@ -27,7 +24,6 @@ from typing import Any
 import numpy as np
 import scipy
 import sympy as sp
-from numpy.polynomial import polynomial
 
 from lwa import Cell
 from lwa.base.arrays import Array
@@ -39,7 +35,6 @@ from validation.waves.solver import exact_wave
 _UNIFORM, _ERROR = 20, 1e-10  # degree of R(k) of equal beads, and its measured relative error
 _EXPONENTS = ("5/4", "3/2", "2", "5/2", "3", "4")  # at which R of unequal beads is measured
 _DRAWS = 1000  # of the coefficients of ln V, for the errors
-_STEPS = 60  # of ln F, at which the free law is integrated
 _HERTZ = 1.5
 LEAST, MOST = 1.01, 4.0  # k: below, speeds do not depend on force; beyond, R is not known
 LARGEST = 700.0  # |ln A|, at most
@@ -217,50 +212,3 @@ def _interval(values: Array) -> Measured:
     """Return the best fit's value, the first, with half the 95 % interval of the draws' values."""
     error = np.ptp(np.quantile(values[1:], (0.025, 0.975))) / 2
     return Measured(float(values[0]), float(values[0] + error))
-
-
-def free_law(
-    medium: Medium, force: Array, speed: Array, degree: int = 3, weight: Array | None = None
-) -> tuple[Array, Array]:
-    """Return the compression at each force, and the error of the force at this compression, (N,).
-
-    degree : degree of the polynomial ln V(ln F). weight : as in `fit_power`.
-    """
-    x = np.log(force)
-    rows, middle = _fit(x, np.log(speed), degree, weight)
-    grid = np.linspace(x.max(), x.min(), _STEPS)
-    k = _exponent(polynomial.polyval(grid - middle, polynomial.polyder(rows[::-1, 0])))
-    if not LEAST <= k.min() <= k.max() <= MOST:
-        wanted = f"laws with k from {LEAST:g} to {MOST:g} are read; a lower degree may do"
-        raise SceneError(f"k is {k.min():.3g} … {k.max():.3g} at degree {degree}: {wanted}")
-    log_delta = _integrated(medium, rows[::-1], grid, middle)
-    at = scipy.interpolate.CubicSpline(grid[::-1], log_delta[::-1])
-    steepness = 1 / at(x, 1)[:, 0]  # d ln F/d ln δ
-    spread = np.ptp(np.quantile(at(x), (0.025, 0.975), axis=1), axis=0) / 2
-    return np.exp(at(x)[:, 0]), force * np.abs(steepness) * spread
-
-
-def _integrated(medium: Medium, rows: Array, grid: Array, middle: float) -> Array:
-    """Return ln δ on a falling grid of ln F, for each column of coefficients of ln V."""
-
-    def log_S(x: float) -> tuple[Array, Array]:
-        """Return ln S, S = m̄ V²/(R D²), and the local exponent k at x = ln F."""
-        slope = polynomial.polyval(x - middle, polynomial.polyder(rows))
-        k = _exponent(slope)
-        log_V = polynomial.polyval(x - middle, rows)
-        return 2 * (log_V - math.log(medium.spacing)) + np.log(medium.mass / medium.ratio(k)), k
-
-    # Differentiation of S δ² = 2 W with respect to F gives dδ/dF = δ² S'(F)/(2 (F - S δ)).
-    def slope(x: float, log_delta: Array) -> Array:
-        """Return d ln δ/d ln F."""
-        S, step = log_S(x)[0], 1e-4
-        change = (log_S(x + step)[0] - log_S(x - step)[0]) / (2 * step)
-        # S δ/F = 2/(k+1) of a power; draws of noisy data may reach 1, where the slope is ∞
-        share = np.minimum(np.exp(S + log_delta - x), 2 / (1 + LEAST))
-        return np.asarray(change / 2 * share / (1 - share))
-
-    # Downwards from the strongest pulse, where δ = 2 F/((k+1) S): upwards is unstable.
-    S, k = log_S(grid[0])
-    start = math.log(2) + grid[0] - np.log(k + 1) - S
-    path = scipy.integrate.solve_ivp(slope, grid[[0, -1]], start, t_eval=grid, rtol=1e-8)
-    return np.asarray(path.y.T)
