@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from lwa.envelopes.schrodinger import Breather as Breather
     from lwa.envelopes.schrodinger import Envelope as Envelope
     from lwa.envelopes.schrodinger import envelope as envelope
-    from lwa.equation.evolution import Evolution as Evolution
     from lwa.equation.pde import PDE as PDE
     from lwa.equation.terms import Terms as Terms
     from lwa.expansion.approximants import Resummed as Resummed

@@ -24,7 +24,6 @@ from lwa.base import latex
 from lwa.base.calculus import growing_root, integral, ratio
 from lwa.base.exact import InputError, demand_numbers, shorten
 from lwa.base.frozen import Value
-from lwa.base.tabulated import Tabulated
 from lwa.cell import Cell, read_cell, substitution
 
 _PHI = re.compile("phi[0-9]+")  # the name of a `phi_symbol`
@@ -72,8 +71,6 @@ class ContactLaw(Value):
         if self.formless:
             s = sp.Dummy("s", positive=True)
             return sp.Integral(self.F.subs(self.delta, s), (s, 0, self.delta))
-        if self.tabulated:
-            return self.F.at_order(-1)
         return integral(self.F, self.delta)
 
     def phi(self, n: int) -> sp.Expr:
@@ -91,20 +88,6 @@ class ContactLaw(Value):
         return value.xreplace(
             {s: delta ** (n - 1) * self.at(delta, n) / slope for s, n in orders.items()}
         )
-
-    @property
-    def tabulated(self) -> bool:
-        """True if F goes through given points, so that its third derivative jumps there."""
-        return isinstance(self.F, Tabulated)
-
-    @property
-    def points(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Compressions and forces of a law made by `table`; both empty for another law."""
-        if not self.tabulated:
-            return (), ()
-        rows = [tuple(map(float, point.split())) for point in self.F.points.split(",")]
-        compressions, forces = zip(*rows, strict=True)
-        return compressions, forces
 
     @property
     def formless(self) -> bool:

@@ -1,14 +1,13 @@
-"""Contact laws: powers, expressions, tables, and the laws with names.
+"""Contact laws: powers, expressions, and the laws with names.
 
 `lwa.force` says what the theory asks of a law.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import pairwise
 from typing import Any, ClassVar
 
 import sympy as sp
@@ -22,8 +21,6 @@ from lwa.base.exact import (
     shorten,
     signed,
 )
-from lwa.base.tables import finite
-from lwa.base.tabulated import Tabulated
 from lwa.cell import RESERVED, Cell, check_distinct, check_names, exponent
 from lwa.cell import k as symbol_k
 from lwa.force import ContactLaw
@@ -106,8 +103,6 @@ class Law(ContactLaw):
     parameters: tuple[sp.Expr, ...] = field(default=(), compare=False)
 
     def __repr__(self) -> str:
-        if self.tabulated:
-            return "Law.table({}, {})".format(*self.points)
         if self.name:
             return f"named({', '.join(map(repr, (self.name, *self.parameters)))})"
         return f"Law(F={self.F}, delta={self.delta})"
@@ -124,40 +119,7 @@ class Law(ContactLaw):
         if self.slope().is_zero:
             raise InputError(f"F is {shorten(self.F)}: a force that depends on δ is wanted")
 
-    @classmethod
-    def table(cls, compressions: Sequence[Any], forces: Sequence[Any]) -> Law:
-        """Make a law through points, such as measured ones, of any number of four or more.
-
-        F, F′ and F″ are continuous and F grows (`lwa.base.splines`); below the first point F is a
-        power, beyond the last one the law is refused. ``points`` are compressions and forces. The
-        third derivative is not known: theories of an order that needs it are refused.
-
-        Raises `lwa.InputError` unless both rows are numbers, positive and ascending.
-
-        >>> law = Law.table([1, 2, 3, 4], [1, 4, 9, 16])
-        >>> law.at(sp.Rational(1, 2)).n(15)
-        0.250000000000000
-        """
-        rows = []
-        for name, row in (("compressions", compressions), ("forces", forces)):
-            if isinstance(row, str) or not hasattr(row, "__iter__"):
-                raise InputError(f"{name} is {shorten(row)}: numbers in a row are wanted")
-            numbers = [finite(x, f"{name} number {i}") for i, x in enumerate(row, start=1)]
-            if len(numbers) < 4:
-                raise InputError(f"{name} holds {len(numbers)} numbers: four or more are wanted")
-            for low, high in pairwise((0.0, *numbers)):
-                if not high > low:
-                    raise InputError(f"{name} has {high:g} after {low:g}: it must rise from 0")
-            rows.append(numbers)
-        if len(rows[0]) != len(rows[1]):
-            sizes = f"{len(rows[0])} compressions and {len(rows[1])} forces"
-            raise InputError(f"{sizes}: equally many are wanted")
-        points = ", ".join(f"{d!r} {F!r}" for d, F in zip(*rows, strict=True))
-        return cls(Tabulated.of(DELTA, points), name="table")
-
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> ContactLaw:
-        if self.tabulated:
-            return self
         if self.name:
             return named(self.name, *(x.xreplace(dict(new)) for x in self.parameters))
         for symbol in self.symbols:

@@ -15,7 +15,6 @@ from lwa.base.progress import shown
 from lwa.cell import Cell, exponent, read_cell
 from lwa.cell import k as symbol_k
 from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS, OfClosure, solve
-from lwa.equation.evolution import Evolution
 from lwa.equation.pde import PDE
 from lwa.equation.terms import STRAIN, Terms, terms
 from lwa.force import ContactLaw, for_cell
@@ -64,16 +63,6 @@ class Theory(OfClosure):
     def pde(self) -> PDE:
         """The wave equation."""
         return PDE(self.closure)
-
-    @property
-    def evolution(self) -> Evolution:
-        """The equation for numerical integration, in its own field (see `lwa.Evolution`).
-
-        Raises `lwa.InputError` on the optical branch.
-        """
-        if not self.pde.acoustic:
-            raise InputError("the equation for integration belongs to the acoustic branch")
-        return Evolution(self.cell, self.law)
 
     @cached_property
     def defect(self) -> dict[int, Terms]:

@@ -5,7 +5,7 @@ lattice the lattice's own waves (`validation.waves.solver`), and in the equation
 
     (1 - I ∂_x²) u_ττ = ∂_x F(u_x)
 
-its own waves (`lwa.equation.evolution`, integrated by `Continuum`). They meet at x = 0. The strain
+its own waves (`Evolution`, integrated by `Continuum`). They meet at x = 0. The strain
 is recorded there and at x = d, where the pulse of strain 1 arrives after the collision; it started
 at x = -d. Its shift is its distance ahead of a pulse that ran alone.
 
@@ -31,7 +31,8 @@ from lwa.base.arrays import Array
 from lwa.base.exact import read_exact
 from lwa.base.progress import Progress
 from lwa.command.options import quantities
-from lwa.equation.evolution import Evolution
+from lwa.force import ContactLaw
+from lwa.linear.dispersion import Dispersion
 from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured, measure
@@ -96,12 +97,46 @@ def collision(
     return _report(second, records)
 
 
+@dataclass(frozen=True)
+class Evolution:
+    """The equation (1 - I ∂_x²) u_ττ = ∂_x F(u_x) of a cell and a law.
+
+    Let φ be the canonical field, F the contact force and I the coefficient of dispersion in the
+    units of the wave equation. In the field u = φ + (I/2) φ_xx the terms of order D^{k+3} are
+    I ∂_x³ F(u_x), for every cell of a power law or of equal contacts, and equal I ∂_x² u_ττ to this
+    order (Rosenau, Phys. Lett. A 118, 222 (1986), for equal beads). The canonical equation cut at
+    D^{k+3} amplifies short waves without bound; this one is well posed, and its energy
+    ∫ [½ u_τ² + ½ I u_xτ² + W(u_x)] dx, W′ = F, is positive.
+    """
+
+    cell: Cell
+    law: ContactLaw
+
+    @property
+    def I(self) -> sp.Expr:
+        """Coefficient I in the linear chain's dispersion Ω² = κ² - I κ⁴ + …, D² included."""
+        return Dispersion(self.cell, self.law.exponent).I * self.cell.spacing**2
+
+    @property
+    def time_scale(self) -> sp.Expr:
+        """The ratio τ/t of the equation's time to the chain's."""
+        return self.cell.time_scale(self.law.exponent)
+
+    def force(self, p: sp.Expr, n: int = 0) -> sp.Expr:
+        """The n-th derivative F^{(n)}(p) in the units of the equation; the energy W for n = -1."""
+        return self.law.of_strain(sp.sympify(p), self.cell.spacing, n)
+
+    def speed(self, B: float) -> sp.Expr:
+        """Speed V = dx/dτ of the wave whose strain peaks at B: V² = 2 W(B)/B²."""
+        return sp.sqrt(2 * self.force(sp.Rational(str(B)), -1)) / sp.Rational(str(B))
+
+
 @dataclass(frozen=True, eq=False)
 class Continuum:
     """The long-wave equation (1 - I ∂_x²) u_ττ = ∂_x F(u_x) of a chain on a periodic interval.
 
     It is p_τ = v_x, (1 - I ∂_x²) v_τ = ∂_x F(p) in the strain p = u_x and the velocity v = u_τ, and
-    its energy ∫ [½ v² + ½ I v_x² + W(p)] dx (`lwa.equation.evolution`). A power law has no tension:
+    its energy ∫ [½ v² + ½ I v_x² + W(p)] dx. A power law has no tension:
     F(p) = 0 at p < 0. The equation is one of numbers.
     """
 

@@ -79,20 +79,17 @@ class CoefficientRing(Value):
     k : the exponent, a number, a variable, or 1 + φ_2.
     variables : k unless it is rational, or the symbols of φ_2, φ_3, ….
     masses, contacts : the mass fractions m̂_i and the shares C_i of the contacts.
-    constants : further expressions, such as the α_n of `lwa.closure.fields`.
     """
 
     k: sp.Expr
     variables: tuple[sp.Expr, ...]
     masses: Partition
     contacts: Partition
-    constants: tuple[sp.Expr, ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the ring's generators."""
-        opaque = (f"a{i}" for i, known in enumerate(self._constants) if known is None)
-        return (*self._parameters, *self.masses.names, *self.contacts.names, *opaque)
+        return (*self._parameters, *self.masses.names, *self.contacts.names)
 
     @property
     def _parameters(self) -> tuple[str, ...]:
@@ -119,44 +116,6 @@ class CoefficientRing(Value):
         generator = context.gen(context.variable_to_index(self._parameters[0]))
         return generator if self.variables == (self.k,) else 1 + generator
 
-    def constant(self, i: int, context: fmpq_mpoly_ctx) -> fmpq_mpoly:
-        """The i-th constant as an element of a ring that has `names` among its generators."""
-        polynomial = self._constants[i]
-        if polynomial is None:
-            return context.gen(context.variable_to_index(f"a{i}"))
-        names = (*self._parameters, *self.masses.names)
-        generators = [context.gen(context.variable_to_index(name)) for name in names]
-        total = context.constant(0)
-        for exponents, coefficient in polynomial.terms():
-            term = context.constant(to_flint(coefficient))
-            for generator, e in zip(generators, exponents, strict=False):
-                term = term * generator**e
-            total = total + term
-        return total
-
-    @cached_property
-    def _constants(self) -> tuple[sp.Poly | None, ...]:
-        """The constants as polynomials in k and m̂; None for a constant that becomes a generator."""
-        return tuple(map(self._in_fractions, self.constants))
-
-    def _in_fractions(self, constant: sp.Expr) -> sp.Poly | None:
-        """Convert a constant to a polynomial in k and the mass fractions; None if impossible."""
-        # A function of the fractions is one of the masses that scaling all of them leaves as it is.
-        weights = self.masses.distinct if self.masses.names else ()
-        scale = sp.Dummy(positive=True)
-        scaled = constant.xreplace({w: scale * w for w in weights})
-        if sp.cancel(scaled - constant) != 0:
-            return None
-        variables = [sp.Dummy() for _ in self.variables]
-        fractions = [sp.Dummy() for _ in self.masses.names]
-        images = dict(zip(self.variables, variables, strict=True))
-        if weights:
-            *counts, last = map(self.masses.weights.count, weights)
-            rest = 1 - sum(n * f for n, f in zip(counts, fractions, strict=True))
-            images |= dict(zip(weights, (*fractions, rest / last), strict=True))
-        symbols = [*variables, *fractions] or [sp.Dummy()]
-        return _as_polynomial(sp.cancel(constant.xreplace(images)), symbols)
-
     @cached_property
     def expression(self) -> Callable[[Sequence[tuple[tuple[int, ...], fmpq]]], sp.Expr]:
         """The conversion of polynomials to factored SymPy expressions in the caller's symbols.
@@ -182,8 +141,7 @@ class SymPyConverter:
     def __init__(self, ring: CoefficientRing) -> None:
         partitions = [part for part in (ring.masses, ring.contacts) if part.names]
         values = [w for part in partitions for w in part.distinct]
-        opaque_constants = [c for i, c in enumerate(ring.constants) if f"a{i}" in ring.names]
-        values += [*ring.variables, *opaque_constants]
+        values += ring.variables
         symbols = sorted(set().union(*(v.free_symbols for v in values)), key=str)
         polynomial = {v: _as_polynomial(v, symbols) for v in values}
         opaque = [v for v in dict.fromkeys(values) if polynomial[v] is None and not v.is_Rational]
@@ -208,7 +166,6 @@ class SymPyConverter:
             self._images += [part.total * element(w) for w in part.distinct[:-1]]
             total = sum((element(w) for w in part.weights), ring_context.constant(0))
             self._denominators.append((slice(start, len(self._images)), total))
-        self._images += [element(c) for c in opaque_constants]
 
     def __call__(self, terms: Sequence[tuple[tuple[int, ...], fmpq]]) -> sp.Expr:
         degrees = [

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -22,14 +22,12 @@ class Model(Value):
     """A cell, a contact law and a branch.
 
     highest : index n of the highest φ_n that a derivation needs, for a law other than a power.
-    constants : further expressions with which the coefficient ring is extended.
     """
 
     cell: Cell
     law: ContactLaw
     branch: str = "acoustic"
     highest: int = 0
-    constants: tuple[sp.Expr, ...] = ()
 
     @property
     def k(self) -> sp.Expr:
@@ -54,7 +52,7 @@ class Model(Value):
         if not self.law.homogeneous:
             variables = tuple(map(phi_symbol, range(2, self.highest + 1)))
         masses = Partition(self.cell.masses, 1, "mu")
-        return CoefficientRing(self.k, variables, masses, contacts, self.constants)
+        return CoefficientRing(self.k, variables, masses, contacts)
 
     def algebra(self, weight: int, velocity: bool = False, rest: bool = False) -> JetAlgebra:
         """The algebra of the jets over the ring; with ``velocity`` also the jets of u_τ."""
@@ -69,13 +67,11 @@ class Model(Value):
         context = algebra.context
         return self.ring.exponent(context), masses.elements(context), contacts.elements(context)
 
-    def substitution(
-        self, values: Mapping[str, Any], more: Sequence[sp.Symbol]
-    ) -> dict[sp.Symbol, sp.Expr]:
-        """Map symbols of cell, law and more to values; see `lwa.cell.substitution`."""
+    def substitution(self, values: Mapping[str, Any]) -> dict[sp.Symbol, sp.Expr]:
+        """Map symbols of cell and law to values; see `lwa.cell.substitution`."""
         if self.law.homogeneous:
-            return substitution(values, self.cell, self.k, more)
-        return substitution(values, self.cell, more=(*self.law.symbols, *more))
+            return substitution(values, self.cell, self.k)
+        return substitution(values, self.cell, more=self.law.symbols)
 
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr], order: int) -> Model:
         """The model with values in place of its symbols, for a derivation to this order."""

@@ -6,8 +6,8 @@ equations of `lwa.closure.solution` in one algebra, `lwa.algebra.jets`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -21,7 +21,6 @@ from lwa.base.frozen import Shown, Value
 from lwa.base.progress import Progress
 from lwa.cell import Cell
 from lwa.closure.ansatz import linear
-from lwa.closure.fields import in_field
 from lwa.closure.slaving import full
 from lwa.closure.solution import Solution
 from lwa.force import ContactLaw
@@ -35,8 +34,6 @@ FIELDS = ("first", "center")
 class Closure(Shown, Solution):
     """The solved consistency condition of a model, as polynomials.
 
-    changes : the (n, α_n) of each change of the field; see `in_field`.
-
     Equality, hash and pickle go by model, order, closure and field; a copy is derived again.
     """
 
@@ -44,7 +41,6 @@ class Closure(Shown, Solution):
     order: int
     name: str
     field: str
-    changes: tuple[tuple[tuple[int, sp.Expr], ...], ...] = ()
 
     @property
     def ratio(self) -> sp.Expr:
@@ -57,14 +53,12 @@ class Closure(Shown, Solution):
         return -sp.cancel(m1 / m2)
 
     def __reduce__(self) -> tuple[Callable[..., Closure], tuple[Any, ...]]:
-        model = replace(self.model, constants=())
-        return solve, (model, self.order, self.name, self.field, self.changes)
+        return solve, (self.model, self.order, self.name, self.field)
 
     def __repr__(self) -> str:
-        changes = f", changes={self.changes}" if self.changes else ""
         return (
             f"Closure({self.model.cell!r}, order={self.order}, k={self.model.k}, "
-            f"closure={self.name!r}, branch={self.model.branch!r}, field={self.field!r}{changes})"
+            f"closure={self.name!r}, branch={self.model.branch!r}, field={self.field!r})"
         )
 
     def latex_rows(self, most: int | None = None) -> list[str]:
@@ -92,32 +86,16 @@ class Closure(Shown, Solution):
             if n > 0
         }
 
-    @property
-    def symbols(self) -> tuple[sp.Symbol, ...]:
-        """Symbols of the α_n that are not those of the cell or the law."""
-        values = (alpha for alphas in self.changes for _, alpha in alphas)
-        symbols = set().union(*(alpha.free_symbols for alpha in values))
-        return tuple(sorted(symbols - {*self.model.cell.symbols, *self.model.law.symbols}, key=str))
-
-    def in_field(self, alphas: Mapping[int, sp.Expr]) -> Closure:
-        """The closure for the field φ = u + Σ α_n D^n ∂_x^n u, without ansatz."""
-        model, solution = in_field(self, self.model, self.order, alphas)
-        return replace(
-            self, **vars(solution), model=model, changes=(*self.changes, tuple(alphas.items()))
-        )
-
     def at(self, **values: Any) -> Closure:
         """The closure for these values of the named symbols; see `lwa.cell.substitution`."""
-        return self.anew(self.model.substitution(values, self.symbols))
+        return self.anew(self.model.substitution(values))
 
     def anew(
         self, new: Mapping[sp.Symbol, sp.Expr] | None = None, order: int | None = None
     ) -> Closure:
         """Derive the closure again, with values of its symbols or to another order."""
         new, order = new or {}, order or self.order
-        model = replace(self.model, constants=()).replaced(new, order)
-        changes = [[(n, alpha.xreplace(new)) for n, alpha in alphas] for alphas in self.changes]
-        return solve(model, order, self.name, self.field, changes)
+        return solve(self.model.replaced(new, order), order, self.name, self.field)
 
 
 @dataclass(frozen=True)
@@ -147,12 +125,9 @@ def solve(
     order: int,
     closure: str,
     field: str,
-    changes: Iterable[Iterable[tuple[int, sp.Expr]]] = (),
     progress: Progress[int] = iter,
 ) -> Closure:
     """Solve the consistency condition by the named closure, for the named field.
-
-    changes : the (n, α_n) of changes of the field, applied in turn.
 
     Raises `lwa.InputError` for the combinations that have no solution.
     """
@@ -169,7 +144,4 @@ def solve(
             "the optical branch oscillates at order D^0 and slaves no field algebraically unless "
             "k = 1: use the linear closure, or k = 1 with the field 'first'"
         )
-    solved = Closure(**vars(solution), model=model, order=order, name=closure, field=field)
-    for alphas in changes:
-        solved = solved.in_field(dict(alphas))
-    return solved
+    return Closure(**vars(solution), model=model, order=order, name=closure, field=field)

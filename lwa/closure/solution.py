@@ -25,7 +25,7 @@ class Solution:
         Optical: u_ττ = -u^k Σ_{n≥0} D^n E_n, E_0 = 1, in its own time unit.
     ansatz : b_n, n = 0 … order: the second particle's field is λ Σ b_n D^n ∂_x^n φ in the linear
         closure, and has this linear part in the full one (polynomials in the parameters).
-    slaved : `fields`, from the full closure or a change of the field φ; else ().
+    slaved : `fields`, from the full closure; else ().
     defect : E_n from the first equation of motion minus E_n from the second, for the same ansatz.
     """
 

@@ -22,7 +22,7 @@ from typing import Any, ClassVar
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, integer, power, read_exact, shorten
+from lwa.base.exact import InputError, power
 from lwa.closure.consistency import OfClosure
 from lwa.equation.energy import conservative, energy
 from lwa.equation.terms import ENERGY, Jet, Terms, base_order, by_order, terms
@@ -191,21 +191,6 @@ class PDE(OfClosure):
             for n, of_order in self.coefficients.items()
         )
         return sp.Add(leading, *rest)
-
-    def in_field(self, alphas: Mapping[int, Any]) -> PDE:
-        """The wave equation of the field φ = u + Σ α_n D^n ∂_x^n u, for {n: α_n}.
-
-        Raises `lwa.InputError` on the optical branch, for n < 1 or α_n that are no quantities.
-
-        >>> from lwa import Dimer, homogenize
-        >>> pde = homogenize(Dimer(1, 1)).pde
-        >>> pde.H, pde.in_field({2: "alpha"}).H
-        (D**2*(k/6 - 1/6), D**2*(12*alpha + 1)*(k - 1)/6)
-        """
-        if not isinstance(alphas, Mapping):
-            raise InputError(f"alphas is {shorten(alphas)}: a mapping {{n: alpha_n}} is wanted")
-        shifts = {integer(n, "n", 1): read_exact(a, f"alpha_{n}") for n, a in alphas.items()}
-        return PDE(self.closure.in_field(shifts))
 
     def at(self, **values: Any) -> PDE:
         """The equation for these values of the named symbols, and of ω = m2/m1 by ``omega``.

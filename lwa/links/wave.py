@@ -40,7 +40,7 @@ from lwa.base.quantities import (
     known_quantity,
 )
 from lwa.links.lattice import Lattice
-from lwa.wave.quadrature import CLOSE, CLOSE_OF_TABLES, Quadrature, Samples
+from lwa.wave.quadrature import Quadrature, Samples
 
 _FASTEST = 1.2  # least ω0 D/(2πV) of a resonator at which the relation holds; measured
 _BARE = 1 - 1e-6  # part of V² that the wave adds to the sound's from which there is no load
@@ -115,8 +115,7 @@ class LatticeWave(Value):
         return ahead, rise
 
     def _quadrature(self, samples: Samples) -> Quadrature:
-        tables = any(link.law.tabulated for link in self.lattice.links)
-        return Quadrature(samples, CLOSE_OF_TABLES if tables else CLOSE)
+        return Quadrature(samples)
 
     def _static(self, e: Array) -> tuple[Array, Array, Array]:
         """F′, F″ and I, without what resonators add, at mean compressions."""

@@ -49,10 +49,6 @@ def velocity(field: Background, p: sp.Expr) -> sp.Expr:
     if law.homogeneous:
         power = (law.exponent + 1) / 2
         return 2 * (p**power - field.p0**power) / (law.exponent + 1)
-    if law.tabulated:
-        D, gained = field.cell.spacing, law.F.at_order(-2)
-        value = (gained.subs(law.delta, D * p) - gained.subs(law.delta, D * field.p0)) / D
-        return value if value.free_symbols else value.evalf(SHOCK_DIGITS)
     c = sp.powdenest(sp.sqrt(field.force(x, 1)), force=True)
     if isinstance(c, sp.exp) or not c.has(x):
         return sp.integrate(c, (x, field.p0, p))

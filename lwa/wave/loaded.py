@@ -22,7 +22,7 @@ from lwa.base.quantities import (
 from lwa.cell import Cell
 from lwa.force import ContactLaw
 from lwa.linear.dispersion import Dispersion
-from lwa.wave.quadrature import CLOSE, CLOSE_OF_TABLES, Quadrature
+from lwa.wave.quadrature import Quadrature
 
 _BLOCK = 256  # waves computed at once; their samples stay in the processor's cache
 _STRAIN = sp.Symbol("p", positive=True)
@@ -38,7 +38,6 @@ class NumericBackground(Value):
 
     Raises `lwa.InputError` for symbols among masses, stiffnesses and the law's parameters, for
     arguments that are not finite, and for a law that changes too much over a wave for float64.
-    Under a law from a table widths and profiles are good to about 1e-5.
 
     >>> from lwa import Power, background_wave
     >>> numeric = background_wave(Cell([1]), law=Power("3/2")).numeric()
@@ -89,8 +88,7 @@ class NumericBackground(Value):
         slope, bend = (self.law.of_strain(_STRAIN, D, n) for n in (1, 2))
         demand_numbers((I.free_symbols | slope.free_symbols) - {_STRAIN}, "numbers are wanted")
         value, F1, F2 = number(I), function_of(_STRAIN, slope), function_of(_STRAIN, bend)
-        close = CLOSE_OF_TABLES if self.law.tabulated else CLOSE
-        return Quadrature(lambda p: (F1(p), F2(p), np.full(p.shape, value)), close)
+        return Quadrature(lambda p: (F1(p), F2(p), np.full(p.shape, value)))
 
     def scaled(self, p0: ArrayLike, B: ArrayLike) -> tuple[Array, Array, Array]:
         """Return p0/unit, B/unit and unit, broadcast; unit is 1, or a power of two for δ^k.

@@ -39,7 +39,6 @@ _WINDOW = 20  # places of an end correction
 _NEAR, _FAR = -1.7, -3.0  # first t of widths, where v = 2e-4 B, and of profiles, 2e-14 B
 _STEEPEST = 1.0  # largest d ln s between the nodes of an end correction at the foot
 CLOSE = 1e-8  # difference to half as many nodes; twice as many err 2^20 times less
-CLOSE_OF_TABLES = 1e-5  # the same where F‴ jumps, and the rule errs by about as much
 _LEAST = 1e-3  # size below which profiles are right to the absolute error of this size
 _PLACES = 16  # nodes through which results are interpolated
 
@@ -123,8 +122,7 @@ class Quadrature:
     """Speeds, half widths and profiles of the waves J v′² = v² (Q(B) - Q(v)), for flat arrays.
 
     samples : function of an array of strains; returns F′, F″ and J/F′, arrays of its shape.
-    close : difference to half as many nodes at which a result is taken; `CLOSE`,
-        or `CLOSE_OF_TABLES`.
+    close : difference to half as many nodes at which a result is taken.
 
     Methods take arrays of p0 and B of one shape, and raise `lwa.InputError` for a wave that the
     finest grid does not resolve.

@@ -63,18 +63,6 @@ def test_the_power_law_comes_back_at_every_order(cell, order, kind):
     assert compared > 10
 
 
-def test_in_another_field_too():
-    shifts = {1: "1/3", 2: "alpha"}
-    power, found = (
-        homogenize(Dimer(2, 1), 6, closure="full", **law).pde.in_field(shifts)
-        for law in ({}, {"law": general()})
-    )
-    for n, old in power.coefficients.items():
-        new = found.coefficients[n]
-        for jet in {*old, *new}:
-            assert there(old.get(jet, 0)) == there(new.get(jet, 0))
-
-
 @pytest.mark.parametrize("cell", [Cell([1]), Dimer("m1", "m2"), Cell(["m1", 2, 3])])
 def test_about_a_uniform_strain_it_is_blochs_chain(cell):
     """The terms linear in the jets hold no φ_n, and are the series of Ω²."""
@@ -166,7 +154,7 @@ def test_a_law_is_a_value():
     assert theory.law.phi(3) == (law.symbols[0] * law.delta) ** 2
     assert homogenize(Dimer("m1", "m2"), law=Power("k")) == homogenize(Dimer("m1", "m2"))
     assert homogenize(Cell([1]), law=Power("3/2")) == homogenize(Cell([1]), k="3/2")
-    assert theory.pde.in_field({2: "alpha"}).at(a=1).law == named("exponential", 1)
+    assert theory.pde.at(a=1).law == named("exponential", 1)
     kept = pickle.loads(pickle.dumps(theory.at(a="1/2").law))
     assert (kept.text, repr(kept)) == ("exponential:1/2", "named('exponential', 1/2)")
     assert kept == Law(kept.F)

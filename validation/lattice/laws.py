@@ -6,7 +6,6 @@ opens where δ < 0, as a power does.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -19,7 +18,6 @@ import sympy as sp
 from sympy.codegen.rewriting import expm1_opt, optimize
 
 from lwa import Cell
-from lwa.base import splines
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
 from lwa.force import ContactLaw
@@ -115,7 +113,7 @@ class Contact:
 def _expressions(law: ContactLaw) -> tuple[sp.Expr, ...]:
     """Return F, F′ and the energy, with float coefficients and e^x - 1 as expm1(x)."""
     energy = law.energy
-    at_rest = sp.S.Zero if law.tabulated else sp.limit(energy, law.delta, 0, "+")
+    at_rest = sp.limit(energy, law.delta, 0, "+")
     rows = law.F, law.slope(), energy - at_rest
     return tuple(optimize(sp.N(sp.sympify(row), 20), [expm1_opt]) for row in rows)
 
@@ -137,43 +135,8 @@ def _machine_code(law: ContactLaw) -> tuple[Any, ...]:
     from numba import cfunc  # start-up
 
     with _evaluated(law):
-        if law.tabulated:
-            rows = [_table_function(law.F.points, order) for order in (0, 1, -1)]
-        else:
-            rows = [sp.lambdify(law.delta, row, "math") for row in _expressions(law)]
+        rows = [sp.lambdify(law.delta, row, "math") for row in _expressions(law)]
         return tuple(cfunc("f8(f8)", error_model="numpy")(row) for row in rows)
-
-
-def _table_function(points: str, order: int) -> Callable[[float], Any]:
-    """Return F, F′ or the energy (order -1) of a table as a function that Numba compiles."""
-    from numba import njit  # start-up
-
-    spline, log_force = splines.read_spline(points), njit(splines.log_force)
-    pieces, firsts, end = spline.pieces, spline.pieces[0, 1:].copy(), spline.end
-    nodes, weights = splines.NODES, splines.WEIGHTS
-
-    def value(delta: float) -> Any:
-        if not delta > 0.0:
-            return 0.0
-        x = math.log(delta)
-        if x > end:
-            return math.nan
-        i = np.searchsorted(firsts, x, side="right")
-        x0, h, y0, chord = pieces[0, i], pieces[1, i], pieces[2, i], pieces[3, i]
-        d, e, stored = pieces[4, i], pieces[5, i], pieces[6, i]
-        g, slope, _ = log_force(x, x0, h, y0, chord, d, e)
-        if order >= 0:
-            return math.exp(g - order * x) * slope**order
-        if i == 0:
-            return math.exp(g + x) / (slope + 1.0)
-        half = (x - x0) / 2
-        for node, weight in zip(nodes, weights):  # noqa: B905 - Numba has no strict zip
-            place = x0 + half * (1.0 + node)
-            g, _, _ = log_force(place, x0, h, y0, chord, d, e)
-            stored += half * weight * math.exp(g + place)
-        return stored
-
-    return value
 
 
 @contextmanager

@@ -69,20 +69,13 @@ def simulate(
         raise SceneError(f"scene is {shorten(scene)}: a Scene is wanted")
     _check(scene, one_of(method, COMPILED + METHODS, "method"), step)
     rtol, atol = between(rtol, "rtol", 1e-13, 1e-2), between(atol, "atol", 1e-13, 1e-2)
-    try:
-        with np.errstate(over="ignore", invalid="ignore"):
-            motion = Motion(scene)
-            if method in COMPILED:
-                from validation.lattice.engine import follow  # start-up: numba takes its time
+    with np.errstate(over="ignore", invalid="ignore"):
+        motion = Motion(scene)
+        if method in COMPILED:
+            from validation.lattice.engine import follow  # start-up: numba takes its time
 
-                return follow(motion, method, rtol, step, progress)
-            return integrate(motion, method, rtol, atol, progress)
-    except IntegrationError as error:
-        if scene.law is None or not scene.law.tabulated:
-            raise
-        last = scene.law.points[0][-1]  # the force is NaN beyond the point
-        fault = f"the law's table ends at compression {last:g}, too early for this motion"
-        raise IntegrationError(f"{fault}: {error}") from None
+            return follow(motion, method, rtol, step, progress)
+        return integrate(motion, method, rtol, atol, progress)
 
 
 def _check(scene: Scene, method: str, step: float | None) -> None:

@@ -22,11 +22,11 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from lwa.base.exact import InputError, shorten
+from lwa.base.exact import shorten
 from lwa.base.files import load
 from lwa.base.tables import Reader, Table, among, each, entries, place, places, table
 from lwa.force import ContactLaw
-from lwa.law import NAMES, Law, read_law
+from lwa.law import NAMES, read_law
 from lwa.spheres.beads import (
     CHAIN,
     FILE,
@@ -40,7 +40,7 @@ from lwa.spheres.beads import (
 )
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes.checks import SceneError, finite, positive
-from validation.scenes.columns import MeasuredFile, check_span, columns
+from validation.scenes.columns import check_span, columns
 from validation.scenes.forcing import DAMPINGS, Damping, Drive
 from validation.scenes.scene import Scene
 
@@ -54,7 +54,6 @@ _TABLES = {  # that a file may leave out
     "sensors": ("beads", "contacts"),
 }
 _NUMBERS = ("samples", "gravity", "precompression")
-_POINTS = ("compression", "force")  # keys of a law's table
 KEYS: Mapping[str, Sequence[str]] = {"file": FILE, "chain": CHAIN, **_TABLES}
 """Keys of a file, and of each of its tables."""
 
@@ -166,7 +165,7 @@ def _chain(
     else:
         masses = found.masses * found.repeat
         key = found.given.one("k", "law")
-        law = {key: found.given.read(key, finite if key == "k" else partial(_law, folder))}
+        law = {key: found.given.read(key, finite if key == "k" else read_law)}
         stiffnesses = found.by_contact(found.stiffnesses) or [1.0] * (n - 1)
         spacings = tuple(found.by_contact(found.spacings))
     for defect in defects:
@@ -178,24 +177,6 @@ def _chain(
         elif not row:
             raise SceneError(f"{defect.path('like')} names a bead in a chain of masses")
     return row, {"masses": masses, "stiffnesses": stiffnesses, "spacings": spacings} | law
-
-
-def _law(folder: Path, value: Any, name: str) -> ContactLaw:
-    """Read a law: by name, as "table:FILE", or as a table of its points."""
-    if isinstance(value, dict):
-        given = Table(value, name, _POINTS)
-        return Law.table(*(given.read(key, each(positive)) for key in _POINTS))
-    if not (isinstance(value, str) and value.startswith("table:")):
-        return read_law(value, name)
-    file = MeasuredFile.read(folder / value.removeprefix("table:").strip())
-    try:
-        # "compression_value" and "force_value" are the names that `lwa-validate law` writes
-        ending = "_value" * (f"{_POINTS[0]}_value" in file.names)
-        return Law.table(*(file.column(key + ending).tolist() for key in _POINTS))
-    except InputError as error:
-        raise SceneError(
-            str(error) if str(file.path) in str(error) else f"{file.path}: {error}"
-        ) from None
 
 
 def _wall(given: Table, row: Sequence[Sphere], materials: Mapping[str, Material]) -> float:
@@ -263,10 +244,8 @@ def document(source: Scene) -> dict[str, Any]:
     return result
 
 
-def _law_content(law: ContactLaw) -> str | dict[str, list[float]]:
-    """Return a law as text, such as "hertz2:1,2", or the points of a table; else `SceneError`."""
-    if law.tabulated:
-        return {key: list(row) for key, row in zip(_POINTS, law.points, strict=True)}
+def _law_content(law: ContactLaw) -> str:
+    """Return a law as text, such as "hertz2:1,2"; else raise `SceneError`."""
     if not (law.name and all(x.is_Rational for x in law.parameters)):
         raise SceneError(f"law is {law.text}: a file holds the laws {', '.join(NAMES)}")
     return law.text
