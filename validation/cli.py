@@ -9,7 +9,6 @@ import click
 from lwa.command.terminal import HELP, Commands, run, version
 
 STUDIES = {
-    "accuracy": ("accuracy", "Speed against error of integrators and theories (three minutes)."),
     "compare": ("compare", "Measured forces beside the simulation of their scene."),
     "exact": ("exact", "Exact solitary wave of the lattice: speed, widths and amplitudes."),
     "figures": ("figures", "The figures of Porter et al. (2008), computed (ten seconds)."),

@@ -1,4 +1,4 @@
-"""CPU time of the engine and of CyRK, in C++, on the tasks of `lwa-validate accuracy`.
+"""CPU time of the engine and of CyRK, in C++, on the tasks of `book/studies/accuracy.py`.
 
     python -m pytest -s tests/benchmarks/bench_integrators.py
 
@@ -17,9 +17,9 @@ import numba
 import numpy as np
 import pytest
 
+from book.studies.accuracy import FINEST, TASKS, WANTED, cost, timed
 from validation.lattice.equations import Motion
 from validation.lattice.simulate import COMPILED, simulate
-from validation.studies.accuracy import FINEST, TASKS, WANTED, cost, timed
 
 pytestmark = [
     pytest.mark.optional("CyRK"),

@@ -5,10 +5,10 @@ from functools import partial
 import numpy as np
 import pytest
 
+from book.studies.accuracy import FINEST, TASKS, relative_errors, solitary_wave, struck_chain
 from tests.validation.lattice.forced import follow
 from validation.lattice.equations import Motion
 from validation.lattice.simulate import simulate
-from validation.studies.accuracy import FINEST, TASKS, relative_errors, solitary_wave, struck_chain
 
 
 def difference(task):

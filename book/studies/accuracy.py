@@ -1,9 +1,17 @@
-"""Speed against error: CPU time and error of integrators on fixed tasks.
+"""Speed against error: integrators on fixed tasks, theories against true waves.
 
 A task is a pulse that is measured at one contact far away. The engine's methods and SciPy's run at
 several tolerances each. The error is the largest relative one of arrival time, peak force and FWHM,
 against the exact wave or the engine at its finest tolerance. The cost is CPU time without
 compilation. `tests/benchmarks` measures another package.
+
+The ladder of theories compares the linear, full and canonical closures and the sums of the series
+in k - 1 with the true wave, in the widths of force and strain at a contact and the speed, at peak
+contact force 1, m1 = A = D = 1. The true wave (the truth) is `validation.waves.solver.exact_wave`
+at mass ratios with a solitary wave, and elsewhere the steady pulse of a struck chain
+(`validation.pulses.steady`), with an error. The cost is that of deriving and evaluating the theory.
+
+    python book/studies/accuracy.py --task uniform
 """
 
 from __future__ import annotations
@@ -14,7 +22,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import takewhile
+from itertools import chain, product, takewhile
 from statistics import median
 from typing import Any, TypeVar
 
@@ -22,20 +30,22 @@ import click
 import numpy as np
 import sympy as sp
 
+from lwa import Cell, InputError, NoSolitaryWave, expand
 from lwa.base.progress import Progress
 from validation.lattice.result import Run
 from validation.lattice.simulate import COMPILED, simulate
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import MeasureError, Pulse, highest_pulse
 from validation.pulses.sensors import READINGS, readings, tracks
+from validation.pulses.steady import STRETCH, point
 from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes import chains
 from validation.scenes.checks import one_of
 from validation.scenes.scene import Scene
-from validation.studies.theories import SOLITARY, STRUCK_CHAIN, ladder, place
-from validation.waves.solver import exact_wave
+from validation.waves.solver import exact_wave, measured
+from validation.waves.theory import theory_at
 
 WANTED = (1e-4, 1e-6, 1e-8, 1e-10)
 """Relative errors of the peak force at which costs are compared."""
@@ -139,6 +149,142 @@ TASKS: Mapping[str, Callable[[], Task]] = {
 THEORY = "theory"
 NAMES = (*TASKS, THEORY)
 """Names of all tasks, the ladder of theories among them."""
+
+_HEADS = {
+    "force": "FWHM of a contact's force: theory over truth - 1",
+    "strain": "FWHM of a contact's strain: theory over truth - 1",
+    "speed": "speed at peak contact force 1: theory over truth - 1",
+}
+COMPARED = tuple(_HEADS)
+
+Prediction = tuple[Sequence[float], Sequence[float] | None]
+"""Values of `COMPARED`, and the theory's own estimates of their relative errors."""
+
+
+def _closed(closure: str, k: sp.Rational, omega: sp.Rational) -> Prediction:
+    """Return `COMPARED` by the closed form of a closure."""
+    wave = theory_at(k, omega, closure).at_force(1)
+    return [float(x) for x in (wave.fwhm("force"), wave.fwhm("strain"), wave.speed)], None
+
+
+def _summed(n: int, k: sp.Rational, omega: sp.Rational) -> Prediction:
+    """Return the sums of the series in ε to order n, and their estimated errors."""
+    expansion = expand(Cell((1,) if omega == 1 else (1, omega)), n, k=k)
+    sums = [row.at() for row in (expansion.fwhm("force"), expansion.fwhm("strain"), expansion.c)]
+    return [x.value for x in sums], [abs(x.error / x.value) for x in sums]
+
+
+THEORIES: Mapping[str, Callable[[sp.Rational, sp.Rational], Prediction]] = {
+    **{f"{closure} closure": partial(_closed, closure) for closure in ("linear", "full")},
+    "canonical field": partial(_closed, "canonical"),
+    **{f"ε^{n}": partial(_summed, n) for n in (1, 2, 4, 8)},
+}
+"""Closures, and sums of the series in ε = k - 1."""
+
+SOLITARY, STRUCK_CHAIN = "solitary wave", "struck chain"
+HERTZ = sp.Rational(3, 2)
+
+
+Place = Mapping[str, Any]
+"""Predictions of all theories at one k and ω, beside the lattice's values, as in JSON.
+
+``k``, ``omega``; ``truth``, `SOLITARY` or `STRUCK_CHAIN`, the origin of the lattice's `COMPARED`,
+``truth_value`` and ``truth_error_value``; ``rows``, for each theory ``theory``, its name;
+``error_value``, theory/truth - 1 by `COMPARED`, or None and the reason ``missing``;
+``estimate_value`` of |error| by the theory itself, where it has one; ``seconds``, CPU time of
+derivation and evaluation.
+"""
+
+
+_LADDER = (
+    Column("quantity"),
+    Column("k", "k"),
+    Column("omega", "m2/m1", format=lambda omega: f"{float(omega):.4g}"),
+    Column("truth_value", "truth", format=".6g"),
+    Column("truth_error_value", "±", format=".0e"),
+    Column("truth", "by", format=lambda kind: kind.split()[0]),
+    *(Column(f"error_value.{theory}", theory, format="+.1e") for theory in THEORIES),
+)
+_LADDER_NOTE = """\
+ε^n: the series in k - 1 summed from n orders.
+Truth: the solitary wave or, where there is none, the pulse of a struck chain."""
+
+
+def ladder(places: Sequence[Place]) -> Report:
+    """Return the table of the theories' errors, and a picture of |error| of the force's width.
+
+    JSON: ``theories``, the places.
+    """
+    seconds: dict[str, list[float]] = {}
+    for row in chain.from_iterable(place["rows"] for place in places):
+        if row["error_value"]:
+            seconds.setdefault(row["theory"], []).append(row["seconds"])
+    costs = ", ".join(f"{name} {1e3 * median(s):.3g}" for name, s in seconds.items())
+    rows = []
+    for name, p in product(COMPARED, places):
+        truth = p["truth_value"][name], p["truth_error_value"][name], p["truth"]
+        off = [row["error_value"] and row["error_value"][name] for row in p["rows"]]
+        rows.append((name, p["k"], p["omega"], *truth, *off))
+    note = f"{_LADDER_NOTE}\nMedian cost of derivation and evaluation (ms of CPU): {costs}."
+    title = "Theories against true waves"
+    equal = [(p["k"] - 1, p) for p in places if p["omega"] == 1]
+    dimers = [(p["omega"], p) for p in places if p["omega"] != 1 and p["k"] == HERTZ]
+    return Report(
+        "",
+        (Table(_LADDER, tuple(rows), "", title, note, by="quantity", heads=_HEADS),),
+        panels=(
+            _panel("k - 1", "theories, equal beads", equal),
+            _panel("m2/m1", "theories, dimers, k = 3/2", dimers),
+        ),
+        data={"theories": places},
+    )
+
+
+def _panel(axis: str, title: str, places: Sequence[tuple[sp.Rational, Place]]) -> Panel:
+    """Return the panel of |error| of the force's width, as a function of k - 1 or ω."""
+    curves = []
+    for i, (theory, mark) in enumerate(zip(THEORIES, "osDPdv<", strict=True)):
+        errors = ((x, p["rows"][i]["error_value"]) for x, p in places)
+        if points := sorted((x, abs(error["force"])) for x, error in errors if error):
+            x, y = zip(*points, strict=True)
+            curves.append(Curve(theory, x, y, f"C{i}{mark}-"))
+    return Panel(axis, "|error| of the FWHM of the force", tuple(curves), "xy", title)
+
+
+def place(k: sp.Rational, omega: sp.Rational, kind: str = SOLITARY) -> Place:
+    """Compare all theories with the lattice's solitary wave or struck pulse at one k and ω.
+
+    Raises `MeasureError` where the struck chain's pulse is not steady.
+    """
+    if kind == SOLITARY:
+        wave = measured(exact_wave((1.0,) if omega == 1 else (1.0, float(omega)), float(k)))
+        truth = [wave[name] for name in ("fwhm force", "fwhm strain", "c")]
+    else:
+        pulse = point(k, omega, STRETCH)
+        if pulse.missing:
+            raise MeasureError(pulse.missing)
+        truth = [pulse.numbers[name] for name in ("width", "strain_width", "speed")]
+    rows = []
+    for theory, predict in THEORIES.items():
+        row = dict.fromkeys(("error_value", "estimate_value", "missing"))
+        start = time.process_time()
+        try:
+            numbers, shares = predict(k, omega)
+            off = (x / true.value - 1 for x, true in zip(numbers, truth, strict=True))
+            row["error_value"] = dict(zip(COMPARED, off, strict=True))
+            row["estimate_value"] = shares and dict(zip(COMPARED, shares, strict=True))
+        except (InputError, NoSolitaryWave) as reason:
+            row["missing"] = str(reason)
+        rows.append({"theory": theory, **row, "seconds": time.process_time() - start})
+    return {
+        "k": k,
+        "omega": omega,
+        "truth": kind,
+        "truth_value": {q: x.value for q, x in zip(COMPARED, truth, strict=True)},
+        "truth_error_value": {q: x.error for q, x in zip(COMPARED, truth, strict=True)},
+        "rows": rows,
+    }
+
 
 # Mass ratios of the Hertz dimer's solitary waves are from `validation.waves.resonances`.
 CASES = tuple(
@@ -263,3 +409,7 @@ def accuracy(
         panels=(*panels, *theories.panels),
         data=theories.data,
     )
+
+
+if __name__ == "__main__":
+    accuracy.main()
