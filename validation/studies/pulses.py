@@ -56,6 +56,8 @@ def pulses(
 
     ``sensors`` and ``speeds`` as of `validation.studies.run`, the static force from the record. A
     sensor has the speeds from the sensor before as well, so that the CSV holds all numbers.
+
+    Raises `MeasureError` where no sensor has a pulse.
     """
     one_of(of, _KINDS, "of")
     apart = None if distance is None else amount(str(distance), "distance", LENGTH)
@@ -70,6 +72,8 @@ def pulses(
         force = file.column(sensor.name)
         found.append(_reading(sensor, time, force))
         curves.append(Curve(found[i].name, time, force, f"C{i}-"))
+    if all(reading.missing for reading in found):
+        raise MeasureError(f"{records}: no sensor has a pulse: {found[0].name}: {found[0].missing}")
     labels = ("arrival (s)", "peak (N)", "FWHM (s)") if si else ("arrival", "peak", "FWHM")
     lengths = dict(zip(SPEEDS, (1.0,) if apart is None else (1.0, apart), strict=False))
     places = [{name: r.places[0] * size for name, size in lengths.items()} for r in found]

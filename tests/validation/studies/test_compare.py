@@ -66,6 +66,25 @@ def test_a_single_sensor_needs_no_name(files, tmp_path):
     assert named["shift_value"] == pytest.approx(LATE, abs=1e-6)
 
 
+def test_the_error_of_a_later_arrival_holds_that_of_the_shift(files):
+    """Without the first sensor's column the second is the one by which records are shifted."""
+
+    def errors():
+        rows = compare(*files).document()["rows"]
+        return [row["measured_error_value"] for row in rows if row["quantity"] == "arrival"]
+
+    names, *lines = Path(files[1]).read_text().splitlines()
+    rows = np.array([line.split(",") for line in lines], float)
+    rows[:, 1:] += 0.005 * np.random.default_rng(7).normal(size=rows[:, 1:].shape)
+    np.savetxt(files[1], rows, delimiter=",", header=names, comments="")
+    first, second = errors()
+    header = names.replace("contact 4 force (N),", "")
+    np.savetxt(files[1], rows[:, [0, 2]], delimiter=",", header=header, comments="")
+    (alone,) = errors()
+    assert second == pytest.approx(np.hypot(first, alone), rel=1e-6)
+    assert second > 1.05 * alone
+
+
 RECORD = "".join(f"{t},1\n" for t in range(9))
 
 

@@ -15,7 +15,7 @@ from lwa import canonical_wave
 from validation import measure, simulate
 from validation.pulses.steady import point
 from validation.scenes.chains import DIAMETER, PTFE_BEAD
-from validation.studies.figures import FORMED, MODULI, RECORDED, chain_speed, figures
+from validation.studies.figures import FORMED, MODULI, RECORDED, chain_speed, figures, scaling
 from validation.studies.paper import HERTZ, chain_cell, recorded_chain
 
 
@@ -48,15 +48,13 @@ def test_the_fitted_exponent_is_the_published_one(document):
     assert document["scaling"] == document["scalings"][0]
 
 
-def test_each_point_is_on_the_power_law_within_its_error(document):
-    """V_s F_m^{-1/6} is the same at all drop heights, as the chain scales exactly."""
-    for row in document["scalings"]:
-        columns = ("speed_value", "speed_error_value", "force_value", "force_error_value")
-        V, V_error, F, F_error = (np.array(row[name]) for name in columns)
-        share = V_error / V + F_error / F / 6
-        off = np.log(V / V[0]) - np.log(F / F[0]) / 6
-        assert np.all(np.abs(off) <= share + share[0])
-        assert np.all((share > 0) & (share < 1e-6))
+def test_the_errors_of_the_scaling_cover_a_finer_run(document):
+    """Of speeds and forces at a looser tolerance; a thousandth of them would not cover."""
+    rough, fine = scaling(MODULI[0], (1e-7, 1e-6)), document["scaling"]
+    for name in ("speed", "force"):
+        off = np.abs(np.subtract(getattr(rough, name), fine[f"{name}_value"]))
+        share = off / getattr(rough, f"{name}_error")
+        assert 1e-3 < share.max() <= 1, name
 
 
 def test_the_theorys_line_is_parallel_to_the_lattices(document):

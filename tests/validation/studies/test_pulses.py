@@ -112,14 +112,22 @@ def test_the_csv_of_sensors_in_beads_holds_their_speed(capsys, tmp_path):
     assert (first["speed_sites_value"], second["speed_value"]) == ("", "")
 
 
-def test_a_record_that_begins_with_its_pulse_has_no_numbers(tmp_path):
-    file = tmp_path / "records.csv"
-    t = np.arange(100.0)
-    rows = zip(t, np.exp(-(((t - 30) / 15) ** 2)), strict=True)
-    file.write_text("\n".join(["time,force", *(f"{a},{b}" for a, b in rows)]))
-    (row,) = pulses(str(file)).document()["sensors"]
-    assert row["peak_value"] is None
-    assert "noise" in row["missing"]
+def test_a_sensor_without_a_pulse_has_no_numbers(capsys, tmp_path):
+    """The reason stands in its row; a file in which no sensor has a pulse is refused."""
+    file, t = tmp_path / "records.csv", np.arange(400.0)
+    late, early = (np.exp(-(((t - at) / 30) ** 2)) for at in (260, 60))
+    for forces, status in (((late, early), 0), ((early,), 2)):
+        names = ",".join(f"{i + 1} force" for i in range(len(forces)))
+        np.savetxt(file, np.transpose((t, *forces)), "%s", ",", header=f"time,{names}", comments="")
+        code, out, err = ended(capsys, cli.main, "pulses", str(file), "--format", "json")
+        assert code == status
+        if status:
+            assert "no sensor has a pulse" in err
+            assert "noise" in err
+        else:
+            row = json.loads(out)["sensors"][1]
+            assert row["peak_value"] is None
+            assert "noise" in row["missing"]
 
 
 @pytest.mark.parametrize(
