@@ -31,9 +31,7 @@ if TYPE_CHECKING:
     from lwa.expansion.expand import expand as expand
     from lwa.expansion.physical import ExpandedWave as ExpandedWave
     from lwa.expansion.physical import Strike as Strike
-    from lwa.expansion.physical import graded_force as graded_force
     from lwa.expansion.physical import pulse_of_strike as pulse_of_strike
-    from lwa.expansion.physical import transmitted_force as transmitted_force
     from lwa.expansion.series import EpsilonSeries as EpsilonSeries
     from lwa.force import ContactLaw as ContactLaw
     from lwa.law import Law as Law

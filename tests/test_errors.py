@@ -4,7 +4,7 @@ Each covers the deviation and is at most `LOOSE` times as large, here
 
 - sums of the series in k - 1, and what inherits them (`ExpandedWave`, `Strike`, `Shock.wave`),
 - the bound of the radiation of unlike beads,
-- the force of a strike and behind an interface,
+- the force of a strike,
 - a shock: mean strain, wall, edges, leading pulse by the canonical wave and by the series,
 
 and elsewhere the last digits of vectorised functions (tests/lwa/wave) and lattices of any links
@@ -12,14 +12,13 @@ and elsewhere the last digits of vectorised functions (tests/lwa/wave) and latti
 """
 
 import random
-from fractions import Fraction
 
 import numpy as np
 import pytest
 import scipy
 import sympy as sp
 
-from lwa import Cell, Dimer, InputError, Power, expand, pulse_of_strike, shock, transmitted_force
+from lwa import Cell, Dimer, InputError, Power, expand, pulse_of_strike, shock
 from lwa.expansion import radiation
 from lwa.expansion.approximants import resum
 from lwa.law import named
@@ -141,24 +140,6 @@ def test_the_error_of_a_strike(k, mass):
     (peak,) = peaks([mass] + 60 * [1], 60 * [1], float(found.chain.k), (40,), 80)
     assert holds(found.force.error, abs(found.force.value - peak))
     assert found.train == (mass > 2)
-
-
-@pytest.mark.parametrize(
-    ("k", "mass", "stiffness", "between"),
-    [
-        ("3/2", 1 / 8, 1 / 3, 1 / 3), ("3/2", 1 / 4, 1, 1), ("3/2", 8, 1, 1), ("3/2", 1, 3, 1),
-        ("3/2", 1, 3, 3), ("5/4", 1 / 8, 1 / 3, 1 / 3), ("5/4", 1 / 2, 3, 3), ("5/4", 8, 3, 1),
-        ("5/2", 4, 3, 3), ("5/2", 1 / 4, 1, 1),
-    ],
-)  # fmt: skip
-def test_the_error_behind_an_interface(k, mass, stiffness, between):
-    """On both ends of the range, and with a contact between the chains like those of either."""
-    masses, contacts = 60 * [1] + 50 * [mass], 59 * [1] + [between] + 49 * [stiffness]
-    duration = 80 + 75 * (mass / stiffness) ** 0.5
-    before, behind = peaks(masses, contacts, float(sp.Rational(k)), (40, 90), duration)
-    cells = Cell([1]), Cell([Fraction(mass)], [Fraction(stiffness).limit_denominator(9)])
-    found = transmitted_force(before, *cells, k)
-    assert holds(found.error, abs(found.value - behind))
 
 
 # Cell, law, strains behind and ahead; the results whose error is tested for being too large: a

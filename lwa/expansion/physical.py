@@ -1,4 +1,4 @@
-"""Waves of the lattice in the cell's units: at a given force, from a striker, into another chain.
+"""Waves of the lattice in the cell's units: at a given force, from a striker.
 
 A power law has no scale of its own: the speed scales as F^{(k-1)/(2k)} with the peak force F of the
 first contact, and widths in sites do not depend on F.
@@ -221,50 +221,3 @@ def pulse_of_strike(
         if value.free_symbols:
             raise InputError(f"{name} is {shorten(value)}: a number is wanted")
     return Strike(expand(chain, ORDER, k=k), mass, velocity)
-
-
-def graded_force(force: Any, stiffness: Any, other: Any, k: Any = "k") -> sp.Expr:
-    """Peak force of a pulse where a slowly graded chain's stiffness A has become A′.
-
-    ``force`` is the peak force at ``stiffness`` A, ``other`` is A′. The pulse keeps its energy
-    e A^{-1/k} F^{(k+1)/k}: F ∝ A^{1/(k+1)}, whatever the masses.
-
-    >>> graded_force("F", 1, 32, "3/2")
-    4*F
-    """
-    ratio = positive(other, "other") / positive(stiffness, "stiffness")
-    return positive(force, "force") * ratio ** (1 / (exponent(k) + 1))
-
-
-def transmitted_force(force: Any, cell: Cell, other: Cell, k: Any = "3/2") -> Estimate:
-    """Peak force of the leading pulse that enters the chain ``other`` from ``cell``, equal beads.
-
-    ``force`` is the peak force of the incident pulse. The error, 0.085 |ln m′/m| + 0.06 |ln A′/A|
-    of the force, covers struck chains with k = 5/4 … 5/2, mass ratios of ⅛ … 8 and ratios of
-    stiffness of ⅓ … 3, the contact between the chains as stiff as either. Outside of this range
-    (from PTFE to steel, A′/A = 114, the rule is 62 % too high) and for symbols it raises
-    `lwa.InputError`.
-
-    >>> transmitted_force(1, Cell([1]), Cell([2])).value
-    0.9317...
-    """
-    # Two quasi-particles collide: 4 m m′/(m + m′)² of the energy e A^{-1/k} F^{(k+1)/k} passes.
-    force, k = positive(force, "force"), exponent(k)
-    for name, chain in (("cell", cell), ("other", other)):
-        if not isinstance(chain, Cell) or not chain.uniform:
-            raise InputError(f"{name} is {shorten(chain)}: a Cell of equal beads is wanted")
-    mass, stiffness = other.masses[0] / cell.masses[0], other.stiffnesses[0] / cell.stiffnesses[0]
-    bounds = {
-        "k": (k, sp.Rational(5, 4), sp.Rational(5, 2)),
-        "ratio of masses": (mass, sp.Rational(1, 8), 8),
-        "ratio of stiffnesses": (stiffness, sp.Rational(1, 3), 3),
-    }
-    demand_numbers(
-        {*force.free_symbols, *(mass * stiffness * k).free_symbols}, "numbers are wanted"
-    )
-    for name, (value, low, high) in bounds.items():
-        if not low <= value <= high:
-            raise InputError(f"the {name} is {shorten(value)}: the rule holds from {low} to {high}")
-    passed = 4 * mass / (1 + mass) ** 2 * stiffness ** (1 / k)
-    relative = 0.085 * abs(math.log(mass)) + 0.06 * abs(math.log(stiffness))
-    return Estimate(float(force * passed ** (k / (k + 1))), 0.0).widened(relative)

@@ -19,7 +19,6 @@ from lwa import (
     piston,
     pulse_of_strike,
     shock,
-    transmitted_force,
 )
 from lwa.cell import RESERVED
 from tests.identity import same
@@ -121,8 +120,6 @@ HERTZ = Power("3/2")
         lambda x: piston(x, HERTZ, 1),
         lambda x: pulse_of_strike(x, 1, velocity=1),
         lambda x: LoadedChain(x, HERTZ, 1),
-        lambda x: transmitted_force(1, x, Cell([1])),
-        lambda x: transmitted_force(1, Cell([1]), x),
         lambda x: canonical_wave(Cell([1]), law=general() if x in (None, HERTZ) else x),
         lambda x: shock(Cell([1]), "power" if x is HERTZ else x, 2, 1),
     ],
