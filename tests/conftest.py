@@ -51,7 +51,7 @@ def pytest_collection_finish(session):
 def pytest_runtest_setup(item):
     """Skip a test whose optional parts are missing, before the test starts anything.
 
-    ``@pytest.mark.optional("distributed", "gfortran")`` names Python packages and programs.
+    ``@pytest.mark.optional("distributed", "cc")`` names Python packages and programs.
     """
     for mark in item.iter_markers("optional"):
         for part in mark.args:

@@ -18,7 +18,7 @@ import sympy as sp
 from sphinx.application import Sphinx
 
 from lwa import Cell, Material, Sphere, canonical_wave, hertz, homogenize
-from lwa.code import LANGUAGES, Function
+from lwa.wave.source import Function, module
 
 
 @cache
@@ -59,7 +59,7 @@ def formulas() -> str:
         [
             "const lwaFormulas = (() => {",
             wave.code("javascript"),
-            LANGUAGES["javascript"](more).module(["Chains in units, written by lwa"]),
+            module(more, "javascript", ["Chains in units, written by lwa"]),
             f"const materials = {json.dumps(materials)};",
             f"return {{{', '.join(' '.join(names).split())}, materials}};",
             "})();",

@@ -14,7 +14,7 @@ from lwa.command.options import STYLES, theory_options
 from lwa.command.rows import Answer, Row, Values
 from lwa.equation.terms import Terms, by_order
 from lwa.theory import Theory, homogenize
-from lwa.wave.functions import Functions
+from lwa.wave.source import Functions, module
 
 FIELDS = {
     "first": "u is the displacement of the cell's first particle",
@@ -159,4 +159,5 @@ def _source(theory: Theory) -> str:
     table = {n: {jet: terms[jet] for jet in terms} for n, terms in theory.pde.coefficients.items()}
     doc = "{n: {(jet, jet_t): c}}, orders D^(k+n), without the power of D"
     functions.define("coefficients", doc, sp.Dict(table))
-    return functions.source("numpy", ["The ansatz and the wave equation. Written by lwa."])
+    title = ["The ansatz and the wave equation. Written by lwa."]
+    return module([*functions.values()], "numpy", title)

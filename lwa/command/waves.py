@@ -11,7 +11,6 @@ from lwa.base.exact import InputError, read_exact
 from lwa.base.frozen import Shown
 from lwa.base.quantities import QUANTITIES, NoSolitaryWave
 from lwa.cell import Cell
-from lwa.code import LANGUAGES
 from lwa.command.chain import ChainInput, take_chain
 from lwa.command.derivation import FIELDS, chain_json
 from lwa.command.options import (
@@ -29,6 +28,7 @@ from lwa.theory import Theory, homogenize
 from lwa.wave.background import WIDTH_DIGITS, BackgroundWave
 from lwa.wave.closed import CompactWave
 from lwa.wave.physical import PhysicalWave, PrecompressedWave
+from lwa.wave.source import LANGUAGES
 from lwa.wave.traveling import TravelingWave
 
 # Error by radiation (`lwa.expansion.radiation`) from which on a note is printed: for dimers of

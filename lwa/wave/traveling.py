@@ -73,14 +73,14 @@ class TravelingWave(CompactWave):
     def code(self, language: str) -> str:
         """Source text of a program: β, widths, speed, amplitude and profile as functions.
 
-        language : a key of `lwa.code.LANGUAGES`, such as "c" or "numpy".
+        language : a key of `lwa.wave.source.LANGUAGES`, such as "c" or "numpy".
 
-        Arguments and accuracy are those of `lwa.wave.functions`. Raises `lwa.InputError` for
-        another language, and for numbers beyond a double.
+        Arguments and accuracy are those of `lwa.wave.source`. Raises `lwa.InputError` for another
+        language, and for symbols that are no names of variables.
         """
-        from lwa.wave.functions import TITLE, wave_functions  # start-up
+        from lwa.wave.source import TITLE, module, wave_functions  # start-up
 
-        return wave_functions(self).source(language, TITLE)
+        return module([*wave_functions(self).values()], language, TITLE)
 
 
 def canonical_wave(
