@@ -33,7 +33,7 @@ SCENES = {
 }
 METHODS: dict[str, tuple[dict[str, Any], Sequence[int]]] = {
     "RKN86": ({}, range(4, 12)),
-    "SRKN14": ({"method": "SRKN14"}, range(4, 10)),
+    "symplectic": ({"method": "symplectic"}, range(4, 10)),
     "SciPy DOP853": ({"method": "DOP853"}, (5, 7)),
 }
 """Options of `simulate` by label, and the tolerances 10^-n."""

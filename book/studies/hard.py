@@ -29,11 +29,12 @@ from validation.scenes.checks import one_of
 from validation.scenes.scene import Scene
 
 REFERENCE_DIGITS = 80  # of mpmath; cancellation on the grid leaves more than 50 of them
-ALLOWED = 8.0  # ulps that a closed form, or V² under load, may lose
-PRINTED, METHOD = "as printed", "SRKN14"  # the formulas of the paper; the splitting
+ALLOWED = 8.0  # ulps that V² under load may lose
+PROMISED = 1e-11 / 2**-52  # ulps that a closed form in floats may lose
+PRINTED, METHOD = "as printed", "symplectic"  # the formulas of the paper; the splitting
 
 EXPONENTS = 1 + np.array([1e-6, 1e-4, 0.01, 0.1, 0.5, 1, 1 + 2**-30, 1.5, 2 - 2**-30, 2, 4, 19])
-RATIOS = np.unique([*10.0 ** np.arange(-6, 6.1, 0.5), 0.2733, 1 - 2**-40, 1 + 2**-40, 3.0, 4.0])
+RATIOS = np.unique([*10.0 ** np.arange(-6, 6.1, 0.5), 0.2733, 1 - 2**-40, 1 + 2**-40, 4.0])
 """Grid of k and of ω = m2/m1; 0.2733 is the paper's."""
 RISE = 0.7  # B of a wave on a background; no power of 2
 LOADS = 10.0 ** np.arange(-12, 12.5, 0.5)  # p0/B
@@ -144,9 +145,9 @@ def ulps() -> Report:
     ours, beta = [key for key in lost if key[1] != PRINTED], ("β", PRINTED)
     worst, none = max(largest[key] for key in ours), sum(missing[key] for key in ours)
     findings = (
-        Finding("largest loss of all in ulps", worst, 0, ALLOWED, key="loss_ulps"),
+        Finding("largest loss of all in ulps", worst, 0, PROMISED, key="loss_ulps"),
         Finding("points at which a form has no number", none, 0, 0, key="missing"),
-        Finding("β as printed: loss in ulps", largest[beta], ALLOWED, key="printed_loss_ulps"),
+        Finding("β as printed: loss in ulps", largest[beta], PROMISED, key="printed_loss_ulps"),
         Finding("β as printed: points without", missing[beta], 1, key="printed_missing"),
     )
     sources = (*CLOSURES, PRINTED)
@@ -224,9 +225,9 @@ def under_load() -> Report:
 def contact_loss() -> Report:
     """Contacts open and close, where F = δ^k is not smooth: which order does the splitting keep?"""
     findings, curves = [], []
-    # F = δ^{3/2} has no second derivative where a contact opens: k + 1 of the 6 orders remain. The
+    # F = δ^{3/2} has no second derivative where a contact opens: k + 1 of the 4 orders remain. The
     # bounds ± 0.35 are the scatter of the openings' places within a step.
-    for how, coarse, fine, order in (("closed", 0.2, 0.1, 6.0), ("opening", 0.2, 0.012, 2.5)):
+    for how, coarse, fine, order in (("closed", 0.1, 0.05, 4.0), ("opening", 0.1, 0.012, 2.5)):
         steps = np.geomspace(coarse, fine, 5)
         errors = splitting_errors(1.5, how == "opening", steps)
         (slope, _), covariance = np.polyfit(np.log(steps), np.log(errors), 1, cov=True)
@@ -259,14 +260,14 @@ def splitting_errors(k: float, opens: bool, steps: Array) -> Array:
 
 def long_run(lasting: float = 1e6, segments: int = 200) -> Report:
     """Three beads against a wall over 10⁶ time units, by the splitting: does the energy drift?"""
-    smooth = energy_errors(False, 0.5, lasting, segments)
-    walk = energy_errors(True, 0.25, lasting, segments)
+    smooth = energy_errors(False, 0.2, lasting, segments)
+    walk = energy_errors(True, 0.1, lasting, segments)
     largest, opening, tenth = np.abs(smooth).max(), np.abs(walk).max(), segments // 10
     growth = np.abs(smooth[-tenth:]).max() / np.abs(smooth[:tenth]).max()
     time = lasting / segments * np.arange(segments + 1)
     trend = np.polyfit(time, smooth, 1)[0] * lasting / largest
     drift = simulate(three_beads(False, 2e2), method="DOP853").energy_drift / 2e2
-    power, closed = spreading(walk), f"closed contacts, {METHOD} at step 0.5"
+    power, closed = spreading(walk), f"closed contacts, {METHOD} at step 0.2"
     # The energy error of a symplectic method swings in a band, without growth or trend. An opening
     # within a step adds an error of random sign: a walk whose spread grows as √t.
     findings = (
@@ -274,7 +275,7 @@ def long_run(lasting: float = 1e6, segments: int = 200) -> Report:
         Finding(f"{closed}: last tenth over first", growth, 0.5, 1.5, key="last_over_first"),
         Finding(f"{closed}: trend over largest error", trend, -0.2, 0.2, key="trend"),
         Finding("closed contacts, DOP853 at 1e-9: drift, extrapolated", drift * lasting),
-        Finding("opening, step 0.25: energy error", opening, 0.0, 0.3, key="energy_error_opening"),
+        Finding("opening, step 0.1: energy error", opening, 0.0, 0.3, key="energy_error_opening"),
         Finding("opening: power of time, 1/2 at random", power, 0.3, 0.75, key="power_of_walk"),
     )
     curves = (

@@ -1,10 +1,11 @@
 """The compact wave's closed forms in float64: NumPy functions of arrays of k and ω = m2/m1.
 
 Letters as in `lwa.wave.closed`; lengths are in units of D. The rational functions (G+H+I)/D² and
-(V²/B^{k-1} - 1)/(k-1) of k and the masses are compiled as they stand, with the larger mass 1 so
-that no power overflows; logarithms and powers near k = 1 come from them by log1p and expm1.
-Measured over random k and ω, relative errors are below 1e-11; next to the edge of the domain of
-waves, where G + H + I or V² vanishes, the last digit of k or ω changes the results by more.
+(V²/B^{k-1} - 1)/(k-1) of k and the masses are compiled with coefficients of the masses that are
+factored in k, so that a coefficient vanishes where it should. The masses are scaled by a power of
+two: no power overflows, and nothing is rounded. Logarithms and powers near k = 1 come by log1p and
+expm1. Measured over random k and ω, relative errors are below 1e-11; next to the edge of the domain
+of waves, where G + H + I or V² vanishes, the last digit of k or ω changes the results by more.
 """
 
 from __future__ import annotations
@@ -71,7 +72,16 @@ class NumericWave(Value):
         """(G+H+I)/D², V²/B^{k-1} and (V²/B^{k-1} - 1)/(k - 1) as functions of k and the masses."""
         factor = self.wave.speed_factor
         excess = factored((factor - 1) / (self.wave.k - 1))
-        forms = (self.wave.coefficient_sum, factor, excess)
+        masses = self._symbols[1:]
+
+        def by_masses(part: sp.Expr) -> sp.Expr:
+            terms = sp.Poly(part, *masses).terms()
+            return sp.Add(*(sp.factor(c) * sp.prod(map(sp.Pow, masses, e)) for e, c in terms))
+
+        forms = [
+            by_masses(top) / by_masses(bottom)
+            for top, bottom in map(sp.fraction, (self.wave.coefficient_sum, factor, excess))
+        ]
         return sp.lambdify(self._symbols, forms, "numpy", cse=True)  # type: ignore[no-any-return]
 
     def beta(self, k: ArrayLike, omega: ArrayLike) -> Array:
@@ -113,7 +123,8 @@ class NumericWave(Value):
         if not np.all((omega >= 1 / LARGEST) & (omega <= LARGEST)):
             raise InputError(f"ω = m2/m1 is not between {1 / LARGEST:g} and {LARGEST:g}")
         with np.errstate(all="ignore"):  # outside the domain of waves
-            masses = np.minimum(1, 1 / omega), np.minimum(1, omega)
+            _, e = np.frexp(np.maximum(1.0, omega))  # a power of two, which rounds nothing
+            masses = np.ldexp(1.0, -e), np.ldexp(omega, -e)
             coefficient_sum, factor, excess = self._compiled(k, *masses)
             conditions = {"k > 1": k > 1, "G+H+I > 0": coefficient_sum > 0, "V² > 0": factor > 0}
             exists = np.logical_and.reduce(np.broadcast_arrays(*conditions.values()))

@@ -195,7 +195,7 @@ def test_an_output_that_takes_nothing_is_no_result(capsys, scene_file):
         assert (status, err) == (2, "lwa-validate: the output: No space left on device\n")
 
 
-_SPLIT = ("--method", "SRKN14")
+_SPLIT = ("--method", "symplectic")
 _LONG = SCENE.replace("= 30", "= 60").replace("1.5", "300").replace("10,", "100,")
 # a bad option, a bad file, and runs that are refused for what they cost or give
 BAD_RUNS = [
@@ -210,7 +210,7 @@ BAD_RUNS = [
     ((), SCENE.replace("30", "-1"), "scene.toml: duration is -1: it must be"),
     ((), SCENE + "sensor = 1", "scene.toml: sensor is unknown: did you mean sens"),
     ((), SCENE.replace("0.5", "1e-20"), "duration is 30: this makes .* steps of RKN86"),
-    (_SPLIT, SCENE.replace("0.5", "1e-24"), "duration is 30: this makes .* steps of SRKN14"),
+    (_SPLIT, SCENE.replace("0.5", "1e-24"), "duration is 30: this makes .* steps of symplectic"),
     ((), SCENE.replace("0.5", "1e-320"), "scene.toml: chain.cell number 2 is 1e-320: floats below"),
     ((), SCENE + "gravity = 1e10\nwall = {stiffness = 1}", "rtol is 1e-10: rounding of the static"),
     ((), SCENE + "gravity = 1e300\nwall = {stiffness = 1}", "the scene's .* comes out as .*:"),

@@ -27,7 +27,7 @@ OPTIONS = {
     },
     "paper": {"--velocity": NUMBERS, "--beads": ("8", "12", "0", "x"), "--sensors": COUNTS},
     "run": {
-        "": FILES, "--method": ("RKN86", "SRKN14", "x"), "--rtol": NUMBERS,
+        "": FILES, "--method": ("RKN86", "symplectic", "x"), "--rtol": NUMBERS,
         "--out": ("o.csv", "o.json", "o.npz", "x/y.csv", ""),
     },
     "compare": {"": FILES, " ": FILES, "--column": RENAMED},

@@ -48,6 +48,7 @@ from validation.lattice.kernel.arrays import (
     initial_progress,
 )
 from validation.lattice.kernel.damped import STEP, Scheme, advance_damped
+from validation.lattice.kernel.symplectic import advance_split
 from validation.lattice.knots import knot_recorder
 from validation.lattice.result import Run, finished
 from validation.lattice.schemes import SCHEMES, Pair
@@ -93,7 +94,8 @@ def _integrated(
     )
     now = initial_progress(plan, _front(motion), motion.free_energy)
     glance = 1 + int(_BETWEEN_REPORTS / (stages * max(n, SHORTEST)))
-    go, t = advance_damped if damped else advance, 0.0
+    go = advance_damped if damped else advance if method == "RKN86" else advance_split
+    t = 0.0
     with progress() as display:
         while t < end:
             display(t / end)

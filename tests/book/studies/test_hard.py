@@ -8,11 +8,11 @@ import pytest
 import sympy as sp
 
 from book.studies.hard import (
-    ALLOWED,
     CASES,
     CLOSURES,
     FORMS,
     PRINTED,
+    PROMISED,
     closed_wave,
     energy_errors,
     form,
@@ -65,7 +65,7 @@ def test_every_form_loses_little_and_the_printed_route_more():
             assert known.max() > 1e5
         else:
             assert not np.isinf(lost).any(), (name, source)
-            assert known.max() <= ALLOWED, (name, source)
+            assert known.max() <= PROMISED, (name, source)
             assert np.isnan(lost).any() or source != "paper's closure"
 
 
@@ -75,7 +75,7 @@ def test_every_form_loses_little_and_the_printed_route_more():
 @pytest.mark.parametrize(
     ("k", "opens", "steps", "order"),
     [
-        (1.5, False, (0.2, 0.1), 6.0),
+        (1.5, False, (0.1, 0.05), 4.0),
         (1.5, True, (0.2, 0.012), 2.5),
         pytest.param(2.0, True, (0.15, 0.012), 3.0, marks=pytest.mark.slow),
         (3.0, True, (0.15, 0.012), 4.0),
@@ -96,12 +96,12 @@ def test_the_exponent_of_spreading_of_a_walk_a_drift_and_a_swing():
 
 
 def test_closed_contacts_do_not_drift_over_ten_thousand_time_units():
-    energy = energy_errors(False, 0.5, 1e4, 20)
+    energy = energy_errors(False, 0.2, 1e4, 20)
     early, late = np.abs(energy[1:11]).max(), np.abs(energy[11:]).max()
     assert late < 2 * early < 1e-4
-    # order 6: a step of half the size errs by 2^-6, a little less where it swings
-    fine = np.abs(energy_errors(False, 0.25, 1e4, 20)).max()
-    assert fine < np.abs(energy).max() / 30
+    # order 4: a step of half the size errs by 2^-4, a little less where it swings
+    fine = np.abs(energy_errors(False, 0.1, 1e4, 20)).max()
+    assert fine < np.abs(energy).max() / 10
 
 
 # The command

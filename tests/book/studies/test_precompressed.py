@@ -68,7 +68,7 @@ def test_masses_matter_to_widths_only():
 def radiating():
     """A wave of a dimer as strong as the load, run."""
     wave = Wave(numeric_cell((1, "1/2")), Power("3/2"), 1.0)
-    return wave, simulate(wave.scene, method="SRKN14", rtol=1e-7)
+    return wave, simulate(wave.scene, method="symplectic", rtol=1e-7)
 
 
 def test_why_dimers_are_worse(radiating):

@@ -94,7 +94,7 @@ def came_back(wave, sites=100):
     The chain holds the wave and runs until the wave is there.
     """
     scene = wave.launched(20, sites, duration=sites / wave.c, contact_sensors=(60,), samples=4001)
-    run = simulate(scene, method="SRKN14", rtol=1e-11)
+    run = simulate(scene, method="symplectic", rtol=1e-11)
     compression, velocity = -np.diff(scene.displacements), np.array(scene.velocities)
     strain = np.abs(-np.diff(run.displacements)[sites:] - compression[:-sites]).max()
     return max(strain, np.abs(run.velocities[sites:] - velocity[:-sites]).max()), run
