@@ -8,32 +8,27 @@
 D**2*(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)
 """
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from lwa.base.lazy import public
-
 if TYPE_CHECKING:
-    from lwa.base.estimate import Estimate as Estimate
     from lwa.base.exact import InputError as InputError
+    from lwa.base.frozen import Estimate as Estimate
     from lwa.base.quantities import NoSolitaryWave as NoSolitaryWave
     from lwa.cell import Cell as Cell
     from lwa.cell import D as D
     from lwa.cell import Dimer as Dimer
     from lwa.cell import k as k
-    from lwa.closure.consistency import Closure as Closure
     from lwa.envelopes.schrodinger import Breather as Breather
     from lwa.envelopes.schrodinger import Envelope as Envelope
     from lwa.envelopes.schrodinger import envelope as envelope
     from lwa.equation.pde import PDE as PDE
-    from lwa.equation.terms import Terms as Terms
     from lwa.expansion.approximants import Resummed as Resummed
     from lwa.expansion.expand import Expansion as Expansion
     from lwa.expansion.expand import expand as expand
     from lwa.expansion.physical import ExpandedWave as ExpandedWave
     from lwa.expansion.physical import Strike as Strike
     from lwa.expansion.physical import pulse_of_strike as pulse_of_strike
-    from lwa.expansion.series import EpsilonSeries as EpsilonSeries
-    from lwa.force import ContactLaw as ContactLaw
     from lwa.law import Law as Law
     from lwa.law import Power as Power
     from lwa.law import general as general
@@ -57,9 +52,7 @@ if TYPE_CHECKING:
     from lwa.wave.background import BackgroundWave as BackgroundWave
     from lwa.wave.background import background_wave as background_wave
     from lwa.wave.closed import CompactWave as CompactWave
-    from lwa.wave.closed import Reduction as Reduction
     from lwa.wave.kdv import KdV as KdV
-    from lwa.wave.numeric import NumericWave as NumericWave
     from lwa.wave.physical import PhysicalWave as PhysicalWave
     from lwa.wave.physical import PrecompressedWave as PrecompressedWave
     from lwa.wave.traveling import TravelingWave as TravelingWave
@@ -67,17 +60,47 @@ if TYPE_CHECKING:
 
     __version__: str
 
-_load, _names = public(__name__)
-__all__ = [name for name in _names if name not in ("D", "k")]  # bound by name only
+# Public names by their module, each loaded on its first use (PEP 562): the command starts before
+# SymPy does.
+_HOMES = {
+    "lwa.base.frozen": "Estimate",
+    "lwa.base.exact": "InputError",
+    "lwa.base.quantities": "NoSolitaryWave",
+    "lwa.cell": "Cell D Dimer k",
+    "lwa.envelopes.schrodinger": "Breather Envelope envelope",
+    "lwa.equation.pde": "PDE",
+    "lwa.expansion.approximants": "Resummed",
+    "lwa.expansion.expand": "Expansion expand",
+    "lwa.expansion.physical": "ExpandedWave Strike pulse_of_strike",
+    "lwa.law": "Law Power general",
+    "lwa.linear.bands": "Bands",
+    "lwa.linear.dispersion": "Dispersion LoadedChain",
+    "lwa.links.lattice": "Lattice Link Resonator",
+    "lwa.links.packings": "hexagonal",
+    "lwa.links.wave": "LatticeWave lattice_wave",
+    "lwa.shocks.riemann": "Shock piston shock",
+    "lwa.spheres.hertz": "Material Sphere hertz",
+    "lwa.theory": "Theory homogenize",
+    "lwa.wave.background": "BackgroundWave background_wave",
+    "lwa.wave.closed": "CompactWave",
+    "lwa.wave.kdv": "KdV",
+    "lwa.wave.physical": "PhysicalWave PrecompressedWave",
+    "lwa.wave.traveling": "TravelingWave canonical_wave",
+}
+_HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
+__all__ = sorted(_HOME.keys() - {"D", "k"})  # bound by name only
 
 
 def __getattr__(name: str) -> Any:
-    """Load a public name on its first use, so that the command starts before SymPy does."""
+    """Load a public name on its first use."""
     if name == "__version__":
         from importlib.metadata import version  # here: it takes as long as all the rest
 
         return version("lwa")
-    return _load(name)
+    if name not in _HOME:
+        raise AttributeError(f"module 'lwa' has no attribute {name!r}")
+    home = import_module(_HOME[name])
+    return home if name == "hertz" else getattr(home, name)
 
 
 def __dir__() -> list[str]:

@@ -17,8 +17,7 @@ from lwa.cell import k as symbol_k
 from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS, OfClosure, solve
 from lwa.equation.pde import PDE
 from lwa.equation.terms import STRAIN, Terms, terms
-from lwa.force import ContactLaw, for_cell
-from lwa.law import Power, refuse_two_laws
+from lwa.law import ContactLaw, Power, for_cell, refuse_two_laws
 
 SLOW_ORDER = 12
 """The order from which a derivation shows its progress."""

@@ -9,9 +9,8 @@
 1.4119
 """
 
-from typing import TYPE_CHECKING
-
-from lwa.base.lazy import public
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from validation.lattice.cost import IntegrationError as IntegrationError
@@ -29,4 +28,24 @@ if TYPE_CHECKING:
     from validation.waves.profile import ExactWave as ExactWave
     from validation.waves.solver import exact_wave as exact_wave
 
-__getattr__, __all__ = public(__name__)
+# Public names by their module, each loaded on its first use (PEP 562).
+_HOMES = {
+    "validation.lattice.cost": "IntegrationError",
+    "validation.lattice.result": "Run",
+    "validation.lattice.simulate": "simulate simulate_many",
+    "validation.pulses.pulse": "MeasureError Pulse measure",
+    "validation.scenes.forcing": "Damping Drive",
+    "validation.scenes.scene": "Scene SceneError",
+    "validation.scenes.scenefile": "read_scene",
+    "validation.waves.profile": "ExactWave",
+    "validation.waves.solver": "exact_wave",
+}
+_HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
+__all__ = sorted(_HOME)
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name on its first use."""
+    if name not in _HOME:
+        raise AttributeError(f"module 'validation' has no attribute {name!r}")
+    return getattr(import_module(_HOME[name]), name)

@@ -31,7 +31,7 @@ from lwa.base.arrays import Array
 from lwa.base.exact import read_exact
 from lwa.base.progress import Progress
 from lwa.command.options import quantities
-from lwa.force import ContactLaw
+from lwa.law import ContactLaw
 from lwa.linear.dispersion import Dispersion
 from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel

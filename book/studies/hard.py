@@ -17,9 +17,10 @@ import mpmath as mp
 import numpy as np
 import sympy as sp
 
-from lwa import Cell, ContactLaw, Dimer, Power, TravelingWave, background_wave, homogenize
+from lwa import Cell, Dimer, Power, TravelingWave, background_wave, homogenize
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
+from lwa.law import ContactLaw
 from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
 from validation.report.command import option, study

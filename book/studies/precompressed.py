@@ -26,10 +26,11 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from lwa import Cell, ContactLaw, Power, background_wave
+from lwa import Cell, Power, background_wave
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
 from lwa.command.options import law_option, quantities
+from lwa.law import ContactLaw
 from lwa.wave.loaded import NumericBackground
 from validation.lattice.result import Run
 from validation.lattice.simulate import twice

@@ -34,8 +34,7 @@ from lwa.base.exact import InputError, read_exact
 from lwa.base.progress import Progress
 from lwa.command.options import quantities, quantity
 from lwa.command.rows import attempt
-from lwa.force import ContactLaw
-from lwa.law import named
+from lwa.law import ContactLaw, named
 from validation.lattice.result import Run
 from validation.lattice.simulate import simulate, simulate_many
 from validation.pictures import Curve, Map, Panel

@@ -14,7 +14,7 @@ from lwa.algebra.coefficients import CoefficientRing, Partition
 from lwa.algebra.jets import JetAlgebra
 from lwa.base.frozen import Value
 from lwa.cell import Cell, substitution
-from lwa.force import ContactLaw, for_cell, phi_symbol
+from lwa.law import ContactLaw, for_cell, phi_symbol
 
 
 @dataclass(frozen=True)

@@ -1,16 +1,30 @@
-"""Readers of TOML and JSON files, of limited size; a fault is reported in one line."""
+"""Readers of TOML and JSON files, of limited size, and of their entries.
+
+A fault is reported in one line, with the full key of the entry. The reader of an entry takes a
+value and its name in messages, and returns the checked value or raises `lwa.InputError`. Numbers
+of a file are floats.
+"""
 
 from __future__ import annotations
 
 import json
+import math
+import sys
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Mapping, Sequence
+from contextlib import suppress
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, TypeVar
 
-from lwa.base.errors import InputError
+from lwa.base.exact import InputError, shorten
+from lwa.base.exact import integer as integer
 
 T = TypeVar("T")
+Reader = Callable[[Any, str], Any]
+
+LEAST = sys.float_info.min
+"""The least positive number with all digits of a float."""
 
 MOST_BYTES = {".toml": 8_000_000, ".json": 64_000_000}
 """Size limits of a file; Python reads about 1 MB of TOML a second."""
@@ -72,3 +86,142 @@ def content(file: Path, most: int = 10**9) -> bytes:
 def reason(error: Exception) -> str:
     """Return the system's message for an error, without error number and file name."""
     return (isinstance(error, OSError) and error.strerror) or str(error)
+
+
+def finite(value: Any, name: str) -> float:
+    """Read one finite number."""
+    number = None
+    if not isinstance(value, str | bytes | bool):
+        with suppress(TypeError, ValueError, OverflowError):
+            number = float(value)
+    if number is None:
+        raise InputError(f"{name} is {shorten(value)}: a number is wanted")
+    if not math.isfinite(number):
+        raise InputError(f"{name} is {number}: a finite number is wanted")
+    return number
+
+
+def positive(value: Any, name: str) -> float:
+    """Read one positive number, not below the range where floats have all their digits."""
+    number = finite(value, name)
+    if not number > 0:
+        raise InputError(f"{name} is {number:g}: it must be positive")
+    if number < LEAST:
+        raise InputError(f"{name} is {number}: floats below {LEAST:.1g} lose their digits")
+    return number
+
+
+class Table:
+    """A table of a file, refused if it holds unknown keys.
+
+    >>> Table({"masss": 1}, "bead", ("mass", "radius"))
+    Traceback (most recent call last):
+        ...
+    lwa.base.errors.InputError: bead.masss is unknown: did you mean mass?
+    """
+
+    def __init__(self, value: Any, name: str, known: Sequence[str]) -> None:
+        self.name, self.entries = name, entries(value, name or "the file")
+        for key in self.entries:
+            if key not in known:
+                raise InputError(f"{self.path(key)} is unknown: {_suggestion(key, known)}")
+
+    def __contains__(self, key: str) -> bool:
+        return key in self.entries
+
+    def path(self, key: str) -> str:
+        """The full name of a key, such as ``bead.mass``."""
+        return f"{self.name}.{_plain(key)}" if self.name else _plain(key)
+
+    def read(self, key: str, reader: Reader, default: Any = None) -> Any:
+        """Read an entry by ``reader``; an entry without a default must be present."""
+        if key in self:
+            return reader(self.entries[key], self.path(key))
+        if default is None:
+            raise InputError(f"{self.path(key)} is missing")
+        return default
+
+    def one(self, *keys: str) -> str:
+        """Return the key that is present; exactly one of the keys must be."""
+        present = [key for key in keys if key in self]
+        if len(present) != 1:
+            fault = f"both {' and '.join(present)}" if present else f"neither {' nor '.join(keys)}"
+            raise InputError(f"{self.name} has {fault}: one is wanted")
+        return present[0]
+
+
+def table(known: Sequence[str]) -> Reader:
+    """Reader of a `Table` with these keys."""
+    return lambda value, name: Table(value, name, known)
+
+
+def entries(value: Any, name: str) -> dict[str, Any]:
+    """Read a table with any keys."""
+    if not isinstance(value, dict):
+        raise InputError(f"{name} is {shorten(value)}: a table of keys is wanted")
+    return value
+
+
+def named(reader: Reader) -> Reader:
+    """Reader of a table with any names, each entry read by ``reader``."""
+    return lambda value, name: {
+        key: reader(entry, f"{name}.{_plain(key)}") for key, entry in entries(value, name).items()
+    }
+
+
+def array(value: Any, name: str) -> list[Any]:
+    """Read a list."""
+    if not isinstance(value, list):
+        raise InputError(f"{name} is {shorten(value)}: a list is wanted")
+    return value
+
+
+def each(reader: Reader) -> Reader:
+    """Reader of a list, each item read by ``reader``."""
+    return lambda value, name: [
+        reader(item, f"{name} number {i}") for i, item in enumerate(array(value, name), start=1)
+    ]
+
+
+def among(values: Mapping[str, Any]) -> Reader:
+    """Reader of one of the names in ``values``; returns the value of that name."""
+
+    def read(value: Any, name: str) -> Any:
+        if not isinstance(value, str) or value not in values:
+            raise InputError(f"{name} is {shorten(value)}: {_suggestion(value, values)}")
+        return values[value]
+
+    return read
+
+
+def place(count: int) -> Reader:
+    """Reader of a number from 1 to ``count``; returns the index, from 0."""
+
+    def read(value: Any, name: str) -> int:
+        if not count:
+            raise InputError(f"{name} is {shorten(value)}: the chain has none")
+        return integer(value, name, 1, count) - 1
+
+    return read
+
+
+def places(count: int) -> Reader:
+    """Reader of a list of different numbers from 1 to ``count``; returns the indices."""
+
+    def read(value: Any, name: str) -> list[int]:
+        indices: list[int] = each(place(count))(value, name)
+        if len(set(indices)) < len(indices):
+            raise InputError(f"{name} is {shorten(value)}: each may be named once")
+        return indices
+
+    return read
+
+
+def _plain(key: str) -> str:
+    return key if key.isidentifier() and len(key) < 60 else shorten(key)
+
+
+def _suggestion(value: Any, known: Collection[str]) -> str:
+    if close := get_close_matches(str(value)[:60], known, 1):
+        return f"did you mean {close[0]}?"
+    return f"one of {', '.join(list(known)[:12])} is wanted" if known else "none is defined"

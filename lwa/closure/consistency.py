@@ -23,7 +23,7 @@ from lwa.cell import Cell
 from lwa.closure.ansatz import linear
 from lwa.closure.slaving import full
 from lwa.closure.solution import Solution
-from lwa.force import ContactLaw
+from lwa.law import ContactLaw
 
 BRANCHES = ("acoustic", "optical")
 CLOSURES = ("linear", "full")

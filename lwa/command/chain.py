@@ -13,12 +13,10 @@ from typing import Any
 import sympy as sp
 
 from lwa.base.exact import InputError
-from lwa.base.files import load
-from lwa.base.tables import Table, among, finite, table
+from lwa.base.files import Table, among, finite, load, table
 from lwa.cell import Cell, D
 from lwa.command.options import given
-from lwa.force import ContactLaw
-from lwa.law import Power, read_law, refuse_two_laws
+from lwa.law import ContactLaw, Power, read_law, refuse_two_laws
 from lwa.spheres.beads import STRIKER, Row, opened, period, read_beads, read_materials, read_row
 from lwa.spheres.hertz import EXPONENT
 

@@ -9,7 +9,7 @@ import click
 import sympy as sp
 
 from lwa.base.errors import InputError
-from lwa.base.estimate import Estimate
+from lwa.base.frozen import Estimate
 from lwa.command.chain import ChainInput, take_chain
 from lwa.command.options import SPHERES, cell_options, spheres_option, style_option, value
 from lwa.command.rows import Answer, Row, attempt

@@ -14,8 +14,7 @@ from click.core import ParameterSource
 from lwa.base.exact import InputError, integer, read_exact
 from lwa.cell import D, k
 from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS
-from lwa.force import ContactLaw
-from lwa.law import NAMES, read_law
+from lwa.law import NAMES, ContactLaw, read_law
 
 Command = Callable[..., None]
 Option = Callable[[Command], Command]

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import json
 import math
+import re
+import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -17,14 +19,14 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from lwa.base import latex
-from lwa.base.estimate import Estimate
 from lwa.base.exact import InputError, evaluated
-from lwa.base.frozen import Shown
-from lwa.base.lines import wrapped
+from lwa.base.frozen import Estimate, Shown
 from lwa.expansion.approximants import Resummed
 
 PRINTED_DIGITS = 15  # significant digits of a printed number that is exact
 WIDTH = 100  # columns of text
+# Breaks of a line: spaces, and within a longer word after an operator but **
+_BREAK = re.compile(r"(\s+|(?<=[^*/][*/])(?![*/\s]))")
 FRACTION = 24  # characters of a fraction beyond which text has its digits alone
 LONG = 160  # characters of an exact number beyond which text has its digits alone
 
@@ -138,7 +140,7 @@ class Answer:
         lines += [part.text() for part in self.parts.values()]
         lines += [f"\nNote: {note}" for note in self.notes]
         rows = (line for part in lines for line in part.split("\n"))
-        return "\n".join(line for row in rows for line in wrapped(row, WIDTH, words=True))
+        return "\n".join(line for row in rows for line in _wrapped(row))
 
     def _value_text(self, row: Row) -> str:
         unit = f" {row.unit}" if self.si and row.unit else ""
@@ -272,3 +274,11 @@ def summed(total: Estimate, unit: str, order: bool) -> str:
         return value
     note = "; higher orders do not help" if total.asymptotic else ""
     return f"{value} (to ε^{total.order}{note})"
+
+
+def _wrapped(line: str) -> list[str]:
+    """Break a line of text at `WIDTH`; further lines are indented by eight columns more."""
+    start = line[: len(line) - len(line.lstrip())]
+    wrapper = textwrap.TextWrapper(WIDTH, "", f"{start}        ")
+    wrapper.wordsep_re = _BREAK
+    return wrapper.wrap(line) or [""]

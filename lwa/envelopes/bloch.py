@@ -16,7 +16,7 @@ from lwa.base.exact import InputError, demand_numbers
 from lwa.base.progress import announced
 from lwa.cell import Cell
 from lwa.envelopes.response import CLOSE, Arithmetic, Contacts, Matrix, Mode
-from lwa.force import ContactLaw
+from lwa.law import ContactLaw
 
 ROUNDING = 1e-7  # a force on a mode, relative to the largest, that counts as none
 SOUND = 1e-5  # 1 - (c_g/c_0)² from which on floats give the mean flow to six digits (1e-11/SOUND)

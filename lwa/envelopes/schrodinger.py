@@ -34,7 +34,7 @@ from lwa.base.frozen import Value
 from lwa.cell import Cell, check_names
 from lwa.envelopes.bloch import cell_mode
 from lwa.envelopes.response import Mode
-from lwa.force import ContactLaw, for_cell, substituted
+from lwa.law import ContactLaw, for_cell, substituted
 from lwa.linear.bloch import BRANCHES
 
 LONG = 400  # operations in a result from which on it is not factored: that would take minutes

@@ -23,8 +23,8 @@ import mpmath
 import sympy as sp
 from flint import acb_poly, arb, arb_mat, ctx
 
-from lwa.base.estimate import Estimate
 from lwa.base.exact import InputError
+from lwa.base.frozen import Estimate
 
 WINDOW = 3
 """Number of orders in a window before its last order."""

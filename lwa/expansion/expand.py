@@ -25,8 +25,7 @@ from lwa.cell import Cell, exponent, read_cell, substitution
 from lwa.cell import k as symbol_k
 from lwa.expansion.observables import Observables, shares_model
 from lwa.expansion.series import EpsilonSeries
-from lwa.force import ContactLaw
-from lwa.law import refuse_two_laws
+from lwa.law import ContactLaw, refuse_two_laws
 
 DAMPINGS = ("linear", "kuwabara_kono")
 """Damping forces of a contact: γ dδ/dt and γ δ^{k-1} dδ/dt (Kuwabara and Kono 1987)."""

@@ -20,9 +20,8 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.estimate import Estimate
 from lwa.base.exact import InputError, demand_numbers, positive, shorten
-from lwa.base.frozen import Value
+from lwa.base.frozen import Estimate, Value
 from lwa.base.quantities import known_extent
 from lwa.cell import Cell, exponent
 from lwa.expansion.approximants import Resummed

@@ -25,8 +25,7 @@ from lwa.base import latex
 from lwa.base.exact import InputError, demand_numbers, integer, one_of, positive
 from lwa.base.frozen import Value
 from lwa.cell import Cell, exponent, read_cell, substitution
-from lwa.force import ContactLaw, for_cell
-from lwa.law import Power
+from lwa.law import ContactLaw, Power, for_cell
 from lwa.linear.bloch import BRANCHES, Bloch
 
 if TYPE_CHECKING:

@@ -34,8 +34,7 @@ from lwa.base.exact import (
 )
 from lwa.base.frozen import Value
 from lwa.cell import Cell, check_distinct
-from lwa.force import ContactLaw, for_cell
-from lwa.law import Power
+from lwa.law import ContactLaw, Power, for_cell
 from lwa.linear.dispersion import Dispersion
 from lwa.links.bloch import Graph, acoustic
 from lwa.links.statics import Statics

@@ -7,7 +7,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base.exact import one_of, positive
-from lwa.force import ContactLaw
+from lwa.law import ContactLaw
 from lwa.links.lattice import Lattice, Link
 
 _COSINE = sp.sqrt(3) / 2

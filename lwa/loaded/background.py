@@ -25,7 +25,7 @@ from lwa.base.exact import InputError, power, read_exact, shorten, signed
 from lwa.base.frozen import Value
 from lwa.base.quantities import FALL, RISE, NoSolitaryWave
 from lwa.cell import Cell
-from lwa.force import ContactLaw, for_cell
+from lwa.law import ContactLaw, for_cell
 from lwa.linear.dispersion import Dispersion
 
 

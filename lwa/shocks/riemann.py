@@ -22,14 +22,13 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.estimate import Estimate
 from lwa.base.exact import InputError, demand_numbers, one_of, positive, read_exact, shorten
-from lwa.base.frozen import Value
+from lwa.base.frozen import Estimate, Value
 from lwa.cell import Cell
 from lwa.expansion.approximants import Resummed
 from lwa.expansion.expand import expand
 from lwa.expansion.physical import ORDER, ExpandedWave, wave_of_velocity
-from lwa.force import ContactLaw, for_cell
+from lwa.law import ContactLaw, for_cell
 from lwa.loaded.background import Background
 from lwa.shocks import bounds, edges, waves
 from lwa.shocks.convexity import demand_one_sign

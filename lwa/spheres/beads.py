@@ -32,7 +32,7 @@ from functools import partial
 from typing import Any
 
 from lwa.base.exact import InputError
-from lwa.base.tables import Table, among, array, each, finite, integer, named, positive, table
+from lwa.base.files import Table, among, array, each, finite, integer, named, positive, table
 from lwa.spheres.hertz import MATERIALS, Material, Sphere
 
 FILE = (

@@ -31,8 +31,7 @@ from lwa.base.quantities import (
     refusal_under_power,
 )
 from lwa.cell import RESERVED, Cell, check_names
-from lwa.force import ContactLaw, for_cell, substituted
-from lwa.law import Power
+from lwa.law import ContactLaw, Power, for_cell, substituted
 from lwa.linear.dispersion import Dispersion
 from lwa.wave.closed import CompactWave
 from lwa.wave.kdv import KdV

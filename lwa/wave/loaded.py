@@ -20,7 +20,7 @@ from lwa.base.quantities import (
     refusal_under_power,
 )
 from lwa.cell import Cell
-from lwa.force import ContactLaw
+from lwa.law import ContactLaw
 from lwa.linear.dispersion import Dispersion
 from lwa.wave.quadrature import Quadrature
 

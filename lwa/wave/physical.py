@@ -25,8 +25,7 @@ from lwa.base.exact import InputError, evaluated, number, one_of, positive, powe
 from lwa.base.frozen import Value
 from lwa.base.quantities import NoSolitaryWave, known_extent, known_quantity, strain_power
 from lwa.cell import Cell, check_names
-from lwa.force import ContactLaw, for_cell, substituted
-from lwa.law import Power
+from lwa.law import ContactLaw, Power, for_cell, substituted
 from lwa.wave.background import BackgroundWave, taken_names
 from lwa.wave.closed import CompactWave
 

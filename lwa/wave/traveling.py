@@ -9,8 +9,7 @@ import sympy as sp
 from lwa.base.exact import InputError, read_exact, shorten
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
-from lwa.force import ContactLaw, for_cell
-from lwa.law import Power, refuse_two_laws
+from lwa.law import ContactLaw, Power, for_cell, refuse_two_laws
 from lwa.wave.background import BackgroundWave
 from lwa.wave.closed import CompactWave
 from lwa.wave.physical import PhysicalWave, PrecompressedWave
@@ -62,7 +61,7 @@ class TravelingWave(CompactWave):
         return BackgroundWave(self.cell, Power(self.k), p0)
 
     def numeric(self, missing: Literal["raise", "nan"] = "raise") -> NumericWave:
-        """Vectorised float64 functions of (k, ω), ω = m2/m1; see `lwa.NumericWave`.
+        """Vectorised float64 functions of (k, ω), ω = m2/m1; see `lwa.wave.numeric.NumericWave`.
 
         Raises `lwa.InputError` unless k is a symbol and the masses are two, as in N:1 dimers.
         """

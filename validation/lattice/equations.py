@@ -17,7 +17,7 @@ from functools import cached_property
 import numpy as np
 
 from lwa.base.arrays import Array
-from lwa.base.tables import LEAST
+from lwa.base.files import LEAST
 from validation.lattice.laws import Contact
 from validation.scenes.checks import SceneError
 from validation.scenes.scene import Scene

@@ -20,7 +20,7 @@ from sympy.codegen.rewriting import expm1_opt, optimize
 from lwa import Cell
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
-from lwa.force import ContactLaw
+from lwa.law import ContactLaw
 from validation.scenes.checks import SceneError
 
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import Any
 
-from lwa.base import tables
+from lwa.base import files
 from lwa.base.exact import InputError, shorten
-from lwa.base.tables import Reader
+from lwa.base.files import Reader
 
 SceneError = InputError
 """Invalid input of a scene, under the name that `validation` exports."""
 
-finite, integer, positive = tables.finite, tables.integer, tables.positive
+finite, integer, positive = files.finite, files.integer, files.positive
 
 
 class Failure(RuntimeError):

@@ -21,9 +21,9 @@ import sympy as sp
 
 from lwa import Cell
 from lwa.base.exact import shorten
-from lwa.base.tables import Reader
+from lwa.base.files import Reader
 from lwa.cell import exponent
-from lwa.force import ContactLaw
+from lwa.law import ContactLaw
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes.checks import SceneError, each, finite, integer, items, one_of, positive
 from validation.scenes.forcing import Damping, Drive

@@ -23,10 +23,8 @@ from pathlib import Path
 from typing import Any
 
 from lwa.base.exact import shorten
-from lwa.base.files import load
-from lwa.base.tables import Reader, Table, among, each, entries, place, places, table
-from lwa.force import ContactLaw
-from lwa.law import NAMES, read_law
+from lwa.base.files import Reader, Table, among, each, entries, load, place, places, table
+from lwa.law import NAMES, ContactLaw, read_law
 from lwa.spheres.beads import (
     CHAIN,
     FILE,

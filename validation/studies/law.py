@@ -14,8 +14,7 @@ import sympy as sp
 from lwa import Cell
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
-from lwa.base.files import load
-from lwa.base.tables import entries
+from lwa.base.files import entries, load
 from lwa.command.options import quantities, quantity
 from lwa.spheres.beads import spheres as read_spheres
 from validation.pictures import Curve, Panel
