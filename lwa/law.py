@@ -25,10 +25,12 @@ from lwa.base.calculus import growing_root, integral, ratio
 from lwa.base.exact import (
     InputError,
     demand_numbers,
+    integer,
     one_of,
     positive,
     power,
     read_exact,
+    real,
     shorten,
     signed,
 )
@@ -87,7 +89,7 @@ class ContactLaw(Value):
 
     def slope(self, n: int = 1) -> sp.Expr:
         """The n-th derivative F^{(n)}(δ)."""
-        return self.F.diff(self.delta, n)
+        return self.F.diff(self.delta, integer(n, "n", 0))
 
     @cached_property
     def energy(self) -> sp.Expr:
@@ -99,11 +101,46 @@ class ContactLaw(Value):
 
     def phi(self, n: int) -> sp.Expr:
         """The parameter φ_n = δ^{n-1} F^{(n)}/F′ as an expression in δ."""
-        return ratio(self.delta ** (n - 1) * self.slope(n), self.slope())
+        return ratio(self.delta ** (integer(n, "n", 1) - 1) * self.slope(n), self.slope())
 
-    def at(self, delta: sp.Expr, n: int = 0) -> sp.Expr:
-        """The n-th derivative F^{(n)} at a compression."""
-        return self.slope(n).subs(self.delta, delta)
+    @property
+    def pulls(self) -> bool:
+        """True if the contact also holds where δ < 0: laws with F′(0) > 0 that are no power."""
+        if self.homogeneous or self.formless:
+            return False
+        return bool(self.slope().subs(self.delta, 0).is_positive)
+
+    def at(self, delta: Any, n: int = 0) -> Any:
+        """The force F, or its n-th derivative, at a compression; 0 where the contact is open.
+
+        delta : a number, an expression or an array, whose result is an array of floats. A contact
+        is open where δ < 0, unless its law `pulls`.
+
+        Raises `lwa.InputError` for text, NaN, infinities and complex numbers.
+
+        >>> Power("3/2").at(4), Power("3/2").at(-1), Power("3/2").at([-1, 4])
+        (8, 0, array([0., 8.]))
+        """
+        value = self.slope(n)
+        if isinstance(delta, list | tuple) or getattr(delta, "ndim", 0) > 0:
+            return self._at_each(delta, value)
+        delta = real(delta, "delta")
+        if delta.is_negative and not self.pulls:
+            return sp.S.Zero
+        return value.subs(self.delta, delta)
+
+    def _at_each(self, deltas: Any, value: sp.Expr) -> Any:
+        import numpy as np  # here: the command starts before NumPy does
+
+        from lwa.base.arrays import finite, function_of
+
+        demand_numbers(self.symbols, "an array of forces needs numbers for the law")
+        compressions = finite(deltas, "delta")
+        if self.pulls:
+            return function_of(self.delta, value)(compressions)
+        with np.errstate(divide="ignore"):  # derivatives of powers at 0
+            closed = function_of(self.delta, value)(np.maximum(compressions, 0.0))
+        return np.where(compressions < 0, 0.0, closed)
 
     def evaluated(self, value: sp.Expr, delta: sp.Expr) -> sp.Expr:
         """The value of an expression in φ_2, φ_3, … at a compression."""
@@ -123,6 +160,7 @@ class ContactLaw(Value):
 
         For n = 0 this is F(Dp)/D (p^k/k for a power), for n = -1 the energy W.
         """
+        p, D = real(p, "p"), real(D, "D")
         # Each derivative by p instead of δ = D p brings a factor D, each integral 1/D.
         if n < 0:
             return self.energy.subs(self.delta, D * p) / D**2
@@ -130,6 +168,7 @@ class ContactLaw(Value):
 
     def weight(self, p: sp.Expr, D: sp.Expr, a: sp.Expr, b: sp.Expr) -> sp.Expr:
         """The factor p^a (p F′)^b of a jet at the strain p."""
+        p, D, a, b = map(real, (p, D, a, b), ("p", "D", "a", "b"))
         return self.at(D * p, 1) ** b * p ** (a + b)
 
     def check_contacts(self, cell: Cell) -> None:
@@ -154,7 +193,7 @@ class ContactLaw(Value):
         p = 0, where F′ may vanish unless there must be ``sound``.
         """
         D = cell.spacing
-        delta = (D * p).xreplace({D: sp.S.One} if D.is_Symbol else {})
+        delta = (D * real(p, "p")).xreplace({D: sp.S.One} if D.is_Symbol else {})
         if self.homogeneous or self.formless or (delta.is_zero and not sound):
             return
         for power_ in self.F.atoms(sp.Pow):
@@ -178,7 +217,7 @@ class ContactLaw(Value):
         """
         if self.formless:
             raise InputError(f"law is {self.text}: the strain under a force needs an expression")
-        share = force / cell.stiffnesses[0]
+        share = real(force, "force") / cell.stiffnesses[0]
         free = share.free_symbols | self.F.free_symbols - {self.delta}
         demand_numbers(free, f"the load under the law {self.text} needs numbers")
         with mpmath.workdps(50):
@@ -221,12 +260,13 @@ class Power(ContactLaw):
         return sp.Mul(*(self.k - j for j in range(1, n)))
 
     def of_strain(self, p: sp.Expr, D: sp.Expr, n: int = 0) -> sp.Expr:
+        p = real(p, "p")
         # p^k/k derived n times: (k-1) … (k-n+1) p^{k-n}; n = -1: p^{k+1}/(k (k+1))
         up, down = (sp.Mul(*(self.k - j for j in r)) for r in (range(1, n), range(n, 1)))
         return up / down * p ** (self.k - n)
 
     def weight(self, p: sp.Expr, D: sp.Expr, a: sp.Expr, b: sp.Expr) -> sp.Expr:
-        return p ** (a + b * self.k)  # p F′ = p^k
+        return real(p, "p") ** (real(a, "a") + real(b, "b") * self.k)  # p F′ = p^k
 
     def evaluated(self, value: sp.Expr, delta: sp.Expr) -> sp.Expr:
         return value
@@ -235,10 +275,10 @@ class Power(ContactLaw):
         exponent(self.k, cell)
 
     def compressions(self, cell: Cell, force: sp.Expr) -> tuple[sp.Expr, ...]:
-        return tuple(power(force / A, 1 / self.k) for A in cell.stiffnesses)
+        return tuple(power(real(force, "force") / A, 1 / self.k) for A in cell.stiffnesses)
 
     def compression(self, cell: Cell, force: sp.Expr) -> sp.Expr:
-        return power(force / cell.stiffness(self.k), 1 / self.k)
+        return power(real(force, "force") / cell.stiffness(self.k), 1 / self.k)
 
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Power:
         return Power(self.k.xreplace(new))
@@ -298,8 +338,8 @@ def general() -> Law:
 
 def refuse_two_laws(k: Any, law: ContactLaw) -> None:
     """Raise `lwa.InputError` for an exponent beside a law, which already determines the force."""
-    if k != symbol_k:
-        raise InputError(f"k is {shorten(k)} and law {law.text}: one of them is wanted")
+    if not isinstance(k, sp.Symbol) or k != symbol_k:  # k may be an array
+        raise InputError(f"k is {shorten(k)} and law {shorten(law)}: one of them is wanted")
 
 
 _HERTZ = sp.Rational(3, 2)

@@ -113,6 +113,17 @@ def _out_of_range(name: str) -> InputError:
     )
 
 
+def real(value: Any, name: str) -> sp.Expr:
+    """Return a real expression, whose floats keep their digits, or an exact number; never text."""
+    if isinstance(value, str):
+        raise InputError(f"{name} is {shorten(value)}: a number or an expression is wanted")
+    if not isinstance(value, sp.Expr):
+        return read_exact(value, name)
+    if value.is_real is False or value.has(sp.nan, sp.oo, -sp.oo, sp.zoo):
+        raise InputError(f"{name} is {shorten(value)}: a finite real number is wanted")
+    return value
+
+
 def signed(value: Any, name: str) -> sp.Expr:
     """Read an exact real number; a plain name becomes a real symbol of either sign, such as ξ."""
     expression = read_exact(value, name)

@@ -5,6 +5,7 @@ import pickle
 from fractions import Fraction
 from math import factorial
 
+import numpy as np
 import pytest
 import sympy as sp
 
@@ -186,6 +187,19 @@ BAD = [
 def test_bad_combinations_are_refused(given, reason):
     with pytest.raises(InputError, match=reason):
         homogenize(**given)
+
+
+def test_an_open_contact_carries_nothing():
+    """Numbers, arrays and expressions; only laws with F′(0) > 0 also pull."""
+    hertz, toda = Power("3/2"), named("exponential", 1)
+    assert (hertz.at(-1), hertz.at(4), hertz.at(0.25, 1)) == (0, 8, sp.Rational(3, 4))
+    assert named("hertz2", 1, 1).at(-2) == named("hertz2", 1, 1).at(-2, 1) == 0
+    assert np.array_equal(hertz.at([[-1, 4], [0, 1]]), [[0, 8], [0, 1]])
+    assert toda.at(-1) == sp.exp(-1) - 1
+    assert np.allclose(toda.at([-1.0, 1.0]), np.expm1([-1.0, 1.0]), rtol=1e-15)
+    for value in (None, "1", float("nan"), 1j, sp.I, sp.oo, ["x"]):
+        with pytest.raises(InputError, match="delta is"):
+            hertz.at(value)
 
 
 def test_bad_laws():
