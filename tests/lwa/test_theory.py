@@ -1,28 +1,9 @@
 """One call from cell to theory, and what it refuses."""
 
-import pytest
 import sympy as sp
 
-from lwa import Dimer, InputError, homogenize
+from lwa import Dimer, homogenize
 from tests.commands import terminal
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (dict(order=0), "order is 0"),
-        (dict(order=2.5), "order is 2.5"),
-        (dict(order=200), "beyond memory"),
-        (dict(order=20, closure="full"), "beyond memory"),
-        (dict(k=0), "k is 0"),
-        (dict(k="m1"), "names both"),
-        (dict(closure="quadratic"), "closure is 'quadratic'"),
-        (dict(branch="transverse"), "branch is 'transverse'"),
-    ],
-)
-def test_senseless_arguments_are_refused(arguments, words):
-    with pytest.raises(InputError, match=words):
-        homogenize(Dimer("m1", "m2"), **arguments)
 
 
 def test_floats_enter_as_their_decimals():

@@ -122,13 +122,6 @@ def test_a_notebook_shows_it_in_latex(name):
     assert sp.latex(made(name)) == shown.strip("$")
 
 
-def test_print_shows_the_equation():
-    found = str(theory()).splitlines()
-    assert found[0].startswith("u_ττ = u_x^(k-1) u_xx + G u_x^(k-3) u_xx^3 + H")
-    assert found[1:4] == [f"  {name} = {getattr(theory().pde, name)}" for name in "GHI"]
-    assert str(theory()) == str(theory().pde)
-
-
 def test_latex_is_the_papers_equation_at_any_order():
     equation = (
         r"u_{\tau\tau} &= u_{x}^{k-1} u_{xx} + G u_{x}^{k-3} u_{xx}^{3} "

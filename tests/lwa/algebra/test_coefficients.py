@@ -31,11 +31,3 @@ def test_ring_elements_convert_back_to_their_expressions():
             for element, value in zip([*fractions, *shares, own], expected, strict=True):
                 terms = [(tuple(e[: len(ring.names)]), c) for e, c in element.terms()]
                 assert same(ring.expression(terms), value)
-
-
-def test_a_common_factor_is_cancelled():
-    """2 μ_1 - μ_2 + 1 of the masses m1 and 2 m1 is a number, whose denominator is the sum."""
-    ring = Model(Cell([m1, 2 * m1, m2, 3]), Power(k)).ring
-    (first, second, _, _), _, _ = elements(ring)
-    terms = [(tuple(e[: len(ring.names)]), c) for e, c in (2 * first - second + 1).terms()]
-    assert ring.expression(terms) == 1

@@ -29,10 +29,6 @@ def test_long_rows_are_broken_and_nothing_is_lost(value):
         assert line.count("\\left") == line.count("\\right")
 
 
-def test_short_rows_stay():
-    assert lines(latex.row("y", a / b)) == ["y &= \\frac{a}{b}"]
-
-
 @pytest.mark.parametrize("order", [5, 6])
 def test_an_equation_of_high_order_fits_a_page(order):
     theory = homogenize(Dimer("m1", "m2"), order, closure="full")

@@ -3,7 +3,7 @@
 import pytest
 import sympy as sp
 
-from lwa import Cell, Dimer, InputError, homogenize
+from lwa import Dimer, homogenize
 
 
 @pytest.mark.parametrize("branch", ["acoustic", "optical"])
@@ -23,8 +23,3 @@ def test_the_defect_vanishes_at_equal_masses_only():
     for terms in theory.defect.values():
         for coefficient in terms.values():
             assert sp.cancel(coefficient.subs(m1, m2)) == 0
-
-
-def test_one_mass_has_no_optical_branch():
-    with pytest.raises(InputError, match="1 masses"):
-        homogenize(Cell([1]), branch="optical")

@@ -27,6 +27,8 @@ LINES = [
     ("derive --masses 1,2,3", "--closure full"),
     ("derive --stiffnesses 1", "1 stiffnesses for 2 masses"),
     ("derive --order 2.5", "order is 5/2"),
+    ("derive --order 200", "order is 200"),
+    ("derive --order 20 --closure full", "order is 20"),
     ("derive --order ９", "order is '９'"),
     ("derive --order 1_0", "order is '1_0'"),
     ("wave --masses 1,２", "masses is '２'"),

@@ -53,19 +53,6 @@ def test_the_first_field_of_the_full_closure_conserves_momentum_up_to_third_orde
     assert not homogenize(Dimer("m1", "m2"), 6, closure="full").pde.conservative
 
 
-def test_orders_with_jets_of_the_velocity():
-    first = homogenize(Dimer("m1", "m2"), 8, closure="full").pde
-    center = homogenize(Dimer("m1", "m2"), 8, closure="full", field="center").pde
-    enters = {n: any(jet.t for jet in found) for n, found in first.coefficients.items() if found}
-    assert enters == {3: False, 5: True, 7: True}
-    enters = {n: any(jet.t for jet in found) for n, found in center.coefficients.items() if found}
-    assert enters == {3: False, 5: False, 7: True}
-    # as products of two of u_xτ, u_xxτ, u_xxxτ
-    found = [jet.t for jet in first.coefficients[5] if jet.t]
-    assert {sum(e for _, e in jet) for jet in found} == {2}
-    assert {i for jet in found for i, _ in jet} == {1, 2, 3}
-
-
 def test_the_optical_branch_does_not_conserve_momentum():
     pde = homogenize(Dimer("m1", "m2"), branch="optical").pde
     assert not pde.conservative
@@ -81,10 +68,3 @@ def test_conservation_form_agrees_with_the_euler_operator(masses, conservative):
     (slope,) = euler_equations(pde.right_side(u, x), u, x)
     value = at_a_point(slope.lhs.subs(D, 1), u)
     assert (value == 0) == conservative == pde.conservative
-
-
-def test_closed_forms_need_order_four_and_equal_contacts_in_the_linear_closure():
-    with pytest.raises(InputError, match="from order 4 on"):
-        homogenize(Dimer(1, 2), order=3).pde.G  # noqa: B018
-    with pytest.raises(InputError, match="stiffnesses"):
-        homogenize(Dimer(1, 1, stiffnesses=(1, 2)), k=2).pde.traveling_wave()

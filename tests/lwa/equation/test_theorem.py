@@ -15,7 +15,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lwa import Cell, Dispersion, homogenize
-from tests.identity import same
 
 K = 2
 """The exponent of the closures below: A_i = c_i^{-2} is rational where the share c_i is."""
@@ -28,27 +27,6 @@ cells = st.integers(1, 6).flatmap(
         st.lists(fractions, min_size=P, max_size=P), st.lists(fractions, min_size=P, max_size=P)
     )
 )
-
-
-def test_one_monomial_is_left_of_a_contact():
-    """The strain of a contact about its middle, from the shifts of its two particles."""
-    c, e, f, k, D = sp.symbols("c e f k D", positive=True)
-    phi = sp.symbols("phi1:5", positive=True)  # the derivatives φ′ … φ⁗
-
-    def shifted(distance, coefficient):
-        """e^{D distance ∂} (φ + D² coefficient φ″) less φ, to D³."""
-        taylor = sum((D * distance) ** n / sp.factorial(n) * phi[n - 1] for n in range(1, 4))
-        second = phi[1] + D * distance * phi[2]
-        return taylor + D**2 * coefficient * second
-
-    strain = sp.expand((shifted(c / 2, f) - shifted(-c / 2, e)) / D)
-    energy = sp.series((strain / c) ** (k + 1), D, 0, 3).removeO() * c / (k + 1)  # over A c^k
-    second = sp.expand(energy).coeff(D, 2)
-    # by parts: ∫ φ′^k φ‴ = -k ∫ φ′^{k-1} φ″², and φ′^k φ″ at order D is a derivative
-    third = second.coeff(phi[2]) / phi[0] ** k
-    left = (second - second.coeff(phi[2]) * phi[2]) / (k * phi[0] ** (k - 1) * phi[1] ** 2) - third
-    S = -(c**3) / 24 - c * (e + f) / 2 + (f - e) ** 2 / (2 * c)
-    assert same(left, S)
 
 
 def least(masses, shares):
