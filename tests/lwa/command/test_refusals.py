@@ -49,6 +49,7 @@ LINES = [
     ("wave --k V_s", "'V_s': the name means the speed"),
     ("wave --masses m1,ξ", "'ξ' has a meaning of its own in the output of `lwa wave`"),
     ("wave --order 3", "order is 3"),
+    ("wave --k 2 --masses 1,1 --stiffnesses 1,2", "unequal stiffnesses"),
     ("wave --law hertz2", "--background"),
     ("wave --background 1 --law hertz2:L,1", "'L' has a meaning"),
     ("wave --background 1 --law hertz2:1,B", "'B': the name means the peak strain"),
