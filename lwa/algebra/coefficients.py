@@ -9,15 +9,14 @@ place of k.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property, cmp_to_key
-from typing import Any
+from functools import cached_property
 
 import sympy as sp
 from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-from lwa.algebra.rational import context, factored, to_flint, to_sympy
+from lwa.algebra.rational import context, factored, to_flint, to_sum, to_sympy
 from lwa.base.exact import InputError
 from lwa.base.frozen import Value
 
@@ -128,92 +127,53 @@ class CoefficientRing(Value):
         >>> ring.expression([((1, 1), fmpq(1)), ((1, 2), fmpq(-1))])
         k*m1*m2/(m1 + m2)**2
         """
-        return SymPyConverter(self)
-
-
-class SymPyConverter:
-    """Conversion of polynomials in (k, m̂, C) to factored SymPy expressions.
-
-    m̂_i and C_i are replaced by w_i/Σw with one common denominator per partition, in a second
-    flint ring whose generators are the caller's symbols; the numerator is factored there.
-    """
-
-    def __init__(self, ring: CoefficientRing) -> None:
-        partitions = [part for part in (ring.masses, ring.contacts) if part.names]
-        values = [w for part in partitions for w in part.distinct]
-        values += ring.variables
+        partitions = [part for part in (self.masses, self.contacts) if part.names]
+        values = [w for part in partitions for w in part.distinct] + list(self.variables)
         symbols = sorted(set().union(*(v.free_symbols for v in values)), key=str)
-        polynomial = {v: _as_polynomial(v, symbols) for v in values}
-        opaque = [v for v in dict.fromkeys(values) if polynomial[v] is None and not v.is_Rational]
-        self._generators: list[sp.Expr] = [*symbols, *opaque]
-        self._irrational = any(v.is_number for v in opaque)  # their powers may coincide
-        self._context = ring_context = context(len(self._generators))
-        self._monomials: dict[tuple[int, ...], tuple[sp.Expr, ...]] = {}
+        polynomials = {v: _as_polynomial(v, symbols) for v in values}
+        opaque = [v for v, found in polynomials.items() if found is None and not v.is_Rational]
+        generators = [*symbols, *opaque]
+        ring = context(len(generators))
 
         def element(value: sp.Expr) -> fmpq_mpoly:
+            if value in opaque:
+                return ring.gen(generators.index(value))
             if value.is_Rational:
-                return ring_context.constant(to_flint(value))
-            poly = polynomial[value]
-            if poly is None:
-                return ring_context.gen(self._generators.index(value))
+                return ring.constant(to_flint(value))
             padding = (0,) * len(opaque)
-            return ring_context.from_dict({(*e, *padding): to_flint(c) for e, c in poly.terms()})
+            terms = polynomials[value].terms()
+            return ring.from_dict({(*e, *padding): to_flint(c) for e, c in terms})
 
-        self._images = [element(value) for value in ring.variables]
-        self._denominators: list[tuple[slice, fmpq_mpoly]] = []
+        # The fractions total · w_i/Σw of a partition have the denominator Σw: each polynomial is
+        # made homogeneous in the total · w_i and one more generator, whose image is Σw.
+        images, blocks, sums = [element(value) for value in self.variables], [], []
         for part in partitions:
-            start = len(self._images)
-            self._images += [part.total * element(w) for w in part.distinct[:-1]]
-            total = sum((element(w) for w in part.weights), ring_context.constant(0))
-            self._denominators.append((slice(start, len(self._images)), total))
+            start = len(images)
+            images += [part.total * element(w) for w in part.distinct[:-1]]
+            blocks.append(slice(start, len(images)))
+            sums.append(sum((element(w) for w in part.weights), ring.constant(0)))
+        source = context(len(images) + len(sums))
 
-    def __call__(self, terms: Sequence[tuple[tuple[int, ...], fmpq]]) -> sp.Expr:
-        degrees = [
-            max((sum(exponents[block]) for exponents, _ in terms), default=0)
-            for block, _ in self._denominators
-        ]
-        numerator = self._context.constant(0)
-        for exponents, coefficient in terms:
-            product = self._context.constant(coefficient)
-            for image, e in zip(self._images, exponents, strict=True):
-                product = product * image**e
-            for (block, total), degree in zip(self._denominators, degrees, strict=True):
-                product = product * total ** (degree - sum(exponents[block]))
-            numerator = numerator + product
-        if numerator.is_zero():
-            return sp.Integer(0)
-        powers = []
-        for (_, total), degree in zip(self._denominators, degrees, strict=True):
-            while degree and (quotient := _quotient(numerator, total)) is not None:
-                numerator, degree = quotient, degree - 1
-            powers.append(self._sum(total) ** -degree)
-        constant, factors = numerator.factor()
-        powers += [self._sum(factor) ** int(multiplicity) for factor, multiplicity in factors]
-        # One product: a number times a lone sum would be multiplied out.
-        return sp.Mul(to_sympy(constant), *powers)
+        def convert(terms: Sequence[tuple[tuple[int, ...], fmpq]]) -> sp.Expr:
+            degrees = [max((sum(e[block]) for e, _ in terms), default=0) for block in blocks]
+            homogeneous = {
+                (*e, *(d - sum(e[block]) for d, block in zip(degrees, blocks, strict=True))): c
+                for e, c in terms
+            }
+            numerator = source.from_dict(homogeneous).compose(*images, *sums, ctx=ring)
+            if numerator.is_zero():
+                return sp.S.Zero
+            powers = []
+            for total, degree in zip(sums, degrees, strict=True):
+                while degree and (parts := divmod(numerator, total))[1].is_zero():
+                    numerator, degree = parts[0], degree - 1
+                powers.append(to_sum(total, generators) ** -degree)
+            constant, factors = numerator.factor()
+            powers += [to_sum(factor, generators) ** int(e) for factor, e in factors]
+            # One product: a number times a lone sum would be multiplied out.
+            return sp.Mul(to_sympy(constant), *powers)
 
-    def _sum(self, polynomial: fmpq_mpoly) -> sp.Expr:
-        terms = list(self._terms(polynomial))
-        if self._irrational or len(terms) == 1:
-            return sp.Add(*terms)
-        # The monomials differ and no coefficient is zero, which SymPy would check for each.
-        return sp.Add(*sorted(terms, key=_canonical), evaluate=False)
-
-    def _terms(self, polynomial: fmpq_mpoly) -> Iterator[sp.Expr]:
-        for exponents, coefficient in polynomial.terms():
-            if exponents not in self._monomials:
-                powers = (g**e for g, e in zip(self._generators, exponents, strict=True) if e)
-                self._monomials[exponents] = sp.Mul.make_args(sp.Mul(*powers))
-            factor, monomial = to_sympy(coefficient), self._monomials[exponents]
-            if factor == 1 or self._irrational or monomial[0].is_Number:
-                yield sp.Mul(factor, *monomial)
-            else:  # in canonical order already; sorting it anew would take most of the time
-                yield sp.Mul(factor, *monomial, evaluate=False)
-
-
-def _canonical(term: sp.Expr) -> tuple[bool, Any]:
-    """Sort key of SymPy for the terms of a sum: numbers first."""
-    return not term.is_Number, cmp_to_key(sp.Basic.compare)(term)
+        return convert
 
 
 def _as_polynomial(value: sp.Expr, symbols: list[sp.Symbol]) -> sp.Poly | None:
@@ -224,8 +184,3 @@ def _as_polynomial(value: sp.Expr, symbols: list[sp.Symbol]) -> sp.Poly | None:
         return sp.Poly(value, *symbols, domain="QQ")
     except sp.polys.polyerrors.BasePolynomialError:
         return None
-
-
-def _quotient(numerator: fmpq_mpoly, divisor: fmpq_mpoly) -> fmpq_mpoly | None:
-    quotient, remainder = divmod(numerator, divisor)
-    return quotient if remainder.is_zero() else None

@@ -47,8 +47,8 @@ def factored(value: sp.Expr) -> sp.Expr:
     common = top.gcd(bottom)
     numerator, above = (top / common).factor()
     denominator, below = (bottom / common).factor()
-    powers = [_expression(factor, generators) ** int(e) for factor, e in above]
-    powers += [_expression(factor, generators) ** -int(e) for factor, e in below]
+    powers = [to_sum(factor, generators) ** int(e) for factor, e in above]
+    powers += [to_sum(factor, generators) ** -int(e) for factor, e in below]
     return sp.Mul(to_sympy(numerator / denominator), *powers)
 
 
@@ -74,7 +74,8 @@ def _fraction(value: sp.Expr, images: dict[sp.Expr, fmpq_mpoly], ring: fmpq_mpol
     return images[value], one
 
 
-def _expression(polynomial: fmpq_mpoly, generators: Sequence[sp.Expr]) -> sp.Expr:
+def to_sum(polynomial: fmpq_mpoly, generators: Sequence[sp.Expr]) -> sp.Expr:
+    """Convert a polynomial to a sum of products of these expressions."""
     return sp.Add(
         *(sp.Mul(to_sympy(c), *map(sp.Pow, generators, map(int, e))) for e, c in polynomial.terms())
     )
