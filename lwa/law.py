@@ -217,11 +217,11 @@ class ContactLaw(Value):
         """
         if self.formless:
             raise InputError(f"law is {self.text}: the strain under a force needs an expression")
-        share = real(force, "force") / cell.stiffnesses[0]
-        free = share.free_symbols | self.F.free_symbols - {self.delta}
+        needed = real(force, "force") / cell.stiffnesses[0]  # F(δ) of a contact of unit stiffness
+        free = needed.free_symbols | self.F.free_symbols - {self.delta}
         demand_numbers(free, f"the load under the law {self.text} needs numbers")
         with mpmath.workdps(50):
-            root = growing_root(self.F - share, self.delta)
+            root = growing_root(self.F - needed, self.delta)
             if root is None:
                 raise InputError(f"force is {shorten(force)}: the law does not reach it")
             # 35 digits leave 15 of the rise of a wave that is 1e-20 of the load.

@@ -10,7 +10,6 @@ by its share C_i. The force of the contact is
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cache
 from itertools import accumulate
 from math import factorial
@@ -34,15 +33,24 @@ class Force:
         self.X: list[fmpq_mpoly] = [algebra.zero]
         self.Phi = GradedSeries(algebra, k, [algebra.zero])
         self._slope = GradedSeries(algebra, k, [algebra.r[1]])
-        self._powers = SeriesPowers(self.X)
+        self._power_term = cache(self._term_of_power)
         self._nonlinear: fmpq_mpoly | None = None
 
     @property
     def nonlinear(self) -> fmpq_mpoly:
         """The nonlinear part Φ_n - X_n of the next order n, known from X_1 … X_{n-1}."""
         if self._nonlinear is None:
-            self._nonlinear = self._powers.sum(self.phi, len(self.X))
+            n = len(self.X)
+            terms = (self.phi[m] * self._power_term(m, n) for m in range(2, n + 1))
+            self._nonlinear = sum(terms, self.X[0])
         return self._nonlinear
+
+    def _term_of_power(self, m: int, n: int) -> fmpq_mpoly:
+        """The coefficient of D^n in X^m/m!, n ≥ m ≥ 1."""
+        if m == 1:
+            return self.X[n]
+        parts = (self.X[j] * self._power_term(m - 1, n - j) for j in range(1, n - m + 2))
+        return sum(parts, self.X[0]) / m
 
     def append(self, X_n: fmpq_mpoly) -> None:
         """Append the next term X_n to X, and Φ_n to Φ."""
@@ -61,22 +69,3 @@ class Force:
         for j in range(1, n):
             total = total + j * self.X[j] * self.Phi[n - j]
         return total / n
-
-
-class SeriesPowers:
-    """Powers X^m/m! of a graded series X = Σ_{n≥1} D^n X_n, to which terms may be appended."""
-
-    def __init__(self, X: Sequence[fmpq_mpoly]) -> None:
-        self._X = X
-        self.term = cache(self._term)
-
-    def _term(self, m: int, n: int) -> fmpq_mpoly:
-        """The coefficient of D^n in X^m/m!, n ≥ m ≥ 1."""
-        if m == 1:
-            return self._X[n]
-        parts = (self._X[j] * self.term(m - 1, n - j) for j in range(1, n - m + 2))
-        return sum(parts, self._X[0]) / m
-
-    def sum(self, coefficients: Sequence[fmpq_mpoly], n: int) -> fmpq_mpoly:
-        """The coefficient of D^n in Σ_{m≥2} c_m X^m/m!."""
-        return sum((coefficients[m] * self.term(m, n) for m in range(2, n + 1)), self._X[0])

@@ -196,6 +196,11 @@ class Model(Value):
         """Exponent of a power law; local exponent 1 + φ_2 = d ln(δ F′)/d ln δ of another law."""
         return self.law.exponent if self.law.homogeneous else 1 + phi_symbol(2)
 
+    @property
+    def base(self) -> int:
+        """Order of the derivative in the jets' denominators: 1 for u_x, 0 for u (optical)."""
+        return 1 if self.branch == "acoustic" else 0
+
     @cached_property
     def ring(self) -> CoefficientRing:
         """The ring of the coefficients.

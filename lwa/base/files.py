@@ -14,6 +14,7 @@ import tomllib
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from difflib import get_close_matches
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -41,7 +42,11 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
     suffix = Path(path).suffix.lower()
     if suffix not in MOST_BYTES:
         raise InputError(f"{path}: {what} is a file ending in {' or '.join(MOST_BYTES)}")
-    parse = tomllib.loads if suffix == ".toml" else _read_json
+    parse = (
+        tomllib.loads
+        if suffix == ".toml"
+        else partial(json.loads, object_pairs_hook=_refuse_repeated)
+    )
     try:
         return reader(parse(content(Path(path), MOST_BYTES[suffix]).decode("utf-8-sig")))
     except (InputError, OSError) as error:
@@ -63,10 +68,6 @@ def _refuse_repeated(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
             raise InputError(f"{key[:60]!r} is there more than once")
         table[key] = value
     return table
-
-
-def _read_json(text: str) -> Any:
-    return json.loads(text, object_pairs_hook=_refuse_repeated)
 
 
 def content(file: Path, most: int = 10**9) -> bytes:

@@ -98,7 +98,7 @@ def _terms_json(coefficients: Mapping[int, Terms]) -> list[dict[str, Any]]:
             "order": n,
             "jet": [list(power) for power in jet.x],
             "jet_t": [list(power) for power in jet.t],
-            "coefficient": terms.written(jet),
+            "coefficient": str(terms[jet]),
         }
         for n, terms in coefficients.items()
         for jet in terms

@@ -25,7 +25,7 @@ from lwa.base import latex
 from lwa.base.exact import InputError, power
 from lwa.closure.consistency import OfClosure
 from lwa.equation.energy import conservative, energy
-from lwa.equation.terms import ENERGY, Jet, Terms, base_order, by_order, terms
+from lwa.equation.terms import ENERGY, Jet, Terms, by_order, terms
 from lwa.wave.traveling import TravelingWave
 
 _POWER_LAW = "u_x^(k-1) u_xx", "G u_x^(k-3) u_xx^3 + H u_x^(k-2) u_xx u_xxx + I u_x^(k-1) u_4x"
@@ -57,7 +57,7 @@ class PDE(OfClosure):
 
         The leading term u_x^{k-1} u_xx (or -u^k) is left out.
         """
-        base = base_order(self.closure.model)
+        base = self.closure.model.base
         sign = 1 if base else -1
         acceleration = enumerate(self.closure.acceleration)
         return {n: terms(self.closure, sign * E) for n, E in acceleration if n > base}
@@ -110,7 +110,7 @@ class PDE(OfClosure):
                 parts.append(r"\cdots")
                 break
             elif of_order:
-                D = latex.power(self.cell.spacing, n - base_order(self.closure.model))
+                D = latex.power(self.cell.spacing, n - self.closure.model.base)
                 parts.append(rf"{D} \Bigl({of_order.latex_rows()[0]}\Bigr)")
         rows = [latex.row(letter, value) for letter, value in letters.items()]
         return [rf"u_{{\tau\tau}} = {' + '.join(parts)}", *rows]
@@ -183,7 +183,7 @@ class PDE(OfClosure):
 
     def right_side(self, u: sp.Expr, x: sp.Symbol, velocity: sp.Expr = sp.S.Zero) -> sp.Expr:
         """The right-hand side of u_ττ for fields u(x) and u_τ(x), as a SymPy expression."""
-        base = base_order(self.closure.model)
+        base = self.closure.model.base
         D, law = self.cell.spacing, self.law
         leading = law.of_strain(u.diff(x), D, 1) * u.diff(x, 2) if base else -(u**law.exponent)
         rest = (

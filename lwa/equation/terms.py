@@ -59,7 +59,6 @@ class Terms(Shown, Mapping[Jet, sp.Expr]):
         self.power = power
         self._model, self._raw, self._divisor = model, raw, divisor
         self._converted: dict[Jet, sp.Expr] = {}
-        self._written: dict[Jet, str] = {}
 
     def __getitem__(self, jet: Jet | Powers) -> sp.Expr:
         jet = jet if isinstance(jet, Jet) else Jet(jet)
@@ -95,12 +94,6 @@ class Terms(Shown, Mapping[Jet, sp.Expr]):
         rows += [f"{more} more" if rows else f"{more} terms"] if more else []
         return f"{{{', '.join(rows)}}}"
 
-    def written(self, jet: Jet) -> str:
-        """The coefficient as text, cached because large coefficients take long to write."""
-        if jet not in self._written:
-            self._written[jet] = str(self[jet])
-        return self._written[jet]
-
     def text(self, jet: Jet) -> str:
         """The jet as text with its power of the base, such as u_x^(k-3) u_2x^3."""
 
@@ -126,7 +119,7 @@ class Terms(Shown, Mapping[Jet, sp.Expr]):
         styles : formats of the exponents of the base and of the derivatives.
         """
         a, b = jet.base_power(self.power)
-        base = derivative(1, False) if self.base else "u"
+        base = derivative(1, False) if self._model.base else "u"
         powers = [(base, _exponent(a, b), styles[0])]
         if not self._model.law.homogeneous:
             powers = [("F'", str(b), styles[0]), (base, str(a + b), styles[0])]
@@ -143,14 +136,9 @@ class Terms(Shown, Mapping[Jet, sp.Expr]):
         """LaTeX of the sum of the terms, in one row."""
         return [latex.total((self[jet], self.latex(jet)) for jet in self)]
 
-    @property
-    def base(self) -> int:
-        """Order of the derivative in the jets' denominators: 1 (u_x) or 0 (u)."""
-        return base_order(self._model)
-
     def of_fields(self, u: sp.Expr, velocity: sp.Expr, x: sp.Symbol) -> sp.Expr:
         """The sum Σ coefficient · base^{a + bk} · jet for fields u(x) and u_τ(x)."""
-        base, law = (u.diff(x) if self.base else u), self._model.law
+        base, law = (u.diff(x) if self._model.base else u), self._model.law
         D = self._model.cell.spacing
         total = sp.S.Zero
         for jet, coefficient in self.items():
@@ -178,7 +166,7 @@ def terms(
     algebra: JetAlgebra | None = None,
 ) -> Terms:
     """Convert a polynomial of the closure's algebra (or another one) into jets of the field."""
-    base = base_order(closure.model)
+    base = closure.model.base
     raw = {
         Jet(tuple((n + base, e) for n, e in monomial.x), monomial.t): coefficient
         for monomial, coefficient in (algebra or closure.algebra).terms(polynomial).items()
@@ -195,14 +183,9 @@ def by_order(coefficients: Mapping[int, Terms], form: str, linear: bool = True) 
     lines = []
     for n, found in coefficients.items():
         jets = [jet for jet in found if linear or jet.t or sum(e for _, e in jet.x) > 1]
-        rows = [f"    {found.text(jet)}: {found.written(jet)}" for jet in jets]
+        rows = [f"    {found.text(jet)}: {found[jet]}" for jet in jets]
         lines += [f"  {form.format(n)}:", *rows] if rows else []
     return lines
-
-
-def base_order(model: Model) -> int:
-    """Order of the derivative in the jets' denominators: 1 for u_x, 0 for u (optical branch)."""
-    return 1 if model.branch == "acoustic" else 0
 
 
 def _complexity(jet: Jet) -> tuple[bool, int, Jet]:
