@@ -43,16 +43,13 @@ def test_arguments_that_are_no_spheres_are_refused():
     for call, words in (
         (lambda: Sphere(1, 1, "steel"), "material is 'steel': a Material"),
         (lambda: Material(0, 0), "E is 0"),
+        (lambda: Sphere(1, 0, steel), "radius is 0"),
+        (lambda: Material.named("wood"), "'wood': one of steel 316, steel 440C"),
         (lambda: Material(1, "0.51"), "nu is '0.51'"),
         (lambda: Material(1, 0, -1), "density is -1"),
-        (lambda: Sphere(float("nan"), 1, steel), "mass is nan"),
-        (lambda: Sphere.solid("x y", steel, 1), "radius is 'x y'"),
         (lambda: Sphere.solid(1, steel), "a Material with a density"),
-        (lambda: Material.named("wood"), "'wood': one of steel 316, steel 440C"),
-        (lambda: stiffness(steel, ball), "sphere is Material"),
         (lambda: stiffness(ball, 1), "other is 1: a Sphere"),
         (lambda: Cell.of_spheres([ball, steel]), "sphere is Material"),
-        (lambda: Cell.of_spheres([]), "at least one mass"),
         (lambda: Cell.of_spheres(ball), "spheres: a sequence"),
     ):
         with pytest.raises(InputError, match=f"^.*{words}"):
