@@ -141,7 +141,7 @@ def _tableau(method: str, k: float) -> Tableau:
 
 def _plan(motion: Motion, method: str, rtol: float, step: float | None) -> tuple[Plan, int]:
     """Return the integration plan, and the greatest number of steps."""
-    scheme, scales, end = SCHEMES[method], motion.scales, motion.scene.duration
+    scheme, scales, end = SCHEMES[method], motion.scales, float(motion.scene.duration)
     longest, drive, stops = (
         math.inf if step is None else positive(step, "step"),
         motion.scene.drive,
@@ -187,10 +187,12 @@ def _chain(motion: Motion) -> Chain:
     driven = Drive(np.zeros(1), np.zeros((1, 4)), 0.0, 0.0, 0.0, False)
     if drive is not None:
         inverse[0] = 0.0
-        driven = Drive(*drive.cubics, *drive.oscillation, float(drive.ramp), True)
+        amplitude, w = drive.oscillation
+        driven = Drive(*drive.cubics, float(amplitude), w, float(drive.ramp), True)
     kind: dict[str, Any] = dict(generated=law.law is not None, pulls=law.pulls, **law.addresses)
     power = law.damping_power or 0.0
-    return Chain(inverse, A, c, rest, load, motion.k, **kind, p=power, drive=driven)
+    # An integer would be another signature, for which numba compiles the engine again.
+    return Chain(inverse, A, c, rest, load, float(motion.k), **kind, p=float(power), drive=driven)
 
 
 def _front(motion: Motion) -> int:

@@ -9,7 +9,6 @@ import numpy as np
 import scipy
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
-from scipy.interpolate import BPoly
 
 from lwa.base.arrays import Array
 from validation.lattice.cost import (
@@ -40,12 +39,12 @@ class StepsPath:
 
     time: Array
     beads: NDArray[np.int_]
-    motion: BPoly
+    motion: scipy.interpolate.BPoly
 
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]:
         """Return displacements and velocities (beads, S) at times (S,) within the run."""
         chosen = self.motion.c[..., np.searchsorted(self.beads, beads)]
-        y, v = np.moveaxis(BPoly.construct_fast(chosen, self.time)(time), 0, 2)
+        y, v = np.moveaxis(scipy.interpolate.BPoly.construct_fast(chosen, self.time)(time), 0, 2)
         return y, v
 
 
@@ -85,9 +84,9 @@ def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: R
             ends.append(stepper.t)
             display(stepper.t / end)
     # Bernstein's basis has no rounding at a step's beginning: touching beads press nothing there.
-    basis = BPoly(np.eye(len(nodes))[:, None], [0, 1])(nodes)
+    basis = scipy.interpolate.BPoly(np.eye(len(nodes))[:, None], [0, 1])(nodes)
     coefficients = np.tensordot(np.linalg.inv(basis), np.array(states), (1, 1))
-    path = StepsPath(np.array(ends), watched, BPoly(coefficients, ends))
+    path = StepsPath(np.array(ends), watched, scipy.interpolate.BPoly(coefficients, ends))
     records = {"time": time} | recorded(motion, watched, *path(watched, time))
     return finished(
         motion,

@@ -223,3 +223,32 @@ def test_scipys_methods_are_references_of_forced_scenes(method):
         # some hundred steps of LSODA, each with its error
         np.testing.assert_allclose(getattr(theirs, name), getattr(ours, name), atol=3e-8)
     assert min(ours.dissipated, ours.work) > 1e-3
+
+
+@pytest.mark.parametrize("short", [2e-3, 5e-4, 1e-5])
+def test_a_driven_bead_that_touches_between_two_steps_is_seen(short):
+    """The drive goes ``short`` beyond the second bead; steps of 1e-4 are too short to miss it."""
+    scene = Scene(
+        masses=(1, 1), stiffnesses=(1e6,), k=1.5, duration=1, displacements=(0, 1 - short),
+        drive=Drive(amplitude=1, frequency=1),
+    )  # fmt: skip
+    exact = simulate(scene, rtol=1e-13, step=1e-4).velocities[1]
+    assert exact > 0
+    for rtol in 10.0 ** np.arange(-12, -4):
+        velocity = simulate(scene, rtol=rtol).velocities[1]
+        assert velocity == pytest.approx(exact, abs=10 * rtol * 2 * np.pi), rtol
+
+
+@pytest.mark.parametrize("short", [0.1, 1e-2, 1e-3, 1e-4])
+def test_a_thrown_bead_meets_a_plate_near_the_apex_of_its_flight(short):
+    """Against gravity 1 a velocity of 10 reaches 50; the plate is ``short`` before the apex."""
+    plate = Drive(time=(0, 5, 10, 20), displacement=(short - 50,) * 4)
+    scene = Scene(
+        masses=(1e-6, 1), stiffnesses=(1e6,), wall=1e4, k=1.5, gravity=1, duration=15,
+        velocities=(0, -10), drive=plate,
+    )  # fmt: skip
+    exact = simulate(scene, rtol=1e-13, step=1e-3).velocities[1]
+    assert exact > 5 + np.sqrt(2 * short)  # 5 without a collision, 5 + 2 √(2 short) at a hard plate
+    for rtol in 10.0 ** np.arange(-12, -4):
+        velocity = simulate(scene, rtol=rtol).velocities[1]
+        assert velocity == pytest.approx(exact, abs=100 * rtol * 10), rtol

@@ -94,20 +94,45 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int
     # Mark contacts that open or close within the step or near it, with a force that matters.
     # A compression δ changes a velocity by at most h A δ^k/m in a step.
     least = (_SLIGHT * plan.v / (h * plan.quickest)) ** (1.0 / chain.k)
-    near = 0
+    near, share = 0, 1.0
     for i in range(index(hi)):
         before = rest[i] + y[i] - y[i + ONE]
         after = rest[i] + next_y[i] - next_y[i + ONE]
         most = max(before, after)
         kinked = (most > least) & (min(before, after) < NEAR * most)
-        sums[ZERO, i + ONE] = most if kinked else 0.0
-        near += 1 if kinked else 0
-    if near > 0 and plan.scheme.points.shape[1] > 0:
+        # Open at both ends; the beads approach each other, then part: the tangents meet at δ > 0.
+        nearing, parting = h * (v[i] - v[i + ONE]), h * (next_v[i + ONE] - next_v[i])
+        above = before * parting + (after + parting) * nearing > 0.0
+        hidden = (most <= 0.0) & (nearing > 0.0) & (parting > 0.0) & above
+        sums[ZERO, i + ONE] = most if kinked else (-1.0 if hidden else 0.0)
+        near += 1 if kinked | hidden else 0
+    if near > 0:
         for i in range(hi):
-            if sums[0, i + 1] > 0.0:
+            if sums[0, i + 1] > 0.0 and plan.scheme.points.shape[1] > 0:
                 _correct_contact(chain, beads, plan, h, i)
+            elif sums[0, i + 1] < 0.0 and chain.A[i] > 0.0:
+                share = min(share, _hidden_contact(chain, beads, h, stages - 1, i, least))
     missed = (h * _integral(ends[2], beads.power[1]) - beads.given[3]) / plan.energy
-    return math.sqrt(squared_error(sums, inverse, hi) + missed * missed)
+    error = math.sqrt(squared_error(sums, inverse, hi) + missed * missed)
+    # The error of which the rule of the next step makes ``share`` of this step.
+    return max(error, (_SAFETY / share) ** (plan.scheme.lower + 1.0)) if share < 1.0 else error
+
+
+@summed
+def _hidden_contact(chain: Chain, beads: Beads, h: float, last: int, i: int, least: float) -> float:
+    """Return the share of a step after which contact i, open at both ends, is compressed most.
+
+    Returns 1 if the quintic fit of its compression nowhere exceeds ``least``. No stage need meet
+    such a contact, so that the error does not tell: the step has to be shortened, to at most its
+    half.
+    """
+    c, _ = fitted_compression(chain, beads, h, last, i)
+    low, high = 0.0, 1.0
+    for _ in range(30):  # the slope is positive at 0 and negative at 1
+        x = 0.5 * (low + high)
+        slope = c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5])))
+        low, high = (x, high) if slope > 0.0 else (low, x)
+    return min(low, 0.5) if quintic(c, low) > least else 1.0
 
 
 @summed
