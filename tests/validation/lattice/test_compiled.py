@@ -55,3 +55,17 @@ def test_without_a_directory_to_write_to_a_function_runs(tmp_path):
     (tmp_path / "__pycache__").write_text("")
     places = dict.fromkeys(("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR"), "/dev/null/home")
     assert output(tmp_path, SMALL, **places) == "6\n"
+
+
+def test_the_engine_runs_uncompiled():
+    """For a debugger, numba's own switch turns the compilation off."""
+    program = (
+        "from validation import Scene, simulate\n"
+        "scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9, velocities=(1,))\n"
+        "print(*simulate(scene, rtol=1e-6).velocities)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], stdout=subprocess.PIPE, text=True, check=True,
+        timeout=300, env=os.environ | {"NUMBA_DISABLE_JIT": "1"},
+    )  # fmt: skip
+    assert [*map(float, done.stdout.split())] == pytest.approx([0, 1], abs=1e-5)

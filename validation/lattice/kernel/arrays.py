@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+from numba import config
 from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
@@ -154,6 +155,9 @@ def initial_progress(plan: Plan, front: int, energy: float) -> Any:
     drive's motion. work, lost : ∫ v (F - static force) dt of a driven bead, and dissipated energy.
     response : greatest of the values of ``energy`` on the way.
     """
-    now = np.zeros(1, _PROGRESS)[0]
+    rows = np.zeros(1, _PROGRESS)
+    # Fields of a plain record are attributes in compiled code alone.
+    uncompiled = config.DISABLE_JIT  # type: ignore[attr-defined]
+    now = (rows.view(np.recarray) if uncompiled else rows)[0]
     now["front"], now["h"], now["restart"], now["energy"] = front, plan.h, plan.h, energy
     return now
