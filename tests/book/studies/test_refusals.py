@@ -30,7 +30,6 @@ BAD = [
     ("shock --k 3/2 --jumps 1/2", "a strain above the one ahead"),
     ("shock --k 3/2 --duration 5", "duration is 5: at least 100 is wanted"),
     ("shock --k 3/2 --ahead=-1", "contacts of a power law only push"),
-    ("transmission --cells 5", "cells is 5: an integer from 40"),
 ]
 
 
