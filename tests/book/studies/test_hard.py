@@ -129,6 +129,6 @@ def test_all_cases_hold_and_state_a_number():
     json.dumps(whole, allow_nan=False)
     (ulps,) = (case for case in whole["cases"] if case["case"] == "ulps")
     assert ulps["loss_ulps_value"] < 8
-    assert ulps["printed_loss_ulps_value"] > 2**52  # no digit is left
+    assert ulps["printed_loss_ulps_value"] > 1e5  # near k = 1, as above
     (load,) = (case for case in whole["cases"] if case["case"] == "under-load")
     assert 0 < load["loss_ulps_value"] < 8
