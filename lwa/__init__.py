@@ -35,12 +35,13 @@ if TYPE_CHECKING:
     from lwa.linear.bands import Bands as Bands
     from lwa.linear.dispersion import Dispersion as Dispersion
     from lwa.linear.dispersion import LoadedChain as LoadedChain
-    from lwa.links.lattice import Lattice as Lattice
-    from lwa.links.lattice import Link as Link
-    from lwa.links.lattice import Resonator as Resonator
-    from lwa.links.packings import hexagonal as hexagonal
-    from lwa.links.wave import LatticeWave as LatticeWave
-    from lwa.links.wave import lattice_wave as lattice_wave
+    from lwa.loaded.background import KdV as KdV
+    from lwa.loaded.lattice import Lattice as Lattice
+    from lwa.loaded.lattice import Link as Link
+    from lwa.loaded.lattice import Resonator as Resonator
+    from lwa.loaded.lattice import hexagonal as hexagonal
+    from lwa.loaded.wave import LoadedWave as LoadedWave
+    from lwa.loaded.wave import loaded_wave as loaded_wave
     from lwa.shocks.riemann import Shock as Shock
     from lwa.shocks.riemann import piston as piston
     from lwa.shocks.riemann import shock as shock
@@ -49,12 +50,8 @@ if TYPE_CHECKING:
     from lwa.spheres.hertz import Sphere as Sphere
     from lwa.theory import Theory as Theory
     from lwa.theory import homogenize as homogenize
-    from lwa.wave.background import BackgroundWave as BackgroundWave
-    from lwa.wave.background import background_wave as background_wave
     from lwa.wave.closed import CompactWave as CompactWave
-    from lwa.wave.kdv import KdV as KdV
     from lwa.wave.physical import PhysicalWave as PhysicalWave
-    from lwa.wave.physical import PrecompressedWave as PrecompressedWave
     from lwa.wave.traveling import TravelingWave as TravelingWave
     from lwa.wave.traveling import canonical_wave as canonical_wave
 
@@ -75,16 +72,14 @@ _HOMES = {
     "lwa.law": "Law Power general",
     "lwa.linear.bands": "Bands",
     "lwa.linear.dispersion": "Dispersion LoadedChain",
-    "lwa.links.lattice": "Lattice Link Resonator",
-    "lwa.links.packings": "hexagonal",
-    "lwa.links.wave": "LatticeWave lattice_wave",
+    "lwa.loaded.background": "KdV",
+    "lwa.loaded.lattice": "Lattice Link Resonator hexagonal",
+    "lwa.loaded.wave": "LoadedWave loaded_wave",
     "lwa.shocks.riemann": "Shock piston shock",
     "lwa.spheres.hertz": "Material Sphere hertz",
     "lwa.theory": "Theory homogenize",
-    "lwa.wave.background": "BackgroundWave background_wave",
     "lwa.wave.closed": "CompactWave",
-    "lwa.wave.kdv": "KdV",
-    "lwa.wave.physical": "PhysicalWave PrecompressedWave",
+    "lwa.wave.physical": "PhysicalWave",
     "lwa.wave.traveling": "TravelingWave canonical_wave",
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}

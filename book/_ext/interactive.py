@@ -31,7 +31,7 @@ def formulas() -> str:
     pulse, loaded = chain.at_force(F), chain.at_force(F, precompression=F_0)
     paper = homogenize(Cell([m1, m2], stiffnesses=[A, A], spacing=D), k=k).pde.traveling_wave()
     theirs = paper.at_force(F)
-    strain = canonical_wave(Cell([1]), k).on_background(p_0)
+    strain = canonical_wave(Cell([1]), k).on_background(p_0).field
     gap = strain.stiffness(B) - strain.stiffness(v)
     gradient = v * sp.sqrt(gap / (wave.I / wave.D**2 * strain.force(p_0 + v, 1)))
     solids = sp.symbols("E1 nu1 R1 E2 nu2 R2", positive=True)

@@ -22,7 +22,7 @@ not short beside x are no rays: this gives a correction of x^{-2/3} on the way, 
 of x^{-(3-k)/3k} if it is of order ω², or of x^{-2(3-k)/3(k+1)} if of order ω^{4k/(k+1)}. The fit
 has the first and the last of these; its errors contain the change by the other.
 
-**A strong blow** makes the solitary wave of the load at its depth (`lwa.background_wave`), until
+**A strong blow** makes the solitary wave of the load at its depth (`lwa.loaded_wave`), until
 this wave is as wide as the front of a weak blow, which the pulse then follows.
 """
 
@@ -37,11 +37,11 @@ from typing import Any
 import numpy as np
 import scipy
 
-from lwa import Cell, Power, background_wave
+from lwa import Cell, Power, loaded_wave
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
 from lwa.command.options import quantities
-from lwa.wave.background import BackgroundWave
+from lwa.loaded.background import Background
 from validation.lattice.result import Run
 from validation.lattice.simulate import simulate, twice
 from validation.pictures import Curve, Panel
@@ -108,9 +108,9 @@ class Upright:
         return tuple(float(mass * self.cell.size / self.cell.mass) for mass in self.cell.masses)
 
     @cached_property
-    def theory(self) -> BackgroundWave:
-        """Waves of the long-wave theory on the chain under load."""
-        return background_wave(self.cell, law=Power(self.k))
+    def theory(self) -> Background:
+        """The long-wave field of the chain at rest."""
+        return Background(self.cell, Power(self.k), 0)
 
     def sound(self, x: Any) -> Any:
         """Speed of sound c0(x)."""
@@ -189,11 +189,7 @@ class Upright:
         size = len(self.masses)
         contacts = np.add.outer(self.places(_TOP, _FEW), np.arange(2 * size))
         scene = self.blown(velocity, contact_sensors=np.unique(contacts).tolist())
-        run, numeric, by_contact = (
-            simulate(scene, rtol=self.tolerances[0]),
-            self.theory.numeric(),
-            {},
-        )
+        run, by_contact = simulate(scene, rtol=self.tolerances[0]), {}
         for track in tracks(run):
             (pulse,) = leading_pulses(track.force, self.k)
             by_contact[track.number - 1] = pulse.arrival, pulse.peak, pulse.fwhm
@@ -202,8 +198,8 @@ class Upright:
             arrival, peak, fwhm = np.array([by_contact[contact] for contact in cell]).T
             load, force = float(cell[0] + (size + 1) / 2), peak[:size].mean()
             width = fwhm[:size].mean() * np.mean(size / (arrival[size:] - arrival[:size]))
-            p0, p1 = (f ** (1 / self.k) for f in (load, load + force))
-            solitary = float(numeric.fwhm(p0, p1 - p0, "force"))
+            wave = loaded_wave(self.cell, force=float(load + force), precompression=load, k=self.k)
+            solitary = float(wave.fwhm("force") / self.cell.spacing)
             rows.append(
                 {
                     "site": load,

@@ -17,8 +17,9 @@ import mpmath as mp
 import numpy as np
 import sympy as sp
 
-from lwa import Cell, Dimer, Power, TravelingWave, background_wave, homogenize
+from lwa import Cell, Dimer, TravelingWave, homogenize, loaded_wave
 from lwa.base.arrays import Array
+from lwa.base.exact import number
 from lwa.base.progress import Progress
 from lwa.law import ContactLaw
 from validation.lattice.simulate import simulate
@@ -166,7 +167,7 @@ def true_wave(law: ContactLaw, p0: float, B: float) -> tuple[Any, Callable[[Any]
     """Return the speed of a wave that rises by B from p0, its half width at a height, and a height.
 
     The wave runs in equal beads, D = 1. Its half width at the height v is ξ = ∫ √(I F′/(Q(B) - Q))
-    dv/v, by mpmath (`lwa.wave.background` defines the letters); at the height that is returned
+    dv/v, by mpmath (`lwa.loaded.background` defines the letters); at the height that is returned
     last, the force has half of its rise. Call the function under `mpmath.workdps`.
     """
     x = sp.Dummy("x", positive=True)
@@ -192,23 +193,26 @@ def true_wave(law: ContactLaw, p0: float, B: float) -> tuple[Any, Callable[[Any]
 
 def width_error(cell: Cell, p0: float, quantity: str) -> float:
     """Return the relative error of the float64 FWHM of a wave on the background strain p0."""
-    wave = background_wave(cell, law=Power("3/2"))
+    wave = loaded_wave(cell, rise=RISE, background=p0, k="3/2")
     with mp.workdps(REFERENCE_DIGITS):
         _, place, height = true_wave(wave.law, p0, RISE)
-        root = mp.sqrt(12 * mp.mpf(sp.N(wave.I, REFERENCE_DIGITS)))  # of I over that of equal beads
+        root = mp.sqrt(
+            12 * mp.mpf(sp.N(wave.field.I, REFERENCE_DIGITS))
+        )  # of I over that of equal beads
         true = 2 * root * place(height if quantity == "force" else mp.mpf(RISE) / 2)
-        return abs(float(mp.mpf(float(wave.numeric().fwhm(p0, RISE, quantity))) / true - 1))
+        return abs(float(mp.mpf(float(wave.fwhm(quantity))) / true - 1))
 
 
 def under_load() -> Report:
     """p0/B = 1e-12 … 1e12: how accurate are V² and the FWHM of a wave under load in float64?"""
     findings, curves = [], []
     for k in (sp.Rational(11, 10), sp.Rational(3, 2), sp.Integer(2), sp.Integer(3)):
-        wave = background_wave(Cell((1,), spacing=1), law=Power(k))
-        exact = (wave.on(sp.Rational(p0)).stiffness(sp.Rational(RISE)) for p0 in LOADS * RISE)
+        beads = Cell((1,), spacing=1)
+        waves = [loaded_wave(beads, rise=RISE, background=p0, k=k) for p0 in LOADS * RISE]
+        exact = (wave.speed**2 for wave in waves)
         with mp.workdps(REFERENCE_DIGITS):
             true = np.array([mp.mpf(sp.N(squared, REFERENCE_DIGITS)) for squared in exact], object)
-        lost = in_ulps(wave.numeric().speed_squared(LOADS * RISE, RISE), true)
+        lost = in_ulps(np.array([number(wave.speed**2) for wave in waves]), true)
         name, key = f"V² at k = {k}: largest loss in ulps", "loss_ulps" * (k == sp.Rational(3, 2))
         findings.append(Finding(name, float(lost.max()), 0, ALLOWED, key=key))
         curves.append(Curve(f"k = {k}", LOADS, np.maximum(lost, 0.01)))

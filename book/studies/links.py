@@ -1,4 +1,4 @@
-"""Exact waves in lattices of unlike links or farther neighbours, beside `lwa.lattice_wave`.
+"""Exact waves in lattices of unlike links or farther neighbours, beside `lwa.loaded_wave`.
 
 Beads of mass 1 stand at the distance 1; each link between beads has a law F(δ) of its own. A wave
 u(x - Vt) of the lattice is computed by Newton's method. The compression of each link, less its
@@ -32,7 +32,7 @@ import numpy as np
 import scipy
 import sympy as sp
 
-from lwa import Lattice, Law, Link, Power, lattice_wave
+from lwa import Lattice, Law, Link, Power, loaded_wave
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
 from lwa.law import DELTA
@@ -92,7 +92,7 @@ class Chain:
 
     def cells(self, case: str) -> dict[str, Any]:
         """Table row: the lattice's wave beside the theory."""
-        theory = lattice_wave(self.lattice, force=self.force, precompression=self.load)
+        theory = loaded_wave(self.lattice, force=self.force, precompression=self.load)
         wave = exact(self.lattice, self.force, self.load)
         sound, square = float(theory.sound_speed) ** 2, float(theory.speed) ** 2
         fwhm = float(theory.fwhm(wave.of))
@@ -187,7 +187,7 @@ def exact(lattice: Lattice, force: float, load: float) -> Exact:
 
     Raises `Failure` if Newton's method does not converge.
     """
-    width = float(lattice_wave(lattice, force=force, precompression=load).fwhm("strain"))
+    width = float(loaded_wave(lattice, force=force, precompression=load).fwhm("strain"))
     halves = max(SHORTEST, WIDTHS * width) + LONGER
     waves = []
     for half in halves if len(lattice.masses) > 1 else halves[:1]:
@@ -203,7 +203,7 @@ def periodic(lattice: Lattice, force: float, load: float, half: float) -> Exact:
 
     Raises `Failure` if Newton's method does not converge.
     """
-    theory = lattice_wave(lattice, force=force, precompression=load)
+    theory = loaded_wave(lattice, force=force, precompression=load)
     guess = float(theory.fwhm("strain"))
     x = np.linspace(0, half, POINTS + 1)
     inertia, tension, spread = _operators(lattice, half)

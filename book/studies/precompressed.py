@@ -10,7 +10,7 @@ Errors are the larger of two changes: of theory/lattice between the two stretche
 lattice's number in a less accurate run.
 
 The theory's V/c0 and width over √(12 I) do not depend on the masses: all chains lie on one curve
-(`lwa.background_wave`). A wave is faster than all long waves; but where ω = V q meets an optical
+(`lwa.loaded_wave`). A wave is faster than all long waves; but where ω = V q meets an optical
 branch, short waves carry energy away, and the wave decays, the slower the longer it is.
 """
 
@@ -26,12 +26,12 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from lwa import Cell, Power, background_wave
+from lwa import Cell, LoadedWave, Power, loaded_wave
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
 from lwa.command.options import law_option, quantities
 from lwa.law import ContactLaw
-from lwa.wave.loaded import NumericBackground
+from lwa.loaded.background import Background
 from validation.lattice.result import Run
 from validation.lattice.simulate import twice
 from validation.pictures import Curve, Panel
@@ -135,7 +135,7 @@ class Wave:
 
     def unit(self, name: str) -> float:
         """Unit in which all chains fall on one curve: √(12 I) for a width."""
-        return math.sqrt(12 * background_wave(self.cell, law=self.law).I) if name == "fwhm" else 1.0
+        return math.sqrt(12 * Background(self.cell, self.law, 1).I) if name == "fwhm" else 1.0
 
     @cached_property
     def exact(self) -> ExactWave | None:
@@ -146,21 +146,15 @@ class Wave:
         wave = exact_wave(self.masses.tolist(), k, background=math.pow(1 + self.ratio, -1 / k))
         return wave.times(math.pow(1 + self.ratio, 1 / k))
 
-    @cached_property
-    def _theory(self) -> NumericBackground:
-        return background_wave(self.cell, law=self.law).numeric()
-
-    @cached_property
-    def _sound(self) -> float:
-        """c0 in the units of the wave equation."""
-        return math.sqrt(self.law.of_strain(sp.S.One, sp.S.One, 1))
+    def wave(self, force: float) -> LoadedWave:
+        """The theory's wave on the strain 1, of a dynamic force over F0."""
+        return loaded_wave(self.cell, rise=self.strain(force), background=1, law=self.law)
 
     def theory(self, force: float) -> dict[str, float]:
         """Speed, FWHM of the contact force and bead velocity at a dynamic force over F0."""
-        B = self.strain(force)
-        speed = float(self._theory.speed(1.0, B)) / self._sound
-        width = float(self._theory.fwhm(1.0, B, "force"))
-        return {"speed": speed, "fwhm": width, "peak": B * speed * self.sound}
+        wave = self.wave(force)
+        speed, width = float(wave.speed / wave.sound_speed), float(wave.fwhm("force"))
+        return {"speed": speed, "fwhm": width, "peak": self.strain(force) * speed * self.sound}
 
     def strain(self, force: float) -> float:
         """Strain added by a dynamic force over F0."""
@@ -187,8 +181,7 @@ class Wave:
         bead = np.arange(beads, dtype=float) - start
         if self.exact is None:
             strain, motion = (
-                self._theory.profile(x, 1.0, self.strain(self.ratio))
-                for x in (bead[:-1] + 0.5, bead)
+                self.wave(self.ratio).along(x, "strain") for x in (bead[:-1] + 0.5, bead)
             )
             velocity = motion * predicted["speed"] * self.sound
         else:

@@ -1,4 +1,4 @@
-"""Struck chains of unlike links or resonators, and struck packings, beside `lwa.lattice_wave`.
+"""Struck chains of unlike links or resonators, and struck packings, beside `lwa.loaded_wave`.
 
 SciPy's DOP853 integrates lattices of which the first bead (with its resonator), or the first layer,
 has a velocity. There is no load, and contacts only push. The cases:
@@ -26,7 +26,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from lwa import Lattice, Link, Power, Resonator, hexagonal, lattice_wave
+from lwa import Lattice, Link, Power, Resonator, hexagonal, loaded_wave
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
 from validation.lattice.laws import Contact
@@ -109,7 +109,10 @@ class Blow:
 
     def cells(self, case: str) -> dict[str, Any]:
         """Table row: the lattice's pulse beside the theory, which refuses slow resonators."""
-        size, theory = float(self.lattice.spacing), lattice_wave(_stiff(self.lattice), self.force)
+        size, theory = (
+            float(self.lattice.spacing),
+            loaded_wave(_stiff(self.lattice), force=self.force),
+        )
         pace, velocity = float(theory.speed) / size, float(theory.strain * theory.speed) / STRIKE
         if self.direction:
             seen = packing(self.direction, velocity, pace)
@@ -119,11 +122,11 @@ class Blow:
             force = seen.peak
         row = {"case": case, "chain": self.name, "force": force, "speed": seen.speed}
         row |= {"of": seen.of, "fwhm": seen.fwhm, "decay": seen.decay, "ringing": seen.ringing}
-        row["strain"] = float(lattice_wave(_stiff(self.lattice), force).strain)
+        row["strain"] = float(loaded_wave(_stiff(self.lattice), force=force).strain)
         for resonator in self.lattice.resonators:
             row["tuning"] = _resonance(resonator) / (2 * math.pi * seen.speed)
         if row.get("tuning", math.inf) >= LEAST_TUNING:
-            theory = lattice_wave(self.lattice, force)
+            theory = loaded_wave(self.lattice, force=force)
             speed, fwhm = float(theory.speed) / size, float(theory.fwhm(seen.of)) / size
             row |= {"speed theory": speed, "fwhm theory": fwhm}
             row |= {"speed error": speed / seen.speed - 1, "fwhm error": fwhm / seen.fwhm - 1}
@@ -165,7 +168,7 @@ def resonant(mass: Any, tuning: float) -> Lattice:
     """Hertz chain with resonators: ω0/(2πV) as given, V by the theory at the peak force 1."""
     resonator = Resonator(0, mass, 1)
     lattice = Lattice((1,), (Link(0, 1, HERTZ),), (resonator,))
-    frequency = 2 * math.pi * tuning * float(lattice_wave(_stiff(lattice), 1).speed)
+    frequency = 2 * math.pi * tuning * float(loaded_wave(_stiff(lattice), force=1).speed)
     stiffness = frequency**2 / (1 / float(resonator.mass) + 1)
     return replace(lattice, resonators=(replace(resonator, stiffness=stiffness),))
 

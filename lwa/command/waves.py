@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 import sympy as sp
@@ -25,11 +25,13 @@ from lwa.command.options import (
 from lwa.command.rows import PRINTED_DIGITS, Answer, Row, attempt
 from lwa.spheres.hertz import EXPONENT
 from lwa.theory import Theory, homogenize
-from lwa.wave.background import WIDTH_DIGITS, BackgroundWave
-from lwa.wave.closed import CompactWave
-from lwa.wave.physical import PhysicalWave, PrecompressedWave
+from lwa.wave.physical import PhysicalWave
 from lwa.wave.source import LANGUAGES
 from lwa.wave.traveling import TravelingWave
+
+if TYPE_CHECKING:
+    from lwa.loaded.background import Background
+    from lwa.loaded.wave import LoadedWave
 
 # Error by radiation (`lwa.expansion.radiation`) from which on a note is printed: for dimers of
 # spheres m2/m1 = 0.06 … 0.73.
@@ -38,6 +40,8 @@ RADIATES = 0.05
 # Compression over the spacing from which on a note is printed: the radius of contact of equal
 # spheres is then a tenth of their radius R, a/R = √(δ/2R), where Hertz (1882) wants a ≪ R.
 HERTZIAN = 0.01
+
+_WIDTH_DIGITS = 12  # of widths under a load that are right (`lwa.loaded.quadrature`)
 
 WIDTHS = (("fwhm", "", "length", "m"), ("fwhm_time", " in time", "time", "s"))
 """Key, end of the label, extent and unit of the widths of a wave with units."""
@@ -76,8 +80,11 @@ def wave(
         raise InputError("--background and --precompression are both given: one says the other")
     precompression = chain.load(background, precompression)
     load = precompression if background is None else background
-    # no load is a load, too, under a law that is no power: its waves are those of a background
-    loaded = load is not None and not (law.homogeneous and load.is_zero)
+    # no load is a load, too, under a law that is no power: the compact wave is that of a power
+    if law.homogeneous:
+        loaded = load is not None and not load.is_zero
+    else:
+        loaded = load is not None or force is not None
     if loaded:
         _demand_canonical(options)
     if style in LANGUAGES and (loaded or force is not None):
@@ -93,13 +100,18 @@ def wave(
             _compact(chain, theory, compact, style).print(style)
         else:
             _at_force(chain, theory, compact.at_force(peak)).print(style)
-    elif precompression is not None:
-        pressed = PrecompressedWave(cell, law, peak, precompression)
+    elif background is None:
+        from lwa.loaded.wave import loaded_wave  # start-up: it loads NumPy
+
+        static = precompression or sp.S.Zero
+        pressed = loaded_wave(cell, force=peak, precompression=static, law=law)
         _at_force(chain, theory, pressed).print(style)
     elif force is not None:
         raise InputError("--force goes with --precompression, a force; --background is a strain")
     else:
-        _on_background(chain, theory, BackgroundWave(cell, law, background)).print(style)
+        from lwa.loaded.background import Background
+
+        _on_background(chain, theory, Background(cell, law, background)).print(style)
 
 
 def _demand_canonical(options: dict[str, Any]) -> None:
@@ -178,21 +190,23 @@ def _compact(chain: ChainInput, theory: Theory, wave: TravelingWave, style: str)
 _REDUCTION = ("p", "a", "mu", "eta", "sigma", "s")  # of the paper's v = z^p
 
 
-def _at_force(chain: ChainInput, theory: Theory, at: PhysicalWave | PrecompressedWave) -> Answer:
+def _at_force(chain: ChainInput, theory: Theory, at: PhysicalWave | LoadedWave) -> Answer:
     """Rows of the wave of a peak contact force F, without or under a load, with speeds dx/dt."""
     notes = hertz_note(chain, at.force)
     shown: list[Shown] = [at]
-    field: BackgroundWave | CompactWave
-    if isinstance(at, PrecompressedWave):
-        field, ahead, peak = at.background, "under a load", "rise of the"
+    if not isinstance(at, PhysicalWave):
+        scale, peak = at.field.time_scale, "rise of the"
+        V_s = sp.powsimp(at.speed / scale)
+        ahead = "under a load" if at.precompression else "without load"
         more = [
             Row("precompression", "static force F0", at.precompression, "N"),
-            Row("background", "static strain p0", at.background.p0),
+            Row("background", "static strain p0", at.background),
             Row("static_compression", "static compression", at.static_compression, "m"),
             Row("sound_speed", "speed of sound dx/dt", at.sound_speed, "m/s"),
         ]
     else:
-        field, ahead, peak = at.wave, "without load", "peak"
+        scale, V_s = at.wave.time_scale, at.wave.speed(at.strain)
+        ahead, peak = "without load", "peak"
         more = [
             Row("beta", "", at.wave.beta, "1/m"),
             Row("width", "", at.wave.width, "m"),
@@ -212,17 +226,17 @@ def _at_force(chain: ChainInput, theory: Theory, at: PhysicalWave | Precompresse
         Row("speed", "speed dx/dt", at.speed, "m/s"),
         Row("bead_velocity", "peak velocity of the beads", at.bead_velocity, "m/s"),
         *_width_rows(at),
-        Row("V_s", "", field.speed(at.strain)),
-        Row("time_scale", "", field.time_scale, "m/s"),
+        Row("V_s", "", V_s),
+        Row("time_scale", "", scale, "m/s"),
         *more,
     ]
     return Answer(chain_json(theory), rows, chain.si, theory.cell.spacing, shown, notes)
 
 
-def _width_rows(at: PhysicalWave | PrecompressedWave) -> list[Row]:
+def _width_rows(at: PhysicalWave | LoadedWave) -> list[Row]:
     """Rows of the widths, under a load in floats; [] there for symbols."""
     exact = isinstance(at, PhysicalWave)
-    digits = PRINTED_DIGITS if exact else WIDTH_DIGITS
+    digits = PRINTED_DIGITS if exact else _WIDTH_DIGITS
     return [
         Row(f"{key}.{q}", f"FWHM of the {q}{label}", width, unit, digits, exact)
         for key, label, extent, unit in WIDTHS
@@ -242,23 +256,23 @@ def _chain_rows(chain: ChainInput) -> list[Row | str]:
     ]
 
 
-def _on_background(chain: ChainInput, theory: Theory, wave: BackgroundWave) -> Answer:
+def _on_background(chain: ChainInput, theory: Theory, field: Background) -> Answer:
     """Rows of the waves on the strain p0, with V_s a function of the rise B of the strain."""
     head = chain_json(theory)
     rows: list[Row | str] = [
         chain.text,
         FIELDS[theory.closure.field],
-        f"u_x = p0 + v(ξ), ξ = x - V_s τ, p0 = {wave.p0}; v rises by B",
+        f"u_x = p0 + v(ξ), ξ = x - V_s τ, p0 = {field.p0}; v rises by B",
         "",
-        Row("background", "", wave.p0, digits=0),
-        Row("I", "", wave.I, digits=0),
-        Row("speed", "V_s", wave.speed(), digits=0),
-        Row("time_scale", "dx/dt over V_s", wave.time_scale, digits=0),
-        *_rows_at_one(wave),
+        Row("background", "", field.p0, digits=0),
+        Row("I", "", field.I, digits=0),
+        Row("speed", "V_s", field.speed(field.rise), digits=0),
+        Row("time_scale", "dx/dt over V_s", field.time_scale, digits=0),
+        *_rows_at_one(field),
     ]
-    shown: list[Shown] = [wave]
+    shown: list[Shown] = [field]
     try:
-        kdv = wave.kdv
+        kdv = field.kdv
     except NoSolitaryWave as reason:
         head["kdv"] = None
         rows += ["", str(reason)]
@@ -274,28 +288,31 @@ def _on_background(chain: ChainInput, theory: Theory, wave: BackgroundWave) -> A
             Row("kdv.speed", "V_s of a small wave", kdv.speed()),
             Row("kdv.width", "L", kdv.width()),
         ]
-    return Answer(head, rows, spacing=wave.cell.spacing, shown=shown)
+    return Answer(head, rows, spacing=field.cell.spacing, shown=shown)
 
 
-def _rows_at_one(wave: BackgroundWave) -> list[Row]:
+def _rows_at_one(field: Background) -> list[Row]:
     """Rows of the speed and the widths at B = 1; [] without such a wave or with symbols.
 
     A spacing that is a symbol is the unit of length; beside a law that is no power it is 1.
     """
-    D = wave.cell.spacing
-    if D.is_Symbol and not wave.law.homogeneous:
-        wave = wave.at(**{D.name: 1})
+    from lwa.loaded.wave import loaded_wave  # start-up: it loads NumPy
+
+    cell = field.cell
+    if cell.spacing.is_Symbol and not field.law.homogeneous:
+        cell = cell.at(**{cell.spacing.name: 1})
     try:
-        speed = wave.speed(1)
+        wave = loaded_wave(cell, rise=1, background=field.p0, law=field.law)
+        speed = wave.field.speed(wave.strain)
     except (NoSolitaryWave, InputError):
         return []
-    if speed.free_symbols - {wave.cell.spacing}:
+    if speed.free_symbols - {cell.spacing}:
         return []
     return [
         Row("speed", "V_s at B = 1", speed, expression=False),
         *(
-            Row(f"fwhm.{q}", f"FWHM of the {q} at B = 1", width, "", WIDTH_DIGITS, False)
+            Row(f"fwhm.{q}", f"FWHM of the {q} at B = 1", width, "", _WIDTH_DIGITS, False)
             for q in QUANTITIES
-            if not isinstance(width := attempt(wave.fwhm, 1, q), InputError)
+            if not isinstance(width := attempt(wave.fwhm, q), InputError)
         ),
     ]

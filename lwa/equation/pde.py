@@ -208,7 +208,7 @@ class PDE(OfClosure):
         """
         if not self.law.homogeneous:
             raise InputError(
-                "the compact wave in closed form belongs to a power law: `lwa.background_wave` "
+                "the compact wave in closed form belongs to a power law: `lwa.loaded_wave` "
                 "(--background P0) has the waves of any law"
             )
         wave = TravelingWave(cell=self.cell, k=self.k, G=self.G, H=self.H, I=self.I)

@@ -13,7 +13,9 @@ from another. A dimer's two roots have the sum 1/Π, Π = m̂_0 m̂_1 C_0 C_1.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import factorial
+from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
@@ -100,3 +102,19 @@ class Bloch:
             products = (b[n - j] * fmpq((-2) ** j, 2 * factorial(j)) for j in range(1, n + 1))
             b.append(right - self.c[0] * sum(products, self.zero))
         return b
+
+
+def dispersion_of_chain(masses: Sequence[Any], shares: Sequence[Any]) -> Any:
+    """Coefficient I in Ω² = κ² (1 - I κ² + …) of a chain, from its relation's terms Ω² and Ω⁴.
+
+    I = P²/12 - Σ_{i<j} m̂_i m̂_j S (P - S), S = C_i + … + C_{j-1} the strain from i to j. The mass
+    fractions m̂ and the shares C are numbers, expressions or arrays.
+    """
+    P = len(masses)
+    pairs: Any = 0
+    for i in range(P):
+        strain: Any = 0
+        for j in range(i + 1, P):
+            strain = strain + shares[j - 1]
+            pairs = pairs + masses[i] * masses[j] * strain * (P - strain)
+    return (P**2 - 12 * pairs) / 12

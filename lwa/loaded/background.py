@@ -52,6 +52,16 @@ class Background(Value):
             )
         self.law.check_strain(self.p0, self.cell)
 
+    def latex_rows(self) -> list[str]:
+        energy = "V_{s}^{2} v^{2} - 2 [W(p_{0} + v) - W(p_{0}) - F(p_{0}) v]"
+        return [
+            rf"I F'(p_{{0}} + v) v_{{\xi}}^{{2}} = {energy}, \quad W' = F",
+            *self.law.latex_rows(),
+            latex.row("p_{0}", self.p0),
+            latex.row("I", self.I),
+            latex.row("V_{s}", self.speed(self.rise)),
+        ]
+
     @cached_property
     def linear(self) -> Dispersion:
         """The dispersion of small waves in the units of the wave equation, at any strain."""

@@ -1,4 +1,4 @@
-"""Waves of a given peak contact force in space and time, without and under a load.
+"""The compact wave of a given peak contact force in space and time.
 
 All contacts of a cell carry the same force at leading order. Results are in the units of the cell:
 in SI for `lwa.Cell.of_spheres`. Letters as in `lwa.wave.closed` and `lwa.cell`.
@@ -6,10 +6,7 @@ in SI for `lwa.Cell.of_spheres`. Letters as in `lwa.wave.closed` and `lwa.cell`.
 Without load F = A_eff (D u_x)^k, so that the wave whose contact force peaks at F has the peak
 strain B = (F/A_eff)^{1/k} / D. A contact has the force F cos^{mk}(βξ), m = 2/(k-1),
 ξ = x - (dx/dt) t. A bead bears the mean force of its two contacts, half a spacing before and behind
-the bead, which peaks at F cos^{mk}(βD/2).
-
-Under a static load F0 the contacts are at the mean compressions δ0 and, at the peak, δ1 with
-A F(δ) = F0 and F. The strain rises from p0 = δ0/D by B = (δ1 - δ0)/D (`lwa.wave.background`).
+the bead, which peaks at F cos^{mk}(βD/2). Waves under a load are those of `lwa.loaded.wave`.
 """
 
 from __future__ import annotations
@@ -21,12 +18,11 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, evaluated, number, one_of, positive, power, shorten
+from lwa.base.exact import InputError, number, one_of, positive, power, shorten
 from lwa.base.frozen import Value
-from lwa.base.quantities import NoSolitaryWave, known_extent, known_quantity, strain_power
-from lwa.cell import Cell, check_names
-from lwa.law import ContactLaw, Power, for_cell, substituted
-from lwa.wave.background import BackgroundWave, taken_names
+from lwa.base.quantities import known_extent, known_quantity, strain_power
+from lwa.cell import RESERVED, check_names
+from lwa.law import Power
 from lwa.wave.closed import CompactWave
 
 if TYPE_CHECKING:
@@ -49,7 +45,7 @@ class PhysicalWave(Value):
     Raises `lwa.InputError` unless the force is positive, for a name that already has a meaning in
     the wave, and for the force of a bead whose two contacts peak one after the other.
 
-    >>> from lwa import canonical_wave
+    >>> from lwa import Cell, canonical_wave
     >>> wave = canonical_wave(Cell(["m"], ["A"]), "3/2").at_force("F")
     >>> wave.compression, wave.speed
     (F**(2/3)/A**(2/3), 2*sqrt(5)*A**(1/3)*D*F**(1/6)/(5*sqrt(m)))
@@ -60,7 +56,9 @@ class PhysicalWave(Value):
     of: str = "contact"
 
     def __post_init__(self) -> None:
-        taken = taken_names(self.wave.cell, self._law)
+        cell = dict.fromkeys((s.name for s in self.wave.cell.symbols), "a property of the cell")
+        law = dict.fromkeys((s.name for s in self._law.symbols), "a symbol of the law")
+        taken = {**cell, **law, **RESERVED}
         force = check_names(positive(self.force, "force"), "force", taken=taken)
         object.__setattr__(self, "force", force)
         if one_of(self.of, BEARERS, "of") == "bead":
@@ -154,7 +152,7 @@ class PhysicalWave(Value):
 
         Raises `lwa.InputError` for other words, and where the wave or its force holds symbols.
 
-        >>> from lwa import canonical_wave
+        >>> from lwa import Cell, canonical_wave
         >>> canonical_wave(Cell([1], spacing=1), "3/2").at_force(8).curve([-99, 0, 99])
         array([0., 8., 0.])
         """
@@ -189,90 +187,3 @@ class PhysicalWave(Value):
         new = {symbols[n]: positive(value, n) for n, value in values.items() if n in symbols}
         rest = {name: value for name, value in values.items() if name not in symbols}
         return PhysicalWave(self.wave.at(**rest), self.force.xreplace(new), self.of)
-
-
-@dataclass(frozen=True)
-class PrecompressedWave(Value):
-    """The wave of a given peak contact force in a chain under load, in the units of the cell.
-
-    force, precompression : the total force at the peak and the static force, numbers or symbols,
-        under a law that is no power numbers. A ``force`` below the load is a rarefaction wave's.
-
-    For equal spheres V²/c0² is Nesterenko's (4/15) (3 + 2 ζ^{5/2} - 5 ζ) / (ζ - 1)²,
-    ζ = (F/F0)^{2/3}, c0 the speed of sound.
-
-    Raises `lwa.InputError` unless both are positive, and `lwa.NoSolitaryWave` without a wave.
-    """
-
-    cell: Cell
-    law: ContactLaw
-    force: sp.Expr
-    precompression: sp.Expr
-
-    def __post_init__(self) -> None:
-        for_cell(self.law, self.cell)
-        taken = taken_names(self.cell, self.law)
-        for name in ("force", "precompression"):
-            value = check_names(positive(getattr(self, name), name), name, taken=taken)
-            object.__setattr__(self, name, value)
-        if self.force == self.precompression:
-            raise NoSolitaryWave(f"force and precompression are both {self.force}: no wave")
-
-    def latex_rows(self) -> list[str]:
-        rows = {"F_{0}": self.precompression, "F": self.force, "B": self.strain}
-        return [*self.law.latex_rows(), *latex.rows(rows | {latex.SPEED: self.speed})]
-
-    @cached_property
-    def static_compression(self) -> sp.Expr:
-        """The compression δ0 of a contact under the load; the mean of unequal contacts."""
-        return self.law.compression(self.cell, self.precompression)
-
-    @cached_property
-    def compression(self) -> sp.Expr:
-        """The peak compression δ1 - δ0 that the wave adds."""
-        return self.law.compression(self.cell, self.force) - self.static_compression
-
-    @cached_property
-    def compressions(self) -> tuple[sp.Expr, ...]:
-        """The peak compression that the wave adds, for each contact of the cell."""
-        shares = self.cell.shares(self.law.exponent)
-        return tuple(share * self.compression for share in shares)
-
-    @property
-    def strain(self) -> sp.Expr:
-        """The rise B of the strain."""
-        return self.compression / self.cell.spacing
-
-    @cached_property
-    def background(self) -> BackgroundWave:
-        """All waves on the static strain of this load (`BackgroundWave`)."""
-        return BackgroundWave(self.cell, self.law, self.static_compression / self.cell.spacing)
-
-    @cached_property
-    def speed(self) -> sp.Expr:
-        """The speed dx/dt."""
-        return self.background.speed(self.strain) * self.background.time_scale
-
-    @cached_property
-    def sound_speed(self) -> sp.Expr:
-        """The speed dx/dt of long small waves."""
-        return sp.powdenest(self.background.sound_speed * self.background.time_scale)
-
-    @property
-    def bead_velocity(self) -> sp.Expr:
-        """The peak velocity B dx/dt of the beads."""
-        return self.strain * self.speed
-
-    def fwhm(self, quantity: str = "force", extent: str = "length") -> sp.Expr:
-        """Full width at half maximum of the rise, as `PhysicalWave.fwhm`; the chain is numbers."""
-        waves = self.background
-        length = waves.fwhm(self.strain, quantity)
-        if known_extent(extent) == "length":
-            return length
-        # In units of D, where D is a symbol: SymPy does not follow terms with symbols that cancel.
-        return length / (evaluated(waves.in_unit(self.speed), 15) * waves.unit)
-
-    def at(self, **values: Any) -> PrecompressedWave:
-        """Substitute values for symbols, as `lwa.TravelingWave.at`."""
-        fields = (self.cell, self.law, self.force, self.precompression)
-        return PrecompressedWave(*substituted(values, *fields))

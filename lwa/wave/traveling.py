@@ -9,12 +9,12 @@ import sympy as sp
 from lwa.base.exact import InputError, read_exact, shorten
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
-from lwa.law import ContactLaw, Power, for_cell, refuse_two_laws
-from lwa.wave.background import BackgroundWave
+from lwa.law import ContactLaw, for_cell, refuse_two_laws
 from lwa.wave.closed import CompactWave
-from lwa.wave.physical import PhysicalWave, PrecompressedWave
+from lwa.wave.physical import PhysicalWave
 
 if TYPE_CHECKING:
+    from lwa.loaded.wave import LoadedWave
     from lwa.wave.numeric import NumericWave
 
 
@@ -23,8 +23,8 @@ class TravelingWave(CompactWave):
 
     def at_force(
         self, F: Any = "F", of: str = "contact", *, precompression: Any = 0
-    ) -> PhysicalWave | PrecompressedWave:
-        """The `lwa.PhysicalWave`, or under load `lwa.PrecompressedWave`, of a given peak force.
+    ) -> PhysicalWave | LoadedWave:
+        """The `lwa.PhysicalWave`, or under load the `lwa.LoadedWave`, of a given peak force.
 
         F : the peak force, a number or a name.
         of : "contact" or "bead", whose force peaks at F.
@@ -41,16 +41,21 @@ class TravelingWave(CompactWave):
         load = read_exact(precompression, "precompression")
         if load.is_zero:
             return PhysicalWave(self, F, of)
-        waves = self.on_background(0)
         if of != "contact":
             raise InputError(f"of is {shorten(of)}: under a load it is the force of a contact")
-        return PrecompressedWave(waves.cell, waves.law, F, load)
+        return self._loaded(force=F, precompression=load)
 
-    def on_background(self, p0: Any = "p0") -> BackgroundWave:
-        """Return the waves of this chain on a strain p0; this wave must be the canonical field's.
+    def on_background(self, p0: Any = "p0", rise: Any = None) -> LoadedWave:
+        """The wave of this chain whose strain rises from p0 by ``rise``, a symbol B unless given.
 
-        Raises `lwa.InputError` for the wave of another field, whose equation has no energy.
+        Raises `lwa.InputError` for the wave of another field than the canonical one, whose equation
+        has no energy.
         """
+        return self._loaded(background=p0, rise=rise)
+
+    def _loaded(self, **ends: Any) -> LoadedWave:
+        from lwa.loaded.wave import loaded_wave  # start-up: it loads NumPy
+
         canonical = CompactWave.canonical(self.cell, self.k)
         if any(sp.cancel(getattr(self, x) - getattr(canonical, x)) != 0 for x in "GHI"):
             raise InputError(
@@ -58,7 +63,7 @@ class TravelingWave(CompactWave):
                 'and energy: closure="full" with field="center" (--closure full --field center), '
                 "or canonical_wave(cell, k)"
             )
-        return BackgroundWave(self.cell, Power(self.k), p0)
+        return loaded_wave(self.cell, k=self.k, **ends)
 
     def numeric(self, missing: Literal["raise", "nan"] = "raise") -> NumericWave:
         """Vectorised float64 functions of (k, ω), ω = m2/m1; see `lwa.wave.numeric.NumericWave`.
@@ -102,7 +107,7 @@ def canonical_wave(
         if not law.homogeneous:
             raise InputError(
                 f"law is {law.text}: the compact wave is that of a power law; waves of any law are "
-                "those of `lwa.background_wave`"
+                "those of `lwa.loaded_wave`"
             )
         k = law.exponent
     return TravelingWave.canonical(cell, k)

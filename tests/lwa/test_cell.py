@@ -8,10 +8,10 @@ from lwa import (
     Dimer,
     Dispersion,
     InputError,
-    background_wave,
     canonical_wave,
     expand,
     homogenize,
+    loaded_wave,
 )
 from lwa.cell import RESERVED
 from tests.identity import same
@@ -103,7 +103,7 @@ def test_omega_replaces_a_mass():
         homogenize,
         canonical_wave,
         expand,
-        background_wave,
+        loaded_wave,
         Dispersion,
         lambda x: canonical_wave(Cell([1]), k="3/2", law=x or 3),
     ],

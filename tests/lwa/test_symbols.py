@@ -14,10 +14,10 @@ from lwa import (
     Dispersion,
     InputError,
     Law,
-    background_wave,
     canonical_wave,
     expand,
     homogenize,
+    loaded_wave,
 )
 from lwa.cell import RESERVED
 from lwa.law import DELTA, named
@@ -125,8 +125,8 @@ def law_results(a, b):
     theory = homogenize(cell, law=law, closure="full", field="center")
     yield law.evaluated(theory.pde.G, DELTA).subs(DELTA, 3).subs(theory.cell.spacing, 1)
     yield law.phi(3).subs(DELTA, 3)
-    wave = background_wave(cell, "1/2", law=law)
-    for value in (wave.speed(), wave.kdv.speed(), wave.kdv.width()):
+    field = loaded_wave(cell, background="1/2", law=law).field
+    for value in (field.speed(field.rise), field.kdv.speed(), field.kdv.width()):
         rise = [s for s in value.free_symbols if s.name == "B"]
         yield value.subs(dict.fromkeys(rise, 2)).subs(sp.Symbol("D", positive=True), 1)
 
@@ -150,6 +150,6 @@ def test_a_laws_symbols_have_names_of_their_own():
             Law(sp.Symbol(name) * d + d**2, d)
     law = Law(a * d + d**2, d)
     with pytest.raises(InputError, match="'d': the name means the compression"):
-        background_wave(Cell([1]), 1, law=law).at(a="d")
+        loaded_wave(Cell([1]), background=1, law=law).at(a="d")
     with pytest.raises(InputError, match="'d' names two symbols"):
         Law(sp.Symbol("d") * d, d)

@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from lwa import Cell, Power, background_wave
+from lwa import Cell, loaded_wave
 from lwa.base.quantities import QUANTITIES
 from validation.pulses.pulse import Measured
 from validation.scenes.checks import SceneError, between, items
@@ -110,23 +110,24 @@ def _uniform(k: float, p0: float) -> ExactWave:
 def _pressed(k: float, p0: float) -> ExactWave:
     """Return the wave of equal masses on a background."""
     pair = 1.0, 1.0
-    theory, load = background_wave(Cell((1,), spacing=1), law=Power(k)).numeric(), (p0, 1 - p0)
+    chain = Cell((1,), spacing=1)
+    theory = loaded_wave(chain, rise=1 - p0, background=p0, k=k)
     # The wave ends as e^{-κ|ξ|} with (c/c0)² = (sinh(κ/2)/(κ/2))².
-    speed_squared = float(theory.speed_squared(*load))
-    fast = math.sqrt(speed_squared / p0 ** (k - 1))
+    fast = float(theory.speed / theory.sound_speed)
     half_kappa = scipy.optimize.brentq(
         lambda x: math.log(math.sinh(x) / x / fast), 1e-5, 300, xtol=1e-12
     )
     core = newton.ample_half_period(pair, k)
     L = max(core, core / 2 + FALLEN / (2 * half_kappa))
-    narrower = float(theory.fwhm(0.0, 1.0) / theory.fwhm(*load))
+    bare = loaded_wave(chain, rise=1, background=0, k=k)
+    narrower = float(bare.fwhm("strain") / theory.fwhm("strain"))
     n = max(80, math.ceil(newton.points_needed(pair, k, L) * min(1, 1.3 * narrower)))
     problem = newton.Problem(pair, k, L, n, p0)
     if k > STEEP and p0 < 0.5:  # the theory's wave is too wide: from the wave on a lower background
         lower = _uniform(k, max(0.0, p0 - LESS))
         start = lower.force(problem.xi), lower.c2
     else:
-        start = newton.rise(theory.profile(problem.xi, *load), k, p0), k * speed_squared
+        start = newton.rise(theory.along(problem.xi, "strain"), k, p0), float(theory.speed) ** 2
     return converged(problem, start)[0]
 
 

@@ -9,7 +9,7 @@ import sympy as sp
 
 from book.studies import links as exactly
 from book.studies import struck as blows
-from lwa import Lattice, Link, Power, Resonator, lattice_wave
+from lwa import Lattice, Link, Power, Resonator, loaded_wave
 from validation import exact_wave
 
 HERTZ = Power("3/2")
@@ -65,13 +65,13 @@ def test_the_width_of_the_theory_is_its_quadrature(epsilon):
         return (K1**2 - K1 * K2 + K2**2) / (3 * (K1 + K2) ** 2)
 
     lattice = exactly.varying(sp.Rational(str(epsilon)))
-    width = float(lattice_wave(lattice, force=1).fwhm("force"))
+    width = float(loaded_wave(lattice, force=1).fwhm("force"))
     assert width == pytest.approx(exactly.series_width(epsilon, dispersion), rel=1e-8)
 
 
 def test_a_struck_chain_of_equal_beads():
     """The lattice's own wave: c² and FWHM of the contact force of the exact one."""
-    wave, known = lattice_wave(CHAIN, 1), exact_wave([1], 1.5)
+    wave, known = loaded_wave(CHAIN, force=1), exact_wave([1], 1.5)
     seen = blows.chain(CHAIN, float(wave.bead_velocity) / blows.STRIKE, float(wave.speed))
     assert seen.peak == pytest.approx(1, abs=1e-3)
     assert seen.speed == pytest.approx(known.c * seen.peak ** (1 / 6), rel=1e-6)
@@ -84,7 +84,7 @@ def test_stiff_resonators_are_masses():
     stiff = blows.resonant("1", 10.0)
     (resonator,) = stiff.resonators
     assert isinstance(resonator, Resonator)
-    wave = lattice_wave(stiff, 1)
+    wave = loaded_wave(stiff, force=1)
     seen = blows.chain(stiff, float(wave.bead_velocity) / blows.STRIKE, float(wave.speed))
     known = exact_wave([1], 1.5)
     assert seen.speed == pytest.approx(known.c * seen.peak ** (1 / 6) / math.sqrt(2), rel=1e-3)

@@ -5,7 +5,7 @@ import math
 import pytest
 import sympy as sp
 
-from lwa import Cell, Dimer, Power, background_wave, canonical_wave, general, homogenize
+from lwa import Cell, Dimer, Power, canonical_wave, general, homogenize, loaded_wave
 from tests.lwa.command.answers import result, run, said
 
 
@@ -42,19 +42,20 @@ def test_derive_a_named_law(capsys):
 
 def test_wave_on_a_background(capsys):
     found = result(capsys, "wave", "--k", "3/2", "--masses", "1,3", "--background", "1/10")
-    wave = background_wave(Dimer(1, 3), "1/10", law=Power("3/2"))
+    wave = loaded_wave(Dimer(1, 3), rise=1, background="1/10", law=Power("3/2"))
+    field = wave.field
     assert found["background"] == "1/10"
-    assert found["speed"] == str(wave.speed())
-    assert found["speed_value"] == pytest.approx(float(wave.speed(1)), rel=1e-15)
+    assert found["speed"] == str(field.speed(field.rise))
+    assert found["speed_value"] == pytest.approx(float(field.speed(sp.S.One)), rel=1e-15)
     for quantity, width in found["fwhm_value"].items():
-        expected = wave.fwhm(1, quantity) / wave.cell.spacing
+        expected = wave.fwhm(quantity) / field.cell.spacing
         assert width == pytest.approx(float(expected), rel=1e-14)
     out = said(capsys, "wave", "--k", "3/2", "--masses", "1,3", "--background", "1/10")
     assert "FWHM of the strain at B = 1 = 2.67192774562 D\n" in out  # twelve digits are right
     options = ("--masses", "1", "--background", "p0", "--format", "latex")
     out = said(capsys, "wave", *options)
     assert all(part in out for part in (r"V_{s} &= ", r"c_{0} &= ", "p_{0} &= p_{0}"))
-    kdv = wave.kdv
+    kdv = field.kdv
     assert found["kdv"] == {
         "sound_speed": str(kdv.sound_speed),
         "nonlinearity": str(kdv.nonlinearity),
@@ -63,7 +64,8 @@ def test_wave_on_a_background(capsys):
         "width": str(kdv.width()),
     }
     symbolic = result(capsys, "wave", "--background", "p0")
-    assert symbolic["speed"] == str(background_wave(Dimer("m1", "m2")).speed())
+    field = loaded_wave(Dimer("m1", "m2"), background="p0").field
+    assert symbolic["speed"] == str(field.speed(field.rise))
     assert "speed_value" not in symbolic
 
 

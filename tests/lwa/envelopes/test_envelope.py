@@ -15,9 +15,9 @@ from lwa import (
     InputError,
     LoadedChain,
     Power,
-    background_wave,
     envelope,
     general,
+    loaded_wave,
     shock,
 )
 from lwa.law import named
@@ -78,8 +78,8 @@ def test_a_dimer_at_any_wavenumber():
 def test_long_waves_have_the_envelope_of_kdv(cell):
     """KdV's own: v a plane wave of wavenumber κ, v2 = α v²/(6γκ²), v0 = -α|v|²/(3γκ²), so that its
     frequency falls by α²|v|²/(6γκ). A cell is P long, and |v| = κ|A|/√M; the error falls as κ²."""
-    kdv = background_wave(cell, "1/2", law=HERTZ).kdv
-    scale = background_wave(cell, "1/2", law=HERTZ).time_scale
+    field = loaded_wave(cell, background="1/2", law=HERTZ).field
+    kdv, scale = field.kdv, field.time_scale
     errors = []
     for long in (0.1, 0.05):
         found = envelope(cell, HERTZ, background="1/2", wavenumber=long, branch=0)
@@ -257,7 +257,7 @@ def test_strains_at_which_a_law_does_not_grow_are_refused(law, strain, words):
     for cell in (Cell([1], spacing=1), Cell([1])):
         for call in (
             lambda cell=cell: envelope(cell, law, background=strain),
-            lambda cell=cell: background_wave(cell, strain, law=law),
+            lambda cell=cell: loaded_wave(cell, background=strain, rise=1, law=law),
             lambda cell=cell: shock(cell, law, strain, 0),
         ):
             with pytest.raises(InputError, match=words):

@@ -12,12 +12,12 @@ from lwa import (
     InputError,
     Law,
     Power,
-    background_wave,
     expand,
     piston,
     shock,
 )
 from lwa.law import DELTA, named
+from lwa.loaded.background import Background
 from lwa.shocks import edges
 from lwa.shocks.waves import Pulse
 from tests.identity import same
@@ -95,7 +95,7 @@ def test_plateau_and_rule_under_a_power_without_load():
 
 def test_a_contact_is_pressed_by_the_mean_of_the_slope_over_a_site():
     """u_x + D² u_xxx/24, with u_xxx at the peak from I F′ v′² = v² (Q(B) - Q(v)), I = 1/12."""
-    field = background_wave(EQUAL, "2/3", law=HERTZ)
+    field = Background(EQUAL, HERTZ, "2/3")
     w = sp.Rational(7, 10)
     pulse = Pulse(field, w)
     v, B = sp.Symbol("v", positive=True), pulse.rise
@@ -111,7 +111,7 @@ def test_a_pulse_is_the_lattices_own_to_the_next_order_in_k_minus_1():
     """The series' wave of peak force 1 has contacts of strain 1: the closed form errs by O(ε²)."""
     for k in (sp.Rational(101, 100), sp.Rational(1001, 1000)):
         velocity = sp.Float(expand(EQUAL, 6, k=k).peak_velocity.at().value)
-        field = background_wave(EQUAL, 0, law=Power(k))
+        field = Background(EQUAL, Power(k), 0)
         pulse = Pulse(field, velocity / field.time_scale.n())
         slope, contact = ((x - 1) / (k - 1) for x in (pulse.rise, pulse.contact_rise))
         assert float(slope) == pytest.approx(1 / 4, abs=float(k - 1))

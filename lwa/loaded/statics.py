@@ -13,16 +13,21 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError
-from lwa.links.bloch import Graph, acoustic, solved
+from lwa.linear.bands import Network, solved
+from lwa.linear.bloch import dispersion_of_chain
 
 _MOST = 100  # steps of Newton's method; strongly unlike links take ten
 _ROUNDING = 1e-14  # of the mean compression: the step after the last one is exact
-_RIGID = 1e8  # ratio of spring constants
+# Ratio of spring constants: a link that is so much stiffer is rigid for I, whose solution loses as
+# many digits.
+_RIGID = 1e8
 _REACH = -100, 40  # powers of 2 between which the mean compression under a force is sought
 _PARTS = 65  # places between two bounds, of which the next bounds are neighbours
 _BOLDEST = 3.0  # largest step of ln δ
 _LARGEST = 1e6  # compression of a link in series over the least that it may have at first
 _LEAST = 1e-14  # least mean compression over the largest of a wave
+_SMALL = 0.1  # rise over e from which on a difference of compressions has 15 digits
+_NODES = 10  # of Gauss's rule: laws with a singularity at δ = 0 err by 1e-20 over such a rise
 
 Function = Callable[[Array], Array]
 
@@ -36,15 +41,15 @@ class Statics:
     Arrays e of mean compressions have any shape; compressions have one more axis, of the links.
     """
 
-    graph: Graph
+    network: Network
     masses: Array
     forces: tuple[tuple[Function, ...], ...]
 
     def compressions(self, e: Array) -> Array:
         """Compressions of the links at mean compressions; NaN where there is no static state."""
-        if self.graph.size == 1:
-            return np.asarray(e[..., None] * self.graph.spans)
-        return self._series(e) if self.graph.in_series else self._network(e)
+        if self.network.size == 1:
+            return np.asarray(e[..., None] * self.network.spans)
+        return self._series(e) if self.network.in_series else self._network(e)
 
     def _series(self, e: Array) -> Array:
         """Newton's method for links that carry one force f, in ln f and the ln δ of the links.
@@ -52,7 +57,7 @@ class Statics:
         Logarithms keep the digits of a compression that is far smaller than the mean. A step to
         where a law does not rise, as beyond a pole, is halved in the logarithm.
         """
-        spans, total = self.graph.spans, self.graph.size * e
+        spans, total = self.network.spans, self.network.size * e
         delta = e[..., None] * spans
         before = delta / _LARGEST
         with np.errstate(all="ignore"):
@@ -72,13 +77,13 @@ class Statics:
 
     def _network(self, e: Array) -> Array:
         """Newton's method for the displacements inside the cell, damped: no contact is lost."""
-        spans, incidence = self.graph.spans, self.graph.incidence[:, 1:]
-        inner = np.zeros((*e.shape, self.graph.size - 1))
+        spans, incidence = self.network.spans, self.network.incidence[:, 1:]
+        inner = np.zeros((*e.shape, self.network.size - 1))
         for _ in range(_MOST):
             delta = e[..., None] * spans + inner @ incidence.T
             force, springs = self.values(delta, 0), self.values(delta, 1)
-            step = -solved(incidence.T @ (springs[..., None] * incidence), force @ incidence)
-            with np.errstate(all="ignore"):
+            with np.errstate(all="ignore"):  # far beyond the wave forces are infinite
+                step = -solved(incidence.T @ (springs[..., None] * incidence), force @ incidence)
                 change = step @ incidence.T
                 reach = np.where(change * delta < 0, -delta / (2 * change), 1.0)
                 step *= np.minimum(1.0, reach.min(axis=-1))[..., None]
@@ -97,32 +102,50 @@ class Statics:
         """The mean force at mean compressions."""
         forces = self.values(self.compressions(e), 0)
         with np.errstate(invalid="ignore"):  # opposite infinities far beyond the wave
-            return np.asarray(forces @ self.graph.spans / self.graph.size)
+            return np.asarray(forces @ self.network.spans / self.network.size)
 
-    def samples(self, e: Array) -> tuple[Array, Array, Array, Array]:
-        """F′, F″, I and the shares dδ/de of the links at mean compressions, lengths in spacings."""
-        if self.graph.size > 1:
+    def samples(self, e: Array) -> tuple[Array, Array, Array]:
+        """F′, F″ and I at mean compressions, lengths in spacings."""
+        network, size = self.network, self.network.size
+        if size > 1:
             # Far below the largest e a compression, or a force, may be a rounding error.
             e = np.maximum(e, _LEAST * np.max(e))
         delta = self.compressions(e)
-        springs, size = self.values(delta, 1), self.graph.size
+        springs = self.values(delta, 1)
         with np.errstate(all="ignore"):
-            # A link that is so much stiffer is rigid for I, whose solution loses as many digits.
-            soft = np.minimum(springs, _RIGID * np.abs(springs).min(axis=-1, keepdims=True))
-            stiffness, dispersion, shares = acoustic(self.graph, soft, self.masses)
-            if self.graph.in_series:
-                stiffness = size / (1 / (springs * self.graph.spans**2)).sum(axis=-1)
-                shares = stiffness[..., None] / (springs * self.graph.spans)
+            if network.in_series:
+                compliances = 1 / (springs * network.spans**2)
+                stiffness = size / compliances.sum(axis=-1)
+                shares = stiffness[..., None] / (springs * network.spans)
+                row = [compliances[..., n] * stiffness for n in network.order]
+                dispersion = dispersion_of_chain(self.masses / self.masses.sum(), row)
+            else:
+                soft = np.minimum(springs, _RIGID * np.abs(springs).min(axis=-1, keepdims=True))
+                stiffness, dispersion, shares = network.acoustic(soft, self.masses)
         bend = (self.values(delta, 2) * shares**3).sum(axis=-1) / size
-        return stiffness, bend, dispersion, shares
+        return stiffness, bend, dispersion + 0 * e
 
     def mean_compression(self, force: float) -> float:
         """The mean compression under a force > 0; raises `lwa.InputError` if it is not reached."""
         e: Array = np.exp2(np.arange(*_REACH))
         while e[-1] > e[0] * (1 + 4e-16):
-            above = np.flatnonzero(~(self.force(e) < force))
-            if not len(above) or not above[0] or np.isnan(self.force(e[above[:1]]))[0]:
-                raise InputError(f"force is {force}: the links do not reach it")
+            above = np.flatnonzero(~(self.force(e) < force))  # or NaN, beyond the reach of a law
+            if not len(above) or not above[0]:
+                raise InputError(f"force is {force:g}: the links do not reach it")
             low, high = e[above[0] - 1 : above[0] + 1]
             e = np.asarray(np.linspace(low, high, _PARTS))
+        if np.isnan(self.force(e[-1:])[0]):
+            raise InputError(f"force is {force:g}: the links do not reach it")
         return float(e[-1])
+
+    def rise(self, e: float, force: float, added: float) -> float:
+        """The rise of the mean compression from e to that under a force, which is larger by added.
+
+        A small difference of compressions has lost its digits: the force added over the mean F′
+        between them, by Gauss's rule, has not.
+        """
+        rough = self.mean_compression(force) - e
+        if abs(rough) > _SMALL * e:
+            return rough
+        places, weights = np.polynomial.legendre.leggauss(_NODES)
+        return added / float(self.samples(e + rough * (1 + places) / 2)[0] @ weights / 2)

@@ -8,7 +8,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lwa import InputError, Lattice, Law, Link, Power, Resonator, hexagonal, lattice_wave
+from lwa import InputError, Lattice, Law, Link, Power, Resonator, hexagonal, loaded_wave
 from lwa.law import DELTA, named
 
 HERTZ = Power("3/2")
@@ -79,13 +79,25 @@ def test_hertz_and_linear_contacts_in_turn():
     a = A ** sp.Rational(2, 3)
     top = 2 * a * C * (5 * a * F**2 + 4 * C * F ** sp.Rational(5, 3))
     expected = top / (5 * (a * F + C * F ** sp.Rational(2, 3)) ** 2)
-    wave = lattice_wave(pair, F)
+    wave = loaded_wave(pair, force=F)
     assert sp.simplify(wave.speed**2 / expected) == 1
     assert wave.sound_speed == 0
     at = {A: 2, C: 3, F: sp.Rational(5, 4)}
-    number = lattice_wave(Lattice([1, 1], [Link(0, 1, HERTZ, 2), Link(1, 2, Power(1), 3)]), "5/4")
+    number = loaded_wave(
+        Lattice([1, 1], [Link(0, 1, HERTZ, 2), Link(1, 2, Power(1), 3)]), force="5/4"
+    )
     assert float(number.speed) == pytest.approx(float(wave.speed.subs(at)), rel=1e-14)
     assert number._rate == pytest.approx(float(number.speed), rel=1e-14)  # by quadrature
+
+
+def test_the_order_of_links_does_not_matter():
+    """Masses 1, 2, 5 with springs 1, 2, 7: I by eigenvalues, in floats and exactly."""
+    ends = [(0, 1, 1.0), (1, 2, 2.0), (2, 3, 7.0)]
+    known, _ = numeric_dispersion([1, 2, 5], ends)
+    for row in (ends, [ends[i] for i in (2, 0, 1)]):
+        lattice = Lattice([1, 2, 5], springs_of(*row))
+        assert float(lattice.dispersion(1)) == pytest.approx(known, rel=1e-5)
+        assert lattice.statics.samples(np.array(1.0))[2] == pytest.approx(known, rel=1e-5)
 
 
 @pytest.mark.parametrize("force", ["1/1000", "1", "40"])

@@ -1,4 +1,4 @@
-"""Lattices of particles and links with laws of their own, and their static states.
+"""Lattices of particles and links with laws of their own, packings, and their static states.
 
 A cell of P particles repeats with the period P·D. A link pushes its two particles apart with the
 force factor · F(δ). Along a lattice of mean strain p the compressions of a link of the range r are
@@ -16,7 +16,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from math import pi
 from typing import Any, NamedTuple, Self
 
 import numpy as np
@@ -25,9 +24,11 @@ import sympy as sp
 from lwa.base.arrays import function_of
 from lwa.base.exact import (
     InputError,
+    Quantity,
     demand_numbers,
     integer,
     number,
+    one_of,
     positive,
     read_exact,
     shorten,
@@ -35,9 +36,9 @@ from lwa.base.exact import (
 from lwa.base.frozen import Value
 from lwa.cell import Cell, check_distinct
 from lwa.law import ContactLaw, Power, for_cell
-from lwa.linear.dispersion import Dispersion
-from lwa.links.bloch import Graph, acoustic
-from lwa.links.statics import Statics
+from lwa.linear.bands import Network
+from lwa.linear.bloch import dispersion_of_chain
+from lwa.loaded.statics import Statics
 
 _NO_LOAD = 1e-9  # stiffness of a lattice of springs 1 that carries no load, but for rounding
 
@@ -97,7 +98,7 @@ class Static(NamedTuple):
     compressions: tuple[sp.Expr, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class Lattice(Value):
     """A periodic lattice of particles and links.
 
@@ -114,19 +115,29 @@ class Lattice(Value):
 
     masses: tuple[sp.Expr, ...]
     links: tuple[Link, ...]
-    resonators: tuple[Resonator, ...] = ()
-    spacing: sp.Expr = sp.S.One
+    resonators: tuple[Resonator, ...]
+    spacing: sp.Expr
 
-    def __post_init__(self) -> None:
-        masses = tuple(positive(m, f"mass {n}") for n, m in enumerate(_listed(self.masses), 1))
-        object.__setattr__(self, "masses", masses)
-        object.__setattr__(self, "spacing", positive(self.spacing, "spacing"))
-        for name, kind in (("links", Link), ("resonators", Resonator)):
-            items = _listed(getattr(self, name))
+    def __init__(
+        self,
+        masses: Iterable[Quantity],
+        links: Iterable[Link],
+        resonators: Iterable[Resonator] = (),
+        spacing: Quantity = 1,
+    ) -> None:
+        parts = {"masses": masses, "links": links, "resonators": resonators}
+        for name, values in parts.items():
+            if isinstance(values, str) or not isinstance(values, Iterable):
+                raise InputError(f"{name} are {shorten(values)}: a list is wanted")
+            items = tuple(values)
+            if name == "masses":
+                items = tuple(positive(m, f"mass {n}") for n, m in enumerate(items, 1))
+            kind = {"masses": sp.Expr, "links": Link, "resonators": Resonator}[name]
             if wrong := [x for x in items if not isinstance(x, kind)]:
                 raise InputError(f"{name} hold {shorten(wrong[0])}: a {kind.__name__} is wanted")
             object.__setattr__(self, name, items)
-        if not masses or not self.links:
+        object.__setattr__(self, "spacing", positive(spacing, "spacing"))
+        if not self.masses or not self.links:
             raise InputError("a lattice needs at least one mass and one link")
         places = [link.i for link in self.links] + [x.bead for x in self.resonators]
         if max(places) >= self.size:
@@ -159,10 +170,10 @@ class Lattice(Value):
         values += [x for r in self.resonators for x in (r.mass, r.stiffness)]
         return tuple(sorted(set().union(*(x.free_symbols for x in values)), key=str))
 
-    @property
+    @cached_property
     def in_series(self) -> bool:
         """True if each particle has one link, to the next particle."""
-        return self._graph.in_series
+        return self._network.in_series
 
     @property
     def exact(self) -> bool:
@@ -178,55 +189,50 @@ class Lattice(Value):
     def static(self, force: Any) -> Static:
         """The lattice at rest under a mean force: exact in series, else in floats."""
         force = read_exact(force, "force")
-        mean = self.mean_compression(force)
         if self.in_series:
             compressions = tuple(link.compression(force) for link in self.links)
+            parts = zip(self.links, compressions, strict=True)
+            mean = sp.Add(*(delta / link.cosine for link, delta in parts)) / self.size
         else:
-            found = self.statics.compressions(np.array(float(mean)))
-            compressions = tuple(map(sp.Float, found))
+            demand_numbers(force.free_symbols, "numbers are wanted")
+            e = self.statics.mean_compression(float(force)) if force else 0.0
+            compressions = tuple(map(sp.Float, self.statics.compressions(np.array(e))))
+            mean = sp.Float(e)
         return Static(force, mean / self.spacing, compressions)
 
-    def mean_compression(self, force: sp.Expr) -> sp.Expr:
-        """The mean compression D p per spacing under a mean force."""
-        if self.in_series:
-            parts = (link.compression(force) / link.cosine for link in self.links)
-            return sp.Add(*parts) / self.size
-        demand_numbers(force.free_symbols, "numbers are wanted")
-        return sp.Float(self.statics.mean_compression(float(force))) if force else sp.S.Zero
+    def energy(self, state: Static) -> sp.Expr:
+        """The energy per particle in a static state."""
+        pairs = zip(self.links, state.compressions, strict=True)
+        energies = (x.factor * x.law.energy.subs(x.law.delta, delta) for x, delta in pairs)
+        return sp.Add(*energies) / self.size
 
-    def energy(self, force: sp.Expr) -> sp.Expr:
-        """The energy per particle of links in series under a force."""
-        pairs = ((x, x.compression(force)) for x in self.links)
-        return sp.Add(*(x.factor * x.law.energy.subs(x.law.delta, d) for x, d in pairs)) / self.size
+    def springs(self, state: Static) -> list[sp.Expr]:
+        """The spring constants of the links along the lattice, dF/dδ times the cosine squared."""
+        pairs = zip(self.links, state.compressions, strict=True)
+        return [x.factor * x.cosine**2 * x.law.at(delta, 1) for x, delta in pairs]
 
-    def stiffness(self, force: sp.Expr) -> sp.Expr:
-        """The slope dF/d(D p) of links in series under a force."""
-        springs = self._springs(force)
+    def stiffness(self, state: Static) -> sp.Expr:
+        """The slope dF/d(D p) of links in series in a static state."""
+        springs = self.springs(state)
         if any(K.is_zero for K in springs):
             return sp.S.Zero
-        pairs = zip(self.links, springs, strict=True)
-        return self.size / sp.Add(*(1 / (K * link.cosine**2) for link, K in pairs))
-
-    def _springs(self, force: sp.Expr) -> list[sp.Expr]:
-        """The spring constants of the links under a force."""
-        pairs = zip(self.links, self.static(force).compressions, strict=True)
-        return [link.factor * link.law.at(delta, 1) for link, delta in pairs]
+        return self.size / sp.Add(*(1 / K for K in springs))
 
     def dispersion(self, force: Any) -> sp.Expr:
         """Coefficient I in Ω² = c² (q² - I q⁴ + …) of the lattice linearised under a mean force.
 
-        Resonators do not count (`lwa.links.wave`). Symbols, for links in series, give a closed form
-        in the spring constants.
+        Resonators do not count (`lwa.loaded.wave`). Raises `lwa.InputError` for symbols unless the
+        links are in series.
         """
-        force = read_exact(force, "force")
-        if not force.free_symbols.union(self.symbols):
-            e = np.array(number(self.mean_compression(force)))
+        state = self.static(force)
+        if not self.in_series:
+            e = np.array(number(state.strain * self.spacing))
             return sp.Float(float(self.statics.samples(e)[2])) * self.spacing**2
-        springs = self._springs(force)
-        along = [K * link.cosine**2 for K, link in zip(springs, self.links, strict=True)]
-        letters = {sp.Dummy(positive=True): x for x in (*self.masses, *along)}
-        masses, stiffnesses = tuple(letters)[: self.size], tuple(letters)[self.size :]
-        return Dispersion(Cell(masses, stiffnesses), 1).I.xreplace(letters) * self.spacing**2
+        springs = self.springs(state)
+        stiffness = self.size / sp.Add(*(1 / K for K in springs))
+        shares = [stiffness / springs[n] for n in self._network.order]
+        fractions = [m / sp.Add(*self.masses) for m in self.masses]
+        return sp.together(dispersion_of_chain(fractions, shares)) * self.spacing**2
 
     @property
     def resonance_sum(self) -> sp.Expr:
@@ -238,15 +244,6 @@ class Lattice(Value):
         parts = 1 / resonator.mass + 1 / self.masses[resonator.bead]
         return number(sp.sqrt(resonator.stiffness * parts))
 
-    def antiresonances(self, count: int) -> list[float]:
-        """Speeds ω0 D/(2πn), n = 1 … count, of each resonator, at which the wave has no tail.
-
-        They are known for one particle a cell.
-        """
-        unit = number(self.spacing) / (2 * pi)
-        rings = (unit * self.resonance(resonator) for resonator in self.resonators)
-        return [ring / n for ring in rings for n in range(1, count + 1)]
-
     @cached_property
     def statics(self) -> Statics:
         """Static states in floats; raises `lwa.InputError` for symbols."""
@@ -255,25 +252,43 @@ class Lattice(Value):
         forces = (tuple(link.factor * link.law.at(x, n) for n in range(3)) for link in self.links)
         compiled = (tuple(function_of(x, f) for f in triple) for triple in forces)
         masses = np.array([float(m) for m in self.masses])
-        graph = Graph(self.size, tuple((x.i, x.j, float(x.cosine)) for x in self.links))
-        return Statics(graph, masses, tuple(compiled))
+        network = Network(self.size, tuple((x.i, x.j, float(x.cosine)) for x in self.links))
+        return Statics(network, masses, tuple(compiled))
 
-    @property
-    def _graph(self) -> Graph:
+    @cached_property
+    def _network(self) -> Network:
         """The links without their angles."""
-        return Graph(self.size, tuple((x.i, x.j, 1.0) for x in self.links))
+        return Network(self.size, tuple((x.i, x.j, 1.0) for x in self.links))
 
     def _check_paths(self) -> None:
         """Raise `lwa.InputError` unless the links join all particles and carry a load."""
-        if np.linalg.matrix_rank(self._graph.incidence) < self.size - 1:
+        if np.linalg.matrix_rank(self._network.incidence) < self.size - 1:
             raise InputError("the links leave a particle of the cell free")
-        with np.errstate(all="ignore"):
-            branch = acoustic(self._graph, np.ones(len(self.links)), np.ones(self.size))
-        if branch.stiffness < _NO_LOAD:
+        branch = self._network.acoustic(np.ones(len(self.links)), np.ones(self.size))
+        if not branch.stiffness > _NO_LOAD:
             raise InputError("the links carry no load from cell to cell")
 
 
-def _listed(values: Any) -> tuple[Any, ...]:
-    if isinstance(values, str) or not isinstance(values, Iterable):
-        raise InputError(f"a list is wanted, not {shorten(values)}")
-    return tuple(values)
+def hexagonal(
+    law: ContactLaw | Quantity, direction: str, mass: Quantity = 1, diameter: Quantity = 1
+) -> Lattice:
+    """The lattice of plane waves in a hexagonal packing of equal disks or spheres.
+
+    law : of the contacts, or the exponent k of δ^k.
+    direction : "across" the rows, in layers √3/2 diameters apart, each joined to the next by two
+        contacts a particle at 30° to the wave; or "along" the rows, in layers half a diameter
+        apart, joined to the next by two contacts at 60° and to the next but one by a contact.
+
+    Forces and masses are those per particle of a layer. The contacts do not rotate: strains are
+    small. Particles neither spin nor rub.
+
+    >>> hexagonal(1.5, "along").spacing
+    1/2
+    """
+    one_of(direction, ("across", "along"), "direction")
+    law = law if isinstance(law, ContactLaw) else Power(law)
+    a, cosine = positive(diameter, "diameter"), sp.sqrt(3) / 2
+    if direction == "across":
+        return Lattice((mass,), (Link(0, 1, law, 2, cosine),), (), a * cosine)
+    links = Link(0, 1, law, 2, sp.S.Half), Link(0, 2, law)
+    return Lattice((mass,), links, (), a / 2)

@@ -1,1 +1,0 @@
-"""Any lattice: links with laws of their own, resonators, farther neighbours, packings."""

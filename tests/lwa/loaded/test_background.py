@@ -1,0 +1,315 @@
+"""Waves on a static strain: limits, an independent integration, exact waves of two lattices."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from book.studies.hard import true_wave
+from lwa import (
+    Cell,
+    Dimer,
+    InputError,
+    KdV,
+    Law,
+    Material,
+    NoSolitaryWave,
+    Power,
+    Sphere,
+    canonical_wave,
+    general,
+    homogenize,
+    loaded_wave,
+)
+from lwa.law import DELTA, named
+from lwa.loaded.background import Background
+from tests.identity import same
+
+CHAIN = Cell([1], spacing=1)
+HERTZ = Power("3/2")
+p0, B, k = sp.symbols("p0 B k", positive=True)
+
+
+def wave_of(law, load, rise, cell=CHAIN):
+    return loaded_wave(cell, rise=rise, background=load, law=law)
+
+
+@pytest.mark.parametrize("cell", [Cell([1]), Dimer("m1", "m2"), Dimer(3, 1, N=2)])
+def test_without_load_the_wave_is_the_compact_wave(cell):
+    compact = canonical_wave(cell, "3/2")
+    wave = compact.on_background(0, 7)
+    assert same(wave.speed, compact.speed(7) * compact.time_scale)
+    if not cell.masses[0].free_symbols:
+        for quantity in ("strain", "force", "velocity"):
+            known = float(compact.fwhm(quantity) / cell.spacing)
+            assert float(wave.fwhm(quantity) / cell.spacing) == pytest.approx(known, rel=1e-12)
+    assert compact.at_force(7, precompression=0) == compact.at_force(7)
+
+
+def test_a_profile_without_load_is_the_compact_wave():
+    wave, compact = wave_of(HERTZ, 0, 3), canonical_wave(CHAIN, "3/2")
+    x = np.array([0.0, 0.7, -1.3, 2.4, 1e3, 1e9])
+    known = [float(compact.profile(sp.Float(at), 3)) for at in x]
+    assert wave.along(x, "strain") == pytest.approx(known, rel=1e-9, abs=3e-12)
+    assert wave.along(x, "strain")[-2:].tolist() == [0, 0]
+
+
+def test_a_weak_wave_is_that_of_kdv():
+    """The difference falls as B: speed at the order after, width by one order."""
+    cell = Dimer(3, 1, spacing=1)
+    errors = []
+    for size in ("1/100", "1/1000"):
+        wave = wave_of(HERTZ, 2, size, cell)
+        kdv = wave.kdv
+        width = 2 * sp.acosh(sp.sqrt(2)) * kdv.width(size)
+        errors.append(
+            (
+                abs(wave.speed.n(30) - kdv.speed(size).n(30)),
+                abs(wave.fwhm("strain") / width.n(30) - 1),
+                abs(wave.along(10.0, "strain") / kdv.profile(10, size).n(30) - 1),
+            )
+        )
+    speed, width, profile = (float(sp.log(a / b, 10)) for a, b in zip(*errors, strict=True))
+    assert speed == pytest.approx(2, abs=0.01)
+    assert width == pytest.approx(1, abs=0.01)
+    assert profile > 0.9
+
+
+def test_kdv_in_closed_form():
+    field = Background(Dimer("m1", "m2"), Power("k"), "p0")
+    c0 = p0 ** ((k - 1) / 2)
+    expected = KdV(c0, (k - 1) * c0 / (2 * p0), field.I * c0 / 2)
+    scaled = loaded_wave(field.cell, background="p0").kdv
+    for name in ("sound_speed", "nonlinearity", "dispersion"):
+        assert same(getattr(field.kdv, name), getattr(expected, name))
+        assert same(getattr(scaled, name), getattr(expected, name) * field.time_scale)
+    x, t = sp.symbols("x t", real=True)
+    kdv = KdV(sp.Integer(3), sp.Rational(2, 5), sp.Rational(1, 7))
+    v = kdv.profile(x - kdv.speed(2) * t, 2)
+    left = v.diff(t) + 3 * v.diff(x) + 2 * v * v.diff(x) / 5 + v.diff(x, 3) / 7
+    assert abs(left.subs({x: 1, t: sp.Rational(1, 3)}).n(30)) < 1e-25
+
+
+@pytest.mark.parametrize(
+    ("law", "load", "rise"),
+    [(HERTZ, 1, "1/2"), (Power("1/2"), 1, "-1/2"), (named("lennard-jones", 1), 0, "1/10")],
+    ids=str,
+)
+def test_the_profile_obeys_the_canonical_equation(law, load, rise):
+    """V² v = F(p0+v) - F(p0) + I (F′ v″ + ½ F″ v′²), by a polynomial through 80 places."""
+    wave, B = wave_of(law, load, rise), float(sp.Rational(rise))
+    v = np.polynomial.Chebyshev.interpolate(lambda x: wave.along(x, "strain"), 79, domain=[-2, 2])
+    x = np.linspace(-1, 1, 5)
+    p, field = sp.Symbol("p", positive=True), wave.field
+    F, F1, F2 = (sp.lambdify(p, field.force(p, n))(load + v(x)) for n in range(3))
+    left = float(field.speed(wave.strain)) ** 2 * v(x) - F + float(field.force(sp.S(load)))
+    right = float(field.I) * (F1 * v.deriv(2)(x) + F2 * v.deriv()(x) ** 2 / 2)
+    assert left == pytest.approx(right, rel=1e-7)  # v″ loses 80² of the digits of v
+    assert wave.along(float(wave.fwhm("strain")) / 2, "strain") == pytest.approx(B / 2, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("law", "load", "rise"),
+    [
+        (Power("1/2"), 1.0, -0.5),
+        (Power("11/10"), 0.0, 1.0),
+        (Power("11/10"), 0.01, 1.0),
+        (Power(5), 0.5, 1.0),
+        (named("lennard-jones", 1), 0.0, 0.1),
+        (named("lennard-jones", 1), 0.0, 0.8),
+    ],
+    ids=str,
+)
+def test_profiles_in_float64(law, load, rise):
+    """To 1e-9 of the larger of v and B/1000, the heights at places that mpmath computes."""
+    heights = rise * np.array([0.99, 0.7, 0.5, 0.3, 0.01, 1e-6])
+    with mpmath.workdps(30):
+        _, place, _ = true_wave(law, load, rise)
+        places = [float(place(mpmath.mpf(v))) for v in heights]
+    found = wave_of(law, load, rise).along(places, "strain")
+    assert np.all(np.abs(found - heights) <= 1e-9 * np.maximum(abs(heights), 1e-3 * abs(rise)))
+
+
+@settings(deadline=None, max_examples=40)
+@given(
+    st.floats(-12, 12),
+    st.floats(0.1, 10),
+    st.sampled_from(["11/10", "3/2", "2", "5"]),
+    st.sampled_from(["strain", "force"]),
+)
+def test_float64_over_all_loads(exponent, rise, k, quantity):
+    """V by the quadrature, and FWHM, to 1e-12 of their definitions at 120 digits."""
+    load = 10.0**exponent * rise
+    wave = wave_of(Power(k), load, rise)
+    with mpmath.workdps(120):
+        speed, place, height = true_wave(Power(k), load, rise)
+        assert float(wave.field.speed(wave.strain)) == pytest.approx(float(speed), rel=1e-15)
+        unit = mpmath.mpf(load) + mpmath.mpf(rise)
+        square = float(speed**2 / unit ** (mpmath.mpf(sp.Rational(k).p) / sp.Rational(k).q - 1))
+        assert wave._square * float(sp.S(1) / sp.Rational(k)) == pytest.approx(square, rel=1e-14)
+        expected = 2 * float(place(height if quantity == "force" else mpmath.mpf(rise) / 2))
+    assert float(wave.fwhm(quantity)) == pytest.approx(expected, rel=1e-12)
+
+
+def test_nesterenkos_relation_for_equal_spheres():
+    """As Daraio, Nesterenko, Herbold and Jin print it, Phys. Rev. E 73, 026610 (2006), eqs. 3–5.
+
+    c0 with its constant 0.9314, and V_s in f_r = F_m/F_0.
+    """
+    E, nu, a, F0, fr = 193e9, 0.3, 4.76e-3, 2.38, 7.5
+    mass = 0.45e-3
+    rho = mass / (math.pi * a**3 / 6)
+    steel = Material(E=str(E), nu=str(nu))
+    chain = Cell.of_spheres([Sphere(mass=str(mass), radius=str(a / 2), material=steel)])
+    wave = canonical_wave(chain, "3/2").at_force(F0 * fr, precompression=F0)
+    sound = (4 * E**2 * F0 / (a**2 * rho**3 * (1 - nu**2) ** 2)) ** (1 / 6)
+    assert float(wave.sound_speed) / sound == pytest.approx(0.9314, abs=1e-4)  # printed, cut off
+    root = math.sqrt(4 / 15 * (3 + 2 * fr ** (5 / 3) - 5 * fr ** (2 / 3)))
+    printed = root / (fr ** (2 / 3) - 1)
+    assert float(wave.speed / wave.sound_speed) == pytest.approx(printed, rel=1e-13)
+    zeta = sp.Symbol("zeta", positive=True)
+    V2 = Background(CHAIN, HERTZ, 1).stiffness(zeta - 1)
+    relation = sp.Rational(4, 15) * (3 + 2 * zeta ** sp.Rational(5, 2) - 5 * zeta) / (zeta - 1) ** 2
+    assert same(V2, relation)
+
+
+def exact_speed_squared(force, slope, guess, height, length, points=160):
+    """c² of the chain's own wave R of this height: c² R″ = F(R)(x+1) - 2F(R) + F(R)(x-1).
+
+    In Fourier space c² R = sinc²(q/2) F(R); Newton on even R over [0, length] and c², with R(0)
+    fixed, is spectrally accurate.
+    """
+    j = np.arange(points + 1)
+    x = j * length / points
+    cosines = np.cos(np.pi * np.outer(j, j) / points)
+    smear = cosines @ np.diag(np.sinc(j / (2 * length)) ** 2) @ np.linalg.inv(cosines)
+    R, c2 = guess(x), 1 + abs(height) / 3
+    for _ in range(30):
+        residual = np.append(c2 * R - smear @ force(R), R[0] - height)
+        jacobian = np.block(
+            [[c2 * np.eye(points + 1) - smear * slope(R), R[:, None]], [np.eye(1, points + 1), 0.0]]
+        )
+        step = np.linalg.solve(jacobian, -residual)
+        R, c2 = R + step[:-1], c2 + step[-1]
+        if np.abs(step).max() < 1e-13:
+            return c2
+    raise AssertionError("no wave was found")
+
+
+@pytest.mark.parametrize(("alpha", "beta"), [(1, 0), (0, 1), ("1/2", 1)])
+def test_the_lattices_own_wave_of_fermi_pasta_ulam_and_tsingou(alpha, beta):
+    """Newton on the lattice; the error falls as the fourth power of the inverse width."""
+    a, b = float(sp.Rational(alpha)), float(beta)
+    force = lambda R: R + a * R**2 + b * R**3  # noqa: E731
+    slope = lambda R: 1 + 2 * a * R + 3 * b * R**2  # noqa: E731
+    found = []
+    for height in (0.04, 0.02) if alpha else (0.12, 0.06):
+        wave = wave_of(named("polynomial", alpha, beta), 0, height)
+        width = float(wave.fwhm("strain"))
+        guess = lambda x, wave=wave: wave.along(x, "strain")  # noqa: E731
+        exact = exact_speed_squared(force, slope, guess, height, 11 * width)
+        found.append((width, abs(exact - float(wave.speed) ** 2)))
+    (w1, e1), (w2, e2) = found
+    assert math.log(e1 / e2) / math.log(w2 / w1) == pytest.approx(4, abs=0.12)
+    assert e2 > 1e-9  # above rounding
+
+
+@pytest.mark.parametrize("cell", [Cell([1]), CHAIN, Dimer(1, 3)])
+def test_a_law_that_is_no_power_has_waves_without_a_load(cell):
+    """V² = 2W(δ)/δ² by the peak force; a light wave has the compact wave's width."""
+    law = named("hertz2", 1, 1)
+    for delta in map(sp.Rational, ("1/1000", "1")):
+        force = delta ** sp.Rational(3, 2) * (1 + delta)
+        square = 2 * (delta ** sp.Rational(5, 2) / 5 + delta ** sp.Rational(7, 2) / 7) * 2
+        square *= cell.spacing**2 / delta**2 / (cell.mass / cell.size)
+        wave = loaded_wave(cell, force=force, law=law)
+        assert sp.N(wave.speed**2 / square, 30) == pytest.approx(1, rel=1e-14)
+        assert float(wave.strain * cell.spacing) == pytest.approx(float(delta), rel=1e-14)
+    light = loaded_wave(cell, force="1e-30", law=law)
+    width = canonical_wave(cell, "3/2").fwhm()
+    assert float(light.fwhm("strain") / width) == pytest.approx(1, rel=1e-12)
+    if cell == CHAIN:
+        assert float(wave_of(law, 0, "1e-30").fwhm("strain") / width) == pytest.approx(1, rel=1e-12)
+
+
+@pytest.mark.parametrize("law", [named("hertz2", 1, 1), named("magnetic", 4, 3), HERTZ], ids=str)
+def test_a_force_hardly_above_the_load(law):
+    """At F/F0 - 1 = 1e-15 the excess of V over sound, and the width, are those of KdV."""
+    wave = loaded_wave(CHAIN, force=1 + sp.Rational("1e-15"), precompression=1, law=law)
+    kdv, rise = wave.kdv, wave.compression
+    exact = sp.N(rise, 20, maxn=200)
+    assert float(exact * law.at(wave.static_compression, 1) / 1e-15) == pytest.approx(1, rel=1e-13)
+    with mpmath.workdps(60):
+        width = 2 * sp.acosh(sp.sqrt(2)) * kdv.width(exact)
+    assert float(wave.fwhm("strain")) == pytest.approx(float(width), rel=1e-12)
+    ahead, added = wave._ends
+    square = wave.field.stiffness(added) / wave.field.force(ahead, 1) - 1
+    bend = law.at(ahead, 2) / law.at(ahead, 1) / 3
+    assert float(sp.N(square / added / bend, 20, maxn=400)) == pytest.approx(1, rel=1e-13)
+
+
+def test_the_forces_of_unlike_contacts_are_the_wave_s():
+    """Compressions by contact, at k = 1 too: each contact adds F - F0."""
+    cell = Dimer(1, 2, stiffnesses=[3, 5], spacing=1)
+    for law, rises in ((Power(2), (7, 2)), (Power("3/2"), (4, 1))):
+        wave = loaded_wave(cell, force=rises[0], precompression=rises[1], law=law)
+        k = law.k
+        for A, added in zip(cell.stiffnesses, wave.compressions, strict=True):
+            ends = [(sp.Rational(F) / A) ** (1 / k) for F in rises]
+            assert float(added) == pytest.approx(float(ends[0] - ends[1]), rel=1e-14)
+        mean = sp.Add(*wave.compressions) / 2
+        assert float(mean) == pytest.approx(float(wave.compression), rel=1e-14)
+
+
+def test_waves_exist_on_the_stiffening_side_only():
+    for law, load, rise, reason in (
+        (HERTZ, 1, "-1/2", "only B > 0"),
+        (Power("1/2"), 1, "1/2", "only B < 0"),
+        (Power("1/2"), 1, -1, "would open"),
+        (Power("1/2"), 0, -1, "no load"),
+        (Power(1), 1, 1, "linear"),
+        (named("polynomial", 1, 0), 0, "-1/10", "does not stiffen"),
+        (named("polynomial", -1, 0), 0, "7/10", "not positive"),
+        (named("polynomial", 1, -1), 0, "67/100", "does not stiffen"),
+        (Law(DELTA - sp.sin(DELTA)), 0, "1e-3", "cancel"),  # 1 - cos δ is 0 in floats below 1e-8
+    ):
+        with pytest.raises(NoSolitaryWave, match=reason):
+            wave_of(law, load, rise)
+    with pytest.raises(NoSolitaryWave, match="force is 5, below precompression 10"):
+        loaded_wave(CHAIN, force=5, precompression=10, law=HERTZ)
+    with pytest.raises(NoSolitaryWave, match="no sound"):
+        _ = wave_of(HERTZ, 0, 1).kdv
+
+
+def test_bad_arguments_are_refused():
+    for call, reason in (
+        (lambda: wave_of(HERTZ, -1, 1), "must not be negative"),
+        (lambda: wave_of(HERTZ, 1, 0), "rise is 0"),
+        (lambda: wave_of(HERTZ, "p0", 1).fwhm(), "has no value"),
+        (lambda: wave_of(HERTZ, 1, 1).fwhm("colour"), "quantity"),
+        (lambda: wave_of(HERTZ, 1, 1).along(["x"]), "x is"),
+        (lambda: wave_of(HERTZ, 1, 1).along(math.nan), "finite"),
+        (lambda: wave_of(general(), 1, 1).fwhm(), "no expression"),
+        (lambda: wave_of(general(), 0, 1, Dimer(1, 1, stiffnesses=[1, 2])), "shares"),
+        (lambda: loaded_wave(CHAIN, force=2, rise=1), "not by both"),
+        (lambda: loaded_wave(CHAIN, law=HERTZ, k=2), "one of them"),
+        (lambda: loaded_wave(CHAIN, law=named("hertz2", 1, 1)), "has no value"),
+        (lambda: canonical_wave(Cell([1]), 2).at_force(1, precompression=-1), "positive"),
+        (
+            lambda: loaded_wave(CHAIN, force=2, precompression=1, law=named("polynomial", -1, 0)),
+            "reach",
+        ),
+        (lambda: homogenize(Dimer(1, 2)).pde.traveling_wave().on_background(1), "canonical"),
+    ):
+        with pytest.raises(InputError, match=reason):
+            call()
+
+
+def test_symbols_take_their_numbers():
+    symbolic = canonical_wave(Cell(["m"], ["A"]), "3/2").at_force("F", precompression="F0")
+    numbers = symbolic.at(m=2, A=3, F=7, F0=2, D=1)
+    assert numbers == canonical_wave(Cell([2], [3], 1), "3/2").at_force(7, precompression=2)
