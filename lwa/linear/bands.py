@@ -24,7 +24,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lwa.base.arrays import Array, finite
-from lwa.base.exact import InputError
 
 Complex = NDArray[np.complex128]
 
@@ -172,15 +171,12 @@ class Network(NamedTuple):
 
 
 def solved(matrix: Array, right: Array) -> Array:
-    """Solve linear systems with axes in front; NaN for a matrix that is 0 or not finite.
-
-    Raises `lwa.InputError` for a singular matrix.
-    """
+    """Solve linear systems with axes in front; NaN for a matrix that is singular or not finite."""
     scale = np.abs(matrix).max(axis=(-2, -1), keepdims=True)
     good = np.isfinite(scale) & (scale > 0)
-    matrix = np.where(good, matrix / np.where(good, scale, 1), np.eye(matrix.shape[-1]))
-    try:
-        found = np.linalg.solve(matrix, right[..., None] / np.where(good, scale, 1))
-    except np.linalg.LinAlgError:
-        raise InputError("the links hold a particle of the cell in no place") from None
+    one, scale = np.eye(matrix.shape[-1]), np.where(good, scale, 1)
+    matrix = np.where(good, matrix, one) / scale
+    sign, _ = np.linalg.slogdet(matrix)  # 0 where a pivot is: one such matrix refuses them all
+    good &= (sign != 0)[..., None, None]
+    found = np.linalg.solve(np.where(good, matrix, one), right[..., None] / scale)
     return np.asarray(np.where(good, found, np.nan)[..., 0])
