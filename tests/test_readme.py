@@ -90,6 +90,8 @@ def test_the_commands_exist():
     shown = re.findall(r"^\$ (lwa\S*) (\w+)", CATALOGUE, re.MULTILINE)
     for program, commands in known.items():
         assert {command for name, command in shown if name == program} == set(commands)
+    for program, command in re.findall(r"`(lwa|lwa-validate) (\w+)", CHANGELOG):
+        assert command in known[program]
 
 
 def test_the_demonstrations_are_listed():
