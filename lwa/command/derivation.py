@@ -63,10 +63,10 @@ def _answer(chain: ChainInput, theory: Theory) -> Answer:
     """Rows of a derivation."""
     head: Values = {
         **chain_json(theory),
-        "lambda": str(theory.amplitude_ratio),
+        "lambda": theory.amplitude_ratio,
         "ansatz": {},
         **dict.fromkeys("GHI"),
-        **{letter: str(value) for letter, value in theory.pde.third_order.items()},
+        **theory.pde.third_order,
         "terms": _terms_json(theory.pde.coefficients),
         "vanishing": list(theory.pde.vanishing),
         "slaved": [
@@ -98,7 +98,7 @@ def _terms_json(coefficients: Mapping[int, Terms]) -> list[dict[str, Any]]:
             "order": n,
             "jet": [list(power) for power in jet.x],
             "jet_t": [list(power) for power in jet.t],
-            "coefficient": str(terms[jet]),
+            "coefficient": terms[jet],
         }
         for n, terms in coefficients.items()
         for jet in terms

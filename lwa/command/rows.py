@@ -58,7 +58,7 @@ class Row:
 class Answer:
     """The result of a command.
 
-    head : JSON of the chain and the settings.
+    head : JSON of the chain and the settings; expressions become strings when they are printed.
     rows : the results and the other lines of text, in their order.
     si : True if numbers are in SI; then all values are printed in digits, with their units.
     spacing : the symbol of the unit of length, or a number.
@@ -80,7 +80,7 @@ class Answer:
     def print(self, style: str) -> None:
         """Print the answer as "text", "json" or "latex"."""
         if style == "json":
-            click.echo(json.dumps(self.json(), indent=2))
+            click.echo(json.dumps(self.json(), indent=2, default=str))
         else:
             click.echo(self.latex() if style == "latex" else self.text())
 
@@ -106,7 +106,7 @@ class Answer:
         rows = [row for row in self.rows if isinstance(row, Row) and row.key]
         for row in rows:
             if row.expression and isinstance(row.value, sp.Expr | tuple):
-                _put(result, row.key, "", _each(str, row.value))
+                _put(result, row.key, "", row.value)
         for row in rows:
             if row.digits:
                 self._put_digits(result, row)
@@ -158,29 +158,30 @@ class Answer:
         """The value and its ``digits``, if any; a short fraction, or symbols, without digits."""
         if self.si:
             return approximate(value, digits or PRINTED_DIGITS)
-        plain, written = self.plain(value), str(value)
-        short = plain.is_Rational and len(written) <= FRACTION
-        unknown = value.free_symbols - {self.spacing} or value.has(AppliedUndef)
-        if not digits or short or unknown:
+        written = str(value)
+        if not digits or value.free_symbols - {self.spacing} or value.has(AppliedUndef):
+            return written
+        plain = self.plain(value)
+        if plain.is_Rational and len(written) <= FRACTION:
             return written
         number = sp.sstr(evaluated(plain, digits), full_prec=False) + self._length_unit(value)
         long = plain.has(sp.Float) or plain.is_Rational or len(written) > LONG
         return number if long else f"{written} ≈ {number}"
 
     def _length_unit(self, value: sp.Expr) -> str:
+        """The power D^n of the symbol D that a value is proportional to, after a space; or ""."""
         if not self.spacing.is_Symbol or self.spacing not in value.free_symbols:
             return ""
-        # exponent of a power of D, from the values at D = 1, 2 and 3: SymPy is slow beside surds
-        one, *others = (
-            evaluated(value.xreplace({self.spacing: sp.Integer(n)}), 20) for n in (1, 2, 3)
+        # c D^n has n = log2(f(2)/f(1)), and then f(3) = 3^n f(1): 1e-12 tells sums of powers
+        one, two, three = (
+            evaluated(value.xreplace({self.spacing: sp.Integer(i)}), 20) for i in (1, 2, 3)
         )
-        if not (one.is_real and one):
+        if not (one.is_real and one and two / one > 0):
             return ""
-        first, second = (sp.log(v / one, n).n(15) for n, v in enumerate(others, start=2))
-        if not (first.is_real and abs(first - second) < 1e-12):
+        n = sp.Rational(str(sp.log(two / one, 2).n(20))).limit_denominator(10**4)
+        if not n or abs(three / one / 3**n - 1) > 1e-12:
             return ""
-        power = sp.Rational(str(first)).limit_denominator(10**4)
-        return "" if not power else f" {self.spacing}" if power == 1 else f" {self.spacing}^{power}"
+        return f" {self.spacing}" if n == 1 else f" {self.spacing}^{n}"
 
     # --- LaTeX ------------------------------------------------------------------------------
 

@@ -73,7 +73,7 @@ def _answer(chain: ChainInput, expanded: Expansion) -> Answer:
         "stiffnesses": [str(A) for A in cell.stiffnesses],
         "order": expanded.order,
         "I": str(expanded.I),
-        "c2": [str(expanded.c2.prefactor * a) for a in expanded.c2.coefficients],
+        "c2": [expanded.c2.prefactor * a for a in expanded.c2.coefficients],
         "fwhm": {q: _series_json(width) for q, width in widths.items()},
         "momentum": _series_json(expanded.momentum),
         "energy": _series_json(expanded.energy),
@@ -136,14 +136,17 @@ def _at_force(wave: ExpandedWave, si: bool) -> Answer:
 
 def _series_json(series: EpsilonSeries) -> Values:
     return {
-        "prefactor": str(series.prefactor),
-        "power": str(series.power),
-        "coefficients": [str(a) for a in series.coefficients],
+        "prefactor": series.prefactor,
+        "power": series.power,
+        "coefficients": list(series.coefficients),
     }
 
 
-def _series_text(name: str, series: EpsilonSeries) -> list[str]:
+def _series_text(name: str, series: EpsilonSeries) -> list[Row | str]:
     factors = [str(series.prefactor)] if series.prefactor != 1 else []
     factors += [f"ε^({series.power})"] if series.power else []
-    lines = [f"{name} = {' '.join([*factors, 'Σ a_n ε^n'])}"]
-    return lines + [f"  a{n} = {value}" for n, value in enumerate(series.coefficients)]
+    coefficients = enumerate(series.coefficients)
+    return [
+        f"{name} = {' '.join([*factors, 'Σ a_n ε^n'])}",
+        *(Row("", f"a{n}", value, digits=0) for n, value in coefficients),
+    ]
