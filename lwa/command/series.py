@@ -17,7 +17,7 @@ from lwa.command.options import FORCE, SPHERES, series_options
 from lwa.command.rows import Answer, Row, Values, attempt
 from lwa.command.waves import WIDTHS, radiation_note
 from lwa.expansion.approximants import Resummed
-from lwa.expansion.expand import DAMPINGS, Expansion, expand
+from lwa.expansion.expand import Expansion, expand
 from lwa.expansion.physical import ExpandedWave
 from lwa.expansion.series import EpsilonSeries
 
@@ -56,8 +56,6 @@ _LABELS = {
     "momentum": "momentum",
     "energy": "energy",
     "effective_mass": "effective mass P²/2E",
-    "dissipation.linear": "dissipation by γ dδ/dt, over γ",
-    "dissipation.kuwabara_kono": "dissipation by γ δ^(k-1) dδ/dt, over γ",
 }
 
 
@@ -86,7 +84,8 @@ def _answer(chain: ChainInput, expanded: Expansion) -> Answer:
     for key, part in series.items():
         rows += _series_text(_LABELS[key], part)
     if expanded.numeric:
-        sums = _sums(expanded, series)
+        sums = {key: attempt(part.at) for key, part in series.items()}
+        sums["effective_mass"] = attempt(expanded.effective_mass.at)
         head |= _validity(sums)
         rows += ["", f"at k = {expanded.k}, with estimates of the error:"]
         rows += [Row(key, _LABELS[key], value) for key, value in sums.items()]
@@ -94,16 +93,6 @@ def _answer(chain: ChainInput, expanded: Expansion) -> Answer:
             rows.append("  (of the mean of a dimer's two contacts, which differ behind a striker)")
         notes = [*notes, *radiation_note(cell, expanded.k)]
     return Answer(head, rows, shown=[expanded], notes=notes)
-
-
-def _sums(expanded: Expansion, series: Mapping[str, EpsilonSeries]) -> dict[str, Any]:
-    """Mapping from key to sum, with effective mass and, for equal beads, dissipation."""
-    sums = {key: attempt(part.at) for key, part in series.items()}
-    sums["effective_mass"] = attempt(expanded.effective_mass.at)
-    if expanded.cell.uniform:
-        for kind in DAMPINGS:
-            sums[f"dissipation.{kind}"] = attempt(expanded.dissipation(kind).at)
-    return sums
 
 
 def _validity(sums: Mapping[str, Any]) -> Values:

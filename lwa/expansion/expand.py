@@ -16,7 +16,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.algebra.model import Model
-from lwa.base.exact import InputError, integer, one_of, shorten, signed
+from lwa.base.exact import InputError, integer, shorten, signed
 from lwa.base.frozen import Value
 from lwa.base.progress import announced
 from lwa.base.quantities import QUANTITIES as QUANTITIES
@@ -26,9 +26,6 @@ from lwa.cell import k as symbol_k
 from lwa.expansion.observables import Observables, shares_model
 from lwa.expansion.series import EpsilonSeries
 from lwa.law import ContactLaw, refuse_two_laws
-
-DAMPINGS = ("linear", "kuwabara_kono")
-"""Damping forces of a contact: γ dδ/dt and γ δ^{k-1} dδ/dt (Kuwabara and Kono 1987)."""
 
 LARGEST = 3_000_000
 """Terms of all polynomials in memory: some 600 MB."""
@@ -124,27 +121,6 @@ class Expansion(Value):
             raise InputError("the beads or contacts differ: their velocities peak one by one")
         unit = sp.sqrt(self._sound) * self.compliance
         return self._series("peak_velocity", unit, sp.S.Zero)
-
-    def dissipation(self, kind: str) -> EpsilonSeries:
-        """Energy that the wave loses per contact, divided by a small damping constant γ.
-
-        kind : "linear" for the damping force γ dδ/dt, δ the compression: D0 = ∫ (dδ/dt)² dt;
-            "kuwabara_kono" for γ δ^{k-1} dδ/dt: D1 = ∫ δ^{k-1} (dδ/dt)² dt. γ is the same in all
-            contacts; D0 is the mean over those of a cell.
-
-        Raises `lwa.InputError` for other kinds, and for D1 of contacts that differ.
-        """
-        one_of(kind, DAMPINGS, "kind")
-        # c ∫ (d/dξ e^{-Z²/4})² dξ = c √(2πε/I)/4, times ā² for D0, and ā/(k A) for D1, where
-        # δ^{k-1} dδ = dF/(k A).
-        unit = sp.sqrt(2 * sp.pi * self._sound / self.I) * self.compliance / 4
-        if kind == "linear":
-            unit *= self.compliance
-        elif len({*self.cell.stiffnesses}) > 1:
-            raise InputError("the contacts differ in stiffness: D1 is derived for equal contacts")
-        else:
-            unit /= self.k * self.cell.stiffnesses[0]
-        return self._series(f"{kind}_loss", unit, sp.S.Half)
 
     def _energy(self, quantity: str) -> EpsilonSeries:
         unit = self.compliance * sp.sqrt(2 * sp.pi * self.I)  # ā ∫ e^{-Z²/2} dξ

@@ -123,29 +123,6 @@ class Observables:
         """Effective mass P²/(2E), P the momentum and E the energy, divided by its leading term."""
         return product(product(self.momentum, self.momentum), power(self.energy, fmpq(-1)))
 
-    @cached_property
-    def linear_loss(self) -> Series:
-        """Contacts' mean of ∫ (dδ/dt)² dt, δ the compression, divided by its leading term.
-
-        In the wave dδ/dt = -c dδ/dξ and dt = dξ/c, so that this is c ∫ (dδ/dξ)² dξ.
-        """
-        strain = self.wave.fields.strain
-        return self._loss([share * share for share in self.wave.c], strain, strain)
-
-    @cached_property
-    def kuwabara_kono_loss(self) -> Series:
-        """Equal contacts' mean of ∫ δ^{k-1} (dδ/dt)² dt, divided by its leading term.
-
-        With F = A δ^k the integrand is (dF/dt) (dδ/dt) / (k A).
-        """
-        fields = self.wave.fields
-        return self._loss(self.wave.c, fields.force, fields.strain)
-
-    def _loss(self, weights: Series, first: list[Series], second: list[Series]) -> Series:
-        """The loss c Σ weight ∫ (d first/dξ) (d second/dξ) dξ, divided by its leading term."""
-        slopes = ([[_slope(S) for S in row] for row in rows] for rows in (first, second))
-        return product(self.c, [4 * a / self.wave.P for a in self._mean_square(weights, *slopes)])
-
     def _mean_square(
         self, weights: Series, first: Iterable[Series], second: Iterable[Series]
     ) -> Series:
@@ -206,11 +183,6 @@ class Observables:
             (tuple(map(int, e[1:])), c) for e, c in polynomial.terms()
         ]
         return self.model.ring.expression(terms)
-
-
-def _slope(term: fmpq_mpoly) -> fmpq_mpoly:
-    """The derivative e^{Z²/4} d/dZ [e^{-Z²/4} S(Z)]."""
-    return term.derivative(0) - term.context().gen(0) * term / 2
 
 
 def shares_model(cell: Cell, k: sp.Expr) -> Model:

@@ -79,24 +79,6 @@ class ExpandedWave(Value):
         """Kinetic and elastic energy."""
         return self._at_force(self.expansion.energy, self.expansion.k + 1)
 
-    def dissipation(self, kind: str) -> Resummed:
-        """Energy lost per contact, divided by the damping constant; see `Expansion.dissipation`."""
-        k = self.expansion.k
-        power = (k + 3 if kind == "linear" else 3 * k + 1) / 2
-        return self._at_force(self.expansion.dissipation(kind), power)
-
-    def slowdown(self, kind: str) -> Resummed:
-        """Slowing of the pulse by a weak damping γ: rate per site divided by γ, to first order.
-
-        With V = dx/dt after n sites the rate is -dV/dn for "linear" damping and d(1/V)/dn for
-        "kuwabara_kono". Both stay the same along the chain while the force falls.
-        """
-        # E ∝ F^{(k+1)/k}, V ∝ F^{(k-1)/(2k)} and dE/dn = -γ D give
-        # dV/dn = -(k-1)/(2(k+1)) γ D V/E.
-        k, loss, E, V = self.expansion.k, self.dissipation(kind), self.energy, self.speed
-        rate = loss / (E / V) if kind == "linear" else loss / E / V
-        return rate * float((k - 1) / (2 * (k + 1)))
-
     def latex_rows(self) -> list[str]:
         """LaTeX of peak force, speed and width of the force, without units."""
         return _rows(latex.expression(self.F), self)

@@ -28,8 +28,6 @@ _LETTERS = {
     "energy": "E",
     "effective_mass": r"m_\mathrm{eff}",
     "peak_velocity": r"v_\mathrm{max}",
-    "linear_loss": "D_0",
-    "kuwabara_kono_loss": "D_1",
 }
 
 

@@ -17,7 +17,6 @@ from tests.lwa.command.answers import run
 
 POINTS = 4096
 WIDTHS = ("strain", "force", "velocity")
-DAMPINGS = ("linear", "kuwabara_kono")
 NAMES = ("c2", "c", "peak_velocity", "momentum", "kinetic", "energy", "effective_mass")
 EXPONENTS = ("1.1", "3/2", "2", "4", "8", "9.5", "12", "20")
 
@@ -55,12 +54,9 @@ def lattice(k):
     velocity, push = np.fft.ifft(mean * force).real / c, np.maximum(strain, 0) ** k
     kinetic, elastic = step * (velocity @ velocity) / 2, step * (strain @ push) / (k + 1)
     momentum, energy = step * velocity.sum(), kinetic + elastic
-    rate = c * np.fft.ifft(1j * q * spectra[0]).real ** 2 * step
     rest = velocity.max(), momentum, kinetic, energy, momentum**2 / (2 * energy)
     values = dict(zip(NAMES, (c2, c, *rest), strict=True))
     values |= dict(zip(WIDTHS, map(width, spectra), strict=True))
-    losses = rate.sum(), np.maximum(strain, 0) ** (k - 1) @ rate
-    values |= dict(zip(DAMPINGS, losses, strict=True))
     assert kinetic / elastic == pytest.approx((k + 1) / 2)  # the virial theorem
     return values, xi, np.fft.fftshift(push)
 
@@ -68,8 +64,7 @@ def lattice(k):
 def series(expansion):
     """Series of all quantities of `lattice`, by the same names."""
     found = {name: getattr(expansion, name) for name in NAMES}
-    found |= {name: expansion.fwhm(name) for name in WIDTHS}
-    return found | {name: expansion.dissipation(name) for name in DAMPINGS}
+    return found | {name: expansion.fwhm(name) for name in WIDTHS}
 
 
 @pytest.mark.slow

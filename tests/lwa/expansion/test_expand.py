@@ -9,14 +9,11 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
-from flint import fmpq
 
-from lwa import Cell, Dimer, Dispersion, InputError, homogenize
+from lwa import Cell, Dimer, Dispersion, InputError
 from lwa.base.quantities import QUANTITIES
 from lwa.cell import k as symbol_k
 from lwa.expansion.expand import Expansion, expand
-from lwa.expansion.observables import Observables, shares_model
-from lwa.expansion.pulse import exp_term, logarithm, power, product
 from lwa.expansion.radiation import amplitude, parameters, radiated
 from lwa.law import DELTA, Law, Power, general, named
 from tests.identity import same
@@ -131,92 +128,6 @@ def test_first_correction_of_a_dimer_is_a_closed_form() -> None:
     uniform = wave("equal").fwhm("force").coefficients[1]
     assert same(w_1.subs(OMEGA, 1), uniform)
     assert same(w_1.subs(OMEGA, 1 / OMEGA), w_1)
-
-
-def jets(series: list, top: int, derivative) -> dict[int, list]:
-    """i → ∂^{i-1} s / s as a list over t^n, s = e^{-Z²/4} Σ S_n t^n."""
-    inverse, found, row = power(series, fmpq(-1)), {}, series
-    for i in range(2, top + 1):
-        row = [0 * series[0], *(derivative(S) for S in row[:-1])]
-        found[i] = product(row, inverse)
-    return found
-
-
-def power_of_slope(wave, log: list, share: fmpq) -> list:
-    """s^{share (k-1)} as a series in t; log s = -Z²/4 + Σ log_n t^n, k - 1 = I³ t²."""
-    whole = [log[0] - wave.Z**2 / 4, *log[1:]]
-    exponent = [wave.zero, wave.zero, *(wave.epsilon * share * term for term in whole[:-2])]
-    result: list = []
-    for _ in exponent:
-        result.append(exp_term(exponent, result))
-    return result
-
-
-def residual_order(cell: Cell, closure: str, terms: int) -> int:
-    """The first power of t that the expansion leaves of the PDE cut after D^{k+2 terms+1}."""
-    order = 2 * terms + 1
-    theory = homogenize(cell, order + 1, closure=closure)
-    wave = Observables(shares_model(cell, symbol_k), terms + 2).wave
-    size = order + 3
-    slope = [*wave.fields.slope[0]][:size]
-    log = logarithm(slope)
-    jet = jets(slope, order + 2, wave.derivative)
-    gamma = wave.gamma[:size]
-    epsilon_powers = [wave.epsilon**n for n in range(size)]
-
-    def in_k(coefficient: sp.Expr) -> list:
-        """A polynomial in k as a series in t."""
-        k = next(iter(coefficient.free_symbols), sp.Symbol("k"))
-        rows = [wave.zero] * size
-        for (n,), c in sp.Poly(coefficient.subs(k, 1 + k), k).terms():
-            if 2 * n < size:
-                rows[2 * n] = rows[2 * n] + epsilon_powers[n] * int(c.p) / int(c.q)
-        return rows
-
-    minus_half = power_of_slope(wave, log, fmpq(-1, 2))
-    lean = product(minus_half, minus_half)  # s^{1-k}
-    kinetic = product(product(gamma, lean), jet[2])  # k V² u'' / u_x^k
-    total = [wave.zero] * size
-    for coefficients in [{(): sp.S.One}, *theory.pde.coefficients.values()]:
-        for key, coefficient in coefficients.items():
-            x, t = (((2, 1),), ()) if key == () else (key.x, key.t)
-            part = in_k(coefficient)
-            for i, e in x:
-                for _ in range(e):
-                    part = product(part, jet[i])
-            times = sum(e for _, e in t)
-            for i, e in t:  # ∂^i u_τ / u_x^{(k+1)/2} = -V jet_{i+1} s^{(1-k)/2}
-                for _ in range(e):
-                    part = product(part, product(jet[i + 1], minus_half))
-            assert times % 2 == 0
-            k_inverse = [
-                (-wave.epsilon) ** (n // 2) if n % 2 == 0 else wave.zero for n in range(size)
-            ]
-            for _ in range(times // 2):  # V² = γ/k
-                part = product(part, product(gamma, k_inverse))
-            total = [a + b for a, b in zip(total, part, strict=True)]
-    k = [1 + wave.zero, wave.zero, wave.epsilon, *[wave.zero] * (size - 3)]
-    rest = [a - b for a, b in zip(kinetic, product(k, total), strict=True)]
-    return next(n for n, r in enumerate(rest) if r)
-
-
-@pytest.mark.parametrize("masses", [(1,), (1, 3)], ids=["equal", "dimer"])
-@pytest.mark.parametrize("terms", [1, 3])
-def test_full_closure_cut_after_each_order_gives_that_many_terms(
-    masses: tuple[int, ...], terms: int
-) -> None:
-    """The equation's leading terms are t^3; the wave solves it up to t^{2 terms + 1}, not beyond.
-
-    For a dimer an even power, t^{2 terms + 2}, may be the first that is left.
-    """
-    order = residual_order(Cell(masses), "full", terms)
-    assert order == 2 * terms + 3 or (len(masses) == 2 and order == 2 * terms + 2)
-
-
-def test_linear_closure_gives_the_leading_term_only() -> None:
-    dimer = Cell([1, 3])
-    assert residual_order(dimer, "linear", 1) >= 4
-    assert residual_order(dimer, "linear", 3) < 6
 
 
 def test_pade_agrees_with_its_series() -> None:

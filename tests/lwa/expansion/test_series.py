@@ -132,11 +132,6 @@ REFUSALS = {
     "contact 2": (lambda: expand(DIMER, 1).log_force(2), "contact is 2"),
     "no cell": (lambda: expand([1, 2], 2), "cell is"),  # type: ignore[arg-type]
     "quantity": (lambda: expand(ONE, 2).fwhm("speed"), "quantity is"),
-    "kind": (lambda: expand(ONE, 2).dissipation("quadratic"), "kind is 'quadratic'"),
-    "unlike contacts": (
-        lambda: expand(Cell([1, 1], [1, 2]), 2).dissipation("kuwabara_kono"),
-        "D1 is derived for equal contacts",
-    ),
     "memory": (lambda: expand(Cell(["a", "b"]), 100), "takes more than .* terms"),
     "high order": (lambda: expand(ONE, 10**18), "takes more than .* terms"),
     "long numbers": (lambda: expand(Cell([1, "1/50"]), 800), "takes more than .* terms"),
