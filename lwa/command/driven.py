@@ -9,7 +9,6 @@ import click
 import sympy as sp
 
 from lwa.base.errors import InputError
-from lwa.base.frozen import Estimate
 from lwa.command.chain import ChainInput, take_chain
 from lwa.command.options import SPHERES, cell_options, spheres_option, style_option, value
 from lwa.command.rows import Answer, Row, attempt
@@ -78,9 +77,9 @@ def shock(
 
     Needs --behind or --piston. Speeds are dx/dt, in m/s with --spheres.
 
-    In JSON `plateau` is the velocity of the wall, `mean_strain` the strain that a wall of this
-    velocity keeps up on average, `peak` the strain of the leading pulse by the doubling rule, and
-    `series`, for a power law without load, the pulse's speed and force from the series in k - 1.
+    In JSON `plateau` is the velocity of the wall, `peak` the strain of the leading pulse by the
+    doubling rule, and `series`, for a power law without load, the pulse's speed and force from the
+    series in k - 1.
     Errors were measured on driven chains; closed forms without an error are exact for the law.
     Values that no theory here gives are null; `notes` has the reason.
     """
@@ -91,19 +90,15 @@ def shock(
     if ahead is None:
         ahead = law.compression(cell, static) / cell.spacing if static else sp.S.Zero
     if behind is None:
-        front, sought = riemann.piston(cell, law, piston, ahead), "behind"
+        front = riemann.piston(cell, law, piston, ahead)
     else:
-        front, sought = riemann.shock(cell, law, behind, ahead), "plateau"
-    _front(chain, front, sought).print(style)
+        front = riemann.shock(cell, law, behind, ahead)
+    _front(chain, front).print(style)
 
 
-def _front(chain: ChainInput, front: riemann.Shock, sought: str) -> Answer:
-    """Printed rows for the shock or rarefaction between two strains: speeds, plateau, peak.
-
-    sought : "behind" if the velocity of the wall was given, "plateau" if the strain was.
-    """
-    errors = {**front.errors}
-    errors.pop("plateau" if sought == "behind" else "behind", None)
+def _front(chain: ChainInput, front: riemann.Shock) -> Answer:
+    """Printed rows for the shock or rarefaction between two strains: speeds, plateau, peak."""
+    errors = front.errors
 
     def row(key: str, label: str, unit: str = "m/s") -> Row:
         name, _, rule = key.partition(".")
@@ -119,9 +114,6 @@ def _front(chain: ChainInput, front: riemann.Shock, sought: str) -> Answer:
         row("behind", "strain behind", ""),
         Row("ahead", "strain ahead", front.ahead),
     ]
-    mean = attempt(getattr, front, "mean_strain")
-    if isinstance(mean, Estimate):
-        rows.append(Row("mean_strain", "mean strain near the wall", mean))
     rows += [
         "",
         f"{head['kind'] or 'front'}, speeds dx/dt:",

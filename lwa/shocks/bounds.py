@@ -13,18 +13,8 @@ c₋ = 2 c₊ (Venakides, Deift & Oba, Comm. Pure Appl. Math. 44, 1171 (1991)).
 
 from __future__ import annotations
 
-import math
-
-import numpy as np
-
 RESTING = 2.0
 """c₋/c₊ up to which the beads at the wall come to rest beside it (a theorem for Toda's law)."""
-
-# Mean strain over p₋ of contacts ten and more from the wall, by k, for powers without load
-_EXPONENTS = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 7.0, 10.0)
-_MEANS = (1.0, 0.9884, 0.9687, 0.9173, 0.8671, 0.7924, 0.7424, 0.6805, 0.6302)
-MEAN_ERROR = 0.005
-"""Error of `mean_of_power` by the interpolation, over p₋."""
 
 RULE_SPEED, RULE_FORCE = 0.0025, 0.02
 """Relative errors of the doubling rule on the lattice's own wave, without load, k = 1.05 … 5."""
@@ -39,17 +29,6 @@ def rise_error(rho: float) -> float:
     """Error of the doubling rule's peak strain on the canonical wave, over the rise."""
     # the first term is the canonical wave's, the second the rule's own, 1.4 % for k → 1
     return 0.065 * rho**2 + min(0.015, rho / 4)
-
-
-def mean_error(r: float) -> float:
-    """Error of the mean strain behind the front, over the jump p₋ - p₊, at r = c₋/c₊."""
-    # up to r = 2 the wall's neighbours come to rest; beyond they go on oscillating
-    return 0.025 * (r - 1) ** 2 if r <= RESTING else min(0.4, 0.03 + 0.16 * math.log(r / 2))
-
-
-def mean_of_power(k: float) -> float:
-    """Mean strain over p₋ behind the front of a power law without load; NaN beyond k = 10."""
-    return float(np.interp(k, _EXPONENTS, _MEANS, math.nan, math.nan))
 
 
 def leading_error(off: float, rho: float, r: float, uniform: bool) -> float:

@@ -13,7 +13,6 @@ the canonical wave, `lwa.shocks.bounds` the errors.
 
 from __future__ import annotations
 
-import math
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -87,36 +86,13 @@ class Shock(Value):
     def plateau(self) -> sp.Expr:
         """Velocity v_p of the wall, at which the beads behind the front come to rest beside it.
 
-        Beyond c₋ = 2 c₊ they go on oscillating, and the wall must be faster for the mean strain p₋
-        (`mean_strain`, and the entry "plateau" of `errors`).
+        Beyond c₋ = 2 c₊ they go on oscillating (`oscillates`), and the mean strain is below p₋.
 
         >>> from lwa import Cell, Power
         >>> shock(Cell([1], spacing=1), Power("3/2"), "p", 0).plateau
         2*sqrt(6)*p**(5/4)/5
         """
         return waves.tidy(self._gained * self._field.time_scale)
-
-    @cached_property
-    def mean_strain(self) -> Estimate:
-        """Mean strain of contacts ten and more from a wall that moves at the velocity v_p.
-
-        It is p₋ within the error, or the measured part of p₋ for a power law without load.
-        Raises `lwa.InputError` for symbols, and where nothing was measured: powers beyond k = 10
-        without load, unequal beads beyond c₋ = 2 c₊.
-        """
-        demand_numbers(self._free, "numbers are wanted")
-        behind, jump = float(self.behind), float(abs(self.behind - self.ahead))
-        if self._gain.is_negative:  # a rarefaction leaves nothing that oscillates
-            return Estimate(behind, 0.0)
-        if not (self.cell.uniform or self.ratio <= bounds.RESTING):
-            raise InputError("unequal beads beyond c₋ = 2 c₊: the mean strain is not known")
-        if self.law.homogeneous and self.ahead.is_zero and self.cell.uniform:
-            part = bounds.mean_of_power(float(self.law.exponent))
-            if math.isnan(part):
-                raise InputError("k is beyond 10: the mean strain without load is not known")
-            return Estimate(part * behind, bounds.MEAN_ERROR * behind)
-        exact = self._toda and self.ratio <= bounds.RESTING
-        return Estimate(behind, 0.0 if exact else bounds.mean_error(float(self.ratio)) * jump)
 
     @cached_property
     def trailing_speed(self) -> sp.Expr:
@@ -167,24 +143,16 @@ class Shock(Value):
     def errors(self) -> dict[str, float]:
         """Relative errors of the results, as measured on driven chains (`lwa.shocks.bounds`).
 
-        The keys are "behind", "plateau", "trailing_speed", "dispersion" and "doubling" (of
-        `leading_speed`), "peak" and "peak_force". Unknown errors and those of symbols are left out.
+        The keys are "trailing_speed", "dispersion" and "doubling" (of `leading_speed`), "peak" and
+        "peak_force". Unknown errors and those of symbols are left out.
         """
         if self._free or self.kind == "rarefaction":
             return {}
         found: dict[str, float] = {}
-        for errors in (self._plateau_errors, self._pulse_errors, self._edge_errors):
+        for errors in (self._pulse_errors, self._edge_errors):
             with suppress(InputError):
                 found |= errors()
         return found
-
-    def _plateau_errors(self) -> dict[str, float]:
-        """Part by which p₋ exceeds the mean strain, and the wall must be faster to make it p₋."""
-        mean, jump = self.mean_strain, float(self.behind - self.ahead)
-        short = abs(float(self.behind) - mean.value) + mean.error
-        reached = self.ahead + sp.Float(jump / (1 - short / abs(jump)))
-        faster = float(abs(waves.velocity(self._field, reached) / self._gained)) - 1
-        return {"behind": abs(short / float(self.behind or 1)), "plateau": faster}
 
     def _pulse_errors(self) -> dict[str, float]:
         pulse, peak = self._pulse, sp.N(self.peak)

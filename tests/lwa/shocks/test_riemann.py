@@ -154,7 +154,7 @@ def test_a_long_exponent_is_a_number_of_twenty_digits(k, behind, ahead):
     v = 2 * k**0.5 * (p ** ((k + 1) / 2) - q ** ((k + 1) / 2)) / (k + 1)
     assert float(found.plateau) == pytest.approx(v, rel=1e-13)
     assert float(found.rise * found.leading_speed()) == pytest.approx(2 * v, rel=1e-13)
-    assert {"doubling", "peak", "peak_force", "plateau"} <= {*found.errors}
+    assert {"doubling", "peak", "peak_force"} <= {*found.errors}
 
 
 def test_the_series_in_k_minus_1_has_beads_at_twice_the_wall():
@@ -253,8 +253,6 @@ def test_si_units():
         (lambda: shock(EQUAL, WAVY, 5, 1), "changes its sign at the strain 3.1"),
         (lambda: shock(Dimer("a", "b"), HERTZ, 2, 1).leading_speed("dispersion"), "has no value"),
         (lambda: shock(Dimer(1, 2), HERTZ, 2, 1).trailing_speed, "known for equal beads"),
-        (lambda: shock(Dimer(1, 2), HERTZ, 9**4, 1).mean_strain, "the mean strain is not known"),
-        (lambda: shock(EQUAL, Power(11), 1).mean_strain, "k is beyond 10"),
         (lambda: shock(Cell(["m"]), HERTZ, 1, 0).wave, "has no value: sums of series"),
         (lambda: piston(Cell(["m"]), TODA, 1), "has no value: numbers are wanted"),
     ],
