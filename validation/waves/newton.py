@@ -17,8 +17,7 @@ Profiles are trigonometric polynomials of period 2L, |ξ| ≤ L (L is the half p
 accurate.
 
 **The tail.** At q → 0 the second line of (*) has a pole: forces that end leave strains o = ±T
-behind. T is 0 for a solitary wave. `Problem.wave` can impose T = 0 with one more unknown: m2, or at
-given masses the size s of a kick, a term s ξ e^{-2ξ²} added to the odd force.
+behind. T is 0 for a solitary wave. `Problem.wave` can impose T = 0 with one more unknown, m2.
 
 **Under a load.** On a background strain p0, a and b are the additional strains, r → 0 far away, and
 F = (p0 + r)_+^k - p0^k; (*) stays.
@@ -157,45 +156,39 @@ class Problem:
             return to(at)
         return np.asarray((to(at) + to(-at)) * np.where(at % n == 0, 0.5, 1.0))
 
-    def wave(self, z: Array, c2: float, unknown: str = "") -> tuple[Array, float, float]:
+    def wave(self, z: Array, c2: float, free: bool = False) -> tuple[Array, float, float]:
         """Solve for the wave near the forces ``z`` and squared speed ``c2``.
 
-        unknown : "mass" or "kick" to impose T = 0 with one more unknown.
-        Returns the forces, c², and the last unknown: c², or 1/m2, or the kick's size s.
+        free : True to impose T = 0 with one more unknown, m2.
+        Returns the forces, c² and 1/m2.
         Raises `numpy.linalg.LinAlgError` if Newton's method does not converge.
         """
-        last = {"": (), "mass": (self.inverse[1],), "kick": (0.0,)}[unknown]
+        last = (self.inverse[1],) if free else ()
         size = np.append(np.full(self.count, 2 * self.height), [abs(x) or 1.0 for x in (c2, *last)])
         start = np.append(z[: self.count] * (self.height / z[0]), (c2, *last))
-        x = newton(lambda x: self._step(x, unknown), start, size)
-        return x[: self.count], float(x[self.count]), float(x[-1])
+        x = newton(lambda x: self._step(x, free), start, size)
+        return x[: self.count], float(x[self.count]), float(x[-1]) if free else self.inverse[1]
 
-    def _step(self, x: Array, unknown: str) -> Array:
+    def _step(self, x: Array, free: bool) -> Array:
         """Return the Newton step to be subtracted from the unknowns x."""
         count, xi = self.count, self.xi
         z, c2 = x[:count], x[count]
-        inverse = self.inverse[0], x[-1] if unknown == "mass" else self.inverse[1]
+        inverse = self.inverse[0], x[-1] if free else self.inverse[1]
         a = self.strains(z, inverse) / c2
         slope = self.k * np.maximum(self.p0 + a, 0) ** (self.k - 1) / c2
         fault = z - rise(a, self.k, self.p0)
         columns, rows, faults = [slope * a], [np.eye(1, count)[0]], [z[0] - self.height]
-        corner = np.zeros((1 + bool(unknown),) * 2)
-        # The kick's size depends smoothly on m2/m1 and is 0 exactly where T is 0 without a kick.
-        kick = xi * np.exp(-2 * xi**2) if unknown == "kick" else 0 * xi
-        if unknown:
+        corner = np.zeros((1 + free,) * 2)
+        if free:
             # c² T = Δ ∫_0^∞ E dξ + 2Σ ∫_0^∞ ξ O dξ = ∫ [(ξ - 1/2)/m1 + (ξ + 1/2)/m2] F_a dξ, and
             # its derivative by 1/m2.
             one, two = (self.L / self.n * (xi * (xi < self.L) + s / 2) for s in (-1, 1))
             tail = inverse[0] * one + inverse[1] * two
             rows, faults = [*rows, tail], [*faults, tail @ z]
-            if unknown == "mass":
-                columns.append(-slope * self.strains(z, (0, 1)))
-                corner[1, 1] = two @ z
-            else:
-                fault -= x[-1] * kick
-                columns.append(-kick)
-        # The force of an open contact without a kick is known: it leaves the linear system.
-        on = (slope != 0) | (kick != 0)
+            columns.append(-slope * self.strains(z, (0, 1)))
+            corner[1, 1] = two @ z
+        # The force of an open contact is known: it leaves the linear system.
+        on = slope != 0
         known = np.where(on, 0, fault)
         right = (fault + slope * self.strains(known, inverse))[on]
         at = np.flatnonzero(on)

@@ -41,7 +41,7 @@ def solve(
     Raises `NoWave` if the method does not converge.
     """
     problem = newton.Problem(masses, k, half_period, points)
-    return converged(problem, initial(problem, start), "mass" if free else "")[0]
+    return converged(problem, initial(problem, start), free)
 
 
 def initial(problem: newton.Problem, wave: ExactWave | None = None) -> Start:
@@ -60,14 +60,14 @@ def initial(problem: newton.Problem, wave: ExactWave | None = None) -> Start:
     return force, c2 * float(force[0]) ** ((1 - k) / k)
 
 
-def converged(problem: newton.Problem, start: Start, unknown: str = "") -> tuple[ExactWave, float]:
-    """Return the wave that a start converges to, and the last unknown of `Problem.wave`."""
+def converged(problem: newton.Problem, start: Start, free: bool = False) -> ExactWave:
+    """Return the wave that a start converges to; with ``free`` the one at a solitary wave's m2."""
     masses = problem.masses
     try:
-        forces, c2, last = problem.wave(*start, unknown)
+        forces, c2, inverse = problem.wave(*start, free)
     except np.linalg.LinAlgError:
         on = f" on {problem.p0:g}" if problem.p0 else ""
         raise NoWave(f"Newton's method finds no wave{on}", masses, problem.k) from None
-    if unknown == "mass":
-        masses = masses[0], 1 / last
-    return at_unit_force(masses, problem, forces, c2), last
+    if free:
+        masses = masses[0], 1 / inverse
+    return at_unit_force(masses, problem, forces, c2)

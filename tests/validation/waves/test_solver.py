@@ -160,7 +160,7 @@ def test_special_ratios_for_other_exponents(specials):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("k", "count"), [(1.1, 3), (5, 2)])
+@pytest.mark.parametrize(("k", "count"), [(1.2, 4), (5, 2)])
 def test_special_ratios_far_from_hertz(k, count):
     """Near k = 1, √(m1/m2) grows by equal steps: the light beads' oscillations, in order."""
     waves = resonances(k, count)
@@ -235,7 +235,7 @@ def test_a_ratio_in_seven_digits_is_the_special_ratio(specials, off):
         pytest.param(0.3, 1.1, marks=pytest.mark.slow),
     ],
 )
-def test_a_ratio_without_a_solitary_wave_names_the_tail_and_the_ways_on(omega, k):
+def test_a_ratio_without_a_solitary_wave_names_the_ways_on_and_no_tail(omega, k):
     with pytest.raises(NoWave) as caught:
         exact_wave([1, omega], k)
     message = str(caught.value)
@@ -243,20 +243,7 @@ def test_a_ratio_without_a_solitary_wave_names_the_tail_and_the_ways_on(omega, k
     assert f"k = {k:g}, masses 1, {omega:.10g}" in message
     assert "resonances" in message
     assert "sweep" in message
-    assert (tail := re.search(r"a tail of about (\S+) of the peak strain", message))
-    assert 1e-9 < float(tail[1]) < 1
-
-
-def test_the_tail_of_a_refusal_is_that_of_a_resolved_wave():
-    """Linear in the distance from the special ratio, on a rough grid as on a fine one."""
-    (special,) = resonances(1.5, 1)
-    for off in (-1e-2, -1e-3, -1e-4):
-        masses = 1.0, special.omega * (1 + off)
-        with pytest.raises(NoWave) as caught:
-            exact_wave(masses, 1.5)
-        found = float(re.search(r"a tail of about (\S+) of", str(caught.value))[1])
-        resolved = solve(masses, 1.5, special.half_period, start=special).tail
-        assert found == pytest.approx(resolved, rel=0.3)  # one digit is printed
+    assert "tail" not in message
 
 
 def test_the_report_holds_every_number_of_a_wave(hertz):
