@@ -14,7 +14,8 @@ from typing import Any
 import sympy as sp
 from pulse import StruckPulse, struck_pulse
 
-from lwa import Cell, Dimer, InputError, Resummed, canonical_wave, expand, homogenize
+from lwa import Cell, Dimer, InputError, canonical_wave, expand, homogenize
+from lwa.expansion.approximants import Resummed
 
 THEORIES = ("paper's closure", "canonical wave", "series, 8 orders")
 ORDERS = 8

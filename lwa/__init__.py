@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from lwa.envelopes.schrodinger import Envelope as Envelope
     from lwa.envelopes.schrodinger import envelope as envelope
     from lwa.equation.pde import PDE as PDE
-    from lwa.expansion.approximants import Resummed as Resummed
     from lwa.expansion.expand import Expansion as Expansion
     from lwa.expansion.expand import expand as expand
     from lwa.expansion.physical import ExpandedWave as ExpandedWave
@@ -66,7 +65,6 @@ _HOMES = {
     "lwa.cell": "Cell D Dimer k",
     "lwa.envelopes.schrodinger": "Breather Envelope envelope",
     "lwa.equation.pde": "PDE",
-    "lwa.expansion.approximants": "Resummed",
     "lwa.expansion.expand": "Expansion expand",
     "lwa.expansion.physical": "ExpandedWave Strike pulse_of_strike",
     "lwa.law": "Law Power general",

@@ -44,10 +44,9 @@ def sums(exponents, orders):
     for k in map(sp.Rational, exponents):
         true = lattice(float(k))[0]
         for name, row in every.items():
-            known = row._for(k)
+            unit = row.prefactor * (k - 1) ** row.power
             for order in orders:
-                terms = known.coefficients[: order + 1]
-                total = resum(terms, k - 1, unit=known._unit)
+                total = resum(row.coefficients[: order + 1], k - 1, unit=unit)
                 found.append((total.error / true[name], abs(total.value / true[name] - 1)))
     return np.array(found).T
 
@@ -105,7 +104,7 @@ def struck_dimer(k, mass):
 
 
 @pytest.mark.parametrize(
-    ("k", "mass"), [("3/2", "1/2"), ("3/2", "7/10"), ("11/10", "7/10"), ("23/20", "3/5")]
+    ("k", "mass"), [("11/10", "7/10"), ("23/20", "3/5"), ("6/5", "7/10"), ("3/2", "4/5")]
 )
 def test_the_bound_of_the_radiation(k, mass):
     """The pulse of a struck dimer radiates and decays."""
@@ -118,7 +117,7 @@ def test_the_bound_of_the_radiation(k, mass):
 
 @pytest.mark.parametrize(
     ("k", "mass"),
-    [("11/10", "7/10"), ("23/20", "13/20"), ("6/5", "1/2"), ("5/4", "11/20"), ("7/5", "9/20")],
+    [("11/10", "7/10"), ("11/10", "3/5"), ("23/20", "1/2"), ("6/5", "4/5"), ("5/4", "4/5")],
 )
 def test_the_error_of_a_width_near_resonance(k, mass):
     """The series of unlike beads is asymptotic: a term that is small by chance does not end it."""

@@ -83,9 +83,9 @@ def angle(context: click.Context, option: click.Parameter, text: str) -> sp.Expr
     return sp.Rational(int(part[1] or 1), int(part[2] or 1)) * sp.pi
 
 
-def count(context: click.Context, option: click.Parameter, text: str) -> int:
+def count(context: click.Context, option: click.Parameter, text: str | None) -> int | None:
     """Read an integer from 1 on."""
-    return integer(read_exact(text, called(option)), called(option), 1)
+    return None if text is None else integer(read_exact(text, called(option)), called(option), 1)
 
 
 def contact_law(
@@ -137,9 +137,9 @@ def exponent_option(default: str) -> Option:
     return value("--k", "Exponent k of the force A δ^k of a contact.", default)
 
 
-def order_option(says: str) -> Option:
-    """Make the option ``--order``."""
-    return value("--order", says, "4", count, "N")
+def order_option(says: str, default: str | None = "4") -> Option:
+    """Make the option ``--order``; without a default the command chooses."""
+    return value("--order", says, default, count, "N")
 
 
 def law_option(says: str) -> Option:
@@ -220,8 +220,7 @@ def theory_options(formats: Sequence[str]) -> Option:
     )
 
 
-def series_options(exponent: str, order: str) -> Option:
-    """Make the options of a command on a series; ``exponent`` is the default of ``--k``."""
-    return together(
-        exponent_option(exponent), MASSES, STIFFNESSES, order_option(order), style_option()
-    )
+def series_options(exponent: str, order: str, default: str | None = "4") -> Option:
+    """Make the options of a command on a series, with the defaults of ``--k`` and ``--order``."""
+    highest = order_option(order, default)
+    return together(exponent_option(exponent), MASSES, STIFFNESSES, highest, style_option())

@@ -15,7 +15,7 @@ from lwa.cell import k
 from lwa.command.chain import ChainInput, take_chain
 from lwa.command.options import FORCE, SPHERES, series_options
 from lwa.command.rows import Answer, Row, Values, attempt
-from lwa.command.waves import WIDTHS, radiation_note
+from lwa.command.waves import WIDTHS
 from lwa.expansion.approximants import Resummed
 from lwa.expansion.expand import Expansion, expand
 from lwa.expansion.physical import ExpandedWave
@@ -23,10 +23,10 @@ from lwa.expansion.series import EpsilonSeries
 
 
 @click.command()
-@series_options(k.name, "Highest power of ε = k - 1, an integer.")
+@series_options(k.name, "Highest power of ε = k - 1; by default 8, or 4 with symbols.", None)
 @FORCE
 @SPHERES
-def expansion(order: int, style: str, force: sp.Expr | None, **options: Any) -> None:
+def expansion(order: int | None, style: str, force: sp.Expr | None, **options: Any) -> None:
     """Expand the lattice's own wave in ε = k - 1, and sum the series.
 
     Each sum comes with an estimate of its absolute error, at the peak force 1 on the first contact
@@ -42,7 +42,9 @@ def expansion(order: int, style: str, force: sp.Expr | None, **options: Any) -> 
     if force is not None and not spheres:
         raise InputError("--force goes with --spheres: other chains have no units")
     chain = take_chain(options)
-    expanded = expand(chain.cell, order, law=chain.law)
+    expanded = expand(chain.cell, order or 4, law=chain.law)
+    if order is None and expanded.numeric:
+        expanded = expand(chain.cell, 8, law=chain.law)
     answer = _answer(chain, expanded)
     if spheres and chain.cell.spacing.is_number:
         wave = ExpandedWave(expanded, sp.S.One if force is None else force)
@@ -91,7 +93,6 @@ def _answer(chain: ChainInput, expanded: Expansion) -> Answer:
         rows += [Row(key, _LABELS[key], value) for key, value in sums.items()]
         if cell.size == 2:
             rows.append("  (of the mean of a dimer's two contacts, which differ behind a striker)")
-        notes = [*notes, *radiation_note(cell, expanded.k)]
     return Answer(head, rows, shown=[expanded], notes=notes)
 
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import click
 import sympy as sp
 
-from lwa.base.exact import InputError, read_exact
+from lwa.base.exact import InputError, evaluated, read_exact
 from lwa.base.frozen import Shown
 from lwa.base.quantities import QUANTITIES, NoSolitaryWave
-from lwa.cell import Cell
 from lwa.command.chain import ChainInput, take_chain
 from lwa.command.derivation import FIELDS, chain_json
 from lwa.command.options import (
@@ -27,15 +27,11 @@ from lwa.spheres.hertz import EXPONENT
 from lwa.theory import Theory, homogenize
 from lwa.wave.physical import PhysicalWave
 from lwa.wave.source import LANGUAGES
-from lwa.wave.traveling import TravelingWave
+from lwa.wave.traveling import TravelingWave, canonical_wave
 
 if TYPE_CHECKING:
     from lwa.loaded.background import Background
     from lwa.loaded.wave import LoadedWave
-
-# Error by radiation (`lwa.expansion.radiation`) from which on a note is printed: for dimers of
-# spheres m2/m1 = 0.06 … 0.73.
-RADIATES = 0.05
 
 # Compression over the spacing from which on a note is printed: the radius of contact of equal
 # spheres is then a tenth of their radius R, a/R = √(δ/2R), where Hertz (1882) wants a ≪ R.
@@ -125,22 +121,6 @@ def _demand_canonical(options: dict[str, Any]) -> None:
         options[name] = wanted
 
 
-def radiation_note(cell: Cell, k: sp.Expr) -> list[str]:
-    """Note on the radiation of unlike beads; [] if its bound is below `RADIATES`."""
-    if any(x.free_symbols for x in (k, *cell.masses, *cell.stiffnesses)):
-        return []
-    from lwa.expansion.radiation import radiated  # start-up: it loads NumPy
-
-    lost = radiated(cell, k)
-    if lost < RADIATES:
-        return []
-    return [
-        "between isolated mass ratios these unlike beads have no true solitary wave: a pulse "
-        f"radiates and decays, which the theory leaves out (bound on speed² and widths: {lost:.0%})"
-        "; the force of a contact may have several humps, of which a width is the highest one's"
-    ]
-
-
 def hertz_note(chain: ChainInput, force: sp.Expr) -> list[str]:
     """Note on a force that presses spheres too much for Hertz's contact; [] for other chains."""
     cell = chain.cell
@@ -183,8 +163,8 @@ def _compact(chain: ChainInput, theory: Theory, wave: TravelingWave, style: str)
         Row("", "the other root, p", second.p),
         Row("", "with a", second.a),
     ]
-    notes = radiation_note(theory.cell, wave.k)
-    return Answer(head, rows, spacing=wave.D, shown=[theory.pde, wave, first], notes=notes)
+    parts = _canonical(chain, theory, None)
+    return Answer(head, rows, spacing=wave.D, shown=[theory.pde, wave, first], parts=parts)
 
 
 _REDUCTION = ("p", "a", "mu", "eta", "sigma", "s")  # of the paper's v = z^p
@@ -194,6 +174,7 @@ def _at_force(chain: ChainInput, theory: Theory, at: PhysicalWave | LoadedWave) 
     """Rows of the wave of a peak contact force F, without or under a load, with speeds dx/dt."""
     notes = hertz_note(chain, at.force)
     shown: list[Shown] = [at]
+    parts: dict[str, Answer] = {}
     if not isinstance(at, PhysicalWave):
         scale, peak = at.field.time_scale, "rise of the"
         V_s = sp.powsimp(at.speed / scale)
@@ -212,7 +193,7 @@ def _at_force(chain: ChainInput, theory: Theory, at: PhysicalWave | LoadedWave) 
             Row("width", "", at.wave.width, "m"),
             Row("speed_factor", "", at.wave.speed_factor),
         ]
-        notes = [*radiation_note(chain.cell, at.wave.k), *notes]
+        parts = _canonical(chain, theory, at.force)
         shown = [at.wave, at]
     rows: list[Row | str] = [
         f"endless chain {ahead}; closure {theory.closure.name}; {FIELDS[theory.closure.field]}",
@@ -230,7 +211,36 @@ def _at_force(chain: ChainInput, theory: Theory, at: PhysicalWave | LoadedWave) 
         Row("time_scale", "", scale, "m/s"),
         *more,
     ]
-    return Answer(chain_json(theory), rows, chain.si, theory.cell.spacing, shown, notes)
+    return Answer(chain_json(theory), rows, chain.si, theory.cell.spacing, shown, notes, parts)
+
+
+def _canonical(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> dict[str, Answer]:
+    """Speed and widths of the canonical wave, beside the linear closure's; {} where it has none.
+
+    The numbers of the linear closure depend on the bead that is called first, those of the
+    canonical wave do not. Without a force they are at B = 1, and the speed is V_s.
+    """
+    cell, k = chain.cell, chain.law.exponent
+    numbers = (k, *cell.masses, *cell.stiffnesses, sp.S.One if force is None else force)
+    linear = theory.closure.name == "linear" and theory.amplitude_ratio == 1
+    if cell.uniform or not linear or any(x.free_symbols for x in numbers):
+        return {}
+    wave = canonical_wave(cell, k)
+    at = wave if force is None else wave.at_force(force)
+    speed = wave.speed(sp.S.One) if force is None else at.speed
+    width, answer = at.fwhm("force"), Answer({}, (), chain.si, cell.spacing)
+    name, pace, length = ("V_s at B = 1", "", "") if force is None else ("dx/dt", " m/s", " m")
+    if not chain.si:
+        length = f" {cell.spacing}" * cell.spacing.is_Symbol
+        pace = length if force is not None else ""
+    speed_text, width_text = (sp.sstr(evaluated(answer.plain(x), 6)) for x in (speed, width))
+    rows: list[Row | str] = [
+        f"consistent closure, whichever bead is the first: {name} {speed_text}{pace}, "
+        f"FWHM of the force {width_text}{length}",
+        Row("speed", "", speed, "m/s", expression=False),
+        *(Row(f"fwhm.{q}", "", at.fwhm(q), "m", expression=False) for q in QUANTITIES),
+    ]
+    return {"canonical": replace(answer, rows=rows)}
 
 
 def _width_rows(at: PhysicalWave | LoadedWave) -> list[Row]:

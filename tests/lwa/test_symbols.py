@@ -74,8 +74,8 @@ def results(m1, m2, k, D):
     numeric = NumericWave(wave)
     yield "numeric", sp.Float(float(numeric.beta(1.4, 0.2)), 17)
     series = expand(Cell((m1, m2)), 1, k=k)
-    yield from (("c2", series.c2.pade(None, 1, 0)), ("E", series.energy.pade(None, 0, 1)))
-    yield "width", series.fwhm("velocity").pade(None, 0, 1)
+    for row in (series.c2, series.energy, series.fwhm("velocity")):
+        yield row.quantity, row.prefactor * row.coefficients[1]
 
 
 NEUTRAL = {role: sp.Symbol(f"role_{role}", positive=True) for role in ROLES}

@@ -185,7 +185,7 @@ def test_estimates_bound_the_errors_of_dimers(k, omega):
         assert abs(found.value - value) <= found.error + 3 * wave.tail * value, name
 
 
-@pytest.mark.parametrize(("omega", "bound"), [("1/100", 1e-3), ("4/5", 1e-2)])
+@pytest.mark.parametrize(("omega", "bound"), [("1/100", 1e-3), ("9/10", 1e-2)])
 def test_hertz_dimer_to_a_percent_against_struck_chains(omega, bound):
     numbers = point(HERTZ, sp.Rational(omega), STRETCH).numbers
     expansion = expand(Cell([1, omega]), 8)
@@ -196,11 +196,10 @@ def test_hertz_dimer_to_a_percent_against_struck_chains(omega, bound):
         assert found.asymptotic
 
 
-def test_between_resonances_the_series_claims_no_digit():
+def test_between_resonances_the_series_has_no_sum():
     """ω = 0.55: no solitary wave is near, and the true decay per site is measurable."""
-    found = series("11/20", 8)["force"].at(HERTZ)
-    assert found.asymptotic
-    assert found.error > 0.2 * found.value
+    with pytest.raises(InputError, match="over 10% of it"):
+        series("11/20", 8)["force"].at(HERTZ)
 
 
 @pytest.fixture(scope="module")
@@ -247,9 +246,9 @@ def test_the_curves_of_a_theory_look_alike_in_both_panels(places):
 
 
 def test_missing_truths_and_sums_are_named():
-    """A pulse that a later one overtakes, and a series of one order at k = 3."""
+    """A pulse that a later one overtakes, and a series at k = 8."""
     with pytest.raises(MeasureError, match=r"^not steady: "):
         place(HERTZ, sp.Rational(11, 20), STRUCK_CHAIN)
-    missing = {row["theory"]: row["missing"] for row in place(sp.S(3), sp.S.One)["rows"]}
-    assert missing["ε^1"].startswith("no sum at k = 3: to ε^1")
+    missing = {row["theory"]: row["missing"] for row in place(sp.S(8), sp.S.One)["rows"]}
+    assert missing["ε^6"].startswith("no sum at k = 8: to ε^6")
     assert missing["linear closure"] is None

@@ -103,14 +103,25 @@ def test_wave_in_forces(capsys):
     assert f"{sp.N(wave.speed, 15)}"[:16] in out
 
 
-def test_unlike_beads_without_a_solitary_wave_get_a_note(capsys):
-    """ω = 0.55 has no solitary wave, ω = 0.02 radiates next to nothing."""
-    for omega, noted in (("0.55", True), ("0.02", False)):
-        for command in (("wave", "--closure", "full", "--field", "center"), ("expansion",)):
-            options = (*command, "--k", "3/2", "--masses", f"1,{omega}")
-            assert ("notes" in result(capsys, *options)) == noted
-    out = said(capsys, "wave", "--k", "3/2", "--masses", "1,0.55")
-    assert "no true solitary wave" in out
+def test_the_canonical_numbers_stand_beside_the_linear_closures(capsys):
+    """The lattice's pulse at the paper's masses has the speed 1.705 and the FWHM 2.50."""
+    options = ("wave", "--k", "3/2", "--spacing", "1")
+    for force in ((), ("--force", "1")):
+        light, heavy = (
+            result(capsys, *options, "--masses", masses, *force)
+            for masses in ("0.123,0.45", "0.45,0.123")
+        )
+        assert light["speed_value"] < 0.6 * heavy["speed_value"]
+        assert light["canonical"]["speed_value"] == heavy["canonical"]["speed_value"]
+        assert light["canonical"]["fwhm_value"] == heavy["canonical"]["fwhm_value"]
+    assert heavy["canonical"]["speed_value"] == pytest.approx(1.705, rel=0.02)
+    assert heavy["canonical"]["fwhm_value"]["force"] == pytest.approx(2.50, rel=0.17)
+    full = (*options, "--masses", "0.123,0.45", "--closure", "full", "--field", "center")
+    own = result(capsys, *full, "--force", "1")
+    assert "canonical" not in own
+    assert own["speed_value"] == pytest.approx(heavy["canonical"]["speed_value"], rel=1e-14)
+    out = said(capsys, *options, "--masses", "0.123,0.45", "--force", "1")
+    assert "dx/dt 1.67102, FWHM of the force 2.09636" in out
 
 
 def test_bands_in_si(capsys):

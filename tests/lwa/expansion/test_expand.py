@@ -130,20 +130,6 @@ def test_first_correction_of_a_dimer_is_a_closed_form() -> None:
     assert same(w_1.subs(OMEGA, 1 / OMEGA), w_1)
 
 
-def test_pade_agrees_with_its_series() -> None:
-    """[L/M] reproduces the coefficients up to L + M."""
-    series = wave("equal").c2
-    epsilon = sp.Symbol("e")
-    for L, M in ((1, 2), (2, 1), (0, 3)):
-        k = sp.Symbol("k", positive=True)
-        form = series.pade(k, L, M)
-        form = form.subs(next(iter(form.free_symbols)), 1 + epsilon)
-        again = sp.series(form, epsilon, 0, L + M + 1).removeO()
-        assert [again.coeff(epsilon, n) for n in range(L + M + 1)] == list(
-            series.coefficients[: L + M + 1]
-        )
-
-
 def test_radiation_falls_exponentially_and_vanishes_for_equal_beads() -> None:
     """log R is about linear in 1/ε while R is small: e^{-S/ε}."""
     assert radiated(Cell([1, 1]), sp.Rational(3, 2)) == 0

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-import numpy as np
 import pytest
 import sympy as sp
 
@@ -19,43 +18,20 @@ def test_a_series_of_a_number_k_is_summed_there_only() -> None:
     stiff, unit = (expand(Cell([1], [A]), 12, k="6/5").c2.at() for A in (8, 1))
     assert stiff.value == pytest.approx(8 ** (5 / 6) * unit.value, rel=1e-14)
     series = expand(Cell([1], [8]), 12, k="3/2").c2
-    for call in (
-        lambda: series.at("6/5"),
-        lambda: series.at("3/2"),
-        lambda: series.pade("k", 1, 1),
-    ):
+    for other in ("6/5", "3/2"):
         with pytest.raises(InputError, match="that of k = 3/2"):
-            call()
+            series.at(other)
 
 
 def test_k_replaces_the_symbol_wherever_it_stands() -> None:
     """Prefactor, shares of unlike contacts, radiation."""
-    k, cell = sp.Rational(11, 10), Cell([1, 3], [1, 2])
-    symbolic, numeric = expand(cell, 2), expand(cell, 2, k=k)
+    k, cell = sp.Rational(101, 100), Cell([1, 3], [1, 2])
+    symbolic, numeric = expand(cell, 6), expand(cell, 6, k=k)
     for read in (lambda e: e.c2, lambda e: e.fwhm("velocity")):
-        ours, own = read(symbolic), read(numeric)
-        assert ours.at(k).value == pytest.approx(own.at().value, rel=1e-14)
-        assert ours.at(k).error == pytest.approx(own.at().error, rel=1e-9)
-        for M in (0, 1):
-            ratio = sp.N(ours.pade(k, 1, M) / own.pade(None, 1, M), 30)
-            assert ratio == pytest.approx(1, rel=1e-25)
+        ours, own = read(symbolic).at(k), read(numeric).at()
+        assert ours.value == pytest.approx(own.value, rel=1e-14)
+        assert ours.error == pytest.approx(own.error, rel=1e-9)
     assert symbolic.at(k=k) == numeric
-
-
-def test_a_symbol_for_k_stays_or_is_renamed() -> None:
-    series = expand(Cell([1], [8]), 2).c2
-    x = sp.Symbol("x", positive=True)
-    assert series.pade(x, 1, 1) == series.pade(None, 1, 1).xreplace({series.k: x})
-    with pytest.raises(InputError, match="has no value"):
-        series.at()
-    with pytest.raises(InputError, match="names both"):
-        expand(Cell(["x"]), 2).c2.pade("x", 2, 0)
-
-
-def test_orders_and_degrees_are_numpy_s_integers_too() -> None:
-    series, wave = expand(Cell([1]), np.int64(2)).c2, expand(Cell([1, 2]), 1)
-    assert series.pade("k", np.int64(1), np.int64(1)) == series.pade("k", 1, 1)
-    assert wave.log_force(np.int64(1)) == wave.log_force(1)
 
 
 def test_radiation_of_irrational_shares_is_that_of_their_neighbours() -> None:
@@ -65,17 +41,9 @@ def test_radiation_of_irrational_shares_is_that_of_their_neighbours() -> None:
         assert parameters(Cell([1, 1], [1, 8]), k) == pytest.approx(near, rel=1e-7)
 
 
-def test_irrational_shares_leave_no_terms_alike() -> None:
-    """Powers of 3^{1/3} are collected, as SymPy does it: a sum that is built anew is the same."""
-    for a in expand(Cell([1, 2], [1, 3]), 2, k="3/2").c2.coefficients[1:]:
-        for part in a.atoms(sp.Add):
-            assert part == sp.Add(*(sp.Mul(*term.as_ordered_factors()) for term in part.args))
-            assert len(part.args) <= 3
-
-
 def test_an_unlike_contacts_radiation_counts_in_the_error() -> None:
-    """Between rational shares the error is what its neighbours' are."""
-    errors = [expand(Cell([1, 2], [1, A]), 2, k="6/5").c2.at().error for A in ("2.99", 3, "3.01")]
+    """Between rational shares the error is that of their neighbours."""
+    errors = [expand(Cell([1, 2], [1, A]), 6, k="26/25").c2.at().error for A in ("2.99", 3, "3.01")]
     assert errors[1] == pytest.approx((errors[0] + errors[2]) / 2, rel=1e-3)
 
 
@@ -120,29 +88,20 @@ def test_a_place_is_real_and_a_mass_called_like_it_is_refused() -> None:
 
 DIMER, ONE = Cell([1, 2]), Cell([1])
 REFUSALS = {
-    "symbols": (lambda: expand(Dimer("m1", "m2"), 2).c2.at("3/2"), "has no value"),
-    "symbolic k": (lambda: expand(ONE, 2).c2.at("k"), "k"),
-    "k = 1": (lambda: expand(ONE, 2).c2.at(1), "k is 1"),
-    "long Padé": (lambda: expand(ONE, 4).c2.pade("k", 3, 3), "order 4"),
-    "float degree": (lambda: expand(ONE, 2).c2.pade("k", 1.0, 1), "numerator is 1.0"),
-    "negative degree": (lambda: expand(ONE, 2).c2.pade("k", -1, 1), "numerator is -1"),
-    "contact True": (lambda: expand(DIMER, 1).log_force(True), "contact is True"),
-    "contact text": (lambda: expand(DIMER, 1).log_force("0"), "contact is '0'"),
-    "contact -1": (lambda: expand(DIMER, 1).log_force(-1), "contact is -1"),
-    "contact 2": (lambda: expand(DIMER, 1).log_force(2), "contact is 2"),
+    "symbols": (lambda: expand(Dimer("m1", "m2"), 6).c2.at("3/2"), "has no value"),
+    "symbolic k": (lambda: expand(ONE, 6).c2.at("k"), "k"),
+    "k = 1": (lambda: expand(ONE, 6).c2.at(1), "k is 1"),
+    "low order": (lambda: expand(ONE, 5).c2.at("3/2"), "from order 6 on"),
+    "unlike beads": (lambda: expand(DIMER, 8).c2.at("3/2"), "over 10% of it"),
+    "contact": (lambda: expand(DIMER, 1).log_force(2), "contact is 2"),
     "no cell": (lambda: expand([1, 2], 2), "cell is"),  # type: ignore[arg-type]
     "quantity": (lambda: expand(ONE, 2).fwhm("speed"), "quantity is"),
     "memory": (lambda: expand(Cell(["a", "b"]), 100), "takes more than .* terms"),
-    "high order": (lambda: expand(ONE, 10**18), "takes more than .* terms"),
-    "long numbers": (lambda: expand(Cell([1, "1/50"]), 800), "takes more than .* terms"),
-    "ratios": (lambda: expand(Cell(["a", "b", "c", "d"]), 12), "3 symbolic ratios in a cell of 4"),
-    "many ratios": (lambda: expand(Cell([f"a{i}" for i in range(12)]), 2), "11 symbolic ratios"),
     "digits": (lambda: expand(Cell([1], [Fraction(1, 10**400 + 1)]), 4), "digits"),
-    "small": (lambda: expand(Cell([1, Fraction(1, 10**300)]), 4), "digits"),
     "epsilon": (lambda: expand(Cell(["ε", 1]), 1), "ε is k - 1"),
     **{
         f"order {order!r}": (lambda order=order: expand(ONE, order), "order is")
-        for order in (0, -1, True, 2.0, float("nan"), "2")
+        for order in (0, True, "2")
     },
 }
 
