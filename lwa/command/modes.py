@@ -122,12 +122,6 @@ _EARLIER = (
     "contacts open at these values to leading order; on the lattice they open earlier, in dimers "
     "of spheres at about three quarters of the detuning"
 )
-_LOADS = {
-    "frequency": "at this frequency, from the load F0",
-    "amplitude": "at this amplitude, below the load F0",
-}
-
-
 @click.command()
 @cell_options()
 @SPHERES
@@ -170,9 +164,7 @@ def envelope(
 
     Wavenumbers and lengths are in cells, frequencies in radians per unit of time; with --spheres
     frequencies are in Hz, displacements in m and forces in N. In JSON `amplitude` is the largest
-    displacement of each bead, `width` is 1/b of the envelope sech(bn) or tanh(bn), and
-    `opening_load` is the static force at which contacts begin to open at a fixed frequency, or
-    at a fixed amplitude.
+    displacement of each bead, and `width` is 1/b of the envelope sech(bn) or tanh(bn).
     """
     from lwa.envelopes import schrodinger  # here: it loads NumPy, which `lwa dispersion` may spare
 
@@ -228,10 +220,5 @@ def _envelope(chain: ChainInput, equation: Envelope, breather: Breather | None) 
             label = "contacts open from the detuning"
             rows.append(Row("opening_detuning", label, breather.opening_detuning))
             notes.append(_EARLIER)
-        if chain.law.homogeneous:
-            for held, label in _LOADS.items():
-                force = breather.opening_load(held)
-                force = sp.N(force, 15) if force.is_Rational else force  # sixth powers are long
-                rows.append(Row(f"opening_load.{held}", label, force, unit="N"))
     shown = [equation, breather] if breather else [equation]
     return Answer(head, rows, chain.si, equation.cell.spacing, shown, notes)

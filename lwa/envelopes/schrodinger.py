@@ -29,7 +29,7 @@ from numpy.typing import ArrayLike
 
 from lwa.base import latex
 from lwa.base.arrays import Array
-from lwa.base.exact import InputError, integer, one_of, positive, power, read_exact, shorten, signed
+from lwa.base.exact import InputError, integer, one_of, positive, read_exact, shorten, signed
 from lwa.base.frozen import Value
 from lwa.cell import Cell, check_names
 from lwa.envelopes.bloch import cell_mode
@@ -40,7 +40,6 @@ from lwa.linear.bloch import BRANCHES
 LONG = 400  # operations in a result from which on it is not factored: that would take minutes
 
 KINDS = ("bright", "dark")  # localised, ω″χ < 0, or a dip in a wave train
-HELD = ("frequency", "amplitude")  # quantities of a breather that are held while the load changes
 
 
 @dataclass(frozen=True, repr=False)
@@ -210,11 +209,7 @@ class Breather(Value):
             self._refuse(f"{self.kind} breathers lie {side} f0, at values {sign}")
         part = self.detuning / self.opening_detuning
         if part.is_number and part > 1:
-            why = f"contacts open from {float(self.opening_detuning):.5g} on"
-            load = self.opening_load("frequency")
-            if load.is_finite:
-                why += f" at every load; this frequency wants a load of at most {float(load):.5g}"
-            self._refuse(why)
+            self._refuse(f"contacts open from {float(self.opening_detuning):.5g} on")
 
     def _refuse(self, why: str) -> NoReturn:
         raise InputError(f"detuning 1 - f/f0 is {float(self.detuning):.5g}: {why}")
@@ -262,24 +257,6 @@ class Breather(Value):
         spheres of mass ratios 0.3 to 0.5 at 0.018 instead of 3/128 = 0.0234.
         """
         return sp.simplify(self.envelope.opening * self.envelope.nonlinearity / self._shift)
-
-    def opening_load(self, held: str) -> sp.Expr:
-        """Static force at which contacts begin to open; ``held``: "frequency" or "amplitude".
-
-        With the amplitude held contacts open under *smaller* loads; with the frequency held under
-        *greater* ones, which lift the band and so increase the detuning and the amplitude.
-
-        NaN unless the law is a power. Raises `lwa.InputError` for another word.
-        """
-        one_of(held, HELD, "held")
-        nu, limit, law = self.detuning, self.opening_detuning, self.envelope.law
-        if not law.homogeneous:
-            return sp.nan
-        # lengths scale as F0^{1/k} and frequencies as F0^{(k-1)/(2k)}; Δ_o is that of every load
-        k, load = law.exponent, self.envelope.load
-        if held == "amplitude":  # a² ∝ Δ F0^{2/k}
-            return load * power(nu / limit, k / 2)
-        return load * power((1 - nu) / (1 - limit), 2 * k / (k - 1))  # (1 - Δ) F0^{(k-1)/(2k)}
 
     def displacements(self, cells: ArrayLike) -> Array:
         """Displacements of the beads at t = 0 to leading order, a row for each cell; in floats."""

@@ -80,9 +80,5 @@ def test_a_chain_of_spheres_has_hertz_and_metres(capsys, tmp_path):
     amplitude = static * math.sqrt(32 * 0.005 / 0.75)  # U = δ0 √(32 ν/(k (k - 1)))
     assert found["amplitude_value"] == pytest.approx([0, amplitude], rel=1e-9)
     assert found["units"]["amplitude"] == "m"
-    loads = found["opening_load_value"]
-    assert loads["amplitude"] == pytest.approx(20 * (0.005 / (3 / 128)) ** 0.75, rel=1e-9)
-    assert loads["frequency"] == pytest.approx(20 * (0.995 / (125 / 128)) ** 6, rel=1e-9)
     out = said(capsys, *spheres, "--detuning", "1/200")
     assert "frequency ω/(2π) = 8101." in out
-    assert "below the load F0 = 6.278" in out
