@@ -122,6 +122,8 @@ _EARLIER = (
     "contacts open at these values to leading order; on the lattice they open earlier, in dimers "
     "of spheres at about three quarters of the detuning"
 )
+
+
 @click.command()
 @cell_options()
 @SPHERES
@@ -174,9 +176,6 @@ def envelope(
     cell, place = chain.cell, int(branch) if branch and branch.isdecimal() else branch
     load = {"background": background, "precompression": chain.load(background, precompression)}
     equation = schrodinger.envelope(cell, chain.law, **load, wavenumber=wavenumber, branch=place)
-    symbols = {*cell.symbols, *equation.compression.free_symbols, *wavenumber.free_symbols}
-    if not symbols - {cell.spacing} and not sp.cos(wavenumber).is_Rational:
-        equation = equation.numeric()  # exact results want a frequency that is algebraic
     breather = None
     if frequency is not None or detuning is not None:
         angular = frequency and frequency * (2 * sp.pi if chain.si else 1)

@@ -21,12 +21,12 @@ from lwa.law import ContactLaw
 ROUNDING = 1e-7  # a force on a mode, relative to the largest, that counts as none
 SOUND = 1e-5  # 1 - (c_g/c_0)² from which on floats give the mean flow to six digits (1e-11/SOUND)
 
-MOST_SYMBOLS = 5  # beyond which exact coefficients take seconds; unlike contacts count as three
+MOST_SYMBOLS = 5  # beyond which exact coefficients take seconds
 
 K2, K3, K4 = sp.symbols("K2 K3 K4", positive=True)
 """Coefficients of the force K2 δ + K3 δ² + K4 δ³ on top of the load, under `lwa.general()`."""
 
-X, Z = sp.symbols("x z", cls=sp.Dummy)
+X = sp.Dummy("x")
 
 
 def cell_mode(
@@ -59,12 +59,13 @@ def cell_mode(
     sample = Sampled.of(Contacts(m_float, c_float, *samples[-3:-1]), samples[-1], branch)
     if floats:
         mode = sample.mode()
+    elif cell.size == 1:
+        mode = equal_beads(s, t, wavenumber)
     else:
-        unlike = len(set(c)) > 1 and not sp.cos(wavenumber).is_Rational
-        if len(set().union(*(x.free_symbols for x in numbers))) + 3 * unlike > MOST_SYMBOLS:
+        if len(set().union(*(x.free_symbols for x in numbers))) > MOST_SYMBOLS:
             announced("the envelope's equation in these symbols")
-        contacts = Contacts(np.array(masses), np.array(c), s, t)
-        mode = exact_mode(contacts, wavenumber, branch, sample.bead, lambda x: _sampled(cell, x))
+        contacts, edge = Contacts(np.array(masses), np.array(c), s, t), int(sp.cos(wavenumber))
+        mode = edge_mode(contacts, edge, branch, sample.bead, lambda x: _sampled(cell, x))
     rate = sp.powsimp(cell.stiffnesses[0] * first / mass)  # unit of ω²
     return Mode(
         sp.sympify(mode.square) * rate,
@@ -146,7 +147,7 @@ class Sampled:
                 "the mode's group velocity is too close to that of sound, c_g = c_0, for floats: "
                 "its mean flow runs along with it"
                 + "; exact results stand"
-                * (len(contacts.masses) < 3)
+                * (len(contacts.masses) == 1)
             )
         projector = np.outer(self.shape, self.shape.conj())
         resolvent = self._resolvent(4 * x)
@@ -173,88 +174,68 @@ class Sampled:
 # --- exact ---
 
 
+def equal_beads(s: sp.Expr, t: sp.Expr, wavenumber: sp.Expr) -> Mode:
+    """The mode of a cell of one bead in closed form, in the units of `lwa.envelopes.response`.
+
+    With S, C = sin κ/2, cos κ/2: ω = |d| = 2S and c_g = C, hence e0 = -2s |d|²/(1 - C²) = -8s. The
+    second harmonic has G = 4 sin²κ/(4 sin²κ - 16 S²) = -C²/S² and e2 = s d² C²/S².
+    """
+    S, C = sp.sin(wavenumber / 2), sp.cos(wavenumber / 2)
+    cubic = 48 * t * S**4 - 32 * s**2 * S**2 * (1 + S**2)
+    return Mode(4 * S**2, 4 * S * C, -(S**2), cubic, [-8 * s], [4 * S**2], [sp.S.One])
+
+
 @dataclass(frozen=True, eq=False)
 class Root:
-    """Squared frequency x = ω² of a mode at a wavenumber, a root of an irreducible polynomial.
+    """Squared frequency x = ω² of a mode, a root of an irreducible polynomial.
 
     Powers of x in a result are reduced to the lowest ones by division with remainder.
 
-    cosine, phase : cos κ and e^{iκ}. values : mapping from the field's generators to values.
+    values : mapping from the field's generators to values.
     """
 
     value: sp.Expr
     polynomial: sp.Poly
-    cosine: sp.Expr
-    phase: sp.Expr
     values: dict[sp.Symbol, sp.Expr]
 
-    def real(self, element: Any) -> sp.Expr:
-        """Value of an element of the field that does not change with the sign of κ."""
+    def number(self, element: Any) -> sp.Expr:
+        """Value of an element of the field."""
         top, below = (
-            sp.Poly(_in_cosine(part.as_expr(), self.cosine), X, field=True).rem(self.polynomial)
+            sp.Poly(part.as_expr(), X, field=True).rem(self.polynomial)
             for part in (element.numer, element.denom)
         )
         quotient = (top * below.invert(self.polynomial)).rem(self.polynomial)
         reduced = sp.Add(*(sp.factor(c) * self.value**n for (n,), c in quotient.terms()))
         return reduced.xreplace(self.values)
 
-    def complex(self, element: Any) -> sp.Expr:
-        """Value of any element of the field."""
-        if self.phase.is_Integer:
-            return self.real(element)
-        return element.as_expr().xreplace({X: self.value, Z: self.phase}).xreplace(self.values)
 
-
-def _in_cosine(polynomial: sp.Expr, cosine: sp.Expr) -> sp.Expr:
-    """Write z^{-h} Σ_{n≤2h} a_n z^n, a_n = a_{2h-n}, in cos κ by Chebyshev's T_n(cos κ)."""
-    a = sp.Poly(polynomial, Z).all_coeffs()
-    while len(a) > 1 and not a[-1]:
-        a.pop()
-    h = len(a) // 2
-    return a[h] + sp.Add(*(2 * a[h - n] * sp.chebyshevt(n, cosine) for n in range(1, h + 1)))
-
-
-def _roots(relation: Any, cosine: sp.Expr) -> list[tuple[sp.Expr, sp.Poly]]:
-    """Roots x of T(x) = 2 cos κ, of degree 1 or 2, with their irreducible polynomials."""
-    pairs: list[tuple[sp.Expr, sp.Poly]] = []
-    for factor, count in sp.factor_list(_in_cosine(relation.numer.as_expr(), cosine))[1]:
-        if X in factor.free_symbols:
-            polynomial = sp.Poly(factor, X, field=True)
-            pairs += count * [(x, polynomial) for x in sp.roots(polynomial)]
-    return pairs
-
-
-def exact_mode(
+def edge_mode(
     contacts: Contacts,
-    wavenumber: sp.Expr,
+    edge: int,
     branch: int,
     bead: int,
     sampled: Callable[[sp.Expr], float],
     generic: bool = False,
 ) -> Mode:
-    """The mode of a branch of one or two beads, in sin κ/2 and cos κ/2 unless cos κ is rational.
+    """The mode of two beads at the edge of a band, in exact numbers.
 
-    bead : index of the bead whose φ is positive. sampled : function that gives a float of an
-    expression, its symbols replaced by sample numbers; the roots are ordered by these floats.
+    edge : e^{iκ} at κ = 0 or π, 1 or -1. bead : index of the bead whose φ is positive.
+    sampled : function that gives a float of an expression, its symbols replaced by sample numbers;
+    the roots are ordered by these floats.
     generic : True to derive the mode with symbols for all numbers, which are put in at the end:
     a pole at the frequency 2ω that no force drives cancels then.
 
     Raises `lwa.InputError` where the second harmonic is a mode that the mode drives.
     """
-    P, cosine, phase = len(contacts.masses), sp.cos(wavenumber), sp.exp(sp.I * wavenumber)
-    sine = sp.sqrt(1 - cosine**2)
-    if not cosine.is_Rational:
-        half = wavenumber / 2
-        sine, cosine = 2 * sp.sin(half) * sp.cos(half), 1 - 2 * sp.sin(half) ** 2
     numbers = (*contacts.masses, *contacts.c, contacts.s, contacts.t)
     letters = {a: a if a.is_Rational and not generic else sp.Dummy(positive=True) for a in numbers}
-    field, (x, z, *elements) = sfield([X, Z, *(letters[a] for a in numbers)])
-    inner = Contacts(*np.array(elements[:-2], object).reshape(2, P), *elements[-2:])
-    z = field.one * int(phase) if phase.is_Integer else z
+    field, (x, *elements) = sfield([X, *(letters[a] for a in numbers)])
+    inner = Contacts(*np.array(elements[:-2], object).reshape(2, 2), *elements[-2:])
+    z = field.one * edge
 
     def matrix(entries: Matrix) -> DomainMatrix:
         rows = [[field.one * a for a in row] for row in entries]
-        return DomainMatrix(rows, (P, P), field.to_domain())
+        return DomainMatrix(rows, (2, 2), field.to_domain())
 
     def inverse(entries: Matrix) -> Matrix:
         return np.array(matrix(entries).inv().to_list(), object)
@@ -262,17 +243,20 @@ def exact_mode(
     secular = matrix(inner.secular(z, x))
     relation = secular.det() * np.prod(inner.c)  # T(x) - 2 cos κ
     values = {letter: a for a, letter in letters.items()}
-    roots = sorted(_roots(relation, cosine), key=lambda pair: sampled(pair[0].xreplace(values)))
-    square = Root(*roots[branch], cosine, phase, values)
-    if not generic and P > 1 and square.real(matrix(inner.secular(z * z, 4 * x)).det()).is_zero:
-        return exact_mode(contacts, wavenumber, branch, bead, sampled, generic=True)
+    roots: list[tuple[sp.Expr, sp.Poly]] = []
+    for factor, count in sp.factor_list(relation.numer.as_expr())[1]:
+        if X in factor.free_symbols:
+            polynomial = sp.Poly(factor, X, field=True)
+            roots += count * [(root, polynomial) for root in sp.roots(polynomial)]
+    roots.sort(key=lambda pair: sampled(pair[0].xreplace(values)))
+    square = Root(*roots[branch], values)
+    if not generic and square.number(matrix(inner.secular(z * z, 4 * x)).det()).is_zero:
+        return edge_mode(contacts, edge, branch, bead, sampled, generic=True)
     slopes = relation.diff(x), relation.diff(x).diff(x)
     adjugate = np.array(secular.adjugate().to_list(), object)
     projector = adjugate / (np.diagonal(adjugate) * inner.masses).sum()
-    if P == 1:  # a rational function of z
-        x = (2 - z - 1 / z) / (inner.masses[0] * inner.c[0])
-    exact = Arithmetic(inverse, square.real, square.complex)
-    mode = inner.mode(z, x, slopes, projector, bead, sine, exact)
+    exact = Arithmetic(inverse, square.number, square.number)
+    mode = inner.mode(z, x, slopes, projector, bead, 0, exact)
     if mode.cubic.has(sp.zoo, sp.nan):
         raise InputError("the second harmonic is a mode too: the envelope's equation fails")
     return mode

@@ -24,7 +24,7 @@ the frequency rises by χ|Ψ|², with the sum of all contacts i
 
 The frequencies are the roots x = ω² of T(x) = 2 cos κ, det(K(κ) - xM) Π c_i = T(x) - 2 cos κ, and
 φφ† is the adjugate of K(κ) - xM over its trace with M. So all results are rational functions of x
-and z = e^{iκ}, which one formula evaluates in floats and in the field of these functions.
+and z = e^{iκ}, which one formula evaluates in floats and, at z = ±1, in the field of x.
 """
 
 from __future__ import annotations
@@ -67,8 +67,7 @@ class Arithmetic:
     """Operations of a field of numbers.
 
     inverse : function that inverts a matrix of elements.
-    real, complex : functions that turn an element into a number; elements for ``real`` do not
-    change with the sign of κ.
+    real, complex : functions that turn an element into a number, real or not.
     """
 
     inverse: Callable[[Matrix], Matrix]

@@ -289,8 +289,8 @@ def envelope(
     branch : "acoustic", "optical" or the number of the branch from 0; by default 0 for equal beads,
         else 1.
 
-    Results are exact for cells of one or two beads, in symbols and at any wavenumber, unless they
-    are `numeric`; they are floats for other cells, of numbers.
+    Results are exact for cells of one bead at any wavenumber and of two beads at κ = 0 and π, in
+    symbols as well, unless they are `numeric`; elsewhere they are floats, for numbers.
 
     Raises `lwa.InputError` for other arguments, and unless F′ > 0 at the strain. Results raise it
     where branches touch, at zero frequency, where the mode drives a mode of twice its frequency,
@@ -324,4 +324,5 @@ def envelope(
             f"branch is {shorten(branch)}: a cell of {cell.size} has as many branches, "
             "counted from 0"
         )
-    return Envelope(cell, law, static, kappa, number, floats=cell.size > 2)
+    edge = cell.size == 2 and kappa in (sp.S.Zero, sp.pi)
+    return Envelope(cell, law, static, kappa, number, floats=not (cell.size == 1 or edge))
