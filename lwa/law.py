@@ -410,8 +410,15 @@ def phi_symbol(n: int) -> sp.Symbol:
     return sp.Symbol(f"phi{n}", real=True)
 
 
-def for_cell(law: Any, cell: Cell) -> ContactLaw:
-    """Return a law; raise `lwa.InputError` unless it is a law that fits the cell's contacts."""
+def for_cell(law: Any, cell: Cell, k: Any = symbol_k) -> ContactLaw:
+    """Return the law of a cell's contacts; the power k without a law.
+
+    Raises `lwa.InputError` unless it is a law that fits the cell's contacts, and for a law and k.
+    """
+    if law is None:
+        law = Power(k)
+    else:
+        refuse_two_laws(k, law)
     if not isinstance(law, ContactLaw):
         raise InputError(f"law is {shorten(law)}: Power(k), Law(F, delta) or general() is wanted")
     law.check_contacts(read_cell(cell))

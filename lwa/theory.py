@@ -18,7 +18,7 @@ from lwa.cell import k as symbol_k
 from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS, OfClosure, solve
 from lwa.equation.pde import PDE
 from lwa.equation.terms import STRAIN, Terms, terms
-from lwa.law import ContactLaw, Power, for_cell, refuse_two_laws
+from lwa.law import ContactLaw, Power, for_cell
 
 SLOW_ORDER = 12
 """The order from which a derivation shows its progress."""
@@ -175,8 +175,7 @@ def homogenize(
 def _model(cell: Cell, k: Any, law: ContactLaw | None, branch: str, order: int) -> Model:
     if law is None:
         return Model(cell, Power(exponent(k, cell)), branch)
-    refuse_two_laws(k, law)
-    law = for_cell(law, cell)
+    law = for_cell(law, cell, k)
     if not law.homogeneous and branch != "acoustic":
         raise InputError(
             f"branch is {branch!r}: its contacts also pull, and its unit of time is that of a "

@@ -29,12 +29,10 @@ class Driven:
 
 def drive(front: Shock, sites: int = SITES, **options) -> Driven:
     """Drive a chain without units at v_p; ``options`` are those of `validation.simulate`."""
-    P = front.cell.size
-    fastest = float(front.leading_speed("doubling" if front.cell.uniform else "dispersion"))
-    end, n = sites / fastest, math.ceil(1.15 * sites / P) * P + 40 * P
-    places = np.unique(np.linspace(*PATH, 12) * sites).astype(int) // P * P
+    end, n = sites / float(front.leading_speed()), math.ceil(1.15 * sites) + 40
+    places = np.unique(np.linspace(*PATH, 12) * sites).astype(int)
     scene = Scene(
-        masses=tuple(float(m) for m in front.cell.masses) * (n // P), stiffnesses=(1.0,) * (n - 1),
+        masses=(1.0,) * n, stiffnesses=(1.0,) * (n - 1),
         wall=1.0, law=front.law, drive=Drive(velocity=float(front.plateau)), duration=end,
         precompression=float(front.law.at(front.ahead)),
         contact_sensors=tuple(map(int, places)), samples=8 * sites + 1,

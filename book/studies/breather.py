@@ -102,7 +102,7 @@ def breather(
     between(k, "k", 1.1, 5)
     if not detunings:
         raise SceneError("detunings is empty: at least one is wanted")
-    edge = envelope(cell, Power(k), precompression=1)
+    edge = envelope(cell, law=Power(k), precompression=1)
     waves = []
     for nu in detunings:
         theory = edge.breather(detuning=nu)

@@ -12,9 +12,9 @@ behind the front has the strain p₋. Measured are, from the piston on:
 
 The error of a fit is the difference to the fit through the farther half of the contacts.
 
-Theory: El's leading edge on the chain's own dispersion, and for equal beads the doubling rule: on
-the lattice's own wave (Toda's soliton; for powers the series in k - 1 without load, and Newton's
-wave on a load) and on the canonical wave, in closed form.
+Theory, for equal beads: El's leading edge, and the doubling rule: on the lattice's own wave (Toda's
+soliton; for powers the series in k - 1 without load, and Newton's wave on a load) and on the
+canonical wave, in closed form.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from lwa import Power, Shock
+from lwa import Cell, Power, Shock
 from lwa import shock as front
 from lwa.base.exact import InputError, read_exact
 from lwa.base.progress import Progress
@@ -42,13 +42,13 @@ from validation.pulses.pulse import Measured
 from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
-from validation.scenes.chains import numeric_cell
 from validation.scenes.checks import between
 from validation.scenes.forcing import Drive
 from validation.scenes.scene import Scene
 from validation.waves.solver import exact_wave
 
-LAWS = named("exponential", "1/2"), Power("3/2"), Power(2)
+TODA = 0.5  # the a of its force
+LAWS = named("exponential", TODA), Power("3/2"), Power(2)
 JUMPS = "3/2", 2, 3  # strains behind the front over those ahead of it
 SPAN = 0.25, 0.95  # of the way of the leading pulse, on which it is measured
 CONTACTS = 16  # at which it is measured
@@ -61,7 +61,6 @@ Pair = tuple[float | None, float | None]  # speed and peak strain of the leading
 
 @study(
     option("--k", callback=quantity, says="Exponent of F = δ^k; by default Toda, 3/2 and 2."),
-    option("--masses", callback=quantities, default="1", says="Masses of a cell, such as 1,1/2."),
     option(
         "--jumps",
         callback=quantities,
@@ -73,7 +72,6 @@ Pair = tuple[float | None, float | None]  # speed and peak strain of the leading
 )
 def shock(
     k: Any = None,
-    masses: Sequence[Any] = (1,),
     jumps: Sequence[Any] = JUMPS,
     ahead: Any = 1,
     duration: float = 2500.0,
@@ -91,11 +89,11 @@ def shock(
     Raises `lwa.InputError` for parameters out of range.
     """
     end = between(duration, "duration", SHORTEST, math.inf, f"at least {SHORTEST:g} is wanted")
-    start, cell = read_exact(ahead, "ahead"), numeric_cell(masses)
+    start, cell = read_exact(ahead, "ahead"), Cell((1,), spacing=1)
     laws = LAWS if k is None else (Power(k),)
     steps = [read_exact(jump, "jump") for jump in jumps]
     behind = [step * start if start else step for step in steps]
-    fronts = [front(cell, law, p, start) for law in laws for p in behind]
+    fronts = [front(cell, p, start, law=law) for law in laws for p in behind]
     for candidate in fronts:
         if candidate.kind != "shock":
             raise InputError(
@@ -119,15 +117,13 @@ class Driven:
         # Not beyond the pulse: the canonical wave of a steep law is too fast.
         rule, _ = self.theories["doubling"]
         reach = self.duration * min(self._fastest, 1.03 * rule if rule else math.inf)
-        places, cell = np.linspace(*SPAN, CONTACTS) * reach, self.theory.cell.size
-        distances = {cell * round(place / cell) for place in places} - {NEAR}
+        distances = {round(place) for place in np.linspace(*SPAN, CONTACTS) * reach} - {NEAR}
         return self._scene(self.duration, (NEAR, *sorted(distances)), SAMPLES)
 
     def _scene(self, duration: float, contacts: tuple[int, ...], samples: float) -> Scene:
         """Build a scene of a given duration, with sensors at contacts counted from the piston."""
         chain = self.theory
-        cells = math.ceil((self._fastest * duration + 20) / chain.cell.size)
-        masses = tuple(float(m) for m in chain.cell.masses) * cells
+        masses = (1.0,) * math.ceil(self._fastest * duration + 20)
         law: dict[str, Any] = {"law": chain.law}
         return Scene(
             masses=masses, stiffnesses=(1.0,) * (len(masses) - 1), wall=1.0,
@@ -148,7 +144,7 @@ class Driven:
         chain = self.theory
         edge, speed = (attempt(chain.leading_speed, rule) for rule in ("dispersion", "doubling"))
         closed = _number(speed), _number(attempt(lambda: chain.peak))
-        own = closed if _toda(chain.law) else attempt(own_wave, chain)
+        own = attempt(own_wave, chain)
         own = (None, None) if isinstance(own, InputError) else own
         return {"doubling": own, "canonical": closed, "dispersion": (_number(edge), None)}
 
@@ -195,10 +191,17 @@ class Driven:
 
 
 def own_wave(chain: Shock) -> Pair:
-    """Speed and peak strain of the exact solitary wave with bead velocity 2 v_p, for power laws.
+    """Speed and peak strain of the exact solitary wave with bead velocity 2 v_p.
 
-    Raises `lwa.InputError` where there is none, and for unequal beads.
+    Toda's soliton under (e^{aδ} - 1)/a has cosh κ = 1 + a v_p/c₊, the speed c₊ sinh κ/κ and the
+    strain 2 ln(cosh κ)/a above the one ahead (Toda, Phys. Rep. 18, 1 (1975)).
+
+    Raises `lwa.InputError` where there is none.
     """
+    if _toda(chain.law):
+        a, c = TODA, float(chain.sound(chain.ahead))
+        angle = math.acosh(1 + a * float(chain.plateau) / c)
+        return c * math.sinh(angle) / angle, float(chain.ahead) + 2 * math.log(math.cosh(angle)) / a
     if not chain.ahead:
         wave = chain.wave
         return wave.speed.value, float(wave.F) ** float(1 / chain.law.exponent)

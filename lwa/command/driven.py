@@ -90,9 +90,9 @@ def shock(
     if ahead is None:
         ahead = law.compression(cell, static) / cell.spacing if static else sp.S.Zero
     if behind is None:
-        front = riemann.piston(cell, law, piston, ahead)
+        front = riemann.piston(cell, piston, ahead, law=law)
     else:
-        front = riemann.shock(cell, law, behind, ahead)
+        front = riemann.shock(cell, behind, ahead, law=law)
     _front(chain, front).print(style)
 
 

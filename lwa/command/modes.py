@@ -175,7 +175,9 @@ def envelope(
     chain = take_chain(options)
     cell, place = chain.cell, int(branch) if branch and branch.isdecimal() else branch
     load = {"background": background, "precompression": chain.load(background, precompression)}
-    equation = schrodinger.envelope(cell, chain.law, **load, wavenumber=wavenumber, branch=place)
+    equation = schrodinger.envelope(
+        cell, law=chain.law, **load, wavenumber=wavenumber, branch=place
+    )
     breather = None
     if frequency is not None or detuning is not None:
         angular = frequency and frequency * (2 * sp.pi if chain.si else 1)

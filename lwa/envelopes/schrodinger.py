@@ -32,6 +32,7 @@ from lwa.base.arrays import Array
 from lwa.base.exact import InputError, integer, one_of, positive, read_exact, shorten, signed
 from lwa.base.frozen import Value
 from lwa.cell import Cell, check_names
+from lwa.cell import k as symbol_k
 from lwa.envelopes.bloch import cell_mode
 from lwa.envelopes.response import Mode
 from lwa.law import ContactLaw, for_cell, substituted
@@ -97,8 +98,7 @@ class Envelope(Value):
     def dispersion(self) -> sp.Expr:
         """Dispersion coefficient ω″ = d²ω/dκ².
 
-        >>> from lwa import Power
-        >>> envelope(Cell(["m"], ["K"]), Power(1), background="p0", wavenumber="q").dispersion
+        >>> envelope(Cell(["m"], ["K"]), k=1, background="p0", wavenumber="q").dispersion
         -sqrt(K)*sin(q/2)/(2*sqrt(m))
         """
         return self._tidy(self._mode.curvature / self.frequency)
@@ -269,8 +269,9 @@ class Breather(Value):
 
 def envelope(
     cell: Cell,
-    law: ContactLaw,
     *,
+    law: ContactLaw | None = None,
+    k: Any = symbol_k,
     background: Any = None,
     precompression: Any = None,
     wavenumber: Any = sp.pi,
@@ -281,8 +282,8 @@ def envelope(
     Parameters
     ----------
     cell : the periodic cell. Of masses that are symbols the first one is taken to be the heaviest.
-    law : the contact law; under `lwa.general()` results hold the symbols K2, K3, K4 of the force
-        K2 δ + K3 δ² + K4 δ³ on top of the load, for cells of equal contacts.
+    law, k : the contact law, δ^k unless given; under `lwa.general()` results hold the symbols
+        K2, K3, K4 of the force K2 δ + K3 δ² + K4 δ³ on top of the load, for equal contacts.
     background, precompression : the static strain or the static force, one of the two. A strain
         may be zero or negative under a law that is no power.
     wavenumber : κ per cell, 0 … π.
@@ -296,11 +297,10 @@ def envelope(
     where branches touch, at zero frequency, where the mode drives a mode of twice its frequency,
     and, in floats, where the mode moves nearly with sound.
 
-    >>> from lwa import Power
-    >>> envelope(Cell(["m"], spacing=1), Power(2), background="p0").nonlinearity
+    >>> envelope(Cell(["m"], spacing=1), k=2, background="p0").nonlinearity
     -4*sqrt(2)/(m**(3/2)*p0**(3/2))
     """
-    law = for_cell(law, cell)
+    law = for_cell(law, cell, k)
     if (background is None) == (precompression is None):
         raise InputError("background or precompression: one of the two is wanted")
     if precompression is not None:

@@ -21,7 +21,7 @@ from typing import Any, Self
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, power, read_exact, shorten, signed
+from lwa.base.exact import InputError, power, read_exact, real, shorten, signed
 from lwa.base.frozen import Value
 from lwa.base.quantities import FALL, RISE, NoSolitaryWave
 from lwa.cell import Cell
@@ -45,7 +45,9 @@ class Background(Value):
 
     def __post_init__(self) -> None:
         for_cell(self.law, self.cell)
-        object.__setattr__(self, "p0", read_exact(self.p0, "background"))
+        # floats stay: the digits of a shock's strains are its own
+        exact = real if isinstance(self.p0, sp.Expr) else read_exact
+        object.__setattr__(self, "p0", exact(self.p0, "background"))
         if self.law.homogeneous and self.p0.is_negative:
             raise InputError(
                 f"background is {shorten(self.p0)}: under a power law it must not be negative"

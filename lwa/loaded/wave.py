@@ -63,7 +63,7 @@ from lwa.base.quantities import (
 )
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
-from lwa.law import ContactLaw, Power, for_cell, refuse_two_laws, substituted
+from lwa.law import ContactLaw, for_cell, substituted
 from lwa.loaded.background import Background, KdV
 from lwa.loaded.lattice import Lattice, Static
 from lwa.loaded.quadrature import Quadrature
@@ -172,7 +172,7 @@ class LoadedWave(Value):
         if isinstance(self.chain, Lattice):
             raise InputError("the field is that of a cell, and the chain is a lattice")
         p0 = self._ends[0] / self.chain.spacing if self.by_force else self.ahead
-        return Background(self.chain, self.law, p0)
+        return Background(self.chain, self.law, read_exact(p0, "background"))
 
     @property
     def _spacing(self) -> sp.Expr:
@@ -468,9 +468,7 @@ def loaded_wave(
         if not by_force:
             raise InputError("a strain is given: the wave of a lattice is given by forces")
         return LoadedWave(chain, None, precompression, force)
-    if law is not None:
-        refuse_two_laws(k, law)
-    law = for_cell(Power(k) if law is None else law, chain)
+    law = for_cell(law, chain, k)
     if by_force:
         return LoadedWave(chain, law, precompression, force)
     p0 = 0 if background is None else background

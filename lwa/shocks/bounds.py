@@ -1,6 +1,6 @@
 """Bounds of the differences between the theory of a shock and chains that a wall drives.
 
-Measured on 330 chains of equal beads and 60 of two kinds, driven until their pulses were steady:
+Measured on 330 chains of equal beads, driven until their pulses were steady:
 powers k = 0.3 … 7 with load, k = 1.05 … 10 without, hertz2, magnetic, polynomial, lennard-jones,
 c₋/c₊ up to 200. With V the speed and B the rise of the leading pulse,
 
@@ -31,10 +31,9 @@ def rise_error(rho: float) -> float:
     return 0.065 * rho**2 + min(0.015, rho / 4)
 
 
-def leading_error(off: float, rho: float, r: float, uniform: bool) -> float:
+def leading_error(off: float, rho: float) -> float:
     """Relative error of El's leading edge, from which the doubling rule differs by ``off``."""
-    # unlike beads: measured within 3 % of equal ones, less for small jumps
-    return off + (1 + off) * speed_error(rho) + (0.0 if uniform else min(0.03, 0.075 * (r - 1)))
+    return off + (1 + off) * speed_error(rho)
 
 
 def trailing_error(off: float) -> float:

@@ -13,27 +13,83 @@ A contact's strain is the mean of u_x over a site, u_x + D² u_xxx/24 to the ord
 u_xxx at the peak from the wave's equation, I = D²/12, it rises by
 
     B - [F(p0+B) - F(p0) - V² B]/(2 F′(p0+B)).
-
-Toda's law F = (e^{aδ} - 1)/a has its soliton (Phys. Rep. 18, 1 (1975)): with c0 the speed of sound,
-
-    cosh κ = 1 + a D w/(2 c0),     V = c0 sinh κ/κ,     strain of a contact 2 ln(cosh κ)/(a D).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import mpmath
 import sympy as sp
 
-from lwa.base.calculus import growing_root
-from lwa.base.exact import InputError, demand_numbers, evaluated
+from lwa.base.calculus import growing_root, real_function
+from lwa.base.exact import InputError, demand_numbers
 from lwa.base.frozen import Value
 from lwa.loaded.background import Background
-from lwa.shocks.edges import SHOCK_DIGITS
 
-_LONGEST = 600  # bits of exact powers; SymPy fails from 1024 on
+WORKING = 60
+"""Digits of floats; a jump of 1e-15 loses 30 of them in the work of a pulse."""
+
+DIGITS = 30
+"""Digits of results that are floats."""
+
+SHORT = 64
+"""Largest numerator and denominator of numbers whose powers are kept exact."""
+
+_PLACES = 128  # intervals on which F″ that is no polynomial is checked
+
+
+def floats(*values: sp.Expr, constants: set[sp.Rational]) -> tuple[sp.Expr, ...]:
+    """Floats of numbers, unless all numbers and the constants of their law are short fractions.
+
+    Exact powers such as 0.392^2.091 pass through integers of thousands of digits.
+    """
+    numbers = {x for x in values if x.is_Rational} | constants
+    if all(max(abs(int(x.p)), int(x.q)) <= SHORT for x in numbers):
+        return values
+    return tuple(sp.N(x, WORKING) if x.is_number and not x.is_zero else x for x in values)
+
+
+def tidy(value: sp.Expr) -> sp.Expr:
+    """Combine powers; a result with floats has `DIGITS` digits."""
+    if not value.has(sp.Float):
+        return sp.powsimp(value)
+    factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
+    return factor.n(DIGITS) * rest
+
+
+def demand_one_sign(field: Background, start: sp.Expr, end: sp.Expr) -> None:
+    """Raise `lwa.InputError` unless F″ keeps its sign between two strains.
+
+    If it does, the front between the strains is one shock or one rarefaction. With an inflection of
+    F between them it is a kink or a compound wave (LeFloch, *Hyperbolic Systems of Conservation
+    Laws*, 2002, ch. 2), which this theory does not have. F″ is checked exactly where it is a
+    polynomial, else at 127 places. Powers pass, and so do laws and strains with symbols.
+    """
+    x = sp.Dummy("x", real=True)
+    bend = field.force(x, 2)
+    if field.law.homogeneous or (bend + start + end).free_symbols - {x}:
+        return
+    low, high = sorted((start, end))
+    if bend.is_polynomial(x):
+        roots = sp.Poly(bend, x).real_roots(multiple=False) if bend.has(x) else []
+        found = [root for root, times in roots if times % 2 and low < root < high]
+    else:
+        curve = real_function(sp.lambdify(x, bend, "mpmath"))
+        with mpmath.workdps(DIGITS):
+            ends = (mpmath.mpf(sp.N(p, DIGITS)) for p in (low, high))
+            places = mpmath.linspace(*ends, _PLACES + 1)[1:-1]
+            signs = [mpmath.sign(curve(place)) for place in places]
+        found = [
+            b for b, (one, other) in zip(places[1:], pairwise(signs), strict=True) if one != other
+        ]
+    if found:
+        raise InputError(
+            f"F″ changes its sign at the strain {sp.N(found[0], 5)}, an inflection between "
+            f"{sp.N(low, 5)} and {sp.N(high, 5)}: the wave is a kink or a compound one"
+        )
 
 
 def velocity(field: Background, p: sp.Expr) -> sp.Expr:
@@ -54,7 +110,7 @@ def velocity(field: Background, p: sp.Expr) -> sp.Expr:
         return sp.integrate(c, (x, field.p0, p))
     # from 0 to p - p0, where no digits cancel
     gained = sp.Integral(c.subs(x, field.p0 + x), (x, 0, p - field.p0))
-    return gained if gained.free_symbols else gained.evalf(SHOCK_DIGITS)
+    return gained if gained.free_symbols else gained.evalf(DIGITS)
 
 
 def strain(field: Background, gained: sp.Expr) -> sp.Expr:
@@ -66,47 +122,26 @@ def strain(field: Background, gained: sp.Expr) -> sp.Expr:
         power = (field.law.exponent + 1) / 2
         return sp.powdenest((field.p0**power + power * gained) ** (1 / power), force=True)
     x = sp.Dummy("x", positive=True)
-    return field.p0 + _rising_root(velocity(field, field.p0 + x) - gained, x)
+    return field.p0 + _rising_root(velocity(field, field.p0 + x) - gained, x, DIGITS)
 
 
-def _rising_root(rising: sp.Expr, x: sp.Symbol, lost: int = 0) -> sp.Expr:
-    """The root of an expression that rises with x from a negative value at 0.
-
-    lost : digits that cancel in the expression near the root; the root has as many to spare.
-    """
+def _rising_root(rising: sp.Expr, x: sp.Symbol, digits: int) -> sp.Expr:
+    """The root of an expression that rises with x from a negative value at 0."""
     demand_numbers(rising.free_symbols - {x}, "numbers are wanted")
-    with mpmath.workdps(SHOCK_DIGITS + 2 * lost + 5):
+    with mpmath.workdps(digits):
         root = growing_root(rising, x)
     if root is None:
         raise InputError("the law does not reach the strain that belongs to this velocity")
-    return sp.Float(root, SHOCK_DIGITS + lost)
-
-
-def tidy(value: sp.Expr) -> sp.Expr:
-    """Combine powers, and evaluate the numeric factor of a result that is not in closed form."""
-    if not value.has(sp.Float):
-        return sp.powsimp(value)
-    factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
-    return factor.n(SHOCK_DIGITS) * rest
-
-
-def written(value: sp.Expr, k: sp.Expr, *strains: sp.Expr) -> sp.Expr:
-    """Evaluate a number whose exact powers run to hundreds of digits, as those of k = 2.77."""
-    numbers = [x for x in (k, *strains) if x.is_Rational]
-    bits = sum(int(part).bit_length() for x in numbers for part in (x.p, x.q))
-    terms = int(k.p) + int(k.q) if k.is_Rational else 1
-    if value.free_symbols or k == 1 or bits * terms < _LONGEST:  # k is 1 unless the law is a power
-        return value
-    return evaluated(value, 3 * SHOCK_DIGITS)
+    return sp.Float(root, digits)
 
 
 @dataclass(frozen=True)
 class Pulse(Value):
-    """Solitary wave with a given peak velocity of its beads.
+    """Solitary wave of equal beads with a given peak velocity of its beads.
 
     field : the background. velocity : largest du/dτ of a bead, a number or an expression.
 
-    Without load under a power law, and for Toda's law, results are in closed form, else numbers.
+    Without load under a power law results are in closed form, else numbers.
 
     Raises `lwa.InputError` unless the beads and contacts are equal.
 
@@ -127,21 +162,15 @@ class Pulse(Value):
     def rise(self) -> sp.Expr:
         """Rise B = w/V of the slope u_x."""
         field, w = self.field, self.velocity
-        if self.toda:
-            C = self._cosh
-            return w * sp.acosh(C) / (field.sound_speed * sp.sqrt(C**2 - 1))
         if self._bare:  # W = B^{k+1}/(k(k+1))
             k = field.law.exponent
             parts = sp.expand_power_base((k * (k + 1) * w**2 / 2) ** (1 / (k + 1)), force=True)
             return sp.powsimp(sp.powdenest(parts, force=True), force=True)
         x, side, p0 = sp.Dummy("x", positive=True), sp.sign(w), field.p0
         demand_numbers(w.free_symbols | field.force(p0).free_symbols, "numbers are wanted")
-        # The work W(p0+B) - W(p0) - F(p0) B = w²/2 of a small jump is a small difference.
-        ratio = sp.N(1 + 2 * abs(field.force(p0, -1)) / sp.N(w, SHOCK_DIGITS) ** 2, 5)
-        lost = int(sp.log(ratio, 10).n(5)) + 1
-        w = evaluated(w, SHOCK_DIGITS + 2 * lost)
+        p0, w = sp.N(p0, WORKING), sp.N(w, WORKING)
         work = field.force(p0 + side * x, -1) - field.force(p0, -1) - field.force(p0) * side * x
-        return side * _rising_root(work - w**2 / 2, x, lost)
+        return side * _rising_root(work - w**2 / 2, x, WORKING)
 
     @property
     def speed(self) -> sp.Expr:
@@ -150,18 +179,12 @@ class Pulse(Value):
 
     @property
     def stiffening(self) -> float:
-        """The measure ρ = 1 - V²/F′(p0+B) of how much the law stiffens along the wave; for numbers.
-
-        It is 0 for Toda's law, for which the wave is exact.
-        """
-        stiffness = self.field.force(self.field.p0 + self.rise, 1)
-        return 0.0 if self.toda else float(1 - self.speed**2 / stiffness)
+        """The measure ρ = 1 - V²/F′(p0+B) of how much the law stiffens along the wave; a number."""
+        return float(1 - self.speed**2 / self.field.force(self.field.p0 + self.rise, 1))
 
     @cached_property
     def contact_rise(self) -> sp.Expr:
         """Rise of a contact's strain above the background p0 at the peak of the wave."""
-        if self.toda:
-            return 2 * sp.log(self._cosh) / self.toda
         field, B, k = self.field, self.rise, self.field.law.exponent
         if self._bare:  # F = B^k/k, V² = 2 B^{k-1}/(k(k+1))
             return B * (1 - (k - 1) / (2 * k * (k + 1)))
@@ -172,14 +195,3 @@ class Pulse(Value):
     def _bare(self) -> bool:
         """True for a power law without load."""
         return self.field.law.homogeneous and bool(self.field.p0.is_zero)
-
-    @cached_property
-    def toda(self) -> sp.Expr:
-        """Number a D of Toda's law (e^{aδ} - 1)/a, for which F″/F′ = a; 0 for other laws."""
-        law = self.field.law
-        a = sp.simplify(law.slope(2) / law.slope(1))
-        return sp.S.Zero if a.has(law.delta) else a * self.field.cell.spacing
-
-    @property
-    def _cosh(self) -> sp.Expr:
-        return 1 + self.toda * self.velocity / (2 * self.field.sound_speed)

@@ -9,7 +9,7 @@ import sympy as sp
 from lwa.base.exact import InputError, read_exact, shorten
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
-from lwa.law import ContactLaw, for_cell, refuse_two_laws
+from lwa.law import ContactLaw, for_cell
 from lwa.wave.closed import CompactWave
 from lwa.wave.physical import PhysicalWave
 
@@ -103,7 +103,7 @@ def canonical_wave(
     sqrt(10)/(5*D)
     """
     if law is not None:
-        refuse_two_laws(k, for_cell(law, cell))
+        law = for_cell(law, cell, k)
         if not law.homogeneous:
             raise InputError(
                 f"law is {law.text}: the compact wave is that of a power law; waves of any law are "

@@ -220,11 +220,11 @@ def test_presets_shock_and_breather(visit):
     assert visit.pages["exact.html"]["presets"] == [0.6, 0.3428]
     seen = visit.pages["shocks.html"]["shock"]
     v, ahead = (sp.Rational(str(seen[name])) for name in ("v", "p0"))
-    rule = piston(Cell([1], spacing=1), Power("3/2"), v, ahead=ahead)
+    rule = piston(Cell([1], spacing=1), v, law=Power("3/2"), ahead=ahead)
     assert seen["edge"] == pytest.approx(float(rule.leading_speed()), rel=1e-9)
     assert 1.85 < seen["fastest"] / seen["v"] < 2  # from below, as the train grows
     seen = visit.pages["modes.html"]["breather"]
-    bottom = float(envelope(Dimer(1, "1/2", spacing=1), Power("3/2"), background=1).frequency)
+    bottom = float(envelope(Dimer(1, "1/2", spacing=1), law=Power("3/2"), background=1).frequency)
     assert abs(seen["rate"] / bottom - (1 - seen["nu"])) < 1e-3 < seen["nu"]
 
 

@@ -53,12 +53,14 @@ MADE = {
     "background": lambda: loaded_wave(Dimer(m1, m2), background="p0"),
     "kdv": lambda: loaded_wave(Dimer(m1, m2), background="p0").kdv,
     "precompressed": lambda: canonical_wave(Dimer(m1, m2)).at_force("F", precompression="F0"),
-    "envelope": lambda: envelope(Dimer(m1, m2), Power("k"), background="p0"),
-    "breather": lambda: envelope(Dimer(2, 1), Power(2), background=1).breather(detuning="1/100"),
-    "shock": lambda: shock(Dimer(2, 1), Power(2), 2, 1),
+    "envelope": lambda: envelope(Dimer(m1, m2), law=Power("k"), background="p0"),
+    "breather": lambda: envelope(Dimer(2, 1), law=Power(2), background=1).breather(
+        detuning="1/100"
+    ),
+    "shock": lambda: shock(Dimer(2, 1), 2, 1, law=Power(2)),
     "expansion": lambda: expand(Dimer(m1, m2), 2),
     "series": lambda: expand(Cell([1, 2], ["A", 3]), 1).fwhm("velocity"),
-    "sum": lambda: expand(Cell([1, "1/3"]), 2, k="6/5").c2.at(),
+    "sum": lambda: expand(Cell([1, "1/3"]), 6, k="6/5").c2.at(),
     "expanded": lambda: ExpandedWave(expand(Cell([1], spacing=1), 2, k="6/5"), 2),
     "sphere": lambda: Sphere.solid("R", Material.named("PTFE")),
     "loaded": lambda: LoadedChain(Dimer(m1, m2), Power("3/2"), "F0"),

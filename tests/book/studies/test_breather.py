@@ -32,7 +32,7 @@ def test_dark_breathers_of_equal_beads():
 
     The ends of 13 widths change the plateau by 4e-13/2 = 1e-5 of itself."""
     cell = Cell((1,), spacing=1)
-    edge = envelope(cell, Power("3/2"), precompression=1)
+    edge = envelope(cell, law=Power("3/2"), precompression=1)
     errors = []
     for nu in (0.002, 0.001, 0.0005):
         theory = edge.breather(detuning=nu)
@@ -46,7 +46,7 @@ def test_dark_breathers_of_equal_beads():
 @pytest.mark.slow
 def test_errors_cover_a_longer_chain_with_more_harmonics():
     cell, k = Cell((1, "1/2"), spacing=1), 1.5
-    theory = envelope(cell, Power(k), precompression=1).breather(detuning=0.002)
+    theory = envelope(cell, law=Power(k), precompression=1).breather(detuning=0.002)
     row = Standing(cell, k, theory, 80).row()
     finer = Standing(cell, k, theory, 240, harmonics=8).numbers()
     for name in ("amplitude", "width"):
@@ -64,7 +64,7 @@ def test_aluminium_and_steel_at_20_newtons():
     cell = Cell.of_spheres([steel, aluminium])
     edges = np.array(LoadedChain(cell, Power("3/2"), 20).bands.edges(), float) / (2e3 * math.pi)
     assert edges.ravel() == pytest.approx([0, 4.711, 8.101, 9.371], abs=6e-4)
-    theory = envelope(cell, Power("3/2"), precompression=20).breather(detuning="1/200")
+    theory = envelope(cell, law=Power("3/2"), precompression=20).breather(detuning="1/200")
     row = Standing(cell, 1.5, theory, 40, load=20.0).row()
     assert row["frequency_value"] / (2e3 * math.pi) == pytest.approx(edges[1, 0] * 0.995, rel=1e-9)
     assert abs(row["amplitude_off_value"]) < 0.015

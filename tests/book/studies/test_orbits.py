@@ -107,7 +107,7 @@ def test_the_engine_returns_to_the_orbit():
 
 def test_a_breather_is_stable_or_hardly_unstable_and_its_multipliers_come_in_pairs():
     cell = Cell((1, "1/2"), spacing=1)
-    theory = envelope(cell, Power("3/2"), precompression=1).breather(detuning=0.004)
+    theory = envelope(cell, law=Power("3/2"), precompression=1).breather(detuning=0.004)
     multipliers = Standing(cell, HERTZ, theory, 30).orbit.multipliers
     assert len(multipliers) == 122
     assert np.abs(multipliers[0]) < 1.01

@@ -26,7 +26,7 @@ def test_a_gap_breather_of_a_dimer(capsys):
 def test_equal_beads_in_symbols(capsys):
     options = ("envelope", "--masses", "m", "--spacing", "1", "--background", "p0")
     found = result(capsys, *options, "--wavenumber", "q")
-    expected = envelope(Cell(["m"], spacing=1), Power("k"), background="p0", wavenumber="q")
+    expected = envelope(Cell(["m"], spacing=1), law=Power("k"), background="p0", wavenumber="q")
     for name in ("frequency", "group_velocity", "dispersion", "nonlinearity"):
         assert found[name] == str(getattr(expected, name))
     assert found["kind"] is None

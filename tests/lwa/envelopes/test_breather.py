@@ -16,9 +16,9 @@ HERTZ = Power("3/2")
 @pytest.mark.parametrize(
     ("chain", "kind"),
     [
-        (envelope(Dimer(1, "1/2"), HERTZ, precompression=1), "bright"),
-        (envelope(Cell([2], [3]), Power(2), precompression=1), "dark"),
-        (envelope(Dimer(1, "1/2"), HERTZ, precompression=1, wavenumber=0), "dark"),
+        (envelope(Dimer(1, "1/2"), law=HERTZ, precompression=1), "bright"),
+        (envelope(Cell([2], [3]), law=Power(2), precompression=1), "dark"),
+        (envelope(Dimer(1, "1/2"), law=HERTZ, precompression=1, wavenumber=0), "dark"),
     ],
 )
 def test_the_profile_solves_the_equation(chain, kind):
@@ -36,7 +36,7 @@ def test_the_profile_solves_the_equation(chain, kind):
 
 def test_the_gap_breather_of_a_dimer():
     """U = δ0 √(32ν/(k(k-1))) of the light bead, whatever the masses; b² = 4νω²(m1 - m2)/K2."""
-    chain = envelope(Dimer(m1, m2), Power("k"), precompression="F0")
+    chain = envelope(Dimer(m1, m2), law=Power("k"), precompression="F0")
     found = chain.breather(detuning="nu", kind="bright")
     static = F0 ** (1 / k)
     assert found.amplitude[0] == 0
@@ -48,7 +48,7 @@ def test_the_gap_breather_of_a_dimer():
 
 
 def test_where_contacts_open_a_breather_is_refused_with_the_number():
-    chain = envelope(Dimer(1, "1/2"), HERTZ, precompression=8)
+    chain = envelope(Dimer(1, "1/2"), law=HERTZ, precompression=8)
     edge = chain.breather(detuning="3/128")
     assert float(edge.amplitude[1]) == pytest.approx(4, rel=1e-12)  # δ0
     refusal = r"^detuning 1 - f/f0 is 0\.025: contacts open from 0\.023438 on"
@@ -60,24 +60,24 @@ def test_where_contacts_open_a_breather_is_refused_with_the_number():
 
 def test_contacts_that_pull_do_not_open():
     """An exponential is a force at negative compressions, too; δ^{3/2} + δ^{5/2} is not."""
-    chain = envelope(Cell([1], spacing=1), named("exponential", 1), background=0)
+    chain = envelope(Cell([1], spacing=1), law=named("exponential", 1), background=0)
     assert chain.breather(detuning="1/2").opening_detuning == sp.oo
     with pytest.raises(InputError, match="a frequency is positive, and the detuning below 1"):
         chain.breather(detuning="3/2")
-    pushes = envelope(Cell([1], spacing=1), named("hertz2", 1, 1), background="1/2")
+    pushes = envelope(Cell([1], spacing=1), law=named("hertz2", 1, 1), background="1/2")
     found = pushes.breather(detuning="1/1000")
     assert 0.001 < found.opening_detuning < 1
 
 
 def test_impossible_breathers_are_refused():
     with pytest.raises(InputError, match="frequency or detuning"):
-        envelope(Dimer(1, "1/2"), HERTZ, precompression=1).breather()
+        envelope(Dimer(1, "1/2"), law=HERTZ, precompression=1).breather()
     with pytest.raises(InputError, match=r"a breather stands where dω/dκ = 0"):
-        envelope(Cell([1]), HERTZ, precompression=1, wavenumber=1).breather(detuning="1/100")
+        envelope(Cell([1]), law=HERTZ, precompression=1, wavenumber=1).breather(detuning="1/100")
 
 
 def test_displacements_along_the_chain():
-    found = envelope(Dimer(1, "1/2"), HERTZ, precompression=1).breather(detuning="1/500")
+    found = envelope(Dimer(1, "1/2"), law=HERTZ, precompression=1).breather(detuning="1/500")
     cells = np.arange(-3, 4)
     u = found.displacements(cells)
     assert u.shape == (7, 2)

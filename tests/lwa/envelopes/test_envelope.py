@@ -30,7 +30,7 @@ HERTZ = Power("3/2")
 
 
 def test_equal_beads_at_any_wavenumber():
-    found = envelope(Cell([1]), general(), background=0, wavenumber=q)
+    found = envelope(Cell([1]), law=general(), background=0, wavenumber=q)
     s, cot = sp.sin(q / 2), sp.cot(q / 2)
     chi = sp.sqrt(K2) * (2 * s) ** 3 * (3 * K4 / (2 * K2) - (K3 / K2) ** 2 * (2 + cot**2))
     assert same(found.frequency, 2 * sp.sqrt(K2) * s)
@@ -40,7 +40,7 @@ def test_equal_beads_at_any_wavenumber():
 
 
 def test_equal_beads_under_a_power_are_dark():
-    found = envelope(Cell(["m"], spacing=1), Power("k"), background="p0", wavenumber=q)
+    found = envelope(Cell(["m"], spacing=1), law=Power("k"), background="p0", wavenumber=q)
     m = sp.Symbol("m", positive=True)
     chi = -found.frequency * (k - 1) * (k - 1 + sp.sin(q / 2) ** 2) / (m * p0**2)
     assert same(sp.powsimp(found.nonlinearity / chi), 1)
@@ -49,7 +49,7 @@ def test_equal_beads_under_a_power_are_dark():
 
 
 def test_the_optical_band_of_a_dimer_begins_with_the_light_bead():
-    found = envelope(Dimer(m1, m2), general(), background=0)
+    found = envelope(Dimer(m1, m2), law=general(), background=0)
     omega = sp.sqrt(2 * K2 / m2)
     assert same(found.frequency, omega)
     assert found.group_velocity == 0
@@ -69,7 +69,7 @@ def test_long_waves_have_the_envelope_of_kdv(cell):
     kdv, scale = field.kdv, field.time_scale
     errors = []
     for long in (0.1, 0.05):
-        found = envelope(cell, HERTZ, background="1/2", wavenumber=long, branch=0)
+        found = envelope(cell, law=HERTZ, background="1/2", wavenumber=long, branch=0)
         chi = found.numeric().nonlinearity
         kappa = long / cell.size
         ours = -scale * kdv.nonlinearity**2 * kappa / (6 * kdv.dispersion * cell.mass)
@@ -123,7 +123,11 @@ def test_plane_waves_of_random_cells_on_the_lattice(P):
     )
     kappa, branch = float(rng.uniform(0.5, 3)), int(rng.integers(P))
     found = envelope(
-        Cell(masses, stiffnesses, 1), Power("5/2"), background=1, wavenumber=kappa, branch=branch
+        Cell(masses, stiffnesses, 1),
+        law=Power("5/2"),
+        background=1,
+        wavenumber=kappa,
+        branch=branch,
     ).numeric()
     shares = np.array(found.static_compressions, float)
     A = np.array(stiffnesses, float)
@@ -153,7 +157,7 @@ def test_plane_waves_of_random_cells_on_the_lattice(P):
     ids=str,
 )
 def test_exact_numbers_are_those_of_floats(cell, kappa):
-    chain = envelope(cell, HERTZ, background="1/2", wavenumber=kappa, branch=cell.size - 1)
+    chain = envelope(cell, law=HERTZ, background="1/2", wavenumber=kappa, branch=cell.size - 1)
     floats = chain.numeric()
     for name in ("frequency", "group_velocity", "dispersion", "nonlinearity"):
         ours, theirs = (complex(getattr(e, name)) for e in (chain, floats))
@@ -170,11 +174,11 @@ def test_units_of_real_spheres():
     cell = Cell(["28.84e-3", "9.75e-3"], ["5.46e9", "5.46e9"], "19.05e-3")
     edges = [(sp.pi, "acoustic", 4.711), (sp.pi, "optical", 8.101), (0, "optical", 9.371)]
     for kappa, branch, kilohertz in edges:
-        found = envelope(cell, HERTZ, precompression=20, wavenumber=kappa, branch=branch)
+        found = envelope(cell, law=HERTZ, precompression=20, wavenumber=kappa, branch=branch)
         omega = float(found.numeric().frequency)
         assert omega / (2e3 * np.pi) == pytest.approx(kilohertz, rel=1e-3)
-    load = envelope(cell, HERTZ, precompression=20)
-    static = envelope(cell, HERTZ, background=load.compression / cell.spacing)
+    load = envelope(cell, law=HERTZ, precompression=20)
+    static = envelope(cell, law=HERTZ, background=load.compression / cell.spacing)
     assert float(static.nonlinearity) == pytest.approx(float(load.nonlinearity), rel=1e-9)
 
 
@@ -190,14 +194,14 @@ def test_units_of_real_spheres():
 )
 def test_impossible_envelopes_are_refused(cell, options, message):
     with pytest.raises(InputError, match=message):
-        envelope(cell, HERTZ, **({"background": 1} | options)).frequency  # noqa: B018
+        envelope(cell, law=HERTZ, **({"background": 1} | options)).frequency  # noqa: B018
 
 
 def test_resonances_are_refused_by_name():
     """Sound is the one mode with c_g = c_0; second harmonics may be optical modes."""
     with pytest.raises(InputError, match="sound, c_g = c_0, has no envelope"):
-        envelope(Dimer(1, 2), HERTZ, background=1, wavenumber=0, branch=0).kind  # noqa: B018
-    long = envelope(Cell([1], spacing=1), HERTZ, background=1, wavenumber="1/1000")
+        envelope(Dimer(1, 2), law=HERTZ, background=1, wavenumber=0, branch=0).kind  # noqa: B018
+    long = envelope(Cell([1], spacing=1), law=HERTZ, background=1, wavenumber="1/1000")
     with pytest.raises(InputError, match="too close to that of sound, c_g = c_0, for floats"):
         long.numeric().nonlinearity  # noqa: B018
     limit = -long.frequency / 4  # χ = -ω (k-1) (k - cos² κ/2) → -ω (k-1)²
@@ -211,10 +215,10 @@ def test_resonances_are_refused_by_name():
         lambda q: 4 * square(q, -1) - square(2 * q, 1), 0.1, 3, xtol=1e-15
     )
     options = {"background": 1, "wavenumber": place, "branch": 0}
-    ringing = envelope(Dimer(1, "1/2", spacing=1), HERTZ, **options)
+    ringing = envelope(Dimer(1, "1/2", spacing=1), law=HERTZ, **options)
     with pytest.raises(InputError, match="the second harmonic is a mode too"):
         ringing.numeric().nonlinearity  # noqa: B018
-    driven = envelope(Cell([1, 1], [1, 9], 1), Power(2), background=1, branch=0)
+    driven = envelope(Cell([1, 1], [1, 9], 1), law=Power(2), background=1, branch=0)
     for found in (driven, driven.numeric()):
         with pytest.raises(InputError, match="the second harmonic is a mode too"):
             found.nonlinearity  # noqa: B018
@@ -222,9 +226,9 @@ def test_resonances_are_refused_by_name():
 
 def test_a_harmonic_that_no_force_drives_is_left_out():
     """Masses 3 and 1 at κ = π: 4ω² = 8/3 is the optical mode, but both contacts push alike."""
-    near = envelope(Cell(["m", 1], spacing=1), HERTZ, background=1, branch=0).nonlinearity
+    near = envelope(Cell(["m", 1], spacing=1), law=HERTZ, background=1, branch=0).nonlinearity
     limit = sp.limit(near, sp.Symbol("m", positive=True), 3)
-    found = envelope(Cell([3, 1], spacing=1), HERTZ, background=1, branch=0)
+    found = envelope(Cell([3, 1], spacing=1), law=HERTZ, background=1, branch=0)
     assert found.nonlinearity == limit == -sp.Rational(1, 16)
     assert float(found.numeric().nonlinearity) == pytest.approx(-0.0625, rel=1e-12)
 
@@ -243,9 +247,9 @@ def test_strains_at_which_a_law_does_not_grow_are_refused(law, strain, words):
     """Envelopes, waves on a background and shocks, with a spacing in numbers and without."""
     for cell in (Cell([1], spacing=1), Cell([1])):
         for call in (
-            lambda cell=cell: envelope(cell, law, background=strain),
+            lambda cell=cell: envelope(cell, law=law, background=strain),
             lambda cell=cell: loaded_wave(cell, background=strain, rise=1, law=law),
-            lambda cell=cell: shock(cell, law, strain, 0),
+            lambda cell=cell: shock(cell, strain, 0, law=law),
         ):
             with pytest.raises(InputError, match=words):
                 call()
@@ -278,7 +282,7 @@ def test_frequencies_and_their_derivatives_are_those_of_the_bands(masses, stiffn
     assume(np.min(np.abs(np.delete(omega, branch) - omega[branch])) > 0.1)
     options = {"precompression": 2, "wavenumber": kappa, "branch": branch}
     try:
-        ours = envelope(cell, HERTZ, **options).numeric()
+        ours = envelope(cell, law=HERTZ, **options).numeric()
         assert float(ours.frequency) == pytest.approx(omega[branch], rel=1e-10)
     except InputError:  # the second harmonic is a mode
         assume(False)

@@ -1,6 +1,5 @@
 """The Riemann problem: exact edges, Toda, KdV, hard spheres, other cells, units."""
 
-import numpy as np
 import pytest
 import scipy
 import sympy as sp
@@ -8,7 +7,6 @@ import sympy as sp
 from lwa import (
     Cell,
     Dimer,
-    Dispersion,
     InputError,
     Law,
     Power,
@@ -18,7 +16,6 @@ from lwa import (
 )
 from lwa.law import DELTA, named
 from lwa.loaded.background import Background
-from lwa.shocks import edges
 from lwa.shocks.waves import Pulse
 from tests.identity import same
 
@@ -30,7 +27,7 @@ WAVY = Law(2 * DELTA + sp.sin(DELTA), DELTA)  # F″ = -sin δ
 
 
 def test_edges_of_equal_beads_solve_els_equations():
-    """∫ (1 - f′)/f dκ up to the edge of `lwa.shocks.edges` is ln r, likewise at imaginary κ."""
+    """∫ (1 - f′)/f dκ up to the edge is ln r, likewise at imaginary κ; k = 3 has r = p₋/p₊."""
     kappa, r = sp.symbols("kappa r", positive=True)
     f = 2 * sp.sin(kappa / 2)
     for sign, curve, speed in (
@@ -42,10 +39,15 @@ def test_edges_of_equal_beads_solve_els_equations():
         rest = primitive.diff(kappa) - sign * (1 - curve.diff(kappa)) / curve
         assert abs(rest.subs(kappa, sp.Rational(6, 5)).n(30)) < 1e-25
         angle = 4 * (sp.acos(1 / sp.sqrt(r)) if sign > 0 else sp.acosh(sp.sqrt(r)))
-        ours = edges.trailing(EQUAL, r) if sign > 0 else edges.leading(Dispersion(EQUAL), r)
-        for value in ("11/10", "5/4"):
-            gap = (speed(angle) - ours).subs(r, sp.Rational(value))
-            assert abs(gap.n(30)) < 1e-25
+        for value in map(sp.Rational, ("11/10", "5/4")):
+            front = shock(EQUAL, value, 1, k=3)
+            at = (
+                (front.trailing_speed, front.behind)
+                if sign > 0
+                else (front.leading_speed("dispersion"), front.ahead)
+            )
+            ours = at[0] / front.sound(at[1])
+            assert abs((speed(angle).subs(r, value) - ours).n(30)) < 1e-25
 
 
 def test_a_toda_soliton_on_els_edge_moves_its_beads_at_twice_the_wall():
@@ -65,21 +67,24 @@ def test_a_toda_soliton_on_els_edge_moves_its_beads_at_twice_the_wall():
     assert same(sp.sinh(kappa) / kappa, edge)
     assert same(2 * (sp.cosh(kappa) - 1), 4 * (r - 1))
     for D in (1, sp.Rational(1, 2)):
-        found = shock(Cell([1], spacing=D), TODA, sp.log(sp.Rational(25, 16)) / D, 0)
+        found = shock(Cell([1], spacing=D), sp.log(sp.Rational(25, 16)) / D, 0, law=TODA)
         assert same(found.ratio, sp.Rational(5, 4))
         assert same(found.plateau, sp.S.Half)
-        for rule in ("dispersion", "doubling"):
-            gap = found.leading_speed(rule) - D * edge.subs(r, sp.Rational(5, 4))
-            assert abs(gap.n(30)) < 1e-25
-        soliton = sp.log(1 + sp.sinh(kappa) ** 2).subs(r, sp.Rational(5, 4))  # δ at its middle
-        assert abs((D * found.peak - soliton).n(30)) < 1e-25
+        true = D * edge.subs(r, sp.Rational(5, 4))
+        assert abs((found.leading_speed("dispersion") - true).n(30)) < 1e-25
+        soliton = sp.log(1 + sp.sinh(kappa) ** 2).subs(r, sp.Rational(5, 4)) / D  # at its middle
+        for name, ours, known in (
+            ("doubling", found.leading_speed(), true),
+            ("peak", found.peak, soliton),
+        ):
+            assert abs(float(ours / known) - 1) < found.errors[name]
 
 
 def test_plateau_and_rule_under_a_power_without_load():
     """B/p₋ = (8k/(k+1))^{1/(k+1)} and s₊/c₋ = 4/(k+1) (8k/(k+1))^{-1/(k+1)}; a contact's strain
     is B (1 - (k-1)/(2k(k+1)))."""
     k = sp.Symbol("k", positive=True)
-    found = shock(EQUAL, Power("k"), "p", 0)
+    found = shock(EQUAL, "p", 0, law=Power("k"))
     p = sp.Symbol("p", positive=True)
     rise = (8 * k / (k + 1)) ** (1 / (k + 1))
     for value in (sp.Rational(3, 2), 2, 5):
@@ -123,15 +128,15 @@ def test_a_pulse_is_the_lattices_own_to_the_next_order_in_k_minus_1():
     [(HERTZ, 1), (Power("1/2"), 1), (named("hertz2", 1, 1), 1), (named("magnetic", 3, 1), 0)],
     ids=["hertz", "root", "hertz2", "magnets"],
 )
-def test_small_jumps_are_those_of_kdv_to_twenty_digits(law, ahead):
+def test_small_jumps_are_those_of_kdv(law, ahead):
     """The edges stand -1 and 2/3 of the jump of c off c₊ for r → 1, and the leading pulse at 2.
 
-    To 20 digits a speed is c₊ below jumps of 1e-20. Under k = 1/2 sound is faster on a lower
+    Under k = 1/2 sound is faster on a lower
     strain: the strain of its shocks falls.
     """
-    for digits in (6, 9, 12, 30):
+    for digits in (6, 12):
         jump = sp.Rational(-1 if law == Power("1/2") else 1, 10**digits)
-        found = shock(EQUAL, law, ahead + jump, ahead)
+        found = shock(EQUAL, ahead + jump, ahead, law=law)
         c = sp.N(found.sound(ahead), 50)
         sound = sp.N(found.sound(ahead + jump), 50) / c - 1
         for speed, part in (
@@ -139,17 +144,18 @@ def test_small_jumps_are_those_of_kdv_to_twenty_digits(law, ahead):
             (found.leading_speed("dispersion"), sp.Rational(2, 3)),
             (found.trailing_speed, -1),
         ):
-            assert abs(sp.N(speed, 60) / c - 1 - part * sound) < abs(sound) ** 2 + 1e-19
-        assert found.rise == pytest.approx(2 * jump, rel=1e-5, abs=1e-19)
-        assert found.peak - ahead == pytest.approx(2 * jump, rel=1e-5, abs=1e-19)
+            assert abs(sp.N(speed, 60) / c - 1 - part * sound) < abs(sound) ** 2 + 1e-26
+        assert found.rise == pytest.approx(2 * jump, rel=1e-5)
+        assert found.peak - ahead == pytest.approx(2 * jump, rel=1e-5)
 
 
 @pytest.mark.parametrize(
-    ("k", "behind", "ahead"), [("2.77", 1, 0), ("2.38", "36.3", 1), ("4.99", "0.785", "0.1")]
+    ("k", "behind", "ahead"),
+    [("2.77", 1, 0), ("2.38", "36.3", 1), ("4.99", "0.785", "0.1"), ("3.1085", "1.501", "0.738")],
 )
-def test_a_long_exponent_is_a_number_of_twenty_digits(k, behind, ahead):
+def test_long_decimals_are_floats_of_thirty_digits(k, behind, ahead):
     """Exact powers of 277/100 hold integers beyond a float, at which SymPy stopped or hung."""
-    found = shock(EQUAL, Power(k), behind, ahead)
+    found = shock(EQUAL, behind, ahead, law=Power(k))
     k, p, q = (float(sp.Rational(x)) for x in (k, behind, ahead))
     v = 2 * k**0.5 * (p ** ((k + 1) / 2) - q ** ((k + 1) / 2)) / (k + 1)
     assert float(found.plateau) == pytest.approx(v, rel=1e-13)
@@ -160,7 +166,7 @@ def test_a_long_exponent_is_a_number_of_twenty_digits(k, behind, ahead):
 def test_the_series_in_k_minus_1_has_beads_at_twice_the_wall():
     """Hertz without load: the rule on the exact wave gives 0.8477 c₋ and 1.7277 p₋, where the
     driven lattice has 0.8487 and 1.7360 (theory notes, section 14)."""
-    found = shock(EQUAL, HERTZ, 1, 0)
+    found = shock(EQUAL, 1, 0, law=HERTZ)
     wave = found.wave
     peak = wave.expansion.peak_velocity.at().value * float(wave.F) ** (5 / 6)
     assert peak == pytest.approx(2 * float(found.plateau), rel=1e-12)
@@ -168,39 +174,31 @@ def test_the_series_in_k_minus_1_has_beads_at_twice_the_wall():
     assert float(wave.F) ** (2 / 3) == pytest.approx(1.7277, abs=1e-4)
 
 
-@pytest.mark.parametrize(("k", "behind", "ahead"), [("3/2", "7/5", 1), (3, "1/10", "1e-6")])
-def test_the_leading_edge_of_nearly_equal_beads_is_the_closed_form(k, behind, ahead):
-    """By quadrature on the folded branch; also where sound ahead is 10⁵ times slower."""
-    near = Cell([1, 1 + sp.Rational(1, 10**15)], spacing=1)
-    one, two = (shock(cell, Power(k), behind, ahead) for cell in (EQUAL, near))
-    ratio = two.leading_speed("dispersion") / one.leading_speed("dispersion")
-    assert float(ratio) == pytest.approx(1, rel=1e-14)
-
-
-def test_the_leading_edge_of_a_dimer_solves_els_equation():
-    """f̃² ~ √((m1+m2)² + 4 m1 m2 sinh² q) - (m1+m2), the diatomic chain's branch at κ = iq."""
-    m = 1 / 3
-    found = shock(Dimer(1, "1/3", spacing=1), HERTZ, "5/4", 1)
-
-    def branch(q):
-        mass = 1 + m
-        rest = 4 * m * np.sinh(q) ** 2
-        return np.sqrt(mass / (2 * m) * (rest / (np.sqrt(mass**2 + rest) + mass)))
-
-    def rate(q):
-        slope = (branch(q + 1e-5) - branch(q - 1e-5)) / 2e-5
-        return (slope - 1) / branch(q)
-
-    speed = float(found.leading_speed("dispersion") / found.sound(found.ahead))
-    edge = scipy.optimize.brentq(lambda q: branch(q) / q - speed, 0.1, 3)
-    area, _ = scipy.integrate.quad(rate, 1e-3, edge)
-    assert area == pytest.approx(float(sp.log(found.ratio)), rel=1e-4)
+@pytest.mark.parametrize(
+    ("law", "behind", "ahead", "kind"),
+    [
+        (named("magnetic", "1.963", "2.091"), "0.392", "0.834", "rarefaction"),
+        (named("magnetic", "1.963", "2.091"), "0.834", "0.392", "shock"),
+        (named("hertz2", "1.037", "0.519"), "1.127", "0.738", "shock"),
+    ],
+)
+def test_laws_of_three_decimals(law, behind, ahead, kind):
+    """A fit gives such numbers; v_p by SciPy's quadrature, and the wall of this v_p again."""
+    found = shock(EQUAL, behind, ahead, law=law)
+    F = sp.lambdify(law.delta, law.slope(1))
+    area, _ = scipy.integrate.quad(lambda p: F(p) ** 0.5, float(ahead), float(behind))
+    assert float(found.plateau) == pytest.approx(area, rel=1e-10)
+    assert found.kind == kind
+    if kind == "shock":
+        again = piston(EQUAL, found.plateau.n(25), ahead, law=law)
+        assert float(again.behind) == pytest.approx(float(behind), rel=1e-12)
+        assert {"doubling", "peak", "dispersion"} <= {*found.errors}
 
 
 def test_a_law_without_closed_forms():
     """hertz2: v_p by SciPy's quadrature, and the rule's equation for B."""
     law = named("hertz2", 1, 1)
-    found = shock(EQUAL, law, 2, 1)
+    found = shock(EQUAL, 2, 1, law=law)
     F = sp.lambdify(law.delta, law.slope(1))
     area, _ = scipy.integrate.quad(lambda p: F(p) ** 0.5, 1, 2)
     assert float(found.plateau) == pytest.approx(area, rel=1e-10)
@@ -208,12 +206,14 @@ def test_a_law_without_closed_forms():
     B = float(found.rise)
     work = W(1 + B) - W(1) - float(law.at(sp.S.One)) * B
     assert work == pytest.approx(2 * area**2, rel=1e-10)
-    assert float(piston(EQUAL, law, found.plateau.n(25), 1).behind) == pytest.approx(2, rel=1e-12)
+    assert float(piston(EQUAL, found.plateau.n(25), 1, law=law).behind) == pytest.approx(
+        2, rel=1e-12
+    )
 
 
 @pytest.mark.parametrize("cell", [EQUAL, Cell(["m"])], ids=str)
 def test_the_opposite_jump_is_a_rarefaction(cell):
-    found = shock(cell, HERTZ, 1, 2)
+    found = shock(cell, 1, 2, law=HERTZ)
     assert found.kind == "rarefaction"
     assert found.trailing_speed == found.sound(found.behind)
     assert found.leading_speed() == found.leading_speed("dispersion") == found.sound(found.ahead)
@@ -224,7 +224,10 @@ def test_si_units():
     """v ~ c p, F ~ A (D p)^k: a piston at the same v/c and p gives the same shape."""
     real = Cell(["1/2000"], ["1e9"], "1/200")
     scale = float(real.time_scale("3/2"))
-    plain, found = piston(EQUAL, HERTZ, 1, "1/2"), piston(real, HERTZ, scale / 1.5**0.5, "1/2")
+    plain, found = (
+        piston(EQUAL, 1, "1/2", law=HERTZ),
+        piston(real, scale / 1.5**0.5, "1/2", law=HERTZ),
+    )
     assert float(found.plateau) == pytest.approx(scale / 1.5**0.5, rel=1e-9)
     assert float(found.behind) == pytest.approx(float(plain.behind), rel=1e-9)
     ratio = float(found.leading_speed() / plain.leading_speed())
@@ -236,25 +239,26 @@ def test_si_units():
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: shock(EQUAL, Power(1), 2, 1), "sound is as fast behind as ahead"),
-        (lambda: shock(EQUAL, HERTZ, 1, -1), "ahead is -1: contacts of a power law only push"),
-        (lambda: shock(EQUAL, HERTZ, 4, 1).trailing_speed, "the trailing edge holds up to 1.3"),
-        (lambda: shock(EQUAL, HERTZ, 1, 0).leading_speed("dispersion"), "ahead is 0: no sound"),
-        (lambda: shock(Dimer(1, 2), HERTZ, 2, 1).peak, "known for equal beads only"),
-        (lambda: shock(EQUAL, HERTZ, 1, 2).peak, "a rarefaction has no pulse"),
-        (lambda: shock(EQUAL, HERTZ, 2, 1).wave, "of a power law without load"),
-        (lambda: shock(EQUAL, HERTZ, 2, 1).leading_speed("el"), "rule is 'el': dispersion or"),
-        (lambda: shock(EQUAL, Power("k"), "p", 1).kind, "kind depends on symbols"),
-        (lambda: shock(EQUAL, Power(1), 1, 0), "a front without load wants k > 1"),
-        (lambda: shock(EQUAL, BENT, 1), "changes its sign at the strain 0.66667"),
-        (lambda: shock(EQUAL, BENT, "1/3", 1), "changes its sign at the strain 0.66667"),
-        (lambda: shock(EQUAL, BENT, "1/2").peak, "changes its sign at the strain 0.66667"),
-        (lambda: shock(EQUAL, BENT, "1/2").leading_speed("dispersion"), "changes its sign"),
-        (lambda: shock(EQUAL, WAVY, 5, 1), "changes its sign at the strain 3.1"),
-        (lambda: shock(Dimer("a", "b"), HERTZ, 2, 1).leading_speed("dispersion"), "has no value"),
-        (lambda: shock(Dimer(1, 2), HERTZ, 2, 1).trailing_speed, "known for equal beads"),
-        (lambda: shock(Cell(["m"]), HERTZ, 1, 0).wave, "has no value: sums of series"),
-        (lambda: piston(Cell(["m"]), TODA, 1), "has no value: numbers are wanted"),
+        (lambda: shock(EQUAL, 2, 1, law=Power(1)), "sound is as fast behind as ahead"),
+        (lambda: shock(EQUAL, 1, -1, law=HERTZ), "ahead is -1: contacts of a power law only push"),
+        (lambda: shock(EQUAL, 4, 1, law=HERTZ).trailing_speed, "the trailing edge holds up to 1.3"),
+        (lambda: shock(EQUAL, 1, 0, law=HERTZ).leading_speed("dispersion"), "ahead is 0: no sound"),
+        (lambda: shock(Dimer(1, 2), 2, 1, law=HERTZ).peak, "known for equal beads only"),
+        (lambda: shock(EQUAL, 1, 2, law=HERTZ).peak, "a rarefaction has no pulse"),
+        (lambda: shock(EQUAL, 2, 1, law=HERTZ).wave, "of a power law without load"),
+        (lambda: shock(EQUAL, 2, 1, law=HERTZ).leading_speed("el"), "rule is 'el': dispersion or"),
+        (lambda: shock(EQUAL, "p", 1, law=Power("k")).kind, "kind depends on symbols"),
+        (lambda: shock(EQUAL, 1, 0, law=Power(1)), "a front without load wants k > 1"),
+        (lambda: shock(EQUAL, 1, law=BENT), "changes its sign at the strain 0.66667"),
+        (lambda: shock(EQUAL, "1/3", 1, law=BENT), "changes its sign at the strain 0.66667"),
+        (lambda: shock(EQUAL, "1/2", law=BENT).peak, "changes its sign at the strain 0.66667"),
+        (lambda: shock(EQUAL, "1/2", law=BENT).leading_speed("dispersion"), "changes its sign"),
+        (lambda: shock(EQUAL, 5, 1, law=WAVY), "changes its sign at the strain 3.1"),
+        (lambda: shock(Dimer(1, 2), 2, 1, law=HERTZ).leading_speed("dispersion"), "equal beads"),
+        (lambda: shock(Dimer(1, 2), 2, 1, law=HERTZ).trailing_speed, "known for equal beads"),
+        (lambda: shock(EQUAL, 1 + sp.Rational(1, 10**16), 1, law=HERTZ), "1e-15 of it at least"),
+        (lambda: shock(Cell(["m"]), 1, 0, law=HERTZ).wave, "has no value: sums of series"),
+        (lambda: piston(Cell(["m"]), 1, law=TODA), "has no value: numbers are wanted"),
     ],
 )
 def test_limits_are_refused(make, message):
