@@ -33,10 +33,11 @@ RESERVED = {
     "k": "the exponent",
     "D": "the spacing",
     "B": "the peak strain",
+    "F": "the peak force",
     "V_s": "the speed",
     "tau": "time",
 }
-"""Names that results use, and their meaning there; user symbols may not have them."""
+"""Names of a result's own symbols; the symbols of a cell, a law and k may not have them."""
 
 EXPONENTS = sp.Rational(1, 100), 1000
 """Least and largest k; beyond them exact numbers such as A^{1/k} have too many digits to read."""
@@ -186,19 +187,15 @@ def read_cell(value: Any) -> Cell:
     return value
 
 
-def exponent(value: Any, cell: Cell | None = None) -> sp.Expr:
-    """Read the exponent k of F = A δ^k exactly, for the chain of a cell.
+def exponent(value: Any) -> sp.Expr:
+    """Read the exponent k of F = A δ^k exactly.
 
-    Raises `lwa.InputError` for numbers outside of `EXPONENTS`, and for a name with another meaning.
+    Raises `lwa.InputError` for numbers outside of `EXPONENTS`, and for a name in `RESERVED`.
     """
     least, largest = EXPONENTS
     result = check_names(read_exact(value, "k"), "k", k.name)
     if result.is_number and not least <= result <= largest:
         raise InputError(f"k is {shorten(result)}: exponents from {least} to {largest} are taken")
-    if cell is not None:
-        shared = {s.name for s in result.free_symbols} & {s.name for s in cell.symbols}
-        if shared:
-            raise InputError(f"{min(shared)} names both the exponent and a property of the cell")
     return result
 
 
@@ -243,17 +240,14 @@ def check_distinct(symbols: Sequence[sp.Symbol]) -> None:
         raise InputError(f"{min(twice)!r} names two symbols, with different assumptions: use one")
 
 
-def check_names(
-    value: sp.Expr, field: str, allowed: str = "", taken: Mapping[str, str] = RESERVED
-) -> sp.Expr:
-    """Return the value; raise `lwa.InputError` if a symbol in it has a name of another meaning.
+def check_names(value: sp.Expr, field: str, allowed: str = "") -> sp.Expr:
+    """Return the value; raise `lwa.InputError` if a symbol in it has a name in `RESERVED`.
 
     field : name of the value in messages. allowed : reserved name that a symbol may have.
-    taken : mapping from each reserved name to its meaning.
     """
     for name in sorted(s.name for s in value.free_symbols):
-        if name in taken and name != allowed:
-            raise InputError(f"{field} {name!r}: the name means {taken[name]} here")
+        if name in RESERVED and name != allowed:
+            raise InputError(f"{field} {name!r}: the name means {RESERVED[name]} here")
     return value
 
 

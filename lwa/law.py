@@ -36,7 +36,6 @@ from lwa.base.exact import (
 )
 from lwa.base.frozen import Value
 from lwa.cell import (
-    RESERVED,
     Cell,
     check_distinct,
     check_names,
@@ -49,7 +48,6 @@ from lwa.cell import k as symbol_k
 DELTA = sp.Symbol("delta", positive=True)
 """δ, the compression of a contact, unless the caller names another symbol."""
 
-TAKEN = {**RESERVED, "A": "the stiffness of a contact", "p0": "the strain ahead of a wave"}
 """Names that results use beside a law, and their meaning there."""
 
 _PHI = re.compile("phi[0-9]+")  # the name of a `phi_symbol`
@@ -178,13 +176,9 @@ class ContactLaw(Value):
                 "the contacts differ in stiffness, and their shares of the strain would then "
                 "depend on the strain: only a power law allows that"
             )
-        cell_names, names = (
-            {s.name for s in symbols} for symbols in (cell.symbols, (self.delta, *self.symbols))
-        )
-        for name in sorted(cell_names & names):
-            raise InputError(f"{name} names both the law's and a property of the cell")
-        for name in sorted(filter(_PHI.fullmatch, cell_names | names)):
-            raise InputError(f"{name!r} means φ_{name[3:]} of the law here: use another name")
+        names = {s.name for s in (*cell.symbols, *self.symbols)}
+        for name in sorted(n for n in names if n == self.delta.name or _PHI.fullmatch(n)):
+            raise InputError(f"{name!r} has a meaning in the law: use another name")
 
     def check_strain(self, p: sp.Expr, cell: Cell, sound: bool = False) -> None:
         """Raise `lwa.InputError` unless F is real up to the strain p and grows there, F′ > 0.
@@ -272,7 +266,7 @@ class Power(ContactLaw):
         return value
 
     def check_contacts(self, cell: Cell) -> None:
-        exponent(self.k, cell)
+        """Accept any contacts: their shares of the strain are powers of their stiffnesses."""
 
     def compressions(self, cell: Cell, force: sp.Expr) -> tuple[sp.Expr, ...]:
         return tuple(power(real(force, "force") / A, 1 / self.k) for A in cell.stiffnesses)
@@ -314,7 +308,7 @@ class Law(ContactLaw):
             raise InputError(
                 f"F is {shorten(self.F)}: a SymPy expression in {self.delta} is wanted"
             )
-        object.__setattr__(self, "F", check_names(read_exact(self.F, "F"), "law", taken=TAKEN))
+        object.__setattr__(self, "F", check_names(read_exact(self.F, "F"), "law"))
         check_distinct((self.delta, *self.symbols))
         if self.slope().is_zero:
             raise InputError(f"F is {shorten(self.F)}: a force that depends on δ is wanted")
@@ -402,7 +396,9 @@ def read_law(value: Any, name: str) -> ContactLaw:
 
 def _check_parameter(value: sp.Expr, name: str, delta: sp.Symbol) -> sp.Expr:
     """Return a law's parameter; raise `lwa.InputError` if it holds the compression's symbol."""
-    return check_names(value, name, taken={delta.name: "the compression of a contact"})
+    if delta.name in {s.name for s in value.free_symbols}:
+        raise InputError(f"{name} {delta.name!r}: the name means the compression of a contact")
+    return value
 
 
 def phi_symbol(n: int) -> sp.Symbol:

@@ -174,7 +174,7 @@ def homogenize(
 
 def _model(cell: Cell, k: Any, law: ContactLaw | None, branch: str, order: int) -> Model:
     if law is None:
-        return Model(cell, Power(exponent(k, cell)), branch)
+        return Model(cell, Power(exponent(k)), branch)
     law = for_cell(law, cell, k)
     if not law.homogeneous and branch != "acoustic":
         raise InputError(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from functools import reduce
 from typing import Any
 
@@ -11,7 +11,7 @@ import click
 import sympy as sp
 from click.core import ParameterSource
 
-from lwa.base.exact import InputError, integer, read_exact
+from lwa.base.exact import integer, read_exact
 from lwa.cell import D, k
 from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS
 from lwa.law import NAMES, ContactLaw, read_law
@@ -22,22 +22,6 @@ Option = Callable[[Command], Command]
 STYLES = ("text", "json", "latex")
 """Values of ``--format`` of every command."""
 
-PRINTED = {
-    "derive": "u w x t tau τ λ delta δ A F G H b[0-9]+",
-    "wave": "u v x z t tau τ delta δ A F F0 p0 p a mu μ eta η sigma σ s xi ξ beta β π",
-    "wave --law": "u v x t tau τ F0 I xi ξ c0 alpha α gamma γ L",
-    "dispersion": "t tau τ delta δ A kappa κ Omega Ω q",
-    "expansion": "t delta δ A F c epsilon ε xi ξ a[0-9]+ a_n",
-    "envelope": "A F t U X i n t u Psi Ψ kappa κ omega ω chi χ Delta Δ a b delta δ",
-    "shock": "A F x t delta δ c s v_p",
-}
-"""Patterns of the names that a command prints for its own quantities, beside `lwa.cell.RESERVED`.
-
-Symbols of a caller with such a name are refused, so that no letter means two things.
-"""
-
-_OWN_NAMES = {"stiffnesses": "A", "force": "F", "precompression": "F0", "background": "p0"}
-
 # --- readers ---
 
 
@@ -46,40 +30,23 @@ def called(option: click.Parameter) -> str:
     return option.opts[0].lstrip("-")
 
 
-def _demand_free(symbols: Iterable[sp.Symbol], command: str, option: click.Parameter) -> None:
-    """Refuse symbols named like another quantity of the output."""
-    patterns = "|".join(PRINTED.get(command, "").split())
-    for name in sorted({s.name for s in symbols} - {_OWN_NAMES.get(called(option), "")}):
-        if re.fullmatch(patterns, name):
-            raise InputError(
-                f"{name!r} has a meaning of its own in the output of `lwa {command.split()[0]}`: "
-                "use another name"
-            )
-
-
-def _read(context: click.Context, option: click.Parameter, text: str) -> sp.Expr:
-    expression = read_exact(text, called(option))
-    _demand_free(expression.free_symbols, str(context.info_name), option)
-    return expression
-
-
 def quantity(context: click.Context, option: click.Parameter, text: str | None) -> sp.Expr | None:
     """Read an integer, a decimal, a fraction or a plain name."""
-    return None if text is None else _read(context, option, text)
+    return None if text is None else read_exact(text, called(option))
 
 
 def quantities(
     context: click.Context, option: click.Parameter, text: str | None
 ) -> tuple[sp.Expr, ...]:
     """Read quantities separated by commas; () when absent."""
-    return tuple(_read(context, option, part) for part in text.split(",")) if text else ()
+    return tuple(read_exact(part, called(option)) for part in text.split(",")) if text else ()
 
 
 def angle(context: click.Context, option: click.Parameter, text: str) -> sp.Expr:
     """Read a quantity or a part of pi, such as pi, pi/3 or 2pi/3."""
     part = re.fullmatch(r"([0-9]*)\*?pi(?:/([1-9][0-9]*))?", text.strip())
     if part is None:
-        return _read(context, option, text)
+        return read_exact(text, called(option))
     return sp.Rational(int(part[1] or 1), int(part[2] or 1)) * sp.pi
 
 
@@ -94,9 +61,7 @@ def contact_law(
     """Read NAME or NAME:PARAM,… of a law in `lwa.law.named`."""
     if text is None:
         return None
-    law, command = read_law(text, called(option)), str(context.info_name)
-    _demand_free(law.symbols, f"{command} --law" if command == "wave" else command, option)
-    return law
+    return read_law(text, called(option))
 
 
 def given(option: str) -> bool:

@@ -29,9 +29,9 @@ from numpy.typing import ArrayLike
 
 from lwa.base import latex
 from lwa.base.arrays import Array
-from lwa.base.exact import InputError, integer, one_of, positive, read_exact, shorten, signed
+from lwa.base.exact import InputError, integer, one_of, positive, shorten, signed
 from lwa.base.frozen import Value
-from lwa.cell import Cell, check_names
+from lwa.cell import Cell
 from lwa.cell import k as symbol_k
 from lwa.envelopes.bloch import cell_mode
 from lwa.envelopes.response import Mode
@@ -310,10 +310,6 @@ def envelope(
         static = cell.spacing * read(background, "background")
         law.check_strain(static / cell.spacing, cell, sound=True)
     kappa = signed(wavenumber, "wavenumber")
-    own = dict.fromkeys((s.name for s in (*cell.symbols, *law.symbols)), "a property of the chain")
-    check_names(kappa, "wavenumber", taken=own)
-    if background is not None:
-        check_names(read_exact(background, "background"), "background", taken=own)
     if kappa.is_number and not 0 <= kappa <= sp.pi:
         raise InputError(f"wavenumber is {shorten(kappa)}: 0 … pi per cell is wanted")
     if branch is None:

@@ -197,7 +197,7 @@ def expand(
                 "and only a power law has a k"
             )
         k = law.exponent
-    k = exponent(k, cell)
+    k = exponent(k)
     if not k.free_symbols and k <= 1:
         raise InputError(f"k is {k}: the expansion in k - 1 wants k > 1")
     if shared := {s.name for s in (*cell.symbols, *k.free_symbols)} & {"ε", r"\varepsilon"}:

@@ -72,7 +72,7 @@ class EpsilonSeries(Value):
         """
         if self.order < LOWEST:
             raise InputError(f"order is {self.order}: sums are stated from order {LOWEST} on")
-        series = self if k is None else self._for(exponent(k, self.cell))
+        series = self if k is None else self._for(exponent(k))
         values = (series.k, series.prefactor, *series.coefficients)
         symbols = set().union(*(value.free_symbols for value in values))
         demand_numbers(symbols, "a sum needs numbers")

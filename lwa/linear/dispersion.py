@@ -57,7 +57,7 @@ class Dispersion(Value):
 
     def __post_init__(self) -> None:
         read_cell(self.cell)
-        object.__setattr__(self, "k", exponent(self.k, self.cell))
+        object.__setattr__(self, "k", exponent(self.k))
 
     def at(self, **values: Any) -> Dispersion:
         """Substitute values for symbols, and for ω = m2/m1, as `lwa.Cell.at`."""

@@ -21,7 +21,6 @@ from lwa.base import latex
 from lwa.base.exact import InputError, number, one_of, positive, power, shorten
 from lwa.base.frozen import Value
 from lwa.base.quantities import known_extent, known_quantity, strain_power
-from lwa.cell import RESERVED, check_names
 from lwa.law import Power
 from lwa.wave.closed import CompactWave
 
@@ -42,8 +41,8 @@ class PhysicalWave(Value):
     force : peak force, a number or a symbol.
     of : "contact" or "bead", whose force peaks at ``force``.
 
-    Raises `lwa.InputError` unless the force is positive, for a name that already has a meaning in
-    the wave, and for the force of a bead whose two contacts peak one after the other.
+    Raises `lwa.InputError` unless the force is positive, and for the force of a bead whose two
+    contacts peak one after the other.
 
     >>> from lwa import Cell, canonical_wave
     >>> wave = canonical_wave(Cell(["m"], ["A"]), "3/2").at_force("F")
@@ -56,10 +55,7 @@ class PhysicalWave(Value):
     of: str = "contact"
 
     def __post_init__(self) -> None:
-        cell = dict.fromkeys((s.name for s in self.wave.cell.symbols), "a property of the cell")
-        law = dict.fromkeys((s.name for s in self._law.symbols), "a symbol of the law")
-        taken = {**cell, **law, **RESERVED}
-        force = check_names(positive(self.force, "force"), "force", taken=taken)
+        force = positive(self.force, "force")
         object.__setattr__(self, "force", force)
         if one_of(self.of, BEARERS, "of") == "bead":
             self._bead_share  # noqa: B018 - a share that does not exist is refused here

@@ -74,10 +74,6 @@ def test_names_of_one_symbol_only():
     for name in RESERVED:
         with pytest.raises(InputError, match=f"{name!r}"):
             Cell([name, 1])
-    with pytest.raises(InputError, match="names both"):
-        homogenize(Cell(["a"]), k="a")
-    with pytest.raises(InputError, match="names both"):
-        Dispersion(Cell(["a"]), "a")
 
 
 def test_omega_replaces_a_mass():

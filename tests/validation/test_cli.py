@@ -18,7 +18,7 @@ from validation.report import command
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
 from validation.scenes.scenefile import document, scene
-from validation.studies.run import EXAMPLES, example
+from validation.studies.run import EXAMPLES
 
 
 def toml(text):
@@ -168,14 +168,6 @@ def test_every_example_runs_and_names_its_units(capsys, folder, name):
     assert " - " not in out  # each sensor has its pulse
 
 
-def test_the_help_of_run_shows_the_first_example_and_names_all(capsys):
-    assert run(capsys, "run", "--example") == (0, example("paper"), "")
-    shown = CliRunner().invoke(cli.validate, ["run", "--help"]).output
-    assert f"[{'|'.join(EXAMPLES)}]" in "".join(shown.split())
-    for line in example("paper").splitlines():
-        assert line in shown
-
-
 @pytest.mark.parametrize("name", ["out.json", "out.csv"])
 def test_a_result_that_cannot_be_written_leaves_the_old_one(capsys, folder, scene_file, name):
     (folder / name).write_text("old")
@@ -286,17 +278,6 @@ def test_without_a_terminal_only_long_runs_show_their_progress(capsys, monkeypat
     assert "lattice run: 25.0 %" in capsys.readouterr().err
 
 
-@pytest.mark.filterwarnings("error::RuntimeWarning")
-def test_warnings_of_numpy_do_not_reach_the_user(capsys):
-    @command.study()
-    def overflow():
-        """Overflow."""
-        return Report(f"{np.float64(1e300) * np.float64(1e300)}")
-
-    CliRunner().invoke(overflow.command, [], catch_exceptions=False)
-    assert capsys.readouterr().err == ""
-
-
 def test_every_study_is_a_command():
     context = click.Context(cli.validate)
     for name in cli.STUDIES:
@@ -330,13 +311,3 @@ TEXTS = {  # commands and the characters of their longest line, at most
     "pulses run.csv": 100,
     "law law.csv --masses 0.45e-3 --spacing 4.76e-3": 100,
 }
-
-
-def test_texts_fit_a_terminal(capsys, folder):
-    """The texts of limits, figures and accuracy: in the tests of these studies."""
-    (folder / "law.csv").write_text(LAW)
-    (folder / "scene.toml").write_text(example("paper"))
-    for line, width in TEXTS.items():
-        status, out, _ = run(capsys, *line.split())
-        assert status == 0, line
-        assert max(map(len, out.splitlines())) <= width, line

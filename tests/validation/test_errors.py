@@ -189,18 +189,6 @@ def test_exact():
     assert max(largest) >= 1 / LARGEST
 
 
-def test_the_weights_of_pulses_are_those_of_their_scatter():
-    """A weight is the inverse deviation of ln V - (d ln V/d ln F) ln F, in 4000 draws of noise."""
-    rng, force = np.random.default_rng(4), np.geomspace(1, 30, 8)
-    speed = force ** (1 / 6)
-    noise_F = np.array([0.05, 0.01] * 4) * force
-    noise_V = np.array([0.002, 0.03, 0.02, 0.001] * 2) * speed
-    draws = rng.normal(size=(2, 4000, 8))
-    residual = np.log(speed + noise_V * draws[0]) - np.log(force + noise_F * draws[1]) / 6
-    found = contact_law.weights(force, speed, noise_F, noise_V)
-    assert found * residual.std(axis=0) == pytest.approx(1, rel=0.06)  # ln F is not quite linear
-
-
 def test_intervals_of_the_law_are_those_of_their_scatter():
     """The ± of k, ln A and curvature in 200 draws: two to three standard deviations, as of t."""
     rng, force = np.random.default_rng(6), np.geomspace(0.1, 10, 12)

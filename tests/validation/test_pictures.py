@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from matplotlib import pyplot
-from matplotlib.colors import same_color
 from matplotlib.figure import Figure
 
 from lwa import InputError
@@ -39,25 +38,6 @@ def test_a_logarithmic_axis_of_few_decades_has_plain_numbers(most, labels):
     assert {tick.get_text() for tick in axes.get_xticklabels()} >= labels
     assert not any(tick.get_text() for tick in axes.get_xticklabels(minor=True))
     assert any("10^" in tick.get_text() for tick in axes.get_yticklabels())  # too large for that
-
-
-def test_colours_marks_and_bars():
-    curves = (
-        Curve("bars", X, X, "C3s", [0.1, 0.2, 0.3]),
-        Curve("", X, X, "k--"),
-        Curve("own", X, X),
-        Curve("long", np.arange(99.0), np.arange(99.0)),
-    )
-    (axes,) = figure((Panel("x", "y", curves),)).axes
-    first, second, third, fourth = axes.lines[:4]
-    assert same_color(first.get_color(), "C3")
-    assert (first.get_marker(), first.get_linestyle()) == ("s", "None")
-    assert len(axes.containers[0].lines[2][0].get_segments()) == 3
-    assert same_color(second.get_color(), "k")
-    assert same_color(third.get_color(), "C2")
-    assert third.get_marker() == "^"
-    assert fourth.get_marker() == "None"  # marks would cover it
-    assert [t.get_text() for t in axes.get_legend().get_texts()] == ["bars", "own", "long"]
 
 
 @pytest.mark.parametrize(("places", "scale"), [(X, ""), (np.array([0.01, 0.1, 1.0]), "x")])

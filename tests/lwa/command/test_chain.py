@@ -93,14 +93,6 @@ def test_the_cell_is_the_smallest_one_and_lengths_may_have_no_unit(scene):
     assert found.precompression == 0
 
 
-def test_a_law_of_the_file(capsys, scene):
-    chain = {"cell": [1.0], "law": "hertz2:1,2", "spacings": 1.0}
-    file = scene(MASSES | {"chain": chain})
-    found = result(capsys, "wave", "--spheres", file, "--force", "20")
-    options = ("--law", "hertz2:1,2", "--masses", "1", "--spacing", "1", "--precompression", "2")
-    assert found["speed"] == result(capsys, "wave", *options, "--force", "20")["speed"]
-
-
 def test_an_error_that_was_not_measured_is_null(capsys, tmp_path):
     """A strike at k = 6/5: beyond the exponents at which the rule's error was measured."""
     file = tmp_path / "chain.toml"

@@ -4,7 +4,6 @@ import math
 
 import pytest
 
-from lwa import Cell, Power, envelope
 from tests.lwa.command.answers import result, said
 
 
@@ -21,17 +20,6 @@ def test_a_gap_breather_of_a_dimer(capsys):
     assert again["width_value"] == pytest.approx(found["width_value"], rel=1e-10)
     out = said(capsys, *options, "--detuning", "1/1000")
     assert "bright breather, |Ψ| = a sech(b n):" in out
-
-
-def test_equal_beads_in_symbols(capsys):
-    options = ("envelope", "--masses", "m", "--spacing", "1", "--background", "p0")
-    found = result(capsys, *options, "--wavenumber", "q")
-    expected = envelope(Cell(["m"], spacing=1), law=Power("k"), background="p0", wavenumber="q")
-    for name in ("frequency", "group_velocity", "dispersion", "nonlinearity"):
-        assert found[name] == str(getattr(expected, name))
-    assert found["kind"] is None
-    out = said(capsys, *options, "--format", "latex")
-    assert r"\chi &= " in out
 
 
 def test_any_wavenumber_and_cell_in_numbers(capsys):

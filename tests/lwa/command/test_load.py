@@ -5,27 +5,8 @@ import math
 import pytest
 import sympy as sp
 
-from lwa import Cell, Dimer, Power, canonical_wave, general, homogenize, loaded_wave
+from lwa import Cell, Dimer, Power, canonical_wave, loaded_wave
 from tests.lwa.command.answers import result, run, said
-
-
-def test_derive_any_law(capsys):
-    found = result(capsys, "derive", "--law", "general", "--closure", "full", "--field", "center")
-    pde = homogenize(Dimer("m1", "m2"), law=general(), closure="full", field="center").pde
-    assert [found[name] for name in "GHI"] == [str(getattr(pde, name)) for name in "GHI"]
-    assert "phi3" in found["G"]
-    assert "phi2" in found["H"]
-    assert found["law"] == "F(delta)"
-    assert found["conservative"] is True
-
-
-@pytest.mark.parametrize("spacing", ["D", "1"])
-def test_a_wave_under_a_law_without_an_expression(capsys, spacing):
-    options = ("wave", "--law", "general", "--masses", "1", "--spacing", spacing)
-    found = result(capsys, *options, "--background", "1")
-    assert found["kdv"]["sound_speed"].startswith("sqrt(")
-    assert "fwhm_value" not in found
-    assert run(capsys, *options, "--background", "1")[0] == 0
 
 
 def test_derive_a_named_law(capsys):

@@ -7,7 +7,7 @@ import sympy as sp
 
 from lwa import Cell, Power, piston, shock
 from tests.identity import same
-from tests.lwa.command.answers import STEEL_AND_PTFE, result, said
+from tests.lwa.command.answers import STEEL_AND_PTFE, result
 
 EQUAL = ("shock", "--masses", "1", "--spacing", "1", "--k", "3/2")
 
@@ -66,17 +66,6 @@ def test_a_wall_at_a_speed_in_si(capsys, tmp_path):
     assert found["series_value"]["speed"] == pytest.approx(unit * plain.speed.value, rel=1e-9)
     assert found["series_value"]["force"] == pytest.approx(A * D**1.5 * float(plain.F), rel=1e-9)
     assert found["units"]["series.speed"] == "m/s"
-
-
-def test_symbols_text_and_latex(capsys):
-    for options in (
-        ("--behind", "p", "--k", "k", "--masses", "m"),
-        ("--behind", "2", "--ahead", "1", "--k", "3/2"),  # two masses that are symbols
-    ):
-        out = said(capsys, "shock", *options)
-        assert "velocity of the wall" in out
-    out = said(capsys, *EQUAL, "--behind", "2", "--ahead", "1", "--format", "latex")
-    assert "v_{p} &= " in out
 
 
 def test_a_piston_and_a_rarefaction(capsys):

@@ -39,14 +39,6 @@ def test_an_output_that_takes_nothing_is_no_result(capsys):
     assert (status, err.count("\n")) == (2, 1)
 
 
-@pytest.mark.parametrize("arguments", [[], ["wave"]])
-def test_help_has_a_short_name(capsys, arguments):
-    status, said, _ = run(capsys, *arguments, "-h")
-    assert status == 0
-    assert said.startswith("Usage: lwa")
-    assert said == run(capsys, *arguments, "--help")[1]
-
-
 @pytest.mark.parametrize(
     ("words", "offered"),
     [

@@ -69,13 +69,6 @@ def test_contacts_that_pull_do_not_open():
     assert 0.001 < found.opening_detuning < 1
 
 
-def test_impossible_breathers_are_refused():
-    with pytest.raises(InputError, match="frequency or detuning"):
-        envelope(Dimer(1, "1/2"), law=HERTZ, precompression=1).breather()
-    with pytest.raises(InputError, match=r"a breather stands where dω/dκ = 0"):
-        envelope(Cell([1]), law=HERTZ, precompression=1, wavenumber=1).breather(detuning="1/100")
-
-
 def test_displacements_along_the_chain():
     found = envelope(Dimer(1, "1/2"), law=HERTZ, precompression=1).breather(detuning="1/500")
     cells = np.arange(-3, 4)

@@ -18,9 +18,7 @@ from lwa import (
     envelope,
     general,
     loaded_wave,
-    shock,
 )
-from lwa.law import named
 from lwa.linear.bands import Bands
 from tests.identity import same
 
@@ -182,21 +180,6 @@ def test_units_of_real_spheres():
     assert float(static.nonlinearity) == pytest.approx(float(load.nonlinearity), rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("cell", "options", "message"),
-    [
-        (Cell([1, 1]), {}, "two branches touch at this wavenumber"),
-        (Cell([1]), {"wavenumber": 0}, "the frequency is zero at this wavenumber: sound"),
-        (Dimer(1, 2), {"branch": 2}, "branch is 2"),
-        (Cell([1, 2, "m"]), {"wavenumber": 1}, "'m' has no value: floats need numbers"),
-        (Cell(["q"]), {"background": "q"}, "background 'q': the name means a property"),
-    ],
-)
-def test_impossible_envelopes_are_refused(cell, options, message):
-    with pytest.raises(InputError, match=message):
-        envelope(cell, law=HERTZ, **({"background": 1} | options)).frequency  # noqa: B018
-
-
 def test_resonances_are_refused_by_name():
     """Sound is the one mode with c_g = c_0; second harmonics may be optical modes."""
     with pytest.raises(InputError, match="sound, c_g = c_0, has no envelope"):
@@ -231,28 +214,6 @@ def test_a_harmonic_that_no_force_drives_is_left_out():
     found = envelope(Cell([3, 1], spacing=1), law=HERTZ, background=1, branch=0)
     assert found.nonlinearity == limit == -sp.Rational(1, 16)
     assert float(found.numeric().nonlinearity) == pytest.approx(-0.0625, rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("law", "strain", "words"),
-    [
-        (named("polynomial", "1/2", "-1/4"), 3, r"F′ is -2.75"),
-        (named("polynomial", "-1/2", 0), 1, r"F′ is 0"),
-        (named("magnetic", 4, 1), 2, "has a pole before it"),
-        (named("lennard-jones", 1), 1, "has a pole before it"),
-        (named("hertz2", 1, 1), -1, "F′ is 0 there"),
-    ],
-)
-def test_strains_at_which_a_law_does_not_grow_are_refused(law, strain, words):
-    """Envelopes, waves on a background and shocks, with a spacing in numbers and without."""
-    for cell in (Cell([1], spacing=1), Cell([1])):
-        for call in (
-            lambda cell=cell: envelope(cell, law=law, background=strain),
-            lambda cell=cell: loaded_wave(cell, background=strain, rise=1, law=law),
-            lambda cell=cell: shock(cell, strain, 0, law=law),
-        ):
-            with pytest.raises(InputError, match=words):
-                call()
 
 
 @given(

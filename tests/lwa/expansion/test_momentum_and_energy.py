@@ -49,12 +49,10 @@ def test_the_error_of_a_time_is_that_of_width_and_speed():
     assert time.error == pytest.approx(time.value * shares, rel=1e-12)
 
 
-@pytest.mark.parametrize("force", [0, -1, "F", float("nan")])
+@pytest.mark.parametrize("force", [0, -1, "F"])
 def test_only_positive_forces_are_accepted(force):
     with pytest.raises(InputError, match=r"^force is "):
         wave(force=force)
-    with pytest.raises(InputError, match="spacing is D: a number is wanted"):
-        wave(cell=Cell([1]))
 
 
 @pytest.mark.parametrize("cell", [EQUAL, Dimer(2, 1, spacing=1)], ids=["equal", "dimer"])
@@ -85,9 +83,3 @@ def test_a_strike_in_si_units_and_by_its_drop():
     dropped = pulse_of_strike(other.chain.cell, "1/2000", drop=0.5)
     same = pulse_of_strike(other.chain.cell, "1/2000", (2 * 9.81 * 0.5) ** 0.5)
     assert dropped.force.value == pytest.approx(same.force.value, rel=1e-12)
-
-
-@pytest.mark.parametrize("mass", [-1, "m"])
-def test_impossible_strikers_are_refused(mass):
-    with pytest.raises(InputError, match=f"mass is {mass}"):
-        pulse_of_strike(EQUAL, mass, velocity=1)

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from sympy.polys.matrices import DomainMatrix
 
 from lwa import Cell, Dimer, Dispersion, InputError, LoadedChain, Power, homogenize
-from lwa.law import general, named
+from lwa.law import named
 from tests.lwa.series import exponential, fraction, product
 
 ROUNDING = 1e-13
@@ -158,7 +158,7 @@ CELLS = [
 def test_group_velocity_is_the_derivative_to_all_digits(cell):
     chain = Dispersion(cell)
     with mpmath.workdps(40):
-        for kappa in (0.2, 1.3):
+        for kappa in (0.2, 1.3, -7):
             for branch in range(cell.size):
                 slope = mpmath.diff(lambda q, j=branch: high_precision(cell, q, j), kappa)
                 omega = high_precision(cell, kappa, branch)
@@ -232,18 +232,6 @@ def test_refusals(call, words):
         call()
 
 
-@pytest.mark.parametrize("kappa", [1e308, -1e17, 7.0])
-def test_a_wavenumber_of_many_turns_is_as_good_as_any(kappa):
-    chain = Dispersion(Cell([1, 2, 3]))
-    with mpmath.workdps(400):  # 1e308 has its own place in the zone
-        turn = mpmath.mpf(kappa) % (2 * mpmath.pi)
-        for branch, omega in enumerate(chain.bands.branches(kappa)):
-            assert abs(omega - high_precision(chain.cell, turn, branch)) < ROUNDING
-    assert np.allclose(
-        chain.bands.group_velocity(kappa), chain.bands.group_velocity(float(turn)), 0, 1e-13
-    )
-
-
 def test_the_eigenvalues_of_a_ring_of_unlike_contacts():
     """Eight cells in a ring, linearised by differences of the force."""
     masses, stiffnesses, k, F0 = (1.0, 2.0, 0.5), (1.0, 3.0, 2.0), 1.5, 0.7
@@ -274,13 +262,3 @@ def test_springs_of_another_law():
     # (e^{2δ} - 1)/2 = 2, and A F′ = 3 e^{2δ}
     assert float(chain.spring_constants[0]) == pytest.approx(15, rel=1e-14)
     assert chain.bands.edges()[0, 1] == pytest.approx(2 * np.sqrt(15), rel=1e-13)
-
-
-def test_bad_loads_are_refused():
-    for make, reason in (
-        (lambda: LoadedChain(Cell([1]), Power("3/2"), 0), "positive"),
-        (lambda: LoadedChain(Cell(["m"]), Power("3/2"), 1).bands.edges(), "has no value"),
-        (lambda: LoadedChain(Cell([1, 1], [1, 2]), general(), 1), "shares"),
-    ):
-        with pytest.raises(InputError, match=reason):
-            make()

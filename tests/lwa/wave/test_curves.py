@@ -38,20 +38,6 @@ def test_a_curve_is_the_profile_as_it_passes(wave):
 
 
 @pytest.mark.parametrize("wave", THEORIES)
-@pytest.mark.parametrize("of", ["contact", "bead"])
-def test_a_curve_has_the_given_peak_and_the_fwhm(wave, of):
-    answer = wave.at_force(12, of)
-    width = float(answer.fwhm("force", "time"))
-    t = np.linspace(-2 * width, 2 * width, 4001)
-    found = answer.curve(t)
-    assert found.max() == pytest.approx(12, rel=1e-13)
-    assert np.argmax(found) == 2000
-    assert max(found[0], found[-1]) < 1e-5
-    if of == "contact":
-        assert np.ptp(t[found > 6]) == pytest.approx(width, abs=2 * (t[1] - t[0]))
-
-
-@pytest.mark.parametrize("wave", THEORIES)
 def test_a_bead_bears_the_mean_of_its_contacts(wave):
     answer = wave.at_force(5)
     shift = float(wave.D / answer.speed) / 2

@@ -1,15 +1,13 @@
 """The wave of a peak contact force: forces, scalings, limits; tests/validation has the lattice."""
 
-import pickle
 from functools import cache
 
 import mpmath
-import pytest
 import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lwa import Cell, Dimer, InputError, canonical_wave, homogenize
+from lwa import Cell, canonical_wave, homogenize
 from lwa.base.quantities import QUANTITIES
 
 k = sp.Symbol("k", positive=True)
@@ -87,30 +85,3 @@ def test_equal_spheres_by_hand():
     answer = homogenize(Cell([m], [A], D), k="3/2").pde.traveling_wave().at_force()
     assert answer.force == F
     assert answer.speed**2 == sp.Rational(4, 5) * A ** sp.Rational(2, 3) * sp.cbrt(F) * D**2 / m
-
-
-def test_names_and_numbers_for_the_symbols():
-    wave = homogenize(Dimer("m1", "m2")).pde.traveling_wave()
-    answer = wave.at_force("F")
-    at = answer.at(F=2, k="3/2", m1=3, m2="1/2", D="5")
-    assert at == wave.at(k="3/2", m1=3, m2="1/2", D=5).at_force(2)
-    assert at.speed.is_number
-    assert answer.at(F="f").force == sp.Symbol("f", positive=True)
-    assert answer.at(m1=1).force == answer.force
-    assert pickle.loads(pickle.dumps(answer)) == answer
-    assert hash(answer) == hash(wave.at_force())
-
-
-@pytest.mark.parametrize(
-    ("F", "words"),
-    [
-        (0, "force is 0: it must be positive"),
-        ("m1", "force 'm1': the name means a property of the cell"),
-        ("q", "force 'q': the name means a symbol of the law"),
-        ("k", "force 'k': the name means the exponent"),
-    ],
-)
-def test_refused_forces(F, words):
-    wave = homogenize(Dimer("m1", "m2"), k="q").pde.traveling_wave()
-    with pytest.raises(InputError, match=f"^{words}"):
-        wave.at_force(F)

@@ -8,7 +8,7 @@ import sympy as sp
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
+from lwa import Cell, Dimer, NoSolitaryWave, canonical_wave, homogenize
 from lwa.wave.closed import _FORMULAS
 from tests.identity import same
 
@@ -70,12 +70,6 @@ def test_fwhm_is_where_the_profile_falls_to_half(k, m1, m2):
             assert abs(value - mpmath.mpf(1) / 2) < mpmath.mpf(10) ** -35
 
 
-def test_symbols_without_assumptions_do_as_well():
-    a, b, q, d = sp.symbols("a b q d")
-    wave = homogenize(Dimer(a, b, spacing=d), k=q).pde.traveling_wave()
-    assert wave.at(q="3/2", a=1, b=1).beta == sp.sqrt(10) / (5 * d)
-
-
 @pytest.mark.parametrize(
     ("k", "m1", "m2", "words"),
     [
@@ -91,25 +85,6 @@ def test_no_wave_is_an_error_that_says_why(k, m1, m2, words):
         WAVE.at(k=k, m1=m1, m2=m2)
     with pytest.raises(NoSolitaryWave, match=words):
         homogenize(Dimer(m1, m2), k=k).pde.traveling_wave()
-
-
-@pytest.mark.parametrize(
-    ("call", "words"),
-    [
-        (lambda: WAVE.at(m3=1), "'m3' is not among"),
-        (lambda: WAVE.at(m1=-1), "m1 is -1"),
-        (lambda: WAVE.fwhm("bead"), "quantity"),
-        (lambda: WAVE.reduction(2), "root is 2"),
-        (lambda: WAVE.amplitude(0), "V is 0"),
-        (lambda: IN_UNITS.fwhm("bead"), "quantity is 'bead'"),
-        (lambda: IN_UNITS.at(F=0), "F is 0"),
-        (lambda: IN_UNITS.at(A=1), "'A' is not among"),
-        (lambda: canonical_wave(Cell(["m"])).at_force().at(k=1), "k > 1"),
-    ],
-)
-def test_refused_values(call, words):
-    with pytest.raises((InputError, NoSolitaryWave), match=words):
-        call()
 
 
 @pytest.mark.parametrize(

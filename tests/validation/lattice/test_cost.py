@@ -39,20 +39,6 @@ def test_adaptive_methods_stay_far_below_the_limit_of_their_steps(method, what, 
     assert shares[-1] == (1 if method in METHODS else 0)  # compiled runs are over before a glance
 
 
-def test_a_compiled_run_looks_up_on_the_way(monkeypatch):
-    """A run in parts gives the same bits as a run in one go."""
-    scene = struck((1, 0.3), 60, duration=60.0, contact_sensors=(50,))
-    whole = watched(scene, method="symplectic")
-    monkeypatch.setattr("validation.lattice.engine._BETWEEN_REPORTS", 1e4)
-    parts = watched(scene, method="symplectic")
-    assert len(whole[1]) == 1
-    assert len(parts[1]) > 10
-    assert parts[1] == sorted(parts[1])
-    for name in ("contact_force", "displacements", "velocities"):
-        np.testing.assert_array_equal(getattr(whole[0], name), getattr(parts[0], name))
-    assert whole[0].bead_evaluations == parts[0].bead_evaluations
-
-
 @pytest.mark.parametrize("method", ["DOP853", "RKN86", "symplectic"])
 def test_a_run_can_be_interrupted(method):
     def interrupt(share):

@@ -8,7 +8,6 @@ import pytest
 
 from validation.lattice.schemes import SCHEMES
 from validation.lattice.simulate import COMPILED, simulate, simulate_many
-from validation.pulses.pulse import measure
 from validation.scenes.chains import struck
 from validation.scenes.forcing import Drive
 from validation.scenes.scene import Scene
@@ -71,18 +70,6 @@ def test_the_splitting_can_be_reversed_in_time():
     )  # fmt: skip
     np.testing.assert_allclose(back.displacements, 0, atol=1e-12)
     np.testing.assert_allclose(back.velocities, [-1] + [0] * 9, atol=1e-12)
-
-
-@pytest.mark.parametrize("method", COMPILED)
-def test_the_peak_force_of_the_560_beads(method):
-    """0.29635394421 at contact 480 and t = 499.87256149: by located kinks and by small steps of the
-    splitting; located kinks are compared on fewer beads in `test_located`."""
-    scene = struck(DIMER, 560, duration=510.0, contact_sensors=(480,), samples=10201)
-    run = simulate(scene, method=method, rtol=1e-7)
-    pulse = measure(run.time, run.contact_force[0])
-    assert pulse.peak == pytest.approx(0.29635394421, rel=1e-6)
-    assert pulse.arrival == pytest.approx(499.87256149, rel=1e-7)
-    assert abs(run.energy_drift) < 1e-5
 
 
 @pytest.mark.parametrize("k", [1.2, 1.5, 2.0, 3.0])
@@ -158,13 +145,3 @@ def test_many_scenes_run_as_single_ones_and_are_taken_lazily():
         alone = simulate(scene, rtol=1e-7)
         assert run.scene is scene
         assert np.array_equal(run.contact_force, alone.contact_force)
-
-
-@pytest.mark.parametrize("method", COMPILED)
-def test_beads_at_rest_ahead_of_the_front_cost_nothing(method):
-    """As many beads are moved in 10⁴ as in 300, and where beads at rest hold rounding noise."""
-    short, long = (struck((1,), n, duration=130, samples=2) for n in (300, 10000))
-    noisy = replace(short, velocities=(1.0, *((-1) ** i * 1e-17 for i in range(299))))
-    runs = [simulate(scene, method=method, rtol=1e-4) for scene in (short, long, noisy)]
-    assert len({run.bead_evaluations for run in runs}) == 1
-    assert np.abs(runs[2].velocities - runs[0].velocities).max() < 1e-8  # of an error of 1e-4

@@ -98,18 +98,6 @@ def test_the_work_of_a_shaken_bead_whose_contact_opens(n, mass, rtol):
     assert abs(simulate(scene, rtol=rtol).energy_drift) < 5 * rtol
 
 
-def test_the_last_sample_is_the_final_state():
-    """The beginning and the length of a last step that is long need not add up to the duration."""
-    parting = dict(
-        masses=(1, 1), stiffnesses=(1,), k=1.5, velocities=(-1, 0.3), samples=2,
-        bead_sensors=(0, 1), damping=Damping("contact", 0.1),
-    )  # fmt: skip
-    for duration in np.linspace(1, 9, 200):
-        run = simulate(Scene(**parting, duration=duration))
-        assert run.path.time[-1] == duration
-        assert run.bead_velocity[:, -1] == pytest.approx([-1, 0.3], rel=1e-14)
-
-
 def test_the_error_is_that_of_the_response():
     """A fast drive leaves the chain; a slow collision behind it is as accurate as without it."""
     damped = dict(k=1.5, duration=80.0, damping=Damping("kuwabara_kono", 0.1))

@@ -1,12 +1,10 @@
 """Contact laws other than powers: Toda's exact soliton, SciPy, and bad laws."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 import sympy as sp
 
-from lwa.law import Law, Power, named
+from lwa.law import Law, named
 from validation.lattice.simulate import simulate
 from validation.scenes.forcing import Drive
 from validation.scenes.scene import Scene
@@ -73,11 +71,3 @@ def test_a_wall_recedes_from_a_chain_that_softens():
     )  # fmt: skip
     fast, other = simulate(scene), simulate(scene, method="DOP853")
     assert np.abs(fast.displacements - other.displacements).max() < 1e-7
-
-
-def test_a_law_that_is_a_power_is_the_power():
-    scene = Scene(masses=(1, 1), stiffnesses=(1,), k="3/2", duration=2, velocities=(1,))
-    assert replace(scene, k=1, law=Power("3/2")) == scene
-    same = Law(sp.Symbol("x", positive=True) ** sp.Rational(3, 2), sp.Symbol("x", positive=True))
-    run = simulate(replace(scene, k=1, law=same))
-    assert run.velocities == pytest.approx(simulate(scene).velocities, abs=1e-8)

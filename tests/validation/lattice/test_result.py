@@ -30,19 +30,6 @@ def test_a_run_is_drawn_into_given_axes():
         simulate(THREE).plot()
 
 
-def test_a_notebook_shows_a_run_and_a_program_its_columns():
-    run = simulate(replace(THREE, contact_sensors=(1,), bead_sensors=(0,), samples=11))
-    assert repr(run) == "Run(3 beads, 2 contacts, k = 1.5; duration 3; 2 sensors, 11 samples)"
-    page = run._repr_html_()
-    assert "3 beads" in page
-    assert "<svg" in page
-    assert "<svg" not in simulate(THREE)._repr_html_()
-    assert list(run.columns()) == [
-        "time", "bead 1 force", "bead 1 displacement", "bead 1 velocity", "contact 2 force",
-        "contact 2 compression",
-    ]  # fmt: skip
-
-
 def test_energy_over_time_is_a_record_with_sensors_at_all_beads():
     sensors = (3, *range(3), *range(4, 10))
     scene = struck((1, 0.5), 10, wall=1, precompression=0.5, duration=9, bead_sensors=sensors)

@@ -158,16 +158,6 @@ def test_what_the_equations_of_motion_keep(chain, drift, length):
     np.testing.assert_allclose(final(**other).velocities, run.velocities * speed, atol=1e-6 * speed)
 
 
-@settings(max_examples=15)
-@given(chains, st.integers(-20, 20))
-def test_units_of_mass_and_time_do_not_matter(chain, q):
-    """Powers of two leave every digit of every step as it is."""
-    other, speed = scaled(chain, 1.0, 4.0**q)
-    run, same = simulate(Scene(**chain)), simulate(Scene(**other))
-    assert same.bead_evaluations == run.bead_evaluations
-    assert np.array_equal(same.velocities, run.velocities * speed)
-
-
 @pytest.mark.parametrize("method", ["RKN86", "symplectic", "DOP853"])
 def test_sensors_change_nothing_and_cost_nothing(method):
     chain = struck((1, 0.5), 12, duration=9)

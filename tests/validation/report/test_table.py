@@ -12,14 +12,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from validation.pulses.pulse import Measured
-from validation.report.result import Report
 from validation.report.table import (
     Column,
     Finding,
     Table,
     aligned,
     brief,
-    findings_table,
     plain,
 )
 
@@ -76,16 +74,6 @@ def test_text_falls_into_parts():
         ["k", "speed", "(m/s)", "by", "F_m", "unit"],
         ["2", "-", "-50.0%", "<m/s>"],
     ]
-
-
-def test_a_page_shows_the_text_with_escaped_marks():
-    shown = TABLE.html()
-    assert shown.count("<table>") == 2
-    assert shown.count("<tr>") == 5
-    assert "&lt;m/s&gt;" in shown
-    assert "<m/s>" not in shown
-    for part in ("chain A", "2.0 ± 2e-01", "-50.0%"):
-        assert part in shown
 
 
 def test_a_table_without_labels_is_for_programs():
@@ -153,19 +141,3 @@ def test_numbers_of_numpy_and_sympy_become_plain():
 )
 def test_a_finding_holds_with_its_error(value, low, high, error, ok):
     assert Finding("x", value, low, high, error).ok is ok
-
-
-def test_findings_in_lines_and_in_a_document():
-    found = (
-        Finding("drift", 1e-12, -1e-9, 1e-9, key="drift"),
-        Finding("loss", 5.0, high=4.0, error=0.5),
-    )
-    lines = findings_table(found).text()
-    assert [line.split()[-1] for line in lines.splitlines()] == ["holds", "ok", "FAILS"]
-    assert "5 ± 5e-01" in lines
-    report = Report("", findings=found)
-    assert lines in report.text()  # without a table, all of them
-    written = json.loads(json.dumps(report.document(), allow_nan=False))
-    assert written["drift_value"] == 1e-12
-    assert [f["ok"] for f in written["findings"]] == [True, False]
-    assert written["findings"][1]["least_value"] is None

@@ -9,7 +9,6 @@ from itertools import combinations
 import numpy as np
 import pytest
 import sympy as sp
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from lwa import canonical_wave
 from validation import measure, simulate
@@ -128,24 +127,3 @@ def test_no_line_lies_on_another(whole):
             same = np.array_equal(one.x, other.x)
             assert not (same and np.allclose(one.y, other.y, rtol=1e-6)), one.label
         assert all(curve.label for curve in panel.curves)
-
-
-def test_no_legend_lies_on_a_curve(whole):
-    picture = whole.figure()
-    FigureCanvasAgg(picture).draw()
-    for axes in picture.axes[:3]:  # the fourth is empty
-        box = axes.get_legend().get_window_extent()
-        for line in axes.lines:
-            at = axes.transData.transform(line.get_xydata())
-            if line.get_linestyle() != "None":
-                fine = np.linspace(0, len(at) - 1, 50 * len(at))
-                at = np.column_stack([np.interp(fine, range(len(at)), row) for row in at.T])
-            assert not box.count_contains(at), (axes.get_title(), line.get_label())
-
-
-def test_the_scaling_panel_shows_the_theory_of_each_modulus(whole, document):
-    (panel,) = (panel for panel in whole.pictured() if panel.scale == "xy")
-    symbols, lines = panel.curves[::2], panel.curves[1::2]
-    for one, line, row in zip(symbols, lines, document["scalings"], strict=True):
-        assert (list(one.x), list(line.y)) == (list(line.x), row["theory_value"])
-        assert line.label.startswith("theory")

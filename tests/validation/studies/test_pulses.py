@@ -1,6 +1,5 @@
 """Pulses of measured records: against the run that made the records, and against known pulses."""
 
-import csv
 import json
 
 import numpy as np
@@ -100,16 +99,6 @@ def test_the_error_of_a_speed_is_that_of_both_arrivals(tmp_path):
         speed["speed_sites_value"] * late, rel=0.02
     )
     assert speed["speed_value"] is None
-
-
-def test_the_csv_of_sensors_in_beads_holds_their_speed(capsys, tmp_path):
-    file = noisy(tmp_path, "time,2 force,9 force")
-    out = ended(capsys, cli.main, "pulses", file, "--of", "bead", "--format", "csv")[1]
-    first, second = csv.DictReader(out.splitlines())
-    assert (first["kind"], second["kind"]) == ("bead", "bead")
-    late = float(second["arrival_value"]) - float(first["arrival_value"])
-    assert float(second["speed_sites_value"]) == pytest.approx(7 / late, rel=1e-9)
-    assert (first["speed_sites_value"], second["speed_value"]) == ("", "")
 
 
 def test_a_sensor_without_a_pulse_has_no_numbers(capsys, tmp_path):

@@ -22,7 +22,6 @@ from validation import cli
 from validation.lattice.threads import cluster
 from validation.pulses.pulse import Measured
 from validation.pulses.steady import QUANTITIES, Point
-from validation.report.table import percent
 from validation.scenes.checks import Failure
 from validation.studies.sweep import report, sweep, theory
 from validation.waves.theory import theory_at
@@ -215,18 +214,6 @@ def points():
 @pytest.fixture(scope="module")
 def result(points):
     return report(*AXES, points)
-
-
-def test_the_text_has_a_table_for_each_k_and_the_reasons(result):
-    shown = result.text()
-    _, *blocks = shown.split("\n\n")
-    # each k has two blocks: its columns exceed a line of 100 characters
-    assert [block.splitlines()[0] for block in blocks[:6:2]] == ["k = 3/2", "k = 2", "k = 6"]
-    assert blocks[6] == "k = 2, ω = 1: broke"
-    assert blocks[2].splitlines()[3].split() == ["1", *6 * "-"]
-    width = float(theory(*AXES)["linear"]["width"][0, 1])
-    assert percent(width / 2.5 - 1) in blocks[0].splitlines()[3]
-    assert "nan" not in shown
 
 
 def test_the_document_is_json_and_complete(result, points):

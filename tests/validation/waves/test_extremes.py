@@ -12,8 +12,7 @@ import sympy as sp
 
 from lwa import NoSolitaryWave
 from tests.passage import passage, ratio
-from validation.lattice.simulate import simulate
-from validation.scenes.chains import carrying, struck
+from validation.scenes.chains import carrying
 from validation.waves.solution import solve
 from validation.waves.theory import LEADING_POWERS, theory_at
 
@@ -62,29 +61,7 @@ def test_the_lattice_carries_the_theorys_wave_at_k_of_1_001():
 # k = 2 and 3
 
 
-@pytest.mark.parametrize("k", [2.0, 3.0])
-def test_theory_and_lattice_pass_smoothly_through_exponents_where_terms_vanish(k):
-    waves = {x: solve((1.0, 1.0), x) for x in (k - 0.05, k, k + 0.05)}
-    below, here, above = map(theory_errors, waves.values())
-    for quantity, error in here.items():
-        # a smooth function's second difference over 0.05² is of the size of 1/10
-        assert abs(error - (below[quantity] + above[quantity]) / 2) < 2.5e-4, quantity
-    passed = passage(waves[k].launched(12, 60), 1e-7)
-    assert abs(ratio(passed.speed, waves[k].c).value) < 1e-6
-    assert abs(ratio(passed.fwhm, waves[k].fwhm("force")).value) < 1e-6
-
-
 # k = 20, near hard spheres
-
-
-def contact_time(k, omega):
-    """Time of contact of beads of masses 1 and ω that meet with relative velocity 1; A = 1.
-
-    2 ∫ dδ / √(1 - (δ/d)^n), n = k + 1, from 0 to the deepest compression d: a beta function.
-    """
-    n = k + 1
-    deepest = (n * omega / (1 + omega) / 2) ** (1 / n)
-    return 2 * deepest * scipy.special.beta(1 / n, 0.5) / n
 
 
 def collision_fwhm(k):
@@ -95,16 +72,6 @@ def collision_fwhm(k):
     n = k + 1
     share = scipy.special.betaincc(1 / n, 0.5, 0.5 ** (n / k))
     return 2 * scipy.special.beta(1 / n, 0.5) / n * share
-
-
-@pytest.mark.parametrize("omega", [1.0, 0.3])
-def test_two_hard_beads_collide_as_the_closed_forms_say(omega):
-    scene = struck((1, omega), 2, 20.0, duration=6, contact_sensors=(0,), samples=2)
-    run = simulate(scene, rtol=1e-9)
-    # Apart, the beads leave with the relative velocity 1 at which they met.
-    lasted = scene.duration + float(run.compression[0, -1])
-    assert lasted == pytest.approx(contact_time(20.0, omega), rel=1e-10)
-    assert float(run.velocities[0]) == pytest.approx((1 - omega) / (1 + omega), abs=1e-10)
 
 
 @pytest.fixture(scope="module")
