@@ -7,7 +7,7 @@ import signal
 from importlib import import_module
 from types import FrameType
 
-from lwa.base.errors import INTERRUPTED
+from lwa.base import INTERRUPTED
 
 
 def start(name: str, module: str) -> None:

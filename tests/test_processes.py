@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 
 from lwa import __version__
-from lwa.base.errors import INTERRUPTED
+from lwa.base import INTERRUPTED
 from tests.commands import started
 
 LWA = (sys.executable, "-m", "lwa")

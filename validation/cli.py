@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import click
 
-from lwa.command.terminal import HELP, Commands, run, version
+from lwa.command.cli import HELP, Commands, run, version
 
 STUDIES = {
     "compare": ("compare", "Measured forces beside the simulation of their scene."),

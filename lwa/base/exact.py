@@ -18,7 +18,7 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.base.errors import InputError as InputError
+from lwa.base import InputError as InputError
 
 Quantity = int | float | str | Fraction | Decimal | sp.Expr
 """Accepted types of an exponent, a mass, a stiffness or a length."""

@@ -118,7 +118,7 @@ class Table:
     >>> Table({"masss": 1}, "bead", ("mass", "radius"))
     Traceback (most recent call last):
         ...
-    lwa.base.errors.InputError: bead.masss is unknown: did you mean mass?
+    lwa.base.InputError: bead.masss is unknown: did you mean mass?
     """
 
     def __init__(self, value: Any, name: str, known: Sequence[str]) -> None:

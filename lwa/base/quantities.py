@@ -6,7 +6,7 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.base.errors import NoSolitaryWave as NoSolitaryWave
+from lwa.base import NoSolitaryWave as NoSolitaryWave
 from lwa.base.exact import one_of
 
 RISE = sp.Symbol("B", positive=True)

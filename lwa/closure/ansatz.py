@@ -2,7 +2,7 @@
 
 For the dimer, u = w_0 is the field of the first particle and w = w_1 = λ (u + Σ b_n D^n ∂_x^n u)
 that of the second. The numbers b_n follow from the demand that both equations of motion
-(`lwa.closure.solution`) give the same u_ττ. As each order has one unknown b_n, this can be met for
+(`lwa.closure.slaving`) give the same u_ττ. As each order has one unknown b_n, this can be met for
 one monomial, ∂_x^n u. The first equation then is the wave equation; the difference between the two
 is the defect.
 """
@@ -19,8 +19,7 @@ from lwa.algebra.jets import GradedSeries
 from lwa.algebra.model import Model
 from lwa.base.exact import InputError
 from lwa.base.progress import Progress
-from lwa.closure.slaving import full
-from lwa.closure.solution import Solution
+from lwa.closure.slaving import Solution, full
 
 
 def linear(model: Model, order: int, progress: Progress[int] = iter) -> Solution:

@@ -1,7 +1,7 @@
 """The consistency condition, solved by the paper's closure or by that of all equations of motion.
 
 Both closures, `lwa.closure.ansatz` ("linear") and `lwa.closure.slaving` ("full"), solve the
-equations of `lwa.closure.solution` in one algebra, `lwa.algebra.jets`.
+equations of `lwa.closure.slaving` in one algebra, `lwa.algebra.jets`.
 """
 
 from __future__ import annotations
@@ -21,8 +21,7 @@ from lwa.base.frozen import Shown, Value
 from lwa.base.progress import Progress
 from lwa.cell import Cell
 from lwa.closure.ansatz import linear
-from lwa.closure.slaving import full
-from lwa.closure.solution import Solution
+from lwa.closure.slaving import Solution, full
 from lwa.law import ContactLaw
 
 BRANCHES = ("acoustic", "optical")

@@ -1,12 +1,97 @@
-"""The command `lwa`: derivations, waves and dispersion relations on the command line."""
+"""The command `lwa`, and how a command runs: UTF-8, exit status, one clear line for a fault."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import errno
+import io
+import os
+import sys
+from collections.abc import Mapping, Sequence
+from importlib import import_module
+from typing import Any
 
 import click
 
-from lwa.command.terminal import HELP, Commands, run, version
+from lwa.base import INTERRUPTED, InputError, NoSolitaryWave
+
+HELP = {"help_option_names": ["-h", "--help"]}
+"""Settings of a command: both ways to ask for help."""
+
+CLOSED = 128 + 13  # exit status as in shells: 128 and SIGPIPE's number, which Windows lacks
+
+version = click.version_option(package_name="lwa", message="%(prog)s %(version)s")
+"""The option ``--version`` of a command."""
+
+
+class Commands(click.Group):
+    """A Click group that loads a command when it is called: `--help` loads none, for a quick start.
+
+    table : module in ``package``, and summary, of each command by its name. The module has a Click
+        command of that name, or an object whose ``command`` is one.
+    """
+
+    def __init__(self, package: str, table: Mapping[str, tuple[str, str]], **settings: Any) -> None:
+        # placeholders: Click lists their names, and suggests one for a mistyped name
+        super().__init__(commands={name: click.Command(name) for name in table}, **settings)
+        self.package, self.table = package, table
+
+    def get_command(self, context: click.Context, name: str) -> click.Command | None:
+        """Return the command with a given name, or None."""
+        if name not in self.table:
+            return None
+        loaded = getattr(import_module(f"{self.package}.{self.table[name][0]}"), name)
+        command: click.Command = getattr(loaded, "command", loaded)
+        return command
+
+    def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the list of commands without loading them."""
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, summary) for name, (_, summary) in self.table.items()])
+
+
+def run(command: click.Command, name: str, arguments: Sequence[str] | None = None) -> None:
+    """Run a command and end the process with its status.
+
+    The status is that of the command (0, or 1 for comparisons that failed), 2 after one line on bad
+    input, `INTERRUPTED` after Ctrl-C, and `CLOSED` where the reader of the output went away.
+    """
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            # UTF-8 for Greek letters whatever the locale says; a file name that is not UTF-8 stands
+            # as \udcff in a message
+            stream.reconfigure(encoding="utf-8", errors="backslashreplace")
+    sys.exit(_status(command, name, arguments))
+
+
+def _status(command: click.Command, name: str, arguments: Sequence[str] | None) -> int:
+    output, status, fault = sys.stdout, 2, ""
+    try:
+        if output is None:
+            raise OSError(errno.EBADF, "it is closed")
+        result = command.main(arguments, prog_name=name, standalone_mode=False)
+        output.flush()
+        return result if isinstance(result, int) else 0
+    except click.exceptions.NoArgsIsHelpError as help_text:
+        click.echo(help_text.format_message(), err=True)
+        return 2
+    except click.ClickException as error:
+        fault = error.format_message()
+    except (InputError, NoSolitaryWave) as error:
+        fault = str(error)
+    except (click.Abort, KeyboardInterrupt):
+        status, fault = INTERRUPTED, "interrupted"
+    except (OSError, SystemExit) as error:
+        if isinstance(error, SystemExit) and sys.stdout is output:
+            raise
+        sys.stdout = output  # click replaces the output, and exits, where a pipe is closed
+        if output is not None:  # discard what is not flushed yet
+            os.dup2(os.open(os.devnull, os.O_WRONLY), output.fileno())
+        if isinstance(error, SystemExit | BrokenPipeError):
+            return CLOSED
+        fault = f"{error.filename or 'the output'}: {error.strerror or error}"
+    click.echo(f"{name}: {' '.join(fault.split())}", err=True)
+    return status
+
 
 COMMANDS = {
     "derive": ("derivation", "Derive the long-wave equation of a chain."),

@@ -8,7 +8,7 @@ from typing import Any
 import click
 import sympy as sp
 
-from lwa.base.errors import InputError
+from lwa.base import InputError
 from lwa.command.chain import ChainInput, take_chain
 from lwa.command.options import SPHERES, cell_options, spheres_option, style_option, value
 from lwa.command.rows import Answer, Row, attempt

@@ -453,7 +453,7 @@ def loaded_wave(
     >>> wave = loaded_wave(Cell([1], spacing=1), rise=1, background=1, k="3/2")
     >>> wave.speed, wave.fwhm("strain").n(12)
     (sqrt(6)*sqrt(-28/15 + 32*sqrt(2)/15)/2, 3.15563100805)
-    >>> from lwa import Link
+    >>> from lwa import Link, Power
     >>> pair = Lattice([1, 1], [Link(0, 1, Power("3/2")), Link(1, 2, Power(1))])
     >>> wave = loaded_wave(pair, force=2, precompression=1)
     >>> round(float(wave.speed), 6), round(float(wave.fwhm("strain")), 6)

@@ -17,7 +17,7 @@ speeds are 2/r - 1 and √(r(r-1))/arcosh √r.
 Doubling rule: the leading pulse is the solitary wave on p₊ whose beads move at 2 v_p at most; exact
 for Toda's law, small jumps (KdV) and hard spheres. For k = 1.05 … 3 the lattice's own wave has
 the measured speed within 0.25 % and strain within 1.5 %; `lwa.shocks.waves` has the closed forms of
-the canonical wave, `lwa.shocks.bounds` the errors.
+the canonical wave, `lwa.shocks.waves` the errors.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from lwa.expansion.expand import expand
 from lwa.expansion.physical import ORDER, ExpandedWave, wave_of_velocity
 from lwa.law import ContactLaw, for_cell
 from lwa.loaded.background import Background
-from lwa.shocks import bounds
+from lwa.shocks import waves
 from lwa.shocks.waves import Pulse, demand_one_sign, floats, strain, tidy, velocity
 
 RULES = ("dispersion", "doubling")  # El's leading edge; the solitary wave with beads at 2 v_p
@@ -84,7 +84,7 @@ class Shock(Value):
     @property
     def oscillates(self) -> bool:
         """True if the beads at the wall go on oscillating: a shock of numbers with c₋ > 2 c₊."""
-        return bool(self.ratio.is_number and self.ratio > bounds.RESTING)
+        return bool(self.ratio.is_number and self.ratio > waves.RESTING)
 
     def sound(self, p: Any) -> sp.Expr:
         """Speed of sound dx/dt on the strain p; 0 without load under a power law."""
@@ -162,7 +162,7 @@ class Shock(Value):
 
     @cached_property
     def errors(self) -> dict[str, float]:
-        """Relative errors of the results, as measured on driven chains (`lwa.shocks.bounds`).
+        """Relative errors of the results, as measured on driven chains (`lwa.shocks.waves`).
 
         The keys are "trailing_speed", "dispersion" and "doubling" (of `leading_speed`), "peak" and
         "peak_force". Unknown errors and those of symbols are left out.
@@ -177,10 +177,10 @@ class Shock(Value):
 
     def _pulse_errors(self) -> dict[str, float]:
         pulse, peak = self._pulse, sp.N(self.peak)
-        share = bounds.rise_error(pulse.stiffening) * sp.N(pulse.contact_rise)
+        share = waves.rise_error(pulse.stiffening) * sp.N(pulse.contact_rise)
         # towards the strain ahead: the rule is too high, and a law may have a pole beyond the peak
         force, less = (self.law.at(self.cell.spacing * p) for p in (peak, peak - share))
-        found = {"doubling": bounds.speed_error(pulse.stiffening)}
+        found = {"doubling": waves.speed_error(pulse.stiffening)}
         found |= {"peak": share / peak, "peak_force": 1 - less / force}
         return {name: abs(float(x)) for name, x in found.items()}
 
@@ -188,10 +188,10 @@ class Shock(Value):
         """Errors of El's edges, by the doubling rule."""
         ratio = self.leading_speed("doubling") / self.leading_speed("dispersion")
         off = abs(float(ratio) - 1)
-        found = {"dispersion": bounds.leading_error(off, self._pulse.stiffening)}
+        found = {"dispersion": waves.leading_error(off, self._pulse.stiffening)}
         with suppress(InputError):
             share = float(self.sound(self.behind) / self.trailing_speed)
-            found["trailing_speed"] = bounds.trailing_error(off) * abs(share)
+            found["trailing_speed"] = waves.trailing_error(off) * abs(share)
         return found
 
     @cached_property
@@ -237,13 +237,13 @@ class Shock(Value):
         """Speed of `wave`, with the error of the doubling rule."""
         k = self.law.exponent
         share = self._velocity_error * float((k - 1) / (k + 1))
-        return self.wave.speed.widened(bounds.RULE_SPEED + share)
+        return self.wave.speed.widened(waves.RULE_SPEED + share)
 
     @property
     def series_force(self) -> Estimate:
         """Peak force F of `wave`, with the error of the doubling rule."""
         share = self._velocity_error * float(2 / (1 + 1 / self.law.exponent))
-        return Estimate(float(self.wave.F), 0.0).widened(bounds.RULE_FORCE + share)
+        return Estimate(float(self.wave.F), 0.0).widened(waves.RULE_FORCE + share)
 
     @property
     def _velocity_error(self) -> float:

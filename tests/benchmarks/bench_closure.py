@@ -25,8 +25,7 @@ from lwa import Dimer, homogenize
 from lwa.algebra.model import Model
 from lwa.cell import k
 from lwa.closure.ansatz import linear
-from lwa.closure.slaving import full
-from lwa.closure.solution import Solution
+from lwa.closure.slaving import Solution, full
 from lwa.law import Power
 from tests.benchmarks import peers
 

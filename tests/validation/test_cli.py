@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 from lwa.base import progress
-from lwa.command.terminal import CLOSED
+from lwa.command.cli import CLOSED
 from tests.commands import closed_pipe, ended, full_disk, small_disk, terminal, unwritable
 from validation import cli
 from validation.report import command

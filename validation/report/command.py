@@ -15,9 +15,9 @@ import click
 
 from lwa.base.exact import shorten
 from lwa.base.progress import bar, shown
+from lwa.command.cli import HELP
+from lwa.command.cli import run as run_command
 from lwa.command.options import called, quantities, quantity
-from lwa.command.terminal import HELP
-from lwa.command.terminal import run as run_command
 from validation.pictures import SUFFIXES
 from validation.report.files import output_file
 from validation.report.result import Report

@@ -6,7 +6,7 @@ import pytest
 from click.testing import CliRunner
 
 from lwa.command import cli
-from lwa.command.terminal import CLOSED
+from lwa.command.cli import CLOSED
 from tests.commands import closed_pipe, encoded, full_disk, unwritable
 from tests.lwa.command.answers import run
 from validation.cli import validate
