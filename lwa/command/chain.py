@@ -17,7 +17,7 @@ from lwa.base.files import Table, among, finite, load, table
 from lwa.cell import Cell, D
 from lwa.command.options import given
 from lwa.law import ContactLaw, Power, read_law, refuse_two_laws
-from lwa.spheres.beads import STRIKER, Row, opened, period, read_beads, read_materials, read_row
+from lwa.spheres.beads import FILE, STRIKER, Row, period, read_beads, read_materials, read_row
 from lwa.spheres.hertz import EXPONENT
 
 
@@ -85,7 +85,7 @@ def read_chain(path: str | Path) -> ChainInput:
 
 
 def _chain(content: Any) -> ChainInput:
-    file = opened(content)
+    file = Table(content, "", FILE)
     beads = read_beads(file, read_materials(file))
     row = read_row(file, beads)
     striker = file.read("striker", table(STRIKER), Table({}, "striker", STRIKER))
@@ -105,7 +105,7 @@ def _chain(content: Any) -> ChainInput:
 def _of_masses(row: Row) -> tuple[Cell, ContactLaw]:
     """Smallest periodic cell of a chain of masses, and its contact law."""
     masses, stiffnesses = row.masses * min(row.repeat, 2), row.stiffnesses or [1.0]
-    P = period(masses, stiffnesses, whole=False)
+    P = period(masses, stiffnesses)
     stiffnesses = [stiffnesses[i % len(stiffnesses)] for i in range(P)]
     spacings = row.spacings
     spacing = sp.Rational(str(sum(spacings) / len(spacings))) if spacings else D

@@ -48,13 +48,6 @@ STRIKER = ("velocity", "like")
 """Keys of the table ``striker``: the velocity of bead 1, and the bead that it is like."""
 
 
-def opened(content: Any) -> Table:
-    """Return the table of a parsed file; `lwa.InputError` for unknown keys."""
-    if isinstance(content, dict) and "scene" in content:
-        content = content["scene"]
-    return Table(content, "", FILE)
-
-
 def read_materials(file: Table) -> dict[str, Material]:
     """Materials by name: the built-in `MATERIALS`, and those of a file, which come first."""
     materials: dict[str, Material] = file.read("materials", named(_material), {})
@@ -128,10 +121,9 @@ def _by_contact(value: Any, name: str, period: int, beads: int) -> list[float]:
     return numbers
 
 
-def period(*rows: Sequence[Any], whole: bool) -> int:
-    """Size of the smallest cell whose repetition gives all rows; the last one ``whole`` or cut."""
-    n = len(rows[0])
-    sizes = (P for P in range(1, n + 1) if not (whole and n % P))
+def period(*rows: Sequence[Any]) -> int:
+    """Size of the smallest cell whose repetition, the last one whole or cut, gives all rows."""
+    sizes = range(1, len(rows[0]) + 1)
     return next(P for P in sizes if all(row[P:] == row[: max(len(row) - P, 0)] for row in rows))
 
 
@@ -143,7 +135,7 @@ def spheres(content: Any) -> list[Sphere]:
     >>> [sphere.mass for sphere in spheres(content | {"chain": {"cell": ["ball", "ball"]}})]
     [1, 1]
     """
-    file = opened(content)
+    file = Table(content, "", FILE)
     row = read_row(file, read_beads(file, read_materials(file)))
     if not row.spheres:
         raise InputError("chain.cell holds masses: the names of beads are wanted")

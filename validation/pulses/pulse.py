@@ -232,13 +232,19 @@ class Measured:
         return abs(1 - self.check / self.value)
 
     def __str__(self) -> str:
-        if not self.error:
-            return f"{self.value!r} ± 0"
-        size, last = abs(self.value), math.floor(math.log10(self.error))
-        if size > self.error and (last > 4 or not 1e-12 < size < 1e16):
-            return f"{self.value:.{math.floor(math.log10(size)) - last}e} ± {self.error:.0e}"
-        most = 16 - math.floor(math.log10(size)) if size else 12  # digits of a float
-        return f"{self.value:.{min(max(0, -last), most)}f} ± {self.error:.0e}"
+        """The number to the digits that its error leaves, six at most; ± covers those left out."""
+        short = f"{self.value:.6g}"
+        if not self.value or not self.error < math.inf:
+            return f"{short} ± {self.error:.0e}"
+        if not self.error and float(short) == self.value:
+            return f"{short} ± 0"
+        first = math.floor(math.log10(abs(self.value)))
+        last = first - 5 if not self.error else math.floor(math.log10(self.error))
+        last = min(max(last, first - 5), first)
+        error = self.error if self.error >= 10.0**last / 2 else 10.0**last
+        if last > 4 or not -12 < first < 16:
+            return f"{self.value:.{first - last}e} ± {error:.0e}"
+        return f"{round(self.value, -last):.{max(0, -last)}f} ± {error:.0e}"
 
     __repr__ = __str__
 

@@ -1,17 +1,18 @@
-"""Result of a study: title, tables, findings, panels and notes, as text, JSON, CSV or HTML."""
+"""Result of a study: title, tables, findings, panels and notes, as text, JSON or CSV."""
 
 from __future__ import annotations
 
 import io
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from html import escape
 from pathlib import Path
 from typing import Any
 
 from lwa.base.exact import InputError
 from validation.pictures import Panel, Pictured, svg
 from validation.report.files import replacing
-from validation.report.table import WIDTH, Finding, Table, findings_table, paragraphs, plain, wrap
+from validation.report.table import WIDTH, Finding, Table, findings_table, plain, wrap
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,10 +73,8 @@ class Report(Pictured):
         return "\n\n".join(filter(None, (title, *tables, *notes, self.verdict)))
 
     def _repr_html_(self) -> str:
-        """The tables, the picture and the verdict, for a notebook."""
-        tables = "".join(table.html() for table in self._printed_tables())
-        above, below = paragraphs(self.title), paragraphs(*self.notes)
-        return f"{above}{tables}{below}{svg(self.panels)}{paragraphs(self.verdict)}"
+        """The text and the picture, for a notebook."""
+        return f"<pre>{escape(self.text())}</pre>{svg(self.panels)}"
 
     def document(self) -> dict[str, Any]:
         """The report for JSON: ``data``, each table under its key, and the findings.

@@ -1,4 +1,4 @@
-"""Tables of values as text, HTML, JSON and CSV, and findings: numbers held to bounds."""
+"""Tables of values as text, JSON and CSV, and findings: numbers held to bounds."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from html import escape
 from textwrap import fill
 from typing import Any
 
@@ -52,7 +51,7 @@ class Column:
             return "ok" if cell else "FAILS"
         if isinstance(cell, Measured) and self.format:
             return f"{cell.value:{self.format}} ± {cell.error:.0e}"
-        form = self.format or (".8g" if isinstance(cell, float) else "")
+        form = self.format or (".6g" if isinstance(cell, float) else "")
         return format(cell, form) if form else str(cell)
 
     def values(self, cell: Any) -> Iterator[tuple[str, Any]]:
@@ -138,17 +137,6 @@ class Table:
         parts = [f"{head}\n{aligned(lines, width)}".lstrip("\n") for head, lines in self.parts()]
         blocks = wrap(self.title, width), "\n\n".join(parts), wrap(self.note, width)
         return "\n".join(filter(None, blocks)) if parts else ""
-
-    def html(self) -> str:
-        """The table as HTML; empty without column labels or rows."""
-        parts = self.parts()
-        tables = []
-        for head, (header, *lines) in parts:
-            rows = "".join(_html_row("td", line) for line in lines)
-            header_row = f"<thead>{_html_row('th', header)}</thead>"
-            tables.append(f"{paragraphs(head)}<table>{header_row}<tbody>{rows}</tbody></table>")
-        blocks = (paragraphs(self.title), *tables, paragraphs(self.note))
-        return "".join(blocks) if parts else ""
 
 
 @dataclass(frozen=True)
@@ -259,19 +247,6 @@ def wrap(text: str, width: int) -> str:
     return "\n".join(fill(line, width, break_long_words=False) for line in text.splitlines())
 
 
-def brief(number: Measured, digits: int = 7) -> str:
-    """Format a number in few digits; its ± covers the digits that are left out.
-
-    digits : digits before and behind the point.
-
-    >>> brief(Measured(1.4119283485, 1.4119283475)), brief(Measured(17.185442, 17.185))
-    ('1.411928 ± 1e-06', '17.1854 ± 4e-04')
-    """
-    decimals = max(0, digits - len(f"{abs(number.value):.0f}"))
-    last = 10.0**-decimals  # rounding takes half of it
-    return f"{number.value:.{decimals}f} ± {last:.0e}" if number.error < last / 2 else str(number)
-
-
 def bounds(low: float, high: float) -> str:
     """Format an interval; infinite ends are left out.
 
@@ -294,12 +269,3 @@ def percent(share: float) -> str:
     '-1.25 %'
     """
     return f"{100 * share:+.3g} %"
-
-
-def paragraphs(*texts: str) -> str:
-    """Return texts as HTML paragraphs, without the empty ones."""
-    return "".join(f"<p>{escape(text)}</p>" for text in texts if text)
-
-
-def _html_row(tag: str, cells: Iterable[str]) -> str:
-    return f"<tr>{''.join(f'<{tag}>{escape(cell)}</{tag}>' for cell in cells)}</tr>"

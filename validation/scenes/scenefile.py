@@ -1,22 +1,19 @@
-"""Files of scenes, TOML or JSON: `read_scene` reads a file, `document` returns its content.
+"""Files of scenes, TOML or JSON, read by `read_scene`.
 
 The file ``keys.toml`` beside this module lists all keys with examples; `lwa-validate run --keys`
 prints the list.
 
 Beads and contacts are counted from 1, as in the paper and on the command line (a `Scene` counts
 from 0). Stiffnesses are as many as the cell has beads, the last one joining it to the next cell,
-or as many as the whole chain has contacts; spacings likewise. A file with a key ``scene``, such as
-`lwa-validate run --out` writes, holds the scene under that key.
+or as many as the whole chain has contacts; spacings likewise.
 
-Unknown keys are refused, and every fault is one line that names the key. A written file holds
-masses and stiffnesses, not the materials that they came from; the scene read from it is equal.
+Unknown keys are refused, and every fault is one line that names the key.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
@@ -24,14 +21,12 @@ from typing import Any
 
 from lwa.base.exact import shorten
 from lwa.base.files import Reader, Table, among, each, entries, load, place, places, table
-from lwa.law import NAMES, ContactLaw, read_law
+from lwa.law import read_law
 from lwa.spheres.beads import (
     CHAIN,
     FILE,
     STRIKER,
     Row,
-    opened,
-    period,
     read_beads,
     read_materials,
     read_row,
@@ -69,7 +64,7 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
 
     folder : folder of the measured files that the content names.
     """
-    file = opened(content)
+    file = Table(content, "", FILE)
     tables = {
         name: file.read(name, table(keys), Table({}, name, keys)) for name, keys in _TABLES.items()
     }
@@ -202,48 +197,3 @@ def _motion(folder: Path, duration: float, value: Any, name: str) -> dict[str, A
     motion = columns(folder / value, "time", "displacement")
     check_span(folder / value, motion["time"], duration)
     return motion
-
-
-def document(source: Scene) -> dict[str, Any]:
-    """Return the content of a scene's file, for JSON; `scene` reads an equal scene."""
-    P = period(source.masses, source.stiffnesses, source.spacings, whole=True)
-    chain: dict[str, Any] = {"cell": list(source.masses[:P])}
-    chain |= {"k": source.k} if source.law is None else {"law": _law_content(source.law)}
-    if source.size > P:
-        chain["repeat"] = source.size // P
-    for name in ("stiffnesses", "spacings"):
-        if values := getattr(source, name):
-            chain[name] = values[0] if len(set(values)) == 1 else list(values[:P])
-    result: dict[str, Any] = {"duration": source.duration, "samples": source.samples}
-    for name in ("units", "gravity", "precompression"):
-        if value := getattr(source, name):
-            result[name] = value
-    result["chain"] = chain
-    if source.wall is not None:
-        result["wall"] = {"stiffness": source.wall}
-    if source.damping is not None:
-        result["damping"] = {source.damping.kind: source.damping.value}
-    if source.drive is not None:
-        result["drive"] = {
-            name: list(value) if isinstance(value, tuple) else value
-            for name, value in asdict(source.drive).items()
-            if value or (value == 0 and name != "ramp")
-        }
-    if len(source.velocities) == 1 and not source.displacements:
-        result["striker"] = {"velocity": source.velocities[0]}
-    elif source.velocities or source.displacements:
-        start = {"velocities": source.velocities, "displacements": source.displacements}
-        result["start"] = {name: list(values) for name, values in start.items() if values}
-        if _overlap(source):
-            result["start"]["overlap"] = True
-    sensors = {"beads": source.bead_sensors, "contacts": source.contact_sensors}
-    if any(sensors.values()):
-        result["sensors"] = {name: [i + 1 for i in row] for name, row in sensors.items() if row}
-    return result
-
-
-def _law_content(law: ContactLaw) -> str:
-    """Return a law as text, such as "hertz2:1,2"; else raise `SceneError`."""
-    if not (law.name and all(x.is_Rational for x in law.parameters)):
-        raise SceneError(f"law is {law.text}: a file holds the laws {', '.join(NAMES)}")
-    return law.text

@@ -73,8 +73,8 @@ def wave_report(wave: ExactWave) -> Report:
 
 
 _RATIOS = (
-    Column("mass_ratio", "m2/m1", format=".9f"),
-    Column("c2_value", "c² at peak force 1", format=".9f"),
+    Column("mass_ratio", "m2/m1", format=".6g"),
+    Column("c2_value", "c² at peak force 1", format=".6g"),
     Column("tail_value", "tail", format=".0e"),
     Column("residual_value", "residual", format=".0e"),
 )

@@ -26,7 +26,7 @@ from validation.pulses.pulse import Measured, compared, derived, exponent, highe
 from validation.pulses.signals import integral
 from validation.report.command import study
 from validation.report.result import Report
-from validation.report.table import Column, Finding, Table, brief, percent
+from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import carrying
 from validation.waves.theory import LEADING_POWERS, QUANTITIES, theory_at, theory_values
 
@@ -48,7 +48,7 @@ _COLUMNS = (
     Column("omega"),
     Column("theory"),
     Column("theory_value", "theory", format=".5g"),
-    Column("lattice", "lattice", error=True, format=brief),
+    Column("lattice", "lattice", error=True),
     Column("error_value", "error", format=lambda error: percent(error if abs(error) > 1e-9 else 0)),
     Column("bound_value", "bound", format=lambda bound: percent(bound).lstrip("+")),
     Column("ok", "holds"),

@@ -1,9 +1,9 @@
 """Simulation of a scene: pulses at its sensors, and files of the records.
 
-A stored run holds the records of the sensors, the pulses measured in them, and the scene. JSON: the
+A stored run holds the records of the sensors, the pulses measured in them. JSON: the
 result's document, and under ``records`` the arrays of `validation.lattice.result.Records`, their
 names ending in ``_value``. CSV, for spreadsheets: time and records by sensor, with units in the
-header, but neither result nor scene. Forces are total: static forces are included.
+header, but not the result. Forces are total: static forces are included.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def example(name: str) -> str:
 def report(recording: Recording, every: bool = False) -> Report:
     """Return the report of a run, with all pulses at each sensor (``every``) or only the first.
 
-    Keys of the JSON document: ``scene`` (as in a file, see `validation.scenes.scenefile`);
+    Keys of the JSON document:
     ``sensors``: ``kind``, ``number``, with ``every`` ``pulse``, counted from 1, ``arrival_value``,
     ``peak_value`` (of the dynamic force), ``fwhm_value``, ``static_force_value``, ``missing``;
     ``speeds``: ``kind``, ``from``, ``to``, ``speed_sites_value``, ``speed_value`` (null without
@@ -58,7 +58,6 @@ def report(recording: Recording, every: bool = False) -> Report:
     momentum = "not conserved" if (p := run.momentum_drift) is None else f"drift {p:.0e}"
     title = f"{scene}, energy drift {run.energy_drift:.0e}"
     data = {
-        "scene": scenefile.document(scene),
         "energy_drift_value": run.energy_drift,
         "momentum_drift_value": run.momentum_drift,
     }
@@ -139,7 +138,7 @@ _RTOL = f"Relative tolerance. Errors are differences to a run with {LESS:g} time
     output_option(
         "--out",
         SUFFIXES,
-        "Store the records in a file: .csv or, with the result and the scene, .json.",
+        "Store the records in a file: .csv or, with the result, .json.",
     ),
     option("--method", default=COMPILED[0], type=_METHODS, says=_INTEGRATOR),
     option("--rtol", default=TOLERANCE, says=_RTOL),

@@ -111,11 +111,11 @@ def test_a_measured_number_carries_its_error():
     assert (product.value, product.check) == (10.0, 2.1 * 4.9)
     assert a.error == pytest.approx(0.1)
     assert a.relative_error == pytest.approx(0.05)
-    assert str(Measured(1.41192847, 1.41192831)) == "1.4119285 ± 2e-07"
+    assert str(Measured(1.41192847, 1.41192831)) == "1.41193 ± 1e-05"
     assert str(Measured(16300.0, 17000.0)) == "16300 ± 7e+02"
     assert str(Measured(1.5, 1.5)) == "1.5 ± 0"
-    assert str(Measured(4.350971956738e-4, 4.350971959e-4)) == "0.0004350971957 ± 2e-13"
-    assert str(Measured(0.0, 1e-20)) == "0.000000000000 ± 1e-20"
+    assert str(Measured(4.350971956738e-4, 4.350971959e-4)) == "0.000435097 ± 1e-09"
+    assert str(Measured(0.0, 1e-20)) == "0 ± 1e-20"
 
 
 @pytest.mark.parametrize(

@@ -39,7 +39,8 @@ def test_the_first_example_is_right_within_its_errors():
         ):
             assert abs(measured.value - true) <= measured.error
             assert measured.relative_error < 1e-8
-            assert abs(float(str(measured).split(" ")[0]) - true) <= measured.error  # as printed
+            shown, about = map(float, str(measured).split(" ± "))
+            assert abs(shown - true) <= about  # as printed
 
 
 def test_sensors_without_a_pulse_say_why():

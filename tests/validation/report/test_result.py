@@ -40,7 +40,7 @@ def test_csv_is_the_first_table_with_rows():
 def test_a_notebook_shows_tables_and_picture():
     page = dataclasses.replace(PART, title="<part>")._repr_html_()
     assert "&lt;part&gt;" in page
-    assert page.count("<table>") == 1
+    assert page.count("<pre>") == 1
     assert page.count("<svg") == page.count("</svg>") == 1
     assert "1 check: all hold" in page
     assert "<svg" not in Report("none")._repr_html_()
