@@ -1,5 +1,6 @@
 """Settings of all tests: threads, examples, signals, garbage, folders, and the optional parts."""
 
+import fcntl
 import gc
 import os
 import shutil
@@ -15,7 +16,6 @@ os.environ.setdefault("MPLBACKEND", "Agg")
 os.environ.setdefault("SYMPY_CACHE_SIZE", "20000")
 
 import pytest
-from filelock import FileLock
 from hypothesis import Phase, settings
 
 # The processes that a test starts run this tree, whose engine is compiled already.
@@ -88,7 +88,8 @@ def engine(tmp_path_factory):
         pair = Scene(
             masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, velocities=(1,), bead_sensors=(0,)
         )
-        with FileLock(tmp_path_factory.getbasetemp().parent / "engine.lock"):
+        with (tmp_path_factory.getbasetemp().parent / "engine.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)  # until the file is closed
             assert simulate(pair).bead_force.shape[0] == 1
 
 

@@ -34,7 +34,7 @@ OPTIONS = {
     "pulses": {"": FILES, "--distance": NUMBERS, "--of": ("bead", "x"), "--column": RENAMED},
     "sweep": {
         "--k": ("3/2", "x", "1:2", "0", "7"), "--omega": ("1", "x", "0", "1e300"),
-        "--stretch": ("2", "0", "x"), "--file": ("s.jsonl", "pulses.csv", "x/y.jsonl", ""),
+        "--stretch": ("2", "0", "x"), "--file": ("s.sqlite", "pulses.csv", "x/y.sqlite", ""),
         "--jobs": ("1", "0", "x"),
     },
     "limits": {"--k": NUMBERS},

@@ -18,21 +18,18 @@ from __future__ import annotations
 
 import json
 import math
-import os
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+import sqlite3
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import scipy
 import sympy as sp
-from filelock import FileLock, Timeout
 
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError, read_exact
-from lwa.base.files import content
 from validation.lattice.cost import IntegrationError
 from validation.lattice.result import Run
 from validation.lattice.simulate import simulate
@@ -54,7 +51,7 @@ TOLERANCES = (1e-6, 1e-5)  # of the accurate run and of the one that gives its e
 FARTHER = 4  # times as far as the last place: where the pulse must still be the highest
 STEADY = 0.1  # largest difference from the force that the decay predicts there, over this force
 _WEAKEST = 1 / 50  # peak force of the slowest pulse for which a run is long enough
-_FORMAT = {"format": "lwa sweep", "version": 3}  # changes with the definition of a quantity
+VERSION = 4  # of a file of points, changes with the definition of a quantity
 
 Key = tuple[sp.Rational, sp.Rational]  # k and ω of a point
 
@@ -183,75 +180,60 @@ class StruckDimer:
 
 @dataclass(frozen=True)
 class PointFile:
-    """A file of points measured with the same ``stretch``; each finished point appends a line.
+    """A file of points measured with the same ``stretch``, an SQLite database.
 
-    The first line holds the format and the settings, every other line a point:
-
-        {"k": "3/2", "omega": "1", "sites": [56, 64], "numbers": {"width": [1.4119284, 1.4119], …}}
-        {"k": "3/2", "omega": "1/9", "missing": "not steady: the pulse has not passed 320 sites …"}
-
-    A number is followed by the less accurate number that gives its error.
+    Its table ``points`` has a row for each finished point: k and ω, the ends of the stretch, the
+    reason without numbers, and the numbers in JSON, each with the less accurate number that gives
+    its error. The database's user_version is `VERSION` and the stretch.
     """
 
     path: Path
     stretch: int
 
-    @property
-    def header(self) -> bytes:
-        """The file's first line, with the format and the settings."""
-        return _line(_FORMAT | {"settings": {"stretch": self.stretch}})
-
     @contextmanager
-    def locked(self) -> Iterator[None]:
-        """Keep other processes away from the file; raises `lwa.InputError` if one has it."""
-        lock = FileLock(f"{self.path}.lock", blocking=False)
-        try:
-            with lock:
-                try:
-                    yield
-                finally:
-                    Path(lock.lock_file).unlink()
-        except Timeout:
-            raise InputError(f"file is {self.path}: another sweep writes it") from None
+    def opened(self) -> Iterator[tuple[dict[Key, Point], Callable[[Point], None]]]:
+        """Yield the finished points, and a function that stores a point on the disk.
 
-    def read(self) -> dict[Key, Point]:
-        """Read all points. A torn last line is dropped.
-
-        Raises `lwa.InputError` for another sweep's file, or one that is damaged.
+        Raises `lwa.InputError` for another sweep's file, one that is damaged or cannot be written,
+        and one that another process has opened.
         """
-        text = content(self.path) if self.path.exists() else b""
-        if not self.header.startswith(text) and not text.startswith(self.header):
-            wanted = self.header.decode().strip()
-            raise InputError(f"{self.path} does not begin with {wanted}: choose another name")
-        end, points = text.rfind(b"\n") + 1, dict[Key, Point]()
-        for number, line in enumerate(text[:end].splitlines()[1:], start=2):
-            try:
-                point = _point(**json.loads(line))
-            except (ValueError, TypeError, KeyError, RecursionError):
-                raise InputError(f"{self.path} is damaged in line {number}") from None
-            points[point.k, point.omega] = point
-        if end < len(text):
-            os.truncate(self.path, end)
-        return points
+        try:
+            with closing(sqlite3.connect(self.path, timeout=0, isolation_level=None)) as data:
+                data.execute("pragma locking_mode = exclusive")
+                data.execute("begin exclusive")
+                (version,) = data.execute("pragma user_version").fetchone()
+                own = 1000 * VERSION + self.stretch
+                if version not in (0, own):
+                    raise InputError(
+                        f"file is {self.path}: its points have another stretch or definition; "
+                        "choose another name"
+                    )
+                if not version:
+                    data.execute(f"pragma user_version = {own}")
+                    data.execute("create table points (k, omega, sites, missing, numbers)")
+                data.execute("commit")
 
-    def append(self, point: Point) -> None:
-        """Append a point, and return when the point is on the disk."""
-        numbers = {name: [n.value, n.check] for name, n in point.numbers.items()}
-        measured = {"sites": point.sites, "numbers": numbers}
-        result = {"missing": point.missing} if point.missing else measured
-        line = _line({"k": str(point.k), "omega": str(point.omega)} | result)
-        with self.path.open("ab") as stream:
-            stream.write(line if stream.tell() else self.header + line)
-            stream.flush()
-            os.fsync(stream.fileno())
+                def keep(point: Point) -> None:
+                    data.execute("insert into points values (?, ?, ?, ?, ?)", _row(point))
 
-
-def _line(entry: dict[str, Any]) -> bytes:
-    return json.dumps(entry, ensure_ascii=False, allow_nan=False).encode() + b"\n"
+                points = map(_point, data.execute("select * from points"))
+                yield {(point.k, point.omega): point for point in points}, keep
+        except (sqlite3.Error, ValueError, TypeError, KeyError) as error:
+            if isinstance(error, InputError):
+                raise
+            raise InputError(f"file is {self.path}: {error}") from None
 
 
-def _point(k: str, omega: str, sites: Any = None, numbers: Any = (), missing: Any = None) -> Point:
-    pairs = {name: Measured(*map(float, numbers[name])) for name in QUANTITIES if numbers}
+def _row(point: Point) -> tuple[str | None, ...]:
+    numbers = {name: [n.value, n.check] for name, n in point.numbers.items()}
+    texts = str(point.k), str(point.omega), json.dumps(point.sites), point.missing
+    return *texts, json.dumps(numbers)
+
+
+def _point(row: tuple[str, ...]) -> Point:
+    k, omega, sites, missing, numbers = row
+    pairs = {name: Measured(*map(float, pair)) for name, pair in json.loads(numbers).items()}
+    stretch = json.loads(sites)
     return Point(
-        read_exact(k, "k"), read_exact(omega, "omega"), sites and (*sites,), pairs, missing
+        read_exact(k, "k"), read_exact(omega, "omega"), stretch and (*stretch,), pairs, missing
     )

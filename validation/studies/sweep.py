@@ -8,11 +8,12 @@ with contact force 1 at its peak, in the paper's closure and for the full closur
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import BrokenExecutor, CancelledError, Executor, as_completed
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from contextlib import AbstractContextManager, nullcontext
-from itertools import product
+from itertools import islice, product
 from pathlib import Path
+from queue import SimpleQueue
 from typing import Any
 
 import numpy as np
@@ -38,7 +39,8 @@ RANGES = {"k": (Rational(21, 20), Rational(6)), "omega": (Rational(1, 100), Rati
 CLOSURES = {"linear": "paper's closure", "canonical": "full closure, canonical field"}
 """Theories beside the lattice, with their labels."""
 
-_MOST = 300  # values of an axis
+_MOST = 1000  # values of an axis
+AHEAD = 1000  # points that wait for a worker, whatever the size of the grid
 Axis = Sequence[Rational]
 Grids = Mapping[str, Array]  # quantity → (len(ks), len(omegas)); NaN where missing
 
@@ -188,23 +190,26 @@ def measured(
     progress: Progress[Key],
 ) -> list[Point]:
     """Measure the points of a grid that are not yet in the file, by the executor of ``workers``."""
-    with file.locked() if file else nullcontext():
-        points = file.read() if file else {}
+    unkept: tuple[dict[Key, Point], Callable[[Point], None]] = {}, lambda _: None
+    with workers as executor, file.opened() if file else nullcontext(unkept) as (points, keep):
         missing = [key for key in product(ks, omegas) if key not in points]
-        with workers as executor:
-            futures = [executor.submit(point, *key, stretch) for key in missing]
-            try:
-                for _, future in zip(progress(missing), as_completed(futures), strict=True):
-                    new = future.result()
-                    points[new.k, new.omega] = new
-                    if file:
-                        file.append(new)
-            except (BrokenExecutor, CancelledError) as error:
-                gone = "the workers are gone before the sweep is done: killed, or out of memory?"
-                raise Failure(gone) from error
-            finally:
-                for future in futures:
-                    future.cancel()
+        waiting, done = iter(missing), SimpleQueue[Future[Point]]()
+        ahead: set[Future[Point]] = set()
+        try:
+            for _ in progress(missing):
+                for key in islice(waiting, AHEAD - len(ahead)):
+                    ahead.add(future := executor.submit(point, *key, stretch))
+                    future.add_done_callback(done.put)
+                ahead.remove(future := done.get())
+                new = future.result()
+                points[new.k, new.omega] = new
+                keep(new)
+        except (BrokenExecutor, CancelledError) as error:
+            gone = "the workers are gone before the sweep is done: killed, or out of memory?"
+            raise Failure(gone) from error
+        finally:
+            for future in ahead:
+                future.cancel()
     return [points[key] for key in product(ks, omegas)]
 
 
@@ -215,7 +220,7 @@ _RANGES = "values and ranges start:stop:count, separated by commas."
     option("--k", "ks", default="5/4:3:8", says=f"Exponents of F = δ^k: {_RANGES}"),
     option("--omega", "omegas", default="1/20:1:20", says=f"Mass ratios m2/m1: {_RANGES}"),
     option("--stretch", default=STRETCH, says="Cells between two measurements; more at k < 3/2."),
-    option("--file", metavar="FILE", says="File of finished points (.jsonl), to be continued."),
+    option("--file", metavar="FILE", says="File of finished points (.sqlite), to be continued."),
     option("--jobs", type=int, says="Number of threads; by default one a processor."),
     option("--cluster", "address", metavar="ADDRESS", says="Dask scheduler, in place of threads."),
 )
@@ -233,7 +238,7 @@ def sweep(
 
     ks, omegas: texts such as "5/4:3:8, 4", or exact numbers; floats count as their decimals.
     stretch: cells between places of measurement at k ≥ 3/2, see `validation.pulses.steady`.
-    file: file of finished points (.jsonl), which are not computed again.
+    file: file of finished points (.sqlite), which are not computed again.
     jobs, address: number of threads, by default one a core; scheduler of a Dask cluster instead.
 
     Raises `lwa.InputError` for numbers outside `RANGES` or an unfit file, and `Failure` when a
@@ -246,7 +251,7 @@ def sweep(
     stretch = integer(stretch, "stretch", 2, 100)
     if address is not None and jobs is not None:
         raise InputError(f"jobs is {jobs}: a cluster has workers of its own")
-    path = None if file is None else output_file("file", str(file), (".jsonl",))
+    path = None if file is None else output_file("file", str(file), (".sqlite",))
     points = None if path is None else PointFile(path, stretch)
     workers = threads(jobs, "jobs") if address is None else cluster(address)
     return report(*grid, measured(*grid, stretch, points, workers, progress), stretch)

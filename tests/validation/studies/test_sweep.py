@@ -4,26 +4,25 @@ import json
 import os
 import signal
 import socket
+import sqlite3
 import sys
 import time
-from concurrent.futures import BrokenExecutor
+from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
+from contextlib import closing
 from itertools import pairwise, product
 
 import numpy as np
 import pytest
 import sympy as sp
-from filelock import FileLock
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from lwa import InputError
 from tests.commands import ended, started
 from validation import cli
 from validation.lattice.threads import cluster
 from validation.pulses.pulse import Measured
-from validation.pulses.steady import QUANTITIES, Point
+from validation.pulses.steady import QUANTITIES, Point, PointFile
 from validation.scenes.checks import Failure
-from validation.studies.sweep import report, sweep, theory
+from validation.studies.sweep import AHEAD, measured, report, sweep, theory
 from validation.waves.theory import theory_at
 
 R = sp.Rational
@@ -65,87 +64,103 @@ def watched(keys, after=None, error=Stop):
 
 @pytest.fixture(scope="module")
 def content(tmp_path_factory):
-    """A sweep's file: one line of settings, two of points, a third that has none."""
-    file = tmp_path_factory.mktemp("sweep") / "s.jsonl"
+    """A sweep's file of two points with numbers and one that has none."""
+    file = tmp_path_factory.mktemp("sweep") / "s.sqlite"
     sweep([2], OMEGAS, file=file, **QUICK)
-    missing = {"k": "3", "omega": "1", "missing": "it “broke”\n"}
-    return file.read_bytes() + json.dumps(missing, ensure_ascii=False).encode() + b"\n"
+    with PointFile(file, 2).opened() as (points, keep):
+        assert len(points) == 2
+        keep(Point(R(3), R(1), None, {}, "it “broke”\n"))
+    return file.read_bytes()
 
 
 def test_an_interrupted_sweep_resumes_and_grows(content, reference, tmp_path):
     """Finished points come back bit for bit; only new ones are computed."""
-    file, computed = tmp_path / "s.jsonl", []
+    file, computed = tmp_path / "s.sqlite", []
     file.write_bytes(content)
     with pytest.raises(Stop):
         sweep(KS, OMEGAS, file=file, progress=watched([], 1), **QUICK)
     whole = sweep(KS, OMEGAS, file=file, progress=watched(computed), **QUICK)
     assert len(computed) == 1
     assert numbers(whole) == reference
-    assert file.read_bytes().startswith(content)
     again = sweep([*KS, 3], OMEGAS, file=file, progress=watched(computed), **QUICK)
     assert computed[1:] == [(3, R(1, 2))]
     assert numbers(again)[-1]["missing"] == "it “broke”\n"
-    assert [path.name for path in tmp_path.iterdir()] == ["s.jsonl"]
-
-
-@given(cut=st.integers(min_value=0, max_value=10_000))
-@settings(max_examples=4)
-def test_a_torn_end_costs_only_the_point_that_was_being_written(content, tmp_path_factory, cut):
-    file = tmp_path_factory.mktemp("torn") / "s.jsonl"
-    torn = content[: cut % (len(content) + 1)]
-    file.write_bytes(torn)
-    seen = []
-    with pytest.raises(Stop):
-        sweep([2, 3, 4], OMEGAS, file=file, progress=watched(seen, 0), **QUICK)
-    assert len(seen) == 6 - max(0, torn.count(b"\n") - 1)
-    assert file.read_bytes() == torn[: torn.rfind(b"\n") + 1]
+    assert [path.name for path in tmp_path.iterdir()] == ["s.sqlite"]
 
 
 @pytest.mark.parametrize(
-    ("change", "named"),
+    ("change", "words"),
     [
-        (lambda text: b"a,b\n1,2\n", "does not begin with"),
-        (lambda text: text.replace(b'"stretch": 2', b'"stretch": 3'), "does not begin with"),
-        (lambda text: text.replace(b'"k": "2"', b'"k": "__import__(0)"'), "in line 2"),
-        (lambda text: text.replace(b'"sites"', b'"sight"'), "in line 2"),
-        (lambda text: text.replace(b"]}}\n{", b"\n{", 1), "in line 2"),
+        (lambda data: None, "not a database"),
+        (lambda data: data.execute("pragma user_version = 4003"), "another stretch"),
+        (lambda data: data.execute("update points set k = '__import__(0)'"), "k is"),
+        (lambda data: data.execute("update points set numbers = '{'"), "file is"),
+        (lambda data: data.execute("alter table points add column x"), "file is"),
     ],
 )
-def test_a_file_of_other_lines_is_refused_and_left_alone(content, tmp_path, change, named):
-    file, changed = tmp_path / "s.jsonl", change(content)
-    assert changed != content
-    file.write_bytes(changed)
-    with pytest.raises(InputError, match=rf"s\.jsonl .*{named}"):
+def test_another_file_is_refused_and_left_alone(content, tmp_path, change, words):
+    file = tmp_path / "s.sqlite"
+    file.write_bytes(content if words != "not a database" else 100 * b"a,b,c,d,e\n")
+    with closing(sqlite3.connect(file, isolation_level=None)) as data:
+        change(data)
+    before = file.read_bytes()
+    with pytest.raises(InputError, match=words):
         sweep([2], OMEGAS, file=file, **QUICK)
-    assert file.read_bytes() == changed
+    assert file.read_bytes() == before
 
 
 def test_two_sweeps_do_not_write_one_file(tmp_path):
-    file = tmp_path / "s.jsonl"
-    with FileLock(f"{file}.lock"), pytest.raises(InputError, match=r"s\.jsonl: another sweep"):
+    file = tmp_path / "s.sqlite"
+    with PointFile(file, 2).opened(), pytest.raises(InputError, match=r"s\.sqlite: .*locked"):
         sweep([2], [1], file=file, **QUICK)
-    assert not file.exists()
+
+
+def test_few_points_wait_for_a_worker():
+    """A grid of 40 values by 50 never has more than `AHEAD` points in the executor."""
+
+    class Counting(ThreadPoolExecutor):
+        def submit(self, function, k, omega, stretch):
+            nonlocal most
+            most = max(most, len(todo) - len(finished))
+            return super().submit(lambda: finished.append(k) or Point(k, omega, None, {}, "no"))
+
+    most, todo, finished = 0, [], []
+    grid = tuple(map(R, range(2, 42))), tuple(R(n, 10) for n in range(1, 51))
+
+    def progress(keys):
+        for key in keys:
+            todo.append(key)
+            yield key
+
+    found = measured(*grid, 2, None, Counting(2), progress)
+    assert [(p.k, p.omega) for p in found] == [*product(*grid)]
+    assert most <= AHEAD
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("blow", [signal.SIGINT, signal.SIGKILL])
 def test_a_process_that_is_stopped_goes_on(tmp_path, blow):
-    file = tmp_path / "s.jsonl"
+    file = tmp_path / "s.sqlite"
     command = (*SWEEP, "--k", "3/2", "--omega", "1/2:1:12", "--stretch", "2", "--file", str(file))
     with started(*command, "--jobs", "2") as stopped:
-        while not file.exists() or file.read_text().count("\n") < 4:
+        written = set()  # times at which the file changed: its table, then points
+        while len(written) < 4:
             assert stopped.poll() is None
-            time.sleep(0.02)
+            if file.exists():
+                written.add(file.stat().st_mtime_ns)
+            time.sleep(0.002)
         stopped.send_signal(blow)
         out, err = stopped.communicate()
     if blow == signal.SIGINT:
         assert (stopped.returncode, out) == (130, "")
         assert err.endswith("lwa-validate: interrupted\n")
-    before = file.read_bytes()
+    with PointFile(file, 2).opened() as (points, _):
+        before = len(points)
+    assert 0 < before < 12
     with started(*command, "--format", "json") as again:
         assert len(json.loads(again.communicate()[0])["points"]) == 12
-    assert file.read_bytes().startswith(before[: before.rfind(b"\n") + 1])
-    assert file.read_bytes().count(b"\n") == 13
+    with PointFile(file, 2).opened() as (points, _):
+        assert len(points) == 12
 
 
 # A cluster
@@ -266,7 +281,7 @@ def test_the_theory_is_that_of_lwa():
 
 
 def test_the_command(capsys, tmp_path):
-    file, picture = tmp_path / "s.jsonl", tmp_path / "s.svg"
+    file, picture = tmp_path / "s.sqlite", tmp_path / "s.svg"
     options = ("--k", "3/2", "--file", str(file), "--stretch", "2")
     status, out, err = ended(
         capsys, cli.main, "sweep", *options, "--omega", "0.45:1:2,3/4", "--plot", str(picture),
@@ -290,11 +305,11 @@ def test_the_command(capsys, tmp_path):
         (("--k", "1"), "k is 1:"),
         (("--k", "m"), "k is m:"),
         (("--k", "1:2"), "k is '1:2':"),
-        (("--k", "1:2:301"), "the count of k is 301:"),
+        (("--k", "1:2:1001"), "the count of k is 1001:"),
         (("--omega", "__import__('os')"), "omega is "),
         (("--stretch", "0"), "stretch is 0:"),
         (("--file", "s.txt"), "file is s.txt:"),
-        (("--jobs", "0", "--file", "s.jsonl"), "jobs is 0:"),
+        (("--jobs", "0", "--file", "s.sqlite"), "jobs is 0:"),
         (("--jobs", "2", "--cluster", "tcp://a:1"), "jobs is 2:"),
     ],
     ids=str,
