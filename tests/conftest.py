@@ -40,6 +40,9 @@ everything optional is installed."""
 def pytest_collection_modifyitems(items):
     """Put the theory first: of two processes one derives while the other compiles the engine."""
     items.sort(key=lambda item: not item.nodeid.startswith(("tests/lwa/", "lwa/")))
+    for item in items:
+        if item.nodeid.startswith(("tests/validation/", "tests/book/studies/")):
+            item.fixturenames.insert(0, "engine")
 
 
 def pytest_collection_finish(session):
@@ -83,14 +86,14 @@ def engine(tmp_path_factory):
     """Let the first of several processes of tests compile the lattice's engine, and others wait."""
     if "PYTEST_XDIST_WORKER" in os.environ:
         from validation.lattice.simulate import simulate
+        from validation.scenes.forcing import Damping
         from validation.scenes.scene import Scene
 
-        pair = Scene(
-            masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, velocities=(1,), bead_sensors=(0,)
-        )
+        pair = {"masses": (1, 1), "stiffnesses": (1,), "k": 1.5, "duration": 1, "velocities": (1,)}
+        scenes = Scene(**pair, bead_sensors=(0,)), Scene(**pair, damping=Damping("contact", 0.1))
         with (tmp_path_factory.getbasetemp().parent / "engine.lock").open("w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)  # until the file is closed
-            assert simulate(pair).bead_force.shape[0] == 1
+            assert [simulate(scene).bead_force.shape[0] for scene in scenes] == [1, 0]
 
 
 @pytest.fixture

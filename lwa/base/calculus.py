@@ -57,11 +57,9 @@ def growing_root(F: sp.Expr, x: sp.Symbol) -> Any:
             step /= 2
         if step < least * max(low, 1) or low > 2**40:
             return None
-    high = low + step
-    while high - low > mpmath.eps * high:  # bisection: F may be anything between
-        middle = (low + high) / 2
-        low, high = (middle, high) if value(middle) < 0 else (low, middle)
-    return high
+    # F rises through 0 in this interval, and Anderson's method keeps a bracket
+    ends, close = (low, low + step), mpmath.eps * (low + step)
+    return mpmath.findroot(value, ends, tol=close, maxsteps=200, solver="anderson", verify=False)
 
 
 def real_function(function: Callable[[Any], Any]) -> Callable[[Any], Any]:
