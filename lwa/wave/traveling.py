@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import sympy as sp
 
@@ -20,6 +20,14 @@ if TYPE_CHECKING:
 
 class TravelingWave(CompactWave):
     """The compact traveling wave of a chain, with units, loads, floats and source text."""
+
+    @overload
+    def at_force(self, F: Any = "F", of: str = "contact") -> PhysicalWave: ...
+
+    @overload
+    def at_force(
+        self, F: Any = "F", of: str = "contact", *, precompression: Any
+    ) -> PhysicalWave | LoadedWave: ...
 
     def at_force(
         self, F: Any = "F", of: str = "contact", *, precompression: Any = 0

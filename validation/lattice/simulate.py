@@ -115,9 +115,10 @@ def simulate_many(
     errors : "raise" raises the error of a run that fails when the run would be yielded; "return"
         yields the error in place of the run. options : those of `simulate`.
 
-    >>> chain = dict(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9)
+    >>> from dataclasses import replace
+    >>> chain = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9)
     >>> [run.velocities[1].round(6) for run in
-    ...  simulate_many(Scene(**chain, velocities=(v,)) for v in (1, 2))]
+    ...  simulate_many(replace(chain, velocities=(v,)) for v in (1, 2))]
     [np.float64(1.0), np.float64(2.0)]
     """
     one_of(errors, ("raise", "return"), "errors")

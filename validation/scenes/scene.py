@@ -11,11 +11,11 @@ Any consistent units will do (m1 = A = D = 1, say); scenes of real beads are in 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
 from itertools import accumulate, pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
@@ -29,6 +29,9 @@ from validation.scenes.checks import SceneError, each, finite, integer, items, o
 from validation.scenes.forcing import Damping, Drive
 
 __all__ = ["Scene", "SceneError"]
+
+Number = float | str
+"""A number of a scene: a float, or a text such as "3/2" for the exponent."""
 
 _MISSING = math.nan
 # SymPy integrates F for δ > 0. Where a contact that pulls has δ < 0, a Piecewise goes on with its
@@ -96,6 +99,30 @@ class Scene:
     law: ContactLaw | None = None
     damping: Damping | None = None
     drive: Drive | None = None
+
+    if TYPE_CHECKING:  # the types that are read, beside those that are kept
+
+        def __init__(
+            self,
+            *,
+            masses: Iterable[Number],
+            stiffnesses: Iterable[Number],
+            k: Number = _MISSING,
+            duration: Number,
+            wall: Number | None = None,
+            gravity: Number = 0.0,
+            displacements: Iterable[Number] = (),
+            velocities: Iterable[Number] = (),
+            contact_sensors: Iterable[int] = (),
+            bead_sensors: Iterable[int] = (),
+            samples: int = 1001,
+            precompression: Number = 0.0,
+            spacings: Iterable[Number] = (),
+            units: str = "",
+            law: ContactLaw | None = None,
+            damping: Damping | None = None,
+            drive: Drive | None = None,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         self._read_law()
