@@ -31,7 +31,6 @@ def pressed(law):
 
 REFUSED = [
     ("x", {}, "scene is 'x'"),
-    (CHAIN, {"method": "Radau"}, "method is 'Radau': one of RKN86, symplectic, DOP853, RK45"),
     (
         replace(CHAIN, damping=Damping("contact", 1)),
         {"method": "symplectic"},
