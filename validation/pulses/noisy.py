@@ -152,11 +152,13 @@ def _numbers(
     rounding = (np.finfo(float).eps * np.abs(f).max()) ** 2
     scatter = squares / (n - counts)
     variance = rounding + (scatter[-1] if math.isnan(noise) else noise**2)
-    best = int(counts[np.argmin(squares / variance + counts * math.log(n))])
-    wanted = max(math.ceil(_FINER * best), best + _MORE)
-    spline = _fitted(t, f, min(wanted, highest))
-    left = float(np.sum((spline(t) - f) ** 2)) / (n - len(spline.c))
-    if left > _MISFIT * variance:
+    for _ in range(2):  # once more with the noise of the residuals, where that is the larger one
+        best = int(counts[np.argmin(squares / variance + counts * math.log(n))])
+        wanted = max(math.ceil(_FINER * best), best + _MORE)
+        spline = _fitted(t, f, min(wanted, highest))
+        left = float(np.sum((spline(t) - f) ** 2)) / (n - len(spline.c))
+        if left <= _MISFIT * variance:
+            break
         variance = left
     errors = _spread(spline, t, math.sqrt(variance), drift, ends)
     numbers = _read(spline, ends)

@@ -9,7 +9,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import CubicSpline
 
-from validation.lattice.cost import IntegrationError
 from validation.lattice.simulate import COMPILED, METHODS, simulate
 from validation.pulses.pulse import measure
 from validation.scenes.chains import struck

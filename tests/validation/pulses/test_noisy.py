@@ -143,3 +143,15 @@ def test_the_first_pulse_counts_and_the_base_may_be_known():
 def test_records_without_a_measurable_pulse_are_refused(t, f, named):
     with pytest.raises(MeasureError, match=named):
         noisy_pulse(t, f)
+
+
+@pytest.mark.parametrize("base", [None, 0.7], ids=["a calm lead", "no lead"])
+def test_the_noise_of_the_pulse_itself_counts(base):
+    """Noise that is ten times as large on the pulse as before it, or a record without a lead."""
+    t = np.arange(0.0 if base is None else 5.9, 12, 0.02)
+    pulse, rng, within = np.exp(-((t - 8) ** 2)), np.random.default_rng(11), 0
+    loud = 0.01 * np.where((t > 5) | (base is not None), 1.0, 0.1)
+    for _ in range(100):
+        found = noisy_pulse(t, 0.7 + pulse + loud * rng.normal(size=len(t)), base).numbers
+        within += abs(found["peak"].value - 1) < found["peak"].error
+    assert 55 <= within <= 85

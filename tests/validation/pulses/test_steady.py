@@ -126,3 +126,17 @@ def test_the_end_of_the_chain_is_far_from_the_last_place():
         for places in ((40, 80), (40, 80, 160))
     )
     assert one[:, :4] == pytest.approx(other[:, :4], rel=1e-5)  # arrival, peak, both FWHM
+
+
+def test_a_number_that_nears_its_limit_slowly_is_within_its_error(monkeypatch):
+    """Widths 1 + n^{-1/2}: the error is what is left at the last place, 10 stretches of 8 sites."""
+
+    def passages(chain, places):
+        n = np.array(places, float)[:, np.newaxis].repeat(2, axis=1)
+        one = np.ones_like(n)
+        return np.stack([n, one, 1 + n**-0.5, 1 + n**-0.5, n, one], axis=2)
+
+    monkeypatch.setattr(steady.StruckDimer, "run", lambda chain, places, *_: places)
+    monkeypatch.setattr(steady.StruckDimer, "passages", passages)
+    width = steady.point(R(3, 2), R(1, 2), STRETCH).numbers["width"]
+    assert width.value - 1 <= width.error * (1 + 1e-12) <= 1.1 * (width.value - 1)

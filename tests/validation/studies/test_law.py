@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -220,3 +221,13 @@ def test_bad_files_are_refused_in_one_line(tmp_path, text, options, named):
     with pytest.raises(SceneError, match=named) as refused:
         law(file, **options)
     assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("k", [1.5, 3.0])
+def test_the_error_of_the_speed_ratio_is_that_of_a(chain, k):
+    """A ~ R^{-k}: read with an R that is a thousandth too large, A is k thousandths too small."""
+    read = replace(chain, ratio=lambda k: 1.001 * chain.ratio(k), ratio_error=1e-3)
+    fit = fit_power(read, FORCES, speeds(chain, k, 0.7))
+    deviation = abs(fit.A.value - 0.7)
+    assert deviation == pytest.approx(0.7 * (1 - 1.001**-k), rel=1e-5)
+    assert deviation <= fit.A.error <= 1.1 * deviation
