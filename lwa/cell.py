@@ -29,16 +29,6 @@ D = sp.Symbol("D", positive=True)
 k = sp.Symbol("k", positive=True)
 """The exponent of the contact law F = A δ^k, unless the caller names another."""
 
-RESERVED = {
-    "k": "the exponent",
-    "D": "the spacing",
-    "B": "the peak strain",
-    "F": "the peak force",
-    "V_s": "the speed",
-    "tau": "time",
-}
-"""Names of a result's own symbols; the symbols of a cell, a law and k may not have them."""
-
 EXPONENTS = sp.Rational(1, 100), 1000
 """Least and largest k; beyond them exact numbers such as A^{1/k} have too many digits to read."""
 
@@ -78,9 +68,7 @@ class Cell(Value):
             )
         object.__setattr__(self, "masses", masses)
         object.__setattr__(self, "stiffnesses", stiffnesses or (sp.S.One,) * len(masses))
-        read = check_names(positive(spacing, "spacing"), "spacing", D.name)
-        object.__setattr__(self, "spacing", read)
-        check_distinct(self.symbols)
+        object.__setattr__(self, "spacing", positive(spacing, "spacing"))
 
     def latex_rows(self) -> list[str]:
         m, A = sp.Tuple(*self.masses), sp.Tuple(*self.stiffnesses)
@@ -190,10 +178,10 @@ def read_cell(value: Any) -> Cell:
 def exponent(value: Any) -> sp.Expr:
     """Read the exponent k of F = A δ^k exactly.
 
-    Raises `lwa.InputError` for numbers outside of `EXPONENTS`, and for a name in `RESERVED`.
+    Raises `lwa.InputError` for numbers outside of `EXPONENTS`.
     """
     least, largest = EXPONENTS
-    result = check_names(read_exact(value, "k"), "k", k.name)
+    result = read_exact(value, "k")
     if result.is_number and not least <= result <= largest:
         raise InputError(f"k is {shorten(result)}: exponents from {least} to {largest} are taken")
     return result
@@ -206,10 +194,14 @@ def substitution(
 
     Unless a symbol has this name, ``omega`` is the ratio m2/m1 of the cell's two masses.
 
-    Raises `lwa.InputError` for a name that does not occur, and a value of the cell or the exponent
-    that is not positive.
+    Raises `lwa.InputError` for a name that does not occur or that two symbols have, and a value of
+    the cell or the exponent that is not positive.
     """
-    known = {s.name: s for s in (*cell.symbols, *sorted(k.free_symbols, key=str), *more)}
+    symbols = dict.fromkeys((*cell.symbols, *sorted(k.free_symbols, key=str), *more))
+    known = {s.name: s for s in symbols}
+    if len(known) < len(symbols):
+        twice = min(s.name for s in symbols if known[s.name] != s)
+        raise InputError(f"{twice!r} names two symbols, with different assumptions: use one")
     given = dict(values)
     omega = given.pop("omega", None) if "omega" not in known else None
     for name in given:
@@ -233,24 +225,6 @@ def substitution(
     raise InputError("omega is m2/m1: one of the masses must be a symbol without another value")
 
 
-def check_distinct(symbols: Sequence[sp.Symbol]) -> None:
-    """Raise `lwa.InputError` for two symbols of one name with different assumptions."""
-    names = [s.name for s in symbols]
-    if twice := {name for name in names if names.count(name) > 1}:
-        raise InputError(f"{min(twice)!r} names two symbols, with different assumptions: use one")
-
-
-def check_names(value: sp.Expr, field: str, allowed: str = "") -> sp.Expr:
-    """Return the value; raise `lwa.InputError` if a symbol in it has a name in `RESERVED`.
-
-    field : name of the value in messages. allowed : reserved name that a symbol may have.
-    """
-    for name in sorted(s.name for s in value.free_symbols):
-        if name in RESERVED and name != allowed:
-            raise InputError(f"{field} {name!r}: the name means {RESERVED[name]} here")
-    return value
-
-
 def _sequence(values: Any, name: str) -> tuple[Any, ...]:
     if isinstance(values, str | bytes | Mapping | Set) or not isinstance(values, Iterable):
         raise InputError(
@@ -262,4 +236,4 @@ def _sequence(values: Any, name: str) -> tuple[Any, ...]:
 def _quantities(values: Any, name: str, singular: str) -> tuple[sp.Expr, ...]:
     """Read a sequence of positive numbers or symbols."""
     numbered = enumerate(_sequence(values, name), start=1)
-    return tuple(check_names(positive(x, f"{singular} {i}"), singular) for i, x in numbered)
+    return tuple(positive(x, f"{singular} {i}") for i, x in numbered)

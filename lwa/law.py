@@ -35,20 +35,11 @@ from lwa.base.exact import (
     signed,
 )
 from lwa.base.frozen import Value
-from lwa.cell import (
-    Cell,
-    check_distinct,
-    check_names,
-    exponent,
-    read_cell,
-    substitution,
-)
+from lwa.cell import Cell, exponent, read_cell, substitution
 from lwa.cell import k as symbol_k
 
 DELTA = sp.Symbol("delta", positive=True)
 """δ, the compression of a contact, unless the caller names another symbol."""
-
-"""Names that results use beside a law, and their meaning there."""
 
 _PHI = re.compile("phi[0-9]+")  # the name of a `phi_symbol`
 
@@ -143,7 +134,8 @@ class ContactLaw(Value):
     def evaluated(self, value: sp.Expr, delta: sp.Expr) -> sp.Expr:
         """The value of an expression in φ_2, φ_3, … at a compression."""
         slope = self.at(delta, 1)
-        orders = {s: int(s.name[3:]) for s in value.free_symbols if _PHI.fullmatch(s.name)}
+        named_so = {s: int(s.name[3:]) for s in value.free_symbols if _PHI.fullmatch(s.name)}
+        orders = {s: n for s, n in named_so.items() if s == phi_symbol(n)}
         return value.xreplace(
             {s: delta ** (n - 1) * self.at(delta, n) / slope for s, n in orders.items()}
         )
@@ -176,9 +168,6 @@ class ContactLaw(Value):
                 "the contacts differ in stiffness, and their shares of the strain would then "
                 "depend on the strain: only a power law allows that"
             )
-        names = {s.name for s in (*cell.symbols, *self.symbols)}
-        for name in sorted(n for n in names if n == self.delta.name or _PHI.fullmatch(n)):
-            raise InputError(f"{name!r} has a meaning in the law: use another name")
 
     def check_strain(self, p: sp.Expr, cell: Cell, sound: bool = False) -> None:
         """Raise `lwa.InputError` unless F is real up to the strain p and grows there, F′ > 0.
@@ -308,8 +297,7 @@ class Law(ContactLaw):
             raise InputError(
                 f"F is {shorten(self.F)}: a SymPy expression in {self.delta} is wanted"
             )
-        object.__setattr__(self, "F", check_names(read_exact(self.F, "F"), "law"))
-        check_distinct((self.delta, *self.symbols))
+        object.__setattr__(self, "F", read_exact(self.F, "F"))
         if self.slope().is_zero:
             raise InputError(f"F is {shorten(self.F)}: a force that depends on δ is wanted")
 

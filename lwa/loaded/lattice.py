@@ -34,7 +34,7 @@ from lwa.base.exact import (
     shorten,
 )
 from lwa.base.frozen import Value
-from lwa.cell import Cell, check_distinct
+from lwa.cell import Cell
 from lwa.law import ContactLaw, Power, for_cell
 from lwa.linear.bands import Network
 from lwa.linear.bloch import dispersion_of_chain
@@ -142,7 +142,6 @@ class Lattice(Value):
         places = [link.i for link in self.links] + [x.bead for x in self.resonators]
         if max(places) >= self.size:
             raise InputError(f"particle {max(places)}: the cell has particles 0 to {self.size - 1}")
-        check_distinct((*self.symbols, *(self.spacing.free_symbols - {*self.symbols})))
         self._check_paths()
 
     @classmethod

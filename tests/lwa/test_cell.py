@@ -13,7 +13,6 @@ from lwa import (
     homogenize,
     loaded_wave,
 )
-from lwa.cell import RESERVED
 from tests.identity import same
 
 
@@ -35,7 +34,6 @@ def test_shares_make_all_contact_forces_equal():
         (dict(masses=[1, 0]), "mass 2 is 0"),
         (dict(masses=[1, 2], stiffnesses=[1]), "1 stiffnesses for 2 masses"),
         (dict(masses=[1, 2], spacing=0), "spacing is 0"),
-        (dict(masses=["k", 1]), "'k': the name means the exponent"),
         (dict(masses="m1,m2"), "a sequence"),
         (dict(masses={1, 2}), "a sequence"),
     ],
@@ -65,15 +63,6 @@ def test_exponents_and_numbers_out_of_range_are_refused():
             Dispersion(Cell([1, 1], [1, 2]), exponent)
     with pytest.raises(InputError, match="digits"):
         homogenize(Cell([1, "1e999"]), 10)
-
-
-def test_names_of_one_symbol_only():
-    a, b = sp.Symbol("a"), sp.Symbol("a", positive=True)
-    with pytest.raises(InputError, match="'a' names two symbols"):
-        Cell([a, b])
-    for name in RESERVED:
-        with pytest.raises(InputError, match=f"{name!r}"):
-            Cell([name, 1])
 
 
 def test_omega_replaces_a_mass():
