@@ -166,7 +166,6 @@ def homogenize(
     ring = model.ring
     parameters = len(ring.names) - max(len(ring.variables) - 1, 0)  # the φ_n grow as powers of k
     _affordable(order, parameters, closure)
-    ring.writable(order)
     return Theory(
         solve(model, order, closure, field, progress=iter if order < SLOW_ORDER else shown)
     )

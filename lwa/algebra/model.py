@@ -8,7 +8,6 @@ P contacts: the ring Q[k, m̂, C]. Under a law other than a power the parameters
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -19,13 +18,9 @@ from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from lwa.algebra.jets import JetAlgebra
 from lwa.algebra.rational import context, factored, to_flint, to_sum, to_sympy
-from lwa.base.exact import InputError
 from lwa.base.frozen import Value
 from lwa.cell import Cell, substitution
 from lwa.law import ContactLaw, for_cell, phi_symbol
-
-PRINTABLE_DIGITS = 4000
-"""Digits of a coefficient; Python prints no integers of more than 4,300."""
 
 
 @dataclass(frozen=True)
@@ -97,20 +92,6 @@ class CoefficientRing(Value):
     @property
     def _parameters(self) -> tuple[str, ...]:
         return ("k",) if self.variables == (self.k,) else tuple(map(str, self.variables))
-
-    def writable(self, order: int, growth: int = 1) -> None:
-        """Raise `lwa.InputError` if coefficients of this order are too long for Python to print.
-
-        growth : digits of a coefficient per order and digit of the cell and the exponent.
-        """
-        values = (self.k, *(self.masses.values or ()), *(self.contacts.values or ()))
-        parts = [int(part) for x in values if x.is_Rational for part in (x.p, x.q)]
-        digits = max((part.bit_length() for part in parts), default=0) * math.log10(2)
-        if growth * order * digits > PRINTABLE_DIGITS:
-            raise InputError(
-                f"order is {order}: with numbers of {digits:.0f} digits in the cell or the "
-                f"exponent, coefficients have more than {PRINTABLE_DIGITS}"
-            )
 
     def exponent(self, context: fmpq_mpoly_ctx) -> fmpq_mpoly:
         """The exponent k as an element of a ring that has `names` among its generators."""

@@ -14,7 +14,6 @@ import tomllib
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from difflib import get_close_matches
-from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -42,11 +41,7 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
     suffix = Path(path).suffix.lower()
     if suffix not in MOST_BYTES:
         raise InputError(f"{path}: {what} is a file ending in {' or '.join(MOST_BYTES)}")
-    parse = (
-        tomllib.loads
-        if suffix == ".toml"
-        else partial(json.loads, object_pairs_hook=_refuse_repeated)
-    )
+    parse = tomllib.loads if suffix == ".toml" else json.loads
     try:
         return reader(parse(content(Path(path), MOST_BYTES[suffix]).decode("utf-8-sig")))
     except (InputError, OSError) as error:
@@ -58,16 +53,6 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
     except ValueError as error:  # raised by the parsers
         fault = f"not {suffix[1:].upper()}: {str(error).partition(';')[0]}"
     raise InputError(f"{path}: {fault}") from None
-
-
-def _refuse_repeated(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """The table of the pairs of a JSON object; JSON itself lets the last of equal keys win."""
-    table: dict[str, Any] = {}
-    for key, value in pairs:
-        if key in table:
-            raise InputError(f"{key[:60]!r} is there more than once")
-        table[key] = value
-    return table
 
 
 def content(file: Path, most: int = 10**9) -> bytes:

@@ -81,7 +81,7 @@ def row(name: str, value: sp.Expr) -> str:
 
 
 def expression(value: sp.Expr) -> str:
-    """LaTeX of a value; a fraction wider than a line as factors, whose longest sum can be broken.
+    """LaTeX of a value; a long number without symbols as its digits.
 
     >>> x, y = sp.symbols("x y")
     >>> expression((x + y) / 2)
@@ -90,19 +90,7 @@ def expression(value: sp.Expr) -> str:
     plain = str(sp.latex(value))
     if not value.free_symbols and width(plain) > NUMBER:
         return str(sp.latex(evaluated(value, 15)))
-    if width(plain) <= WIDTH or not (value.is_Mul or value.is_Pow):
-        return plain
-    factors = sp.Mul.make_args(value)
-    sums = [f for f in factors if (e := f.as_base_exp())[0].is_Add and e[1].is_Integer and e[1] > 0]
-    if not sums:
-        return plain
-    longest = max(sums, key=lambda f: len(f.as_base_exp()[0].args))
-    total, e = longest.as_base_exp()
-    if width(str(sp.latex(total))) < WIDTH / 2:
-        return plain
-    rest = sp.Mul(*(f for f in factors if f is not longest), evaluate=False)
-    raised = f"^{{{e}}}" if e > 1 else ""
-    return rf"{sp.latex(rest)} \Bigl({sp.latex(total)}\Bigr){raised}".removeprefix("1 ")
+    return plain
 
 
 SPEED = r"\frac{dx}{dt}"

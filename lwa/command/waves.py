@@ -67,7 +67,6 @@ def wave(
 
     Without --force the floats in JSON are those at B = 1 (speed) and at V_s = 1 (B, mu), with D as
     the unit of length if D is a symbol. `speed` is V_s = dx/dτ, and dx/dt with --force.
-    `compressions` has a value for each contact, `compression` their mean.
     """
     spheres = options["spheres"] is not None
     chain = take_chain(options)
@@ -202,8 +201,7 @@ def _at_force(chain: ChainInput, theory: Theory, at: PhysicalWave | LoadedWave) 
         Row("force", "peak contact force F", at.force, "N"),
         Row("B", f"{peak} strain B", at.strain),
         Row("strain", "", at.strain),
-        Row("compression", "", at.compression, "m"),
-        Row("compressions", f"{peak} compression", at.compressions, unit="m"),
+        Row("compression", f"{peak} compression", at.compression, "m"),
         Row("speed", "speed dx/dt", at.speed, "m/s"),
         Row("bead_velocity", "peak velocity of the beads", at.bead_velocity, "m/s"),
         *_width_rows(at),

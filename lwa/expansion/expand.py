@@ -210,7 +210,6 @@ def expand(
             f"order is {order}: with {ratios} symbolic ratios in a cell of {cell.size} this takes "
             f"more than {LARGEST:.0e} terms, beyond memory; {other}"
         )
-    model.ring.writable(order, growth=4)  # measured: 3.5
     return Expansion(cell, order, k)
 
 

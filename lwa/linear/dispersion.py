@@ -139,7 +139,6 @@ class Dispersion(Value):
             terms *= comb(2 * max(n, 1) - 2 + len(part.names), len(part.names))
         if terms > MOST_TERMS:
             raise InputError(f"order is {highest}: give numbers for the cell, or a lower order")
-        self._model.ring.writable(highest)
         return n
 
     def _demand_dimer(self, what: str) -> None:

@@ -248,15 +248,6 @@ class LoadedWave(Value):
         """The force of the contacts of a cell at a mean strain."""
         return self.field.cell.stiffness(self.law.exponent) * self.law.at(self._spacing * p)
 
-    @cached_property
-    def compressions(self) -> tuple[sp.Expr, ...]:
-        """The compression that the wave adds at its peak, for each contact of the cell."""
-        if isinstance(self.chain, Lattice):
-            ends = zip(*(state.compressions for state in self._states), strict=True)
-            return tuple(peak - ahead for ahead, peak in ends)
-        shares = self.chain.shares(self.law.exponent)
-        return tuple(share * self.compression for share in shares)
-
     # --- speeds ---
 
     @cached_property

@@ -21,7 +21,7 @@ A file of spheres holds, in units that agree (SI if A is to be in N/m^{3/2})::
 
 These are tables of a scene (`validation.scenes.scenefile`), and any scene is such a file: the other
 entries of the scene are ignored. A chain of masses has numbers in ``cell`` and its contacts beside
-them. A file with a key ``scene``, such as `lwa-validate run --out` writes, holds the scene there.
+them.
 """
 
 from __future__ import annotations

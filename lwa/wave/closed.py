@@ -50,21 +50,9 @@ class Reduction(Value):
     s: sp.Expr
 
     def latex_rows(self) -> list[str]:
-        values = {name: getattr(self, name) for name in _FORMULAS}
-        rows = [r"z'' = \mu z^{\eta} - \sigma z, \quad v = z^{p}", latex.row("p", self.p)]
-        for name, value in values.items():  # a value wider than a line as the paper's formula
-            wide = latex.width(sp.latex(value)) > latex.WIDTH
-            letter = name if name == "a" else rf"\{name}"
-            rows.append(f"{letter} = {_FORMULAS[name]}" if wide else latex.row(letter, value))
-        return rows
-
-
-_FORMULAS = {
-    "a": r"1 - k p + 3 (p - 1) + \frac{p H}{I}",
-    "mu": r"\frac{V_{s}^{2}}{I (p + a)}",
-    "eta": "1 + p - k p",
-    "sigma": r"\frac{1}{I (k p + a)}",
-}
+        values = {"p": self.p, "a": self.a, r"\mu": self.mu, r"\eta": self.eta}
+        equation = r"z'' = \mu z^{\eta} - \sigma z, \quad v = z^{p}"
+        return [equation, *latex.rows({**values, r"\sigma": self.sigma})]
 
 
 @dataclass(frozen=True, repr=False)

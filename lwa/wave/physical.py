@@ -98,13 +98,8 @@ class PhysicalWave(Value):
 
     @cached_property
     def compression(self) -> sp.Expr:
-        """The peak compression D B of a contact; the mean of unlike contacts (`compressions`)."""
+        """The peak compression D B of a contact; the mean over unlike contacts."""
         return self._law.compression(self.wave.cell, self.contact_force)
-
-    @cached_property
-    def compressions(self) -> tuple[sp.Expr, ...]:
-        """The peak compression (F/A_i)^{1/k} of each contact of the cell."""
-        return self._law.compressions(self.wave.cell, self.contact_force)
 
     @cached_property
     def speed(self) -> sp.Expr:

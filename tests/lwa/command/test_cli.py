@@ -53,14 +53,11 @@ def test_wave_json(capsys):
 
 
 def test_latex_is_that_of_the_results(capsys):
-    """Rows of the objects; a formula in p, H and I stands only beside H and I."""
-    for masses, wide in (("m1,m2", True), ("1,1", False)):
+    for masses in ("m1,m2", "1,1"):
         out = said(capsys, "derive", "--masses", masses, "--format", "latex")
         theory = homogenize(Dimer(*masses.split(",")))
         assert out == latex.align(theory.latex_rows()) + "\n"
-        out = said(capsys, "wave", "--masses", masses, "--format", "latex")
-        assert (r"\frac{p H}{I}" in out) == wide
-        assert "H &=" in out
+        assert "H &=" in said(capsys, "wave", "--masses", masses, "--format", "latex")
 
 
 def test_text_of_the_paper(capsys):
@@ -150,7 +147,6 @@ def test_spheres_at_a_force_are_in_si_units(capsys, spheres):
         assert found["fwhm_time_value"][quantity] == float(wave.fwhm(quantity, "time"))
     assert found["stiffnesses_value"] == [float(A)] * 2
     assert found["masses_value"] == [0.45e-3, 0.123e-3]
-    assert found["compressions_value"] == [found["compression_value"]] * 2
     assert (found["B_value"], found["spacing_value"]) == (found["strain_value"], 0.00476)
     assert (found["units"]["speed"], found["units"]["fwhm_time"]) == ("m/s", "s")
     out = said(capsys, "wave", "--spheres", spheres(), "--force", "10")

@@ -1,7 +1,5 @@
 """The traveling wave in closed form, substituted where its derivation does not go."""
 
-import re
-
 import mpmath
 import pytest
 import sympy as sp
@@ -9,7 +7,6 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, NoSolitaryWave, canonical_wave, homogenize
-from lwa.wave.closed import _FORMULAS
 from tests.identity import same
 
 masses = st.fractions(min_value="1/50", max_value=50, max_denominator=50)
@@ -105,16 +102,3 @@ def test_the_canonical_wave_needs_the_dispersion_only(cell, k):
     assert same(short.beta, long.beta)
     assert short.speed_factor == sp.factor(2 / (k * (k + 1)))
     assert same(long.speed_factor, short.speed_factor)
-
-
-def test_formulas_in_place_of_wide_values_are_those_of_the_values():
-    """LaTeX such as \\frac{p H}{I}, read as Python, at numbers."""
-    wave = homogenize(Dimer(2, 3, spacing=1), k="3/2").pde.traveling_wave()
-    found = wave.reduction(V=2)
-    names = {"k": wave.k, "p": found.p, "a": found.a, "H": wave.H, "I": wave.I, "V": sp.Integer(2)}
-    for name, formula in _FORMULAS.items():
-        plain = re.sub(
-            r"\\frac\{(.*)\}\{(.*)\}", r"(\1)/(\2)", formula.replace("V_{s}^{2}", "V**2")
-        )
-        value = eval(re.sub(r"(?<=[\w)]) (?=[\w(])", "*", plain), names)
-        assert same(value, getattr(found, name)), name

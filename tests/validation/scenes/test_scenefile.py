@@ -198,7 +198,7 @@ def test_a_bad_scene_is_refused_by_the_key(change, named):
     one_line(caught)
 
 
-HUGE, DEEP = b"f" * 5000, b"[" * 100_000
+HUGE, DEEP = b"f" * 10**6, b"[" * 100_000
 FILES = [
     ("s.toml", b"", "duration is missing|chain is missing"),
     ("s.toml", b"duration = ", "not TOML"),
@@ -212,10 +212,9 @@ FILES = [
     ("s.toml", "# Länge\nduration = 1".encode("latin-1"), "not a text in UTF-8"),
     ("s.toml", b"#" * (files.MOST_BYTES[".toml"] + 1), "more than [0-9]+ bytes"),
     ("s.json", b'{"duration": 1', "not JSON"),
-    ("s.json", b'{"duration": 1, "duration": 2}', "'duration' is there more than once"),
     ("s.json", b"[1, 2]", r"the file is \[1, 2\]"),
     ("s.json", DEEP, "nested too deeply"),
-    ("s.json", b'{"duration": 1' + b"0" * 5000 + b"}", "not JSON"),
+    ("s.json", b'{"duration": 1' + b"0" * 10**6 + b"}", "not JSON"),
     ("s.txt", b"duration = 1", "a scene is a file ending in .toml or .json"),
     ("folder.toml", None, "only regular files"),
     ("pipe.json", None, "only regular files"),
