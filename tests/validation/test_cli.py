@@ -189,22 +189,10 @@ _LONG = SCENE.replace("= 30", "= 60").replace("1.5", "300").replace("10,", "100,
 # a bad option, a bad file, and runs that are refused for what they cost or give
 BAD_RUNS = [
     (("--out", "result.txt"), SCENE, "out is result.txt: a file ending in .json, .csv is wanted"),
-    (("--out", "no/such/o.json"), SCENE, "out is no/such/o.json: it cannot be written, No such"),
     (("--plot", "picture.txt"), SCENE, "plot is picture.txt: a file ending in"),
-    (("--plot", "p.svg"), SCENE.replace("sensors", "#"), "plot is asked for: this result has no"),
     (("--out", "o.csv"), SCENE.replace("sensors", "#"), "out is o.csv, but the scene names no s"),
-    (("extra",), SCENE, r"Got unexpected extra argument \(extra\)"),
-    (("--method", "RK4"), SCENE, "Invalid value for '--method': 'RK4' is not one of 'RKN86', "),
     (("--rtol", "1"), SCENE, "rtol is 1: it lies between 1e-13 and 1e-05"),
-    ((), SCENE.replace("30", "-1"), "scene.toml: duration is -1: it must be"),
-    ((), SCENE + "sensor = 1", "scene.toml: sensor is unknown: did you mean sens"),
-    ((), SCENE.replace("0.5", "1e-20"), "duration is 30: this makes .* steps of RKN86"),
-    (_SPLIT, SCENE.replace("0.5", "1e-24"), "duration is 30: this makes .* steps of symplectic"),
-    ((), SCENE.replace("0.5", "1e-320"), "scene.toml: chain.cell number 2 is 1e-320: floats below"),
     ((), SCENE + "gravity = 1e10\nwall = {stiffness = 1}", "rtol is 1e-10: rounding of the static"),
-    ((), SCENE + "gravity = 1e300\nwall = {stiffness = 1}", "the scene's .* comes out as .*:"),
-    ((), SCENE.replace("601", "10_000_000"), "samples is 1e.07: with 3 sensors and 20 beads"),
-    (_SPLIT, SCENE.replace("1.5", "1e308"), "the scene's .* comes out as 0: choose"),
     ((*_SPLIT, "--rtol", "1e-5"), _LONG, "the motion overflows: .* a step of .* is too long"),
 ]
 
@@ -226,8 +214,6 @@ BAD = [
     ("paper", "--format", "xml"),
     ("limits", "extra"),
     ("exact", "--masses", "1,0.2733"),
-    ("resonances", "--count", "0"),
-    ("accuracy", "--task", "tea"),
     ("pulses", "records.csv", "--column", "time"),
     ("nothing",),
     ("--nothing",),
@@ -243,18 +229,13 @@ def test_bad_input_prints_one_line_with_status_2(capsys, arguments):
     assert len(err) < 200
 
 
-def test_no_arguments_show_the_help(capsys):
+def test_help_and_no_arguments(capsys):
     status, out, err = run(capsys)
-    assert (status, out) == (2, "")
-    assert "Commands:" in err
-
-
-@pytest.mark.parametrize(("study", "flag"), [([], "-h"), (["paper"], "--help")])
-def test_help(study, flag):
-    shown = CliRunner().invoke(cli.validate, [*study, flag], prog_name="lwa-validate")
-    assert shown.exit_code == 0
-    assert shown.output.startswith(" ".join(["Usage: lwa-validate", *study]))
-    assert "--format" in shown.output or not study
+    assert (status, out, "Commands:" in err) == (2, "", True)
+    for study, flag in (([], "-h"), (["paper"], "--help")):
+        shown = CliRunner().invoke(cli.validate, [*study, flag], prog_name="lwa-validate")
+        assert shown.exit_code == 0
+        assert shown.output.startswith(" ".join(["Usage: lwa-validate", *study]))
 
 
 def test_resonances(capsys):
@@ -293,18 +274,3 @@ def test_the_progress_bar_appears_before_the_first_case_ends(cases):
         bar = shown()
     assert "cases:   0%|" in bar
     assert f" 0/{len(cases)} " in bar
-
-
-LAW = "force,speed\n" + "".join(f"{2.0**n},{500 * 2 ** (n / 6)}\n" for n in range(8))
-TEXTS = {  # commands and the characters of their longest line, at most
-    "paper": 80,
-    "exact --background 1/2": 100,
-    "resonances --count 2": 100,
-    "sweep --k 3/2 --omega 1/10,1/2,1": 100,
-    "run scene.toml": 100,
-    "run scene.toml --pulses": 100,
-    "run scene.toml --out run.csv": 100,
-    "compare scene.toml run.csv": 100,
-    "pulses run.csv": 100,
-    "law law.csv --masses 0.45e-3 --spacing 4.76e-3": 100,
-}

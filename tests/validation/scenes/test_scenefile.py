@@ -134,38 +134,25 @@ NAN = float("nan")
 
 REFUSED = [
     ({"duration": 0}, "duration is 0"),
-    ({"duration": NAN}, "duration is nan"),
-    ({"duration": "1"}, "duration is '1'"),
-    ({"duration": True}, "duration is True"),
     ({"durations": 1}, "durations is unknown: did you mean duration"),
     ({"__import__('os')": 1}, r"\"__import__\('os'\)\" is unknown"),
-    ({"samples": 1}, "samples is 1"),
-    ({"gravity": 9.81}, "gravity is 9.81"),
-    ({"precompression": 1}, "precompression is 1"),
-    ({"chain": 3}, "chain is 3"),
     ({"chain": {"cell": []}}, "chain.cell is empty"),
     ({"chain": {"cell": [1], "repeat": 10**6 + 1}}, "chain.cell and repeat make 1000001 beads"),
     ({"chain": {"cell": "ball"}}, "chain.cell is 'ball'"),
-    ({"chain": {"cell": [1, NAN]}}, "chain.cell number 2 is nan"),
     ({"chain": {"cell": ["ball", 1]}}, "chain.cell number 2 is 1"),
     ({"chain": {"cell": ["bal"]}}, "chain.cell number 1 is 'bal': did you mean ball"),
-    ({"chain": {"cell": ["ball"]}, "beads": {}}, "chain.cell number 1 is 'ball'"),
     ({"chain": {"cell": [1]}}, "chain has neither k nor law"),
-    ({"chain": {"cell": [1, 2], "k": 0.5}}, "k is 0.5"),
     ({"chain": {"cell": ["ball"], "k": 1.5}}, "chain.k is given"),
     ({"chain": {"cell": [1, 2, 3], "k": 2, "stiffnesses": [1]}}, "chain.stiffnesses holds 1"),
     ({"materials": {"x": {"E": 1}}}, "materials.x.nu is missing"),
-    ({"materials": {"x": {"E": 1, "nu": 0.6}}}, "materials.x.nu is 0.6"),
     ({"beads": {"b": BALL | {"material": "stel"}}}, "beads.b.material is 'stel': did you mean"),
     ({"defects": {"bead": 1}}, "defects is {'bead': 1}"),
-    ({"defects": [{}]}, "defects number 1 has neither contact nor bead"),
     ({"defects": [{"bead": 1}]}, "defects number 1 has neither like nor mass"),
     ({"defects": [{"bead": 1, "mass": 1, "like": "ball"}]}, "defects number 1 has both like and m"),
     ({"defects": [{"bead": 4, "mass": 1}]}, "defects number 1.bead is 4"),
     ({"defects": [{"bead": 1, "like": "ball"}]}, "defects number 1.like names a bead"),
     ({"defects": [{"contact": 3, "stiffness": 1}]}, "defects number 1.contact is 3"),
     ({"defects": [{"bead": 3, "mass": m} for m in (1, 2)]}, "defects has 2 tables of bead 3"),
-    ({"wall": {}}, "wall has neither material nor stiffness"),
     ({"wall": {"material": "steel"}}, "wall.material is given"),
     ({"wall": {"material": "wood"}} | BALLS, "wall.material is 'wood': one of steel, steel 316, "),
     ({"striker": {"velocity": 1}, "start": {}}, "striker and start are both there"),
@@ -173,12 +160,8 @@ REFUSED = [
     ({"striker": {"like": "ball"}} | BALLS, "striker.velocity is missing"),
     ({"striker": {"like": "ball"}, "defects": [{"bead": 1, "mass": 1.0}]}, "striker.like and def"),
     ({"striker": {"velocity": 1, "like": "ball"}}, "striker.like names a bead in a chain of"),
-    ({"start": {"velocities": [1] * 4}}, "4 velocities for 3 beads"),
     ({"start": {"displacements": [0.1]}}, "start.displacements press bead 1 into bead 2"),
     ({"start": {"displacements": [0, 0, 1]}} | WALL, "start.displacements press bead 3 into the w"),
-    ({"sensors": {"beads": [4]}}, "sensors.beads number 1 is 4"),
-    ({"sensors": {"beads": [1, 1]}}, r"sensors.beads is \[1, 1\]"),
-    ({"chain": {"cell": [1], "k": 2}}, "sensors.beads number 1 is 2"),
     ({"sensors": {"beads": "some"}}, "sensors.beads is 'some'"),
     ({"units": "cgs"}, "units is 'cgs'"),
 ]
@@ -198,16 +181,10 @@ def test_a_bad_scene_is_refused_by_the_key(change, named):
     one_line(caught)
 
 
-HUGE, DEEP = b"f" * 10**6, b"[" * 100_000
+DEEP = b"[" * 100_000
 FILES = [
     ("s.toml", b"", "duration is missing|chain is missing"),
     ("s.toml", b"duration = ", "not TOML"),
-    (
-        "s.toml",
-        b"duration = 0x" + HUGE + b"\nchain = {cell = [1], k = 2}",
-        "duration is a number of",
-    ),
-    ("s.toml", b"duration = nan\nchain = {cell = [1], k = 2}", "duration is nan"),
     ("s.toml", b"x = " + DEEP, "nested too deeply"),
     ("s.toml", "# Länge\nduration = 1".encode("latin-1"), "not a text in UTF-8"),
     ("s.toml", b"#" * (files.MOST_BYTES[".toml"] + 1), "more than [0-9]+ bytes"),
@@ -279,16 +256,11 @@ PRESSED = {"displacements": [0.1]}
     "keys",
     [
         {"start": PRESSED | {"overlap": True}},
-        {"start": PRESSED, "wall": {"stiffness": 1.0}, "precompression": 1},
         {"start": {"displacements": [-0.1, -0.1]}},  # a gap
         {"start": {"displacements": [0, 0, 0.1]}},  # nothing is behind the last bead
         {"chain": {"cell": [1, 2], "law": "hertz2:1,1/2", "stiffnesses": 1}},
-        {"chain": {"cell": [1, 2], "law": "exponential:3/2", "stiffnesses": 1}},
-        {"damping": {"contact": 0.1}},
-        {"damping": {"kuwabara_kono": 0.1}},
         {"damping": {"restitution": 0.9}},
         {"drive": {"velocity": 0.0}},
-        {"drive": {"amplitude": 0.1, "frequency": 2.0, "ramp": 0.5}},
         {"drive": {"time": [0.0, 0.3, 0.6, 1.0], "displacement": [0.0, 1.0, 0.0, 0.0]}},
     ],
 )
