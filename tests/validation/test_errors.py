@@ -21,7 +21,7 @@ from validation.pulses.pulse import Measured, exponent
 from validation.pulses.sensors import record
 from validation.scenes import scenefile
 from validation.waves import contact_law
-from validation.waves.solution import solve
+from validation.waves.resonances import solve
 from validation.waves.solver import exact_wave, measured
 from validation.waves.theory import theory_at
 

@@ -19,8 +19,7 @@ from lwa.command.cli import HELP
 from lwa.command.cli import run as run_command
 from lwa.command.options import called, quantities, quantity
 from validation.pictures import SUFFIXES
-from validation.report.files import output_file
-from validation.report.result import Report
+from validation.report.result import Report, output_file
 from validation.scenes.checks import Failure, SceneError
 
 P = ParamSpec("P")

@@ -1,18 +1,56 @@
-"""Result of a study: title, tables, findings, panels and notes, as text, JSON or CSV."""
+"""Result of a study and its files: title, tables, findings, panels, notes, as text, JSON or CSV.
+
+Output files are checked before the work, and replaced only by complete files.
+"""
 
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
 from typing import Any
 
 from lwa.base.exact import InputError
+from lwa.base.files import reason
 from validation.pictures import Panel, Pictured, svg
-from validation.report.files import replacing
 from validation.report.table import WIDTH, Finding, Table, findings_table, plain, wrap
+
+
+def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
+    """Return a path, ``name`` in messages, if its suffix is allowed and a file can be written."""
+    file = Path(path)
+    try:
+        if file.suffix.lower() not in suffixes:
+            fault = f"a file ending in {', '.join(suffixes)} is wanted"
+        elif file.exists() and not file.is_file():
+            fault = "a regular file is wanted"
+        else:
+            with tempfile.TemporaryFile(dir=file.resolve().parent):
+                return file
+    except (OSError, ValueError) as error:  # ValueError: a name with a null byte
+        fault = f"it cannot be written, {reason(error)}"
+    raise InputError(f"{name} is {path[:120]}: {fault}")
+
+
+@contextmanager
+def replacing(file: Path) -> Iterator[Path]:
+    """Yield a temporary file that replaces ``file`` at the end, and is removed after a failure.
+
+    A symbolic link keeps its target, and a file its mode. Raises `lwa.InputError`.
+    """
+    target = file.resolve()
+    try:
+        with tempfile.TemporaryDirectory(prefix=".", dir=target.parent) as folder:
+            yield (new := Path(folder, "new"))
+            if target.exists():
+                new.chmod(target.stat().st_mode)
+            new.replace(target)
+    except OSError as error:
+        raise InputError(f"{file} is not written: {reason(error)}") from None
 
 
 @dataclass(frozen=True, eq=False)

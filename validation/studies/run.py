@@ -22,9 +22,8 @@ from validation.lattice.result import Records, Run
 from validation.lattice.simulate import COMPILED, METHODS
 from validation.pulses.sensors import LESS, TOLERANCE, Recording, record
 from validation.report.command import option, output_option, study
-from validation.report.files import replacing
 from validation.report.readings import reading_tables
-from validation.report.result import Report
+from validation.report.result import Report, replacing
 from validation.report.table import plain
 from validation.scenes import scenefile
 from validation.scenes.checks import SceneError

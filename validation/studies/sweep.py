@@ -28,8 +28,7 @@ from validation.lattice.threads import cluster, threads
 from validation.pictures import Curve, Map, Panel
 from validation.pulses.steady import QUANTITIES, STRETCH, Key, Point, PointFile, point
 from validation.report.command import option, study
-from validation.report.files import output_file
-from validation.report.result import Report
+from validation.report.result import Report, output_file
 from validation.report.table import Column, Table, percent
 from validation.scenes.checks import Failure, SceneError, integer, items
 

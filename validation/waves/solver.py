@@ -30,8 +30,7 @@ from validation.pulses.pulse import Measured
 from validation.scenes.checks import SceneError, between, items
 from validation.waves import newton
 from validation.waves.profile import ExactWave
-from validation.waves.resonances import special_waves
-from validation.waves.solution import NoWave, converged, solve
+from validation.waves.resonances import NoWave, converged, solve, special_waves
 
 FALLEN = 38.0  # e-foldings of a wave on a background from its flanks to L
 LIGHTEST = 1e-12  # background over the peak strain, at least: a lighter one does not show

@@ -34,7 +34,7 @@ from tests.commands import ended
 from validation.lattice.simulate import COMPILED, simulate
 from validation.pulses.pulse import MeasureError
 from validation.pulses.steady import STRETCH, point
-from validation.waves.solution import solve
+from validation.waves.resonances import solve
 from validation.waves.solver import exact_wave
 from validation.waves.theory import theory_at
 

@@ -14,7 +14,7 @@ from validation.pulses.pulse import leading_pulses
 from validation.pulses.signals import sampled
 from validation.pulses.steady import QUANTITIES, STRETCH, point
 from validation.scenes.scene import Scene
-from validation.waves.solution import solve
+from validation.waves.resonances import solve
 from validation.waves.solver import exact_wave
 
 R = sp.Rational

@@ -7,7 +7,7 @@ import re
 import pytest
 
 from lwa import InputError
-from validation.report.files import output_file, replacing
+from validation.report.result import output_file, replacing
 
 
 def refusal(tmp_path, name):

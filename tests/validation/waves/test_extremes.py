@@ -13,7 +13,7 @@ import sympy as sp
 from lwa import NoSolitaryWave
 from tests.passage import passage, ratio
 from validation.scenes.chains import carrying
-from validation.waves.solution import solve
+from validation.waves.resonances import solve
 from validation.waves.theory import LEADING_POWERS, theory_at
 
 

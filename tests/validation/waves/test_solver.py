@@ -11,8 +11,7 @@ import pytest
 from validation import measure, simulate
 from validation.scenes.checks import SceneError
 from validation.studies.exact import wave_report
-from validation.waves.resonances import resonances
-from validation.waves.solution import NoWave, solve
+from validation.waves.resonances import NoWave, resonances, solve
 from validation.waves.solver import exact_wave
 
 QUANTITIES = ("strain", "force", "velocity")

@@ -23,7 +23,7 @@ from validation.lattice.kernel.advance import cut, follow, moving
 from validation.lattice.kernel.arrays import Beads, Chain, Plan
 from validation.lattice.kernel.compiled import ONE, SOURCES, TWO, ZERO, cached, index, part
 from validation.lattice.kernel.contacts import damped_forces, first_change, settle, stored
-from validation.lattice.kernel.drive import drive_motion, interval
+from validation.lattice.kernel.force import drive_motion, interval
 from validation.lattice.kernel.pair import squared_error
 
 STEP, DENSE = 12, 16  # stages of a step, and with those of its interpolant

@@ -14,8 +14,7 @@ from typing import Any
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import WIDTH, Beads, Chain, Plan, Tableau
 from validation.lattice.kernel.compiled import ONE, THREE, TWO, ZERO, index, part, summed
-from validation.lattice.kernel.drive import drive_motion, interval
-from validation.lattice.kernel.force import contact_forces, power
+from validation.lattice.kernel.force import contact_forces, drive_motion, interval, power
 from validation.lattice.kernel.kinks import (
     NEAR,
     Quintic,
