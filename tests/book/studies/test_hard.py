@@ -2,7 +2,6 @@
 
 import json
 
-import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
@@ -17,26 +16,14 @@ from book.studies.hard import (
     energy_errors,
     form,
     hard,
-    in_ulps,
     losses,
     splitting_errors,
-    spreading,
     true_values,
 )
 from lwa import Dimer, homogenize
 from tests.commands import ended
 
 # The last digits
-
-
-def test_neighbours_are_one_ulp_apart_and_rounding_costs_half():
-    x = np.array([1.0, -3.7, 1e-300, 2.0**-20])
-    true = np.array([mp.mpf(float(value)) for value in x], object)
-    assert in_ulps(x, true).tolist() == [0, 0, 0, 0]
-    assert in_ulps(x + np.spacing(np.abs(x)), true).tolist() == [1, 1, 1, 1]
-    with mp.workdps(50):
-        third = np.array([mp.mpf(1) / 3], object)
-    assert 0 < in_ulps(np.array([1 / 3]), third)[0] <= 0.5
 
 
 @pytest.mark.parametrize("closure", CLOSURES)
@@ -85,14 +72,6 @@ def test_a_contact_that_opens_leaves_k_plus_one_orders(k, opens, steps, order):
     steps = np.geomspace(*steps, 4)
     slope = np.polyfit(np.log(steps), np.log(splitting_errors(k, opens, steps)), 1)[0]
     assert abs(slope - order) < 0.35  # the scatter of an opening's place within its step
-
-
-def test_the_exponent_of_spreading_of_a_walk_a_drift_and_a_swing():
-    """Exponent 1/2 of independent steps, 1 of equal ones, 0 of what stays where it is."""
-    noise = np.random.default_rng(1).normal(size=4000)
-    assert spreading(np.cumsum(noise)) == pytest.approx(0.5, abs=0.05)
-    assert spreading(np.arange(200.0)) == pytest.approx(1.0, abs=1e-12)
-    assert spreading(noise) == pytest.approx(0.0, abs=0.05)
 
 
 def test_closed_contacts_do_not_drift_over_ten_thousand_time_units():

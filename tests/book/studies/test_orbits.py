@@ -7,8 +7,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from book.studies.breather import NoOrbit, PressedChain, Standing, orbit
-from lwa import Cell, Power, envelope
+from book.studies.breather import NoOrbit, PressedChain, orbit
 from validation import Scene, simulate
 
 HERTZ = 1.5
@@ -103,18 +102,6 @@ def test_the_engine_returns_to_the_orbit():
     rough = orbit(pinned, found.frequency, found.coefficients, harmonics=5)
     assert rough.amplitude[middle] == pytest.approx(found.amplitude[middle], rel=1e-5)
     assert rough.residual > 1e3 * found.residual
-
-
-def test_a_breather_is_stable_or_hardly_unstable_and_its_multipliers_come_in_pairs():
-    cell = Cell((1, "1/2"), spacing=1)
-    theory = envelope(cell, law=Power("3/2"), precompression=1).breather(detuning=0.004)
-    multipliers = Standing(cell, HERTZ, theory, 30).orbit.multipliers
-    assert len(multipliers) == 122
-    assert np.abs(multipliers[0]) < 1.01
-    inverse = 1 / multipliers
-    apart = np.abs(multipliers[:, None] - inverse[None]).min(axis=1)
-    assert apart.max() < 1e-4  # double multipliers are known to the root of the error
-    assert np.count_nonzero(np.abs(multipliers - 1) < 1e-3) >= 4
 
 
 def test_without_an_orbit_newtons_method_says_so():
