@@ -1,1 +1,1 @@
-"""The graded differential algebra of the strain: its jets, and the rings of their coefficients."""
+"""The graded differential algebra of the strain: jets, and the rings of their coefficients."""

@@ -14,12 +14,11 @@ from math import factorial
 
 from flint import fmpq, fmpq_mpoly
 
-from lwa.algebra.contact import Force
 from lwa.algebra.jets import GradedSeries
 from lwa.algebra.model import Model
 from lwa.base.exact import InputError
 from lwa.base.progress import Progress
-from lwa.closure.slaving import Solution, full
+from lwa.closure.slaving import Force, Solution, full
 
 
 def linear(model: Model, order: int, progress: Progress[int] = iter) -> Solution:

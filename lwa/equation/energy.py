@@ -35,10 +35,10 @@ from math import factorial
 
 from flint import fmpq, fmpq_mpoly
 
-from lwa.algebra.contact import Force
 from lwa.algebra.jets import GradedSeries, JetAlgebra
 from lwa.base.exact import InputError
 from lwa.closure.consistency import Closure
+from lwa.closure.slaving import Force
 
 
 def conservative(closure: Closure) -> bool:

@@ -31,7 +31,6 @@ and squared speeds up to 6 % off: there, and without load, the width of a pair h
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import log, nan, pi, sqrt
@@ -47,14 +46,12 @@ from lwa.base.exact import (
     InputError,
     Quantity,
     demand_numbers,
-    evaluated,
     number,
     positive,
     power,
     read_exact,
     shorten,
 )
-from lwa.base.frozen import Value
 from lwa.base.quantities import (
     NoSolitaryWave,
     known_extent,
@@ -65,10 +62,9 @@ from lwa.cell import Cell
 from lwa.cell import k as symbol_k
 from lwa.law import ContactLaw, for_cell, substituted
 from lwa.loaded.background import Background, KdV
-from lwa.loaded.lattice import Lattice, Static
-from lwa.loaded.quadrature import Quadrature
+from lwa.loaded.ends import Ends
+from lwa.loaded.lattice import Lattice
 
-_DIGITS = 20  # of results that have no closed form
 _FASTEST = 1.2  # least ω0 D/(2πV) of a resonator at which the relation holds (`struck`)
 _BARE = 1 - 1e-6  # part of V² that the wave adds to the sound's from which there is no load
 _FOOT = 1e-40  # part of the rise at which the sound ahead of the wave is computed
@@ -83,21 +79,11 @@ _NONE = nan, nan, nan
 
 
 @dataclass(frozen=True)
-class LoadedWave(Value):
+class LoadedWave(Ends):
     """The wave on a static load, or without load, in a chain or a lattice (see `loaded_wave`).
-
-    chain, law : a cell and the law of its contacts, or a lattice and None.
-    ahead, peak : static force and total peak force, or static strain and rise of the strain.
-    by_force : True for forces.
 
     Speeds are dx/dt in the units of the chain.
     """
-
-    chain: Cell | Lattice
-    law: Any
-    ahead: sp.Expr
-    peak: sp.Expr
-    by_force: bool = True
 
     def __post_init__(self) -> None:
         if self.by_force:
@@ -137,7 +123,8 @@ class LoadedWave(Value):
         if reason:
             raise NoSolitaryWave(f"{place}: {reason}")
         for resonator in self.lattice.resonators:
-            ratio = self.lattice.resonance(resonator) / (2 * pi * self._rate)
+            speed = number(self.speed / self.chain.spacing)
+            ratio = self.lattice.resonance(resonator) / (2 * pi * speed)
             if ratio < _FASTEST:
                 raise InputError(
                     f"{place}: a resonator's ω0 is {ratio:.3g} times 2πV/D; the relation holds "
@@ -158,98 +145,6 @@ class LoadedWave(Value):
         chain, law, ahead, peak = substituted(values, self.chain, self.law, self.ahead, self.peak)
         return LoadedWave(chain, law, ahead, peak, self.by_force)
 
-    # --- the two static states, in closed form where the law allows ---
-
-    @cached_property
-    def lattice(self) -> Lattice:
-        """The lattice, or the chain as one."""
-        chain = self.chain
-        return chain if isinstance(chain, Lattice) else Lattice.of_cell(chain, self.law)
-
-    @cached_property
-    def field(self) -> Background:
-        """The long-wave field of the chain on the static strain; of a cell alone."""
-        if isinstance(self.chain, Lattice):
-            raise InputError("the field is that of a cell, and the chain is a lattice")
-        p0 = self._ends[0] / self.chain.spacing if self.by_force else self.ahead
-        return Background(self.chain, self.law, read_exact(p0, "background"))
-
-    @property
-    def _spacing(self) -> sp.Expr:
-        return self.chain.spacing
-
-    @property
-    def _free(self) -> set[sp.Symbol]:
-        free: set[sp.Symbol] = self.ahead.free_symbols | self.peak.free_symbols
-        if not self.by_force:  # forces alone determine compressions, not strains
-            free |= self._spacing.free_symbols
-        return free.union(self.chain.symbols) if self.law is None else free | {*self.law.symbols}
-
-    @cached_property
-    def _states(self) -> tuple[Static, Static]:
-        """The static states of a lattice ahead of the wave and of its peak force."""
-        return self.lattice.static(self.ahead), self.lattice.static(self.peak)
-
-    @cached_property
-    def _ends(self) -> tuple[sp.Expr, sp.Expr]:
-        """The mean compression D p0 ahead of the wave, and its rise D B at the peak."""
-        if not self.by_force:
-            return self._spacing * self.ahead, self._spacing * self.peak
-        if isinstance(self.chain, Cell):
-            # exact, even those of 35 digits: their difference keeps its digits
-            forces = (self.ahead, self.peak)
-            found = (F and self.law.compression(self.chain, F) for F in forces)
-            ahead, peak = (read_exact(x, "compression") for x in found)
-            return ahead, peak - ahead
-        ahead, peak = (state.strain * self._spacing for state in self._states)
-        if self.lattice.in_series:
-            return ahead, peak - ahead
-        rise = self.lattice.statics.rise(
-            float(ahead), float(self.peak), number(self.peak - self.ahead)
-        )
-        return ahead, sp.Float(rise)
-
-    def _written(self, value: sp.Expr) -> sp.Expr:
-        """A result in closed form, else its float: the exact ends of other laws have 35 digits."""
-        explicit = isinstance(self.chain, Lattice) or self.law.homogeneous or not self.by_force
-        return value if explicit else evaluated(value, _DIGITS)
-
-    @property
-    def static_compression(self) -> sp.Expr:
-        """The mean compression D p0 of the contacts under the load."""
-        return self._written(self._ends[0])
-
-    @property
-    def compression(self) -> sp.Expr:
-        """The mean compression D B that the wave adds at its peak."""
-        return self._written(self._ends[1])
-
-    @property
-    def background(self) -> sp.Expr:
-        """The static mean strain p0."""
-        return self.static_compression / self._spacing if self.by_force else self.ahead
-
-    @property
-    def strain(self) -> sp.Expr:
-        """The rise B of the mean strain."""
-        return self.compression / self._spacing if self.by_force else self.peak
-
-    @property
-    def precompression(self) -> sp.Expr:
-        """The static force."""
-        return self.ahead if self.by_force else self._force(self.background)
-
-    @property
-    def force(self) -> sp.Expr:
-        """The total force at the peak."""
-        return self.peak if self.by_force else self._force(self.background + self.strain)
-
-    def _force(self, p: sp.Expr) -> sp.Expr:
-        """The force of the contacts of a cell at a mean strain."""
-        return self.field.cell.stiffness(self.law.exponent) * self.law.at(self._spacing * p)
-
-    # --- speeds ---
-
     @cached_property
     def speed(self) -> sp.Expr:
         """The speed V."""
@@ -263,9 +158,9 @@ class LoadedWave(Value):
         elif self.lattice.exact:
             work = self.lattice.energy(self._states[1]) - self.lattice.energy(self._states[0])
         else:
-            return sp.Float(self._rate) * self._spacing
+            return sp.Float(sqrt(self._square / number(self.lattice.mass))) * self.chain.spacing
         square = 2 * (work - self.precompression * rise) / rise**2
-        return self._spacing * self._written(power(square / self._mass, sp.S.Half))
+        return self.chain.spacing * self._written(power(square / self.lattice.mass, sp.S.Half))
 
     @cached_property
     def sound_speed(self) -> sp.Expr:
@@ -278,13 +173,7 @@ class LoadedWave(Value):
             stiffness = self.lattice.stiffness(self._states[0])
         else:
             stiffness = sp.Float(self._slope(_FOOT))
-        return self._spacing * self._written(power(stiffness / self._mass, sp.S.Half))
-
-    @property
-    def _mass(self) -> sp.Expr:
-        """The mean mass."""
-        chain = self.chain
-        return chain.mass / chain.size if isinstance(chain, Cell) else chain.mass
+        return self.chain.spacing * self._written(power(stiffness / self.lattice.mass, sp.S.Half))
 
     @property
     def bead_velocity(self) -> sp.Expr:
@@ -297,7 +186,7 @@ class LoadedWave(Value):
 
         Raises `lwa.NoSolitaryWave` where no sound runs, and where small waves disperse.
         """
-        c0, D = self.sound_speed, self._spacing
+        c0, D = self.sound_speed, self.chain.spacing
         if c0.is_zero or c0.is_finite is False:
             raise NoSolitaryWave("there is no load, and no sound runs, so that no wave is small")
         if isinstance(self.chain, Cell):
@@ -306,66 +195,21 @@ class LoadedWave(Value):
         else:
             values = self.lattice.statics.samples(np.array(self._quadrature.p0))
             slope, bend, I = (sp.Float(float(x)) for x in values)
-            I = D**2 * (I + self.lattice.resonance_sum * slope / self._mass**2)  # V̂² = F′
+            I = D**2 * (I + self.lattice.resonance_sum * slope / self.lattice.mass**2)  # V̂² = F′
         if bend.is_zero:
             raise NoSolitaryWave("F″ is 0 at the load: waves of small amplitude disperse")
         # V² = c0² (1 + F″ B/(3F′) + …), hence V = c0 + α B/3; Ω² = c0² (q² - I q⁴) gives γ = I c0/2
         return KdV(c0, c0 * D * self._written(sp.powsimp(bend / slope) / 2), I * c0 / 2)
-
-    # --- in floats: mean compressions over a unit, lengths in spacings ---
-
-    @cached_property
-    def _quadrature(self) -> Quadrature:
-        p0, B = self._ends
-        if self.law is not None and self.law.homogeneous:  # of no length: the unit is the larger
-            unit = p0 + B if (self.law.exponent - 1).is_positive else p0
-            p0, B = p0 / unit, B / unit
-        return Quadrature(self._samples, number(p0), number(B))
-
-    def _samples(self, e: Array) -> tuple[Array, Array, Array]:
-        """F′, F″ and J/F′ at mean compressions."""
-        F1, F2, I = self._static(e)
-        if not self.lattice.resonators:
-            return F1, F2, I
-        return F1, F2, I + number(self.lattice.resonance_sum) * self._rate**4 / F1
-
-    @cached_property
-    def _static(self) -> Any:
-        """The function of mean compressions that gives F′, F″ and I without resonators."""
-        if self.law is None:
-            return self.lattice.statics.samples
-        x = sp.Symbol("delta", positive=True)
-        F1, F2 = (function_of(x, self.law.at(x, n)) for n in (1, 2))
-        I = number(self.field.linear.I)
-        return lambda e: (F1(e), F2(e), np.full(e.shape, I))
-
-    @cached_property
-    def _square(self) -> float:
-        """The square V̂² in the quadrature's units."""
-        return Quadrature(self._static, self._quadrature.p0, self._quadrature.B).square()
-
-    def _slope(self, part: float) -> float:
-        """F′ where the wave has risen by a part of B."""
-        e = self._quadrature.p0 + part * self._quadrature.B
-        return float(self._static(np.array([e]))[0][0])
-
-    @cached_property
-    def _rate(self) -> float:
-        """The speed in spacings per time."""
-        if self.law is None:
-            return sqrt(self._square / number(self.lattice.mass))
-        return number(self.speed / self._spacing)
 
     def fwhm(self, quantity: str = "force", extent: str = "length") -> sp.Expr:
         """Full width at half maximum of the rise of "strain", "force" or "velocity", in numbers.
 
         extent : "length", a multiple of a spacing that is a symbol, or "time" of passage.
         """
-        known_extent(extent)
-        width = 2 * self._quadrature.half_width(known_quantity(quantity) == "force")
-        return (
-            sp.Float(width) * self._spacing if extent == "length" else sp.Float(width / self._rate)
-        )
+        sites = 2 * self._quadrature.half_width(known_quantity(quantity) == "force")
+        if known_extent(extent) == "time":
+            return sp.Float(sites / number(self.speed / self.chain.spacing))
+        return sp.Float(sites) * self.chain.spacing
 
     def along(self, x: ArrayLike, quantity: str = "force") -> Array:
         """Profile in space: rises above the load at the positions x when the peak is at x = 0.
@@ -373,21 +217,17 @@ class LoadedWave(Value):
         Strains and velocities are right to 1e-9 of the larger of v and B/1000, forces to rounding
         of the load.
         """
-        places = np.abs(finite(x, "x")) / number(self._spacing)
+        places = np.abs(finite(x, "x")) / number(self.chain.spacing)
         wave = self._quadrature
         ratio = wave.profile(places.ravel()).reshape(places.shape)
-        if known_quantity(quantity) == "force":
-            lattice = isinstance(self.chain, Lattice)
-            force: Callable[[Array], Array] = (
-                self.lattice.statics.force if lattice else function_of(self.law.delta, self.law.F)
-            )
-            # no force is computed at 0
-            ends = np.array([max(wave.p0, _FOOT * abs(wave.B)), wave.p0 + wave.B])
-            low, high = force(ends)
-            e = np.maximum(wave.p0 + wave.B * ratio, ends[0])
-            rise = number(self.force - self.precompression)
-            return np.asarray((force(e) - low) / (high - low) * rise)
-        return ratio * number(self.strain if quantity == "strain" else self.bead_velocity)
+        if known_quantity(quantity) != "force":
+            return ratio * number(self.strain if quantity == "strain" else self.bead_velocity)
+        law = self.law
+        force = function_of(law.delta, law.F) if law else self.lattice.statics.force
+        low = max(wave.p0, _FOOT * abs(wave.B))  # no force is computed at 0
+        rises = force(np.maximum(wave.p0 + wave.B * ratio, low)) - force(np.array(low))
+        peak = force(np.array(wave.p0 + wave.B)) - force(np.array(low))
+        return np.asarray(rises / peak * number(self.force - self.precompression))
 
     @cached_property
     def _bounds(self) -> tuple[float, float]:
@@ -462,6 +302,6 @@ def loaded_wave(
     law = for_cell(law, chain, k)
     if by_force:
         return LoadedWave(chain, law, precompression, force)
-    p0 = 0 if background is None else background
+    p0 = background or 0
     B = Background(chain, law, p0).rise if rise is None else rise
     return LoadedWave(chain, law, p0, B, False)
