@@ -10,7 +10,6 @@ the cell. The shares of unlike contacts in the strain are the same at every stra
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -40,8 +39,6 @@ from lwa.cell import k as symbol_k
 
 DELTA = sp.Symbol("delta", positive=True)
 """δ, the compression of a contact, unless the caller names another symbol."""
-
-_PHI = re.compile("phi[0-9]+")  # the name of a `phi_symbol`
 
 
 class ContactLaw(Value):
@@ -131,15 +128,6 @@ class ContactLaw(Value):
             closed = function_of(self.delta, value)(np.maximum(compressions, 0.0))
         return np.where(compressions < 0, 0.0, closed)
 
-    def evaluated(self, value: sp.Expr, delta: sp.Expr) -> sp.Expr:
-        """The value of an expression in φ_2, φ_3, … at a compression."""
-        slope = self.at(delta, 1)
-        named_so = {s: int(s.name[3:]) for s in value.free_symbols if _PHI.fullmatch(s.name)}
-        orders = {s: n for s, n in named_so.items() if s == phi_symbol(n)}
-        return value.xreplace(
-            {s: delta ** (n - 1) * self.at(delta, n) / slope for s, n in orders.items()}
-        )
-
     @property
     def formless(self) -> bool:
         """True if F is a function without an expression, as that of `general`."""
@@ -155,11 +143,6 @@ class ContactLaw(Value):
         if n < 0:
             return self.energy.subs(self.delta, D * p) / D**2
         return self.at(D * p, n) * D ** (n - 1)
-
-    def weight(self, p: sp.Expr, D: sp.Expr, a: sp.Expr, b: sp.Expr) -> sp.Expr:
-        """The factor p^a (p F′)^b of a jet at the strain p."""
-        p, D, a, b = map(real, (p, D, a, b), ("p", "D", "a", "b"))
-        return self.at(D * p, 1) ** b * p ** (a + b)
 
     def check_contacts(self, cell: Cell) -> None:
         """Raise `lwa.InputError` unless the contacts of the cell can share the law."""
@@ -247,12 +230,6 @@ class Power(ContactLaw):
         # p^k/k derived n times: (k-1) … (k-n+1) p^{k-n}; n = -1: p^{k+1}/(k (k+1))
         up, down = (sp.Mul(*(self.k - j for j in r)) for r in (range(1, n), range(n, 1)))
         return up / down * p ** (self.k - n)
-
-    def weight(self, p: sp.Expr, D: sp.Expr, a: sp.Expr, b: sp.Expr) -> sp.Expr:
-        return real(p, "p") ** (real(a, "a") + real(b, "b") * self.k)  # p F′ = p^k
-
-    def evaluated(self, value: sp.Expr, delta: sp.Expr) -> sp.Expr:
-        return value
 
     def check_contacts(self, cell: Cell) -> None:
         """Accept any contacts: their shares of the strain are powers of their stiffnesses."""

@@ -173,25 +173,6 @@ class PDE(OfClosure):
             rows[0] = terms(self.closure, first, ENERGY, self.k * (self.k + 1), algebra)
         return rows
 
-    def energy_density(self, u: sp.Expr, x: sp.Symbol, velocity: sp.Expr = sp.S.Zero) -> sp.Expr:
-        """The density of the conserved `energy` for fields u(x) and u_τ(x)."""
-        D, law = self.cell.spacing, self.law
-        parts = [D**n * e.of_fields(u, velocity, x) for n, e in self.energy.items()]
-        if parts and not law.homogeneous:  # e_0 of a power holds W
-            parts.append(law.of_strain(u.diff(x), D, -1))
-        return sp.Add(*parts)
-
-    def right_side(self, u: sp.Expr, x: sp.Symbol, velocity: sp.Expr = sp.S.Zero) -> sp.Expr:
-        """The right-hand side of u_ττ for fields u(x) and u_τ(x), as a SymPy expression."""
-        base = self.closure.model.base
-        D, law = self.cell.spacing, self.law
-        leading = law.of_strain(u.diff(x), D, 1) * u.diff(x, 2) if base else -(u**law.exponent)
-        rest = (
-            D ** (n - base) * of_order.of_fields(u, velocity, x)
-            for n, of_order in self.coefficients.items()
-        )
-        return sp.Add(leading, *rest)
-
     def at(self, **values: Any) -> PDE:
         """The equation for these values of the named symbols, and of ω = m2/m1 by ``omega``.
 

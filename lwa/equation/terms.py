@@ -136,19 +136,6 @@ class Terms(Shown, Mapping[Jet, sp.Expr]):
         """LaTeX of the sum of the terms, in one row."""
         return [latex.total((self[jet], self.latex(jet)) for jet in self)]
 
-    def of_fields(self, u: sp.Expr, velocity: sp.Expr, x: sp.Symbol) -> sp.Expr:
-        """The sum Σ coefficient · base^{a + bk} · jet for fields u(x) and u_τ(x)."""
-        base, law = (u.diff(x) if self._model.base else u), self._model.law
-        D = self._model.cell.spacing
-        total = sp.S.Zero
-        for jet, coefficient in self.items():
-            a, b = (sp.Rational(power) for power in jet.base_power(self.power))
-            factors = [u.diff(x, i) ** e for i, e in jet.x]
-            factors += [velocity.diff(x, i) ** e for i, e in jet.t]
-            factors.append(law.weight(base, D, a, b))
-            total += law.evaluated(coefficient, D * base) * sp.Mul(*factors)
-        return total
-
 
 def _exponent(a: Fraction, b: Fraction) -> str:
     """The exponent a + bk as text, such as k-3."""

@@ -37,7 +37,6 @@ from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.law import ContactLaw, Power, for_cell
 from lwa.linear.bands import Network
-from lwa.linear.bloch import dispersion_of_chain
 from lwa.loaded.statics import Statics
 
 _NO_LOAD = 1e-9  # stiffness of a lattice of springs 1 that carries no load, but for rounding
@@ -216,22 +215,6 @@ class Lattice(Value):
         if any(K.is_zero for K in springs):
             return sp.S.Zero
         return self.size / sp.Add(*(1 / K for K in springs))
-
-    def dispersion(self, force: Any) -> sp.Expr:
-        """Coefficient I in Ω² = c² (q² - I q⁴ + …) of the lattice linearised under a mean force.
-
-        Resonators do not count (`lwa.loaded.wave`). Raises `lwa.InputError` for symbols unless the
-        links are in series.
-        """
-        state = self.static(force)
-        if not self.in_series:
-            e = np.array(number(state.strain * self.spacing))
-            return sp.Float(float(self.statics.samples(e)[2])) * self.spacing**2
-        springs = self.springs(state)
-        stiffness = self.size / sp.Add(*(1 / K for K in springs))
-        shares = [stiffness / springs[n] for n in self._network.order]
-        fractions = [m / sp.Add(*self.masses) for m in self.masses]
-        return sp.together(dispersion_of_chain(fractions, shares)) * self.spacing**2
 
     @property
     def resonance_sum(self) -> sp.Expr:

@@ -60,17 +60,11 @@ def test_the_coefficient_is_that_of_the_bloch_branch(data):
 
 
 def test_the_coefficient_of_a_pair_in_closed_form():
-    m1, m2, K1, K2 = sp.symbols("m1 m2 K1 K2", positive=True)
-    pair = Lattice([m1, m2], springs_of((0, 1, K1), (1, 2, K2)))
-    M = m1 + m2
-    expected = (K1**2 + K2**2) * M**2 + 2 * K1 * K2 * (m1**2 - 4 * m1 * m2 + m2**2)
-    expected /= 3 * (K1 + K2) ** 2 * M**2
-    assert sp.cancel(pair.dispersion(1) - expected) == 0
-    inclined = [Link(0, 1, Power(1), 3, "1/2"), Link(1, 2, Power(1), 5)]
-    at = {m1: 1, m2: 2, K1: sp.Rational(3, 4), K2: 5}  # a spring counts by its cosine squared
-    for m in (m1, 1):
-        found = Lattice([m, 2], inclined).dispersion(1).subs(at)
-        assert float(found) == pytest.approx(float(expected.subs(at)), rel=1e-14)
+    m1, m2, K1, K2 = 1, 2, 3 / 4, 5  # a spring 3 counts by its cosine 1/2 squared
+    expected = (K1**2 + K2**2) * (m1 + m2) ** 2 + 2 * K1 * K2 * (m1**2 - 4 * m1 * m2 + m2**2)
+    expected /= 3 * (K1 + K2) ** 2 * (m1 + m2) ** 2
+    pair = Lattice([m1, m2], [Link(0, 1, Power(1), 3, "1/2"), Link(1, 2, Power(1), K2)])
+    assert pair.statics.samples(np.array(1.0))[2] == pytest.approx(expected, rel=1e-14)
 
 
 def test_hertz_and_linear_contacts_in_turn():
@@ -91,12 +85,11 @@ def test_hertz_and_linear_contacts_in_turn():
 
 
 def test_the_order_of_links_does_not_matter():
-    """Masses 1, 2, 5 with springs 1, 2, 7: I by eigenvalues, in floats and exactly."""
+    """Masses 1, 2, 5 with springs 1, 2, 7: I by eigenvalues."""
     ends = [(0, 1, 1.0), (1, 2, 2.0), (2, 3, 7.0)]
     known, _ = numeric_dispersion([1, 2, 5], ends)
     for row in (ends, [ends[i] for i in (2, 0, 1)]):
         lattice = Lattice([1, 2, 5], springs_of(*row))
-        assert float(lattice.dispersion(1)) == pytest.approx(known, rel=1e-5)
         assert lattice.statics.samples(np.array(1.0))[2] == pytest.approx(known, rel=1e-5)
 
 

@@ -1,0 +1,40 @@
+"""The wave equation and its energy at explicit fields, as SymPy expressions."""
+
+import sympy as sp
+
+
+def at_compression(law, value, delta):
+    """The value of an expression in φ_2, φ_3, … at a compression."""
+    known = {s.name: s for s in value.free_symbols if s.name.startswith("phi")}
+    return value.xreplace({s: law.phi(int(n[3:])).subs(law.delta, delta) for n, s in known.items()})
+
+
+def of_fields(pde, terms, u, x, velocity=sp.S.Zero):
+    """The sum Σ coefficient · base^{a + bk} · jet for fields u(x) and u_τ(x)."""
+    base, law, D = (u.diff(x) if pde.acoustic else u), pde.law, pde.cell.spacing
+    total = sp.S.Zero
+    for jet, coefficient in terms.items():
+        a, b = map(sp.Rational, jet.base_power(terms.power))
+        factors = [u.diff(x, i) ** e for i, e in jet.x]
+        factors += [velocity.diff(x, i) ** e for i, e in jet.t]
+        if law.homogeneous:
+            factors.append(base ** (a + b * law.k))
+        else:
+            coefficient = at_compression(law, coefficient, D * base)
+            factors.append(law.at(D * base, 1) ** b * base ** (a + b))
+        total += coefficient * sp.Mul(*factors)
+    return total
+
+
+def right_side(pde, u, x, velocity=sp.S.Zero):
+    """The right-hand side of u_ττ."""
+    D, law, base = pde.cell.spacing, pde.law, int(pde.acoustic)
+    leading = law.of_strain(u.diff(x), D, 1) * u.diff(x, 2) if base else -(u**law.exponent)
+    orders = pde.coefficients.items()
+    return leading + sum(D ** (n - base) * of_fields(pde, e, u, x, velocity) for n, e in orders)
+
+
+def energy_density(pde, u, x, velocity=sp.S.Zero):
+    """The density of the conserved energy under a power law."""
+    D = pde.cell.spacing
+    return sum(D**n * of_fields(pde, e, u, x, velocity) for n, e in pde.energy.items())
