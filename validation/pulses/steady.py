@@ -42,9 +42,6 @@ QUANTITIES = {  # measured numbers and their labels
     "speed": "speed at contact force 1 (sites/time)",
     "decay": "decay of the peak force per site",
 }
-HUMPS = """\
-Between special mass ratios a contact's force may have several humps: a width is that of the highest
-hump, and jumps where the dip before another hump passes half of the peak"""
 PLACES = 10  # cells at which the pulse is recorded
 STRETCH = 4  # default number of cells from one place to the next, for k ≥ 3/2
 TOLERANCES = (1e-6, 1e-5)  # of the accurate run and of the one that gives its error

@@ -12,7 +12,7 @@ from lwa import Dimer
 from lwa.linear.dispersion import Dispersion
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import MeasureError, first_pulse, pulses
-from validation.pulses.sensors import record, tracks
+from validation.pulses.sensors import first_numbers, record, tracks
 from validation.pulses.signals import sampled
 from validation.scenes.chains import struck
 from validation.scenes.scene import Scene
@@ -85,6 +85,16 @@ def test_the_first_pulse_is_not_the_highest_one():
         first_pulse(sampled(t, -first))
     every = pulses(sampled(t, small + first + echo))
     assert [p.peak for p in every] == pytest.approx([0.4, 1.0, 1.5], rel=1e-6)
+
+
+@pytest.mark.parametrize("off", [-1e-3, -1e-6, 1e-6, 1e-3])
+def test_a_hump_of_about_half_the_maximum_is_in_the_error(off):
+    """Another run may see the hump on the other side of half: the arrivals are 3 apart."""
+    t = np.linspace(0, 10, 2001)
+    force = sampled(t, (0.5 + off) * np.exp(-4 * (t - 3) ** 2) + np.exp(-4 * (t - 6) ** 2))
+    arrival = first_numbers(force, force, 1e-10)["arrival"]
+    assert arrival.value == pytest.approx(3 if off > 0 else 6, abs=1e-6)
+    assert arrival.error == pytest.approx(3 if abs(off) < 1e-4 else 0, abs=1e-6)
 
 
 # --- precompression -------------------------------------------------------------------------
