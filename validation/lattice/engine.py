@@ -173,6 +173,7 @@ def _plan(motion: Motion, method: str, rtol: float, step: float | None) -> tuple
         quickest=motion.stiffnesses.max(initial=0.0) / motion.masses.min(),
         size=motion.size,
         stops=np.unique(stops),
+        accelerated=motion.loaded or drive is not None,
     )
     return plan, most
 

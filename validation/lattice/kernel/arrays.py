@@ -121,7 +121,8 @@ class Plan(NamedTuple):
     h : first step of an embedded pair, fixed step of a splitting. longest : greatest step of an
     embedded pair. end : duration. deepest : greatest compression. quickest : greatest stiffness
     divided by the least mass. size : number of beads. stops : times at which steps end, the
-    duration the last of them.
+    duration the last of them. accelerated : True if a drive, weight or a load accelerates beads
+    that nothing touches, so that a contact may close and open again within a step.
     """
 
     scheme: Any
@@ -135,6 +136,7 @@ class Plan(NamedTuple):
     quickest: float
     size: int
     stops: Array
+    accelerated: bool
 
 
 _COUNTS = ("steps", "tries", "evaluations", "front", "stored", "stop", "warped", "interval")

@@ -57,6 +57,28 @@ def fitted_compression(
 
 
 @part
+def summit(c: Quintic) -> float:
+    """Return the place of the greatest value of a quintic that rises at 0 and falls at 1."""
+    low, high = 0.0, 1.0
+    for _ in range(30):
+        x = 0.5 * (low + high)
+        slope = c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5])))
+        low, high = (x, high) if slope > 0.0 else (low, x)
+    return low
+
+
+@part
+def meeting(before: float, after: float, nearing: float, parting: float) -> bool:
+    """Return True if a contact that is open at both ends of a step may close and open within it.
+
+    before, after : compressions. nearing, parting : rates at which the beads approach each other at
+    the beginning and part at the end, times the step. The tangents then meet at δ > 0.
+    """
+    above = before * parting + (after + parting) * nearing > 0.0
+    return (max(before, after) <= 0.0) & (nearing > 0.0) & (parting > 0.0) & above
+
+
+@part
 def kink(c: Quintic, end: float) -> Quintic:
     """Return the root r of a quintic p and the coefficients of q in p = (x - r) q(x).
 

@@ -21,7 +21,9 @@ from validation.lattice.kernel.kinks import (
     fitted_compression,
     kink,
     kink_integrals,
+    meeting,
     quintic,
+    summit,
 )
 
 _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the tolerance
@@ -99,12 +101,16 @@ def _attempt(chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int
         after = rest[i] + next_y[i] - next_y[i + ONE]
         most = max(before, after)
         kinked = (most > least) & (min(before, after) < NEAR * most)
-        # Open at both ends; the beads approach each other, then part: the tangents meet at δ > 0.
-        nearing, parting = h * (v[i] - v[i + ONE]), h * (next_v[i + ONE] - next_v[i])
-        above = before * parting + (after + parting) * nearing > 0.0
-        hidden = (most <= 0.0) & (nearing > 0.0) & (parting > 0.0) & above
-        sums[ZERO, i + ONE] = most if kinked else (-1.0 if hidden else 0.0)
-        near += 1 if kinked | hidden else 0
+        sums[ZERO, i + ONE] = most if kinked else 0.0
+        near += 1 if kinked else 0
+    if plan.accelerated:
+        for i in range(index(hi)):
+            before = rest[i] + y[i] - y[i + ONE]
+            after = rest[i] + next_y[i] - next_y[i + ONE]
+            nearing, parting = h * (v[i] - v[i + ONE]), h * (next_v[i + ONE] - next_v[i])
+            hidden = meeting(before, after, nearing, parting)
+            sums[ZERO, i + ONE] = -1.0 if hidden else sums[ZERO, i + ONE]
+            near += 1 if hidden else 0
     if near > 0:
         for i in range(hi):
             if sums[0, i + 1] > 0.0 and plan.scheme.points.shape[1] > 0:
@@ -126,12 +132,8 @@ def _hidden_contact(chain: Chain, beads: Beads, h: float, last: int, i: int, lea
     half.
     """
     c, _ = fitted_compression(chain, beads, h, last, i)
-    low, high = 0.0, 1.0
-    for _ in range(30):  # the slope is positive at 0 and negative at 1
-        x = 0.5 * (low + high)
-        slope = c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5])))
-        low, high = (x, high) if slope > 0.0 else (low, x)
-    return min(low, 0.5) if quintic(c, low) > least else 1.0
+    x = summit(c)
+    return min(x, 0.5) if quintic(c, x) > least else 1.0
 
 
 @summed
