@@ -29,7 +29,6 @@ from validation.studies.paper import BEADS, HERTZ, SENSORS, TOLERANCES, chain_ce
 RECORDED = {1: (15, 24, 33), 2: (16, 24, 34)}  # N → beads of figure 2; 24 is PTFE
 CHAINS = range(1, 23)  # N
 HEIGHTS = (0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2)  # drop heights of figure 3a, in m
-FORMED = 0.1  # difference from the last peak, over it, within which a pulse counts as formed
 MODULI = (1.46e9, 0.6e9)  # of PTFE, in Pa: dynamic, as in the paper, and nominal static
 
 
@@ -59,14 +58,12 @@ _SPEEDS = (
     Column("speed", "V_s lattice", "m/s", error=True),
     Column("force", "peak force", "N", error=True),
     Column("width", "FWHM", "beads", error=True, format=".3f"),
-    Column("decay", "decay per bead", error=True, format=".5f"),
-    Column("formation", "formed after", "beads"),
     Column("theory_value", "V_s theory", "m/s", format=".2f"),
     Column("", "error", format=percent),
 )
 _SPEEDS_TITLE = """\
 N:1 chains; theory: speed of the canonical wave with the lattice's peak force; FWHM: of the highest
-hump; formed: peaks within 10 % of the last; ±: change in a less accurate run"""
+hump; ±: change in a less accurate run"""
 _SCALINGS = (
     Column("modulus_value", "E of PTFE", "GPa", format=lambda E: f"{E / 1e9:g}"),
     Column("exponent", "exponent of V_s in F_m", error=True),
@@ -91,10 +88,10 @@ def figures(
 
     chains: N of the N:1 chains. moduli: of PTFE, in Pa.
 
-    ``speeds``: ``N``, ``formation``, and ``speed``, ``force``, ``width``, ``decay`` and ``theory``,
-    each ``_value``; ``scalings``: ``modulus_value``, ``exponent_value`` and lists over the drop
-    heights ``speed_value``, ``force_value``, each with its error, and ``theory_value``;
-    ``scaling``: the first of them; ``forces``: ``N``, ``beads``, ``time_value``, ``force_value``.
+    ``speeds``: ``N``, and ``speed``, ``force``, ``width`` and ``theory``, each ``_value``;
+    ``scalings``: ``modulus_value``, ``exponent_value`` and lists over the drop heights
+    ``speed_value``, ``force_value``, each with its error, and ``theory_value``; ``scaling``: the
+    first of them; ``forces``: ``N``, ``beads``, ``time_value``, ``force_value``.
     """
     records = {N: forces(N) for N in progress([*RECORDED])}
     speeds = {N: chain_speed(N) for N in progress(chains)}
@@ -140,9 +137,7 @@ def chain_speed(N: int, tolerances: tuple[float, float] = TOLERANCES) -> dict[st
     """Measure the N:1 chain's leading pulse far from the striker, beside the theory.
 
     ``speed``, ``force``, and ``width``, FWHM of the highest hump of a steel bead's force, times the
-    speed, in beads; ``decay``, fall of ln force per bead; ``formation``, beads from the striker to
-    the start of a cell from which on all peaks at starts of cells are within `FORMED` of the last
-    one; ``theory``, speed of the canonical wave with this force.
+    speed, in beads; ``theory``, speed of the canonical wave with this force.
 
     The pulse is timed between two steel beads, at least three periods and 18 beads apart, by its
     front at a tenth of the peak: at large N the pulse has several humps, and the highest is not
@@ -151,32 +146,21 @@ def chain_speed(N: int, tolerances: tuple[float, float] = TOLERANCES) -> dict[st
     period = N + 1
     # three periods from the striker its pulse is the chain's own; 14 and 18 beads for small N
     before, across = (max(3, math.ceil(beads / period)) for beads in (14, 18))
-    starts = [1 + i * period for i in range(1, before + across + 1)]
-    first, last = starts[before - 1], starts[-1]
+    sensors = 1 + before * period, 1 + (before + across) * period
 
     def numbers(run: Run) -> dict[str, float]:
-        train = Train.of(run)
-        ends = train.only((first, last))
+        ends = Train.of(run)
         passages = [
             first_passage(run.signal("bead", bead - 1), pulse.peak / 10)
             for bead, pulse in ends.pulses.items()
         ]
         V = across * period * DIAMETER / (passages[1] - passages[0])
-        peaks = {bead: pulse.peak for bead, pulse in train.pulses.items()}
-        off = [bead for bead, peak in peaks.items() if abs(peak / peaks[last] - 1) > FORMED]
-        return {
-            "speed": V,
-            "force": ends.peak,
-            "width": ends.fwhm * V / DIAMETER,
-            "decay": math.log(peaks[first] / peaks[last]) / (last - first),
-            "formation": max(off, default=1) - 1 + period,
-        }
+        return {"speed": V, "force": ends.peak, "width": ends.fwhm * V / DIAMETER}
 
-    scene = recorded_chain(starts, N=N, beads=max(BEADS, (before + across + 3) * period))
+    scene = recorded_chain(sensors, N=N, beads=max(BEADS, (before + across + 3) * period))
     found = compared(numbers, *twice(scene, *tolerances), tolerances[0])
     wave = PhysicalWave(canonical_wave(chain_cell(N), HERTZ), found["force"].value, "bead")
-    theory = {"formation": int(found["formation"].value), "theory": float(wave.speed)}
-    return found | theory
+    return found | {"theory": float(wave.speed)}
 
 
 def scaling(E: float, tolerances: tuple[float, float] = TOLERANCES) -> Scaling:

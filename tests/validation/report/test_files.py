@@ -25,18 +25,12 @@ def refusal(tmp_path, name):
 
 def test_places_that_cannot_take_a_file(tmp_path):
     (tmp_path / "folder.svg").mkdir()
-    (tmp_path / "file").write_text("")
     os.mkfifo(tmp_path / "pipe.svg")
-    (tmp_path / "lost.svg").symlink_to("no/p.svg")
     for name, message in {
         "a" * 300 + ".svg": "it cannot be written, File name too long",
-        "a" * 300 + "/p.svg": "it cannot be written, File name too long",
-        "a/" * 3000 + "p.svg": "it cannot be written, File name too long",
         "no/p.svg": "it cannot be written, No such file or directory",
-        "file/p.svg": "it cannot be written, Not a directory",
         "folder.svg": "a regular file is wanted",
         "pipe.svg": "a regular file is wanted",
-        "lost.svg": "it cannot be written, No such file or directory",
         "p.txt": "a file ending in .svg is wanted",
         "p\0.svg": "it cannot be written, embedded null byte",
     }.items():

@@ -107,18 +107,6 @@ def test_a_printed_number_covers_what_it_leaves_out(value, error):
     assert len(f"{shown:.12g}".replace("-", "").replace(".", "").lstrip("0")) <= 6
 
 
-words = st.text("aω", max_size=2)
-
-
-@given(st.recursive(
-    st.none() | st.booleans() | st.integers() | st.floats() | words,
-    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(words, inner, max_size=3),
-    max_leaves=5,
-))  # fmt: skip
-def test_everything_plain_is_json(value):
-    assert json.loads(json.dumps(plain(value), allow_nan=False)) == plain(value)
-
-
 def test_numbers_of_numpy_and_sympy_become_plain():
     held = {"a": np.arange(3), "b": np.float64(0.5), "c": (sp.sqrt(2), np.inf), "d": np.bool_(True)}
     assert plain(held) == {"a": [0, 1, 2], "b": 0.5, "c": ["sqrt(2)", None], "d": True}

@@ -6,7 +6,6 @@ import signal
 import socket
 import sqlite3
 import sys
-import time
 from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
 from contextlib import closing
 from itertools import pairwise, product
@@ -16,7 +15,7 @@ import pytest
 import sympy as sp
 
 from lwa import InputError
-from tests.commands import ended, started
+from tests.commands import ended
 from validation import cli
 from validation.lattice.threads import cluster
 from validation.pulses.pulse import Measured
@@ -26,7 +25,6 @@ from validation.studies.sweep import AHEAD, measured, report, sweep, theory
 from validation.waves.theory import theory_at
 
 R = sp.Rational
-SWEEP = (sys.executable, "-m", "validation", "sweep")
 QUICK = {"stretch": 2, "jobs": 1}
 """The shortest chains, one after another."""
 
@@ -94,7 +92,6 @@ def test_an_interrupted_sweep_resumes_and_grows(content, reference, tmp_path):
         (lambda data: None, "not a database"),
         (lambda data: data.execute("pragma user_version = 4003"), "another stretch"),
         (lambda data: data.execute("update points set k = '__import__(0)'"), "k is"),
-        (lambda data: data.execute("update points set numbers = '{'"), "file is"),
         (lambda data: data.execute("alter table points add column x"), "file is"),
     ],
 )
@@ -137,32 +134,6 @@ def test_few_points_wait_for_a_worker():
     assert most <= AHEAD
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("blow", [signal.SIGINT, signal.SIGKILL])
-def test_a_process_that_is_stopped_goes_on(tmp_path, blow):
-    file = tmp_path / "s.sqlite"
-    command = (*SWEEP, "--k", "3/2", "--omega", "1/2:1:12", "--stretch", "2", "--file", str(file))
-    with started(*command, "--jobs", "2") as stopped:
-        written = set()  # times at which the file changed: its table, then points
-        while len(written) < 4:
-            assert stopped.poll() is None
-            if file.exists():
-                written.add(file.stat().st_mtime_ns)
-            time.sleep(0.002)
-        stopped.send_signal(blow)
-        out, err = stopped.communicate()
-    if blow == signal.SIGINT:
-        assert (stopped.returncode, out) == (130, "")
-        assert err.endswith("lwa-validate: interrupted\n")
-    with PointFile(file, 2).opened() as (points, _):
-        before = len(points)
-    assert 0 < before < 12
-    with started(*command, "--format", "json") as again:
-        assert len(json.loads(again.communicate()[0])["points"]) == 12
-    with PointFile(file, 2).opened() as (points, _):
-        assert len(points) == 12
-
-
 # A cluster
 
 
@@ -189,13 +160,10 @@ def test_a_cluster_that_loses_a_worker_loses_no_point(reference):
 
 
 @with_dask
-@pytest.mark.parametrize("silent", [False, True])
-def test_an_address_without_a_scheduler_is_refused(silent):
-    """A port where nobody listens, and a server that accepts a call and does not answer."""
+def test_an_address_without_a_scheduler_is_refused():
+    """A server that accepts a call and does not answer."""
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
-        if not silent:
-            server.close()
         with pytest.raises(InputError, match=rf"^cluster is 'tcp://127\.0\.0\.1:{port}'"):
             cluster(f"tcp://127.0.0.1:{port}", 0.4).__enter__()
 
@@ -303,11 +271,9 @@ def test_the_command(capsys, tmp_path):
     ("arguments", "message"),
     [
         (("--k", "1"), "k is 1:"),
-        (("--k", "m"), "k is m:"),
         (("--k", "1:2"), "k is '1:2':"),
         (("--k", "1:2:1001"), "the count of k is 1001:"),
         (("--omega", "__import__('os')"), "omega is "),
-        (("--stretch", "0"), "stretch is 0:"),
         (("--file", "s.txt"), "file is s.txt:"),
         (("--jobs", "0", "--file", "s.sqlite"), "jobs is 0:"),
         (("--jobs", "2", "--cluster", "tcp://a:1"), "jobs is 2:"),
