@@ -212,7 +212,9 @@ class Breather(Value):
             self._refuse(f"contacts open from {float(self.opening_detuning):.5g} on")
 
     def _refuse(self, why: str) -> NoReturn:
-        raise InputError(f"detuning 1 - f/f0 is {float(self.detuning):.5g}: {why}")
+        raise InputError(
+            f"detuning 1 - f/f0 is {sp.sstr(sp.N(self.detuning, 5), full_prec=False)}: {why}"
+        )
 
     def latex_rows(self) -> list[str]:
         shape = r"\operatorname{sech}" if self.kind == KINDS[0] else r"\tanh"

@@ -6,35 +6,6 @@ import pytest
 
 from tests.lwa.command.answers import result, said
 
-
-def test_a_gap_breather_of_a_dimer(capsys):
-    """The light bead moves by p0 √(32 ν/(k (k - 1))), whatever the masses."""
-    options = ("envelope", "--masses", "1,1/2", "--k", "3/2", "--spacing", "1", "--background", "2")
-    found = result(capsys, *options, "--detuning", "1/1000")
-    heavy, light = found["amplitude_value"]
-    assert heavy == 0
-    assert light == pytest.approx(2 * math.sqrt(0.032 / 0.75), rel=1e-14)
-    assert (found["kind"], found["branch"], found["group_velocity_value"]) == ("bright", "1", 0)
-    edge = found["frequency_value"]
-    again = result(capsys, *options, "--frequency", f"{0.999 * edge:.16g}")
-    assert again["width_value"] == pytest.approx(found["width_value"], rel=1e-10)
-    out = said(capsys, *options, "--detuning", "1/1000")
-    assert "bright breather, |Ψ| = a sech(b n):" in out
-
-
-def test_any_wavenumber_and_cell_in_numbers(capsys):
-    options = ("envelope", "--masses", "1,2,3", "--k", "3/2", "--precompression", "1")
-    found = result(capsys, *options, "--wavenumber", "2pi/3", "--branch", "0")
-    exact = result(capsys, "dispersion", "--masses", "1,2,3", "--precompression", "1")
-    low, high = exact["band_edges_value"][0]
-    assert low < found["frequency_value"] < high
-    again = result(capsys, *options, "--wavenumber", "2.0943951023931953", "--branch", "acoustic")
-    assert again["nonlinearity_value"] == pytest.approx(found["nonlinearity_value"], rel=1e-12)
-    edge = result(capsys, *options, "--branch", "2", "--detuning", "1/1000")
-    assert edge["group_velocity_value"] == 0
-    assert edge["breather_frequency_value"] == pytest.approx(0.999 * edge["frequency_value"])
-
-
 SPHERES = """
 precompression = 20
 [materials]

@@ -12,38 +12,6 @@ from tests.lwa.command.answers import STEEL_AND_PTFE, result
 EQUAL = ("shock", "--masses", "1", "--spacing", "1", "--k", "3/2")
 
 
-def test_edges_and_peak_of_a_loaded_chain(capsys):
-    found = result(capsys, *EQUAL, "--behind", "2", "--ahead", "1")
-    expected = shock(Cell([1], spacing=1), 2, 1, law=Power("3/2"))
-    assert found["kind"] == "shock"
-    for rule, speed in found["leading_speed_value"].items():
-        assert speed == pytest.approx(float(expected.leading_speed(rule)))
-        error = found["leading_speed_error_value"][rule]
-        assert error == pytest.approx(speed * expected.errors[rule])
-    assert found["plateau_value"] == pytest.approx(float(expected.plateau))
-    for name in ("trailing_speed", "peak", "peak_force"):
-        value = float(getattr(expected, name))
-        assert found[f"{name}_value"] == pytest.approx(value)
-        assert found[f"{name}_error_value"] == pytest.approx(value * expected.errors[name])
-    assert "acosh" in found["leading_speed"]["dispersion"]
-    assert "doubling" not in found["leading_speed"]
-    assert "peak" not in found
-
-
-def test_beyond_a_theory_stand_null_and_a_note(capsys):
-    found = result(capsys, *EQUAL, "--behind", "1")
-    assert found["trailing_speed_value"] is found["leading_speed_value"]["dispersion"] is None
-    assert any("no sound runs there" in note for note in found["notes"])
-    speed = found["series_value"]["speed"] / (1.5**0.5)
-    assert speed == pytest.approx(0.8477, abs=1e-4)
-    dimer = result(
-        capsys, "shock", "--behind", "2", "--ahead", "1", "--masses", "1,1/2", "--k", "3/2"
-    )
-    assert dimer["peak_value"] is None
-    assert dimer["leading_speed_value"]["dispersion"] is None
-    assert dimer["plateau_value"] > 0
-
-
 def test_closed_forms_stand_in_json(capsys):
     closed = result(capsys, *EQUAL, "--behind", "p")
     p = sp.Symbol("p", positive=True)
@@ -66,13 +34,3 @@ def test_a_wall_at_a_speed_in_si(capsys, tmp_path):
     assert found["series_value"]["speed"] == pytest.approx(unit * plain.speed.value, rel=1e-9)
     assert found["series_value"]["force"] == pytest.approx(A * D**1.5 * float(plain.F), rel=1e-9)
     assert found["units"]["series.speed"] == "m/s"
-
-
-def test_a_piston_and_a_rarefaction(capsys):
-    found = result(capsys, *EQUAL, "--piston", "1", "--ahead", "1")
-    assert found["plateau_value"] == pytest.approx(1)
-    bare = result(capsys, *EQUAL, "--behind", "1")
-    assert any("go on oscillating" in note for note in bare["notes"])
-    falls = result(capsys, *EQUAL, "--behind", "1", "--ahead", "2")
-    assert falls["kind"] == "rarefaction"
-    assert "peak_value" not in falls

@@ -1,0 +1,183 @@
+"""Lines of the command `lwa` beside the values that Python gives, and numbers worked by hand."""
+
+import math
+
+import pytest
+import sympy as sp
+
+from lwa import Cell, Dimer, canonical_wave, envelope, homogenize, loaded_wave, shock
+from tests.lwa.command.answers import result, said
+
+HERTZ, EQUAL = sp.Rational(3, 2), Cell([1], spacing=1)
+QUANTITIES = ("strain", "force", "velocity")
+theory = homogenize(Dimer("m1", "m2"))
+canonical = canonical_wave(Dimer(1, "0.2733", spacing=1), HERTZ)
+pressed = loaded_wave(Dimer(1, 3), rise=1, background="1/10", k=HERTZ)
+symbolic = loaded_wave(Dimer("m1", "m2"), background="p0").field
+forces = canonical_wave(Cell([2], [5], "1/100"), HERTZ).at_force(10, precompression=3)
+front = shock(EQUAL, 2, 1, k=HERTZ)
+w = 0.2733
+
+ANSWERS = {
+    "derive --order 4": {
+        **{name: getattr(theory.pde, name) for name in "GHI"},
+        **{f"ansatz.{n}": b for n, b in theory.ansatz.items()},
+        "lambda": "1", "conservative": False, "vanishing": [2],
+        "terms.0.jet": [[2, 3]], "terms.1.jet": [[2, 1], [3, 1]], "terms.2.jet": [[4, 1]],
+        "terms.0.coefficient": theory.pde.G / theory.cell.spacing**2, "terms.0.jet_t": [],
+    },
+    "derive --closure full --order 6": {"defect": [], "slaved.0.particle": 2},
+    "derive --closure full --field center --masses m1,m2,m3": {"conservative": True},
+    "derive --law hertz2:1,1/2 --masses 1": {"law": "delta**(5/2)/2 + delta**(3/2)"},
+    "wave --k 3/2 --masses 1,1": {
+        "beta": "sqrt(10)/(5*D)", "beta_value": math.sqrt(10) / 5, "p": "4/5",
+        "width_value": 5 * math.pi / math.sqrt(10), "roots.1.p": "4/3",
+    },
+    "wave --closure full --field center --k 3/2 --masses 1,0.2733": {
+        "beta_value": (1 + w) / math.sqrt(10 * (1 - w + w * w)), "p": "4/5",
+        **{f"fwhm_value.{q}": canonical.fwhm(q) for q in QUANTITIES},
+    },
+    "wave --closure full --field center": {"speed_factor": "2/(k*(k + 1))"},
+    "wave --k 3/2 --masses 1,1 --force 8": {
+        "compression": "4", "B": "4/D", "speed_value": math.sqrt(1.6),  # √(4/5 · 8^{1/3})
+        "units": None,
+    },
+    "wave --force f": {"strain": "f**(1/k)/D", "speed_value": None},
+    "wave --k 3/2 --masses 1,3 --background 1/10": {
+        "background": "1/10", "speed": str(pressed.field.speed(pressed.field.rise)),
+        "speed_value": pressed.field.speed(sp.S.One),
+        **{f"fwhm_value.{q}": pressed.fwhm(q) / pressed.field.cell.spacing for q in QUANTITIES},
+        **{f"kdv.{name}": str(getattr(pressed.field.kdv, name))
+           for name in ("sound_speed", "nonlinearity", "dispersion")},
+        "kdv.width": str(pressed.field.kdv.width()), "kdv.speed": str(pressed.field.kdv.speed()),
+    },
+    "wave --background p0": {
+        "speed": str(symbolic.speed(symbolic.rise)), "speed_value": None,
+    },
+    "wave --k 1/2 --masses 1 --background 1": {
+        "speed_value": None, "kdv.width": "sqrt(2)*D*sqrt(-1/B)", "kdv_value.width": 2**0.5,
+    },
+    "wave --law polynomial:-1/2,0 --masses 1 --background 0": {"speed_value": None},
+    "wave --law hertz2:1,1 --masses 1 --background 0": {"kdv": None},
+    "wave --k 3/2 --masses 2 --stiffnesses 5 --spacing 1/100 --precompression 3 --force 10": {
+        "speed_value": forces.speed, "sound_speed_value": forces.sound_speed,
+        **{f"fwhm_value.{q}": forces.fwhm(q) for q in QUANTITIES},
+        **{f"fwhm_time_value.{q}": forces.fwhm(q, "time") for q in QUANTITIES},
+    },
+    "dispersion --masses 3,1 --order 6": {
+        "acoustic": {"2": "1", "4": "-7/48", "6": "-59/5760"}, "optical.0": "16/3",
+    },
+    "dispersion --masses 1,2,3": {"optical": None},
+    "dispersion --precompression F0": {"band_edges_value": None},
+    "expansion --masses m1,m2 --order 2": {"c2_value": None},
+    "expansion --k 3/2 --masses 1": {
+        "order": 8, "c2.1": "-1/2", "c2.2": "2/5", "c2_value": pytest.approx(0.819959, abs=1e-6),
+        "fwhm_value.force": pytest.approx(1.411928, abs=1e-6),
+    },
+    "envelope --masses 1,1/2 --k 3/2 --spacing 1 --background 2 --detuning 1/1000": {
+        "kind": "bright", "branch": "1", "group_velocity_value": 0, "amplitude_value.0": 0,
+        "amplitude_value.1": 2 * math.sqrt(0.032 / 0.75),  # p0 √(32 Δ/(k (k - 1)))
+    },
+    "envelope --masses 1,2,3 --k 3/2 --precompression 1 --wavenumber 2pi/3 --branch acoustic": {
+        "nonlinearity_value": envelope(
+            Cell([1, 2, 3]), k=HERTZ, precompression=1, wavenumber=2 * sp.pi / 3, branch=0
+        ).nonlinearity,
+    },
+    "shock --masses 1 --spacing 1 --k 3/2 --behind 2 --ahead 1": {
+        "kind": "shock", "plateau_value": front.plateau, "peak": None,
+        "leading_speed.doubling": None,
+        **{f"leading_speed_value.{rule}": front.leading_speed(rule)
+           for rule in ("doubling", "dispersion")},
+        **{f"leading_speed_error_value.{rule}": front.errors[rule] * front.leading_speed(rule)
+           for rule in ("doubling", "dispersion")},
+        **{f"{name}_value": getattr(front, name)
+           for name in ("trailing_speed", "peak", "peak_force")},
+        **{f"{name}_error_value": front.errors[name] * getattr(front, name)
+           for name in ("trailing_speed", "peak", "peak_force")},
+    },
+    "shock --masses 1 --spacing 1 --k 3/2 --behind 1": {
+        "trailing_speed_value": None, "leading_speed_value.dispersion": None,
+        "series_value.speed": pytest.approx(0.8477 * 1.5**0.5, abs=1e-4),
+    },
+    "shock --masses 1,1/2 --k 3/2 --behind 2 --ahead 1": {
+        "peak_value": None, "leading_speed_value.dispersion": None,
+    },
+    "shock --masses 1 --spacing 1 --k 3/2 --piston 1 --ahead 1": {"plateau_value": 1},
+    "shock --masses 1 --spacing 1 --k 3/2 --behind 1 --ahead 2": {
+        "kind": "rarefaction", "peak_value": None,
+    },
+}  # fmt: skip
+SYMBOLS = {s.name: s for s in theory.pde.H.free_symbols}
+
+
+def entry(found, path):
+    """The value at a dotted path of a document; None without one."""
+    for key in path.split("."):
+        if isinstance(found, list):
+            found = found[int(key)]
+        else:
+            found = None if found is None else found.get(key)
+    return found
+
+
+@pytest.mark.parametrize("line", ANSWERS)
+def test_a_line_gives_the_values_of_python(capsys, line):
+    found = result(capsys, *line.split())
+    for path, expected in ANSWERS[line].items():
+        ours = entry(found, path)
+        if isinstance(expected, sp.Expr) and isinstance(ours, str):
+            assert sp.cancel(sp.sympify(ours, locals=SYMBOLS) - expected) == 0, path
+        elif isinstance(expected, sp.Expr | float):
+            assert ours == pytest.approx(float(expected), rel=1e-13), path
+        else:
+            assert ours == expected, path
+
+
+TEXTS = {
+    "derive --order 4": (
+        "  λ = 1\n", "  b2 = m1/(m1 + m2)\n", "  b3 = (2*m1 - m2)/(3*(m1 + m2))\n",
+        "  b4 = m1*(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**3)\n",
+        "  G = D**2*m1**2*(k - 2)*(k - 1)/(6*(m1 + m2)**2)\n",
+        "  vanishing identically: D^(k+2)\n", "does not conserve momentum",
+    ),
+    "derive --closure full --order 6": ("u_x^(-1) u_2xτ u_3xτ", "see --field center"),
+    "derive --law hertz2:1,1/2": (
+        "phi2 = (15*delta + 6)/(10*delta + 12)", "F' u_xx + G F' u_x^-2 u_xx^3",
+    ),
+    "derive --law exponential --format latex": (r"F' u_{xx} + G F' u_{x}^{-2} u_{xx}^{3}",),
+    "wave --k 3/2 --masses m --force f": ("peak contact force F = f\n",),
+    "wave --k 3/2 --masses 1,3 --background 1/10": (
+        "FWHM of the strain at B = 1 = 2.67192774562 D\n",  # twelve digits are right
+    ),
+    "wave --masses 1 --background p0 --format latex": (
+        r"V_{s} &= ", r"c_{0} &= ", "p_{0} &= p_{0}",
+    ),
+    "wave --k 1/2 --masses 1 --background 1": ("B < 0",),
+    "expansion --k 2 --masses 1 --order 6": ("±", "c² = Σ a_n ε^n"),
+    "dispersion": ("κ^4: -(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)",),
+    "dispersion --masses 1 --precompression 2": ("band 1",),
+    "envelope --masses 1,1/2 --k 3/2 --spacing 1 --background 2 --detuning 1/1000": (
+        "bright breather, |Ψ| = a sech(b n):",
+    ),
+    "shock --masses 1 --spacing 1 --k 3/2 --behind 1": (
+        "no sound runs there", "go on oscillating",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("line", TEXTS)
+def test_a_line_prints_what_a_reader_looks_for(capsys, line):
+    out = said(capsys, *line.split())
+    for words in TEXTS[line]:
+        assert words in out, words
+
+
+def test_the_linear_waves_of_any_cell_lie_in_their_band(capsys):
+    found = result(
+        capsys, "envelope", "--masses", "1,2,3", "--precompression", "1", "--branch", "0",
+        "--wavenumber", "2pi/3", "--k", "3/2",
+    )  # fmt: skip
+    low, high = result(capsys, "dispersion", "--masses", "1,2,3", "--precompression", "1")[
+        "band_edges_value"
+    ][0]
+    assert low < found["frequency_value"] < high
