@@ -31,7 +31,7 @@ from scipy.interpolate import BSpline, make_lsq_spline
 
 from lwa.base.arrays import Array
 from validation.pulses.pulse import Measured, MeasureError, derived, highest_pulse
-from validation.pulses.signals import Piecewise, samples
+from validation.pulses.signals import Piecewise, checked
 
 _BESIDE = 0.3  # widths in front of the rise and behind the fall that the fit takes in
 _READ = 0.1  # widths likewise in which the spline is read: its ends follow the noise
@@ -77,7 +77,7 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, base: float | None = None) -
     >>> noisy_pulse(t, np.exp(-9 * t**2) + noise).numbers["fwhm"]  # √(4 ln 2)/3
     0.555 ± 3e-03
     """
-    t, f = samples(time, values)
+    t, f = checked(time, values)
     size = float(np.abs(f).max()) or 1.0  # so that squares neither over- nor underflow
     f, base = f / size, None if base is None else base / size
     rise, fall = _place(t, f - (f[:_CALM].mean() if base is None else base))

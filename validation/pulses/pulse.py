@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array
 from validation.pulses.signals import MeasureError as MeasureError
-from validation.pulses.signals import Signal, sampled
+from validation.pulses.signals import Signal, spline
 
 Source = TypeVar("Source")
 
@@ -63,7 +63,7 @@ def measure(time: ArrayLike | Signal, values: ArrayLike | None = None) -> Pulse:
     (1.0, 1.0)
     """
     if values is not None:
-        signal: Signal = sampled(cast(ArrayLike, time), values)
+        signal: Signal = spline(cast(ArrayLike, time), values)
     elif callable(time):
         signal = time
     else:
@@ -76,7 +76,7 @@ def measure(time: ArrayLike | Signal, values: ArrayLike | None = None) -> Pulse:
     return pulse
 
 
-def pulses(signal: Signal) -> list[Pulse]:
+def all_pulses(signal: Signal) -> list[Pulse]:
     """Measure all pulses of a signal, in the order of their arrivals.
 
     A pulse has a prominence (height above its surroundings) of `_LEAST` of the highest peak. If one
@@ -91,7 +91,7 @@ def pulses(signal: Signal) -> list[Pulse]:
         start = int(higher[place - 1]) + 1 if place else 0
         stop = int(higher[place]) if place < len(higher) else len(grid.f)
         with suppress(MeasureError):
-            whole += grid.pulses(start, stop)
+            whole += grid.highest(start, stop)
     if not whole:
         raise MeasureError("no pulse is in the record")
     return whole
@@ -99,7 +99,7 @@ def pulses(signal: Signal) -> list[Pulse]:
 
 def highest_pulse(signal: Signal, end: float = math.inf) -> Pulse:
     """Measure the highest pulse of a signal up to the time ``end``."""
-    (pulse,) = _Grid(signal, end).pulses()
+    (pulse,) = _Grid(signal, end).highest()
     return pulse
 
 
@@ -120,7 +120,7 @@ def first_pulses(signal: Signal, shares: Sequence[float] = (0.5,)) -> list[Pulse
         if (start, stop) not in found:
             # The pulse may end later, but before the signal is as high again: an echo may be.
             again = np.append(f[stop:] >= f[start:stop].max(initial=0.0), True)
-            (found[start, stop],) = grid.pulses(stop=stop + int(np.argmax(again)))
+            (found[start, stop],) = grid.highest(stop=stop + int(np.argmax(again)))
     return [*found.values()]
 
 
@@ -136,7 +136,7 @@ def leading_pulses(signal: Signal, k: float, shares: Sequence[float] = (0.5,)) -
     start = int(np.argmax(grid.f > quarter * grid.f.max()))
     relieved = grid.f[start:] < quarter * np.maximum.accumulate(grid.f[start:])
     stop = start + int(np.argmax(relieved)) + 1 if relieved.any() else len(grid.f)
-    return grid.pulses(stop=stop, shares=shares)
+    return grid.highest(stop=stop, shares=shares)
 
 
 def first_passage(signal: Signal, level: float) -> float:
@@ -159,7 +159,7 @@ class _Grid:
         if not self.f.max() > _NOISE * np.abs(self.f).max():
             raise MeasureError("no pulse is in the record: its signal is nowhere positive")
 
-    def pulses(
+    def highest(
         self, start: int = 0, stop: int | None = None, shares: Sequence[float] = (0.5,)
     ) -> list[Pulse]:
         """Measure the highest pulse between two grid points, once for each fraction of its peak."""

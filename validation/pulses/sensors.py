@@ -27,14 +27,14 @@ from validation.pulses.pulse import (
     Measured,
     MeasureError,
     Pulse,
+    all_pulses,
     compared,
     first_pulse,
     first_pulses,
     highest_pulse,
-    pulses,
     speed,
 )
-from validation.pulses.signals import Piecewise, Signal, sampled
+from validation.pulses.signals import Piecewise, Signal, spline
 from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
 
@@ -130,9 +130,7 @@ def tracks(run: Run, every: int = 1) -> tuple[Track, ...]:
         length = [float(np.interp(site, range(len(x)), x))] if scene.spacings else []
         place = dict(zip(SPEEDS, (site, *length), strict=False))
         force: Signal = (
-            sampled(run.time[::every], samples[::every])
-            if run.path is None
-            else run.signal(kind, i)
+            spline(run.time[::every], samples[::every]) if run.path is None else run.signal(kind, i)
         )
         dynamic: Signal = Piecewise(force.times, lambda t: force(t) - static) if static else force
         return Track(kind, i + 1, dynamic, place, static)
@@ -159,7 +157,7 @@ def _readings(pair: tuple[Track, Track], every: bool, rtol: float) -> Iterator[R
     reading = partial(Reading, fine.kind, (fine.number,), static=fine.static)
     try:
         if every:
-            both = zip(pulses(fine.force), pulses(coarse.force), strict=False)
+            both = zip(all_pulses(fine.force), all_pulses(coarse.force), strict=False)
             found = [compared(readings, *same, rtol) for same in both]
         else:
             found = [first_numbers(fine.force, coarse.force, rtol)]

@@ -35,7 +35,7 @@ class Signal(Protocol):
     def __call__(self, time: ArrayLike, /) -> Array: ...
 
 
-def samples(time: ArrayLike, values: ArrayLike) -> tuple[Array, Array]:
+def checked(time: ArrayLike, values: ArrayLike) -> tuple[Array, Array]:
     """Return sample times and values as arrays (S,), at least four; `MeasureError` for others."""
     try:
         t, f = np.array(time, float), np.array(values, float)
@@ -61,9 +61,9 @@ class Piecewise:
         return self.function(time)
 
 
-def sampled(time: ArrayLike, values: ArrayLike) -> Piecewise:
-    """Return the cubic spline through samples; `MeasureError` for others than `samples` takes."""
-    t, f = samples(time, values)
+def spline(time: ArrayLike, values: ArrayLike) -> Piecewise:
+    """Return the cubic spline through samples; `MeasureError` for others than `checked` takes."""
+    t, f = checked(time, values)
     return Piecewise(t, scipy.interpolate.CubicSpline(t, f))
 
 

@@ -36,7 +36,7 @@ from validation.lattice.simulate import simulate
 from validation.pulses.pulse import Measured, MeasureError, leading_pulses
 from validation.scenes.chains import struck
 
-QUANTITIES = {  # measured numbers and their labels
+LABELS = {  # measured numbers and their labels
     "width": "FWHM of the contact force (sites)",
     "strain_width": "FWHM of the contact strain (sites)",
     "speed": "speed at contact force 1 (sites/time)",
@@ -60,7 +60,7 @@ class Point:
     k: sp.Rational
     omega: sp.Rational
     sites: tuple[int, int] | None  # from the struck bead to both ends of the measured stretch
-    numbers: Mapping[str, Measured]  # by the names `QUANTITIES`
+    numbers: Mapping[str, Measured]  # by the names `LABELS`
     missing: str | None = None  # reason without numbers
 
 
@@ -115,7 +115,7 @@ def _measured(k: sp.Rational, omega: sp.Rational, stretch: int, farther: float) 
         )
     measured = map(Measured, values.tolist(), (values + errors[:, best]).tolist())
     sites = place, place + chain.sites
-    return Point(k, omega, sites, dict(zip(QUANTITIES, measured, strict=True)))
+    return Point(k, omega, sites, dict(zip(LABELS, measured, strict=True)))
 
 
 @dataclass(frozen=True)
@@ -161,7 +161,7 @@ class StruckDimer:
         return np.array(passages).reshape(-1, 2, 6)
 
     def numbers(self, passages: Array) -> Array:
-        """Return `QUANTITIES` (rows) on each stretch; NaN where a pulse does not arrive later."""
+        """Return `LABELS` (rows) on each stretch; NaN where a pulse does not arrive later."""
         arrival, peak, width, strain_width, *_ = np.moveaxis(passages, 2, 0)  # (places, contacts)
         elapsed, fall = np.diff(arrival, axis=0), -np.diff(np.log(peak), axis=0)
         elapsed[elapsed <= 0] = np.nan

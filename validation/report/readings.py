@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 from validation.pulses.sensors import READINGS, SPEEDS, Reading
 from validation.report.table import Column, Table
@@ -24,40 +23,28 @@ def reading_tables(
     The table of the sensors, which is the CSV, also holds the speeds of the first pulses from the
     sensor before; they are not printed twice.
     """
-    pulse_columns = (
-        *(Column("", "sensor"), Column("kind"), Column("number")),
-        *[Column("pulse", "pulse")] * every,
-        *(*_measured(READINGS, labels), Column("static_force_value"), Column("missing")),
-        *(Column(name, error=True) for name in SPEEDS),
+    columns = [Column("", "sensor"), Column("kind"), Column("number")]
+    if every:
+        columns.append(Column("pulse", "pulse"))
+    for name, label in zip(READINGS, labels, strict=True):
+        columns.append(Column(name, label, error=True))
+    columns += [Column("static_force_value"), Column("missing")]
+    columns += [Column(name, error=True) for name in SPEEDS]
+    arriving = {f"{r.kind} {r.places[1]}": r.numbers for r in speeds}
+    pulses = []
+    for r in sensors:
+        before = arriving.get(r.name, {}) if r.pulse == 1 else {}
+        row = [r.name, r.kind, *r.places, *([r.pulse] if every else [])]
+        row += [*map(r.numbers.get, READINGS), r.static, r.missing, *map(before.get, SPEEDS)]
+        pulses.append(tuple(row))
+    speed_columns = [Column("", "speed"), Column("kind"), Column("from"), Column("to")]
+    units = ("sites/s", "m/s") if si else ("sites/time", "length/time")
+    for name, label in zip(SPEEDS, units, strict=True):
+        speed_columns.append(Column(name, label, error=True))
+    speed_columns.append(Column("missing"))
+    legs = ((r.name, r.kind, *r.places, *map(r.numbers.get, SPEEDS), r.missing) for r in speeds)
+    tables = (
+        Table(tuple(columns), tuple(pulses), "sensors"),
+        Table(tuple(speed_columns), tuple(legs), "speeds"),
     )
-    speed_columns = (
-        *(Column("", "speed"), Column("kind"), Column("from"), Column("to")),
-        *_measured(SPEEDS, ("sites/s", "m/s") if si else ("sites/time", "length/time")),
-        Column("missing"),
-    )
-    arriving = {f"{r.kind} {r.places[1]}": _numbers(r, SPEEDS) for r in speeds}
-    pulses = tuple(
-        (
-            *(*_place(r), *[r.pulse] * every, *_numbers(r, READINGS), r.static, r.missing),
-            *(arriving[r.name] if r.pulse == 1 and r.name in arriving else (None, None)),
-        )
-        for r in sensors
-    )
-    times = tuple((*_place(r), *_numbers(r, SPEEDS), r.missing) for r in speeds)
-    tables = Table(pulse_columns, pulses, "sensors"), Table(speed_columns, times, "speeds")
     return tables, "\n".join(f"{r.name}: {r.missing}" for r in (*sensors, *speeds) if r.missing)
-
-
-def _measured(names: Sequence[str], labels: Sequence[str]) -> Iterator[Column]:
-    """Yield columns of measured numbers."""
-    return (Column(name, label, error=True) for name, label in zip(names, labels, strict=True))
-
-
-def _place(reading: Reading) -> tuple[Any, ...]:
-    """Return the first cells of a row: a reading's name, kind, and numbers of its sensors."""
-    return reading.name, reading.kind, *reading.places
-
-
-def _numbers(reading: Reading, names: Sequence[str]) -> list[Any]:
-    """Return the cells of a reading."""
-    return [reading.numbers.get(name) for name in names]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import click
@@ -62,18 +61,18 @@ def compare(
     ``shift_value``.
     """
     chain = read_scene(scene)
-    records = _Records.read(measured, chain, renamed)
+    time, forces, pulses = _read(measured, chain, renamed)
     simulation = record(chain, progress=run_progress)
     label, t = simulation.run.label, simulation.run.time
     rows: list[tuple[Any, ...]] = []
     curves: list[Curve] = []
     shift, first, start = 0.0, "", Measured(0.0, 0.0)
     for i, (reading, track) in enumerate(zip(simulation.sensors, simulation.tracks, strict=True)):
-        if (force := records.forces.get(reading.name)) is None:
+        if reading.name not in forces:
             continue
         if reading.missing:
             raise SceneError(f"{reading.name}: {reading.missing}")
-        pulse = dict(records.pulses[reading.name])
+        pulse = pulses[reading.name]
         if not first:
             first, start = reading.name, pulse["arrival"]
             shift = reading.numbers["arrival"].value - start.value
@@ -88,7 +87,7 @@ def compare(
             rows.append((printed, track.kind, track.number, name, *numbers))
         curves += [
             Curve(f"{reading.name}, simulated", t, track.force(t), f"C{i}-"),
-            Curve("measured", records.time + shift, force, f"C{i}."),
+            Curve("measured", time + shift, forces[reading.name], f"C{i}."),
         ]
     unit = f"{shift:.6g} s" if chain.units else f"{shift:.6g}"
     return Report(
@@ -100,35 +99,31 @@ def compare(
     )
 
 
-@dataclass(frozen=True, eq=False)
-class _Records:
-    """Measured dynamic forces and the numbers of their first pulses, by the sensors' names."""
+def _read(
+    file: str, chain: Scene, renamed: Mapping[str, str] | None
+) -> tuple[Array, dict[str, Array], dict[str, dict[str, Measured]]]:
+    """Read the measured dynamic forces at sensors of a scene, at least one.
 
-    time: Array
-    forces: Mapping[str, Array]
-    pulses: Mapping[str, Mapping[str, Measured]]
-
-    @classmethod
-    def read(cls, file: str, chain: Scene, renamed: Mapping[str, str] | None) -> _Records:
-        """Read the columns of the sensors of a scene, at least one of them."""
-        static = static_forces(chain)
-        if not static:
-            raise SceneError("the scene names no sensors")
-        measured = MeasuredFile.read(file, renamed)
-        time, forces, used = measured.column("time"), dict[str, Array](), ["time"]
-        check_span(file, time, chain.duration)
-        for sensor in sensor_columns(measured):
-            name = f"{sensor.kind} {sensor.number}"
-            if sensor.number is None and len(static) == 1:
-                (name,) = static
-            if name in static:
-                used.append(sensor.name)
-                forces[name] = measured.column(sensor.name) - (not sensor.dynamic) * static[name]
-        if not forces:
-            raise SceneError(f"{file}: no column is {' or '.join(f'{n} force' for n in static)}")
-        refuse_unknown(renamed, used)
-        try:
-            pulses = {name: noisy_pulse(time, f, 0.0).numbers for name, f in forces.items()}
-        except MeasureError as error:
-            raise MeasureError(f"{file}: {error}") from None
-        return cls(time, forces, pulses)
+    Returns the times, and by the sensors' names the forces and the numbers of their first pulses.
+    """
+    static = static_forces(chain)
+    if not static:
+        raise SceneError("the scene names no sensors")
+    measured = MeasuredFile.read(file, renamed)
+    time, forces, used = measured.column("time"), dict[str, Array](), ["time"]
+    check_span(file, time, chain.duration)
+    for sensor in sensor_columns(measured):
+        name = f"{sensor.kind} {sensor.number}"
+        if sensor.number is None and len(static) == 1:
+            (name,) = static
+        if name in static:
+            used.append(sensor.name)
+            forces[name] = measured.column(sensor.name) - (not sensor.dynamic) * static[name]
+    if not forces:
+        raise SceneError(f"{file}: no column is {' or '.join(f'{n} force' for n in static)}")
+    refuse_unknown(renamed, used)
+    try:
+        pulses = {name: dict(noisy_pulse(time, f, 0.0).numbers) for name, f in forces.items()}
+    except MeasureError as error:
+        raise MeasureError(f"{file}: {error}") from None
+    return time, forces, pulses

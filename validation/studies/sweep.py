@@ -26,7 +26,7 @@ from lwa.base.exact import InputError, read_exact, shorten
 from lwa.base.progress import Progress
 from validation.lattice.threads import cluster, threads
 from validation.pictures import Curve, Map, Panel
-from validation.pulses.steady import QUANTITIES, STRETCH, Key, Point, PointFile, point
+from validation.pulses.steady import LABELS, STRETCH, Key, Point, PointFile, point
 from validation.report.command import option, study
 from validation.report.result import Report, output_file
 from validation.report.table import Column, Table, percent
@@ -59,7 +59,7 @@ def report(ks: Axis, omegas: Axis, points: Sequence[Point], stretch: int = STRET
 
     Table ``points`` has the missing values' reasons; the panels are maps over ω and k, or curves.
     """
-    waves, numbers = theory(ks, omegas), {q: [p.numbers.get(q) for p in points] for q in QUANTITIES}
+    waves, numbers = theory(ks, omegas), {q: [p.numbers.get(q) for p in points] for q in LABELS}
     value, error = (
         {
             name: np.reshape([getattr(x, part, np.nan) for x in row], (len(ks), len(omegas)))
@@ -111,9 +111,9 @@ def _maps(
     unsure = (Curve("", x[j], y[i], "rx"),)
     title = "hatched: no value; red ×: width known to less than 1 %"
     for colours in (
-        Map(QUANTITIES["width"], x, y, value["width"]),
-        Map(QUANTITIES["speed"], x, y, value["speed"]),
-        Map(QUANTITIES["decay"], x, y, decay, least, scale="log", colours="cividis"),
+        Map(LABELS["width"], x, y, value["width"]),
+        Map(LABELS["speed"], x, y, value["speed"]),
+        Map(LABELS["decay"], x, y, decay, least, scale="log", colours="cividis"),
         Map(percents, x, y, theory, -largest, largest, colours="PuOr"),
     ):
         yield Panel(_OMEGA, "k", unsure, "x" if x[-1] > 50 * x[0] else "", title, colours)
@@ -125,7 +125,7 @@ def _curves(
     """Yield curves of each quantity along the axis with more than one value."""
     along_k = ks, "k", f"ω = {omegas[0]}"
     axis, x, title = along_k if len(ks) > 1 else (omegas, _OMEGA, f"k = {ks[0]}")
-    for name, label in QUANTITIES.items():
+    for name, label in LABELS.items():
         y, bar = value[name].ravel(), error[name].ravel()
         if log := name == "decay":  # a decay below its error is drawn as its error
             y = np.fmax(y, bar)

@@ -11,9 +11,9 @@ from scipy.special import erf
 from lwa import Dimer
 from lwa.linear.dispersion import Dispersion
 from validation.lattice.simulate import simulate
-from validation.pulses.pulse import MeasureError, first_pulse, pulses
+from validation.pulses.pulse import MeasureError, all_pulses, first_pulse
 from validation.pulses.sensors import first_numbers, record, tracks
-from validation.pulses.signals import sampled
+from validation.pulses.signals import spline
 from validation.scenes.chains import struck
 from validation.scenes.scene import Scene
 from validation.scenes.scenefile import scene
@@ -78,12 +78,12 @@ def test_the_first_pulse_is_not_the_highest_one():
         return height * np.exp(-4 * (t - at) ** 2)
 
     small, first, echo = pulse(0.4, 1), pulse(1.0, 4), pulse(1.5, 8)
-    found = first_pulse(sampled(t, small + first + echo))
+    found = first_pulse(spline(t, small + first + echo))
     assert (found.arrival, found.peak) == pytest.approx((4, 1), rel=1e-6)
     assert found.fwhm == pytest.approx(math.sqrt(math.log(2)), rel=1e-6)
     with pytest.raises(MeasureError, match="nowhere positive"):
-        first_pulse(sampled(t, -first))
-    every = pulses(sampled(t, small + first + echo))
+        first_pulse(spline(t, -first))
+    every = all_pulses(spline(t, small + first + echo))
     assert [p.peak for p in every] == pytest.approx([0.4, 1.0, 1.5], rel=1e-6)
 
 
@@ -91,7 +91,7 @@ def test_the_first_pulse_is_not_the_highest_one():
 def test_a_hump_of_about_half_the_maximum_is_in_the_error(off):
     """Another run may see the hump on the other side of half: the arrivals are 3 apart."""
     t = np.linspace(0, 10, 2001)
-    force = sampled(t, (0.5 + off) * np.exp(-4 * (t - 3) ** 2) + np.exp(-4 * (t - 6) ** 2))
+    force = spline(t, (0.5 + off) * np.exp(-4 * (t - 3) ** 2) + np.exp(-4 * (t - 6) ** 2))
     arrival = first_numbers(force, force, 1e-10)["arrival"]
     assert arrival.value == pytest.approx(3 if off > 0 else 6, abs=1e-6)
     assert arrival.error == pytest.approx(3 if abs(off) < 1e-4 else 0, abs=1e-6)

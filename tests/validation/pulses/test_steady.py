@@ -11,8 +11,8 @@ import sympy as sp
 from validation.lattice.simulate import simulate
 from validation.pulses import steady
 from validation.pulses.pulse import leading_pulses
-from validation.pulses.signals import sampled
-from validation.pulses.steady import QUANTITIES, STRETCH, point
+from validation.pulses.signals import spline
+from validation.pulses.steady import LABELS, STRETCH, point
 from validation.scenes.scene import Scene
 from validation.waves.resonances import solve
 from validation.waves.solver import exact_wave
@@ -26,7 +26,7 @@ SPECIAL = R(3428457811, 10**10)
 def at(k, omega, stretch=STRETCH):
     found = point(R(k), R(omega), stretch)
     assert found.missing is None, found.missing
-    assert list(found.numbers) == list(QUANTITIES)
+    assert list(found.numbers) == list(LABELS)
     return found.numbers
 
 
@@ -85,7 +85,7 @@ def test_relabelling_the_masses_changes_the_unit_of_mass_only():
 def test_the_errors_cover_other_distances():
     found = [at("3/2", "9/20", stretch) for stretch in (STRETCH, 3, 7)]
     for one, other in combinations(found, 2):
-        for name in QUANTITIES:
+        for name in LABELS:
             bound = one[name].error + other[name].error
             assert abs(one[name].value - other[name].value) <= bound, name
 
@@ -104,10 +104,10 @@ def test_a_pulse_that_is_overtaken_is_not_steady(omega):
 def test_the_leading_pulse_is_not_a_later_and_higher_one():
     time = np.linspace(0, 20, 2001)
     first, second = np.exp(-((time - 5) ** 2)), 2 * np.exp(-((time - 12) ** 2))
-    (pulse,) = leading_pulses(sampled(time, first + second), 1.5)
+    (pulse,) = leading_pulses(spline(time, first + second), 1.5)
     assert pulse.arrival == pytest.approx(5, abs=1e-6)
     # two humps are one pulse while the compression between them stays above a quarter
-    two_humps = sampled(time, first + np.exp(-((time - 7) ** 2)))
+    two_humps = spline(time, first + np.exp(-((time - 7) ** 2)))
     (pulse,) = leading_pulses(two_humps, 1.5, (0.25,))
     assert pulse.fall > 8
 

@@ -19,7 +19,7 @@ from tests.commands import ended
 from validation import cli
 from validation.lattice.threads import cluster
 from validation.pulses.pulse import Measured
-from validation.pulses.steady import QUANTITIES, Point, PointFile
+from validation.pulses.steady import LABELS, Point, PointFile
 from validation.scenes.checks import Failure
 from validation.studies.sweep import AHEAD, measured, report, sweep, theory
 from validation.waves.theory import theory_at
@@ -187,7 +187,7 @@ def points():
     for k, omega in product(*AXES):
         error = 0.1 if (k, omega) == (2, R(1, 2)) else 1e-9
         values = map(float, (k + omega, k + 2 * omega, 1 / omega, (1 - omega) / 10))
-        read = {n: Measured(v, v + error) for n, v in zip(QUANTITIES, values, strict=True)}
+        read = {n: Measured(v, v + error) for n, v in zip(LABELS, values, strict=True)}
         found.append(Point(k, omega, (24, 32), read))
     found[4] = Point(R(2), R(1), None, {}, "broke")
     # beyond ω = 6 the paper's closure has no wave at k = 6
@@ -204,7 +204,7 @@ def test_the_document_is_json_and_complete(result, points):
     assert (found["stretch"], found["missing"]) == (4, 1)
     assert [(p["k"], p["omega"]) for p in found["points"][2:4]] == [("3/2", "50"), ("2", "1/2")]
     for p, point in zip(found["points"], points, strict=True):
-        for name in QUANTITIES:
+        for name in LABELS:
             number = point.numbers.get(name)
             assert p[f"{name}_value"] == (None if number is None else number.value)
             assert p[f"{name}_error_value"] == (None if number is None else number.error)
