@@ -38,6 +38,8 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
     Raises `lwa.InputError`, in one line that names the file, if the file cannot be read or parsed,
     or if the reader refuses its content.
     """
+    if not isinstance(path, str | Path):
+        raise InputError(f"{what} is read from a file: {shorten(path)} is no file name")
     suffix = Path(path).suffix.lower()
     if suffix not in MOST_BYTES:
         raise InputError(f"{path}: {what} is a file ending in {' or '.join(MOST_BYTES)}")

@@ -128,7 +128,7 @@ def spheres_option(**settings: Any) -> Option:
         "TOML or JSON file of the chain, in place of options on masses, contacts and spacing: "
         "spheres in SI, or any scene of lwa-validate run."
     )
-    return value("--spheres", says, None, None, "FILE", **settings)
+    return value("--spheres", says, None, None, "FILE", type=click.Path(), **settings)
 
 
 MASSES = value(

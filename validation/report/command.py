@@ -103,7 +103,7 @@ def output_option(name: str, suffixes: Sequence[str], says: str) -> Any:
     def read(context: click.Context, given: click.Parameter, path: str | None) -> Path | None:
         return None if path is None else output_file(called(given), path, suffixes)
 
-    return option(name, callback=read, metavar="FILE", says=says)
+    return option(name, callback=read, metavar="FILE", type=click.Path(), says=says)
 
 
 def column_option() -> Any:

@@ -31,7 +31,7 @@ def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
         else:
             with tempfile.TemporaryFile(dir=file.resolve().parent):
                 return file
-    except (OSError, ValueError) as error:  # ValueError: a name with a null byte
+    except (OSError, ValueError, RuntimeError) as error:  # a null byte, a loop of links
         fault = f"it cannot be written, {reason(error)}"
     raise InputError(f"{name} is {path[:120]}: {fault}")
 

@@ -56,7 +56,7 @@ def read_scene(path: str | Path) -> Scene:
 
     Raises `SceneError`, in one line, for a file that cannot be read or is not a scene.
     """
-    return load(path, "a scene", partial(scene, folder=Path(path).parent))
+    return load(path, "a scene", lambda content: scene(content, Path(path).parent))
 
 
 def scene(content: Any, folder: Path = Path()) -> Scene:

@@ -40,8 +40,8 @@ _NOTE = (
 
 
 @study(
-    click.argument("scene"),
-    click.argument("measured"),
+    click.argument("scene", type=click.Path()),
+    click.argument("measured", type=click.Path()),
     column_option(),
 )
 def compare(

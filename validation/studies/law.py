@@ -35,10 +35,15 @@ _LEAST = 6  # pulses: three more than the coefficients of the curvature's fit
 
 
 @study(
-    click.argument("data"),
+    click.argument("data", type=click.Path()),
     option("--masses", callback=quantities, says="Mass of all beads (default 1), or two in turn."),
     option("--spacing", callback=quantity, says="Distance between bead centers; by default 1."),
-    option("--spheres", metavar="FILE", says="File of a cell of spheres, in place of --masses."),
+    option(
+        "--spheres",
+        metavar="FILE",
+        type=click.Path(),
+        says="File of a cell of spheres, in place of --masses.",
+    ),
     option("--material", metavar="NAME", says="Material in this file whose modulus E is wanted."),
     option(
         "--of",

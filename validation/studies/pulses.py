@@ -33,7 +33,7 @@ _NOTE = (
 
 
 @study(
-    click.argument("records"),
+    click.argument("records", type=click.Path()),
     option("--distance", metavar="LENGTH", says="Distance of neighbouring beads, as in '4.76 mm'."),
     option(
         "--of",

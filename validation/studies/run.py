@@ -119,7 +119,7 @@ _RTOL = f"Relative tolerance. Errors are differences to a run with {LESS:g} time
 
 
 @study(
-    click.argument("scene"),
+    click.argument("scene", type=click.Path()),
     option(
         "--example",
         type=click.Choice(EXAMPLES),

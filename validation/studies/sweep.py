@@ -16,6 +16,7 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
 
+import click
 import numpy as np
 import sympy as sp
 from sympy import Rational
@@ -219,7 +220,12 @@ _RANGES = "values and ranges start:stop:count, separated by commas."
     option("--k", "ks", default="5/4:3:8", says=f"Exponents of F = δ^k: {_RANGES}"),
     option("--omega", "omegas", default="1/20:1:20", says=f"Mass ratios m2/m1: {_RANGES}"),
     option("--stretch", default=STRETCH, says="Cells between two measurements; more at k < 3/2."),
-    option("--file", metavar="FILE", says="File of finished points (.sqlite), to be continued."),
+    option(
+        "--file",
+        metavar="FILE",
+        type=click.Path(),
+        says="File of finished points (.sqlite), to be continued.",
+    ),
     option("--jobs", type=int, says="Number of threads; by default one a processor."),
     option("--cluster", "address", metavar="ADDRESS", says="Dask scheduler, in place of threads."),
 )

@@ -45,9 +45,12 @@ def test_an_output_that_takes_nothing_is_no_result(capsys):
         ("lwa derive --law h", "hertz2"),
         ("lwa-validate pa", "paper"),
         ("lwa-validate run --method RK", "RKN86 RK45 RK23"),
+        ("lwa wave --spheres s", "file,s"),
+        ("lwa-validate run s", "file,s"),
+        ("lwa-validate run s.toml --out s", "file,s"),
     ],
 )
-def test_a_shell_completes_names(words, offered):
+def test_a_shell_completes_names_and_files(words, offered):
     """As bash asks click's programs: the line in COMP_WORDS, the place of the word to complete."""
     program = words.split()[0]
     asked = {
@@ -57,4 +60,5 @@ def test_a_shell_completes_names(words, offered):
     }
     command = {"lwa": cli.lwa, "lwa-validate": validate}[program]
     shown = CliRunner(env=asked).invoke(command, prog_name=program)
-    assert shown.output.split() == [f"plain,{name}" for name in offered.split()]
+    expected = [name if "," in name else f"plain,{name}" for name in offered.split()]
+    assert shown.output.split() == expected

@@ -26,11 +26,13 @@ def refusal(tmp_path, name):
 def test_places_that_cannot_take_a_file(tmp_path):
     (tmp_path / "folder.svg").mkdir()
     os.mkfifo(tmp_path / "pipe.svg")
+    (tmp_path / "loop.svg").symlink_to(tmp_path / "loop.svg")
     for name, message in {
         "a" * 300 + ".svg": "it cannot be written, File name too long",
         "no/p.svg": "it cannot be written, No such file or directory",
         "folder.svg": "a regular file is wanted",
         "pipe.svg": "a regular file is wanted",
+        "loop.svg": "it cannot be written, .*(loop|levels of symbolic links).*",
         "p.txt": "a file ending in .svg is wanted",
         "p\0.svg": "it cannot be written, embedded null byte",
     }.items():

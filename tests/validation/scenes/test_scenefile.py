@@ -199,6 +199,11 @@ FILES = [
 ]
 
 
+def test_a_number_is_no_file():
+    with pytest.raises(SceneError, match="1 is no file name"):
+        read_scene(1)
+
+
 @pytest.mark.parametrize(("name", "content", "named"), FILES, ids=range(len(FILES)))
 def test_a_bad_file_is_refused_by_its_name(tmp_path, name, content, named):
     file = tmp_path / name
