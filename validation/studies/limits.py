@@ -22,7 +22,7 @@ from lwa.base.progress import Progress
 from validation.lattice.result import Run
 from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Measured, compared, derived, exponent, highest_pulse, speed
+from validation.pulses.pulse import Measured, compared, derived, highest_pulse, speed
 from validation.pulses.signals import integral
 from validation.report.command import study
 from validation.report.result import Report
@@ -33,7 +33,6 @@ from validation.waves.theory import LEADING_POWERS, QUANTITIES, theory_at, theor
 EXPONENTS = (sp.Rational(3, 2), sp.Rational(5, 4), sp.Rational(11, 10))
 EQUAL, LIGHT = sp.Integer(1), sp.Rational(1, 1000)  # ω = m2/m1; effects of LIGHT² do not show
 LIMIT = (4 * LIGHT, LIGHT, LIGHT / 4)  # ω from which the lattice at k = 3/2 is extrapolated to 0
-AMPLITUDES = (0.01, 1.0, 100.0)  # peak strains B, for the exponent of F_m in V_s
 PLACES = (4, 6, 8)  # supports run
 # rtol and atol of chains with one mass and with two. Light beads set the step, far below the needs
 # of the pulse at the same tolerance.
@@ -53,7 +52,6 @@ _COLUMNS = (
     Column("bound_value", "bound", format=lambda bound: percent(bound).lstrip("+")),
     Column("ok", "holds"),
 )
-_EXPONENT = "exponent of F_m in V_s"
 _CHAINS = {
     "0": "ω = m2/m1 → 0, extrapolated from runs at small ω",
     "1": "m1 = m2, ω = 1",
@@ -65,7 +63,7 @@ theory/lattice - 1. From all k: the order n of the error in k - 1, and the limit
 of error/(k-1)^n as k → 1. ±: change of the lattice's number over the last
 stretch, and the rounding of its seven digits, which JSON does not have."""
 
-Case = tuple[sp.Rational, sp.Rational, float]  # k, ω and B of one run
+Case = tuple[sp.Rational, sp.Rational]  # k and ω of one run
 Row = tuple[tuple[Any, ...], Finding]  # cells below `_COLUMNS`, and the error as a finding
 
 
@@ -77,23 +75,17 @@ def limits(progress: Progress[Case] = iter) -> Report:
     0 for the limit), ``theory`` (exact), ``theory_value``, ``lattice_value``,
     ``lattice_error_value``, ``error_value`` (theory over lattice - 1), ``bound_value``, ``ok``.
     """
-    cases = [(k, EQUAL, B) for k in EXPONENTS for B in AMPLITUDES]
-    cases += [(k, LIGHT, 1.0) for k in EXPONENTS]
-    cases += [(EXPONENTS[0], omega, 1.0) for omega in LIMIT if omega != LIGHT]
-    waves = {(k, omega): theory_at(k, omega) for k, omega, _ in cases}
-    lattice = {case: lattice_wave(waves[case[:2]], case[2]) for case in progress(cases)}
+    cases = [(k, omega) for omega in (EQUAL, LIGHT) for k in EXPONENTS]
+    cases += [(EXPONENTS[0], omega) for omega in LIMIT if omega != LIGHT]
+    waves = {case: theory_at(*case) for case in cases}
+    lattice = {case: lattice_wave(waves[case]) for case in progress(cases)}
     rows: list[Row] = []
     for omega in (EQUAL, LIGHT):
         theory = [theory_values(waves[k, omega]) for k in EXPONENTS]
         for quantity in QUANTITIES:
-            measured = [lattice[k, omega, 1.0][quantity] for k in EXPONENTS]
+            measured = [lattice[k, omega][quantity] for k in EXPONENTS]
             rows += quantity_rows(quantity, omega, [t[quantity] for t in theory], measured)
-    rows += _limit_rows([lattice[EXPONENTS[0], omega, 1.0] for omega in LIMIT])
-    for k in EXPONENTS:
-        # The lattice scales exactly; the ± is that of speeds and forces that still settle.
-        pulses = [lattice[k, EQUAL, B] for B in AMPLITUDES]
-        power = exponent([p["speed"] for p in pulses], [p["force"] for p in pulses])
-        rows.append(_row(_EXPONENT, k, EQUAL, waves[k, EQUAL].force_exponent, power, 1e-5))
+    rows += _limit_rows([lattice[EXPONENTS[0], omega] for omega in LIMIT])
     cells, findings = zip(*rows, strict=True)
     return Report(
         "The theory's limits on the lattice",
@@ -121,7 +113,6 @@ def _row(
     error = value / lattice.value - 1
     finding = Finding(quantity, error, -bound, bound, lattice.relative_error)
     name, _, result = quantity.partition(": ")
-    name = "n, F_m ∝ V_s^n" if quantity == _EXPONENT else name
     kind = ("order" if result.startswith("order") else "→ 1") if k is None else str(k)
     numbers = value, lattice, error, bound, finding.ok
     return (quantity, name, kind, k, omega, theory, *numbers), finding
@@ -146,22 +137,19 @@ def _panel(rows: Sequence[Row], omega: sp.Rational) -> Panel:
     return Panel("k - 1", "|theory/lattice - 1|", tuple(curves), "xy", title)
 
 
-def lattice_wave(
-    wave: TravelingWave, B: float = 1.0, places: Sequence[float] = PLACES
-) -> dict[str, Measured]:
-    """Measure `QUANTITIES`, speed dx/dt and peak force of the pulse that the theory's wave becomes.
+def lattice_wave(wave: TravelingWave, places: Sequence[float] = PLACES) -> dict[str, Measured]:
+    """Measure `QUANTITIES` of the pulse that the theory's wave of peak strain 1 becomes.
 
-    B : peak strain of the theory's wave.
     places : distances, in supports, at which the pulse is measured: the last one gives the numbers,
     the last but one their errors.
     """
-    run = _run(wave, B, places)
+    run = _run(wave, places)
     return compared(lambda place: _numbers(run, wave, place), len(places) - 1, len(places) - 2)
 
 
-def _run(wave: TravelingWave, B: float, supports: Sequence[float]) -> Run:
+def _run(wave: TravelingWave, supports: Sequence[float]) -> Run:
     """Simulate a chain that starts with the theory's wave, up to the last place."""
-    compact = PhysicalWave(wave, B ** float(wave.k))  # A = D = 1
+    compact = PhysicalWave(wave, 1)  # peak force; A = D = 1
     support, V = float(wave.width), float(compact.speed)
     start = int(support / 2) + 1
     places = [2 * round((start + s * support) / 2) for s in supports]
@@ -180,7 +168,7 @@ def _run(wave: TravelingWave, B: float, supports: Sequence[float]) -> Run:
 
 
 def _numbers(run: Run, wave: TravelingWave, place: int) -> dict[str, float]:
-    """Return `QUANTITIES`, speed dx/dt and peak force at a place, means over a cell's two contacts.
+    """Return `QUANTITIES` at a place, means over a cell's two contacts.
 
     The exact strains of the two contacts are mirror images.
     """
@@ -198,11 +186,11 @@ def _numbers(run: Run, wave: TravelingWave, place: int) -> dict[str, float]:
         reach = 0.6 * support / V
         push = integral(force, pulse.arrival - reach, pulse.arrival + reach)
         lengths = pulse.fwhm * V, strain.fwhm * V, unit * push * V / pulse.peak
-        sides.append((*lengths, strain.peak, V, pulse.peak))
-    *lengths, B, V, F = np.mean(sides, axis=0).tolist()
+        sides.append((*lengths, strain.peak, V))
+    *lengths, B, V = np.mean(sides, axis=0).tolist()
     # V_s of the theory's units; speeds scale as B^{(k-1)/2}.
     at_one = V / float(wave.time_scale) / B ** (float(wave.k - 1) / 2)
-    return dict(zip(QUANTITIES, (*lengths, at_one), strict=True)) | {"speed": V, "force": F}
+    return dict(zip(QUANTITIES, (*lengths, at_one), strict=True))
 
 
 def quantity_rows(

@@ -47,6 +47,9 @@ def test_the_records_of_a_run_have_the_pulses_of_the_run(capsys, files):
             assert all(ours[n] == theirs[n] for n in ("kind", "number", "from", "to") if n in ours)
             # the static force is the mean of what comes before: waves of 1e-6 run ahead
             assert [ours[n] for n in names] == pytest.approx([theirs[n] for n in names], rel=2e-5)
+    rows = {(row["kind"], row["number"]): row for row in found["sensors"]}
+    for leg in found["speeds"]:  # stands in the row of its second sensor, too
+        assert rows[leg["kind"], leg["to"]]["speed_value"] == leg["speed_value"]
 
 
 def noisy(tmp_path, header, scale=1.0, separator=","):
