@@ -26,7 +26,7 @@ from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
 from validation.report.command import option, study
 from validation.report.result import Report
-from validation.report.table import FINDING_COLUMNS, Column, Finding, Table, plain
+from validation.report.table import FINDING_COLUMNS, Column, Finding, Table, findings_table, plain
 from validation.scenes.checks import one_of
 from validation.scenes.scene import Scene
 
@@ -359,7 +359,11 @@ def hard(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
     """
     wanted = {one_of(name, CASES, "case") for name in names} or set(CASES)
     cases = {name: CASES[name]() for name in progress([name for name in CASES if name in wanted])}
-    rows = [(name, *f.cells) for name, report in cases.items() for f in report.findings]
+    rows = [
+        (name, *row)
+        for name, report in cases.items()
+        for row in findings_table(report.findings).rows
+    ]
     heads = {name: f"{name}\n{report.title}" for name, report in cases.items()}
     findings = Table((Column("case"), *FINDING_COLUMNS), tuple(rows), by="case", heads=heads)
     return Report(

@@ -211,26 +211,20 @@ class PointFile:
                 data.execute("commit")
 
                 def keep(point: Point) -> None:
-                    data.execute("insert into points values (?, ?, ?, ?, ?)", _row(point))
+                    numbers = {name: [n.value, n.check] for name, n in point.numbers.items()}
+                    texts = str(point.k), str(point.omega), json.dumps(point.sites), point.missing
+                    row = *texts, json.dumps(numbers)
+                    data.execute("insert into points values (?, ?, ?, ?, ?)", row)
 
-                points = map(_point, data.execute("select * from points"))
-                yield {(point.k, point.omega): point for point in points}, keep
+                points = {}
+                for k, omega, sites, missing, numbers in data.execute("select * from points"):
+                    pairs = json.loads(numbers).items()
+                    found = {name: Measured(*map(float, pair)) for name, pair in pairs}
+                    ends = json.loads(sites)
+                    key = read_exact(k, "k"), read_exact(omega, "omega")
+                    points[key] = Point(*key, ends and (*ends,), found, missing)
+                yield points, keep
         except (sqlite3.Error, ValueError, TypeError, KeyError) as error:
             if isinstance(error, InputError):
                 raise
             raise InputError(f"file is {self.path}: {error}") from None
-
-
-def _row(point: Point) -> tuple[str | None, ...]:
-    numbers = {name: [n.value, n.check] for name, n in point.numbers.items()}
-    texts = str(point.k), str(point.omega), json.dumps(point.sites), point.missing
-    return *texts, json.dumps(numbers)
-
-
-def _point(row: tuple[str, ...]) -> Point:
-    k, omega, sites, missing, numbers = row
-    pairs = {name: Measured(*map(float, pair)) for name, pair in json.loads(numbers).items()}
-    stretch = json.loads(sites)
-    return Point(
-        read_exact(k, "k"), read_exact(omega, "omega"), stretch and (*stretch,), pairs, missing
-    )

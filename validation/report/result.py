@@ -98,16 +98,12 @@ class Report(Pictured):
         checks = f"{count} check{'s' * (count != 1)}: "
         return checks + (f"{failed} of {count} fail" if failed else "all hold") if count else ""
 
-    def _printed_tables(self) -> tuple[Table, ...]:
-        """All tables, and one of the findings: the failing ones beside other printed tables."""
+    def text(self) -> str:
+        """The report as plain text: beside other printed tables only the findings that fail."""
         failing_only = any(table.parts() for table in self.tables)
         printed = [finding for finding in self.findings if not (failing_only and finding.ok)]
-        return (*self.tables, findings_table(printed))
-
-    def text(self) -> str:
-        """The report as plain text."""
         title, *notes = (wrap(text, self.width) for text in (self.title, *self.notes))
-        tables = (table.text(self.width) for table in self._printed_tables())
+        tables = (t.text(self.width) for t in (*self.tables, findings_table(printed)))
         return "\n\n".join(filter(None, (title, *tables, *notes, self.verdict)))
 
     def _repr_html_(self) -> str:

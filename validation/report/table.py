@@ -99,7 +99,17 @@ class Table:
         >>> Table((Column("k"), Column("a_value.x"), Column("a_value.y")), ((2, 3, 4),)).document()
         [{'k': 2, 'a_value': {'x': 3, 'y': 4}}]
         """
-        return [_nested(record) for record in self.records()]
+        rows = []
+        for record in self.records():
+            row: dict[str, Any] = {}
+            for name, value in record.items():
+                *path, last = name.split(".")
+                place = row
+                for part in path:
+                    place = place.setdefault(part, {})
+                place[last] = value
+            rows.append(row)
+        return rows
 
     def csv(self) -> str:
         """The table as CSV: a header of keys and a line for each row, with empty cells for None.
@@ -166,13 +176,6 @@ class Finding:
         error = self.error or 0.0
         return bool(self.low <= self.value - error and self.value + error <= self.high)
 
-    @property
-    def cells(self) -> tuple[Any, ...]:
-        """Cells of the finding below `FINDING_COLUMNS`."""
-        value = f"{self.value:.6g}" + ("" if self.error is None else f" ± {self.error:.0e}")
-        numbers = self.value, self.error, self.low, self.high
-        return self.quantity, value, bounds(self.low, self.high), *numbers, self.ok
-
 
 FINDING_COLUMNS = (
     *(Column("quantity", "measured"), Column("", "value"), Column("", "expected")),
@@ -184,7 +187,12 @@ FINDING_COLUMNS = (
 
 def findings_table(findings: Iterable[Finding]) -> Table:
     """Table of findings."""
-    return Table(FINDING_COLUMNS, tuple(finding.cells for finding in findings))
+    rows = []
+    for f in findings:
+        value = f"{f.value:.6g}" + ("" if f.error is None else f" ± {f.error:.0e}")
+        row = f.quantity, value, bounds(f.low, f.high), f.value, f.error, f.low, f.high, f.ok
+        rows.append(row)
+    return Table(FINDING_COLUMNS, tuple(rows))
 
 
 def plain(value: Any) -> Any:
@@ -200,18 +208,6 @@ def plain(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [plain(part) for part in value]
     return value
-
-
-def _nested(record: Mapping[str, Any]) -> dict[str, Any]:
-    """Turn names with dots into entries of mappings."""
-    result: dict[str, Any] = {}
-    for name, value in record.items():
-        *path, last = name.split(".")
-        place = result
-        for part in path:
-            place = place.setdefault(part, {})
-        place[last] = value
-    return result
 
 
 def aligned(lines: Lines, width: float = math.inf) -> str:
