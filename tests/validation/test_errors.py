@@ -102,22 +102,6 @@ def of_paper(**options):
     return {quantity: number for quantity, _, number, *_ in paper.paper(**options).tables[0].rows}
 
 
-def test_two_commands_print_the_same_value():
-    """The paper's chain by `paper` and by `run` on its own example."""
-    by_name = of_paper()
-    scene = scenefile.scene(tomllib.loads(runs.example("paper")))
-    found = record(scene)
-    first, second = (reading.numbers["peak"] for reading in found.sensors[:2])
-    pairs = [
-        (by_name["peak bead force F_15"], first),
-        (by_name["peak bead force F_34"], second),
-        (by_name["speed V_s"], found.speeds[0].numbers["speed"]),
-    ]
-    for one, other in pairs:
-        assert abs(one.value - other.value) <= one.error + other.error
-        assert one.value == pytest.approx(other.value, rel=1e-9)
-
-
 def of_figures(chains, moduli, **options):
     speeds = {N: figures.chain_speed(N, **options) for N in chains}
     found = {(N, name): s[name] for N, s in speeds.items() for name in ("speed", "force")}

@@ -129,8 +129,6 @@ def test_the_first_pulse_counts_and_the_base_may_be_known():
         (np.arange(200.0), np.exp(-(((np.arange(200) - 30) / 12.0) ** 2)), "0 samples lie 2"),
         (np.arange(200.0), np.exp(-(((np.arange(200) - 199) / 12.0) ** 2)), "back"),
         (np.arange(200.0), np.zeros(200), "no pulse"),
-        (np.arange(3.0), np.zeros(3), "at least 4 numbers"),
-        (np.zeros(200), np.ones(200), "time must increase"),
         (np.arange(200.0), np.full(200, np.nan), "must be finite"),
         (
             np.arange(400.0),

@@ -63,14 +63,6 @@ def test_a_pulse_may_end_in_a_jump():
         assert measure(signal).fall == pytest.approx(jump, rel=1e-12)
 
 
-def test_the_highest_pulse_and_its_own_flanks_are_measured_among_others():
-    t = np.linspace(-5, 20, 5001)
-    signal = arch(t, 0, 0.9) + arch(t, 3) + arch(t, 6, 0.9) + arch(t, 12, 0.4, 2)
-    pulse = measure(t, signal)
-    assert pulse.arrival == pytest.approx(3, abs=1e-6)
-    assert pulse.fwhm == pytest.approx(WIDTH, rel=1e-6)  # tails of cos⁶ at π/2
-
-
 T = np.linspace(-2, 2, 401)
 
 
@@ -82,13 +74,11 @@ T = np.linspace(-2, 2, 401)
         (T[:220], arch(T[:220]), r"the pulse is not wholly .*: its back does not pass half"),
         (T[180:], arch(T[180:]), r"the pulse is not wholly .*: its front does not pass half"),
         (T, 0 * T, r"no pulse is in the record"),
-        (T, -arch(T), r"no pulse is in the record"),
         (T, T * np.nan, r"time and signal must be finite"),
         (-T, arch(T), r"time and signal must be finite, and time must increase"),
         (T[::40], arch(T[::40]), rf"\d samples lie above half .*: at least {FEWEST}"),
         (T, arch(T)[:-1], r"time and signal must be .*: the shapes are \(401,\) and \(400,\)$"),
         (T[:3], arch(T[:3]), r"time and signal must be equally long rows of at least 4 numbers"),
-        ([T], [arch(T)], r"time and signal must be .*: the shapes are \(1, 401\)"),
         (T, ["tea"] * 401, r"time and signal must be equally long rows .*: .*'tea'"),
     ],
 )

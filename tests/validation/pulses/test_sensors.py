@@ -27,20 +27,19 @@ def numbers(found):
 def test_the_first_example_is_right_within_its_errors():
     """Arrivals and peaks by SciPy's DOP853 at 1e-13 and roots of dF/dt; LAMMPS agrees."""
     text = example("paper")
-    for samples in (1001, 101):
-        found = record(replace(scene(tomllib.loads(text)), samples=samples))
-        here, (speed,) = numbers(found), found.speeds
-        for measured, true in (
-            (here["bead 15"]["arrival"], 0.00043509719567379),
-            (here["bead 15"]["peak"], 6.3239617629857),
-            (here["bead 34"]["arrival"], 0.00098886022177307),
-            (here["bead 34"]["peak"], 9.0048584971877),
-            (speed.numbers["speed"], 163.31895727503),
-        ):
-            assert abs(measured.value - true) <= measured.error
-            assert measured.relative_error < 1e-8
-            shown, about = map(float, str(measured).split(" ± "))
-            assert abs(shown - true) <= about  # as printed
+    found = record(replace(scene(tomllib.loads(text)), samples=101))
+    here, (speed,) = numbers(found), found.speeds
+    for measured, true in (
+        (here["bead 15"]["arrival"], 0.00043509719567379),
+        (here["bead 15"]["peak"], 6.3239617629857),
+        (here["bead 34"]["arrival"], 0.00098886022177307),
+        (here["bead 34"]["peak"], 9.0048584971877),
+        (speed.numbers["speed"], 163.31895727503),
+    ):
+        assert abs(measured.value - true) <= measured.error
+        assert measured.relative_error < 1e-8
+        shown, about = map(float, str(measured).split(" ± "))
+        assert abs(shown - true) <= about  # as printed
 
 
 def test_sensors_without_a_pulse_say_why():
@@ -156,8 +155,5 @@ def test_a_report_shows_both_drifts_where_both_are_conserved():
     shown = report(found).document()
     assert abs(shown["energy_drift_value"]) < 1e-8
     assert abs(shown["momentum_drift_value"]) < 1e-13  # by Newton's third law, to rounding
-    assert f"energy drift {found.run.energy_drift:.0e}" in report(found).text()
-    assert f"momentum drift {found.run.momentum_drift:.0e}" in report(found).text()
     found = record(replace(free, wall=1.0, gravity=0.01), rtol=1e-9)
     assert report(found).document()["momentum_drift_value"] is None
-    assert "momentum not conserved" in " ".join(report(found).text().split())

@@ -1,7 +1,6 @@
 """The steady pulse of a struck chain: exact waves, symmetries, published ratios, its own errors."""
 
 import math
-import re
 from itertools import combinations
 
 import numpy as np
@@ -90,15 +89,14 @@ def test_the_errors_cover_other_distances():
             assert abs(one[name].value - other[name].value) <= bound, name
 
 
-@pytest.mark.parametrize("omega", ["0.5", "0.6", "0.7"])
-def test_a_pulse_that_is_overtaken_is_not_steady(omega):
-    """Mended: at ω = 0.6 the width was 1.486290 ± 9e-6, but 1.5 ± 0.4 four times as far."""
+@pytest.mark.parametrize(
+    ("omega", "reason"), [("0.5", "not steady: at 320 sites"), (R(1, 10**40), "duration is ")]
+)
+def test_a_pulse_without_numbers_states_the_reason(omega, reason):
+    """Overtaken by a higher one at ω = 0.5; longer than any run at 1e-40."""
     found = point(HERTZ, R(omega), STRETCH)
     assert (found.sites, found.numbers) == (None, {})
-    message = (
-        r"not steady: at 320 sites the highest pulse has [\d.]+ times the force that the leading "
-    )
-    assert re.match(message, found.missing)
+    assert found.missing.startswith(reason)
 
 
 def test_the_leading_pulse_is_not_a_later_and_higher_one():
@@ -110,12 +108,6 @@ def test_the_leading_pulse_is_not_a_later_and_higher_one():
     two_humps = spline(time, first + np.exp(-((time - 7) ** 2)))
     (pulse,) = leading_pulses(two_humps, 1.5, (0.25,))
     assert pulse.fall > 8
-
-
-def test_a_failed_point_states_the_reason():
-    found = point(HERTZ, R(1, 10**40), STRETCH)
-    assert found.missing.startswith("duration is ")
-    assert (found.sites, found.numbers) == (None, {})
 
 
 def test_the_end_of_the_chain_is_far_from_the_last_place():

@@ -56,8 +56,6 @@ def test_unlike_beads_do_not_time_the_pulse(result):
     assert by_name["speed V_s"]["lattice_value"] == pytest.approx(163.32, abs=0.005)
     assert all(164.05 < row["lattice_value"] < 164.2 for row in like)
     assert all(row["error_value"]["F_m"] == pytest.approx(-0.0087, abs=3e-4) for row in like)
-    alike = paper(beads=20, sensors=(8, 14))
-    assert not any("from bead" in name for name in rows(alike))
 
 
 def test_the_chain_scales_exactly_with_the_blow(result):
@@ -78,12 +76,6 @@ def test_means_and_units(result):
     assert found["FWHM of bead force"] == pytest.approx(in_time, rel=1e-14)
 
 
-def test_a_long_chain_has_no_solitary_wave():
-    """The real mass ratio resonates: the pulse radiates, and its force falls along the chain."""
-    found = lattice(paper(beads=90, sensors=(30, 80)))
-    assert found["peak bead force F_80"] < 0.95 * found["peak bead force F_30"]
-
-
 def test_the_weight_is_no_part_of_the_pulse(capsys):
     """The static forces, 0.3 and 0.6 % of the peaks, are subtracted."""
     options = ("--gravity", "--beads", "20", "--sensors", "8,14", "--format", "json")
@@ -100,7 +92,6 @@ def test_the_weight_is_no_part_of_the_pulse(capsys):
     ("change", "message"),
     [
         (dict(velocity=0), r"velocity is 0: it lies between 1e-06 and 1000"),
-        (dict(velocity="fast"), r"velocity is 'fast': a number is wanted"),
         (dict(beads=7), r"beads is 7: an integer from 8 to 2000 is wanted"),
         (dict(sensors=(34, 15)), r"sensors are 34, 15: two beads are wanted"),
         (dict(sensors=(1, 15)), r"sensor is 1: an integer from 2 to 37 is wanted"),

@@ -1,9 +1,7 @@
 """The report of any scene: its table for programs, and its view in a notebook."""
 
 import numpy as np
-import pytest
 
-from lwa import InputError
 from validation.pulses.sensors import record
 from validation.scenes.chains import struck
 from validation.scenes.forcing import Damping
@@ -24,15 +22,6 @@ def test_many_sensors_are_drawn_as_a_map():
     assert many.map.values.shape == (len(time), 19)
     force = run.contact_force[list(run.scene.contact_sensors).index(6)]
     np.testing.assert_array_equal(many.map.values[:, 6], np.interp(time, run.time, force))
-
-
-def test_a_scene_without_sensors_has_no_picture():
-    bare = report(record(struck((1,), 4, duration=1)))
-    assert bare.text().startswith("4 beads, 3 contacts, k = 1.5; duration 1, energy drift ")
-    assert "\n" not in bare.text()
-    assert bare.document()["sensors"] == bare.document()["speeds"] == []
-    with pytest.raises(InputError, match="this result has no picture"):
-        bare.figure()
 
 
 def test_every_pulse_of_a_train_is_listed():
