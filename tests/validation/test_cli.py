@@ -206,10 +206,8 @@ BAD = [
     ("run", "missing.toml"),
     ("paper", "--velocity", "__import__('os')"),
     ("paper", "--format", "xml"),
-    ("limits", "extra"),
     ("exact", "--masses", "1,0.2733"),
     ("pulses", "records.csv", "--column", "time"),
-    ("nothing",),
     ("--nothing",),
 ]
 

@@ -89,11 +89,14 @@ def law(
         if spheres is None:
             raise SceneError("material is given: its E needs --spheres")
         numbers["E"] = _modulus(content, material, fit.hertz)
+    # Speeds beside one power, for which ln V is linear in ln F.
+    line = np.exp(np.polyval(np.polyfit(np.log(force), np.log(speed), 1), np.log(force)))
+    curves = (Curve("measured", force, speed, "C0o"), Curve("one power", force, line, "C1-"))
     bend = f"curvature of ln V against ln F {fit.curvature.value:.2g} ± {fit.curvature.error:.1g}"
     return Report(
         f"{len(force)} pulses, forces {force[0]:.4g} … {force[-1]:.4g}",
         (Table(_POWER, tuple(numbers.items())),),
-        panels=(_speeds(force, speed),),
+        panels=(Panel("peak contact force", "speed", curves, "xy"),),
         notes=(
             f"One power is {'enough' if fit.one_power else 'not enough'}: {bend}.",
             *([] if spheres or (masses and spacing) else [_UNITS]),
@@ -107,13 +110,6 @@ def law(
             "one_power": fit.one_power,
         },
     )
-
-
-def _speeds(force: Array, speed: Array) -> Panel:
-    """Return the panel of measured speeds beside one power, for which ln V is linear in ln F."""
-    line = np.exp(np.polyval(np.polyfit(np.log(force), np.log(speed), 1), np.log(force)))
-    curves = (Curve("measured", force, speed, "C0o"), Curve("one power", force, line, "C1-"))
-    return Panel("peak contact force", "speed", curves, "xy")
 
 
 def _pulses(data: str, renamed: Mapping[str, str] | None) -> tuple[Array, Array, Array | None]:

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 
 import click
 
-from lwa.base.arrays import Array
 from validation.pictures import Curve, Panel
 from validation.pulses.noisy import noisy_pulse
 from validation.pulses.pulse import MeasureError
@@ -19,7 +18,6 @@ from validation.scenes.checks import SceneError, one_of
 from validation.scenes.columns import (
     LENGTH,
     MeasuredFile,
-    SensorColumn,
     amount,
     refuse_unknown,
     sensor_columns,
@@ -70,7 +68,12 @@ def pulses(
     found, curves = [], []
     for i, sensor in enumerate(sensors):
         force = file.column(sensor.name)
-        found.append(_reading(sensor, time, force))
+        place = (sensor.number or 1,)  # the only sensor of a file is number 1
+        try:
+            pulse = noisy_pulse(time, force)
+            found.append(Reading(sensor.kind, place, pulse.numbers, pulse.base))
+        except MeasureError as error:
+            found.append(Reading(sensor.kind, place, {}, math.nan, str(error)))
         curves.append(Curve(found[i].name, time, force, f"C{i}-"))
     if all(reading.missing for reading in found):
         raise MeasureError(f"{records}: no sensor has a pulse: {found[0].name}: {found[0].missing}")
@@ -83,13 +86,3 @@ def pulses(
     panel = Panel(f"time{units[0]}", f"force{units[1]}", tuple(curves), legend_above=True)
     notes = (missing, _NOTE.format("SI" if si else "the file's own"))
     return Report(str(records), tables, panels=(panel,), notes=notes)
-
-
-def _reading(sensor: SensorColumn, time: Array, force: Array) -> Reading:
-    """Measure the first pulse at a sensor; the only one of a file is number 1."""
-    place = (sensor.number or 1,)
-    try:
-        pulse = noisy_pulse(time, force)
-    except MeasureError as error:
-        return Reading(sensor.kind, place, {}, math.nan, str(error))
-    return Reading(sensor.kind, place, pulse.numbers, pulse.base)
