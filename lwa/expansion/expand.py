@@ -25,7 +25,7 @@ from lwa.cell import Cell, exponent, read_cell, substitution
 from lwa.cell import k as symbol_k
 from lwa.expansion.observables import Observables, shares_model
 from lwa.expansion.series import EpsilonSeries
-from lwa.law import ContactLaw, refuse_two_laws
+from lwa.law import ContactLaw, for_cell
 
 LARGEST = 3_000_000
 """Terms of all polynomials in memory: some 600 MB."""
@@ -189,15 +189,13 @@ def expand(
     """
     read_cell(cell)
     order = integer(order, "order", 1)
-    if law is not None:
-        refuse_two_laws(k, law)
-        if not law.homogeneous:
-            raise InputError(
-                f"law is {shorten(law)}: the expansion is one in ε = k - 1 about the linear chain, "
-                "and only a power law has a k"
-            )
-        k = law.exponent
-    k = exponent(k)
+    law = for_cell(law, cell, k)
+    if not law.homogeneous:
+        raise InputError(
+            f"law is {shorten(law)}: the expansion is one in ε = k - 1 about the linear chain, "
+            "and only a power law has a k"
+        )
+    k = exponent(law.exponent)
     if not k.free_symbols and k <= 1:
         raise InputError(f"k is {k}: the expansion in k - 1 wants k > 1")
     if shared := {s.name for s in (*cell.symbols, *k.free_symbols)} & {"ε", r"\varepsilon"}:

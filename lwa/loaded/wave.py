@@ -291,7 +291,8 @@ def loaded_wave(
     (1.114528, 6.772308)
     """
     by_force = rise is None and background is None
-    if not by_force and (force != "F" or precompression != 0):
+    given = read_exact(force, "force"), read_exact(precompression, "precompression")
+    if not by_force and given != (read_exact("F", "force"), 0):
         raise InputError("a wave is given by its forces or by its strains, not by both")
     if isinstance(chain, Lattice):
         if law is not None or k != symbol_k:
@@ -302,6 +303,6 @@ def loaded_wave(
     law = for_cell(law, chain, k)
     if by_force:
         return LoadedWave(chain, law, precompression, force)
-    p0 = background or 0
+    p0 = 0 if background is None else background
     B = Background(chain, law, p0).rise if rise is None else rise
     return LoadedWave(chain, law, p0, B, False)

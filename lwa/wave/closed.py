@@ -25,7 +25,7 @@ import sympy as sp
 
 from lwa.algebra.rational import factored
 from lwa.base import latex
-from lwa.base.exact import InputError, positive, power, shorten, signed
+from lwa.base.exact import integer, positive, power, shorten, signed
 from lwa.base.frozen import Value
 from lwa.base.quantities import RISE, SPEED, NoSolitaryWave, strain_power
 from lwa.cell import Cell, exponent, read_cell, substitution
@@ -204,9 +204,7 @@ class CompactWave(Value):
         Since ∂(z^e r_2) = z^e (r_3 + (e - 1) r_1 r_2), the factor z^a, kp + a = e = q + 1, makes
         it a total derivative; integrated once it is the equation of z.
         """
-        if root not in (0, 1):
-            raise InputError(f"root is {shorten(root)}: 0 or 1 is wanted")
-        p = self.roots[root]
+        p = self.roots[integer(root, "root", 0, 1)]
         a = factored(3 + self._ratios[1] - self.k) * p - 2  # 1 - kp + 3 (p - 1) + p H/I
         mu, eta = positive(V, "V") ** 2 / (self.I * (p + a)), 1 + p - self.k * p
         sigma = 1 / (self.I * (self.k * p + a))

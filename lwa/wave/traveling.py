@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 import sympy as sp
 
-from lwa.base.exact import InputError, read_exact, shorten
+from lwa.base.exact import InputError, one_of, read_exact, shorten
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
 from lwa.law import ContactLaw, for_cell
 from lwa.wave.closed import CompactWave
-from lwa.wave.physical import PhysicalWave
+from lwa.wave.physical import BEARERS, PhysicalWave
 
 if TYPE_CHECKING:
     from lwa.loaded.wave import LoadedWave
@@ -49,7 +49,7 @@ class TravelingWave(CompactWave):
         load = read_exact(precompression, "precompression")
         if load.is_zero:
             return PhysicalWave(self, F, of)
-        if of != "contact":
+        if one_of(of, BEARERS, "of") != "contact":
             raise InputError(f"of is {shorten(of)}: under a load it is the force of a contact")
         return self._loaded(force=F, precompression=load)
 
