@@ -316,7 +316,8 @@ def envelope(
         raise InputError(f"wavenumber is {shorten(kappa)}: 0 … pi per cell is wanted")
     if branch is None:
         branch = min(1, cell.size - 1)
-    number = BRANCHES.index(branch) if branch in BRANCHES else integer(branch, "branch", 0)
+    named = isinstance(branch, str) and branch in BRANCHES
+    number = BRANCHES.index(branch) if named else integer(branch, "branch", 0)
     if number >= cell.size:
         raise InputError(
             f"branch is {shorten(branch)}: a cell of {cell.size} has as many branches, "

@@ -42,7 +42,7 @@ def arguments(name, parameters, draw):
     return positional, named
 
 
-@pytest.mark.parametrize("number", [200, pytest.param(2000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("number", [200, pytest.param(20_002, marks=pytest.mark.slow)])
 def test_random_arguments_are_answered_or_refused(number):
     draw = random.Random(number)
     public = [
