@@ -440,7 +440,7 @@
         const fast = speed ? `speed ${speed.toPrecision(4)} m/s (${percent(speed / lattice.speed - 1)}), ` : "";
         text("theory", refused ? `${name}: ${refused}` : `${name}: ${fast}FWHM ${(1e6 * width).toPrecision(4)} µs (${percent(width / lattice.width - 1)}${error ? `, by its own estimate ± ${percent(error)}` : ""})`);
       }
-      text("pressure", `Hertz's pressure reaches ${(1e-6 * pressure).toPrecision(3)} MPa: a material with a yield strength below ${(1e-6 * pressure / 1.6).toPrecision(3)} MPa yields, and the numbers above do not hold.`);
+      text("pressure", `Hertz's pressure reaches ${(1e-6 * pressure).toPrecision(3)} MPa: a material with a yield strength below ${(1e-6 * pressure / 1.6).toPrecision(3)} MPa begins to yield below its surface.`);
     }
     update();
   }
