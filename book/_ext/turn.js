@@ -68,7 +68,8 @@
       if (!best || best.force < least || past.at(-1)[1] > best.force / 2) return;
       const crossing = ([t0, f0], [t1, f1]) => t0 + ((best.force / 2 - f0) / (f1 - f0)) * (t1 - t0);
       const up = Math.max(past.findIndex(row => row[1] > best.force / 2), 1);
-      this.arrivals.push({...best, width: crossing(...past.slice(-2)) - crossing(past[up - 1], past[up])});
+      const down = past.findIndex(row => row[0] > best.time && row[1] <= best.force / 2);
+      this.arrivals.push({...best, width: crossing(past[down - 1], past[down]) - crossing(past[up - 1], past[up])});
       if (this.arrivals.length === 13) this.arch = this.theory();
     }
 
