@@ -68,6 +68,7 @@ LINES = [
     ("envelope --background 1 --branch up", "branch is 'up'"),
     ("envelope --background 1 --detuning 1 --frequency 1", "both given"),
     ("envelope --precompression 1 --masses 1,1/2 --k 2 --detuning -1", "below"),
+    ("wave --k 3/2 --masses 1 --precompression 10 --force 5", "5, below precompression 10"),
     ("envelope --law hertz2:1,2 --background 0 --masses 1", "F′ is 0"),
     ("envelope --law general --precompression 1", "law is general"),
     ("envelope --law polynomial:1/2,-1/4 --masses 1 --background 3", "F′ is -2.75"),
