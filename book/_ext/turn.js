@@ -63,7 +63,7 @@
         trail.bead = Math.max(trail.bead, (this.contact[i] + this.contact[i + 1]) / 2); // of bead i + 1
         trail.past.push(now);
       }
-      const least = 0.4 * (first ? this.arrivals[first - 1].force : 0.02 * this.v);
+      const least = first > 1 ? 0.4 * this.arrivals[first - 1].force : 0.008 * this.v;
       const {best, past} = this.trails[first] || {};
       if (!best || best.force < least || past.at(-1)[1] > best.force / 2) return;
       const crossing = ([t0, f0], [t1, f1]) => t0 + ((best.force / 2 - f0) / (f1 - f0)) * (t1 - t0);
