@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import click
+import numpy as np
 import sympy as sp
 
 from lwa.base.exact import InputError
@@ -36,6 +37,7 @@ PLACES = 8  # intervals of the wavenumbers, 0 to π/(PD), at which bands are pri
 @series_options("1", "Highest power of κ in Ω², an integer.")
 @PRECOMPRESSION
 @SPACING
+@SPHERES
 def dispersion(order: int, style: str, precompression: sp.Expr | None, **options: Any) -> None:
     """Expand the squared frequency Ω² of linear waves in the wavenumber κ.
 
@@ -43,15 +45,17 @@ def dispersion(order: int, style: str, precompression: sp.Expr | None, **options
     exponent k matters for unequal contacts only, whose shares of the strain depend on k.
 
     With --precompression also the bands and group velocities about this load (k = 3/2 unless --k is
-    given), in rad/s and m/s for masses, stiffnesses and spacing in SI. In JSON
-    `band_edges_value` has the frequencies (from, to) of each band, `gaps_value` those of each gap,
-    and `branches_value` frequencies and group velocities by wavenumber (lengths in D where D is a
-    symbol).
+    given), in rad/s and m/s for masses, stiffnesses and spacing in SI, and with --spheres. In JSON
+    `band_edges_value` has the frequencies (from, to) of each band, `band_edges_frequency_value`
+    these over 2π (Hz in SI), `gaps_value` those of each gap, and `branches_value` frequencies and
+    group velocities by wavenumber (lengths in D where D is a symbol).
     """
+    spheres = options["spheres"] is not None
     chain = take_chain(options)
     law, loaded = chain.law, None
+    precompression = chain.load(None, precompression)
     if precompression is not None:
-        law = law if given("k") else Power(EXPONENT)
+        law = law if spheres or given("k") else Power(EXPONENT)
         loaded = LoadedChain(chain.cell, law, precompression)
     _linear(replace(chain, law=law), order, loaded).print(style)
 
@@ -75,11 +79,11 @@ def _linear(chain: ChainInput, order: int, loaded: LoadedChain | None) -> Answer
         "",
         f"about the load {loaded.precompression}:",
         Row("precompression", "", loaded.precompression, digits=0),
-        Row("spring_constants", "spring constants", loaded.spring_constants),
-        Row("sound_speed", "sound speed dx/dt", loaded.sound_speed),
-        *_bands_text(bands),
+        Row("spring_constants", "spring constants", loaded.spring_constants, "N/m"),
+        Row("sound_speed", "sound speed dx/dt", loaded.sound_speed, "m/s"),
+        *_bands_text(bands, chain.si),
     ]
-    return Answer(head | bands, rows, spacing=chain.cell.spacing, shown=[linear, loaded])
+    return Answer(head | bands, rows, chain.si, chain.cell.spacing, [linear, loaded])
 
 
 def _bands(loaded: LoadedChain) -> Values:
@@ -88,8 +92,10 @@ def _bands(loaded: LoadedChain) -> Values:
         return {}
     D = 1.0 if loaded.cell.spacing.is_Symbol else float(loaded.cell.spacing)
     places = [float(sp.pi) * i / (PLACES * loaded.cell.size * D) for i in range(PLACES + 1)]
+    edges = loaded.bands.edges()
     return {
-        "band_edges_value": loaded.bands.edges().tolist(),
+        "band_edges_value": edges.tolist(),
+        "band_edges_frequency_value": (edges / (2 * np.pi)).tolist(),
         "gaps_value": loaded.bands.gaps().tolist(),
         "branches_value": [
             {
@@ -102,14 +108,17 @@ def _bands(loaded: LoadedChain) -> Values:
     }
 
 
-def _bands_text(bands: Values) -> list[str]:
+def _bands_text(bands: Values, si: bool) -> list[str]:
     if not bands:
         return []
     lines = []
     for name, key in (("band", "band_edges_value"), ("gap", "gaps_value")):
         for i, (low, high) in enumerate(bands[key], start=1):
             edges = f"{low:.{PRINTED_DIGITS}g} … {high:.{PRINTED_DIGITS}g}"
-            lines.append(f"  {name} {i}: {edges}, in rad per unit of time")
+            hertz = f" ({low / (2 * np.pi):.6g} … {high / (2 * np.pi):.6g} Hz)" * si
+            lines.append(
+                f"  {name} {i}: {edges}, in rad per {'s' if si else 'unit of time'}{hertz}"
+            )
     lines += ["", "  wavenumber: frequencies; group velocities"]
     for place in bands["branches_value"]:
         columns = (place["frequencies"], place["group_velocities"])

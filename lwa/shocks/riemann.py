@@ -272,8 +272,11 @@ class Shock(Value):
     def _gain(self) -> sp.Expr:
         """Difference c₋ - c₊, negative for a rarefaction; symbols are taken to mean a shock."""
         gain = self._sound(self.behind) - self._sound(self.ahead)
-        # simplified: only then is its sign known beside symbols such as D
-        return sp.simplify(gain) if gain.free_symbols else sp.N(gain, 5)
+        if self.cell.spacing.is_Symbol and not self.law.homogeneous:
+            gain = gain.xreplace({self.cell.spacing: sp.S.One})  # its unit of length
+        if not gain.free_symbols:
+            return sp.N(gain, 5)
+        return sp.simplify(gain)  # only then is its sign known beside symbols
 
 
 def _read(law: Any, cell: Cell, k: Any) -> ContactLaw:
@@ -315,8 +318,10 @@ def _front(cell: Cell, law: ContactLaw, behind: sp.Expr, ahead: sp.Expr) -> Shoc
         raise InputError(
             f"the jump of the strain is {sp.N(jump, 3)}: 1e-15 of it at least is wanted"
         )
-    constants = law.F.atoms(sp.Rational)
-    front = Shock(cell, law, *floats(behind, ahead, constants=constants))
+    strains = floats(behind, ahead, constants=law.F.atoms(sp.Rational))
+    if not law.homogeneous and cell.spacing.is_Symbol and any(p.is_Float for p in strains):
+        raise InputError(f"spacing is {cell.spacing}: beside long decimals a number is wanted")
+    front = Shock(cell, law, *strains)
     gain = front._gain
     demand_one_sign(front._field, front.behind, front.ahead)
     if gain.is_zero:

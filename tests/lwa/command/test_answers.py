@@ -103,6 +103,7 @@ ANSWERS = {
         "peak_value": None, "leading_speed_value.dispersion": None,
     },
     "shock --masses 1 --spacing 1 --k 3/2 --piston 1 --ahead 1": {"plateau_value": 1},
+    "shock --law magnetic:4,1 --masses 1 --spacing 1 --behind 0.123": {"kind": "shock"},
     "shock --masses 1 --spacing 1 --k 3/2 --behind 1 --ahead 2": {
         "kind": "rarefaction", "peak_value": None,
     },

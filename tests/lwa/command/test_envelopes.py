@@ -33,6 +33,10 @@ def test_a_chain_of_spheres_has_hertz_and_metres(capsys, tmp_path):
     assert found["frequency_value"] == pytest.approx(hertz, rel=1e-12)
     assert found["units"]["frequency"] == "Hz"
     f0 = math.sqrt(2 * K2 / light) / (2 * math.pi)
+    bands = result(capsys, "dispersion", "--spheres", str(file))
+    edges = [0, math.sqrt(2 * K2 / heavy) / (2 * math.pi), f0, hertz]
+    found_edges = [f for band in bands["band_edges_frequency_value"] for f in band]
+    assert found_edges == pytest.approx(edges, rel=1e-12, abs=1e-9)
     assert f0 == pytest.approx(8101, abs=1)  # kHz: 4.711, 8.101, 9.371
     found = result(capsys, *spheres, "--frequency", f"{0.995 * f0:.17g}")
     assert found["detuning_value"] == pytest.approx(0.005, rel=1e-9)

@@ -63,6 +63,7 @@ LINES = [
     ("envelope", "background or precompression"),
     ("envelope --background 1 --precompression 1", "background or precompression"),
     ("envelope --background 1 --wavenumber 4", "0 … pi"),
+    ("shock --law magnetic:4,1 --behind 0.123", "spacing is D"),
     ("envelope --law magnetic:4,1 --masses 1,2,3 --precompression 2 --detuning nu", "f/f0 is nu"),
     ("envelope --background 1 --wavenumber pi*2", "wavenumber is 'pi*2'"),
     ("envelope --background 1 --branch up", "branch is 'up'"),
