@@ -118,7 +118,7 @@ class Motion:
         compression, v = self.compression(state[: self.size]), state[self.size : 2 * self.size]
         energies = self.contact.energy(compression) - self.contact.energy(self.rest)
         stored = self.stiffnesses * energies - self.load * (compression - self.rest)
-        return float(self.masses @ v**2 / 2 + stored.sum())
+        return float(np.sum(self.masses * v * v) / 2 + stored.sum())
 
     @property
     def free_energy(self) -> float:
@@ -133,8 +133,8 @@ class Motion:
             return None
         moving = slice(self.size, 2 * self.size)
         before, after = self.start[moving], end[moving]
-        total = self.masses @ np.abs(after)
-        return float(self.masses @ (after - before) / total) if total else 0.0
+        total = np.sum(self.masses * np.abs(after))  # no BLAS: its threads cost more than they gain
+        return float(np.sum(self.masses * (after - before)) / total) if total else 0.0
 
     @cached_property
     @np.errstate(all="ignore")
