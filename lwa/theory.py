@@ -18,7 +18,7 @@ from lwa.cell import k as symbol_k
 from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS, OfClosure, solve
 from lwa.equation.pde import PDE
 from lwa.equation.terms import STRAIN, Terms, terms
-from lwa.law import ContactLaw, Power, for_cell
+from lwa.law import ContactLaw, for_cell
 
 SLOW_ORDER = 12
 """The order from which a derivation shows its progress."""
@@ -163,25 +163,19 @@ def homogenize(
         (field, FIELDS, "field"),
     ):
         one_of(word, known, name)
-    model = _model(cell, k, law, branch, order)
+    law = for_cell(law, cell, exponent(k) if law is None else k)
+    if not law.homogeneous and branch != "acoustic":
+        raise InputError(
+            f"branch is {branch!r}: its contacts also pull, and its unit of time is that of a "
+            "power law; a law given for compression has the acoustic branch"
+        )
+    model = Model(cell, law, branch).replaced({}, order)
     ring = model.ring
     parameters = len(ring.names) - max(len(ring.variables) - 1, 0)  # the φ_n grow as powers of k
     _affordable(order, parameters, closure)
     return Theory(
         solve(model, order, closure, field, progress=iter if order < SLOW_ORDER else shown)
     )
-
-
-def _model(cell: Cell, k: Any, law: ContactLaw | None, branch: str, order: int) -> Model:
-    if law is None:
-        return Model(cell, Power(exponent(k)), branch)
-    law = for_cell(law, cell, k)
-    if not law.homogeneous and branch != "acoustic":
-        raise InputError(
-            f"branch is {branch!r}: its contacts also pull, and its unit of time is that of a "
-            "power law; a law given for compression has the acoustic branch"
-        )
-    return Model(cell, law, branch).replaced({}, order)
 
 
 def _affordable(order: int, parameters: int, closure: str) -> None:

@@ -75,26 +75,24 @@ class JetAlgebra:
         self.half = (exponent(self.context) + 1) / 2 if exponent else self.zero
         self.phi = [self.zero, self.one, *generators[: smooth - 1]] if smooth else []
         self._moving = [*range(max(smooth - 1, 0)), *range(self._offset, self.context.nvars())]
-        self._dx = self._derivatives_in_space()
-        self._dt = self._derivatives_in_time() if exponent else {}
-
-    def _derivatives_in_space(self) -> dict[int, fmpq_mpoly]:
-        """Mapping from the index of a generator g to its derivative ∂_x g."""
         r, s, half = self.r, self.s, self.half
-        strain = {self._offset + n - 1: r[n + 1] - r[1] * r[n] for n in range(1, self.weight)}
-        moving = range(self._lowest, self.weight if s else 0)
-        velocity = {self._index_of_s(n): s[n + 1] - half * r[1] * s[n] for n in moving}
-        law = {n - 2: r[1] * self._theta(n) for n in range(2, len(self.phi) - 1)}
-        return strain | velocity | law
+        self._dx = self._derivatives(r)
+        self._dt: dict[int, fmpq_mpoly] = {}
+        if exponent:
+            moving = range(self._lowest, weight + 1)
+            self._dx |= {self._index_of_s(n): s[n + 1] - half * r[1] * s[n] for n in moving[:-1]}
+            # without u_ττ, which `dt` adds
+            self._dt = self._derivatives(s)
+            self._dt |= {self._index_of_s(n): -half * s[1] * s[n] for n in moving}
 
-    def _derivatives_in_time(self) -> dict[int, fmpq_mpoly]:
-        """Mapping from the index of a generator g to ∂_τ g over p^{(k-1)/2}, without u_ττ in it."""
-        r, s, half = self.r, self.s, self.half
-        strain = {self._offset + n - 1: s[n + 1] - s[1] * r[n] for n in range(1, self.weight)}
-        moving = range(self._lowest, self.weight + 1)
-        velocity = {self._index_of_s(n): -half * s[1] * s[n] for n in moving}
-        law = {n - 2: s[1] * self._theta(n) for n in range(2, len(self.phi) - 1)}
-        return strain | velocity | law
+    def _derivatives(self, jets: list[fmpq_mpoly]) -> dict[int, fmpq_mpoly]:
+        """Mapping from the index of a generator, r_n or φ_n, to its derivative.
+
+        jets : r for ∂_x, s for ∂_τ over p^{(k-1)/2}; jets[1] is the derivative of p, over p.
+        """
+        rate, r = jets[1], self.r
+        strain = {self._offset + n - 1: jets[n + 1] - rate * r[n] for n in range(1, self.weight)}
+        return strain | {n - 2: rate * self._theta(n) for n in range(2, len(self.phi) - 1)}
 
     def _index_of_s(self, n: int) -> int:
         """Index of the velocity jet s_n among the generators."""

@@ -204,14 +204,11 @@ class Lattice(Value):
         energies = (x.factor * x.law.energy.subs(x.law.delta, delta) for x, delta in pairs)
         return sp.Add(*energies) / self.size
 
-    def springs(self, state: Static) -> list[sp.Expr]:
-        """The spring constants of the links along the lattice, dF/dδ times the cosine squared."""
-        pairs = zip(self.links, state.compressions, strict=True)
-        return [x.factor * x.cosine**2 * x.law.at(delta, 1) for x, delta in pairs]
-
     def stiffness(self, state: Static) -> sp.Expr:
         """The slope dF/d(D p) of links in series in a static state."""
-        springs = self.springs(state)
+        # spring constants along the lattice: dF/dδ times the cosine squared
+        pairs = zip(self.links, state.compressions, strict=True)
+        springs = [x.factor * x.cosine**2 * x.law.at(delta, 1) for x, delta in pairs]
         if any(K.is_zero for K in springs):
             return sp.S.Zero
         return self.size / sp.Add(*(1 / K for K in springs))

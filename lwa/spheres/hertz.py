@@ -15,7 +15,6 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.base import latex
 from lwa.base.exact import InputError, one_of, positive, read_exact, shorten
 from lwa.base.frozen import Value
 
@@ -43,10 +42,6 @@ class Material(Value):
             raise InputError(f"nu is {shorten(given)}: Poisson's ratio lies between -1 and 1/2")
         if self.density is not None:
             object.__setattr__(self, "density", positive(self.density, "density"))
-
-    def latex_rows(self) -> list[str]:
-        density = {} if self.density is None else {r"\rho": self.density}
-        return latex.rows({"E": self.E, r"\nu": self.nu} | density)
 
     @classmethod
     def named(cls, name: str, **changed: Any) -> Material:
@@ -97,9 +92,6 @@ class Sphere(Value):
             object.__setattr__(self, name, positive(getattr(self, name), name))
         if not isinstance(self.material, Material):
             raise InputError(f"material is {shorten(self.material)}: a Material is wanted")
-
-    def latex_rows(self) -> list[str]:
-        return [*latex.rows({"m": self.mass, "R": self.radius}), *self.material.latex_rows()]
 
     @classmethod
     def solid(cls, radius: Any, material: Material, density: Any = None) -> Sphere:

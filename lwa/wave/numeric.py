@@ -59,9 +59,6 @@ class NumericWave(Value):
                 "m1 and m2, with equal contacts"
             )
 
-    def latex_rows(self) -> list[str]:
-        return self.wave.latex_rows()
-
     @property
     def _symbols(self) -> tuple[sp.Expr, ...]:
         """The symbol k and the distinct masses, in their order."""

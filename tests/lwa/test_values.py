@@ -113,7 +113,7 @@ def test_repr_is_one_short_line(order):
     assert repr(theory().pde.coefficients[2]) == "{}"
 
 
-@pytest.mark.parametrize("name", MADE)
+@pytest.mark.parametrize("name", sorted(MADE.keys() - {"sphere", "numeric"}))
 def test_a_notebook_shows_it_in_latex(name):
     """A display whose braces match, without Python's names of functions."""
     shown = made(name)._repr_latex_()
