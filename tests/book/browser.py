@@ -154,7 +154,7 @@ window.addEventListener("load", async () => {
       {load: 200, blow: 0.01, kind: "velocity"},
       {load: 0, blow: 1, kind: "velocity", radiusB: 3e-4},
       {load: 0, blow: -1, kind: "velocity"},
-      {load: 0, blow: 1, kind: "velocity", b: "steel 316", radiusB: 2.2e-3},
+      {load: 0, blow: 1, kind: "velocity", b: "steel 316", radiusB: 2.3e-3},
     ].map(blow => [blow, lwaTurn.calculate({...beads, ...blow})]);
   }
   const answer = await fetch("/probe", {method: "POST", body: JSON.stringify(report)});

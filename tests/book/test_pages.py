@@ -190,7 +190,7 @@ def test_the_series_of_the_calculator_is_interpolated_well(visit):
         sp.Rational(round(1e6 * found["omega"]), 10**6),
     )
     total = expand(Dimer(1, ratio), 8).fwhm("force").at("3/2")
-    sites = theory["width"] * found["lattice"]["speed"] / 4.58e-3
+    sites = theory["width"] * found["lattice"]["speed"] / 4.68e-3
     assert abs(sites / float(total.value) - 1) < 5e-3
     assert abs(theory["error"] / float(total.error / total.value) - 1) < 0.2
 
