@@ -4,6 +4,29 @@
 (() => {
   const f = lwaFormulas;
 
+  const AHEAD = 4;
+  // The first pulse of a record of rows [time, force], as lwa-validate finds it: the highest hump of
+  // the first stretch above half of the record's maximum, until the force is as high again. The peak
+  // is that of a parabola through three rows; a pulse that does not fall to its half has no width.
+  function leading(rows) {
+    const after = (start, test) => {
+      const found = rows.findIndex((row, i) => i >= start && test(row[1]));
+      return found < 0 ? rows.length : found;
+    };
+    const most = (from, to) => rows.slice(from, to).reduce((high, row) => Math.max(high, row[1]), 0);
+    const half = most(0) / 2;
+    const start = after(0, force => force > half), fallen = after(start, force => force <= half);
+    const hump = most(start, fallen), end = after(fallen, force => force >= hump), peak = most(0, end);
+    const top = after(0, force => force === peak);
+    const [before, now, next] = [top - 1, top, top + 1].map(i => rows[Math.min(Math.max(i, 0), rows.length - 1)]);
+    const slope = (next[1] - before[1]) / 2;
+    const ahead = slope / (2 * now[1] - next[1] - before[1] || 1); // in steps
+    const [time, force] = [now[0] + ahead * (now[0] - before[0]), now[1] + (slope * ahead) / 2];
+    const up = rows.slice(0, top).findLastIndex(row => row[1] <= force / 2), down = after(top, f => f <= force / 2);
+    const crossing = ([t0, f0], [t1, f1]) => t0 + ((force / 2 - f0) / (f1 - f0)) * (t1 - t0);
+    return {time, force, width: down < end ? crossing(rows[down - 1], rows[down]) - (up < 0 ? rows[0][0] : crossing(rows[up], rows[up + 1])) : NaN};
+  }
+
   // A chain of n beads of masses 1 and omega, contacts F = delta^k, spacing 1, under the static
   // compression p0; bead 0 starts at v, and as a wall it keeps v. Velocity Verlet, fixed step.
   class Chain {
@@ -35,11 +58,11 @@
     }
 
     advance(duration, watch = () => this.watch()) {
-      const end = this.time + duration;
-      while (this.time < end) {
-        const h = Math.min(this.step, end - this.time);
+      const steps = Math.ceil(duration / this.step);
+      const h = duration / steps;
+      for (let i = 0; i < steps; i++) {
         this.kick(h / 2);
-        for (let i = 0; i < this.n; i++) this.u[i] += h * this.w[i];
+        for (let j = 0; j < this.n; j++) this.u[j] += h * this.w[j];
         this.forces();
         this.kick(h / 2);
         this.time += h;
@@ -47,29 +70,22 @@
       }
     }
 
-    // The leading peak at each contact: its time and force, by a parabola through three steps, and
-    // its width at half maximum. Both are known when the force has fallen below half of the peak.
+    // The dynamic force of each contact, until the pulse has left the contact AHEAD of it: an
+    // earlier hump of the same pulse is then known to be less than half, or more.
     watch() {
       const first = this.arrivals.length;
-      for (let i = first; i < Math.min(first + 9, this.n - 2); i++) {
-        const trail = (this.trails[i] ||= {best: {time: 0, force: 0}, bead: 0, past: []});
-        const [before, last] = trail.past.slice(-2);
-        const now = [this.time, this.contact[i] - this.load];
-        if (last && before[1] < last[1] && now[1] <= last[1] && last[1] > trail.best.force) {
-          const slope = (now[1] - before[1]) / 2;
-          const ahead = slope / (2 * last[1] - now[1] - before[1]); // in steps
-          trail.best = {time: last[0] + ahead * (last[0] - before[0]), force: last[1] + (slope * ahead) / 2};
-        }
+      const least = first > 1 ? 0.2 * this.arrivals[first - 1].force : 0.008 * this.v;
+      for (let i = first; i < this.n - 2; i++) {
+        const force = this.contact[i] - this.load;
+        if (!this.trails[i] && force < least / 20) break; // ahead of the front
+        const trail = (this.trails[i] ||= {most: 0, bead: 0, past: []});
+        trail.most = Math.max(trail.most, force);
         trail.bead = Math.max(trail.bead, (this.contact[i] + this.contact[i + 1]) / 2); // of bead i + 1
-        trail.past.push(now);
+        trail.past.push([this.time, force]);
       }
-      const least = first > 1 ? 0.4 * this.arrivals[first - 1].force : 0.008 * this.v;
-      const {best, past} = this.trails[first] || {};
-      if (!best || best.force < least || past.at(-1)[1] > best.force / 2) return;
-      const crossing = ([t0, f0], [t1, f1]) => t0 + ((best.force / 2 - f0) / (f1 - f0)) * (t1 - t0);
-      const up = Math.max(past.findIndex(row => row[1] > best.force / 2), 1);
-      const down = past.findIndex(row => row[0] > best.time && row[1] <= best.force / 2);
-      this.arrivals.push({...best, width: crossing(past[down - 1], past[down]) - crossing(past[up - 1], past[up])});
+      const {most, past} = this.trails[first + AHEAD] || {most: 0};
+      if (most < least || past.at(-1)[1] > 0.9 * most) return;
+      this.arrivals.push(leading(this.trails[first].past));
       if (this.arrivals.length === 13) this.arch = this.theory();
     }
 
@@ -256,7 +272,7 @@
       },
       next({chain, ghost, pace}) {
         for (const each of [chain, ghost]) each?.advance(pace);
-        return chain.arrivals.length <= chain.n - 4 && chain.time < 4000 * pace;
+        return chain.arrivals.length < chain.n - 2 - AHEAD && chain.time < 4000 * pace;
       },
       draw: ({chain, ghost, scale}, canvas) => show(canvas, chain, scale, ghost),
       tell({chain, ghost}) {

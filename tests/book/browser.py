@@ -121,11 +121,6 @@ window.addEventListener("load", async () => {
     foreign: window.foreign,
   };
   if (window.lwaTurn) {
-    const chain = new lwaTurn.Chain();
-    while (chain.arrivals.length < 35) chain.advance(1);
-    const wave = Array.from({length: 400}, (_, i) => chain.arch.at(i / 10));
-    const [line, bars] = [wave, chain.contact].map(row => row.indexOf(Math.max(...row)));
-    report.chain = {speed: chain.speed(), force: chain.arrivals[12].force, line: line / 10, bars};
     const home = document.querySelector(".lwa-chain, .lwa-shock, .lwa-breather, .lwa-arch");
     if (home) for (let i = 0; i < 1500 && home.next(); i++);
     const blow = document.querySelector("[data-slider=v]");

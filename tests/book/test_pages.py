@@ -228,21 +228,6 @@ def test_presets_shock_and_breather(visit):
     assert abs(seen["rate"] / bottom - (1 - seen["nu"])) < 1e-3 < seen["nu"]
 
 
-def test_the_chain_on_the_page_is_the_chain_of_python(visit):
-    """Speed and peak force of forty beads by both programs."""
-    of_page = visit.pages["play.html"]["chain"]
-    cell = Dimer(1, "0.2733", spacing=1)
-    scene = Scene.of_cell(cell, 20, "3/2", velocities=(1,), duration=44.0, samples=8801,
-                          contact_sensors=(12, 34))  # fmt: skip
-    run = simulate(scene)
-    pulses = [measure(run.time, force) for force in run.contact_force]
-    speed = 22 / (pulses[1].arrival - pulses[0].arrival)
-    assert abs(of_page["speed"] / speed - 1) < 2e-3
-    assert abs(of_page["force"] / pulses[0].peak - 1) < 2e-3
-    # the theory's line is over the bars, contact i at i + 1/2, after 22 sites at its own speed
-    assert abs(of_page["line"] - of_page["bars"] - 0.5) < 1
-
-
 def test_the_script_is_small_and_loaded_where_it_is_used(visit):
     assert visit.pages["play.html"]["sliders"] == 4
     assert (HTML / "_static" / "turn.js").stat().st_size < 32_000

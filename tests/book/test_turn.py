@@ -1,0 +1,118 @@
+"""The chain of the pages' script, run in Node.js, beside the validated lattice."""
+
+import json
+import math
+import runpy
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lwa import Dimer
+from validation import MeasureError, Scene, simulate
+from validation.pulses.pulse import first_pulse
+from validation.pulses.sensors import tracks
+
+SCRIPTS = Path(__file__).parents[2] / "book" / "_ext"
+CONTACTS = 40, 41, 80, 81
+PAGE = """
+const matchMedia = () => ({}), document = {querySelectorAll: () => []}, window = globalThis;
+"""
+RUN = """
+const struck = job => {
+  const chain = new lwaTurn.Chain({...job, n: 100});
+  while (chain.arrivals.length < 82) chain.advance(1);
+  return {time: chain.time, pulses: CONTACTS.map(i => chain.arrivals[i])};
+};
+console.log(JSON.stringify(JOBS.map(struck)));
+"""
+
+
+@pytest.fixture(scope="module")
+def script():
+    formulas = runpy.run_path(str(SCRIPTS / "interactive.py"))["formulas"]()
+    return PAGE + formulas + (SCRIPTS / "turn.js").read_text()
+
+
+def in_node(script, program, **values):
+    """What a program prints, run after the script and the values."""
+    constants = "".join(f"const {name} = {json.dumps(value)};" for name, value in values.items())
+    run = subprocess.run(["node", "-"], input=script + constants + program,
+                         capture_output=True, text=True, timeout=250)  # fmt: skip
+    assert not run.returncode, run.stderr
+    return json.loads(run.stdout)
+
+
+def by_lattice(duration, omega, k, p0):
+    """Arrival, peak and width at the contacts, NaN where `lwa-validate` refuses the pulse."""
+    scene = Scene.of_cell(
+        Dimer(1, str(omega), spacing=1), 50, str(k), velocities=(1,), duration=duration,
+        contact_sensors=CONTACTS, precompression=p0**k, wall=1.0 if p0 else None,
+    )  # fmt: skip
+    for track in tracks(simulate(scene, rtol=1e-9)):
+        try:
+            pulse = first_pulse(track.force)
+            yield pulse.arrival, pulse.peak, pulse.fwhm
+        except MeasureError:
+            yield (math.nan,) * 3
+
+
+def compare(script, jobs):
+    """Hold each chain of the page against the lattice; return how many pulses have no width."""
+    refused = 0
+    for job, page in zip(jobs, in_node(script, RUN, JOBS=jobs, CONTACTS=CONTACTS), strict=True):
+        keys = "time", "force", "width"
+        ours = np.array([[p[key] for key in keys] for p in page["pulses"]], float)
+        lattice = np.array(list(by_lattice(page["time"], **job)))
+        assert (np.isnan(ours[:, 2]) == np.isnan(lattice[:, 2])).all(), job
+        refused += np.isnan(lattice[:, 2]).sum()
+        passed = [rows[2:, 0] - rows[:2, 0] for rows in (ours, lattice)]
+        assert np.nanmax(abs(passed[0] / passed[1] - 1), initial=0) < 1e-3, job
+        for column, most in ((1, 5e-3), (2, 5e-3)):
+            off = abs(ours[:, column] / lattice[:, column] - 1)
+            assert np.nanmax(off, initial=0) < most, (job, keys[column])
+    return refused
+
+
+def chains(ratios, exponents, loads):
+    return [dict(omega=w, k=k, p0=p) for w in ratios for k in exponents for p in loads]
+
+
+@pytest.mark.optional("node", "sphinx")
+def test_the_page_counts_contacts_as_lwa_validate_does(script):
+    """Humps of one pulse, light strikers, a pulse longer than ten sites, two humps too close."""
+    broad = [dict(omega=100, k=1.5, p0=2), dict(omega=0.3428, k=3, p0=0)]
+    assert not compare(script, [*chains((0.45, 2.2, 20), (1.5,), (0, 0.1)), *broad])
+    assert compare(script, [dict(omega=0.4, k=2, p0=0)]) == 2
+
+
+@pytest.mark.slow
+@pytest.mark.optional("node", "sphinx")
+@pytest.mark.parametrize("k", [1.2, 1.5, 2, 3])
+def test_the_page_counts_contacts_everywhere(script, k):
+    ratios = [float(f"{w:.4g}") for w in np.geomspace(0.01, 100, 25)]
+    refused = compare(script, chains(ratios, (k,), (0, 0.1, 0.5, 2)))
+    assert not refused or k >= 2
+
+
+LINE = """
+const chain = new lwaTurn.Chain();
+while (chain.arrivals.length < 34) chain.advance(1);
+const wave = Array.from({length: 400}, (_, i) => chain.arch.at(i / 10));
+const [line, bars] = [wave, chain.contact].map(row => row.indexOf(Math.max(...row)));
+console.log(JSON.stringify({line: line / 10, bars, speed: chain.speed()}));
+"""
+
+
+@pytest.mark.optional("node", "sphinx")
+def test_the_line_of_the_theory_is_over_the_bars(script):
+    """Contact i stands at i + 1/2; after 20 sites the line is there at its own speed."""
+    seen = in_node(script, LINE)
+    assert abs(seen["line"] - seen["bars"] - 0.5) < 1
+    sensors = Scene.of_cell(
+        Dimer(1, "0.2733", spacing=1), 20, "3/2", velocities=(1,), duration=44.0,
+        contact_sensors=(12, 32),
+    )  # fmt: skip
+    first, last = (first_pulse(track.force) for track in tracks(simulate(sensors)))
+    assert abs(seen["speed"] * (last.arrival - first.arrival) / 20 - 1) < 1e-3
