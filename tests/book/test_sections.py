@@ -14,18 +14,18 @@ PARTS = [
     re.findall(r"file: (\w+)", part)
     for part in (BOOK / "_toc.yml").read_text().split("caption:")[1:]
 ]
-CHAPTERS = [page for part in PARTS[:3] for page in part if page not in ("map", "modes_proof")]
-LABORATORY = [page for page in PARTS[3] if page not in ("recipes", "commands")]
-PAGES = ["intro", "map", "modes_proof", "open", *CHAPTERS, *LABORATORY]
-FRAME = ("Exercises",)
-"""Sections without results: the frame of a chapter."""
-
-FOLDED_CHECKS = r"^:::\{dropdown\} What was checked$"
+CHAPTERS = [page for part in PARTS[:3] for page in part if page not in ("map", "proofs")]
+PAGES = [page.stem for page in BOOK.glob("*.md")]
+LATER = {"links", "modes", "proofs", "pressed", "shocks", "disorder", "upright", "damping"}
+LATER |= {"column", "open", "experiment"}
+"""Pages that still have hidden assertions, exercises without a solution and a tag a section."""
 
 TAGS = {"the paper's", "known", "new here"}
-LINES = 4600
+NEW = 14
+LINES = 4000
 COLUMN, FOLDED = 88, 85
-"""Lines of Markdown at most; characters of visible code, and of the code of a solution."""
+"""Results that were looked up and not found, and lines of Markdown, at most; characters of visible
+code, and of the code of a solution."""
 
 
 def cells(page: str) -> Iterator[tuple[str, str]]:
@@ -50,25 +50,24 @@ def sections(page: str) -> list[tuple[str, str]]:
     return list(zip(parts[::2], parts[1::2], strict=True))
 
 
-@pytest.mark.parametrize("page", PAGES)
-def test_every_section_begins_with_one_tag(page):
+def test_a_tag_begins_its_section():
     tag = re.compile(r'<span class="tag">([^<]*)</span>')
-    if page == "open":
-        return  # its tables have a column for the origin of each statement
-    for heading, text in sections(page):
-        found = tag.findall(text)
-        if heading in ("In short", *FRAME):
-            assert not found, heading
-            continue
-        assert len(found) == 1, f"{heading}: {found}"
-        assert found[0] in TAGS, f"{heading}: {found}"
-        assert tag.match(text.lstrip()), f"{heading}: the tag is not its first word"
-        assert found[0] != "known" or "{cite}" in text, f"{heading}: known, without a source"
+    tags = Counter()
+    for page in set(PAGES) - LATER - {"symbols"}:  # which explains the tags
+        for heading, text in sections(page):
+            found = tag.findall(text)
+            assert not found or len(found) == len(TAGS.intersection(found)) == 1, heading
+            assert not found or tag.match(text.lstrip()), (
+                f"{heading}: no tag at its head"
+            )
+            assert found != ["known"] or "{cite}" in text, f"{heading}: known, without a source"
+            tags.update(found)
+    assert 0 < tags["new here"] <= NEW
 
 
 @pytest.mark.parametrize("page", CHAPTERS)
 def test_a_chapter_has_its_frame(page):
-    """Scene, picture, question, answer; two or three exercises at the end."""
+    """Scene, picture, question, answer: in this order."""
     text = (BOOK / f"{page}.md").read_text(encoding="utf-8")
     opening = text[text.index("\n# ") : text.index("\n## ")]
     marks = (r"^\w", r"^    name: fig-|^<div class", r"^\*[^*]+\?\*$", r"^\*\*The answer\.\*\* \w")
@@ -77,24 +76,21 @@ def test_a_chapter_has_its_frame(page):
     ]
     assert None not in places, f"of scene, picture, question and answer: {places}"
     assert places == sorted(places), "scene, picture, question, answer: in this order"
-    assert sections(page)[-1][0] == "Exercises"
-    frame = text[text.index("\n## Exercises") :]
-    _, *exercises = re.split(r"^(\d)\\\. ", frame, flags=re.MULTILINE)
-    assert exercises[::2] in (["1", "2"], ["1", "2", "3"])
-    for exercise in exercises[1::2]:
-        solved, unsolved = "hide-cell" in exercise, "(No solution is printed.)" in exercise
-        assert solved != unsolved, exercise[:80]
 
 
-@pytest.mark.parametrize("page", [*CHAPTERS, *LABORATORY, "map", "modes_proof", "open"])
-def test_the_checks_are_one_folded_line(page):
-    assert len(re.findall(FOLDED_CHECKS, prose(page), re.MULTILINE)) == 1
-    assert "remove-cell" in list(cells(page))[-1][0], "the checks are not hidden"
+def test_a_page_asserts_nothing_and_each_exercise_has_a_folded_solution():
+    """Assertions stand in the tests; an exercise is the last section of its page."""
+    for page in set(PAGES) - LATER:
+        assert not any("assert " in code for _, code in cells(page)), page
+        text = (BOOK / f"{page}.md").read_text(encoding="utf-8")
+        exercises = text.partition("\n## Exercise\n")[2]
+        assert "## Exercises" not in text, page
+        assert not exercises or re.search("hide-cell|dropdown} Solution", exercises), page
 
 
 def test_tests_and_programs_that_pages_name_are_there():
     named = {x for page in PAGES for x in re.findall(r"`((?:tests|book)/[\w/.]+)`", prose(page))}
-    assert len(named) > 5
+    assert len(named) > 3
     assert not [name for name in named if not (BOOK.parent / name).exists()]
 
 
