@@ -1,9 +1,9 @@
 """Give the pages that can be turned their script and its formulas.
 
-A page with an element of class ``lwa-chain``, ``lwa-shock``, ``lwa-breather``, ``lwa-arch`` or
-``lwa-calculator`` gets `turn.js` and before it, inline, the functions that `turn.js` calls: the
-JavaScript that `lwa` writes of its own closed forms, and its table of materials. The script lies
-outside ``_static``, whose scripts Jupyter Book loads on every page.
+A page with an element of class ``lwa-chain``, ``lwa-shock``, ``lwa-breather``, ``lwa-light``,
+``lwa-arch`` or ``lwa-calculator`` gets `turn.js` and before it, inline, the functions that the
+script calls: the JavaScript that `lwa` writes of its own closed forms, and its table of materials.
+The script lies outside ``_static``, whose scripts Jupyter Book loads on every page.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def formulas() -> str:
 def turn(app: Sphinx, page: str, template: str, context: dict, doctree: object) -> None:
     """Append the scripts to a page that has something to turn."""
     body = context.get("body", "")
-    if re.search('class="lwa-(chain|shock|breather|arch|calculator)"', body):
+    if re.search('class="lwa-(chain|shock|breather|light|arch|calculator)"', body):
         root = context["pathto"]("_static/turn.js", resource=True)
         context["body"] = f'{body}<script>{formulas()}</script><script src="{root}"></script>'
 

@@ -1,4 +1,5 @@
-// Things to turn: a struck chain, a chain that a wall drives, a breather, an arch, and a calculator.
+// Things to turn: a struck chain, a chain that a wall drives, a breather, a light bead between two
+// heavy ones, an arch, and a calculator. Each asks its reader before it shows.
 // Formulas come from lwaFormulas, which lwa writes; nothing else is loaded.
 "use strict";
 (() => {
@@ -30,7 +31,7 @@
   // A chain of n beads of masses 1 and omega, contacts F = delta^k, spacing 1, under the static
   // compression p0; bead 0 starts at v, and as a wall it keeps v. Velocity Verlet, fixed step.
   class Chain {
-    constructor({omega = 0.2733, k = 1.5, p0 = 0, v = 1, n = 40, wall = false, start = null} = {}) {
+    constructor({omega = 0.2733, k = 1.5, p0 = 0, v = 1, n = 40, wall = false, start = null, fine = 1} = {}) {
       Object.assign(this, {omega, k, p0, v, n, wall, load: Math.pow(p0, k), time: 0, arrivals: [], trails: [], arch: null});
       this.mass = Array.from({length: n}, (_, i) => (i % 2 ? omega : 1));
       this.u = new Float64Array(n); // displacements along the chain
@@ -39,7 +40,7 @@
       if (start) this.u.forEach((_, i) => (this.u[i] = start(i)));
       this.contact = new Float64Array(n - 1);
       const most = Math.max(Math.pow((wall ? 4 : 1) * v * v, 1 / (k + 1)) + p0, 1e-3); // a compression of the scene
-      this.step = 0.12 / Math.sqrt(2 * k * Math.pow(most, k - 1) * (1 + 1 / omega));
+      this.step = 0.12 / fine / Math.sqrt(2 * k * Math.pow(most, k - 1) * (1 + 1 / omega));
       this.forces();
     }
 
@@ -202,15 +203,33 @@
     return {pen, x, y, base};
   }
 
+  // The question of a thing to turn: what follows is hidden until the reader has answered.
+  function question(home, {ask, answers}, shown) {
+    const text = element("p", {class: "lwa-question"}, home.dataset.ask || ask);
+    const row = element("div", {class: "lwa-answers"});
+    for (const answer of (home.dataset.answers || answers).split("|")) {
+      const button = element("button", {type: "button"}, answer);
+      row.append(button);
+      button.addEventListener("click", () => {
+        row.replaceWith(element("p", {class: "lwa-answer"}, `You say: ${answer}. See for yourself.`));
+        shown();
+      });
+    }
+    home.append(text, row);
+  }
+
   // The frame of a thing that moves: `begin(values, old)` starts a scene, `draw(scene, canvas)` shows
   // it, `next(scene)` advances it by one picture, false at its end, `tell(scene)` is the line below.
-  function moving(home, label, sliders, {begin = values => ({...values}), draw, next = () => true, tell}) {
+  // `then` are values that the sliders take when the question is answered.
+  function moving(home, thing) {
+    const {label, sliders, then = {}, begin, draw, next, tell} = thing;
     const canvas = element("canvas", {role: "img", "aria-label": label});
     const output = element("output", {"aria-live": "polite"});
     const button = element("button", {type: "button"}, calm ? "Play" : "Pause");
     const panel = element("div", {class: "lwa-panel"}, button);
-    const values = {};
-    let scene, playing = !calm, due = 0;
+    const shown = element("div", {}, canvas, panel, output);
+    const values = {}, inputs = {};
+    let scene, settled, playing = false, due = 0;
     const restart = old => {
       scene = home.scene = begin(values, old);
       for (let i = 0; !playing && i < 240 && next(scene); i++);
@@ -231,44 +250,68 @@
       const given = (values[name] = name in home.dataset ? Number(home.dataset[name]) : meaning(start));
       if ("plain" in home.dataset) continue;
       const value = element("span", {}, given.toPrecision(3));
-      const slider = element("input", {type: "range", min: low, max: high, step, value: root(x => meaning(x) - given, low, high), "aria-label": text, "data-slider": name});
-      slider.addEventListener("input", () => {
-        values[name] = meaning(Number(slider.value));
-        value.textContent = values[name].toPrecision(3);
+      const place = x => root(y => meaning(y) - x, low, high);
+      const slider = element("input", {type: "range", min: low, max: high, step, value: place(given), "aria-label": text, "data-slider": name});
+      inputs[name] = x => {
+        values[name] = x;
+        value.textContent = x.toPrecision(3);
         slider.setAttribute("aria-valuetext", value.textContent);
-        restart({...scene, turned: true});
-      });
+        restart({...scene, before: settled}); // as it was when the hand came to the slider
+      };
+      slider.addEventListener("input", () => inputs[name](meaning(Number(slider.value))));
+      slider.addEventListener("change", () => (settled = {...values}));
+      inputs[name].set = x => (slider.value = place(x));
       panel.append(element("label", {}, `${text}: `, value, slider));
     }
-    button.addEventListener("click", () => {
-      playing = !playing;
+    const play = on => {
+      playing = on;
       button.textContent = playing ? "Pause" : "Play";
       if (playing) frame();
-    });
-    home.append(canvas, panel, output);
+    };
+    button.addEventListener("click", () => play(!playing));
+    settled = {...values};
     home.next = () => next(scene);
+    if ("plain" in home.dataset) home.append(shown);
+    else {
+      question(home, thing, () => {
+        shown.hidden = false;
+        for (const [name, x] of "omega" in home.dataset ? [] : Object.entries(then)) {
+          inputs[name].set(x);
+          inputs[name](x);
+        }
+        settled = {...values};
+        restart(scene);
+        play(!calm);
+      });
+      shown.hidden = true;
+      home.append(shown);
+    }
     restart(null);
-    frame();
+    if ("plain" in home.dataset) play(!calm);
   }
 
-  // Scale and clock stay while a slider moves; the chain as it was before runs along in grey.
-  function struckIn(home) {
-    const sliders = [
-      ["omega", "mass ratio ω", -1.7, 0, 0.01, x => 10 ** x, Math.log10(0.2733)],
-      ["k", "exponent k", 1.1, 3, 0.05, same, 1.5],
-      ["p0", "load: static compression p₀", 0, 0.5, 0.01, same, 0],
-      ["v", "velocity of the blow", 0.2, 2, 0.05, same, 1],
-    ];
-    moving(home, "A row of forty beads, bars of the force in each contact, the pulse before the last change in grey, and the theory's wave as a line", sliders, {
+  const things = {
+    // Scale and clock stay while a slider moves; the chain as it was before runs along in grey.
+    chain: {
+      ask: "The blow becomes twice as fast. How much faster is the pulse?",
+      answers: "twice as fast|about a seventh faster|no faster",
+      then: {v: 2},
+      label: "A row of forty beads, bars of the dynamic force in each contact, the pulse before the last change in grey, and the theory's wave as a line",
+      sliders: [
+        ["omega", "mass ratio ω", -1.7, 0, 0.01, x => 10 ** x, Math.log10(0.2733)],
+        ["k", "exponent k", 1.1, 3, 0.05, same, 1.5],
+        ["p0", "load: static compression p₀", 0, 0.5, 0.01, same, 0],
+        ["v", "velocity of the blow", 0.2, 2, 0.05, same, 1],
+      ],
       begin(values, old) {
         const chain = new Chain(values);
         const probe = new Chain(values);
         while (probe.arrivals.length < 6 && probe.time < 400) probe.advance(1);
         const peak = Math.max(...probe.arrivals.slice(1).map(a => a.force), 1e-6);
         const pace = (probe.arrivals[5]?.time - probe.arrivals[1]?.time || 8) / 40; // a site in ten pictures
-        const before = old?.turned ? old.given : old?.before;
+        const before = old?.before;
         const scale = Math.max(1.3 * peak, old?.scale || 0);
-        return {given: {...values}, before, ghost: before ? new Chain(before) : null, chain, scale, pace: old?.pace || pace};
+        return {before, ghost: before ? new Chain(before) : null, chain, scale, pace: old?.pace || pace};
       },
       next({chain, ghost, pace}) {
         for (const each of [chain, ghost]) each?.advance(pace);
@@ -280,17 +323,18 @@
         const [lattice, theory, other] = [chain.speed(), chain.arch.speed, ghost?.speed()];
         const error = lattice ? `; theory ${percent(theory / lattice - 1)}` : "";
         const grey = other ? `; in grey, before the change: ${other.toFixed(3)}` : "";
-        return `Peak force ${chain.arch.force.toFixed(3)}. Speed: theory ${theory.toFixed(3)}, lattice ${lattice ? lattice.toFixed(3) : "…"} sites per unit of time${error}${grey}`;
+        return `Peak of the dynamic force ${(chain.arch.force - chain.load).toFixed(3)}. Speed: theory ${theory.toFixed(3)}, lattice ${lattice ? lattice.toFixed(3) : "…"} sites per unit of time${error}${grey}`;
       },
-    });
-  }
+    },
 
-  // A wall drives equal spheres: the plateau by the Riemann invariant, the front by the doubling rule.
-  function shockIn(home) {
-    const sliders = [["v", "velocity of the wall", 0.05, 1, 0.05, same, 0.4], ["p0", "load: static compression p₀", 0, 1, 0.05, same, 0.25]];
-    const energy = (p, k) => Math.pow(p, k + 1) / (k + 1);
-    moving(home, "A row of beads that a wall drives from the left, bars of the force in each contact, and lines of the plateau and of the leading edge", sliders, {
+    // A wall drives equal spheres: the plateau by the Riemann invariant, the front by the doubling rule.
+    shock: {
+      ask: "A wall pushes the row at a steady velocity. How fast do the beads at the very front move?",
+      answers: "as fast as the wall|nearly twice as fast|more slowly",
+      label: "A row of beads that a wall drives from the left, bars of the dynamic force in each contact, and lines of the plateau and of the leading edge",
+      sliders: [["v", "velocity of the wall", 0.05, 1, 0.05, same, 0.4], ["p0", "load: static compression p₀", 0, 1, 0.05, same, 0.25]],
       begin({v, p0}) {
+        const energy = (p, k) => Math.pow(p, k + 1) / (k + 1);
         const [k, n] = [1.5, 120];
         const whole = p => ((2 * Math.sqrt(k)) / (k + 1)) * Math.pow(p, (k + 1) / 2); // ∫ c dp
         const behind = root(p => whole(p) - whole(p0) - v, p0, 50);
@@ -309,59 +353,104 @@
         line(pen, [[x(0), y(plateau)], [x(chain.n), y(plateau)]], THEORY, 1);
         line(pen, [[x(edge * chain.time), 8], [x(edge * chain.time), base]], THEORY, 1);
       },
-      tell: ({chain, edge, fastest}) => `Lines: force on the plateau by the Riemann invariant, leading edge at ${edge.toFixed(3)} sites per unit of time by the doubling rule, whose beads move at twice the wall's velocity. ` +
+      tell: ({chain, edge, fastest}) => `Lines: dynamic force on the plateau by the Riemann invariant, leading edge at ${edge.toFixed(3)} sites per unit of time by the doubling rule, whose beads move at twice the wall's velocity. ` +
         (fastest ? `Here the leading beads have reached ${(fastest / chain.v).toFixed(2)} times this velocity.` : "The train is forming …"),
-    });
-  }
+    },
 
-  // A breather of a loaded dimer, started from its envelope; omega = 1/2, p0 = 1. Its frequency is
-  // counted by the passages of the middle light bead through its place.
-  function breatherIn(home) {
-    const [k, omega, n] = [1.5, 0.5, 121];
-    const bottom = Math.sqrt((2 * k) / omega); // F' = k at the compression 1
-    moving(home, "Displacement of each bead of a loaded chain over its place, and the envelope of the theory", [["nu", "detuning 1 - f/f₀", 0.001, 0.015, 0.0005, same, 0.004]], {
+    // A breather of a loaded dimer, started from its envelope; omega = 1/2, p0 = 1. A contact that
+    // swings by U cos Ωt keeps its mean force if it expands by (k - 1)U²/4: the lasting displacement.
+    breather: {
+      ask: "The light beads swing more strongly. What does their frequency do?",
+      answers: "it rises|it stays|it falls",
+      then: {nu: 0.005},
+      label: "Displacement of each bead of a loaded chain over its place, and the envelope of the theory",
+      sliders: [["nu", "detuning 1 - f/f₀", 0.001, 0.005, 0.0005, same, 0.0015]],
       begin({nu}) {
+        const [k, omega, n, middle] = [1.5, 0.5, 121, 61]; // a light bead in the middle
         const [U, b] = [Math.sqrt((32 * nu) / (k * (k - 1))), Math.sqrt((8 * nu * (1 - omega)) / omega)];
-        const cell = i => (i - 61) / 2; // bead 61 is the light bead in the middle
-        const start = i => (i % 2 ? (Math.abs(cell(i)) % 2 ? -U : U) / Math.cosh(b * cell(i)) : 0);
-        return {chain: new Chain({omega, k, p0: 1, v: 0, n, start}), U, b, nu, turns: [], last: U, cell};
+        const envelope = i => U / Math.cosh((b * (i - middle)) / 2);
+        const lasting = i => (((k - 1) * U * U) / (2 * b)) * Math.tanh((b * (i - middle)) / 2);
+        const start = i => lasting(i) + (i % 2 ? envelope(i) * ((i - middle) % 4 ? -1 : 1) : 0);
+        const bottom = Math.sqrt((2 * k) / omega); // F' = k at the compression 1
+        return {chain: new Chain({omega, k, p0: 1, v: 0, n, start, fine: 3}), middle, bottom, U, nu, envelope, lasting, turns: [], last: U};
       },
-      next(scene) {
-        const {chain} = scene;
-        chain.advance(0.25 / bottom, () => {
-          const [now, before] = [chain.u[61] - scene.mean, scene.last];
-          if (before < 0 && now >= 0) scene.turns.push(chain.time);
-          scene.last = now;
-        });
-        scene.mean = (chain.u[60] + chain.u[62]) / 2;
-        return chain.time < 900;
-      },
-      draw({chain, U, b, cell}, canvas) {
+      next: scene => swing(scene, 0.25) < 2200,
+      draw({chain, U, envelope, lasting}, canvas) {
         const [pen, width, height] = sheet(canvas);
-        const [x, y] = [i => ((i + 1) / (n + 1)) * width, u => height / 2 - (u / (1.4 * U)) * (height / 2)];
-        for (const sign of [1, -1]) line(pen, Array.from({length: n}, (_, i) => [x(i), y((sign * U) / Math.cosh(b * cell(i)))]), THEORY, 1);
-        const drift = (chain.u[0] + chain.u[n - 1]) / 2;
+        const [x, y] = [i => ((i + 1) / (chain.n + 1)) * width, u => height / 2 - (u / (1.6 * U)) * (height / 2)];
+        for (const sign of [1, -1]) line(pen, Array.from(chain.u, (_, i) => [x(i), y(lasting(i) + sign * envelope(i))]), THEORY, 1);
+        const drift = (chain.u[0] + chain.u[chain.n - 1]) / 2;
         chain.u.forEach((u, i) => disk(pen, x(i), y(u - drift), i % 2 ? 3 : 2, i % 2 ? LATTICE : "#44546A"));
       },
-      tell({turns, nu}) {
-        const count = turns.length - 1;
-        const rate = count > 4 ? (2 * Math.PI * count) / (turns[count] - turns[0]) / bottom : NaN;
-        return `Frequency over that of the band's edge: envelope ${(1 - nu).toFixed(4)}, lattice ${rate ? rate.toFixed(4) : "…"}. No small wave of the chain has a frequency just below 1.`;
-      },
-    });
-  }
+      tell: scene => `Frequency over that of the band's edge: envelope ${(1 - scene.nu).toFixed(4)}, lattice ${rate(scene)}. No small wave of the chain has a frequency just below 1. The beads on both sides stay apart by the rise of the lines.`,
+    },
 
-  // The arch of the theory over the beads, at rest: equal beads, peak strain 1.
-  function archIn(home) {
-    moving(home, "One arch of a power of a cosine over a row of beads", [["k", "exponent k", 1.1, 4, 0.05, same, 1.5]], {
+    // One light bead between two heavy ones that a load presses together, of small mass: its heavy
+    // neighbours do not follow the swing, but they make room for its mean force.
+    light: {
+      ask: "A light bead swings between two heavy ones that a load presses together. It swings twice as far. How does its frequency change?",
+      answers: "it rises|it stays|it falls",
+      then: {a: 0.8},
+      label: "A light bead between two heavy ones, and bars of the force in both contacts",
+      sliders: [["a", "amplitude over the static compression", 0.1, 0.8, 0.05, same, 0.4], ["k", "exponent k", 1.1, 3, 0.05, same, 1.5]],
+      begin({a, k}) {
+        const omega = 1e-4, turn = Array.from({length: 64}, (_, i) => Math.cos(((i + 0.5) * Math.PI) / 64));
+        const room = root(x => 1 - turn.reduce((sum, c) => sum + Math.pow(Math.max(1 - x + a * c, 0), k), 0) / 64, 0, 1);
+        const start = i => (i - 1) * room + (i === 1 ? a : 0);
+        const chain = new Chain({omega, k, p0: 1, v: 0, n: 3, start, fine: 4});
+        return {chain, a, k, room, middle: 1, bottom: Math.sqrt((2 * k) / omega), turns: [], last: a};
+      },
+      next: scene => swing(scene, 0.08) < 220,
+      draw({chain, k}, canvas) {
+        const [pen, width, height] = sheet(canvas);
+        const [heavy, small] = [0.36 * height, 0.15 * height];
+        const side = Math.min(1.9 * height, 0.45 * width);
+        const place = i => width / 2 + (i - 1) * (heavy + small) + 0.3 * small * chain.u[i];
+        [0, 2, 1].forEach(i => disk(pen, place(i), height / 2, i === 1 ? small : heavy, i === 1 ? "#E69F00" : "#44546A"));
+        const y = force => height - 6 - (force / 2 ** k) * (height - 12);
+        pen.fillStyle = LATTICE;
+        chain.contact.forEach((force, i) => pen.fillRect(width / 2 + (i ? side - 0.15 * height : -side), y(force), 0.15 * height, y(0) - y(force)));
+        for (const x of [-side, side - 0.15 * height]) line(pen, [0, 0.15].map(part => [width / 2 + x + part * height, y(1)]), THEORY, 1);
+      },
+      tell(scene) {
+        const {a, k, room} = scene, second = part => (1 - part * (k - 1) * a * a / 16).toFixed(4);
+        return `Frequency over that of a small swing: counted ${rate(scene)}, to second order ${second(k)}; between neighbours held still it would be ${second(2 - k)}. Bars: both forces; line: the load. Each contact has expanded by ${room.toFixed(3)} of its static compression, so that its mean force stays the load, and is softer.`;
+      },
+    },
+
+    // The arch of the theory over the beads, at rest: equal beads, peak strain 1.
+    arch: {
+      ask: "The exponent of the contacts doubles from 3/2 to 3. What does the length of the pulse do?",
+      answers: "it grows|it stays|it shrinks",
+      then: {k: 3},
+      label: "One arch of a power of a cosine over a row of beads",
+      sliders: [["k", "exponent k", 1.1, 4, 0.05, same, 1.5]],
+      begin: values => ({...values}),
+      next: () => true,
       draw({k}, canvas) {
         const [pen, width, height] = sheet(canvas, 6);
-        const [x, y] = [xi => (xi / 14 + 0.5) * width, v => height - 26 - v * (height - 40)];
-        for (let j = -7; j <= 7; j++) disk(pen, x(j), height - 12, Math.min(0.45 * (x(1) - x(0)), 10), "#44546A");
-        line(pen, Array.from({length: 281}, (_, i) => i / 20 - 7).map(xi => [x(xi), y(Math.max(f.profile(xi, 1, k, 1, 1, 1), 0))]), THEORY);
+        const [x, y] = [xi => (xi / 22 + 0.5) * width, v => height - 26 - v * (height - 40)];
+        for (let j = -10; j <= 10; j++) disk(pen, x(j), height - 12, Math.min(0.45 * (x(1) - x(0)), 10), "#44546A");
+        line(pen, Array.from({length: 441}, (_, i) => i / 20 - 11).map(xi => [x(xi), y(Math.max(f.profile(xi, 1, k, 1, 1, 1), 0))]), THEORY);
       },
       tell: ({k}) => `The strain is cos^${(2 / (k - 1)).toFixed(1)}(βξ) with β = ${f.beta(k, 1, 1, 1).toFixed(3)}/D; half of its peak is exceeded over ${f.fwhm_strain(k, 1, 1, 1).toFixed(2)} D, and the arch ends after ${(Math.PI / f.beta(k, 1, 1, 1)).toFixed(1)} D.`,
+    },
+  };
+
+  // One picture of a swinging bead: its upward passages between its neighbours are counted.
+  function swing(scene, part) {
+    const {chain, middle, bottom} = scene;
+    chain.advance(part / bottom, () => {
+      const now = chain.u[middle] - (chain.u[middle - 1] + chain.u[middle + 1]) / 2;
+      if (scene.last < 0 && now >= 0) scene.turns.push(chain.time - (chain.step * now) / (now - scene.last));
+      scene.last = now;
     });
+    return bottom * chain.time;
+  }
+
+  function rate({turns, bottom}) {
+    const count = turns.length - 1;
+    return count > 1 ? ((2 * Math.PI * count) / (turns[count] - turns[0]) / bottom).toFixed(4) : "…";
   }
 
   const percent = x => `${(100 * x).toFixed(1).replace("-", "−")} %`;
@@ -381,11 +470,13 @@
 
   // Numbers of a blow on spheres in SI units, by the lattice and by each theory, at contact 80. A
   // given force fixes the unit of length, which the lattice's force depends on. lwaSeries: rows of
-  // ln omega, width in sites and its error, NaN where the series refuses a value.
+  // ln omega, width in sites and its error, NaN where the series refuses a value. A material is a name of
+  // the table or {E, nu, density}.
   function calculate({a, b, radiusA, radiusB, load, blow, kind}) {
-    if (!(radiusA > 0 && radiusB > 0 && blow > 0 && load >= 0)) return {refused: "Radii and the blow must be positive, the load not negative."};
+    if (!(radiusA > 0 && radiusB > 0 && blow > 0 && load >= 0)) return {refused: "Radii and the blow must be positive numbers, the load a number that is not negative."};
     if (kind === "force" && blow <= load) return {refused: "The peak force must exceed the load."};
-    const [one, two] = [f.materials[a], f.materials[b]];
+    const [one, two] = [a, b].map(solid => f.materials[solid] ?? solid);
+    if (![one, two].every(({E, nu, density}) => E > 0 && nu > -1 && nu <= 0.5 && density > 0)) return {refused: "Young's modulus and density must be positive numbers, Poisson's ratio a number from −1 to 0.5."};
     const [m1, m2] = [[radiusA, one], [radiusB, two]].map(([R, solid]) => (4 / 3) * Math.PI * R ** 3 * solid.density);
     const A = f.hertz_A(one.E, one.nu, radiusA, two.E, two.nu, radiusB);
     const [D, omega, still] = [radiusA + radiusB, m2 / m1, Math.pow(load / A, 2 / 3)];
@@ -422,27 +513,41 @@
 
   function calculatorIn(home) {
     const choice = (names, chosen) => element("select", {}, ...names.map(([value, text = value]) => element("option", value === chosen ? {value, selected: ""} : {value}, text)));
-    const number = (value, step) => element("input", {type: "number", min: 0, value, step});
-    const solids = Object.keys(f.materials).map(name => [name]);
+    const number = value => element("input", {type: "text", inputmode: "decimal", value});
+    const read = text => (/^\s*[-+]?(\d+([.,]\d*)?|[.,]\d+)(e[-+]?\d+)?\s*$/i.test(text) ? Number(text.replace(",", ".")) : NaN);
+    const solids = [...Object.keys(f.materials).map(name => [name]), ["own", "another: E, ν and density"]];
+    const own = bead => Object.entries({E: [193, "E in GPa"], nu: [0.3, "Poisson's ratio ν"], density: [7900, "density in kg/m³"]})
+      .map(([name, [value, label]]) => [`${name} ${bead}`, [`${bead === "a" ? "first" : "second"} bead: ${label}`, number(value)]]);
     const blows = [["velocity", "the striker's velocity in m/s"], ["drop", "the striker's drop in mm"], ["force", "peak force in N, load included"]];
     const fields = {
       a: ["first bead (the striker)", choice(solids, "steel 316")],
-      radiusA: ["its radius in mm", number(2.38, 0.01)],
+      ...Object.fromEntries(own("a")),
+      radiusA: ["its radius in mm", number(2.38)],
       b: ["second bead", choice(solids, "PTFE")],
-      radiusB: ["its radius in mm", number(2.38, 0.01)],
+      ...Object.fromEntries(own("b")),
+      radiusB: ["its radius in mm", number(2.38)],
       kind: ["the blow is given as", choice(blows, "velocity")],
-      blow: ["its value", number(1.37, 0.01)],
-      load: ["static load in N", number(0, 0.1)],
+      blow: ["its value", number(1.37)],
+      load: ["static load in N", number(0)],
     };
     const output = element("output", {"aria-live": "polite"});
     const text = (name, line) => output.append(element("div", {"data-name": name}, line));
     const form = element("div", {class: "lwa-panel"}, ...Object.values(fields).map(([label, input]) => element("label", {}, `${label} `, input)));
+    for (const [name, [, input]] of Object.entries(fields)) input.name = name;
     form.addEventListener("input", update);
-    home.append(form, output);
+    const shown = element("div", {}, form, output);
+    question(home, {ask: "Steel and PTFE balls of 4.76 mm lie in a row; the first is struck at 1.37 m/s. Sound runs at 4,900 m/s in a bar of this steel, at 820 m/s in PTFE and at 340 m/s in air. How fast does the pulse run?", answers: "faster than sound in PTFE|between PTFE and air|slower than sound in air"}, () => (shown.hidden = false));
+    shown.hidden = true;
+    home.append(shown);
 
     function update() {
-      const value = (name, input) => (input.type === "number" ? input.value * (name.startsWith("radius") ? 1e-3 : 1) : input.value);
-      const given = Object.fromEntries(Object.entries(fields).map(([name, [, input]]) => [name, value(name, input)]));
+      const given = Object.fromEntries(Object.entries(fields).map(([name, [, input]]) => [name, input.type === "text" ? read(input.value) : input.value]));
+      for (const bead of ["a", "b"]) {
+        for (const [name] of own(bead)) fields[name][1].parentElement.hidden = given[bead] !== "own";
+        if (given[bead] === "own") given[bead] = {E: 1e9 * given[`E ${bead}`], nu: given[`nu ${bead}`], density: given[`density ${bead}`]};
+      }
+      given.radiusA *= 1e-3;
+      given.radiusB *= 1e-3;
       output.replaceChildren();
       const found = calculate(given);
       if (found.refused) return text("refused", found.refused);
@@ -462,6 +567,7 @@
     update();
   }
 
-  window.lwaTurn = {Chain, calculate};
-  for (const [name, make] of Object.entries({chain: struckIn, shock: shockIn, breather: breatherIn, arch: archIn, calculator: calculatorIn})) document.querySelectorAll(`.lwa-${name}`).forEach(make);
+  window.lwaTurn = {Chain, calculate, things};
+  document.querySelectorAll(".lwa-calculator").forEach(calculatorIn);
+  for (const [name, thing] of Object.entries(things)) document.querySelectorAll(`.lwa-${name}`).forEach(home => moving(home, thing));
 })();

@@ -55,6 +55,11 @@ window.addEventListener("load", async () => {
   for (const image of document.images) image.loading = "eager";
   for (const details of document.querySelectorAll("details")) details.open = true;
   await Promise.all([...document.images].map(image => image.decode().catch(() => 0)));
+  const home = document.querySelector(".lwa-chain, .lwa-shock, .lwa-breather, .lwa-arch");
+  const {scale, pace} = home?.scene ?? {};
+  const asked = document.querySelectorAll(".lwa-answers");
+  const early = [...document.querySelectorAll("canvas")].filter(e => e.clientWidth).length;
+  asked.forEach(row => row.firstChild.click());
   const math = [...document.querySelectorAll(".math")];
   const body = document.querySelector("article") || document.body;
   const text = body.cloneNode(true);
@@ -117,30 +122,34 @@ window.addEventListener("load", async () => {
     sliders: body.querySelectorAll("input[type=range]").length,
     calculator: [...body.querySelectorAll(".lwa-calculator [data-name]")]
       .map(e => [e.dataset.name, e.textContent]),
+    asked: asked.length,
+    early,
     errors: errors,
     foreign: window.foreign,
   };
-  if (window.lwaTurn) {
-    const home = document.querySelector(".lwa-chain, .lwa-shock, .lwa-breather, .lwa-arch");
-    if (home) for (let i = 0; i < 1500 && home.next(); i++);
-    const blow = document.querySelector("[data-slider=v]");
-    if (home?.scene.pace && blow) {
-      const {scale, pace} = home.scene;
-      blow.value = 2;
-      blow.dispatchEvent(new Event("input"));
-      for (let i = 0; i < 150; i++) home.next();
-      const {chain: now, ghost, scale: wide, pace: clock} = home.scene;
-      const [passed, forces] = [c => c.arrivals.length, c => c.arrivals[10].force];
-      report.harder = {scales: [scale, wide], paces: [pace, clock],
-        passed: [ghost, now].map(passed), forces: [ghost, now].map(forces)};
-    }
-    report.presets = [...document.querySelectorAll("[data-omega]")].map(e => e.scene.chain.omega);
-    const {edge, fastest, chain: driven, turns, nu} = home ? home.scene : {};
-    if (edge) report.shock = {v: driven.v, p0: driven.p0, edge, fastest};
-    const mean = turns && (turns.at(-1) - turns[0]) / (turns.length - 1);
-    if (turns) report.breather = {nu, rate: 2 * Math.PI / mean};
+  const blow = document.querySelector("[data-slider=v]");
+  if (home?.scene.ghost) {
+    for (let i = 0; i < 150; i++) home.next();
+    const {chain: now, ghost, scale: wide, pace: clock} = home.scene;
+    const [passed, forces] = [c => c.arrivals.length, c => c.arrivals[10].force];
+    report.harder = {scales: [scale, wide], paces: [pace, clock],
+      passed: [ghost, now].map(passed), forces: [ghost, now].map(forces)};
+    for (blow.value of [1.5, 1.1, 0.5]) blow.dispatchEvent(new Event("input"));
+    report.dragged = [home.scene.ghost.v, home.scene.chain.v];
   }
+  report.presets = [...document.querySelectorAll("[data-omega]")].map(e => e.scene.chain.omega);
   if (document.querySelector(".lwa-calculator")) {
+    const typed = rows => {
+      for (const [name, value] of rows) {
+        const input = body.querySelector(`.lwa-calculator [name="${name}"]`);
+        input.value = value;
+        input.dispatchEvent(new Event("input", {bubbles: true}));
+      }
+      return body.querySelector(".lwa-calculator [data-name]").textContent;
+    };
+    report.typed = ["2,38", "2.38", "2.380,5", "two"].map(text => typed([["radiusB", text]]));
+    const own = [["radiusB", "2,38"], ["b", "own"], ["E b", "1,46"], ["nu b", "0.46"]];
+    report.own = [typed([...own, ["density b", "2178"]]), typed([["density b", "-1"]])];
     const beads = {a: "steel 316", b: "PTFE", radiusA: 2.38e-3, radiusB: 2.38e-3};
     report.blows = [
       {load: 0, blow: 1.37, kind: "velocity"}, {load: 2, blow: 1.37, kind: "velocity"},

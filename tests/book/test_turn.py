@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lwa import Dimer
+from lwa import Cell, Dimer, Power, envelope, piston
 from validation import MeasureError, Scene, simulate
 from validation.pulses.pulse import first_pulse
 from validation.pulses.sensors import tracks
@@ -116,3 +116,44 @@ def test_the_line_of_the_theory_is_over_the_bars(script):
     )  # fmt: skip
     first, last = (first_pulse(track.force) for track in tracks(simulate(sensors)))
     assert abs(seen["speed"] * (last.arrival - first.arrival) / 20 - 1) < 1e-3
+
+
+TURNED = """
+const run = (name, values) => {
+  const scene = lwaTurn.things[name].begin(values);
+  while (lwaTurn.things[name].next(scene));
+  return scene;
+};
+const rate = ({turns, bottom}) =>
+  (2 * Math.PI * (turns.length - 1)) / (turns.at(-1) - turns[0]) / bottom;
+const [shock, apart] = [run("shock", WALL), []];
+const {begin, next} = lwaTurn.things.breather;
+const ringing = begin({nu: 0.003});
+while (next(ringing)) apart.push(ringing.chain.u[75] - ringing.chain.u[47]);
+console.log(JSON.stringify({
+  shock: [shock.edge, shock.fastest / WALL.v],
+  breathers: NU.map(nu => rate(run("breather", {nu}))),
+  bottom: ringing.bottom,
+  apart: [Math.min(...apart), Math.max(...apart)].map(u => u / (2 * ringing.lasting(75))),
+  light: LIGHT.map(values => rate(run("light", values))),
+}));
+"""
+
+
+@pytest.mark.optional("node", "sphinx")
+def test_what_is_turned_shows_the_theory_beside_it(script):
+    """Doubling rule and El's beads; the envelope's frequency; a light bead to second order."""
+    v, ahead, nu = 0.4, 0.25, np.array([0.001, 0.003, 0.005])
+    light = [dict(a=a, k=k) for a in (0.1, 0.3) for k in (1.5, 3)]
+    seen = in_node(script, TURNED, WALL=dict(v=v, p0=ahead), NU=nu.tolist(), LIGHT=light)
+    rule = piston(Cell([1], spacing=1), str(v), law=Power("3/2"), ahead=str(ahead))
+    assert seen["shock"][0] == pytest.approx(float(rule.leading_speed()), rel=1e-9)
+    assert 1.85 < seen["shock"][1] < 2  # from below, as the train grows
+    edge = envelope(Dimer(1, "1/2", spacing=1), law=Power("3/2"), background=1)
+    assert seen["bottom"] == pytest.approx(float(edge.frequency), rel=1e-12)
+    # Verlet's error, and the next order of the envelope
+    assert (abs(np.array(seen["breathers"]) - (1 - nu)) < 5e-5 + 50 * nu**2).all()
+    assert 0.95 < seen["apart"][0] < seen["apart"][1] < 1.15  # the sides stay where they begin
+    for values, rate in zip(light, seen["light"], strict=True):
+        a, k = values["a"], values["k"]
+        assert abs(rate - 1 + k * (k - 1) * a**2 / 16) < 1e-4 + 0.2 * a**4
