@@ -16,6 +16,7 @@ from lwa.base.exact import InputError
 from lwa.base.files import Table, among, finite, load, table
 from lwa.cell import Cell, D
 from lwa.command.options import given
+from lwa.command.rows import approximate
 from lwa.law import ContactLaw, Power, read_law, refuse_two_laws
 from lwa.spheres.beads import FILE, STRIKER, Row, period, read_beads, read_materials, read_row
 from lwa.spheres.hertz import EXPONENT
@@ -39,10 +40,14 @@ class ChainInput:
     @property
     def text(self) -> str:
         """One line of text with the masses, the contacts and the spacing of the chain."""
-        law, cell = self.law, self.cell
-        force = f"A δ^k, k = {law.exponent}" if law.homogeneous else f"A F, F = {law.F}"
-        masses, A = (", ".join(map(str, x)) for x in (cell.masses, cell.stiffnesses))
-        return f"masses {masses}; contact force {force}, A = {A}; spacing D = {cell.spacing}"
+        law, cell, k = self.law, self.cell, self.law.exponent
+        force = f"A δ^k, k = {k}" if law.homogeneous else f"A F, F = {law.F}"
+        write, units = (approximate, (" kg", f" N/m^({k})", " m")) if self.si else (str, [""] * 3)
+        values = (cell.masses, cell.stiffnesses, [cell.spacing])
+        masses, A, D = (
+            ", ".join(map(write, x)) + unit for x, unit in zip(values, units, strict=True)
+        )
+        return f"masses {masses}; contact force {force}, A = {A}; spacing D = {D}"
 
     def load(self, background: sp.Expr | None, precompression: sp.Expr | None) -> sp.Expr | None:
         """Static force of the file or of the options; raises `lwa.InputError` for two loads."""
@@ -50,14 +55,6 @@ class ChainInput:
         if static and (background is not None or precompression is not None):
             raise InputError(f"the file has a precompression of {static}: give no other load")
         return static or precompression
-
-    def without_load(self) -> list[str]:
-        """Note on a result that leaves out the static force of the file; [] without a force."""
-        if not self.precompression:
-            return []
-        force = f"{float(self.precompression):g}{' N' * self.si}"
-        without = "is left out: the theory used is of a chain without"
-        return [f"the load of the file, {force}, {without}"]
 
 
 def take_chain(options: dict[str, Any]) -> ChainInput:

@@ -1,4 +1,4 @@
-"""The command `lwa derive`: ansatz, wave equation and defect, or a module of NumPy functions."""
+"""The command `lwa derive`: ansatz, wave equation and defect."""
 
 from __future__ import annotations
 
@@ -6,23 +6,21 @@ from collections.abc import Mapping
 from typing import Any
 
 import click
-import sympy as sp
 
-from lwa.base.exact import InputError
-from lwa.command.chain import ChainInput, take_chain
-from lwa.command.options import STYLES, theory_options
+from lwa.command.chain import take_chain
+from lwa.command.options import theory_options
 from lwa.command.rows import Answer, Row, Values
 from lwa.equation.terms import Terms, by_order
 from lwa.theory import Theory, homogenize
-from lwa.wave.source import Functions, module
 
-FIELDS = {
+UNKNOWNS = {
     "first": "u is the displacement of the cell's first particle",
     "center": "u is the canonical field, the mass-weighted mean of the fields at one point",
 }
+"""Meaning of the unknown u by the name of the field."""
 
 
-def chain_json(theory: Theory) -> dict[str, Any]:
+def settings_json(theory: Theory) -> Values:
     """JSON of the chain, its law and the settings; the φ_n are functions of the compression."""
     law = {}
     if not theory.law.homogeneous:
@@ -41,58 +39,69 @@ def chain_json(theory: Theory) -> dict[str, Any]:
 
 
 @click.command()
-@theory_options((*STYLES, "numpy"))
+@theory_options()
 def derive(style: str, **options: Any) -> None:
     """Derive the long-wave equation of a chain.
 
     Results are the ansatz, the wave equation u_ττ = u_x^(k-1) u_xx + … for the displacement u, and
     the defect: u_ττ by the first bead's equation of motion minus u_ττ by the second bead's.
 
-    In JSON `terms` is the right-hand side of u_ττ after its leading term, and `slaved` (closure
-    full) has, for each bead from the second on, the terms J_n of its field u + u_x Σ D^n J_n.
+    In JSON `terms` is the right-hand side of u_ττ after its leading term.
     """
     chain = take_chain(options)
     theory = homogenize(chain.cell, law=chain.law, **options)
-    if style == "numpy":
-        click.echo(_source(theory))
-    else:
-        _answer(chain, theory).print(style)
-
-
-def _answer(chain: ChainInput, theory: Theory) -> Answer:
-    """Rows of a derivation."""
-    head: Values = {
-        **chain_json(theory),
+    closure, law, pde = theory.closure, theory.law, theory.pde
+    head = {
+        **settings_json(theory),
         "lambda": theory.amplitude_ratio,
         "ansatz": {},
         **dict.fromkeys("GHI"),
-        **theory.pde.third_order,
-        "terms": _terms_json(theory.pde.coefficients),
-        "vanishing": list(theory.pde.vanishing),
-        "slaved": [
-            {"particle": i + 1, **term}
-            for i, series in theory.slaved.items()
-            for term in _terms_json(series)
-        ],
+        **pde.third_order,
+        "terms": _terms_json(pde.coefficients),
         "defect": _terms_json(theory.defect),
-        "conservative": theory.pde.conservative,
+        "conservative": pde.conservative,
     }
-    rows = [
+    rows: list[Row | str] = [
         chain.text,
-        f"closure {theory.closure.name}, {theory.closure.model.branch} branch, to "
-        f"D^{theory.order}; τ = t·{theory.pde.time_scale}",
-        FIELDS[theory.closure.field],
-        *_law_text(theory),
-        "",
-        *_ansatz(theory),
-        str(theory.pde),
-        "",
-        *_consistency_text(theory),
+        f"closure {closure.name}, {closure.model.branch} branch, to D^{theory.order}; "
+        f"τ = t·{pde.time_scale}",
+        UNKNOWNS[closure.field],
     ]
-    return Answer(head, rows, shown=[theory])
+    if not law.homogeneous:
+        rows.append(
+            f"phi_n = {law.delta}^(n-1) F^(n)/F', at {law.delta} = D u_x; F' is taken there"
+        )
+        rows += [f"  phi{n} = {value}" for n, value in theory.phi.items()]
+    rows.append("")
+    if theory.ansatz:
+        rows += [
+            "w = λ (u + Σ b_n D^n ∂_x^n u), the linear part of the second particle's field",
+            f"  λ = {theory.amplitude_ratio}",
+            *(Row(f"ansatz.{n}", f"b{n}", b, digits=0) for n, b in theory.ansatz.items()),
+            "",
+        ]
+    for i, series in theory.slaved.items():
+        # the linear part of the second particle's field w is the ansatz
+        if lines := by_order(series, "D^{}", linear=i != 1):
+            name = "nonlinear terms of w" if i == 1 else f"field of particle {i + 1}, less u"
+            rows += [f"{name}:", *lines, ""]
+    rows += [str(pde), ""]
+    if theory.defect:
+        rows.append("defect: u_ττ by the first equation of motion minus u_ττ by the second")
+        rows += by_order(theory.defect, pde.heading)
+    else:
+        rows.append("all equations of motion are satisfied at every order shown")
+    if closure.model.branch == "acoustic" and not pde.conservative:
+        rows.append(
+            "not in conservation form: the linear closure of unequal particles does not conserve "
+            "momentum; see --closure full"
+            if closure.name == "linear"
+            else "not in conservation form in this field; see --field center"
+        )
+    Answer(head, rows, shown=[theory]).print(style)
 
 
-def _terms_json(coefficients: Mapping[int, Terms]) -> list[dict[str, Any]]:
+def _terms_json(coefficients: Mapping[int, Terms]) -> list[Values]:
     return [
         {
             "order": n,
@@ -103,61 +112,3 @@ def _terms_json(coefficients: Mapping[int, Terms]) -> list[dict[str, Any]]:
         for n, terms in coefficients.items()
         for jet in terms
     ]
-
-
-def _law_text(theory: Theory) -> list[str]:
-    """Lines of text with definition and values of the φ_n; [] for a power law."""
-    law = theory.law
-    if law.homogeneous:
-        return []
-    lines = [f"phi_n = {law.delta}^(n-1) F^(n)/F', at {law.delta} = D u_x; F' is taken there"]
-    return lines + [f"  phi{n} = {value}" for n, value in theory.phi.items()]
-
-
-def _ansatz(theory: Theory) -> list[Row | str]:
-    rows: list[Row | str] = []
-    if theory.ansatz:
-        rows += [
-            "w = λ (u + Σ b_n D^n ∂_x^n u), the linear part of the second particle's field",
-            f"  λ = {theory.amplitude_ratio}",
-            *(Row(f"ansatz.{n}", f"b{n}", b, digits=0) for n, b in theory.ansatz.items()),
-            "",
-        ]
-    for i, series in theory.slaved.items():
-        w = i == 1  # the second particle's field, whose linear part is the ansatz
-        if lines := by_order(series, "D^{}", linear=not w):
-            name = "nonlinear terms of w" if w else f"field of particle {i + 1}, less u"
-            rows += [f"{name}:", *lines, ""]
-    return rows
-
-
-def _consistency_text(theory: Theory) -> list[str]:
-    if not theory.defect:
-        lines = ["all equations of motion are satisfied at every order shown"]
-    else:
-        lines = ["defect: u_ττ by the first equation of motion minus u_ττ by the second"]
-        lines += by_order(theory.defect, theory.pde.heading)
-    if theory.closure.model.branch == "acoustic" and not theory.pde.conservative:
-        lines.append(
-            "not in conservation form: the linear closure of unequal particles does not conserve "
-            "momentum; see --closure full"
-            if theory.closure.name == "linear"
-            else "not in conservation form in this field; see --field center"
-        )
-    return lines
-
-
-def _source(theory: Theory) -> str:
-    """NumPy source of a module with b1 …, G, H, I, and all coefficients by order and jet."""
-    if not theory.law.homogeneous:
-        raise InputError("--format numpy is for power laws: others have text, json and latex")
-    cell = theory.cell
-    functions = Functions(theory.k, *cell.masses, *cell.stiffnesses, cell.spacing)
-    values = {f"b{n}": b for n, b in theory.ansatz.items()} | theory.pde.third_order
-    for name, value in values.items():
-        functions.define(name, f"The coefficient {name}", value)
-    table = {n: {jet: terms[jet] for jet in terms} for n, terms in theory.pde.coefficients.items()}
-    doc = "{n: {(jet, jet_t): c}}, orders D^(k+n), without the power of D"
-    functions.define("coefficients", doc, sp.Dict(table))
-    title = ["The ansatz and the wave equation. Written by lwa."]
-    return module([*functions.values()], "numpy", title)

@@ -9,7 +9,7 @@ import click
 import sympy as sp
 
 from lwa.base import InputError
-from lwa.command.chain import ChainInput, take_chain
+from lwa.command.chain import take_chain
 from lwa.command.options import SPHERES, cell_options, spheres_option, style_option, value
 from lwa.command.rows import Answer, Row, attempt
 from lwa.command.waves import hertz_note
@@ -37,6 +37,11 @@ def strike(
     """
     chain = take_chain({"spheres": spheres})
     cell, law = chain.cell, chain.law
+    if chain.precompression:
+        raise InputError(
+            f"precompression is {chain.precompression}: the pulse of a strike is that of a chain "
+            "without load"
+        )
     if velocity is None and drop is None:
         velocity = chain.velocity
     if mass is None:
@@ -54,10 +59,10 @@ def strike(
         Row("fwhm.length", "FWHM of the force", pulse.fwhm("force", "length"), "m"),
         Row("fwhm.time", "FWHM of the force in time", pulse.fwhm(), "s"),
     ]
-    notes = [*chain.without_load(), *hertz_note(chain, pulse.wave.F)]
+    notes = hertz_note(chain, pulse.wave.F)
     if pulse.train:
         notes.append("a striker heavier than two beads sends further pulses behind this one")
-    Answer({}, rows, chain.si, shown=[pulse], notes=notes, orders=False).print(style)
+    Answer({}, rows, chain.si, shown=[pulse], notes=notes).print(style)
 
 
 @click.command()
@@ -93,11 +98,6 @@ def shock(
         front = riemann.piston(cell, piston, ahead, law=law)
     else:
         front = riemann.shock(cell, behind, ahead, law=law)
-    _front(chain, front).print(style)
-
-
-def _front(chain: ChainInput, front: riemann.Shock) -> Answer:
-    """Printed rows for the shock or rarefaction between two strains: speeds, plateau, peak."""
     errors = front.errors
 
     def row(key: str, label: str, unit: str = "m/s") -> Row:
@@ -128,15 +128,9 @@ def _front(chain: ChainInput, front: riemann.Shock) -> Answer:
             speed, force = (attempt(getattr, front, f"series_{x}") for x in ("speed", "force"))
             rows.append(Row("series.speed", "leading pulse, series", speed, unit="m/s"))
             rows.append(Row("series.force", "peak force, series", force, unit="N"))
-    faults = (row.value for row in rows if isinstance(row, Row))
-    notes = dict.fromkeys(str(fault) for fault in faults if isinstance(fault, InputError))
-    if front.oscillates:
-        notes[_OSCILLATING] = None
-    spacing = front.cell.spacing
-    return Answer(head, rows, chain.si, spacing, [front], notes=tuple(notes), orders=False)
-
-
-_OSCILLATING = (
-    "c₋ > 2 c₊: the beads near the wall go on oscillating. The strain behind is that of a wall at "
-    "rest beside its neighbours, v_p = ∫ c dp; the mean strain is below it."
-)
+    notes = [
+        "c₋ > 2 c₊: the beads near the wall go on oscillating. The strain behind is that of a wall "
+        "at rest beside its neighbours, v_p = ∫ c dp; the mean strain is below it."
+    ]
+    notes = notes if front.oscillates else []
+    Answer(head, rows, chain.si, cell.spacing, [front], notes).print(style)

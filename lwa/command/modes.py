@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 import numpy as np
 import sympy as sp
 
 from lwa.base.exact import InputError
-from lwa.command.chain import ChainInput, take_chain
+from lwa.command.chain import take_chain
 from lwa.command.options import (
     BACKGROUND,
     PRECOMPRESSION,
@@ -27,11 +27,6 @@ from lwa.law import Power
 from lwa.linear.dispersion import Dispersion, LoadedChain
 from lwa.spheres.hertz import EXPONENT
 
-if TYPE_CHECKING:
-    from lwa.envelopes.schrodinger import Breather, Envelope
-
-PLACES = 8  # intervals of the wavenumbers, 0 to π/(PD), at which bands are printed
-
 
 @click.command()
 @series_options("1", "Highest power of κ in Ω², an integer.")
@@ -44,24 +39,16 @@ def dispersion(order: int, style: str, precompression: sp.Expr | None, **options
     Ω is the frequency in the time τ of `lwa derive`, and κ the wavenumber, both times D. The
     exponent k matters for unequal contacts only, whose shares of the strain depend on k.
 
-    With --precompression also the bands and group velocities about this load (k = 3/2 unless --k is
-    given), in rad/s and m/s for masses, stiffnesses and spacing in SI, and with --spheres. In JSON
-    `band_edges_value` has the frequencies (from, to) of each band, `band_edges_frequency_value`
-    these over 2π (Hz in SI), `gaps_value` those of each gap, and `branches_value` frequencies and
-    group velocities by wavenumber (lengths in D where D is a symbol).
+    With --precompression also the bands about this load (k = 3/2 unless --k is given), in rad/s
+    for masses, stiffnesses and spacing in SI, and with --spheres. In JSON `band_edges_value` has
+    the frequencies (from, to) of each band, and `band_edges_frequency_value` these over 2π (Hz in
+    SI).
     """
     spheres = options["spheres"] is not None
     chain = take_chain(options)
-    law, loaded = chain.law, None
     precompression = chain.load(None, precompression)
-    if precompression is not None:
-        law = law if spheres or given("k") else Power(EXPONENT)
-        loaded = LoadedChain(chain.cell, law, precompression)
-    _linear(replace(chain, law=law), order, loaded).print(style)
-
-
-def _linear(chain: ChainInput, order: int, loaded: LoadedChain | None) -> Answer:
-    """Answer with the series Ω²(κ) of the acoustic and, for two particles, the optical branch."""
+    if precompression is not None and not (spheres or given("k")):
+        chain = replace(chain, law=Power(EXPONENT))
     linear = Dispersion(chain.cell, chain.law.exponent)
     rows: list[Row | str] = [
         chain.text,
@@ -72,65 +59,28 @@ def _linear(chain: ChainInput, order: int, loaded: LoadedChain | None) -> Answer
     for name, series in linear.series(order).items():
         head[name] = {str(n): str(c) for n, c in series.items()}
         rows += [f"{name}:", *(f"  {f'κ^{n}' if n else '1'}: {c}" for n, c in series.items())]
-    if loaded is None:
-        return Answer(head, rows, shown=[linear])
-    bands = _bands(loaded)
+    if precompression is None:
+        Answer(head, rows, shown=[linear]).print(style)
+        return
+    loaded = LoadedChain(chain.cell, chain.law, precompression)
     rows += [
         "",
-        f"about the load {loaded.precompression}:",
-        Row("precompression", "", loaded.precompression, digits=0),
+        f"about the load {precompression}:",
+        Row("precompression", "", precompression, digits=0),
         Row("spring_constants", "spring constants", loaded.spring_constants, "N/m"),
         Row("sound_speed", "sound speed dx/dt", loaded.sound_speed, "m/s"),
-        *_bands_text(bands, chain.si),
     ]
-    return Answer(head | bands, rows, chain.si, chain.cell.spacing, [linear, loaded])
-
-
-def _bands(loaded: LoadedChain) -> Values:
-    """Bands, gaps and branches in floats; {} if a mass or a spring constant is a symbol."""
-    if any(x.free_symbols for x in (*loaded.cell.masses, *loaded.spring_constants)):
-        return {}
-    D = 1.0 if loaded.cell.spacing.is_Symbol else float(loaded.cell.spacing)
-    places = [float(sp.pi) * i / (PLACES * loaded.cell.size * D) for i in range(PLACES + 1)]
-    edges = loaded.bands.edges()
-    return {
-        "band_edges_value": edges.tolist(),
-        "band_edges_frequency_value": (edges / (2 * np.pi)).tolist(),
-        "gaps_value": loaded.bands.gaps().tolist(),
-        "branches_value": [
-            {
-                "wavenumber": q,
-                "frequencies": loaded.bands.branches(q).tolist(),
-                "group_velocities": loaded.bands.group_velocity(q).tolist(),
-            }
-            for q in places
-        ],
-    }
-
-
-def _bands_text(bands: Values, si: bool) -> list[str]:
-    if not bands:
-        return []
-    lines = []
-    for name, key in (("band", "band_edges_value"), ("gap", "gaps_value")):
-        for i, (low, high) in enumerate(bands[key], start=1):
-            edges = f"{low:.{PRINTED_DIGITS}g} … {high:.{PRINTED_DIGITS}g}"
-            hertz = f" ({low / (2 * np.pi):.6g} … {high / (2 * np.pi):.6g} Hz)" * si
-            lines.append(
-                f"  {name} {i}: {edges}, in rad per {'s' if si else 'unit of time'}{hertz}"
-            )
-    lines += ["", "  wavenumber: frequencies; group velocities"]
-    for place in bands["branches_value"]:
-        columns = (place["frequencies"], place["group_velocities"])
-        numbers = (", ".join(f"{x:.6g}" for x in column) for column in columns)
-        lines.append(f"  {place['wavenumber']:.6g}: {'; '.join(numbers)}")
-    return lines
-
-
-_EARLIER = (
-    "contacts open at these values to leading order; on the lattice they open earlier, in dimers "
-    "of spheres at about three quarters of the detuning"
-)
+    numbers = (*chain.cell.masses, *loaded.spring_constants)
+    if not any(x.free_symbols for x in numbers):
+        edges = loaded.bands.edges()
+        head["band_edges_value"] = edges.tolist()
+        head["band_edges_frequency_value"] = (edges / (2 * np.pi)).tolist()
+        unit = "s" if chain.si else "unit of time"
+        for i, (low, high) in enumerate(edges, start=1):
+            hertz = f" ({low / (2 * np.pi):.6g} … {high / (2 * np.pi):.6g} Hz)" * chain.si
+            band = f"{low:.{PRINTED_DIGITS}g} … {high:.{PRINTED_DIGITS}g}"
+            rows.append(f"  band {i}: {band}, in rad per {unit}{hertz}")
+    Answer(head, rows, chain.si, chain.cell.spacing, [linear, loaded]).print(style)
 
 
 @click.command()
@@ -191,11 +141,6 @@ def envelope(
     if frequency is not None or detuning is not None:
         angular = frequency and frequency * (2 * sp.pi if chain.si else 1)
         breather = equation.breather(angular, detuning=detuning)
-    _envelope(chain, equation, breather).print(style)
-
-
-def _envelope(chain: ChainInput, equation: Envelope, breather: Breather | None) -> Answer:
-    """Rows of the equation, and of the breather of a frequency."""
     turn = 2 * sp.pi if chain.si else sp.S.One
     name = "ω/(2π)" if chain.si else "ω"
     rows: list[Row | str] = [
@@ -215,7 +160,6 @@ def _envelope(chain: ChainInput, equation: Envelope, breather: Breather | None) 
         rows.append(f"  {equation.kind} envelopes")
     except InputError as fault:
         rows.append(f"  bright or dark: {fault}")
-    notes: list[str] = []
     if breather is not None:
         shape = "sech" if breather.kind == "bright" else "tanh"
         rows += [
@@ -226,9 +170,5 @@ def _envelope(chain: ChainInput, equation: Envelope, breather: Breather | None) 
             Row("amplitude", "largest displacement by bead", breather.amplitude, "m"),
             Row("width", "width 1/b in cells", breather.width),
         ]
-        if equation.opening != sp.oo:
-            label = "contacts open from the detuning"
-            rows.append(Row("opening_detuning", label, breather.opening_detuning))
-            notes.append(_EARLIER)
     shown = [equation, breather] if breather else [equation]
-    return Answer(head, rows, chain.si, equation.cell.spacing, shown, notes)
+    Answer(head, rows, chain.si, cell.spacing, shown).print(style)

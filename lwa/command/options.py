@@ -59,9 +59,7 @@ def contact_law(
     context: click.Context, option: click.Parameter, text: str | None
 ) -> ContactLaw | None:
     """Read NAME or NAME:PARAM,… of a law in `lwa.law.named`."""
-    if text is None:
-        return None
-    return read_law(text, called(option))
+    return None if text is None else read_law(text, called(option))
 
 
 def given(option: str) -> bool:
@@ -109,17 +107,12 @@ def order_option(says: str, default: str | None = "4") -> Option:
 
 def law_option(says: str) -> Option:
     """Make the option ``--law``."""
-
-    def complete(context: click.Context, option: click.Parameter, start: str) -> list[str]:
-        return [name for name in NAMES if name.startswith(start)]
-
-    metavar = "NAME[:PARAM,…]"
-    return value("--law", says, None, contact_law, metavar, shell_complete=complete)
+    return value("--law", says, None, contact_law, "NAME[:PARAM,…]")
 
 
-def style_option(formats: Sequence[str] = STYLES) -> Option:
+def style_option(languages: Sequence[str] = ()) -> Option:
     """Make the option ``--format``, the argument ``style`` of a command."""
-    return _choice("--format", formats, "Form of the result.", "style")
+    return _choice("--format", (*STYLES, *languages), "Form of the result.", "style")
 
 
 def spheres_option(**settings: Any) -> Option:
@@ -151,7 +144,7 @@ BACKGROUND = value("--background", "Static strain of the chain, compression over
 PRECOMPRESSION = value("--precompression", "Static force on the chain; in N if the chain is in SI.")
 
 
-def cell_options(formats: Sequence[str] = STYLES) -> Option:
+def cell_options(languages: Sequence[str] = ()) -> Option:
     """Make the options that describe a chain and its contact law."""
     law = "Contact force A F(δ) by the name and the parameters of F, in place of --k: "
     return together(
@@ -160,14 +153,14 @@ def cell_options(formats: Sequence[str] = STYLES) -> Option:
         MASSES,
         STIFFNESSES,
         SPACING,
-        style_option(formats),
+        style_option(languages),
     )
 
 
-def theory_options(formats: Sequence[str]) -> Option:
+def theory_options(languages: Sequence[str] = ()) -> Option:
     """Make the options that describe a chain and its long-wave theory."""
     return together(
-        cell_options(formats),
+        cell_options(languages),
         order_option("Highest power of D in the ansatz, an integer."),
         _choice(
             "--closure",

@@ -21,7 +21,6 @@ from sympy.core.function import AppliedUndef
 from lwa.base import latex
 from lwa.base.exact import InputError, evaluated
 from lwa.base.frozen import Estimate, Shown
-from lwa.expansion.approximants import Resummed
 
 PRINTED_DIGITS = 15  # significant digits of a printed number that is exact
 WIDTH = 100  # columns of text
@@ -65,7 +64,6 @@ class Answer:
     shown : results whose rows make the LaTeX.
     notes : sentences on the validity of the numbers.
     parts : further answers by their key in JSON.
-    orders : True if text states the highest power of k - 1 in a sum.
     """
 
     head: Mapping[str, Any]
@@ -75,7 +73,6 @@ class Answer:
     shown: Sequence[Shown] = ()
     notes: Sequence[str] = ()
     parts: Mapping[str, Answer] = field(default_factory=dict)
-    orders: bool = True
 
     def print(self, style: str) -> None:
         """Print the answer as "text", "json" or "latex"."""
@@ -100,32 +97,40 @@ class Answer:
 
         Names ending in ``_value`` are floats, in the unit of length where the spacing is a symbol,
         at V_s = 1 and B = 1, or -1 where B < 0. Symbols, complex numbers and numbers beyond a
-        double have none.
+        double have none. The notes include the reasons of missing values.
         """
-        result = dict(self.head)
-        rows = [row for row in self.rows if isinstance(row, Row) and row.key]
-        for row in rows:
-            if row.expression and isinstance(row.value, sp.Expr | tuple):
+        result, units, faults = dict(self.head), dict[str, Any](), []
+        for row in (row for row in self.rows if isinstance(row, Row) and row.key):
+            if row.unit:
+                _put(units, row.key, "", row.unit)
+            if isinstance(row.value, InputError):
+                faults.append(str(row.value))
+            if isinstance(row.value, Estimate | InputError):
+                value, error = (
+                    getattr(row.value, "value", None),
+                    getattr(row.value, "error", math.nan),
+                )
+                _put(result, row.key, "_value", value)
+                _put(result, row.key, "_error_value", None if math.isnan(error) else error)
+                continue
+            if row.expression:
                 _put(result, row.key, "", row.value)
-        for row in rows:
-            if row.digits:
-                self._put_digits(result, row)
-        if self.si:
-            result["units"] = _units(rows)
-        result |= {key: part.json() for key, part in self.parts.items()}
-        return result | ({"notes": list(self.notes)} if self.notes else {})
-
-    def _put_digits(self, result: Values, row: Row) -> None:
-        if isinstance(row.value, Estimate | InputError):
-            value, error = getattr(row.value, "value", None), getattr(row.value, "error", math.nan)
-            _put(result, row.key, "_value", value)
-            _put(result, row.key, "_error_value", None if math.isnan(error) else error)
-        else:
-            floats = _each(lambda x: as_float(self.plain(x)), row.value)
+            floats = self._floats(row.value) if row.digits else None
             if floats is not None:
                 _put(result, row.key, "_value", floats)
                 if not math.isnan(row.error):
                     _put(result, row.key, "_error_value", abs(floats) * row.error)
+        result |= {"units": units} if self.si else {}
+        result |= {key: part.json() for key, part in self.parts.items()}
+        notes = dict.fromkeys((*self.notes, *faults))
+        return result | ({"notes": list(notes)} if notes else {})
+
+    def _floats(self, value: Any) -> Any:
+        """The float of an expression, or a list of floats; None if any value has no float."""
+        if not isinstance(value, tuple):
+            return as_float(self.plain(value))
+        floats = [as_float(self.plain(x)) for x in value]
+        return None if None in floats else floats
 
     # --- text -------------------------------------------------------------------------------
 
@@ -147,9 +152,10 @@ class Answer:
         if isinstance(row.value, InputError):
             return f": {row.value}"
         if isinstance(row.value, Estimate):
-            return f" = {summed(row.value, unit, self.orders)}"
+            return f" = {summed(row.value, unit)}"
         digits = significant(row.error) if row.error > 0 else row.digits
-        text = ", ".join(self._number_text(x, digits) for x in _parts(row.value))
+        values = dict.fromkeys(row.value if isinstance(row.value, tuple) else (row.value,))
+        text = ", ".join(self._number_text(x, digits) for x in values)
         if row.error > 0 and (number := as_float(self.plain(row.value))):
             text += f" ± {abs(number) * row.error:.1e}{self._length_unit(row.value)}"
         return f" = {text}{unit}"
@@ -169,19 +175,12 @@ class Answer:
         return number if long else f"{written} ≈ {number}"
 
     def _length_unit(self, value: sp.Expr) -> str:
-        """The power D^n of the symbol D that a value is proportional to, after a space; or ""."""
-        if not self.spacing.is_Symbol or self.spacing not in value.free_symbols:
+        """The unit D^n of a value c D^n, D the symbol of the spacing, after a space; else ""."""
+        rest = sp.factor_terms(value).as_independent(self.spacing, as_Add=False)[1]
+        base, n = rest.as_base_exp()
+        if not self.spacing.is_Symbol or base != self.spacing or not n.is_number:
             return ""
-        # c D^n has n = log2(f(2)/f(1)), and then f(3) = 3^n f(1): 1e-12 tells sums of powers
-        one, two, three = (
-            evaluated(value.xreplace({self.spacing: sp.Integer(i)}), 20) for i in (1, 2, 3)
-        )
-        if not (one.is_real and one and two / one > 0):
-            return ""
-        n = sp.Rational(str(sp.log(two / one, 2).n(20))).limit_denominator(10**4)
-        if not n or abs(three / one / 3**n - 1) > 1e-12:
-            return ""
-        return f" {self.spacing}" if n == 1 else f" {self.spacing}^{n}"
+        return f" {base}" if n == 1 else f" {base}^{n}"
 
     # --- LaTeX ------------------------------------------------------------------------------
 
@@ -195,38 +194,12 @@ class Answer:
         return [*rows, *(row for part in self.parts.values() for row in part._equations())]
 
 
-def _parts(value: Any) -> list[sp.Expr]:
-    """Different expressions in a value."""
-    return list(dict.fromkeys(value if isinstance(value, tuple) else (value,)))
-
-
 def _put(result: Values, key: str, suffix: str, value: Any) -> None:
     group, dot, entry = key.partition(".")
     if dot:
         result.setdefault(group + suffix, {})[entry] = value
     else:
         result[group + suffix] = value
-
-
-def _units(rows: Sequence[Row]) -> dict[str, str]:
-    """Mapping from key to unit; a group stands for its entries if they have the same unit."""
-    groups: dict[str, dict[str, str]] = {}
-    for row in rows:
-        if row.unit:
-            groups.setdefault(row.key.partition(".")[0], {})[row.key] = row.unit
-    result: dict[str, str] = {}
-    for group, units in groups.items():
-        same = {*units.values()}
-        result |= units if len(same) > 1 else {group: same.pop()}
-    return result
-
-
-def _each(read: Callable[[sp.Expr], Any], value: Any) -> Any:
-    """Apply ``read`` to an expression or to each of a collection; None if any result is None."""
-    if isinstance(value, sp.Expr):
-        return read(value)
-    results = [read(x) for x in value]
-    return None if None in results else results
 
 
 def as_float(value: sp.Expr) -> float | None:
@@ -263,18 +236,14 @@ def significant(relative: float) -> int:
     return min(16, max(1, 2 - math.floor(math.log10(relative))))
 
 
-def summed(total: Estimate, unit: str, order: bool) -> str:
-    """A number as text: the value to one digit beyond its error, the error, the order of a sum."""
+def summed(total: Estimate, unit: str) -> str:
+    """A number as text: the value to one digit beyond its error, and the error."""
     if math.isnan(total.error):
         return f"{total.value:.4g}{unit}, error unknown"
     if not total.error:
         return f"{total.value:.{PRINTED_DIGITS}g}{unit}"
     digits = significant(total.error / abs(total.value))
-    value = f"{total.value:.{digits}g} ± {total.error:.1e}{unit}"
-    if not (order and isinstance(total, Resummed)):
-        return value
-    note = "; higher orders do not help" if total.asymptotic else ""
-    return f"{value} (to ε^{total.order}{note})"
+    return f"{total.value:.{digits}g} ± {total.error:.1e}{unit}"
 
 
 def _wrapped(line: str) -> list[str]:

@@ -8,17 +8,16 @@ from typing import TYPE_CHECKING, Any
 import click
 import sympy as sp
 
-from lwa.base.exact import InputError, evaluated, read_exact
+from lwa.base.exact import InputError, read_exact
 from lwa.base.frozen import Shown
 from lwa.base.quantities import QUANTITIES, NoSolitaryWave
 from lwa.command.chain import ChainInput, take_chain
-from lwa.command.derivation import FIELDS, chain_json
+from lwa.command.derivation import UNKNOWNS, settings_json
 from lwa.command.options import (
     BACKGROUND,
     FORCE,
     PRECOMPRESSION,
     SPHERES,
-    STYLES,
     given,
     theory_options,
 )
@@ -37,14 +36,13 @@ if TYPE_CHECKING:
 # spheres is then a tenth of their radius R, a/R = √(δ/2R), where Hertz (1882) wants a ≪ R.
 HERTZIAN = 0.01
 
-_WIDTH_DIGITS = 12  # of widths under a load that are right (`lwa.loaded.quadrature`)
+_REDUCTION = ("p", "a", "mu", "eta", "sigma", "s")  # of the paper's v = z^p
 
-WIDTHS = (("fwhm", "", "length", "m"), ("fwhm_time", " in time", "time", "s"))
-"""Key, end of the label, extent and unit of the widths of a wave with units."""
+_WIDTH_DIGITS = 12  # of widths under a load that are right (`lwa.loaded.quadrature`)
 
 
 @click.command()
-@theory_options((*STYLES, *LANGUAGES))
+@theory_options(tuple(LANGUAGES))
 @FORCE
 @SPHERES
 @BACKGROUND
@@ -81,7 +79,13 @@ def wave(
     else:
         loaded = load is not None or force is not None
     if loaded:
-        _demand_canonical(options)
+        for name, wanted in (("closure", "full"), ("field", "center"), ("branch", "acoustic")):
+            if given(name) and options[name] != wanted:
+                raise InputError(
+                    f"{name} is {options[name]!r}: under load the wave is that of the canonical "
+                    f"field, {name} {wanted!r}"
+                )
+            options[name] = wanted
     if style in LANGUAGES and (loaded or force is not None):
         fault = "of a chain without load" if loaded else "for any force: --force goes with text"
         raise InputError(f"--format {style} is {fault}")
@@ -92,7 +96,7 @@ def wave(
         if style in LANGUAGES:
             click.echo(compact.code(style))
         elif force is None and not spheres:
-            _compact(chain, theory, compact, style).print(style)
+            _compact(chain, theory, compact).print(style)
         else:
             _at_force(chain, theory, compact.at_force(peak)).print(style)
     elif background is None:
@@ -109,17 +113,6 @@ def wave(
         _on_background(chain, theory, Background(cell, law, background)).print(style)
 
 
-def _demand_canonical(options: dict[str, Any]) -> None:
-    """Set the closure of waves under load; refuse any other."""
-    for name, wanted in (("closure", "full"), ("field", "center"), ("branch", "acoustic")):
-        if given(name) and options[name] != wanted:
-            raise InputError(
-                f"{name} is {options[name]!r}: under load the wave is that of the canonical field, "
-                f"{name} {wanted!r}"
-            )
-        options[name] = wanted
-
-
 def hertz_note(chain: ChainInput, force: sp.Expr) -> list[str]:
     """Note on a force that presses spheres too much for Hertz's contact; [] for other chains."""
     cell = chain.cell
@@ -134,17 +127,12 @@ def hertz_note(chain: ChainInput, force: sp.Expr) -> list[str]:
     ]
 
 
-def _compact(chain: ChainInput, theory: Theory, wave: TravelingWave, style: str) -> Answer:
+def _compact(chain: ChainInput, theory: Theory, wave: TravelingWave) -> Answer:
     """Rows of the compact wave of any amplitude: speed V_s by peak strain B, and B by V_s."""
-    first, second = (wave.reduction(root) for root in (0, 1))
-    head = chain_json(theory)
-    if style == "json":  # long expressions take a while
-        pair = (first, second)
-        head["roots"] = [{name: str(getattr(r, name)) for name in _REDUCTION} for r in pair]
-    log_B = -sp.log(wave.speed_factor) / (wave.k - 1)
+    reduction = wave.reduction()
     rows: list[Row | str] = [
         chain.text,
-        f"closure {theory.closure.name}; {FIELDS[theory.closure.field]}",
+        f"closure {theory.closure.name}; {UNKNOWNS[theory.closure.field]}",
         "v = u_x = B cos^(2/(k-1))(β ξ), ξ = x - V_s τ, on |ξ| ≤ π/(2β)",
         "",
         Row("beta", "β", wave.beta),
@@ -153,63 +141,51 @@ def _compact(chain: ChainInput, theory: Theory, wave: TravelingWave, style: str)
         Row("B", "B", wave.amplitude()),
         Row("speed", "V_s", wave.speed()),
         f"  F_m ∝ V_s^({wave.force_exponent});  dx/dt = V_s · {wave.time_scale}",
-        Row("speed_factor", "", wave.speed_factor, digits=0),
-        Row("time_scale", "", wave.time_scale, digits=0),
-        Row("log_B", "", log_B, expression=False),
         "",
         "v = z^p, integrating factor z^a: z'' = μ z^η - σ z",
-        *(Row(name, name, getattr(first, name)) for name in _REDUCTION),
-        Row("", "the other root, p", second.p),
-        Row("", "with a", second.a),
+        *(Row(name, name, getattr(reduction, name)) for name in _REDUCTION),
     ]
-    parts = _canonical(chain, theory, None)
-    return Answer(head, rows, spacing=wave.D, shown=[theory.pde, wave, first], parts=parts)
-
-
-_REDUCTION = ("p", "a", "mu", "eta", "sigma", "s")  # of the paper's v = z^p
+    shown, parts = [theory.pde, wave, reduction], _canonical(chain, theory, None)
+    return Answer(settings_json(theory), rows, spacing=wave.D, shown=shown, parts=parts)
 
 
 def _at_force(chain: ChainInput, theory: Theory, at: PhysicalWave | LoadedWave) -> Answer:
     """Rows of the wave of a peak contact force F, without or under a load, with speeds dx/dt."""
-    notes = hertz_note(chain, at.force)
+    compact = isinstance(at, PhysicalWave)
+    load, peak = getattr(at, "precompression", 0), "peak" if compact else "rise of the"
+    rows: list[Row | str] = [
+        f"endless chain {'under a load' if load else 'without load'}; closure "
+        f"{theory.closure.name}; {UNKNOWNS[theory.closure.field]}",
+        chain.text,
+        "",
+        Row("force", "peak contact force F", at.force, "N"),
+        Row("B", f"{peak} strain B", at.strain),
+        Row("compression", f"{peak} compression", at.compression, "m"),
+        Row("speed", "speed dx/dt", at.speed, "m/s"),
+        Row("bead_velocity", "peak velocity of the beads", at.bead_velocity, "m/s"),
+    ]
+    widths = (("fwhm", "", "length", "m"), ("fwhm_time", " in time", "time", "s"))
+    for key, label, extent, unit in widths:
+        for q in QUANTITIES:
+            width = attempt(at.fwhm, q, extent)
+            if not isinstance(width, InputError):  # under a load widths are numbers
+                digits = PRINTED_DIGITS if compact else _WIDTH_DIGITS
+                label_q = f"FWHM of the {q}{label}"
+                rows.append(Row(f"{key}.{q}", label_q, width, unit, digits, expression=compact))
     shown: list[Shown] = [at]
-    parts: dict[str, Answer] = {}
-    if not isinstance(at, PhysicalWave):
-        scale, peak = at.field.time_scale, "rise of the"
-        V_s = sp.powsimp(at.speed / scale)
-        ahead = "under a load" if at.precompression else "without load"
-        more = [
+    if isinstance(at, PhysicalWave):
+        rows += [Row("beta", "", at.wave.beta, "1/m"), Row("width", "", at.wave.width, "m")]
+        shown, parts = [at.wave, at], _canonical(chain, theory, at.force)
+    else:
+        parts = {}
+        rows += [
             Row("precompression", "static force F0", at.precompression, "N"),
             Row("background", "static strain p0", at.background),
             Row("static_compression", "static compression", at.static_compression, "m"),
             Row("sound_speed", "speed of sound dx/dt", at.sound_speed, "m/s"),
         ]
-    else:
-        scale, V_s = at.wave.time_scale, at.wave.speed(at.strain)
-        ahead, peak = "without load", "peak"
-        more = [
-            Row("beta", "", at.wave.beta, "1/m"),
-            Row("width", "", at.wave.width, "m"),
-            Row("speed_factor", "", at.wave.speed_factor),
-        ]
-        parts = _canonical(chain, theory, at.force)
-        shown = [at.wave, at]
-    rows: list[Row | str] = [
-        f"endless chain {ahead}; closure {theory.closure.name}; {FIELDS[theory.closure.field]}",
-        *(_chain_rows(chain) if chain.si else [chain.text]),
-        "",
-        Row("force", "peak contact force F", at.force, "N"),
-        Row("B", f"{peak} strain B", at.strain),
-        Row("strain", "", at.strain),
-        Row("compression", f"{peak} compression", at.compression, "m"),
-        Row("speed", "speed dx/dt", at.speed, "m/s"),
-        Row("bead_velocity", "peak velocity of the beads", at.bead_velocity, "m/s"),
-        *_width_rows(at),
-        Row("V_s", "", V_s),
-        Row("time_scale", "", scale, "m/s"),
-        *more,
-    ]
-    return Answer(chain_json(theory), rows, chain.si, theory.cell.spacing, shown, notes, parts)
+    head, notes = settings_json(theory), hertz_note(chain, at.force)
+    return Answer(head, rows, chain.si, theory.cell.spacing, shown, notes, parts)
 
 
 def _canonical(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> dict[str, Answer]:
@@ -223,61 +199,46 @@ def _canonical(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> dict
     linear = theory.closure.name == "linear" and theory.amplitude_ratio == 1
     if cell.uniform or not linear or any(x.free_symbols for x in numbers):
         return {}
-    wave = canonical_wave(cell, k)
+    wave = canonical_wave(cell, k=k)
     at = wave if force is None else wave.at_force(force)
-    speed = wave.speed(sp.S.One) if force is None else at.speed
-    width, answer = at.fwhm("force"), Answer({}, (), chain.si, cell.spacing)
-    name, pace, length = ("V_s at B = 1", "", "") if force is None else ("dx/dt", " m/s", " m")
-    if not chain.si:
-        length = f" {cell.spacing}" * cell.spacing.is_Symbol
-        pace = length if force is not None else ""
-    speed_text, width_text = (sp.sstr(evaluated(answer.plain(x), 6)) for x in (speed, width))
-    rows: list[Row | str] = [
-        f"consistent closure, whichever bead is the first: {name} {speed_text}{pace}, "
-        f"FWHM of the force {width_text}{length}",
-        Row("speed", "", speed, "m/s", expression=False),
-        *(Row(f"fwhm.{q}", "", at.fwhm(q), "m", expression=False) for q in QUANTITIES),
-    ]
-    return {"canonical": replace(answer, rows=rows)}
-
-
-def _width_rows(at: PhysicalWave | LoadedWave) -> list[Row]:
-    """Rows of the widths, under a load in floats; [] there for symbols."""
-    exact = isinstance(at, PhysicalWave)
-    digits = PRINTED_DIGITS if exact else _WIDTH_DIGITS
-    return [
-        Row(f"{key}.{q}", f"FWHM of the {q}{label}", width, unit, digits, exact)
-        for key, label, extent, unit in WIDTHS
-        for q in QUANTITIES
-        if not isinstance(width := attempt(at.fwhm, q, extent), InputError)
-    ]
-
-
-def _chain_rows(chain: ChainInput) -> list[Row | str]:
-    """Rows of masses, stiffnesses and spacing in SI."""
-    cell, k = chain.cell, chain.law.exponent if chain.law.homogeneous else EXPONENT
-    return [
-        f"contact force A F, F = {chain.law.F}",
-        Row("masses", "masses", cell.masses, "kg"),
-        Row("stiffnesses", "A", cell.stiffnesses, f"N/m^({k})"),
-        Row("spacing", "spacing D", cell.spacing, "m"),
-    ]
+    speed = Row("speed", "V_s at B = 1", wave.speed(sp.S.One), digits=6, expression=False)
+    if force is not None:
+        speed = replace(speed, label="speed dx/dt", value=at.speed, unit="m/s")
+    rows: list[Row | str] = ["", "consistent closure, whichever bead is the first:", speed]
+    for q in QUANTITIES:
+        label = "FWHM of the force" if q == "force" else ""
+        rows.append(Row(f"fwhm.{q}", label, at.fwhm(q), "m", digits=6, expression=False))
+    return {"canonical": Answer({}, rows, chain.si, cell.spacing)}
 
 
 def _on_background(chain: ChainInput, theory: Theory, field: Background) -> Answer:
     """Rows of the waves on the strain p0, with V_s a function of the rise B of the strain."""
-    head = chain_json(theory)
+    from lwa.loaded.wave import loaded_wave  # start-up: it loads NumPy
+
+    head, cell = settings_json(theory), field.cell
     rows: list[Row | str] = [
         chain.text,
-        FIELDS[theory.closure.field],
+        UNKNOWNS[theory.closure.field],
         f"u_x = p0 + v(ξ), ξ = x - V_s τ, p0 = {field.p0}; v rises by B",
         "",
         Row("background", "", field.p0, digits=0),
-        Row("I", "", field.I, digits=0),
         Row("speed", "V_s", field.speed(field.rise), digits=0),
-        Row("time_scale", "dx/dt over V_s", field.time_scale, digits=0),
-        *_rows_at_one(field),
+        f"  dx/dt = V_s · {field.time_scale}",
     ]
+    # D is the unit of length where it is a symbol; beside a law that is no power it is 1.
+    if cell.spacing.is_Symbol and not field.law.homogeneous:
+        cell = cell.at(**{cell.spacing.name: 1})
+    try:
+        wave = loaded_wave(cell, rise=1, background=field.p0, law=field.law)
+        speed = wave.field.speed(wave.strain)
+        values = {"speed": ("V_s", speed)} if not speed.free_symbols - {cell.spacing} else {}
+        for q in QUANTITIES if values else ():
+            values[f"fwhm.{q}"] = (f"FWHM of the {q}", wave.fwhm(q))
+        for key, (label, x) in values.items():
+            digits = PRINTED_DIGITS if key == "speed" else _WIDTH_DIGITS
+            rows.append(Row(key, f"{label} at B = 1", x, digits=digits, expression=False))
+    except (NoSolitaryWave, InputError):
+        pass  # no wave of this rise, or symbols
     shown: list[Shown] = [field]
     try:
         kdv = field.kdv
@@ -297,30 +258,3 @@ def _on_background(chain: ChainInput, theory: Theory, field: Background) -> Answ
             Row("kdv.width", "L", kdv.width()),
         ]
     return Answer(head, rows, spacing=field.cell.spacing, shown=shown)
-
-
-def _rows_at_one(field: Background) -> list[Row]:
-    """Rows of the speed and the widths at B = 1; [] without such a wave or with symbols.
-
-    A spacing that is a symbol is the unit of length; beside a law that is no power it is 1.
-    """
-    from lwa.loaded.wave import loaded_wave  # start-up: it loads NumPy
-
-    cell = field.cell
-    if cell.spacing.is_Symbol and not field.law.homogeneous:
-        cell = cell.at(**{cell.spacing.name: 1})
-    try:
-        wave = loaded_wave(cell, rise=1, background=field.p0, law=field.law)
-        speed = wave.field.speed(wave.strain)
-    except (NoSolitaryWave, InputError):
-        return []
-    if speed.free_symbols - {cell.spacing}:
-        return []
-    return [
-        Row("speed", "V_s at B = 1", speed, expression=False),
-        *(
-            Row(f"fwhm.{q}", f"FWHM of the {q} at B = 1", width, "", _WIDTH_DIGITS, False)
-            for q in QUANTITIES
-            if not isinstance(width := attempt(wave.fwhm, q), InputError)
-        ),
-    ]

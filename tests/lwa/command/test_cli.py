@@ -38,19 +38,17 @@ def test_spheres_at_a_force_are_in_si_units(capsys, spheres):
     cell = Dimer("0.45e-3", "0.123e-3", stiffnesses=(A, A), spacing="4.76e-3")
     wave = homogenize(cell, k="3/2").pde.traveling_wave().at_force(10)
     found = result(capsys, "wave", "--spheres", spheres(), "--force", "10")
-    for name in ("strain", "compression", "speed", "bead_velocity", "force"):
+    for name in ("compression", "speed", "bead_velocity", "force"):
         assert found[f"{name}_value"] == float(getattr(wave, name))
         assert abs(sp.N(sp.sympify(found[name]) / getattr(wave, name) - 1, 50)) < 1e-40
     for quantity in ("strain", "force", "velocity"):
         assert found["fwhm_value"][quantity] == float(wave.fwhm(quantity))
         assert found["fwhm_time_value"][quantity] == float(wave.fwhm(quantity, "time"))
-    assert found["stiffnesses_value"] == [float(A)] * 2
-    assert found["masses_value"] == [0.45e-3, 0.123e-3]
-    assert (found["B_value"], found["spacing_value"]) == (found["strain_value"], 0.00476)
-    assert (found["units"]["speed"], found["units"]["fwhm_time"]) == ("m/s", "s")
+    assert found["B_value"] == float(wave.strain)
+    assert (found["units"]["speed"], found["units"]["fwhm_time"]["force"]) == ("m/s", "s")
     out = said(capsys, "wave", "--spheres", spheres(), "--force", "10")
-    for line in ("  spacing D = 0.00476 m", "  masses = 0.00045, 0.000123 kg"):
-        assert line in out.splitlines()
+    for words in ("masses 0.00045, 0.000123 kg", f"A = {float(A):.15g}", "D = 0.00476 m"):
+        assert words in out
     assert f"speed dx/dt = {found['speed_value']:.10f}"[:22] in out
 
 
@@ -69,9 +67,9 @@ def test_the_units_are_what_the_values_are_in(capsys, spheres):
         content = content.replace(old, new)
     other = result(capsys, "wave", "--spheres", spheres(STEEL_AND_PTFE, content), "--force", "10")
     factors = {"kg": 1e3, "m": 1e3, "s": 1e3, "N": 1.0, "m/s": 1.0, "1/m": 1e-3}
-    factors["N/m^(3/2)"] = 1e3**-1.5
+    units = found["units"] | {"fwhm": "m", "fwhm_time": "s"}
     for name in (name.removesuffix("_value") for name in found if name.endswith("_value")):
-        factor = factors[found["units"][name]] if name in found["units"] else 1.0
+        factor = factors[units[name]] if name in units else 1.0
         for a, b in zip(flat(found[f"{name}_value"]), flat(other[f"{name}_value"]), strict=True):
             assert b == pytest.approx(factor * a, rel=1e-14), name
 

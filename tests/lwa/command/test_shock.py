@@ -33,4 +33,4 @@ def test_a_wall_at_a_speed_in_si(capsys, tmp_path):
     plain = piston(Cell([1], spacing=1), sp.Float(1 / unit), law=Power("3/2")).wave
     assert found["series_value"]["speed"] == pytest.approx(unit * plain.speed.value, rel=1e-9)
     assert found["series_value"]["force"] == pytest.approx(A * D**1.5 * float(plain.F), rel=1e-9)
-    assert found["units"]["series.speed"] == "m/s"
+    assert found["units"]["series"]["speed"] == "m/s"

@@ -42,7 +42,6 @@ def test_an_output_that_takes_nothing_is_no_result(capsys):
 @pytest.mark.parametrize(
     ("words", "offered"),
     [
-        ("lwa derive --law h", "hertz2"),
         ("lwa-validate pa", "paper"),
         ("lwa-validate run --method RK", "RKN86 RK45 RK23"),
         ("lwa wave --spheres s", "file,s"),
