@@ -16,6 +16,7 @@ from lwa import Cell, Dimer, canonical_wave, expand, homogenize
 from lwa.law import NAMES, named
 from tests.book.prose import BOOK, bounds, said, told
 from validation import Damping, Scene, exact_wave, measure, simulate
+from validation.scenes.chains import carrying
 from validation.waves.resonances import resonances
 
 sys.path.append(str(BOOK))  # the pages' own modules
@@ -239,6 +240,21 @@ def test_other_laws():
     speed = lwa.loaded_wave(UNIFORM, rise="65/99", background=0, law=law).speed
     (front,) = said("laws", "a front at 2/3 with V_s² = #")
     assert 0 < float(sp.Rational(front)) - float(speed**2) < 1e-3
+
+
+@pytest.mark.slow
+def test_the_lattice_carries_todas_soliton():
+    words = "over $#$ sites, and the force differs from {eq}`eq-toda` by less than $10^{#}$"
+    sites, power = map(int, said("laws", words))
+    place, c = np.arange(120.0) - 30, np.sinh(1)
+    before, after = ((c / np.cosh(place[:-1] - shift)) ** 2 for shift in (0, sites))
+    velocities = c * (np.tanh(place) - np.tanh(place - 1))
+    scene = carrying(
+        (1.0,) * 120, np.log(1 + before), velocities, law=named("exponential", 1),
+        duration=sites / c, samples=2, contact_sensors=range(119),
+    )  # fmt: skip
+    error = np.abs(simulate(scene, rtol=1e-9).contact_force[:, -1] - after).max()
+    assert 10.0 ** (power - 2) < error < 10.0**power
 
 
 @pytest.mark.slow
