@@ -4,13 +4,15 @@ The numbers are read out of the pages: a number of the text that is changed turn
 """
 
 import math
+from itertools import chain
 
 import pytest
 import sympy as sp
 
 from book.studies.links import CASES, links
+from book.studies.shock import shock as driven
 from book.studies.struck import struck
-from lwa import Cell, Dimer, LoadedChain, Material, Power, Sphere, envelope, loaded_wave
+from lwa import Cell, Dimer, LoadedChain, Material, Power, Sphere, envelope, loaded_wave, shock
 from tests.book.prose import bounds, said, told
 
 k, m1, m2, F0, d = sp.symbols("k m1 m2 F0 d", positive=True)
@@ -141,8 +143,8 @@ def test_errors_of_exact_waves():
     widths = (100 * row["fwhm_error_value"] for row in (on[-1], off))
     assert told("links", "without load; the width is # % and # % off", *widths)
     for case, chains in CASES.items():
-        for chain, row in zip(chains(), by_case[case], strict=True):
-            wave = loaded_wave(chain.lattice, force=chain.force, precompression=chain.load)
+        for one, row in zip(chains(), by_case[case], strict=True):
+            wave = loaded_wave(one.lattice, force=one.force, precompression=one.load)
             assert abs(math.sqrt(row["square_value"]) - float(wave.speed)) < wave.speed_error
             assert abs(row["fwhm_value"] - row["fwhm_theory_value"]) < wave.fwhm_error(row["of"])
 
@@ -173,3 +175,60 @@ def test_errors_of_struck_lattices():
         (abs(r["tuning_value"] - 1), r["ringing_value"]) for r in rung if r["chain"] == "m_r = 3/10"
     )
     assert min(ring for _, ring in beside[:2]) > 4 * tuned[1]
+
+
+# --- shocks
+
+
+def test_edges_of_a_shock():
+    """El's integrals, their edges, the identity of Toda's contacts and the shock without load."""
+    x, r = sp.symbols("x r", positive=True)
+    for wave, primitive in (
+        (2 * sp.sin(x / 2), -2 * sp.log(sp.cos(x / 4))),
+        (2 * sp.sinh(x / 2), -2 * sp.log(sp.cosh(x / 4))),
+    ):
+        assert sp.simplify(primitive.diff(x) - (1 - wave.diff(x)) / wave) == 0
+    q = 4 * sp.acosh(sp.sqrt(r))  # cosh²(q/4) = r
+    found = shock(Cell([1], spacing=1), "2.8561", 1, law=HERTZ)  # (c₋/c₊)^4 = 1.3^4
+    leading = 2 * sp.sinh(q / 2) / q
+    assert float(found.leading_speed("dispersion") / leading.subs(r, 1.3)) == pytest.approx(
+        1.5**0.5
+    )
+    (most,) = said("shocks", r"trailing edge up to $c_- = #\,c_+$")
+    assert float(found.trailing_speed) == pytest.approx(1.5**0.5 * (2 - float(most)), rel=1e-12)
+    theta = q / 2  # twice the piston's velocity: cosh θ = 2r - 1
+    assert sp.simplify(sp.expand_trig(sp.cosh(theta)) - 2 * r + 1) == 0
+    assert sp.simplify(sp.expand_trig(sp.sinh(theta)) / theta - sp.expand_trig(leading)) == 0
+    bare = shock(Cell([1], spacing=1), 1, 0, law=HERTZ)
+    assert float(bare.rise) == pytest.approx((12 / 2.5) ** 0.4, rel=1e-12)
+    assert told("shocks", "for spheres #. There", bare.peak / bare.rise)
+
+
+@pytest.mark.slow
+def test_driven_chains():
+    """The page's table, with the sentences about it."""
+    chains = {"jumps": (3,)}, {"k": "3/2", "jumps": (2, 8)}, {"k": "3/2", "jumps": (1,), "ahead": 0}
+    rows = [row for one in chains for row in driven(duration=300, **one).document()["rows"]]
+    toda, powers = rows[0], rows[1:]
+
+    def errors(rows, theory):
+        return [[100 * row[f"{theory}_error_value"][n] for row in rows] for n in ("speed", "peak")]
+
+    limited("shocks", "right within # % in speed and # % in strain", *errors(powers, "doubling"))
+    (agreement,) = said("shocks", "rule, edge and lattice agree to # %")
+    exact = *chain(*errors([toda], "doubling")), 100 * toda["dispersion_error_value"]["speed"]
+    assert max(map(abs, exact)) < float(agreement)
+    own = [[*chain(*errors(some, "canonical"))] for some in (powers, [toda])]
+    limited("shocks", "up to # % for powers and # % for Toda's contacts", *own)
+    slow = [
+        -100 * row["dispersion_error_value"]["speed"]
+        for n in (3, 8)
+        for row in powers
+        if row["law"] == "k = 3/2" and row["behind_value"] == n
+    ]
+    assert told("shocks", "it is # % too slow at $p_-/p_+ = 3$, # % at 8", *slow)
+    loaded, bare = (
+        [100 * r["plateau_error_value"] for r in part] for part in (rows[:-1], rows[-1:])
+    )
+    limited("shocks", "under a load is right within # %", loaded)
+    assert told("shocks", "the plateau's strain is # % below", *(-error for error in bare))

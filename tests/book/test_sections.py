@@ -16,7 +16,7 @@ PARTS = [
 ]
 CHAPTERS = [page for part in PARTS[:3] for page in part if page not in ("map", "proofs")]
 PAGES = [page.stem for page in BOOK.glob("*.md")]
-LATER = {"pressed", "shocks", "disorder", "upright", "damping", "column", "open", "experiment"}
+LATER = {"pressed", "disorder", "upright", "damping", "column", "open", "experiment"}
 """Pages that still have hidden assertions, exercises without a solution and a tag a section."""
 
 TAGS = {"the paper's", "known", "new here"}
