@@ -54,16 +54,6 @@ def work_precision() -> dict[tuple[str, str], list[tuple[float, float]]]:
     return rows
 
 
-def cheapest(runs: Sequence[tuple[float, float]], wanted: float) -> float | None:
-    """CPU time of the cheapest run such that all costlier runs are as accurate."""
-    found = None
-    for spent, off in reversed(runs):
-        if off > wanted:
-            break
-        found = spent
-    return found
-
-
 def _peak(run: Run) -> float:
     """Peak dynamic force at the sensor."""
     force = run.contact_force[0]

@@ -12,6 +12,7 @@ import pytest
 import sympy as sp
 
 import lwa
+from book.studies.hard import three_beads
 from lwa import Cell, Dimer, canonical_wave, expand, homogenize
 from lwa.law import NAMES, named
 from tests.book.prose import BOOK, bounds, said, told
@@ -307,3 +308,13 @@ def test_what_integration_costs():
     pulse = trust("3/2", "1/1000").pulse
     below = 100 * (1 - pulse.speed / pulse.force ** (1 / 6) / limit)
     assert told("integration", "it is # % below at $\\omega = 10^{#}$", below, -3)
+    steps = [
+        simulate(Scene.of_cell(
+            Dimer(1, w, spacing=1), 20, "3/2", velocities=(1.0,), duration=20.0, samples=2
+        )).step
+        for w in ("1/100", "1/10000")
+    ]  # fmt: skip
+    assert 5.5 < steps[0] / steps[1] < 6.5  # "a sixth"
+    drift = abs(simulate(three_beads(False, 1500.0), rtol=1e-5).energy_drift) / 1500
+    words = "at `rtol=1e-5` by $#\\cdot10^{-8}$ per unit of time"
+    assert told("integration", words, 1e8 * drift)
