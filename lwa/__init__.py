@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from lwa.base.exact import InputError as InputError
     from lwa.base.frozen import Estimate as Estimate
-    from lwa.base.quantities import NoSolitaryWave as NoSolitaryWave
+    from lwa.base.frozen import NoSolitaryWave as NoSolitaryWave
     from lwa.cell import Cell as Cell
     from lwa.cell import D as D
     from lwa.cell import Dimer as Dimer
@@ -59,9 +59,8 @@ if TYPE_CHECKING:
 # Public names by their module, each loaded on its first use (PEP 562): the command starts before
 # SymPy does.
 _HOMES = {
-    "lwa.base.frozen": "Estimate",
+    "lwa.base.frozen": "Estimate NoSolitaryWave",
     "lwa.base.exact": "InputError",
-    "lwa.base.quantities": "NoSolitaryWave",
     "lwa.cell": "Cell D Dimer k",
     "lwa.envelopes.schrodinger": "Breather Envelope envelope",
     "lwa.equation.pde": "PDE",

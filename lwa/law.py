@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import zip_longest
 from typing import Any, ClassVar
 
 import mpmath
@@ -56,9 +57,8 @@ class ContactLaw(Value):
     @property
     def text(self) -> str:
         """Name and parameters as `read_law` reads them, such as "hertz2:1,2"; F without a name."""
-        if not self.name:
-            return str(self.F)
-        return ":".join(filter(None, (self.name, ",".join(map(str, self.parameters)))))
+        parameters = ",".join(map(str, self.parameters))
+        return f"{self.name}:{parameters}".rstrip(":") if self.name else str(self.F)
 
     def latex_rows(self) -> list[str]:
         return latex.rows({f"F({sp.latex(self.delta)})": self.F})
@@ -92,41 +92,34 @@ class ContactLaw(Value):
     @property
     def pulls(self) -> bool:
         """True if the contact also holds where δ < 0: laws with F′(0) > 0 that are no power."""
-        if self.homogeneous or self.formless:
-            return False
-        return bool(self.slope().subs(self.delta, 0).is_positive)
+        known = not (self.homogeneous or self.formless)
+        return known and bool(self.slope().subs(self.delta, 0).is_positive)
 
     def at(self, delta: Any, n: int = 0) -> Any:
-        """The force F, or its n-th derivative, at a compression; 0 where the contact is open.
+        """The force F, or its n-th derivative, at a compression: a number, an expression, an array.
 
-        delta : a number, an expression or an array, whose result is an array of floats. A contact
-        is open where δ < 0, unless its law `pulls`.
-
-        Raises `lwa.InputError` for text, NaN, infinities and complex numbers.
+        The force is 0 where δ < 0, unless the law `pulls`. Raises `lwa.InputError` for text, NaN,
+        infinities and complex numbers.
 
         >>> Power("3/2").at(4), Power("3/2").at(-1), Power("3/2").at([-1, 4])
         (8, 0, array([0., 8.]))
         """
         value = self.slope(n)
-        if isinstance(delta, list | tuple) or getattr(delta, "ndim", 0) > 0:
-            return self._at_each(delta, value)
-        delta = real(delta, "delta")
-        if delta.is_negative and not self.pulls:
-            return sp.S.Zero
-        return value.subs(self.delta, delta)
+        if not isinstance(delta, list | tuple) and getattr(delta, "ndim", 0) == 0:
+            delta = real(delta, "delta")
+            closed = self.pulls or not delta.is_negative
+            return value.subs(self.delta, delta) if closed else sp.S.Zero
 
-    def _at_each(self, deltas: Any, value: sp.Expr) -> Any:
         import numpy as np  # here: the command starts before NumPy does
 
         from lwa.base.arrays import finite, function_of
 
         demand_numbers(self.symbols, "an array of forces needs numbers for the law")
-        compressions = finite(deltas, "delta")
-        if self.pulls:
-            return function_of(self.delta, value)(compressions)
+        compressions = finite(delta, "delta")
+        pushed = compressions if self.pulls else np.maximum(compressions, 0.0)
         with np.errstate(divide="ignore"):  # derivatives of powers at 0
-            closed = function_of(self.delta, value)(np.maximum(compressions, 0.0))
-        return np.where(compressions < 0, 0.0, closed)
+            forces = function_of(self.delta, value)(pushed)
+        return np.where(compressions < pushed, 0.0, forces)
 
     @property
     def formless(self) -> bool:
@@ -144,27 +137,18 @@ class ContactLaw(Value):
             return self.energy.subs(self.delta, D * p) / D**2
         return self.at(D * p, n) * D ** (n - 1)
 
-    def check_contacts(self, cell: Cell) -> None:
-        """Raise `lwa.InputError` unless the contacts of the cell can share the law."""
-        if len(set(cell.stiffnesses)) > 1:
-            raise InputError(
-                "the contacts differ in stiffness, and their shares of the strain would then "
-                "depend on the strain: only a power law allows that"
-            )
-
     def check_strain(self, p: sp.Expr, cell: Cell, sound: bool = False) -> None:
         """Raise `lwa.InputError` unless F is real up to the strain p and grows there, F′ > 0.
 
-        Nothing is refused while symbols are left, except a spacing, which is taken to be 1, nor at
-        p = 0, where F′ may vanish unless there must be ``sound``.
+        Symbols are accepted, a spacing as 1; F′(0) = 0 is accepted unless ``sound`` is wanted.
         """
         D = cell.spacing
         delta = (D * real(p, "p")).xreplace({D: sp.S.One} if D.is_Symbol else {})
         if self.homogeneous or self.formless or (delta.is_zero and not sound):
             return
-        for power_ in self.F.atoms(sp.Pow):
-            start, end = (power_.base.subs(self.delta, x) for x in (0, delta))
-            if power_.exp.is_negative and (start * end).is_nonpositive:
+        for factor in self.F.atoms(sp.Pow):
+            start, end = (factor.base.subs(self.delta, x) for x in (0, delta))
+            if factor.exp.is_negative and (start * end).is_nonpositive:
                 raise InputError(f"the strain is {shorten(p)}: the law has a pole before it")
         slope = self.at(delta, 1)
         if not slope.free_symbols and not slope.is_positive:
@@ -231,9 +215,6 @@ class Power(ContactLaw):
         up, down = (sp.Mul(*(self.k - j for j in r)) for r in (range(1, n), range(n, 1)))
         return up / down * p ** (self.k - n)
 
-    def check_contacts(self, cell: Cell) -> None:
-        """Accept any contacts: their shares of the strain are powers of their stiffnesses."""
-
     def compressions(self, cell: Cell, force: sp.Expr) -> tuple[sp.Expr, ...]:
         return tuple(power(real(force, "force") / A, 1 / self.k) for A in cell.stiffnesses)
 
@@ -248,9 +229,7 @@ class Power(ContactLaw):
 class Law(ContactLaw):
     """A law F(δ) given by a SymPy expression and its symbol ``delta`` of the compression.
 
-    name, parameters : those of `named`; laws of one F are equal, whatever their names.
-
-    Raises `lwa.InputError` if F′ = 0, and for text, which is not evaluated.
+    Laws of one F are equal, whatever their names. Raises `lwa.InputError` if F′ = 0, and for text.
 
     >>> x = sp.Symbol("x", positive=True)
     >>> Law(x + x**2, x).phi(2)
@@ -271,19 +250,18 @@ class Law(ContactLaw):
         if not isinstance(self.delta, sp.Symbol):
             raise InputError(f"delta is {shorten(self.delta)}: the symbol of δ in F is wanted")
         if not isinstance(self.F, sp.Expr) or self.delta not in self.F.free_symbols:
-            raise InputError(
-                f"F is {shorten(self.F)}: a SymPy expression in {self.delta} is wanted"
-            )
+            fault = f"a SymPy expression in {self.delta} is wanted"
+            raise InputError(f"F is {shorten(self.F)}: {fault}")
         object.__setattr__(self, "F", read_exact(self.F, "F"))
         if self.slope().is_zero:
             raise InputError(f"F is {shorten(self.F)}: a force that depends on δ is wanted")
 
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> ContactLaw:
         if self.name:
-            return named(self.name, *(x.xreplace(dict(new)) for x in self.parameters))
+            return named(self.name, *(x.xreplace(new) for x in self.parameters))
         for symbol in self.symbols:
             _check_parameter(new.get(symbol, symbol), str(symbol), self.delta)
-        return Law(self.F.xreplace(dict(new)), self.delta)
+        return Law(self.F.xreplace(new), self.delta)
 
 
 def general() -> Law:
@@ -293,12 +271,6 @@ def general() -> Law:
     F(delta)
     """
     return Law(sp.Function("F")(DELTA), name="general")
-
-
-def refuse_two_laws(k: Any, law: ContactLaw) -> None:
-    """Raise `lwa.InputError` for an exponent beside a law, which already determines the force."""
-    if not isinstance(k, sp.Symbol) or k != symbol_k:  # k may be an array
-        raise InputError(f"k is {shorten(k)} and law {shorten(law)}: one of them is wanted")
 
 
 _HERTZ = sp.Rational(3, 2)
@@ -312,7 +284,6 @@ _NAMED: Mapping[str, tuple[str, Callable[..., Any]]] = {
     "lennard-jones": ("d", lambda d: (1 - DELTA / d) ** -13 - (1 - DELTA / d) ** -7),
     "general": ("", general),
 }
-_OF_EITHER_SIGN = ("polynomial",)
 NAMES = tuple(_NAMED)
 """The names of laws."""
 
@@ -338,17 +309,15 @@ def named(name: str, *parameters: Any) -> ContactLaw:
     if len(parameters) > len(letters):
         wanted = f"at most {len(letters)} ({', '.join(letters)})" if letters else "none"
         raise InputError(f"law {name} has {len(parameters)} parameters: {wanted} are wanted")
-    read = signed if name in _OF_EITHER_SIGN else positive
-    given = [*parameters, *letters[len(parameters) :]]
-    places = [f"{name}'s {letter}" for letter in letters]
-    values = [
-        _check_parameter(read(value, place), place, DELTA)
-        for value, place in zip(given, places, strict=True)
-    ]
-    force = build(*values)
-    if isinstance(force, ContactLaw):
-        return force
-    return Law(force, name=name, parameters=tuple(values))
+    read = signed if name == "polynomial" else positive
+    values = []
+    for letter, value in zip_longest(letters, parameters):
+        place = f"{name}'s {letter}"
+        values.append(
+            _check_parameter(read(letter if value is None else value, place), place, DELTA)
+        )
+    force: ContactLaw | sp.Expr = build(*values)
+    return force if isinstance(force, ContactLaw) else Law(force, DELTA, name, tuple(values))
 
 
 def read_law(value: Any, name: str) -> ContactLaw:
@@ -374,15 +343,20 @@ def phi_symbol(n: int) -> sp.Symbol:
 def for_cell(law: Any, cell: Cell, k: Any = symbol_k) -> ContactLaw:
     """Return the law of a cell's contacts; the power k without a law.
 
-    Raises `lwa.InputError` unless it is a law that fits the cell's contacts, and for a law and k.
+    Raises `lwa.InputError` for anything but a law or None, for a law besides an exponent, and for
+    unlike contacts under a law that is no power.
     """
     if law is None:
         law = Power(k)
-    else:
-        refuse_two_laws(k, law)
-    if not isinstance(law, ContactLaw):
+    elif not isinstance(law, ContactLaw):
         raise InputError(f"law is {shorten(law)}: Power(k), Law(F, delta) or general() is wanted")
-    law.check_contacts(read_cell(cell))
+    elif not isinstance(k, sp.Symbol) or k != symbol_k:  # k may be an array
+        raise InputError(f"k is {shorten(k)} and law {shorten(law)}: one of them is wanted")
+    if len(set(read_cell(cell).stiffnesses)) > 1 and not law.homogeneous:
+        raise InputError(
+            "the contacts differ in stiffness, and their shares of the strain would then depend on "
+            "the strain: only a power law allows that"
+        )
     return law
 
 

@@ -10,7 +10,7 @@ import pytest
 import sympy as sp
 
 from lwa import D, Dimer, homogenize, k
-from lwa.base.quantities import SPEED as V
+from lwa.base.frozen import SPEED as V
 from lwa.equation.terms import Jet
 from tests.identity import same
 

@@ -1,4 +1,4 @@
-"""Base classes of the package's results, and a number with a bound of its error."""
+"""Base classes of results, a number with a bound of its error, and the quantities of a wave."""
 
 from __future__ import annotations
 
@@ -8,7 +8,42 @@ from typing import Any, ClassVar, Self
 
 import sympy as sp
 
+from lwa.base import NoSolitaryWave as NoSolitaryWave
 from lwa.base import latex
+from lwa.base.exact import one_of
+
+RISE = sp.Symbol("B", positive=True)
+"""B, the peak strain of a wave, unless the caller gives another."""
+
+FALL = sp.Symbol("B", negative=True)
+"""B of a wave of lower strain, in a chain that softens."""
+
+SPEED = sp.Symbol("V_s", positive=True)
+"""V_s = dx/dτ, the speed of a wave, unless the caller gives another."""
+
+QUANTITIES = ("strain", "force", "velocity")
+"""The quantities of a wave that have a width."""
+
+EXTENTS = ("length", "time")
+"""The kinds of a width: an extent in space, or the time of passage."""
+
+
+def strain_power(quantity: str, k: Any) -> Any:
+    """The exponent q of a quantity that scales as strain^q: k for the force, else 1.
+
+    Raises `lwa.InputError` unless the quantity is among `QUANTITIES`.
+    """
+    return k if known_quantity(quantity) == "force" else 1
+
+
+def known_quantity(quantity: str) -> str:
+    """Return the quantity; raise `lwa.InputError` unless it is among `QUANTITIES`."""
+    return one_of(quantity, QUANTITIES, "quantity")
+
+
+def known_extent(extent: str) -> str:
+    """Return the extent; raise `lwa.InputError` unless it is among `EXTENTS`."""
+    return one_of(extent, EXTENTS, "extent")
 
 
 class Shown:

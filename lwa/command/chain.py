@@ -17,7 +17,7 @@ from lwa.base.files import Table, among, finite, load, table
 from lwa.cell import Cell, D
 from lwa.command.options import given
 from lwa.command.rows import approximate
-from lwa.law import ContactLaw, Power, read_law, refuse_two_laws
+from lwa.law import ContactLaw, Power, for_cell, read_law
 from lwa.spheres.beads import FILE, STRIKER, Row, period, read_beads, read_materials, read_row
 from lwa.spheres.hertz import EXPONENT
 
@@ -66,11 +66,8 @@ def take_chain(options: dict[str, Any]) -> ChainInput:
         for name in filter(given, chosen):
             raise InputError(f"--{name} and --spheres are both given: spheres have their own")
         return read_chain(file)
-    law = chosen.get("law")
-    if law is not None:
-        refuse_two_laws(chosen["k"], law)
     cell = Cell(chosen["masses"], chosen["stiffnesses"], chosen.get("spacing", D))
-    return ChainInput(cell, law or Power(chosen["k"]))
+    return ChainInput(cell, for_cell(chosen.get("law"), cell, chosen["k"]))
 
 
 def read_chain(path: str | Path) -> ChainInput:

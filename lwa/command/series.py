@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from lwa.base.quantities import QUANTITIES
+from lwa.base.frozen import QUANTITIES
 from lwa.cell import k
 from lwa.command.chain import take_chain
 from lwa.command.options import series_options

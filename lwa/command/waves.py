@@ -9,8 +9,7 @@ import click
 import sympy as sp
 
 from lwa.base.exact import InputError, read_exact
-from lwa.base.frozen import Shown
-from lwa.base.quantities import QUANTITIES, NoSolitaryWave
+from lwa.base.frozen import QUANTITIES, NoSolitaryWave, Shown
 from lwa.command.chain import ChainInput, take_chain
 from lwa.command.derivation import UNKNOWNS, settings_json
 from lwa.command.options import (

@@ -17,10 +17,9 @@ import sympy as sp
 
 from lwa.algebra.model import Model
 from lwa.base.exact import InputError, integer, shorten, signed
-from lwa.base.frozen import Value
+from lwa.base.frozen import QUANTITIES as QUANTITIES
+from lwa.base.frozen import Value, known_quantity
 from lwa.base.progress import announced
-from lwa.base.quantities import QUANTITIES as QUANTITIES
-from lwa.base.quantities import known_quantity
 from lwa.cell import Cell, exponent, read_cell, substitution
 from lwa.cell import k as symbol_k
 from lwa.expansion.observables import Observables, shares_model

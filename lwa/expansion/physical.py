@@ -21,8 +21,7 @@ import sympy as sp
 
 from lwa.base import latex
 from lwa.base.exact import InputError, demand_numbers, positive, shorten
-from lwa.base.frozen import Estimate, Value
-from lwa.base.quantities import known_extent
+from lwa.base.frozen import Estimate, Value, known_extent
 from lwa.cell import Cell, exponent
 from lwa.expansion.approximants import Resummed
 from lwa.expansion.expand import Expansion, expand

@@ -22,8 +22,7 @@ import sympy as sp
 
 from lwa.base import latex
 from lwa.base.exact import InputError, power, read_exact, real, shorten, signed
-from lwa.base.frozen import Value
-from lwa.base.quantities import FALL, RISE, NoSolitaryWave
+from lwa.base.frozen import FALL, RISE, NoSolitaryWave, Value
 from lwa.cell import Cell
 from lwa.law import ContactLaw, for_cell
 from lwa.linear.dispersion import Dispersion

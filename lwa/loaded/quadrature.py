@@ -27,7 +27,6 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError
-from lwa.base.quantities import NOT_RISING, NOT_STIFFENING, VANISHING
 
 Samples = Callable[[Array], tuple[Array, Array, Array]]
 
@@ -187,10 +186,12 @@ class Quadrature:
             ends = F2 @ (2 * g.s * g.y2 * g.ds), F2 @ (g.y2**2 * g.ds)  # Q′(B), (Q(B) - Q(0))/B
             rises = self.B * np.append(g.kernel @ F2, ends)
         if not np.all(F1 >= 0) or not np.isfinite(F1[-1]):
-            return NOT_RISING
+            return "F′ is not positive and finite from p0 to p0 + B"
         if np.any(F1 == 0):
-            return VANISHING
-        return "" if np.all(rises > 0) else NOT_STIFFENING
+            return "F′ is 0 between p0 and p0 + B, or so small that its terms cancel to 0"
+        if np.all(rises > 0):
+            return ""
+        return "the law does not stiffen towards p0 + B: a smaller wave would be as fast"
 
     def _converged(
         self,

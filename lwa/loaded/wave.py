@@ -52,11 +52,10 @@ from lwa.base.exact import (
     read_exact,
     shorten,
 )
-from lwa.base.quantities import (
+from lwa.base.frozen import (
     NoSolitaryWave,
     known_extent,
     known_quantity,
-    refusal_under_power,
 )
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
@@ -105,7 +104,7 @@ class LoadedWave(Ends):
     def _check(self) -> None:
         """Raise an error for numbers without a wave."""
         if self.law is not None and self.law.homogeneous:
-            reason = refusal_under_power(self.law.exponent - 1, self.background, self.strain)
+            reason = _refusal_under_power(self.law.exponent - 1, self.background, self.strain)
         elif self._free or (self.law is not None and self.law.formless):
             if self.by_force and (self.law or not self.lattice.exact):
                 demand_numbers(self._free, "forces under laws that are no powers are numbers")
@@ -254,6 +253,22 @@ class LoadedWave(Ends):
     def fwhm_error(self, quantity: str = "force", extent: str = "length") -> float:
         """Bound on the error of a width; NaN where no such lattice was measured."""
         return self._bounds[1] * number(self.fwhm(quantity, extent))
+
+
+def _refusal_under_power(excess: sp.Expr, p0: sp.Expr, B: sp.Expr) -> str:
+    """Reason why δ^k has no wave of the rise B on the strain p0; empty if there may be a wave.
+
+    excess : k - 1. Speeds scale as strain^{(k-1)/2}.
+    """
+    stiffens, softens = excess.is_positive, excess.is_negative
+    cases = {
+        "at k = 1 the chain is linear, and its waves disperse": excess.is_zero,
+        "k < 1 and there is no load: the speed falls with the strain": softens and p0.is_zero,
+        "k > 1: speeds grow with the strain, and only B > 0 has a wave": stiffens and B.is_negative,
+        "k < 1: speeds fall with the strain, and only B < 0 has a wave": softens and B.is_positive,
+        "the contacts would open": p0.is_negative or (p0 + B).is_nonpositive,
+    }
+    return next((reason for reason, holds in cases.items() if holds), "")
 
 
 def loaded_wave(

@@ -26,8 +26,7 @@ import sympy as sp
 from lwa.algebra.rational import factored
 from lwa.base import latex
 from lwa.base.exact import integer, positive, power, shorten, signed
-from lwa.base.frozen import Value
-from lwa.base.quantities import RISE, SPEED, NoSolitaryWave, strain_power
+from lwa.base.frozen import RISE, SPEED, NoSolitaryWave, Value, strain_power
 from lwa.cell import Cell, exponent, read_cell, substitution
 from lwa.linear.dispersion import Dispersion
 

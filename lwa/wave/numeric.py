@@ -22,8 +22,7 @@ from numpy.typing import ArrayLike
 from lwa.algebra.rational import factored
 from lwa.base.arrays import Array, finite
 from lwa.base.exact import InputError, one_of
-from lwa.base.frozen import Value
-from lwa.base.quantities import NoSolitaryWave, strain_power
+from lwa.base.frozen import NoSolitaryWave, Value, strain_power
 from lwa.wave.closed import CompactWave
 
 LARGEST = 1e150

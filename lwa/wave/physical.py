@@ -19,8 +19,7 @@ import sympy as sp
 
 from lwa.base import latex
 from lwa.base.exact import InputError, number, one_of, positive, power, shorten
-from lwa.base.frozen import Value
-from lwa.base.quantities import known_extent, known_quantity, strain_power
+from lwa.base.frozen import Value, known_extent, known_quantity, strain_power
 from lwa.law import Power
 from lwa.wave.closed import CompactWave
 

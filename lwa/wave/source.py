@@ -20,7 +20,7 @@ from sympy.printing.jscode import JavascriptCodePrinter
 from sympy.printing.numpy import NumPyPrinter
 
 from lwa.base.exact import InputError, one_of, shorten
-from lwa.base.quantities import QUANTITIES, strain_power
+from lwa.base.frozen import QUANTITIES, strain_power
 from lwa.law import Power
 from lwa.wave.closed import CompactWave
 

@@ -15,7 +15,7 @@ import sympy as sp
 from sympy.core.cache import clear_cache
 
 from lwa import Cell, canonical_wave, expand
-from lwa.base.quantities import QUANTITIES
+from lwa.base.frozen import QUANTITIES
 
 CHAINS = {
     "equal beads to ε^40": (Cell([1]), 40),

@@ -21,7 +21,7 @@ ODD = (
 # function returns: no user calls them.
 OWN = {
     "CompactWave", "ExpandedWave", "InputError", "LoadedWave", "NoSolitaryWave", "SceneError",
-    "TravelingWave", "anew", "check_contacts", "check_strain", "compression", "compressions",
+    "TravelingWave", "anew", "check_strain", "compression", "compressions",
     "latex_rows", "of_strain", "phi", "replaced",
 }  # fmt: skip
 

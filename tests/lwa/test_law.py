@@ -193,7 +193,7 @@ def test_an_open_contact_carries_nothing():
     [
         (lambda: homogenize(Dimer(1, 2, stiffnesses=[1, 2]), law=general()), "shares of the str"),
         (lambda: homogenize(Cell([1]), law="hertz2"), "law is 'hertz2'"),
-        (lambda: homogenize(Cell([1]), law=[[1], [2]], k=2), "one of them"),
+        (lambda: homogenize(Cell([1]), law=Power(2), k=[1]), "one of them"),
         (lambda: Law("x**2", y), "a SymPy expression"),
         (lambda: Law(y, "y"), "the symbol of δ"),
         (lambda: named("general", 1), "none"),

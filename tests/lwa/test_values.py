@@ -23,7 +23,7 @@ from lwa import (
     loaded_wave,
     shock,
 )
-from lwa.base.quantities import QUANTITIES
+from lwa.base.frozen import QUANTITIES
 from lwa.linear.dispersion import LoadedChain
 
 m1, m2 = sp.symbols("m1 m2", positive=True)

@@ -20,7 +20,7 @@ import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from lwa.base.arrays import Array
-from lwa.base.quantities import QUANTITIES, strain_power
+from lwa.base.frozen import QUANTITIES, strain_power
 from validation.pictures import Curve, Panel, Pictured
 from validation.pulses.pulse import highest_pulse
 from validation.pulses.signals import Piecewise

@@ -25,7 +25,7 @@ from typing import Any
 import scipy
 
 from lwa import Cell, loaded_wave
-from lwa.base.quantities import QUANTITIES
+from lwa.base.frozen import QUANTITIES
 from validation.pulses.pulse import Measured
 from validation.scenes.checks import SceneError, between, items
 from validation.waves import newton

@@ -9,7 +9,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lwa.base.exact import InputError, positive, power, read_exact
+from lwa.base.exact import InputError, positive, read_exact
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
@@ -70,13 +70,3 @@ def test_text_is_read_or_refused_and_never_evaluated(text):
 def test_positive_refuses_what_is_not(value):
     with pytest.raises(InputError, match="positive"):
         positive(value, "mass")
-
-
-@given(st.fractions(min_value="1/99", max_value=100, max_denominator=99), st.integers(-9, 9))
-def test_a_power_is_the_number_it_is_also_where_it_is_kept(base, numerator):
-    base = sp.Rational(base.numerator, base.denominator)
-    for denominator in (3, 99999):
-        found = power(base, sp.Rational(numerator, denominator))
-        assert found.is_positive
-        assert abs(found.n(30) / base.n(40) ** sp.Rational(numerator, denominator) - 1) < 1e-28
-        assert len(str(found)) < 60

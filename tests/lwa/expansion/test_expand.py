@@ -11,7 +11,7 @@ import pytest
 import sympy as sp
 
 from lwa import Cell, Dimer, Dispersion, InputError
-from lwa.base.quantities import QUANTITIES
+from lwa.base.frozen import QUANTITIES
 from lwa.cell import k as symbol_k
 from lwa.expansion.expand import Expansion, expand
 from lwa.expansion.radiation import amplitude, parameters, radiated

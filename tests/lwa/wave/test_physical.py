@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lwa import Cell, canonical_wave, homogenize
-from lwa.base.quantities import QUANTITIES
+from lwa.base.frozen import QUANTITIES
 
 k = sp.Symbol("k", positive=True)
 
