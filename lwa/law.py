@@ -316,8 +316,10 @@ def named(name: str, *parameters: Any) -> ContactLaw:
         values.append(
             _check_parameter(read(letter if value is None else value, place), place, DELTA)
         )
-    force: ContactLaw | sp.Expr = build(*values)
-    return force if isinstance(force, ContactLaw) else Law(force, DELTA, name, tuple(values))
+    force = build(*values)
+    if isinstance(force, ContactLaw):
+        return force
+    return Law(force, DELTA, name, tuple(values))
 
 
 def read_law(value: Any, name: str) -> ContactLaw:
