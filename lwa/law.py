@@ -348,12 +348,11 @@ def for_cell(law: Any, cell: Cell, k: Any = symbol_k) -> ContactLaw:
     Raises `lwa.InputError` for anything but a law or None, for a law besides an exponent, and for
     unlike contacts under a law that is no power.
     """
-    if law is None:
-        law = Power(k)
-    elif not isinstance(law, ContactLaw):
-        raise InputError(f"law is {shorten(law)}: Power(k), Law(F, delta) or general() is wanted")
-    elif not isinstance(k, sp.Symbol) or k != symbol_k:  # k may be an array
+    if law is not None and (not isinstance(k, sp.Symbol) or k != symbol_k):  # k may be an array
         raise InputError(f"k is {shorten(k)} and law {shorten(law)}: one of them is wanted")
+    law = Power(k) if law is None else law
+    if not isinstance(law, ContactLaw):
+        raise InputError(f"law is {shorten(law)}: Power(k), Law(F, delta) or general() is wanted")
     if len(set(read_cell(cell).stiffnesses)) > 1 and not law.homogeneous:
         raise InputError(
             "the contacts differ in stiffness, and their shares of the strain would then depend on "
