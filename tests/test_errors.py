@@ -2,10 +2,10 @@
 
 Each covers the deviation and is at most `LOOSE` times as large, here
 
-- sums of the series in k - 1, and what inherits them (`ExpandedWave`, `Strike`, `Shock.wave`),
+- sums of the series in k - 1, and what inherits them (`ExpandedWave`, `Strike`),
 - the bound of the radiation of unlike beads,
 - the force of a strike,
-- a shock: edges, leading pulse by the canonical wave and by the series,
+- a shock: edges and leading pulse,
 
 and elsewhere the last digits of vectorised functions (tests/lwa/wave) and lattices of any links
 (tests/lwa/links).
@@ -62,7 +62,7 @@ def sums(exponents, orders):
 def test_the_error_of_a_sum(exponents, orders):
     """At most 1 % of the sums are outside, none by a factor of 2; the median is not loose."""
     error, deviation = sums(exponents, orders)
-    assert len(error) == len(exponents) * len(orders) * 10
+    assert len(error) == len(exponents) * len(orders) * 9
     outside = np.maximum(deviation - 1e-12, 0) / error  # the lattice's waves are good to 1e-12
     assert outside.max() < 2
     assert np.mean(outside > 1) < 0.01
@@ -146,9 +146,9 @@ def test_the_error_of_a_strike(k, mass):
 LEADING = ("doubling", "peak", "peak_force")
 SHOCKS = {
     "hertz": (Power("3/2"), 3, 1, (*LEADING, "dispersion")),
-    "hertz, no load": (Power("3/2"), 1, 0, (*LEADING, "series.speed")),
-    "k = 11/10": (Power("11/10"), 1, 0, ("peak", "series.force")),
-    "k = 3": (Power(3), 1, 0, (*LEADING, "series.speed", "series.force")),
+    "hertz, no load": (Power("3/2"), 1, 0, LEADING),
+    "k = 11/10": (Power("11/10"), 1, 0, ("peak",)),
+    "k = 3": (Power(3), 1, 0, LEADING),
     "k = 7/2": (Power("7/2"), 1, 0, LEADING),
     "k = 6": (Power(6), 1, 0, LEADING),
     "weak load": (Power("5/2"), 36, 1, (*LEADING, "dispersion")),
@@ -178,16 +178,6 @@ def deviations(front, chain):
         except InputError:
             continue
         found[name] = errors[name] * abs(value), abs(value - true), doubt + 5e-5 * abs(true)
-    with_errors = {}
-    if front.law.homogeneous and front.ahead.is_zero:
-        with_errors["series.speed"] = (lambda: front.series_speed), *pace
-        with_errors["series.force"] = (lambda: front.series_force), push, abs(late - push)
-    for name, (read, true, doubt) in with_errors.items():
-        try:
-            value = read()
-        except InputError:
-            continue
-        found[name] = value.error, abs(value.value - true), doubt
     return found
 
 

@@ -13,7 +13,7 @@ behind the front has the strain p₋. Measured are, from the piston on:
 The error of a fit is the difference to the fit through the farther half of the contacts.
 
 Theory, for equal beads: El's leading edge, and the doubling rule: on the lattice's own wave (Toda's
-soliton; for powers the series in k - 1 without load, and Newton's wave on a load) and on the
+soliton; for powers Newton's wave) and on the
 canonical wave, in closed form.
 """
 
@@ -202,10 +202,11 @@ def own_wave(chain: Shock) -> Pair:
         a, c = TODA, float(chain.sound(chain.ahead))
         angle = math.acosh(1 + a * float(chain.plateau) / c)
         return c * math.sinh(angle) / angle, float(chain.ahead) + 2 * math.log(math.cosh(angle)) / a
-    if not chain.ahead:
-        wave = chain.wave
-        return wave.speed.value, float(wave.F) ** float(1 / chain.law.exponent)
     k, ahead, fastest = float(chain.law.exponent), float(chain.ahead), 2 * float(chain.plateau)
+    if not ahead:  # the speed of the beads scales as the strain to the power (k + 1)/2
+        wave = exact_wave([1], k)
+        factor = (fastest / wave.peak("velocity")[1]) ** (2 / (k + 1))
+        return math.sqrt(wave.c2) * factor ** ((k - 1) / 2), wave.peak("strain")[1] * factor
 
     def scaled(share: float) -> tuple[float, float, float]:
         """Speed, peak strain and bead velocity of the wave with background strain share · peak."""

@@ -82,11 +82,9 @@ def shock(
 
     Needs --behind or --piston. Speeds are dx/dt, in m/s with --spheres.
 
-    In JSON `plateau` is the velocity of the wall, `peak` the strain of the leading pulse by the
-    doubling rule, and `series`, for a power law without load, the pulse's speed and force from the
-    series in k - 1.
-    Errors were measured on driven chains; closed forms without an error are exact for the law.
-    Values that no theory here gives are null; `notes` has the reason.
+    In JSON `plateau` is the velocity of the wall, and `peak` the strain of the leading pulse by the
+    doubling rule. Errors were measured on driven chains; closed forms without an error are exact
+    for the law. Values that no theory here gives are null; `notes` has the reason.
     """
     if (behind is None) == (piston is None):
         raise InputError("--behind or --piston: one of the two is wanted")
@@ -124,10 +122,6 @@ def shock(
     if kind != "rarefaction":
         rows.append(row("peak", "peak strain, doubling", ""))
         rows.append(row("peak_force", "peak force, doubling", "N"))
-        if front.law.homogeneous and front.ahead.is_zero and not front.behind.free_symbols:
-            speed, force = (attempt(getattr, front, f"series_{x}") for x in ("speed", "force"))
-            rows.append(Row("series.speed", "leading pulse, series", speed, unit="m/s"))
-            rows.append(Row("series.force", "peak force, series", force, unit="N"))
     notes = [
         "c₋ > 2 c₊: the beads near the wall go on oscillating. The strain behind is that of a wall "
         "at rest beside its neighbours, v_p = ∫ c dp; the mean strain is below it."

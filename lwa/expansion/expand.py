@@ -110,17 +110,6 @@ class Expansion(Value):
         unit = sp.sqrt(2 * sp.pi * self.I) * self.cell.mass / self.cell.size
         return self._series("effective_mass", unit, -sp.S.Half)
 
-    @cached_property
-    def peak_velocity(self) -> EpsilonSeries:
-        """The largest velocity of a bead, in a chain of equal beads.
-
-        Raises `lwa.InputError` for unlike beads or contacts.
-        """
-        if not self.cell.uniform:
-            raise InputError("the beads or contacts differ: their velocities peak one by one")
-        unit = sp.sqrt(self._sound) * self.compliance
-        return self._series("peak_velocity", unit, sp.S.Zero)
-
     def _energy(self, quantity: str) -> EpsilonSeries:
         unit = self.compliance * sp.sqrt(2 * sp.pi * self.I)  # ā ∫ e^{-Z²/2} dξ
         return self._series(quantity, unit, -sp.S.Half)

@@ -70,12 +70,6 @@ class Observables:
         return half_width(logarithm(self._slope))
 
     @cached_property
-    def peak_velocity(self) -> Series:
-        """Peak velocity of equal beads, c times the slope at Z = 0, divided by its leading term."""
-        zero = self.wave.zero
-        return product(self.c, [by_degree(term).get(0, zero) for term in self._slope])
-
-    @cached_property
     def _slope(self) -> Series:
         """Slope s_0 of the first bead, shifted by half a cell to be even in ξ for equal beads.
 

@@ -20,7 +20,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, demand_numbers, positive, shorten
+from lwa.base.exact import InputError, positive, shorten
 from lwa.base.frozen import Estimate, Value, known_extent
 from lwa.cell import Cell, exponent
 from lwa.expansion.approximants import Resummed
@@ -31,7 +31,7 @@ GRAVITY = sp.Rational("9.81")
 """Gravity in m/s², of strikers that drop and of the scenes."""
 
 ORDER = 10
-"""Order in k - 1 of the sums for strikes and shocks."""
+"""Order in k - 1 of the sums for strikes."""
 
 
 @dataclass(frozen=True)
@@ -94,17 +94,6 @@ def _rows(force: str, wave: ExpandedWave | Strike) -> list[str]:
         speed = width = r"\text{no sum}"
     names = ("F", latex.SPEED, r"\mathrm{FWHM}_{\mathrm{force}}")
     return [f"{name} = {x}" for name, x in zip(names, (force, speed, width), strict=True)]
-
-
-def wave_of_velocity(expansion: Expansion, velocity: sp.Expr) -> ExpandedWave:
-    """The wave of equal beads with this peak velocity, proportional to F^{(k+1)/(2k)}.
-
-    Raises `lwa.InputError` unless the chain and the velocity are numbers.
-    """
-    k = expansion.k
-    demand_numbers({*velocity.free_symbols, *k.free_symbols}, "sums of series are numbers")
-    ratio = float(velocity) / expansion.peak_velocity.at().value
-    return ExpandedWave(expansion, ratio ** float(2 * k / (k + 1)))
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,6 @@ _LETTERS = {
     "kinetic": "T",
     "energy": "E",
     "effective_mass": r"m_\mathrm{eff}",
-    "peak_velocity": r"v_\mathrm{max}",
 }
 
 

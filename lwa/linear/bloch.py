@@ -83,26 +83,6 @@ class Bloch:
             omega2.append(following)
         return omega2
 
-    def amplitudes(self, order: int, branch: str) -> list[fmpq_mpoly]:
-        """Coefficients b_0 … b_order of a dimer's a_1/a_0 = λ Σ b_n q^n, q = iκ.
-
-        The first particle's equation times C_0 C_1 is 2m̂_0 C_0 C_1 Ω² = 2 - (C_1 + C_0 e^{-2q}) ρ.
-        With Ω² of the acoustic branch, or 1/Π less it and λ = -m̂_0/m̂_1 taken out,
-
-            (1 + C_0 (e^{-2q} - 1)/2) Σ b_n q^n = 1 - m̂ C_0 C_1 Ω²_acoustic,
-
-        m̂ being m̂_0 on the acoustic branch and m̂_1 on the optical branch.
-        """
-        weight = self.mu[BRANCHES.index(branch)] * self.c[0] * self.c[1]
-        omega2 = self.acoustic(order // 2)
-        b = [self.one]
-        for n in range(1, order + 1):
-            right = weight * omega2[n // 2] * -((-1) ** (n // 2)) if n % 2 == 0 else self.zero
-            # C_0 (e^{-2q} - 1)/2 = C_0 Σ (-2q)^j/(2 j!)
-            products = (b[n - j] * fmpq((-2) ** j, 2 * factorial(j)) for j in range(1, n + 1))
-            b.append(right - self.c[0] * sum(products, self.zero))
-        return b
-
 
 def dispersion_of_chain(masses: Sequence[Any], shares: Sequence[Any]) -> Any:
     """Coefficient I in Ω² = κ² (1 - I κ² + …) of a chain, from its relation's terms Ω² and Ω⁴.

@@ -22,11 +22,11 @@ from flint import fmpq_mpoly
 
 from lwa.algebra.model import Model
 from lwa.base import latex
-from lwa.base.exact import InputError, demand_numbers, integer, one_of, positive
+from lwa.base.exact import InputError, demand_numbers, integer, positive
 from lwa.base.frozen import Value
 from lwa.cell import Cell, exponent, read_cell, substitution
 from lwa.law import ContactLaw, Power, for_cell
-from lwa.linear.bloch import BRANCHES, Bloch
+from lwa.linear.bloch import Bloch
 
 if TYPE_CHECKING:
     from lwa.linear.bands import Bands
@@ -90,23 +90,10 @@ class Dispersion(Value):
 
     def optical(self, order: int = 4) -> dict[int, sp.Expr]:
         """Mapping n = 0, 2, … ≤ ``order`` → coefficient of κ^n in a dimer's optical Ω²."""
-        self._demand_dimer("the optical series")
+        if self.cell.size != 2:  # the roots of other cells are not rational
+            raise InputError(f"the optical series needs a cell of 2 masses, not {self.cell.size}")
         acoustic = self.acoustic(order)
         return {0: 1 / self._expression(self._bloch.Pi)} | {n: -c for n, c in acoustic.items()}
-
-    def amplitude_ratio(self, order: int = 4, branch: str = "acoustic") -> dict[int, sp.Expr]:
-        """Mapping from n ≤ ``order`` to the coefficient of (iκ)^n in a dimer's a_1/a_0 = w/u.
-
-        a_0 and a_1 are the amplitudes of the two particles, taken at the place of the first. The
-        coefficients are the λ b_n of the ansatz w = λ Σ b_n D^n ∂_x^n u.
-        """
-        self._demand_dimer("the amplitude ratio")
-        one_of(branch, BRANCHES, "branch")
-        self._length(order)
-        m1, m2 = self.cell.masses
-        ratio = sp.Integer(1) if branch == "acoustic" else sp.cancel(-m1 / m2)
-        series = self._bloch.amplitudes(order, branch)
-        return {n: sp.Mul(ratio, self._expression(b)) for n, b in enumerate(series)}
 
     @cached_property
     def I(self) -> sp.Expr:
@@ -140,10 +127,6 @@ class Dispersion(Value):
         if terms > MOST_TERMS:
             raise InputError(f"order is {highest}: give numbers for the cell, or a lower order")
         return n
-
-    def _demand_dimer(self, what: str) -> None:
-        if self.cell.size != 2:  # the roots of other cells are not rational
-            raise InputError(f"{what} needs a cell of 2 masses, not {self.cell.size}")
 
     @cached_property
     def bands(self) -> Bands:

@@ -30,13 +30,10 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, demand_numbers, one_of, positive, read_exact, shorten
-from lwa.base.frozen import Estimate, Value
+from lwa.base.exact import InputError, one_of, positive, read_exact, shorten
+from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
-from lwa.expansion.approximants import Resummed
-from lwa.expansion.expand import expand
-from lwa.expansion.physical import ORDER, ExpandedWave, wave_of_velocity
 from lwa.law import ContactLaw, for_cell
 from lwa.loaded.background import Background
 from lwa.shocks import waves
@@ -56,9 +53,9 @@ SMALLEST = sp.Rational(1, 10**15)
 class Shock(Value):
     """The front between the strains ``behind`` and ``ahead`` (see `shock`).
 
-    Speeds are dx/dt in the units of the cell. `rise`, `peak`, `peak_force`, `wave`, `series_speed`
-    and `series_force` are those of the leading pulse; they raise `lwa.InputError` for rarefactions,
-    for unequal beads, and for an inflection of F within the pulse. So do the edges of a shock.
+    Speeds are dx/dt in the units of the cell. `rise`, `peak` and `peak_force` are those of the
+    leading pulse; they raise `lwa.InputError` for rarefactions, for unequal beads, and for an
+    inflection of F within the pulse. So do the edges of a shock.
     """
 
     cell: Cell
@@ -219,37 +216,6 @@ class Shock(Value):
         """Contact force A F at the peak of the leading pulse, in the units of the cell."""
         stiffness = self.cell.stiffness(self.law.exponent)
         return tidy(stiffness * self.law.at(self.cell.spacing * self.peak))
-
-    @cached_property
-    def wave(self) -> ExpandedWave:
-        """The lattice's own wave whose beads peak at the velocity 2 v_p, by the series in k - 1.
-
-        Raises `lwa.InputError` unless the chain ahead is without load and the law is a power.
-        """
-        if not (self.law.homogeneous and self.ahead.is_zero):
-            raise InputError("the series in k - 1 are of a power law without load: ahead = 0")
-        demand_numbers(self._free, "the series are summed for numbers")
-        velocity, k = self._pulse.velocity * self._field.time_scale, self.law.exponent
-        return wave_of_velocity(expand(self.cell, ORDER, k=k), velocity)
-
-    @property
-    def series_speed(self) -> Resummed:
-        """Speed of `wave`, with the error of the doubling rule."""
-        k = self.law.exponent
-        share = self._velocity_error * float((k - 1) / (k + 1))
-        return self.wave.speed.widened(waves.RULE_SPEED + share)
-
-    @property
-    def series_force(self) -> Estimate:
-        """Peak force F of `wave`, with the error of the doubling rule."""
-        share = self._velocity_error * float(2 / (1 + 1 / self.law.exponent))
-        return Estimate(float(self.wave.F), 0.0).widened(waves.RULE_FORCE + share)
-
-    @property
-    def _velocity_error(self) -> float:
-        """Relative error of the peak velocity in `wave`, to which F is fitted."""
-        total = self.wave.expansion.peak_velocity.at()
-        return total.error / total.value
 
     @cached_property
     def _field(self) -> Background:

@@ -212,9 +212,6 @@ class Pulse(Value):
 RESTING = 2.0
 """c₋/c₊ up to which the beads at the wall come to rest beside it (a theorem for Toda's law)."""
 
-RULE_SPEED, RULE_FORCE = 0.0025, 0.02
-"""Relative errors of the doubling rule on the lattice's own wave, without load, k = 1.05 … 5."""
-
 
 def speed_error(rho: float) -> float:
     """Relative error of the doubling rule's speed on the canonical wave."""

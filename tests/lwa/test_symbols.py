@@ -69,7 +69,6 @@ def results(m1, m2, k, D):
     yield "at", full.at(**{m2.name: 3}).pde.I.subs(m1, 1)
     chain = Dispersion(Cell((m1, m2), (m2, 2 * m2), D), k)
     yield "acoustic", chain.acoustic(4)[4]
-    yield from chain.amplitude_ratio(2, "optical").items()
     yield "canonical", canonical_wave(Cell((m1, m1, m2), spacing=D), k).fwhm("force")
     numeric = NumericWave(wave)
     yield "numeric", sp.Float(float(numeric.beta(1.4, 0.2)), 17)

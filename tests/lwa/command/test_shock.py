@@ -30,7 +30,9 @@ def test_a_wall_at_a_speed_in_si(capsys, tmp_path):
     assert found["plateau_value"] == pytest.approx(1)
     A, m, D = 193e9 / (1 - 0.3**2) / 3 * math.sqrt(2 * 2.38e-3), 0.45e-3, 2 * 2.38e-3
     unit = (A * D**1.5 / m * D) ** 0.5  # of speed
-    plain = piston(Cell([1], spacing=1), sp.Float(1 / unit), law=Power("3/2")).wave
-    assert found["series_value"]["speed"] == pytest.approx(unit * plain.speed.value, rel=1e-9)
-    assert found["series_value"]["force"] == pytest.approx(A * D**1.5 * float(plain.F), rel=1e-9)
-    assert found["units"]["series"]["speed"] == "m/s"
+    plain = piston(Cell([1], spacing=1), sp.Float(1 / unit), law=Power("3/2"))
+    speed = unit * float(plain.leading_speed())
+    assert found["leading_speed_value"]["doubling"] == pytest.approx(speed, rel=1e-9)
+    force = A * D**1.5 * float(plain.peak_force)
+    assert found["peak_force_value"] == pytest.approx(force, rel=1e-9)
+    assert found["units"]["peak_force"] == "N"

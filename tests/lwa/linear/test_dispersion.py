@@ -31,10 +31,10 @@ def cells(draw, sizes=(1, 2, 3, 4)):
     return Cell(masses, stiffnesses=stiffnesses)
 
 
-@given(cells(), st.sampled_from([sp.S.One, sp.Rational(1, 2)]))
-@settings(max_examples=8)
-def test_the_trace_is_the_determinant_of_the_chain(cell, k):
-    """det(K(κ) - Ω² M) Π c_i = trace - z - 1/z, z = e^{iPκ}: SymPy's determinant, P equations."""
+@given(cells(sizes=(1, 2, 3, 4)), st.sampled_from([sp.S.One, sp.Rational(1, 2)]))
+@settings(max_examples=12)
+def test_acoustic_series_satisfies_the_chains_equations(cell, k):
+    """det(K(κ) - Ω² M) Π c_i = T(Ω²) - 2 cos Pκ: SymPy's determinant of the P equations."""
     omega2, z = sp.symbols("omega2 z")
     P, c = cell.size, cell.shares(k)
     matrix = sp.zeros(P, P)
@@ -45,22 +45,17 @@ def test_the_trace_is_the_determinant_of_the_chain(cell, k):
         matrix[j, j] += 1 / c[i]
         matrix[i, j] -= phase / c[i]
         matrix[j, i] -= 1 / phase / c[i]
-    trace = sum(t * omega2**m for m, t in Dispersion(cell, k).trace.items())
     exact = DomainMatrix.from_Matrix(matrix).to_field()
-    determinant = exact.domain.to_sympy(exact.det())
-    assert sp.cancel(determinant * sp.prod(c) - trace + z + 1 / z) == 0
-
-
-@given(cells(sizes=(1, 2, 3, 5)))
-def test_acoustic_series_satisfies_the_relation(cell):
+    determinant = exact.domain.to_sympy(exact.det()) * sp.prod(c)
+    trace = sp.Poly(sp.cancel(determinant + z + 1 / z), omega2).all_coeffs()[::-1]
     order = 12
-    chain = Dispersion(cell)
-    omega2 = [fraction(sp.sympify(chain.acoustic(order).get(n, 0))) for n in range(order + 1)]
+    series = Dispersion(cell, k).acoustic(order)
+    branch = [fraction(sp.sympify(series.get(n, 0))) for n in range(order + 1)]
     total, power = [Fraction(0)] * (order + 1), exponential(0, order)
-    for t in chain.trace.values():
+    for t in trace:
         total = [x + fraction(t) * y for x, y in zip(total, power, strict=True)]
-        power = product(power, omega2, order)
-    cosine = exponential(cell.size, order)
+        power = product(power, branch, order)
+    cosine = exponential(P, order)
     assert total == [2 * x * (-1) ** (n // 2) * (n % 2 == 0) for n, x in enumerate(cosine)]
 
 
@@ -94,14 +89,10 @@ def test_the_linear_wave_equation_is_the_series_to_order_12(cell, field):
     ids=str,
 )
 def test_the_linear_closure_of_a_dimer_is_exact_at_k_1(cell, order, branch):
-    """The ansatz is the ratio of the amplitudes, and the wave equation the branch's series."""
+    """No defect is left, and the wave equation is the branch's series."""
     optical = branch == "optical"
     chain, theory = Dispersion(cell), homogenize(cell, order, k=1, branch=branch)
     assert theory.defect == {}
-    ratio = chain.amplitude_ratio(order, branch)
-    assert ratio[0] == theory.amplitude_ratio
-    for n, b in theory.ansatz.items():
-        assert sp.cancel(ratio[n] - theory.amplitude_ratio * b) == 0
     series = chain.optical(order) if optical else chain.acoustic(order)
     unit = series[0] if optical else 1  # Ω² of the optical branch in units of its own at κ = 0
     for n, terms in theory.pde.coefficients.items():
@@ -155,50 +146,25 @@ CELLS = [
 
 
 @pytest.mark.parametrize("cell", CELLS, ids=str)
-def test_group_velocity_is_the_derivative_to_all_digits(cell):
+def test_frequencies_have_all_digits(cell):
     chain = Dispersion(cell)
     with mpmath.workdps(40):
         for kappa in (0.2, 1.3, -7):
             for branch in range(cell.size):
-                slope = mpmath.diff(lambda q, j=branch: high_precision(cell, q, j), kappa)
                 omega = high_precision(cell, kappa, branch)
                 assert abs(chain.bands.branches(kappa)[branch] - omega) < ROUNDING
-                # vectors carry the rounding over the distance to the next branch, here above 0.1
-                assert abs(chain.bands.group_velocity(kappa)[branch] - slope) < 10 * ROUNDING
-
-
-@pytest.mark.parametrize("P", [1, 2, 3, 4, 8, 30])
-def test_group_velocity_at_kinks_is_the_slope_to_the_right(P):
-    """The uniform chain folded into the cell: branches touch at κ = 0 and π/P."""
-    chain = Dispersion(Cell([1] * P))
-    for kappa in (0.0, np.pi / P):
-        omega = chain.bands.branches(kappa)
-        # Ω = 2|sin(q/2)| has the slopes ± cos(q/2): of two that touch the lower one falls
-        slope = np.sqrt(abs(1 - (omega / 2) ** 2))
-        sign = np.ones(P)
-        sign[0 if kappa else 1 :: 2] = -1  # at κ = 0 the lowest one starts upwards
-        # at the top the slope is zero and 1 - Ω²/4 a rounding error, of which √ is taken
-        assert np.allclose(chain.bands.group_velocity(kappa), sign * slope, 0, 1e-7)
-
-
-def test_a_narrow_gap_is_no_kink():
-    chain = Dispersion(Cell([1, "1.0000001"]))
-    kappa = [0.0, np.pi / 2]
-    # at the edges of a gap of 7e-8 the vectors are good to 1e-16/7e-8
-    assert np.allclose(chain.bands.group_velocity(kappa), [[1, 0], [0, 0]], 0, 1e-7)
 
 
 @given(cells(sizes=(1, 2, 3, 4, 5)))
 @settings(max_examples=10)
 def test_bands(cell):
     chain = Dispersion(cell)
-    edges, gaps = chain.bands.edges(), chain.bands.gaps()
+    edges = chain.bands.edges()
     assert edges.shape == (cell.size, 2)
-    assert gaps.shape == (cell.size - 1, 2)
     inside = chain.bands.branches(np.linspace(-7, 7, 301))
     assert np.all(inside >= edges[:, 0] - ROUNDING)
     assert np.all(inside <= edges[:, 1] + ROUNDING)
-    assert np.all(np.diff(gaps) > -ROUNDING)
+    assert np.all(edges[1:, 0] - edges[:-1, 1] > -ROUNDING)
     # a zone is crossed in one direction, lowest branch upwards
     half = np.linspace(0, np.pi / cell.size, 50)
     direction = (-1.0) ** np.arange(cell.size)
@@ -213,14 +179,12 @@ def two(**names):
     ("call", "words"),
     [
         (lambda: two().bands.branches(float("nan")), "wavenumber is nan"),
-        (lambda: two().bands.group_velocity("0.1"), "wavenumber is '0.1'"),
         (lambda: two().bands.branches([[1], [2, 3]]), "wavenumber is"),
         (lambda: two().acoustic(0), "order is 0"),
         (lambda: two().optical(2.0), r"order is 2\.0"),
         (lambda: two().acoustic(10000), "order is 10000: .* lower order"),
         (lambda: Dispersion(Cell(["a", "b"], ["d", "e"])).acoustic(10000), "lower order"),
         (lambda: Dispersion(Cell([1, 2, 3])).optical(4), "needs a cell of 2 masses, not 3"),
-        (lambda: two().amplitude_ratio(4, "up"), "branch is 'up'"),
         (lambda: Dispersion(Cell([1, "m2"])).bands.branches(1), "'m2' has no value"),
         (lambda: Dispersion(Cell([1, 2], [1, 2]), "k").bands.edges(), "'k' has no value"),
         (lambda: Dispersion(Cell(["1e200", "1e-200"])).bands.branches(1), "the range of a float"),
