@@ -1,11 +1,14 @@
 """Lines of the command `lwa` beside the values that Python gives, and numbers worked by hand."""
 
 import math
+import re
 
 import pytest
 import sympy as sp
 
 from lwa import Cell, Dimer, canonical_wave, envelope, homogenize, loaded_wave, shock
+from lwa.base import latex
+from tests.identity import same
 from tests.lwa.command.answers import result, said
 
 HERTZ, EQUAL = sp.Rational(3, 2), Cell([1], spacing=1)
@@ -156,9 +159,11 @@ TEXTS = {
     "expansion --k 2 --masses 1 --order 6": ("±", "c² = Σ a_n ε^n"),
     "dispersion": ("κ^4: -(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)",),
     "dispersion --masses 1 --precompression 2": ("band 1",),
+    "wave --k 3/2 --masses 0.123,0.45 --force 1 --spacing 1": ("≈ 1.67102\n", "≈ 2.09636\n"),
     "envelope --masses 1,1/2 --k 3/2 --spacing 1 --background 2 --detuning 1/1000": (
         "bright breather, |Ψ| = a sech(b n):",
     ),
+    "shock --masses 1 --spacing 1 --k 3/2 --behind 2 --ahead 1": (" ± ",),
     "shock --masses 1 --spacing 1 --k 3/2 --behind 1": (
         "no sound runs there", "go on oscillating",
     ),
@@ -173,11 +178,56 @@ def test_a_line_prints_what_a_reader_looks_for(capsys, line):
 
 
 def test_the_linear_waves_of_any_cell_lie_in_their_band(capsys):
-    found = result(
-        capsys, "envelope", "--masses", "1,2,3", "--precompression", "1", "--branch", "0",
-        "--wavenumber", "2pi/3", "--k", "3/2",
-    )  # fmt: skip
-    low, high = result(capsys, "dispersion", "--masses", "1,2,3", "--precompression", "1")[
-        "band_edges_value"
-    ][0]
+    chain = ("--masses", "1,2,3", "--precompression", "1", "--k", "3/2")
+    found = result(capsys, "envelope", *chain, "--branch", "0", "--wavenumber", "2pi/3")
+    low, high = result(capsys, "dispersion", *chain)["band_edges_value"][0]
     assert low < found["frequency_value"] < high
+
+
+@pytest.mark.parametrize("load", ["--background", "--precompression"])
+def test_a_load_of_zero_changes_nothing(capsys, load):
+    options = ("wave", "--k", "3/2", "--masses", "1,2")
+    assert result(capsys, *options, load, "0") == result(capsys, *options)
+
+
+def test_the_canonical_numbers_stand_beside_the_linear_closures(capsys):
+    """The lattice's pulse at the paper's masses has the speed 1.705 and the FWHM 2.50."""
+    options = ("wave", "--k", "3/2", "--spacing", "1", "--masses")
+    for force in ((), ("--force", "1")):
+        light, heavy = (
+            result(capsys, *options, masses, *force) for masses in ("0.123,0.45", "0.45,0.123")
+        )
+        assert light["speed_value"] < 0.6 * heavy["speed_value"]
+        assert light["canonical"] == heavy["canonical"]
+    assert heavy["canonical"]["speed_value"] == pytest.approx(1.705, rel=0.02)
+    assert heavy["canonical"]["fwhm_value"]["force"] == pytest.approx(2.50, rel=0.17)
+    full = (*options, "0.123,0.45", "--closure", "full", "--field", "center", "--force", "1")
+    own = result(capsys, *full)
+    assert "canonical" not in own
+    assert own["speed_value"] == pytest.approx(heavy["canonical"]["speed_value"], rel=1e-14)
+
+
+def test_closed_forms_of_a_shock_stand_in_json(capsys):
+    line = "shock --masses 1 --spacing 1 --k 3/2 --behind p"
+    closed = result(capsys, *line.split())
+    p = sp.Symbol("p", positive=True)
+    unit = shock(EQUAL, 1, 0, k=HERTZ)
+    assert same(sp.sympify(closed["peak"], locals={"p": p}), p * unit.peak)
+    assert set(closed["leading_speed"]) == {"doubling"}
+
+
+@pytest.mark.parametrize("masses", ["m1,m2", "1,1"])
+def test_latex_is_that_of_the_results(capsys, masses):
+    out = said(capsys, "derive", "--masses", masses, "--format", "latex")
+    assert out == latex.align(homogenize(Dimer(*masses.split(","))).latex_rows()) + "\n"
+    assert "H &=" in said(capsys, "wave", "--masses", masses, "--format", "latex")
+
+
+@pytest.mark.parametrize("options", ["", "--k 1", "--k 3/2 --masses 1,2", "--k 1.000000001"])
+def test_powers_of_the_full_closure_are_written_once(capsys, options):
+    """u_x^(k-1), u_x^(-1), never a sum of numbers, nor a power 0 or 1."""
+    for style, power in (("text", r"\^\(([^)]*)\)"), ("latex", r"u_\{x\}\^\{([^}]*)\}")):
+        line = f"derive --closure full --order 5 --format {style} {options}"
+        powers = [p for p in re.findall(power, said(capsys, *line.split())) if not {*p} & {*"/D"}]
+        assert powers
+        assert all(re.fullmatch(r"-?[2-9]|-1|-?k(/2)?([+-]\d+)?", p) for p in powers)

@@ -95,6 +95,7 @@ def test_lines_are_refused(capsys, line, words):
         ('"light"]', '"ligth"]', (), "chain.cell number 2 is 'ligth': did you mean light"),
         ("[chain]", "[chains]", (), "spheres.toml: chains is unknown: did you mean chain"),
         ("cell =", "k = 1.5\ncell =", (), "chain.k is given, but named beads are in Hertz contact"),
+        ("[chain]", "[striker]\nlike = 'wood'\n[chain]", (), "striker.like is 'wood'"),
         ("0.3", "0.6", (), "materials.steel.nu is 0.6: Poisson's ratio lies between -1 and 1/2"),
         ("193e9", "nan", (), "materials.steel.E is nan: a finite number is wanted"),
         ("[chain]", "precompression = 1\n[chain]", (), "beads.precompression is 1: a table"),

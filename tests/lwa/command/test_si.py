@@ -1,0 +1,208 @@
+"""Chains of files, in SI: values of Python and numbers worked by hand, units, loads, strikers."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from lwa import Cell, Dimer, Material, Sphere, homogenize, piston, pulse_of_strike
+from lwa.command.chain import read_chain
+from lwa.spheres import hertz
+from tests.lwa.command.answers import STEEL_AND_PTFE, result, said
+
+MASSES = {
+    "duration": 1e-3,
+    "units": "SI",
+    "precompression": 2.0,
+    "chain": {
+        "cell": [4.5e-4, 4.5e-4],
+        "k": 1.5,
+        "stiffnesses": 8.4e7,
+        "spacings": 4.76e-3,
+        "repeat": 19,
+    },
+    "wall": {"stiffness": 8.4e7},
+    "damping": {"contact": 1.0},
+}
+ALUMINIUM = """
+precompression = 20
+[materials]
+steel = {E = 193e9, nu = 0.3}
+aluminium = {E = 73.5e9, nu = 0.33}
+[beads]
+heavy = {mass = 28.84e-3, radius = 9.525e-3, material = "steel"}
+light = {mass = 9.75e-3, radius = 9.525e-3, material = "aluminium"}
+[chain]
+cell = ["heavy", "light"]
+"""
+ONE_KIND = STEEL_AND_PTFE.replace('"heavy", "light"', '"heavy"')
+A, M, D = 193e9 / (1 - 0.3**2) / 3 * math.sqrt(2 * 2.38e-3), 0.45e-3, 2 * 2.38e-3
+"""Hertz's A, mass and diameter of its beads."""
+
+
+@pytest.fixture
+def file(tmp_path):
+    """Write a file of a chain: TOML, or an object as JSON; the fixture returns its path."""
+
+    def write(content):
+        path = tmp_path / ("chain.toml" if isinstance(content, str) else "chain.json")
+        path.write_text(content if isinstance(content, str) else json.dumps(content))
+        return str(path)
+
+    return write
+
+
+def test_a_scene_of_masses_is_the_chain_of_its_options(capsys, file):
+    options = "--k 3/2 --masses 4.5e-4 --stiffnesses 8.4e7 --spacing 4.76e-3 --precompression 2"
+    expected = result(capsys, "wave", *options.split(), "--force", "20")
+    found = result(capsys, "wave", "--spheres", file(MASSES), "--force", "20")
+    assert found["units"]["speed"] == "m/s"
+    for name, value in expected.items():
+        if name.endswith("_value"):
+            assert found[name] == pytest.approx(value, rel=1e-14), name
+
+
+def test_the_cell_is_the_smallest_one_and_lengths_may_have_no_unit(file):
+    chain = MASSES["chain"] | {"cell": [1, 2, 1, 2], "stiffnesses": [3, 4, 3, 4]}
+    found = read_chain(file(MASSES | {"chain": chain}))
+    assert (found.cell.masses, found.cell.stiffnesses) == ((1, 2), (3, 4))
+    found = read_chain(file({"chain": {"cell": [1, 2, 1], "k": 2}}))
+    assert (found.cell.masses, found.precompression) == ((1, 2), 0)
+    assert found.cell.spacing.is_Symbol
+
+
+def test_a_wave_of_spheres_has_the_values_of_python(capsys, file):
+    steel, ptfe = Material("193e9", "0.3"), Material("1.46e9", "0.46")
+    A = hertz.stiffness(Sphere(1, "2.38e-3", steel), Sphere(1, "2.38e-3", ptfe))
+    cell = Dimer("0.45e-3", "0.123e-3", stiffnesses=(A, A), spacing="4.76e-3")
+    wave = homogenize(cell, k="3/2").pde.traveling_wave().at_force(10)
+    options = ("wave", "--spheres", file(STEEL_AND_PTFE))
+    found = result(capsys, *options, "--force", "10")
+    for name in ("compression", "speed", "bead_velocity", "force"):
+        assert found[f"{name}_value"] == float(getattr(wave, name))
+        assert abs(sp.N(sp.sympify(found[name]) / getattr(wave, name) - 1, 50)) < 1e-40
+    for quantity in ("strain", "force", "velocity"):
+        assert found["fwhm_value"][quantity] == float(wave.fwhm(quantity))
+        assert found["fwhm_time_value"][quantity] == float(wave.fwhm(quantity, "time"))
+    assert found["B_value"] == float(wave.strain)
+    out = said(capsys, *options, "--force", "10")
+    for words in ("masses 0.00045, 0.000123 kg", f"A = {float(A):.15g}", "D = 0.00476 m"):
+        assert words in out
+    assert f"speed dx/dt = {found['speed_value']:.10f}"[:22] in out
+    # without a force: F is a symbol
+    symbolic = result(capsys, *options)
+    assert (symbolic["force"], symbolic["fwhm_value"]) == ("F", found["fwhm_value"])
+    assert not {"speed_value", "force_value", "fwhm_time_value"} & set(symbolic)
+    speed = sp.sympify(symbolic["speed"]).subs("F", 10)
+    assert float(speed) == pytest.approx(found["speed_value"], rel=1e-15)
+    assert "·F**(1/6) m/s" in said(capsys, *options)
+
+
+def test_the_units_are_what_the_values_are_in(capsys, file):
+    """The same spheres in grams, millimetres and milliseconds: N are N, and E is in 10^6 Pa."""
+    found = result(capsys, "wave", "--spheres", file(STEEL_AND_PTFE), "--force", "10")
+    content = STEEL_AND_PTFE.replace("e9", "e3")
+    for length in ("2.38", "0.45", "0.123"):
+        content = content.replace(f"{length}e-3", length)
+    other = result(capsys, "wave", "--spheres", file(content), "--force", "10")
+    factors = {"kg": 1e3, "m": 1e3, "s": 1e3, "N": 1.0, "m/s": 1.0, "1/m": 1e-3}
+    for name in (name.removesuffix("_value") for name in found if name.endswith("_value")):
+        unit = found["units"].get(name, "")
+        (unit,) = {*unit.values()} if isinstance(unit, dict) else {unit}
+        ours, theirs = (
+            np.array(list(x.values()) if isinstance(x, dict) else x)
+            for x in (found[f"{name}_value"], other[f"{name}_value"])
+        )
+        assert theirs == pytest.approx(factors.get(unit, 1.0) * ours, rel=1e-14), name
+
+
+def test_bands_and_breathers_have_hertz_and_metres(capsys, file):
+    """Aluminium and steel of 19.05 mm at 20 N: Hertz's contact and Bloch's edges by hand."""
+    spheres = file(ALUMINIUM)
+    compliance = (1 - 0.33**2) / 73.5e9 + (1 - 0.3**2) / 193e9
+    A = 4 / 3 * math.sqrt(9.525e-3 / 2) / compliance
+    K2, static = 1.5 * A ** (2 / 3) * 20 ** (1 / 3), (20 / A) ** (2 / 3)
+    heavy, light, turn = 28.84e-3, 9.75e-3, 2 * math.pi
+    edges = [0, *(math.sqrt(2 * K2 * x) for x in (1 / heavy, 1 / light, 1 / heavy + 1 / light))]
+    bands = result(capsys, "dispersion", "--spheres", spheres)
+    assert np.ravel(bands["band_edges_value"]) == pytest.approx(edges, rel=1e-12, abs=1e-9)
+    found = [turn * f for band in bands["band_edges_frequency_value"] for f in band]
+    assert found == pytest.approx(edges, rel=1e-12, abs=1e-9)
+    sound = 2 * 9.525e-3 * math.sqrt(2 * K2 / (heavy + light))
+    assert bands["sound_speed_value"] == pytest.approx(sound, rel=1e-13)
+    envelope = ("envelope", "--spheres", spheres)
+    found = result(capsys, *envelope, "--wavenumber", "0", "--branch", "1")
+    assert found["frequency_value"] == pytest.approx(edges[3] / turn, rel=1e-12)
+    assert found["units"]["frequency"] == "Hz"
+    found = result(capsys, *envelope, "--frequency", f"{0.995 * edges[2] / turn:.17g}")
+    assert found["detuning_value"] == pytest.approx(0.005, rel=1e-9)
+    amplitude = static * math.sqrt(32 * 0.005 / 0.75)  # U = δ0 √(32 ν/(k (k - 1)))
+    assert found["amplitude_value"] == pytest.approx([0, amplitude], rel=1e-9)
+    assert found["units"]["amplitude"] == "m"
+    assert "frequency ω/(2π) = 8101." in said(capsys, *envelope, "--detuning", "1/200")
+
+
+def test_a_wall_at_a_speed(capsys, file):
+    """A wall at 1 m/s: speed and force of the pulse are those of the lattice that SI scales."""
+    found = result(capsys, "shock", "--spheres", file(ONE_KIND), "--piston", "1")
+    assert found["plateau_value"] == pytest.approx(1)
+    unit = (A * D**1.5 / M * D) ** 0.5  # of speed
+    plain = piston(Cell([1], spacing=1), sp.Float(1 / unit), k="3/2")
+    speed = unit * float(plain.leading_speed())
+    assert found["leading_speed_value"]["doubling"] == pytest.approx(speed, rel=1e-9)
+    assert found["peak_force_value"] == pytest.approx(
+        A * D**1.5 * float(plain.peak_force), rel=1e-9
+    )
+    assert found["units"]["peak_force"] == "N"
+
+
+def test_a_strike(capsys, file):
+    """The striker is one of the beads unless its mass is given; 0.5 m of fall are 3.13 m/s."""
+    strike = ("strike", "--spheres", file(ONE_KIND))
+    found = result(capsys, *strike, "--drop", "0.5")
+    cell = read_chain(strike[-1]).cell
+    expected = pulse_of_strike(cell, cell.masses[0], drop="0.5")
+    assert found["force_value"] == expected.force.value
+    assert found["force_error_value"] == expected.force.error
+    assert found["velocity_value"] == pytest.approx((2 * 9.81 * 0.5) ** 0.5)
+    for extent, width in found["fwhm_value"].items():
+        assert width == expected.fwhm("force", extent).value
+    length, time = (found["fwhm_value"][extent] for extent in ("length", "time"))
+    assert length / time == pytest.approx(found["speed_value"])
+    high = result(capsys, *strike, "--drop", "1e308")
+    ratio = high["force_value"] / found["force_value"]
+    assert ratio == pytest.approx(1e308**0.6 * 2**0.6, rel=1e-10)
+    heavy = result(capsys, *strike, "--velocity", "1", "--mass", "2e-3")
+    assert "further pulses" in heavy["notes"][0]
+
+
+def test_the_striker_of_a_file_is_the_default(capsys, file):
+    """Its velocity, and the mass of the bead that it is like; options replace them."""
+    striker = ONE_KIND + '[striker]\nvelocity = 1.25\nlike = "light"\n'
+    for given in ((), ("--velocity", "1"), ("--mass", "1e-3")):
+        named = result(capsys, "strike", "--spheres", file(striker), *given)
+        options = ("--velocity", "1.25", "--mass", "0.123e-3", *given)
+        plain = result(capsys, "strike", "--spheres", file(ONE_KIND), *options)
+        assert named["force_value"] == plain["force_value"]
+
+
+def test_a_blow_beyond_hertzs_contact_has_a_note(capsys, file):
+    """a/R = √(δ/2R) is 1/10 where the compression is 1/100 of the spacing."""
+    for share, noted in ((0.009, False), (0.011, True)):
+        force = ("--force", f"{A * (share * D) ** 1.5:.10g}")
+        assert ("notes" in result(capsys, "wave", "--spheres", file(ONE_KIND), *force)) == noted
+    fast = result(capsys, "strike", "--spheres", file(ONE_KIND), "--velocity", "1e6")
+    assert "Hertz's contact is that of elastic spheres" in fast["notes"][0]
+
+
+def test_an_error_that_was_not_measured_is_null(capsys, file):
+    """A strike at k = 6/5: beyond the exponents at which the rule's error was measured."""
+    chain = file("[chain]\ncell = [1]\nk = 1.2\nspacings = [1]\n")
+    options = ("strike", "--spheres", chain, "--velocity", "1")
+    assert result(capsys, *options)["force_error_value"] is None
+    for style, words in (("text", "error unknown"), ("latex", "F &= 0.4995")):
+        out = said(capsys, *options, "--format", style)
+        assert words in out
+        assert "NaN" not in out
