@@ -35,6 +35,7 @@ def right_side(pde, u, x, velocity=sp.S.Zero):
 
 
 def energy_density(pde, u, x, velocity=sp.S.Zero):
-    """The density of the conserved energy under a power law."""
-    D = pde.cell.spacing
-    return sum(D**n * of_fields(pde, e, u, x, velocity) for n, e in pde.energy.items())
+    """The density of the conserved energy, with the contacts' W(u_x)."""
+    D, law = pde.cell.spacing, pde.law
+    total = sum(D**n * of_fields(pde, e, u, x, velocity) for n, e in pde.energy.items())
+    return total if law.homogeneous else total + law.of_strain(u.diff(x), D, -1)

@@ -9,9 +9,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from lwa import Cell, Dimer, Dispersion, InputError, Law, Power, general, homogenize
-from lwa.algebra.jets import GradedSeries
-from lwa.equation.energy import energy
+from lwa import Cell, Dimer, Dispersion, Law, Power, general, homogenize
 from lwa.law import NAMES, named, read_law
 from tests.lwa.fields import of_fields, right_side
 from tests.lwa.series import exponential, fraction, product
@@ -20,20 +18,17 @@ x = sp.Symbol("x")
 y = sp.Symbol("y", positive=True)
 
 
-def phi(n):
-    return sp.Symbol(f"phi{n}", real=True)
-
-
-PLACE = {"k": "10007/9973", "m1": "7919/7907", "m2": "6007/5003", "D": "41/97", "alpha": "89/83"}
+PLACE = {"k": "10007/9973", "m1": "7919/7907", "m2": "6007/5003", "D": "41/97"}
 """Point of comparison of rational functions: large primes are no roots by chance."""
+PLACE |= {
+    f"phi{n}": sp.prod(sp.Rational(PLACE["k"]) - j for j in range(1, n)) for n in range(2, 12)
+}
 
 
 def there(value):
-    """An exact number: an expression at `PLACE`, with the φ_2, φ_3, … of F = δ^k."""
-    value, k = sp.sympify(value), sp.Rational(PLACE["k"])
-    numbers = {phi(n): sp.prod(k - j for j in range(1, n)) for n in range(2, 12)}
-    own = value.free_symbols - numbers.keys()
-    found = value.xreplace(numbers | {s: sp.Rational(PLACE[s.name]) for s in own})
+    """The exact number of an expression at `PLACE`, with the φ_2, φ_3, … of F = δ^k."""
+    value = sp.sympify(value)
+    found = value.xreplace({s: sp.Rational(PLACE[s.name]) for s in value.free_symbols})
     assert found.is_Rational
     return found
 
@@ -75,18 +70,11 @@ def test_about_a_uniform_strain_it_is_blochs_chain(cell):
         assert sp.cancel(found.get(((n + 1, 1),), 0) - bloch) == 0
 
 
-@pytest.mark.parametrize("branch", ["acoustic", "optical"])
-def test_the_linear_law_is_k_1(branch):
+def test_the_linear_law_is_k_1():
     """φ_n = 0: a polynomial of degree one, next to the power 1."""
-    spring = homogenize(Dimer(2, 1), 8, k=1, branch=branch).pde
-    assert right_side(spring, sp.sin(x), x) != 0
-    if branch == "acoustic":
-        law = Law(3 * y, y)
-        found = homogenize(Dimer(2, 1), 8, law=law).pde
-        assert sp.expand(right_side(found, x**9, x) - 3 * right_side(spring, x**9, x)) == 0
-    else:
-        with pytest.raises(InputError, match="also pull"):
-            homogenize(Dimer(2, 1), law=general(), branch=branch)
+    one, three = (homogenize(Dimer(2, 1), 8, law=law).pde for law in (Power(1), Law(3 * y, y)))
+    assert right_side(one, x**9, x) != 0
+    assert sp.expand(right_side(three, x**9, x) - 3 * right_side(one, x**9, x)) == 0
 
 
 def force(law, strain):
@@ -121,38 +109,11 @@ def test_the_equal_chain_is_the_difference_of_shifted_fields(law):
     assert any(found[2::2])
 
 
-@pytest.mark.parametrize("field", ["first", "center"])
-@pytest.mark.parametrize("cell", [Dimer(3, 1), Cell([1, 2, 3])])
-def test_the_energy_of_a_law_without_form_is_conserved(cell, field):
-    """∂_τ e is a derivative ∂_x at every order, in the algebra of the jets."""
-    order = 7
-    closure = homogenize(cell, order, law=general(), closure="full", field=field).closure
-    _, density = energy(closure)
-    algebra = closure.model.algebra(order, velocity=True, rest=True)
-    k = closure.model.ring.exponent(algebra.context)
-    E, e = GradedSeries(algebra, k), GradedSeries(algebra, k + 1)
-    old = closure.model.algebra(closure.algebra.weight, velocity=True, rest=True)
-    for row, source, terms in ((E, closure.algebra, closure.acceleration), (e, old, density)):
-        for term in terms:
-            row.append(algebra.embed(term, source))
-    for n in range(1, order - 1):
-        change = algebra.dt(e, E, n) + algebra.s[0] * E[n]  # of u_τ²/2 too
-        if n == 1:  # W(u_x): F u_xτ is by parts -F′ u_xx u_τ
-            change = change - algebra.r[1] * algebra.s[0]
-            assert change.is_zero()
-        else:
-            assert algebra.antiderivative(change, k + 1 + (k - 1) / 2) is not None
-    wrong = algebra.dt(e, E, 3) + algebra.r[2] * algebra.s[1]
-    assert algebra.antiderivative(wrong, k + 1 + (k - 1) / 2) is None
-
-
 def test_a_law_is_a_value():
     law = named("exponential", "a")
-    theory = homogenize(Dimer("m1", "m2"), law=law, closure="full")
-    assert theory.at(a=2, m1=1, m2=3) == homogenize(
-        Dimer(1, 3), law=named("exponential", 2), closure="full"
-    )
-    assert theory != homogenize(Dimer("m1", "m2"), law=general(), closure="full")
+    theory = homogenize(Dimer("m1", "m2"), law=law)
+    assert theory.at(a=2, m1=1, m2=3) == homogenize(Dimer(1, 3), law=named("exponential", 2))
+    assert theory != homogenize(Dimer("m1", "m2"), law=general())
     assert theory.law.phi(3) == (law.symbols[0] * law.delta) ** 2
     assert homogenize(Dimer("m1", "m2"), law=Power("k")) == homogenize(Dimer("m1", "m2"))
     assert homogenize(Cell([1]), law=Power("3/2")) == homogenize(Cell([1]), k="3/2")
@@ -183,26 +144,6 @@ def test_an_open_contact_carries_nothing():
     assert np.array_equal(hertz.at([[-1, 4], [0, 1]]), [[0, 8], [0, 1]])
     assert toda.at(-1) == sp.exp(-1) - 1
     assert np.allclose(toda.at([-1.0, 1.0]), np.expm1([-1.0, 1.0]), rtol=1e-15)
-    for value in (None, "1", float("nan"), 1j, sp.I, sp.oo, ["x"]):
-        with pytest.raises(InputError, match="delta is"):
-            hertz.at(value)
-
-
-@pytest.mark.parametrize(
-    ("make", "reason"),
-    [
-        (lambda: homogenize(Dimer(1, 2, stiffnesses=[1, 2]), law=general()), "shares of the str"),
-        (lambda: homogenize(Cell([1]), law="hertz2"), "law is 'hertz2'"),
-        (lambda: homogenize(Cell([1]), law=Power(2), k=[1]), "one of them"),
-        (lambda: Law("x**2", y), "a SymPy expression"),
-        (lambda: Law(y, "y"), "the symbol of δ"),
-        (lambda: named("general", 1), "none"),
-        (lambda: homogenize(Cell([1]), law=general()).pde.traveling_wave(), "power law"),
-    ],
-)
-def test_bad_laws_are_refused(make, reason):
-    with pytest.raises(InputError, match=reason):
-        make()
 
 
 def test_large_exponents_are_not_multiplied_out():
@@ -214,10 +155,3 @@ def test_large_exponents_are_not_multiplied_out():
         factor = sp.Mul(*(n + i for i in range(1, j)))
         assert sp.cancel(law.phi(j) - factor * (delta / (d - delta)) ** (j - 1)) == 0
     assert sp.cancel(law.energy.diff(delta) / (law.F + 1) - law.F / (law.F + 1)) == 0
-    both = Law((1 + y) ** 50 + (1 + y) ** 60, y)  # a ratio that does not cancel
-    direct = (y**2 * both.slope(3) / both.slope()).subs(y, sp.Rational(1, 3))
-    assert sp.N(both.phi(3).subs(y, sp.Rational(1, 3)) / direct - 1, 40) == 0
-    found = homogenize(Dimer("m1", "m2"), law=named("magnetic", n, 1))
-    assert (
-        found.pde.H.free_symbols == homogenize(Dimer("m1", "m2"), law=general()).pde.H.free_symbols
-    )
