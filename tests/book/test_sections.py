@@ -2,148 +2,89 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
 from lwa import hertz
+from tests.book.prose import BOOK
 
-BOOK = Path(__file__).parents[2] / "book"
-PARTS = [
-    re.findall(r"file: (\w+)", part)
-    for part in (BOOK / "_toc.yml").read_text().split("caption:")[1:]
-]
-CHAPTERS = [page for part in PARTS[:3] for page in part if page not in ("map", "proofs")]
-PAGES = [page.stem for page in BOOK.glob("*.md")]
+TEXTS = {page.stem: page.read_text(encoding="utf-8") for page in BOOK.glob("*.md")}
+OPTIONS = r"(---\n.*?^---\n|(?::[^\n]*\n)*)"
+CELL = re.compile(rf"^```\{{code-cell\}} python\n{OPTIONS}(.*?)^```$", re.DOTALL | re.MULTILINE)
+PROSE = {page: CELL.sub("", text) for page, text in TEXTS.items()}
+PARTS = (BOOK / "_toc.yml").read_text().split("caption:")[1:4]
+CHAPTERS = [page for part in PARTS for page in re.findall(r"file: (\w+)", part)]
+
 LATER = {"pressed", "disorder", "upright", "damping", "column", "open", "experiment"}
 """Pages that still have hidden assertions, exercises without a solution and a tag a section."""
 
-TAGS = {"the paper's", "known", "new here"}
-NEW = 14
-LINES = 3800
+NEW, LINES = 14, 3800
 COLUMN, FOLDED = 88, 85
 """Results that were looked up and not found, and lines of Markdown, at most; characters of visible
 code, and of the code of a solution."""
 
 
-def cells(page: str) -> Iterator[tuple[str, str]]:
-    """Tags and code of each cell of a page."""
-    text = (BOOK / f"{page}.md").read_text(encoding="utf-8")
-    for _, body in re.findall(
-        r"^(```)\{code-cell\} python\n(.*?)^```$", text, re.DOTALL | re.MULTILINE
-    ):
-        options = re.match(r"(?:---\n.*?^---\n|(?::.*\n)*)", body, re.DOTALL | re.MULTILINE)
-        yield options[0], body[options.end() :]
-
-
-def prose(page: str) -> str:
-    """Text of a page without its code."""
-    text = (BOOK / f"{page}.md").read_text(encoding="utf-8")
-    return re.sub(r"^```\{code-cell\}.*?^```$", "", text, flags=re.DOTALL | re.MULTILINE)
-
-
-def sections(page: str) -> list[tuple[str, str]]:
-    """Headings of a page below its title, and their text up to the next heading."""
-    _, *parts = re.split(r"^##+ (.*)\n", prose(page), flags=re.MULTILINE)
-    return list(zip(parts[::2], parts[1::2], strict=True))
+def every(pattern, texts=PROSE):
+    """Matches of a pattern on all pages."""
+    return [x for text in texts.values() for x in re.findall(pattern, text, re.MULTILINE)]
 
 
 def test_a_tag_begins_its_section():
-    tag = re.compile(r'<span class="tag">([^<]*)</span>')
-    tags = Counter()
-    for page in set(PAGES) - LATER - {"symbols"}:  # which explains the tags
-        for heading, text in sections(page):
-            found = tag.findall(text)
-            assert not found or len(found) == len(TAGS.intersection(found)) == 1, heading
-            assert not found or tag.match(text.lstrip()), f"{heading}: no tag at its head"
-            assert found != ["known"] or "{cite}" in text, f"{heading}: known, without a source"
+    tag, tags = re.compile(r'<span class="tag">([^<]*)</span>'), Counter()
+    for page in PROSE.keys() - LATER - {"symbols"}:  # which explains the tags
+        for section in re.split(r"^##+ .*\n", PROSE[page], flags=re.MULTILINE)[1:]:
+            found = tag.findall(section)
+            assert not found or tag.match(section.lstrip()), f"{page}: no tag at the head: {found}"
+            assert found != ["known"] or "{cite}" in section, f"{page}: known, without a source"
             tags.update(found)
-    assert 0 < tags["new here"] <= NEW
+    assert set(tags) == {"the paper's", "known", "new here"}
+    assert tags["new here"] <= NEW
 
 
 @pytest.mark.parametrize("page", CHAPTERS)
 def test_a_chapter_has_its_frame(page):
-    """Scene, picture, question, answer: in this order."""
-    text = (BOOK / f"{page}.md").read_text(encoding="utf-8")
-    opening = text[text.index("\n# ") : text.index("\n## ")]
-    marks = (r"^\w", r"^    name: fig-|^<div class", r"^\*[^*]+\?\*$", r"^\*\*The answer\.\*\* \w")
-    places = [
-        m.start() if (m := re.search(mark, opening, re.MULTILINE)) else None for mark in marks
-    ]
-    assert None not in places, f"of scene, picture, question and answer: {places}"
-    assert places == sorted(places), "scene, picture, question, answer: in this order"
+    """What it needs, scene, picture, question, answer: in this order."""
+    opening = re.search(r"^# .*?(?=^## )", TEXTS[page], re.DOTALL | re.MULTILINE)[0]
+    marks = (r"^\*Needs: .*\. About \d+ minutes\.\*$", r"^\w", r"^    name: fig-|^<div class",
+             r"^\*[^*]+\?\*$", r"^\*\*The answer\.\*\* \w")  # fmt: skip
+    places = [m and m.start() for m in (re.search(mark, opening, re.MULTILINE) for mark in marks)]
+    assert None not in places, f"of needs, scene, picture, question and answer: {places}"
+    assert places == sorted(places)
 
 
-def test_a_page_asserts_nothing_and_each_exercise_has_a_folded_solution():
-    """Assertions stand in the tests; an exercise is the last section of its page."""
-    for page in set(PAGES) - LATER:
-        assert not any("assert " in code for _, code in cells(page)), page
-        text = (BOOK / f"{page}.md").read_text(encoding="utf-8")
-        exercises = text.partition("\n## Exercise\n")[2]
-        assert "## Exercises" not in text, page
-        assert not exercises or re.search("hide-cell|dropdown} Solution", exercises), page
+@pytest.mark.parametrize("page", TEXTS)
+def test_cells_and_exercises(page):
+    """Cells assert nothing and fit the column; each exercise has a folded solution."""
+    for options, code in CELL.findall(TEXTS[page]):
+        assert page in LATER or "assert " not in code
+        width = FOLDED if "hide-cell" in options else COLUMN
+        fits = all(len(line) <= width for line in code.splitlines())
+        assert fits or page in LATER or "remove-" in options
+    exercises = re.split(r"^## Exercises?\n", TEXTS[page], flags=re.MULTILINE)[1:]
+    assert page in LATER or all(re.search("hide-cell|} Solution", text) for text in exercises)
 
 
-def test_tests_and_programs_that_pages_name_are_there():
-    named = {x for page in PAGES for x in re.findall(r"`((?:tests|book)/[\w/.]+)`", prose(page))}
-    assert len(named) > 3
-    assert not [name for name in named if not (BOOK.parent / name).exists()]
+def test_names_on_the_pages():
+    """Files that are there, kinds of statements, the materials, letters and labels that are one."""
+    files = every(r"`((?:tests|book)/[\w/.]+)`")
+    assert len(files) > 3
+    assert not [name for name in files if not (BOOK.parent / name).exists()]
+    assert not every(r"^:::\{admonition\} (?!Theorem|Rule|Conjecture)(.*)$")
+    (listed,) = every(r"`Material.named` knows (.*?) \|")
+    assert re.split(r", | and ", listed) == list(hertz.MATERIALS)
+    rows = re.findall(r"^\| (\$.*?) \|", PROSE["symbols"], re.MULTILINE)
+    letters = [x.strip(" $") for row in rows for x in re.split("[,;]", row)]
+    labels = every(r"^(?:\$\$ \(|    name: (?=fig-))([\w-]+)", TEXTS)
+    for names in (letters, labels):
+        assert len(names) > 70
+        assert not [name for name, n in Counter(names).items() if n > 1]
 
 
-@pytest.mark.parametrize("page", PAGES)
-def test_visible_code_fits_the_column(page):
-    for options, code in cells(page):
-        if "remove-" not in options:
-            widest = FOLDED if "hide-cell" in options else COLUMN
-            assert not [line for line in code.splitlines() if len(line) > widest]
-
-
-def test_statements_are_theorems_rules_or_conjectures():
-    for page in PAGES:
-        for title in re.findall(r"^:::\{admonition\} (.*)$", prose(page), re.MULTILINE):
-            assert title.startswith(("Theorem", "Rule", "Conjecture")), f"{page}: {title}"
-
-
-def test_paragraphs_are_short():
+def test_paragraphs_and_the_book_are_short():
     """At most 110 words, formulas counted as one; tables and lists apart."""
-    for page in BOOK.glob("*.md"):
-        text = re.sub(r"^```.*?^```$", "", prose(page.stem), flags=re.DOTALL | re.MULTILINE)
-        text = re.sub(r"\$\$.*?\$\$", "", text, flags=re.DOTALL)
+    for text in PROSE.values():
+        text = re.sub(r"^```.*?^```$|\$\$.*?\$\$", "", text, flags=re.DOTALL | re.MULTILINE)
         for part in re.split(r"\n\s*\n|\n(?=\d\. )", text):
             words = re.sub(r"\$[^$]*\$", "x", part).split()
             assert len(words) <= 110 or part.startswith(("|", "- ", "---", ":::")), part[:80]
-
-
-@pytest.mark.parametrize("page", CHAPTERS)
-def test_a_chapter_says_what_it_needs(page):
-    text = (BOOK / f"{page}.md").read_text(encoding="utf-8")
-    assert re.search(r"^\*Needs: .*\. About \d+ minutes\.\*$", text, re.MULTILINE)
-
-
-def test_the_named_materials_are_listed():
-    (listed,) = re.findall(r"`Material.named` knows (.*?) \|", prose("api"))
-    assert re.split(r", | and ", listed) == list(hertz.MATERIALS)
-
-
-def test_every_letter_has_one_meaning():
-    """No symbol stands twice in the first column of the table."""
-    table = prose("symbols")
-    rows = re.findall(r"^\| (\$.*?) \|", table, re.MULTILINE)
-    letters = [x.strip(" $") for row in rows for x in re.split("[,;]", row)]
-    assert len(letters) > 70
-    assert not [letter for letter, n in Counter(letters).items() if n > 1]
-
-
-def test_every_label_stands_once():
-    """Labels of equations and figures are shared by all pages."""
-    label = re.compile(r"^\$\$ \(([\w-]+)\)$|^    name: (fig-[\w-]+)$", re.MULTILINE)
-    found = [
-        max(m.groups(""), key=len) for f in BOOK.glob("*.md") for m in label.finditer(f.read_text())
-    ]
-    assert len(found) > 70
-    assert not [name for name, n in Counter(found).items() if n > 1]
-
-
-def test_the_book_is_short():
-    assert sum(len(page.read_text("utf-8").splitlines()) for page in BOOK.glob("*.md")) <= LINES
+    assert sum(len(text.splitlines()) for text in TEXTS.values()) <= LINES
