@@ -2,8 +2,8 @@
 
 The server adds a script to each page. It waits until the page and its mathematics are there, sends
 back what it sees, and goes on to the next page. No other name than 127.0.0.1 resolves, and what a
-page requests from elsewhere violates the policy that the server sends with it. At the width of a
-phone the pages are opened in a frame, as a window cannot be that narrow.
+page requests from elsewhere violates the policy that the server sends with it. The pages are opened
+in a frame, as a window cannot be as narrow as a phone.
 """
 
 from __future__ import annotations
@@ -13,8 +13,7 @@ import shutil
 import subprocess
 import tempfile
 import threading
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
@@ -195,7 +194,8 @@ class _Handler(SimpleHTTPRequestHandler):
         path = Path(self.translate_path(self.path))
         if self.path.startswith(FRAME):
             width, page = self.path.removeprefix(FRAME).split("/", 1)
-            return self._send(f'<iframe src="/{page}" width="{width}" height="900"></iframe>')
+            frame = f'<iframe src="/{page}" width="{width}" height="900"></iframe>'
+            return self._send(f'<link rel="icon" href="data:,">{frame}')
         if path.suffix != ".html" or not path.is_file():
             return super().do_GET()
         modes = "".join(f'localStorage.{n} = "{self.server.mode}";' for n in ("mode", "theme"))
@@ -228,20 +228,9 @@ class _Handler(SimpleHTTPRequestHandler):
         pass
 
 
-@contextmanager
-def _served(folder: Path, pages: Sequence[str], visit: Visit, mode: str) -> Iterator[_Server]:
-    with _Server(folder, pages, visit, mode) as server:
-        threading.Thread(target=server.serve_forever, daemon=True).start()
-        yield server
-        server.shutdown()
+def visited(folder: Path, pages: Sequence[str], width: int, mode: str = "light") -> Visit:
+    """Reports of the pages, opened one after another in a frame of this width in CSS pixels.
 
-
-def visited(
-    folder: Path, pages: Sequence[str], width: int | None = None, mode: str = "light"
-) -> Visit:
-    """Open the pages, one after another, and tell what was seen.
-
-    width : of the page, in CSS pixels; by default that of Chromium's window.
     mode : "light" or "dark".
 
     Raises `FileNotFoundError` without Chromium and `TimeoutError` when a page does not report.
@@ -251,12 +240,11 @@ def visited(
         raise FileNotFoundError("chromium is not installed: apt-get install chromium")
     visit = Visit()
     first, *rest = ("/" + page for page in pages)
-    if width is not None:
-        first = f"{FRAME}{width}{first}"
-    with tempfile.TemporaryDirectory() as home, _served(folder, rest, visit, mode) as server:
-        origin = f"http://127.0.0.1:{server.server_address[1]}"
+    with tempfile.TemporaryDirectory() as home, _Server(folder, rest, visit, mode) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        address = f"http://127.0.0.1:{server.server_address[1]}{FRAME}{width}{first}"
         browser = subprocess.Popen(
-            [chromium, *FLAGS, f"--user-data-dir={home}", origin + first],
+            [chromium, *FLAGS, f"--user-data-dir={home}", address],
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
@@ -269,4 +257,5 @@ def visited(
         finally:
             browser.terminate()
             browser.wait(30)
+            server.shutdown()
     return visit

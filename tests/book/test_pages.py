@@ -6,6 +6,7 @@ browser or without the book it fails.
 
 import math
 import re
+from functools import cache
 from pathlib import Path
 
 import nbformat
@@ -14,15 +15,7 @@ import sympy as sp
 
 import lwa
 import validation
-from lwa import (
-    Cell,
-    Dimer,
-    Material,
-    Sphere,
-    canonical_wave,
-    expand,
-    homogenize,
-)
+from lwa import Cell, Dimer, Material, Sphere, canonical_wave, expand, homogenize
 from tests.book.browser import visited
 from validation import Scene, measure, simulate
 
@@ -31,38 +24,32 @@ HTML = ROOT / "book" / "_build" / "html"
 CHAPTERS = re.findall(r"(?:file|root): (\w+)", (ROOT / "book" / "_toc.yml").read_text())
 PAGES = [f"{name}.html" for name in (*CHAPTERS, "genindex", "search")]
 
-SMALLEST = """<html><head><script>
-window.MathJax = {startup: {promise: Promise.resolve()}};
-</script></head><body><article>%s</article></body></html>"""
-
-
 PHONE, WINDOW = 390, 1280
 """Widths of a page, in CSS pixels."""
+FAULTS = (
+    "errors", "unrendered", "merrors", "raw", "broken", "unshown", "silent", "unnamed", "foreign",
+    "faint", "cut", "crumbled", "wider",
+)  # fmt: skip
 
 
-@pytest.fixture(scope="module")
-def visit():
-    return opened(None)
-
-
-def opened(width, mode="light"):
+@cache
+def opened(width, mode):
     for page in PAGES:
         assert (HTML / page).is_file(), f"the book is not built: {page} is missing in {HTML}"
     return visited(HTML, PAGES, width, mode)
 
 
-def found(pages, finding):
-    """Pages with a finding."""
-    return {page: report[finding] for page, report in pages.items() if report[finding]}
+@pytest.fixture
+def visit():
+    return opened(WINDOW, "light")
 
 
-@pytest.mark.parametrize(
-    "finding",
-    ["errors", "unrendered", "merrors", "raw", "broken", "unshown", "silent", "unnamed", "foreign"],
-)
-def test_no_page_has_this_fault(visit, finding):
-    assert set(visit.pages) == set(PAGES)
-    assert not found(visit.pages, finding)
+@pytest.mark.parametrize("mode", ["light", "dark"])
+@pytest.mark.parametrize("width", [WINDOW, PHONE])
+def test_no_page_has_a_fault(width, mode):
+    pages = opened(width, mode).pages
+    assert set(pages) == set(PAGES)
+    assert not {(f, page): seen[f] for page, seen in pages.items() for f in FAULTS if seen[f]}
 
 
 def test_mathematics_pictures_and_addresses(visit):
@@ -73,43 +60,29 @@ def test_mathematics_pictures_and_addresses(visit):
     assert not visit.missing
 
 
-@pytest.mark.parametrize("mode", ["light", "dark"])
-@pytest.mark.parametrize("width", [PHONE, WINDOW])
-def test_nothing_is_cut_or_faint(width, mode):
-    pages = opened(width, mode).pages
-    faults = ("faint", "cut", "crumbled", "wider")
-    assert not {fault: there for fault in faults if (there := found(pages, fault))}
-
-
 def test_every_public_name_is_documented_and_no_private_one():
-    documented = set()
-    for page in PAGES:
-        names = re.findall(r'<dt class="sig[^>]* id="([^"]*)"', (HTML / page).read_text())
-        assert not [name for name in names if re.search(r"\._", name)]
-        assert not names or page == "api.html"
-        documented |= {name.rpartition(".")[2] for name in names}
-        signature = r'sig-name descname"><span class="pre">(\w+)<'
-        documented |= set(re.findall(signature, (HTML / page).read_text()))
-    assert {*lwa.__all__, *validation.__all__} - documented <= {"hertz"}  # a module
-
-
-def test_the_interface_is_documented_without_generic_text():
     """No type of a progress function, no text of Python about a type, no mark left unrendered."""
-    text = re.sub(r"<[^>]*>", "", (HTML / "api.html").read_text())
+    text = (HTML / "api.html").read_text()
+    names = re.findall(r'<dt class="sig[^>]* id="([^"]*)"', text)
+    assert not [name for name in names if re.search(r"\._", name)]
+    documented = {name.rpartition(".")[2] for name in names}
+    documented |= set(re.findall(r'sig-name descname"><span class="pre">(\w+)<', text))
+    assert {*lwa.__all__, *validation.__all__} - documented <= {"hertz"}  # a module
     marks = r"Callable\[\[Iterable|PEP 604|Symbol class|\*\*[A-Z][^*]*\*\*|[.;] - \w"
-    assert not re.findall(marks, text)
+    assert not re.findall(marks, re.sub(r"<[^>]*>", "", text))
 
 
-def test_every_page_with_cells_has_a_notebook():
-    for page in PAGES:
-        text = (HTML / page).read_text()
-        assert "cell_input" not in text or f'href="_sources/{page[:-5]}.ipynb"' in text
-        if "cell_input" in text:
-            notebook = nbformat.read(HTML / "_sources" / f"{page[:-5]}.ipynb", 4)
-            nbformat.validate(notebook)
-            assert sum(cell.cell_type == "code" for cell in notebook.cells) >= text.count(
-                'class="cell_input'
-            )
+@pytest.mark.parametrize("page", PAGES)
+def test_a_page_is_small_and_has_a_notebook_of_its_cells(page):
+    """With its pictures and scripts at most 2.5 MB, MathJax and the theme aside."""
+    text, name = (HTML / page).read_text(), f"_sources/{page[:-5]}.ipynb"
+    pictures = {HTML / name for name in re.findall(r'src="(_images/[^"]+)"', text)}
+    assert len(text) + sum(file.stat().st_size for file in pictures) < 2_500_000
+    assert ("turn.js" in text) == ('class="lwa-' in text)
+    if cells := text.count('class="cell_input'):
+        assert f'href="{name}"' in text
+        nbformat.validate(notebook := nbformat.read(HTML / name, 4))
+        assert sum(cell.cell_type == "code" for cell in notebook.cells) >= cells
 
 
 SPHERES = [Sphere.solid("2.38e-3", Material.named(name)) for name in ("steel 316", "PTFE")]
@@ -191,19 +164,17 @@ def test_the_series_of_the_calculator_is_interpolated_well(visit):
 
 
 def test_the_calculator_refuses_by_name(visit):
-    """Equal beads have the theory's error; weak blows, extreme ratios and bad input have none."""
-    equal, weak, light, negative = (row[1] for row in visit.pages["calculator.html"]["blows"][5:9])
+    """Equal beads have the theory's error; weak blows, extreme ratios and bad input have none.
+
+    2,38 is 2.38; a material of one's own is one of the table where its numbers are."""
+    report = visit.pages["calculator.html"]
+    equal, weak, light, negative = (row[1] for row in report["blows"][5:9])
     error = equal["theories"]["canonical wave"]["width"] / equal["lattice"]["width"] - 1
     assert 0.05 < error < 0.08
     assert abs(equal["beads"][0] / equal["F"] - 0.707) < 3e-3
     assert abs(weak["growth"]) > 0.1
     assert "mass ratio" in light["refused"]
     assert "positive" in negative["refused"]
-
-
-def test_numbers_are_typed_with_a_comma_or_a_point(visit):
-    """2,38 is 2.38; a material of one's own is one of the table where its numbers are."""
-    report = visit.pages["calculator.html"]
     comma, point, mixed, word = report["typed"]
     assert comma == point == report["own"][0] == dict(map(tuple, report["calculator"]))["force"]
     assert mixed == word
@@ -212,15 +183,12 @@ def test_numbers_are_typed_with_a_comma_or_a_point(visit):
 
 
 def test_a_harder_blow_is_seen_to_run_faster(visit):
-    """Scale and clock stay while the slider moves, and the pulse from before runs along."""
+    """Scale and clock stay while the slider is dragged, and the pulse from before runs along."""
     seen = visit.pages["play.html"]["harder"]
     assert seen["scales"][1] >= seen["scales"][0]
     assert seen["paces"][0] == seen["paces"][1]
     assert seen["passed"][1] > seen["passed"][0]
     assert seen["forces"][1] > 2 * seen["forces"][0]
-
-
-def test_the_pulse_before_stays_while_a_slider_is_dragged(visit):
     assert visit.pages["play.html"]["dragged"] == [2, 0.5]
     assert visit.pages["exact.html"]["presets"] == [0.6, 0.3428]
 
@@ -231,70 +199,46 @@ def test_each_thing_to_turn_asks_first(visit):
         things = len(re.findall('class="lwa-', (HTML / page).read_text()))
         plain = page == "intro.html"
         assert (report["asked"], report["early"]) == (things - plain, plain), page
-
-
-def test_the_script_is_small_and_loaded_where_it_is_used(visit):
     assert visit.pages["play.html"]["sliders"] == 4
     assert (HTML / "_static" / "turn.js").stat().st_size < 36_000
-    for page in PAGES:
-        text = (HTML / page).read_text()
-        assert ("turn.js" in text) == ('class="lwa-' in text), page
 
 
-def test_a_page_is_small(visit):
-    """A page, its pictures and its scripts: at most 2.5 MB, MathJax and the theme aside."""
-    for page in PAGES:
-        text = (HTML / page).read_text()
-        pictures = {HTML / name for name in re.findall(r'src="(_images/[^"]+)"', text)}
-        assert len(text) + sum(file.stat().st_size for file in pictures) < 2_500_000, page
-
-
+SMALLEST = """<html><head><script>
+window.MathJax = {startup: {promise: Promise.resolve()}};
+</script></head><body><article>%s</article></body></html>"""
 LINE = f'<pre style="%s">{"long " * 100}</pre>'
 CELL = '<td><span class="pre" style="overflow-wrap: %s">crumbs</span></td>'
-ROW = f"<div style='overflow: auto'><table style='width: 80px'><tr>{CELL}<td>{'long' * 20}</td>"
-PICTURE = '<div style="overflow: hidden"><svg width="%d" height="9"></svg></div>'
-FAULTS = [
-    (r'<span class="math">\(x\)</span>', "unrendered", True),
-    (r"<p>\(x\)</p>", "raw", True),
-    ("<p>$$x$$</p>", "raw", True),
-    ('<span class="math"><mjx-merror>x</mjx-merror></span>', "merrors", True),
-    ('<img src="nowhere.png">', "broken", True),
-    ('<img src="https://example.org/picture.png">', "foreign", True),
-    ('<img src="nowhere.png">', "foreign", False),
-    ("<script>fetch('https://example.org/x').catch(() => 0)</script>", "foreign", True),
-    ("<pre>&lt;Figure size 650x520 with 1 Axes&gt;</pre>", "unshown", True),
-    ('<svg width="9" height="9"></svg>', "silent", True),
-    ('<div role="img">x</div>', "unnamed", True),
-    (LINE % "", "cut", True),
-    (LINE % "", "wider", True),
-    (LINE % "overflow-x: hidden", "cut", True),
-    (LINE % "overflow-x: hidden", "wider", False),
-    (LINE % "overflow-x: auto", "cut", False),
-    (LINE % "max-width: 100%; overflow-x: auto", "cut", False),
-    (PICTURE % 900, "cut", True),
-    (PICTURE % 300, "cut", False),
-    ('<p style="color: #999">words</p>', "faint", True),
-    ('<p style="color: #222">words</p>', "faint", False),
-    (ROW % "anywhere", "crumbled", True),  # neither cut nor wider than the page
-    (ROW % "normal", "crumbled", False),
-]
-"""Body of a page at the width of a phone, a finding, and whether the finding is made."""
+TABLE = f"<table style='width: 80px'><tr>{CELL}<td>{'long' * 20}</table>"
+ROW = f"<div style='overflow: auto'>{TABLE}</div>"
+SVG = '<svg aria-label="x" width="%d" height="9"></svg>'
+PICTURE = f'<div style="overflow: hidden; width: 200px">{SVG}</div>'
+BAD = {
+    "unrendered": [r'<span class="math">x</span>'],
+    "raw": [r"<p>\(x\)</p>", "<p>$$x</p>"],
+    "merrors": ["<mjx-merror>x</mjx-merror>"],
+    "foreign": ["<script>fetch('https://example.org/x').catch(() => 0)</script>"],
+    "unshown": ["<pre>&lt;Figure size 650x520 with 1 Axes&gt;</pre>"],
+    "broken": ['<img alt="x" src="nowhere.png">'],
+    "silent": ['<svg width="9" height="9"></svg>'],
+    "unnamed": ['<div role="img">x</div>'],
+    "faint": ['<p style="color: #999">words</p>'],
+    "crumbled": [ROW % "anywhere"],  # neither cut nor wider than the page
+    "cut": [LINE % "", LINE % "overflow-x: hidden", PICTURE % 300],
+}
+GOOD = [
+    LINE % "overflow-x: auto", LINE % "max-width: 100%; overflow-x: auto", PICTURE % 150,
+    '<p style="color: #222">words</p>', ROW % "normal",
+]  # fmt: skip
+"""Bodies of pages at the width of a phone: each of the bad ones is found once, no good one."""
 
 
-@pytest.fixture(scope="module")
-def faulty(tmp_path_factory):
-    """Visit to a page for each body."""
-    folder = tmp_path_factory.mktemp("faults")
-    for i, (body, _, _) in enumerate(FAULTS):
-        (folder / f"{i}.html").write_text(SMALLEST % body)
-    return visited(folder, [f"{i}.html" for i in range(len(FAULTS))], PHONE)
-
-
-@pytest.mark.parametrize("i", range(len(FAULTS)), ids=[fault[1] for fault in FAULTS])
-def test_a_fault_of_a_page_is_found(faulty, i):
-    _, finding, made = FAULTS[i]
-    assert bool(faulty.pages[f"{i}.html"][finding]) == made
-
-
-def test_a_missing_file_is_found(faulty):
-    assert "/nowhere.png" in faulty.missing
+def test_each_fault_is_found(tmp_path):
+    bodies = [body for several in BAD.values() for body in several], GOOD
+    for name, parts in zip(("bad", "good"), bodies, strict=True):
+        (tmp_path / f"{name}.html").write_text(SMALLEST % "".join(parts))
+    visit = visited(tmp_path, ["bad.html", "good.html"], PHONE)
+    bad, good = visit.pages["bad.html"], visit.pages["good.html"]
+    assert {fault: len(bad[fault]) for fault in BAD} == {f: len(BAD[f]) for f in BAD}
+    assert bad["wider"]
+    assert not [fault for fault in FAULTS if good[fault]]
+    assert "/nowhere.png" in visit.missing
