@@ -9,14 +9,8 @@ from lwa import Cell, Dimer, Dispersion, canonical_wave, envelope, expand, homog
 from lwa.law import DELTA, named
 from tests.lwa.fields import at_compression
 
-ROLES = dict(
-    zip(
-        ("m1", "m2", "k", "D", "a", "b"),
-        map(sp.Rational, "5/3 2/7 7/5 3/4 2 1/3".split()),
-        strict=True,
-    )
-)
-"""The number that stands for each symbol when results are compared."""
+VALUES = tuple(map(sp.Rational, ("5/3", "2/7", "7/5", "3/4", "2", "1/3")))
+"""The numbers for the symbols of `results` when results are compared."""
 
 OWN = {"B": 2, "V_s": 2, "F": 3, "kappa": 1}
 """Numbers for the results' own symbols."""
@@ -56,7 +50,7 @@ def results(m1, m2, k, D, a, b):
 @cache
 def numbers(symbols):
     """The results with a number for each symbol, to 30 digits."""
-    values = dict(zip(symbols, ROLES.values(), strict=True))
+    values = dict(zip(symbols, VALUES, strict=True))
     found = [sp.sympify(x).xreplace(values) for x in results(*symbols)]
     own = [{s: OWN[s.name] for s in x.free_symbols} for x in found]
     return [sp.N(x.subs(letters), 30) for x, letters in zip(found, own, strict=True)]
