@@ -1,4 +1,4 @@
-"""Calls of a command in the tests' own process, processes that end, and outputs that fail."""
+"""Calls of a command in the tests' own process, processes that end, terminals and small disks."""
 
 import fcntl
 import io
@@ -47,19 +47,6 @@ def encoded(main, *arguments, encoding):
     return end.value.code, *(output.buffer.getvalue() for output in outputs)
 
 
-def unwritable(capsys, main, *arguments, output):
-    """Exit status and standard error of one call into a file or a pipe that takes nothing."""
-    with output, redirect_stdout(output):
-        status, out, err = ended(capsys, main, *arguments)
-    assert out == ""
-    return status, err
-
-
-def full_disk():
-    """A file on a disk without room."""
-    return open("/dev/full", "w")
-
-
 @contextmanager
 def small_disk(size):
     """Let no file of this process grow beyond so many bytes."""
@@ -69,13 +56,6 @@ def small_disk(size):
         yield
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
-
-
-def closed_pipe():
-    """A pipe whose reader is gone."""
-    reader, writer = os.pipe()
-    os.close(reader)
-    return open(writer, "w")
 
 
 @contextmanager

@@ -71,7 +71,6 @@ def _status(command: click.Command, name: str, arguments: Sequence[str] | None) 
         if output is None:
             raise OSError(errno.EBADF, "it is closed")
         result = command.main(arguments, prog_name=name, standalone_mode=False)
-        output.flush()
         return result if isinstance(result, int) else 0
     except click.exceptions.NoArgsIsHelpError as help_text:
         click.echo(help_text.format_message(), err=True)
@@ -88,7 +87,7 @@ def _status(command: click.Command, name: str, arguments: Sequence[str] | None) 
         sys.stdout = output  # click replaces the output, and exits, where a pipe is closed
         if output is not None:  # discard what is not flushed yet
             os.dup2(os.open(os.devnull, os.O_WRONLY), output.fileno())
-        if isinstance(error, SystemExit | BrokenPipeError):
+        if isinstance(error, SystemExit):
             return CLOSED
         fault = f"{error.filename or 'the output'}: {error.strerror or error}"
     click.echo(f"{name}: {' '.join(fault.split())}", err=True)

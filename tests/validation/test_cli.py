@@ -10,8 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from lwa.base import progress
-from lwa.command.cli import CLOSED
-from tests.commands import closed_pipe, ended, full_disk, small_disk, terminal, unwritable
+from tests.commands import ended, small_disk, terminal
 from validation import cli
 from validation.report import command
 from validation.report.result import Report
@@ -168,14 +167,6 @@ def test_a_result_that_cannot_be_written_leaves_the_old_one(capsys, folder, scen
     assert err == f"lwa-validate: {name} is not written: File too large\n"
     assert (folder / name).read_text() == "old"
     assert {file.name for file in folder.iterdir()} == {"scene.toml", name}
-
-
-def test_an_output_that_takes_nothing_is_no_result(capsys, scene_file):
-    """Status 1 is that of failed comparisons."""
-    for arguments in (("run", str(scene_file)), ("run", "--example"), ("--help",)):
-        assert unwritable(capsys, cli.main, *arguments, output=closed_pipe()) == (CLOSED, "")
-        status, err = unwritable(capsys, cli.main, *arguments, output=full_disk())
-        assert (status, err) == (2, "lwa-validate: the output: No space left on device\n")
 
 
 _SPLIT = ("--method", "symplectic")

@@ -1,5 +1,6 @@
 """Between a command and its user: encodings, closed and full outputs, completion, digits."""
 
+import os
 from contextlib import redirect_stdout
 
 import pytest
@@ -7,16 +8,15 @@ from click.testing import CliRunner
 
 from lwa.command import cli
 from lwa.command.cli import CLOSED
-from tests.commands import closed_pipe, encoded, full_disk, unwritable
-from tests.lwa.command.answers import run
-from validation.cli import validate
+from tests.commands import encoded, ended
+from validation.cli import main, validate
 
-WAVE = ("wave", "--k", "3/2", "--masses", "1,1")
+MAINS = {"lwa": cli.main, "lwa-validate": main}
 
 
 @pytest.mark.parametrize("encoding", ["cp1252", "latin-1", "utf-8"])
 def test_output_and_refusals_are_in_utf_8_whatever_the_locale(encoding):
-    status, out, err = encoded(cli.main, *WAVE, encoding=encoding)
+    status, out, err = encoded(cli.main, "wave", "--k", "3/2", "--masses", "1,1", encoding=encoding)
     assert (status, err) == (0, b"")
     assert "width π/β = sqrt(10)*pi*D/2 ≈ 4.96729413289805 D" in out.decode("utf-8")
     status, _, err = encoded(cli.main, "derive", "--masses", "κ κ", encoding=encoding)
@@ -29,13 +29,26 @@ def test_a_file_name_that_is_not_utf_8_is_one_line():
     assert (status, out, err) == (2, b"", b"lwa: \\udcff.json: No such file or directory\n")
 
 
-def test_an_output_that_takes_nothing_is_no_result(capsys):
-    for arguments in (WAVE, ["--version"], ["-h"]):
-        status, err = unwritable(capsys, cli.main, *arguments, output=full_disk())
-        assert (status, err) == (2, "lwa: the output: No space left on device\n")
-        assert unwritable(capsys, cli.main, *arguments, output=closed_pipe()) == (CLOSED, "")
+@pytest.mark.parametrize(
+    ("name", "line"),
+    [
+        ("lwa", "wave --k 3/2 --masses 1,1"),
+        ("lwa", "--version"),
+        ("lwa", "-h"),
+        ("lwa-validate", "run --example"),
+        ("lwa-validate", "--help"),
+    ],
+)
+def test_an_output_that_takes_nothing_is_no_result(capsys, name, line):
+    """A disk that is full, a pipe whose reader is gone, and no output at all."""
+    reader, writer = os.pipe()
+    os.close(reader)
+    full = 2, "", f"{name}: the output: No space left on device\n"
+    for output, expected in (("/dev/full", full), (writer, (CLOSED, "", ""))):
+        with open(output, "w") as stream, redirect_stdout(stream):
+            assert ended(capsys, MAINS[name], *line.split()) == expected
     with redirect_stdout(None):
-        status, _, err = run(capsys, *WAVE)
+        status, _, err = ended(capsys, MAINS[name], *line.split())
     assert (status, err.count("\n")) == (2, 1)
 
 
