@@ -1,0 +1,127 @@
+"""Odd arguments of public functions and methods are answered or refused; text is never evaluated."""
+
+import inspect
+import os
+import random
+import warnings
+from types import FunctionType
+
+import numpy as np
+import pytest
+import sympy as sp
+
+import lwa
+import validation
+from lwa import (
+    Cell,
+    Dimer,
+    Dispersion,
+    InputError,
+    Link,
+    Material,
+    NoSolitaryWave,
+    Power,
+    Sphere,
+    envelope,
+    expand,
+    homogenize,
+    shock,
+)
+from lwa.law import general, named
+
+TEXT = "__import__('os').system('true')"
+STEEL = Sphere(1, 1, Material(1, "0.3", 1))
+HERTZ = Power("3/2")
+ODD = (
+    None, "", "m", "3/2", "strain", "time", "full", b"x", True, 0, -1, 1, 2, 3, 7, 0.5, -0.25, 1e-5,
+    1e300, float("nan"), float("inf"), sp.Symbol("x"), sp.sqrt(2), sp.I, sp.oo, [], [1, 2],
+    [[1], [2]], {"a": 1}, np.array([1.0, 2.0]), object(),
+)  # fmt: skip
+# Methods by which the package's own classes speak to each other, and constructors whose objects a
+# function returns: no user calls them, and they may fail in any way.
+OWN = {
+    "CompactWave", "ExpandedWave", "InputError", "LoadedWave", "NoSolitaryWave", "SceneError",
+    "TravelingWave", "anew", "check_strain", "compression", "compressions",
+    "latex_rows", "of_strain", "phi", "replaced",
+}  # fmt: skip
+
+# Values that callers give to a parameter of this name, so that the others are reached too.
+VALUES = {
+    "cell": Dimer(1, 2), "k": "3/2", "law": HERTZ, "masses": (1, 2), "m1": 1, "m2": 2,
+    "order": 4, "n": 2, "delta": 1, "p": 1, "D": 1, "V": 1, "B": 1, "p0": 1, "x": 1, "xi": 0,
+    "force": 3, "rise": 1, "quantity": "force", "extent": "time", "name": "hertz2", "low": 0,
+    "spheres": [STEEL, STEEL], "sphere": STEEL, "other": STEEL, "material": STEEL.material,
+    "radius": 1, "F": sp.Symbol("delta", positive=True) ** 2, "background": 1, "behind": 2,
+    "ahead": 1, "kappa": 1, "q": 1, "value": 1, "exponent": 2, "base": 2, "digits": 10,
+}  # fmt: skip
+
+
+def samples():
+    """An object of each class whose methods take values."""
+    theory = homogenize(Dimer("m1", "m2"))
+    wave = theory.pde.traveling_wave()
+    numbers = homogenize(Dimer(1, 2), k="3/2").pde.traveling_wave()
+    link = Link(0, 1, HERTZ)
+    yield from (Cell(["m1", "m2"]), HERTZ, general(), named("hertz2"), named("polynomial"))
+    yield from (theory, theory.pde, theory.closure, wave, numbers, numbers.at_force(1))
+    yield from (Dispersion(Dimer("m1", "m2")), expand(Cell([1]), 3, k="3/2"), link)
+    yield from (STEEL, STEEL.material, shock(Cell([1]), law=HERTZ, behind=2, ahead=1))
+    yield from (envelope(Cell([1]), law=HERTZ, background=1, wavenumber=1),)
+
+
+def calls():
+    """Every public function, class and method that takes an argument, as (name, callable)."""
+    for package in (lwa, validation, lwa.law, lwa.hertz):
+        for name in getattr(package, "__all__", ("named", "read_law", "stiffness")):
+            found = getattr(package, name, None)
+            if isinstance(found, FunctionType | type):
+                yield name, found
+    for sample in samples():
+        for name in dir(type(sample)):
+            found = inspect.getattr_static(type(sample), name)
+            if not name.startswith("_") and isinstance(found, FunctionType | classmethod):
+                yield f"{type(sample).__name__}.{name}", getattr(sample, name)
+
+
+def attempts(call, draw, odds):
+    """Yield arguments with the text, or one of so many odd values, in one place."""
+    try:
+        parameters = inspect.signature(call).parameters.values()
+    except ValueError:
+        return
+    known = [x for x in parameters if x.kind in (x.POSITIONAL_OR_KEYWORD, x.KEYWORD_ONLY)]
+    needed = {x.name: VALUES.get(x.name, TEXT) for x in known if x.default is x.empty}
+    kinds = {x.kind for x in parameters}
+    names = [x.name for x in known] + ["m1", "k", "omega", "D"] * (
+        inspect.Parameter.VAR_KEYWORD in kinds
+    )
+    for name in names:
+        for value in (TEXT, (TEXT,), *draw.sample(ODD, odds)):
+            yield (), needed | {name: value}
+    if inspect.Parameter.VAR_POSITIONAL in kinds:
+        for value in (TEXT, *draw.sample(ODD, odds)):
+            yield (*needed.values(), value), {}
+
+
+@pytest.mark.parametrize("odds", [1, pytest.param(len(ODD), marks=pytest.mark.slow)])
+def test_arguments_are_answered_or_refused_and_never_evaluated(monkeypatch, odds):
+    executed, answered, draw = [], 0, random.Random(odds)
+    monkeypatch.setattr(os, "system", executed.append)
+    for name, call in calls():
+        own = call.__module__.startswith("validation") or name.split(".")[-1] in OWN
+        for positional, keywords in attempts(call, draw, odds):
+            try:
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore" if own else "error")
+                    found = call(*positional, **keywords)
+            except (InputError, NoSolitaryWave):
+                continue
+            except Exception as error:
+                if not own:
+                    pytest.fail(f"{name}(*{positional}, **{keywords}): {error!r}")
+                continue
+            answered += 1
+            if isinstance(found, float | np.ndarray):
+                assert not np.isnan(found).any(), (name, positional, keywords)
+        assert not executed, name
+    assert answered > 100
