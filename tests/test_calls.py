@@ -1,4 +1,4 @@
-"""Odd arguments of public functions and methods are answered or refused; text is never evaluated."""
+"""Odd arguments of public functions and methods are answered or refused, and never evaluated."""
 
 import inspect
 import os

@@ -56,16 +56,11 @@ for statement in sys.argv[1:]:
 """
 
 
-@pytest.fixture(scope="module")
-def loaded():
+def test_a_package_is_loaded_where_it_is_used():
     _, out, err = ended(sys.executable, "-c", PROGRAM, *STEPS)
     assert err == ""
-    return dict(zip(STEPS, out.splitlines(), strict=True))
-
-
-@pytest.mark.parametrize("statement", STEPS)
-def test_a_package_is_loaded_where_it_is_used(loaded, statement):
-    assert not {*STEPS[statement].split()} & {*loaded[statement].split()}
+    for (statement, none), modules in zip(STEPS.items(), out.splitlines(), strict=True):
+        assert not {*none.split()} & {*modules.split()}, statement
 
 
 @pytest.mark.parametrize(

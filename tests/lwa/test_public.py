@@ -16,14 +16,10 @@ def test_all_names_exist_and_type_checkers_see_the_same(package):
     with pytest.raises(AttributeError, match="nothing"):
         package.nothing  # noqa: B018
     tree = ast.parse(Path(package.__file__).read_text())
-    (block,) = (node for node in tree.body if isinstance(node, ast.If))
-    typed = {
-        name.asname
-        for line in block.body
-        if isinstance(line, ast.ImportFrom)
-        for name in line.names
-    }
-    assert typed - {"D", "k"} == set(package.__all__)
+    imports = (node.names for node in ast.walk(tree) if isinstance(node, ast.ImportFrom))
+    typed = {name.asname for names in imports for name in names}
+    assert typed - {"D", "k", None} == set(package.__all__)
+    assert Path(package.__file__).with_name("py.typed").exists()
 
 
 def test_two_symbols_are_bound_by_name_only():
