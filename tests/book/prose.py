@@ -32,3 +32,9 @@ def bounds(values: Iterable[object], written: str) -> bool:
     """Whether the largest size stays within the written bound and exceeds four fifths of it."""
     bound = float(Fraction(written))
     return 0.8 * bound < max(abs(float(value)) for value in values) <= bound
+
+
+def limited(page: str, words: str, *values: Iterable[object]) -> None:
+    """Assert that the bounds of a sentence hold for these values and are not much too large."""
+    for several, written in zip(values, said(page, words), strict=True):
+        assert bounds(several, written), f"{page}: {words}: {several} for {written}"
