@@ -10,12 +10,11 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from lwa import Cell, Dimer, Dispersion, InputError
+from lwa import Cell, Dimer, Dispersion
 from lwa.base.frozen import QUANTITIES
 from lwa.cell import k as symbol_k
 from lwa.expansion.expand import Expansion, expand
 from lwa.expansion.radiation import amplitude, parameters, radiated
-from lwa.law import DELTA, Law, Power, general, named
 from tests.identity import same
 
 HALF = sp.Rational(1, 2)
@@ -142,13 +141,3 @@ def test_radiation_falls_exponentially_and_vanishes_for_equal_beads() -> None:
     slopes = np.diff(logs) / np.diff(inverse)
     assert np.all(slopes < -1)
     assert np.ptp(slopes) < 0.6 * abs(slopes.mean())
-
-
-def test_only_a_power_law_has_an_expansion():
-    """ε = k - 1: another law's k is another at every strain."""
-    for law in (named("hertz2"), general(), Law(sp.exp(DELTA) - 1, DELTA)):
-        with pytest.raises(InputError, match="only a power law has a k"):
-            expand(Cell([1]), 2, law=law)
-    assert expand(Cell([1]), 2, law=Power(2)) == expand(Cell([1]), 2, k=2)
-    with pytest.raises(InputError, match="one of them"):
-        expand(Cell([1]), 2, k=3, law=Power(2))

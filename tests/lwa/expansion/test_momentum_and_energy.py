@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lwa import Cell, Dimer, ExpandedWave, InputError, canonical_wave, expand, pulse_of_strike
+from lwa import Cell, Dimer, ExpandedWave, canonical_wave, expand, pulse_of_strike
 
 EQUAL = Cell([1], spacing=1)
 
@@ -47,12 +47,6 @@ def test_the_error_of_a_time_is_that_of_width_and_speed():
     width, time = found.fwhm(), found.fwhm("strain", "time")
     shares = width.error / width.value + found.speed.error / found.speed.value
     assert time.error == pytest.approx(time.value * shares, rel=1e-12)
-
-
-@pytest.mark.parametrize("force", [0, -1, "F"])
-def test_only_positive_forces_are_accepted(force):
-    with pytest.raises(InputError, match=r"^force is "):
-        wave(force=force)
 
 
 @pytest.mark.parametrize("cell", [EQUAL, Dimer(2, 1, spacing=1)], ids=["equal", "dimer"])

@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sympy.polys.matrices import DomainMatrix
 
-from lwa import Cell, Dimer, Dispersion, InputError, LoadedChain, Power, homogenize
+from lwa import Cell, Dimer, Dispersion, LoadedChain, Power, homogenize
 from lwa.law import named
 from tests.lwa.series import exponential, fraction, product
 
@@ -169,31 +169,6 @@ def test_bands(cell):
     half = np.linspace(0, np.pi / cell.size, 50)
     direction = (-1.0) ** np.arange(cell.size)
     assert np.all(np.diff(chain.bands.branches(half), axis=0) * direction > -ROUNDING)
-
-
-def two(**names):
-    return Dispersion(Cell([1, 2], **names))
-
-
-@pytest.mark.parametrize(
-    ("call", "words"),
-    [
-        (lambda: two().bands.branches(float("nan")), "wavenumber is nan"),
-        (lambda: two().bands.branches([[1], [2, 3]]), "wavenumber is"),
-        (lambda: two().acoustic(0), "order is 0"),
-        (lambda: two().optical(2.0), r"order is 2\.0"),
-        (lambda: two().acoustic(10000), "order is 10000: .* lower order"),
-        (lambda: Dispersion(Cell(["a", "b"], ["d", "e"])).acoustic(10000), "lower order"),
-        (lambda: Dispersion(Cell([1, 2, 3])).optical(4), "needs a cell of 2 masses, not 3"),
-        (lambda: Dispersion(Cell([1, "m2"])).bands.branches(1), "'m2' has no value"),
-        (lambda: Dispersion(Cell([1, 2], [1, 2]), "k").bands.edges(), "'k' has no value"),
-        (lambda: Dispersion(Cell(["1e200", "1e-200"])).bands.branches(1), "the range of a float"),
-        (lambda: Dispersion(Cell([1]), 0), "k is 0"),
-    ],
-)
-def test_refusals(call, words):
-    with pytest.raises(InputError, match=words):
-        call()
 
 
 def test_the_eigenvalues_of_a_ring_of_unlike_contacts():

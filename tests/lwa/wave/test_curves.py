@@ -65,21 +65,3 @@ def test_where_contacts_peak_one_after_the_other_a_bead_has_no_peak_force():
     assert curve[200] < 0.9 * curve.max()
     with pytest.raises(InputError, match="peak one after the other"):
         wave.at_force(1, of="bead")
-
-
-@pytest.mark.parametrize(
-    ("call", "words"),
-    [
-        (lambda: CHAIN.at_force(1, of="wall"), "of is 'wall': contact or bead"),
-        (lambda: CHAIN.at_force([1, 2]), "force is .1, 2.: a number or a symbol is wanted"),
-        (lambda: CHAIN.at_force(1).curve([0], "pressure"), "quantity is 'pressure'"),
-        (lambda: CHAIN.at_force(1).curve("now"), "t is 'now': real numbers"),
-        (lambda: CHAIN.at_force(1).curve([np.inf]), "t is inf: finite numbers"),
-        (lambda: CHAIN.at_force(1).curve([0], of="wall"), "of is 'wall'"),
-        (lambda: CHAIN.at_force("F").curve([0]), "'F' has no value: a curve needs numbers"),
-        (lambda: CHAIN.at_force(1).fwhm("force", "area"), "extent is 'area'"),
-    ],
-)
-def test_bad_arguments_are_refused(call, words):
-    with pytest.raises(InputError, match=words):
-        call()

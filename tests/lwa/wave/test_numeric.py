@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
+from lwa import Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
 
 WAVE = homogenize(Dimer("m1", "m2")).pde.traveling_wave()
 NUMERIC = WAVE.numeric()
@@ -76,16 +76,3 @@ def test_missing_waves_raise_or_are_nan_on_request():
             NUMERIC.width([1.5, k], [1.0, omega])
     found = WAVE.numeric(missing="nan").width([1.5, 3.0, 1.0], [1.0, 100.0, 1.0])
     assert np.isnan(found).tolist() == [False, True, True]
-
-
-def test_bad_input():
-    for arguments in ((np.nan, 1.0), (1.5, np.inf), (1.5, 0.0), (1.5, -1.0)):
-        with pytest.raises(InputError):
-            NUMERIC.beta(*arguments)
-    with pytest.raises(InputError, match=r"B is -1\.0: it must be positive"):
-        NUMERIC.speed(1.5, 1.0, B=-1.0)
-    for cell in (Cell(["m1", "m2", "m3"]), Cell(["m1", "m2"], ["A1", "A2"]), Cell(["m1"])):
-        with pytest.raises(InputError, match="two masses"):
-            canonical_wave(cell).numeric()
-    with pytest.raises(InputError, match="missing"):
-        WAVE.numeric(missing="zero")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from lwa import Cell, Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
+from lwa import Cell, Dimer, NoSolitaryWave, canonical_wave, homogenize
 from lwa.wave.source import LANGUAGES, module, wave_functions
 from tests.lwa.command.answers import run
 from tests.lwa.wave.compilers import PROGRAMS, compiled, in_node
@@ -230,13 +230,9 @@ def test_names_that_have_another_meaning(language, run_in):
     )
 
 
-def test_refusals():
-    with pytest.raises(InputError, match="language is 'rust': one of numpy"):
-        wave_of("paper").code("rust")
+def test_a_wave_that_does_not_exist_has_no_functions():
     with pytest.raises(NoSolitaryWave):
         wave_of("paper").at(k=3, m1=1, m2=100).code("c")
-    with pytest.raises(InputError, match="'x y' is no name"):
-        canonical_wave(Dimer(sp.Symbol("x y", positive=True), 1)).code("c")
 
 
 @pytest.mark.parametrize("language", ["numpy", "c"])
