@@ -4,7 +4,6 @@ import csv
 import io
 import json
 import math
-from functools import cache
 from itertools import pairwise, product
 
 import numpy as np
@@ -29,13 +28,9 @@ from book.studies.accuracy import (
     struck_chain,
     timings,
 )
-from lwa import Cell, InputError, expand
 from tests.commands import ended
 from validation.lattice.simulate import COMPILED, simulate
 from validation.pulses.pulse import MeasureError
-from validation.pulses.steady import STRETCH, point
-from validation.waves.resonances import solve
-from validation.waves.solver import exact_wave
 from validation.waves.theory import theory_at
 
 # The tasks
@@ -46,12 +41,6 @@ def test_a_record_without_a_pulse_is_infinitely_wrong():
     ((rtol, errors, seconds),) = timings(task, solitary_wave(20).truth, COMPILED[0], (1e-6,))
     assert errors == dict.fromkeys(READINGS, math.inf)
     assert (rtol, seconds > 0) == (1e-6, True)
-
-
-@pytest.mark.parametrize("name", TASKS)
-def test_every_task_has_its_pulse_at_its_contact(name):
-    task = TASKS[name]()
-    assert task.read(simulate(task.scene, rtol=1e-6)).fall < task.scene.duration
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -98,7 +87,6 @@ def test_the_document_holds_the_contract():
     tasks, names = ["exact", "experiment"], [COMPILED[0], "SciPy DOP853"]
     report = accuracy(tasks, dict.fromkeys(names, (1e-6, 1e-8)))
     result = json.loads(json.dumps(report.document(), allow_nan=False))
-    assert max(map(len, report.text().splitlines())) <= 100
     for row in result["rows"]:
         assert row["error"] == max(row[f"{name}_error"] for name in READINGS) < 0.1
         assert row["seconds"] > 0
@@ -109,97 +97,16 @@ def test_the_document_holds_the_contract():
     assert (exact["task"], exact["peak"], experiment["task"]) == ("exact", 1.0, "experiment")
 
 
-def test_a_task_that_does_not_exist_is_named():
-    with pytest.raises(InputError, match=r"^task is 'tea'"):
-        accuracy(["dimer", "tea"])
-
-
 @pytest.mark.slow
 def test_the_command_with_every_method(capsys):
     options = "--task", "exact", "--task", "theory", "--format", "json"
     status, out, _ = ended(capsys, accuracy.main, *options)
     result = json.loads(out)
-    assert status == 0
-    assert {row["method"] for row in result["rows"]} == set(METHODS)
+    assert (status, {row["method"] for row in result["rows"]}) == (0, set(METHODS))
     assert result["theories"]
 
 
 # The ladder of theories
-
-WIDTHS = ("strain", "force", "velocity")
-
-
-@cache
-def true(k, omega):
-    """The lattice's wave, with its c² and widths; a dimer's may have a tail."""
-    k, omega = float(sp.Rational(k)), float(sp.Rational(omega))
-    wave = exact_wave([1], k) if omega == 1 else solve((1.0, omega), k)
-    return wave, {"c2": wave.c2} | {name: wave.fwhm(name) for name in WIDTHS}
-
-
-@cache
-def series(omega, order):
-    expansion = expand(Cell([1]) if omega == "1" else Cell([1, omega]), order)
-    return {"c2": expansion.c2} | {name: expansion.fwhm(name) for name in WIDTHS}
-
-
-@pytest.mark.parametrize(
-    ("omega", "order", "exponents"),
-    [
-        ("1", 1, ("26/25", "53/50", "27/25")),
-        ("1/20", 1, ("26/25", "21/20", "53/50")),
-        ("1/20", 3, ("26/25", "21/20", "53/50")),
-    ],
-)
-def test_error_of_n_terms_falls_as_the_next_power(omega, order, exponents):
-    """Near k = 1 radiation is below 1e-9; ε of the next order bends the slope."""
-    epsilon = [float(sp.Rational(k) - 1) for k in exponents]
-    for name, row in series(omega, order).items():
-        e = row.k - 1
-        total = row.prefactor * e**row.power * sum(a * e**n for n, a in enumerate(row.coefficients))
-        pairs = ((total.subs(row.k, sp.Rational(k)), true(k, omega)[1][name]) for k in exponents)
-        errors = [abs(float(value) / exact - 1) for value, exact in pairs]
-        slopes = np.diff(np.log(errors)) / np.diff(np.log(epsilon))
-        assert slopes == pytest.approx([order + 1] * 2, abs=0.35), name
-
-
-def test_the_profile_is_the_exact_waves():
-    """The error at k = 1.05 of a dimer's logarithm to ε^5 is of the order of ε^6."""
-    wave, xi = true("21/20", "1/20")[0], np.linspace(-6, 6, 25)
-    orders = expand(Cell([1, "1/20"]), 5, k="21/20").log_force()
-    log = sum(sp.Rational(1, 20) ** n * phi for n, phi in orders.items())
-    force = sp.lambdify(sp.Symbol("X"), sp.exp(log))
-    top, _ = wave.peak("force")
-    assert np.abs(force(xi / np.sqrt(20)) - wave.force(top + xi)).max() < 0.05**5
-
-
-@pytest.mark.parametrize(
-    ("k", "omega"),
-    [("21/20", "1/20"), pytest.param("11/10", "1/5", marks=pytest.mark.slow)],
-)
-def test_estimates_bound_the_errors_of_dimers(k, omega):
-    """Also where radiation makes the wave a nanopteron, whose numbers vary by its tail."""
-    wave, values = true(k, omega)
-    for name, value in values.items():
-        found = series(omega, 8)[name].at(k)
-        assert abs(found.value - value) <= found.error + 3 * wave.tail * value, name
-
-
-@pytest.mark.parametrize(("omega", "bound"), [("1/100", 1e-3), ("9/10", 1e-2)])
-def test_hertz_dimer_to_a_percent_against_struck_chains(omega, bound):
-    numbers = point(HERTZ, sp.Rational(omega), STRETCH).numbers
-    expansion = expand(Cell([1, omega]), 8)
-    for name, row in (("width", expansion.fwhm("force")), ("speed", expansion.c)):
-        found, truth = row.at(HERTZ), numbers[name]
-        assert abs(found.value / truth.value - 1) < bound
-        assert abs(found.value - truth.value) <= found.error + truth.error
-        assert found.asymptotic
-
-
-def test_between_resonances_the_series_has_no_sum():
-    """ω = 0.55: no solitary wave is near, and the true decay per site is measurable."""
-    with pytest.raises(InputError, match="over 10% of it"):
-        series("11/20", 8)["force"].at(HERTZ)
 
 
 @pytest.fixture(scope="module")
@@ -217,7 +124,7 @@ def test_ladder_in_all_forms(places):
     speed = float(theory_at("11/10", 1).at_force(1).speed)
     off = speed / document["truth_value"]["speed"] - 1
     assert rows["linear closure"]["error_value"]["speed"] == pytest.approx(off, rel=1e-9)
-    # For equal beads all closures are one theory; each order of the series is better.
+    # All closures of equal beads are one theory; each order of the series is better.
     assert errors["linear closure"] == pytest.approx(errors["full closure"], rel=1e-9)
     rising = [errors[name] for name in THEORIES if name.startswith("ε")]
     assert all(b < a for a, b in pairwise(rising))
@@ -233,16 +140,9 @@ def test_ladder_in_all_forms(places):
         assert theory.startswith("ε") is (row["estimate_value"] is not None)
         for name, estimate in (row["estimate_value"] or {}).items():  # it bounds the error
             assert abs(row["error_value"][name]) <= estimate + 1e-13
-    printed = report.text()
-    assert max(map(len, printed.splitlines())) <= 100
-    assert printed.count("theory over truth - 1") == len(COMPARED)
-    assert "(ms of CPU): linear closure " in printed
-
-
-def test_the_curves_of_a_theory_look_alike_in_both_panels(places):
     beads, dimers = ({c.label: c.style for c in p.curves} for p in ladder(places).panels)
     assert set(beads) == set(THEORIES)
-    assert dimers.items() <= beads.items()
+    assert dimers.items() <= beads.items()  # a theory's curves look alike in both panels
 
 
 def test_missing_truths_and_sums_are_named():

@@ -7,6 +7,7 @@ import pytest
 from tests.commands import ended
 
 BAD = [
+    ("accuracy --task tea", "tea"),
     ("breather --masses 1,2,3", "masses are 3: breathers are found in cells of one or two"),
     ("breather --detunings 0.0001 --beads 101", "beads is 101: at a detuning of 0.0001 "),
     ("breather --detunings 0.03", "contacts open from"),
