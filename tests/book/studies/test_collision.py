@@ -1,11 +1,8 @@
 """Colliding pulses: the equation against the lattice, and symmetries of both."""
 
-import json
-
 import numpy as np
 import pytest
 import sympy as sp
-from click.testing import CliRunner
 
 from book.studies.collision import Continuum, Evolution, collision, in_equation, on_lattice
 from lwa import Cell, Dimer, Power
@@ -20,9 +17,7 @@ def rows(document):
 
 @pytest.fixture(scope="module")
 def hertz():
-    """The command's document."""
-    options = ["--k", "3/2", "--format", "json"]
-    return json.loads(CliRunner().invoke(collision.command, options).stdout)
+    return collision(exponents=(sp.Rational(3, 2),)).document()
 
 
 def test_the_equation_is_the_lattice_in_all_but_its_widths(hertz):
