@@ -36,7 +36,9 @@ AT_X = Cell([sp.Symbol("X"), 2])
 CALLS = [
     (lambda: Cell([]), "at least one mass"),
     (lambda: Cell([1, 0]), "mass 2 is 0"),
-    (lambda: Cell([1], spacing=0), "spacing is 0"),
+    (lambda: Cell([sp.sqrt(2) - 2]), r"mass 1 is -2 \+ sqrt\(2\): it must be positive"),
+    (lambda: Cell([-y]), "mass 1 is -y: it must be positive"),
+    (lambda: Cell([1], spacing="0.0"), "spacing is 0"),
     (lambda: Cell("m1,m2"), "masses: a sequence"),
     (lambda: Cell({1, 2}), "masses: a sequence"),
     (lambda: Cell([1, 10**5000]), "mass 2 is a number beyond"),

@@ -9,7 +9,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lwa.base.exact import InputError, positive, read_exact
+from lwa.base.exact import InputError, read_exact
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
@@ -62,11 +62,3 @@ def test_text_is_read_or_refused_and_never_evaluated(text):
     except InputError:
         return
     assert result.is_Rational or result.is_Symbol
-
-
-@pytest.mark.parametrize(
-    "value", [0, -1, "-1/2", "0.0", sp.sqrt(2) - 2, -sp.Symbol("m", positive=True)]
-)
-def test_positive_refuses_what_is_not(value):
-    with pytest.raises(InputError, match="positive"):
-        positive(value, "mass")

@@ -5,7 +5,7 @@ import math
 import pytest
 import sympy as sp
 
-from lwa import InputError, Material, Sphere
+from lwa import Material, Sphere
 from lwa.spheres.beads import spheres
 from lwa.spheres.hertz import MATERIALS
 
@@ -63,20 +63,3 @@ def test_a_file_may_change_a_material_or_have_its_own_of_the_same_name():
     like = {"soft": {"like": "PTFE", "E": 0.6e9}}
     (sphere,) = spheres(chain(beads=ball(material="soft"), materials=like))
     assert sphere.material == Material.named("PTFE", E="0.6e9")
-
-
-@pytest.mark.parametrize(
-    ("tables", "words"),
-    [
-        (dict(beads=ball(material="aluminum")), r"'aluminum': did you mean aluminium\?"),
-        (dict(beads=ball(mass=1.0, density=1.0)), "beads.ball has both mass and density"),
-        (
-            dict(beads=ball(material="x"), materials={"x": {"E": 1.0, "nu": 0.3}}),
-            "beads.ball.mass is missing: it, or a density here or of the material",
-        ),
-        (dict(beads=ball(), materials={"x": {"E": 1.0}}), "materials.x.nu is missing"),
-    ],
-)
-def test_bad_tables_of_a_file_are_refused(tables, words):
-    with pytest.raises(InputError, match=words):
-        spheres(chain(**tables))
