@@ -103,7 +103,9 @@ def test_struck_beads():
 
 def test_the_arch_of_equal_beads():
     arch, lattice = canonical_wave(UNIFORM, "3/2"), exact_wave([1], 1.5)
-    wider = 100 * (float(arch.fwhm("force")) / lattice.fwhm("force") - 1)
+    widths = float(arch.fwhm("force")), lattice.fwhm("force")
+    assert told("equal", "the force is $#D$ by the arch and $#D$ on the lattice", *widths)
+    wider = 100 * (widths[0] / widths[1] - 1)
     slower = 100 * (1 - float(arch.at_force(1).speed) / lattice.c)
     assert told("equal", "The arch is # % too wide at half height", wider)
     assert told("calculator", "wave is # % slower than the lattice's and # % wider", slower, wider)
@@ -250,10 +252,23 @@ def test_other_laws():
     ours, todas = 2 * (sp.cosh(theta) ** 2 - 1 - B) / B**2, (sp.sinh(theta) / theta) ** 2
     power, parts = map(int, said("laws", "and differ by $\\theta^#/#$"))
     assert sp.series(todas - ours, theta, 0, 6).removeO() == theta**power / parts
+    soliton = loaded_wave(
+        UNIFORM, rise=B.subs(theta, 1.0), background=0, law=named("exponential", 1)
+    )
+    widths = 2 * np.arccosh(np.sqrt([1 + np.cosh(1), 2]))
+    found = (
+        float(soliton.speed) / np.sinh(1),
+        *(
+            float(soliton.fwhm(name)) / width
+            for name, width in zip(("strain", "force"), widths, strict=True)
+        ),
+    )
+    words = "speed is # percent too small, its widths of the strain and of the force are # and #"
+    assert told("laws", words, *(100 * abs(x - 1) for x in found))
     text = (BOOK / "laws.md").read_text()
     assert all(f"| `{name}` |" in text for name in NAMES if name != "general")
     speed = loaded_wave(UNIFORM, rise="65/99", background=0, law=named("polynomial", 1, -1)).speed
-    (front,) = said("laws", "a front at 2/3 with V_s² = #")
+    (front,) = said("laws", "a front with $V_s^2 = Q(\\frac23) = #$")
     assert 0 < float(sp.Rational(front)) - float(speed**2) < 1e-3
 
 
