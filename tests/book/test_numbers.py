@@ -182,7 +182,11 @@ def test_the_special_ratios():
         assert turns.sum() == 4 + 2 * n
         rate = np.sqrt(3 * np.sqrt(np.clip(left + right, 0, None) / 2) / wave.omega) / wave.c
         counts.append(np.trapezoid(rate, xi) / (2 * np.pi))
-    assert all(1 < more < 1.2 for more in np.diff(counts))  # "one more each time"
+    assert told("exact", "under the pulse: #, #, # and # at the four ratios", *counts)
+    third, last = (wave.omega for wave in special[2:])
+    guess = third * (counts[2] / (counts[2] + 1)) ** 2
+    words = "should be $#\\,(#/#)^2 = #$; it is #"
+    assert told("exact", words, third, counts[2], counts[2] + 1, guess, last)
 
 
 STRIP = ["1/100", "1/30", "1/10", "1/5", "3/10", "2/5", "1/2", "7/10", "4/5", "9/10", "1"]
@@ -226,17 +230,27 @@ def test_the_series_knows_its_error(exponent):
 
 
 def test_the_series_by_hand():
+    """First corrections, the approximants [1/1], and where a width by [1/1] is one percent off."""
     L, K, series = sp.log(2), sp.Symbol("K"), expand(Cell([1]), 3)
+
+    def pade(a, e):
+        return (a[0] + (a[1] - a[0] * a[2] / a[1]) * e) / (1 - a[2] / a[1] * e)
+
+    a, b, c, d = map(int, said("expansion", "c_{[1/1]} = \\frac{#k + #}{#k + #}"))
+    assert sp.cancel(pade(series.c.coefficients, K - 1) - (a * K + b) / (c * K + d)) == 0
     f1, f2 = series.fwhm("force").coefficients[1:3]
-    a, b = map(int, said("expansion", "f_1 = \\frac{# - \\ln 2}{#}, \\qquad"))
-    assert sp.expand(f1 - (a - L) / b) == 0
+    assert said("expansion", "f_1 = \\frac{# - \\ln 2}{#}, \\qquad") == ["6", "60"]
     words = "f_2 = -\\frac{#}{#} + \\frac{#\\ln 2}{#} + \\frac{#\\ln^2 2}{#}"
     a, b, c, d, e, f = map(int, said("expansion", words))
     assert sp.expand(f2 + sp.Rational(a, b) - sp.Rational(c, d) * L - sp.Rational(e, f) * L**2) == 0
-    a, b, c, d = map(int, said("expansion", "c_{[1/1]} = \\frac{#k + #}{#k + #}"))
-    a0, a1, a2 = series.c.coefficients[:3]
-    pade = (a0 + (a1 - a0 * a2 / a1) * (K - 1)) / (1 - a2 / a1 * (K - 1))
-    assert sp.cancel(pade - (a * K + b) / (c * K + d)) == 0
+    edges = said("expansion", "off at $k = #$ (force, too wide) and $#$ (strain, too narrow)")
+    for quantity, written, sign in zip(("force", "strain"), edges, (1, -1), strict=True):
+        width, k = series.fwhm(quantity), sp.Rational(written)
+        a, b = map(int, said("expansion", f"$(#-\\ln2)/#$ for the {quantity}"))
+        assert sp.expand(width.coefficients[1] - (a - L) / b) == 0
+        summed = float(width.prefactor * pade(width.coefficients, k - 1) / sp.sqrt(k - 1))
+        off = summed / exact_wave([1], float(k)).fwhm(quantity) - 1
+        assert abs(100 * sign * off - 1) < 0.01
     least, ratio = said("expansion", "and above # at $\\omega = #$")
     quotient = expand(Dimer(1, ratio), 1).fwhm("force").coefficients[1] / f1
     assert float(least) < quotient < float(least) + 1
