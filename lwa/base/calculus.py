@@ -8,37 +8,26 @@ from typing import Any
 import mpmath
 import sympy as sp
 
-LARGE = 32
-"""The exponent from which on a power of a sum is not multiplied out."""
-
 
 def integral(F: sp.Expr, x: sp.Symbol) -> sp.Expr:
-    """The integral ∫ F dx; large powers and poles of linear functions by the power rule.
+    """The integral ∫ F dx; rational powers of linear functions by the power rule.
 
     SymPy multiplies these out: large powers take long, and the terms of a pole cancel next to it.
     """
-    parts = sp.Add.make_args(F) if _has_power(F, -1) else (F,)
-    return sp.Add(*(_integral(part, x) for part in parts))
-
-
-def _has_power(F: sp.Expr, lowest: int = -LARGE) -> bool:
-    """True if F has a rational power outside of ``lowest`` … `LARGE`."""
-    exponents = (power.exp for power in F.atoms(sp.Pow) if power.exp.is_Rational)
-    return any(not lowest <= e <= LARGE for e in exponents)
-
-
-def _integral(value: sp.Expr, x: sp.Symbol) -> sp.Expr:
-    factor, power = value.as_independent(x, as_Add=False)
-    base, e = power.as_base_exp()
-    if _has_power(power, -1) and e.is_Rational and not base.diff(x).has(x):
-        return factor * base ** (e + 1) / (base.diff(x) * (e + 1))
-    return sp.integrate(value, x, conds="none")
+    total = sp.S.Zero
+    for term in sp.Add.make_args(F):
+        factor, rest = term.as_independent(x, as_Add=False)
+        base, e = rest.as_base_exp()
+        slope = base.diff(x)
+        if e.is_Rational and e != -1 and base.has(x) and not slope.has(x):
+            total += factor * base ** (e + 1) / (slope * (e + 1))
+        else:
+            total += sp.integrate(term, x, conds="none")
+    return total
 
 
 def ratio(top: sp.Expr, bottom: sp.Expr) -> sp.Expr:
-    """The ratio top/bottom in lowest terms, large powers not multiplied out."""
-    if not _has_power(top) and not _has_power(bottom):
-        top, bottom = sp.expand(top), sp.expand(bottom)
+    """The ratio top/bottom in lowest terms."""
     return sp.cancel(sp.powsimp(top / bottom))
 
 

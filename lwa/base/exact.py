@@ -12,7 +12,6 @@ import math
 import operator
 import re
 from collections.abc import Collection
-from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
@@ -20,7 +19,7 @@ import sympy as sp
 
 from lwa.base import InputError as InputError
 
-Quantity = int | float | str | Fraction | Decimal | sp.Expr
+Quantity = int | float | str | Fraction | sp.Expr
 """Accepted types of an exponent, a mass, a stiffness or a length."""
 
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+/[0-9]+|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?)")
@@ -74,16 +73,10 @@ def read_exact(value: Any, name: str) -> sp.Expr:
 def _from_number(value: Any, name: str) -> sp.Rational:
     if hasattr(value, "item") and getattr(value, "size", 1) == 1:  # NumPy's scalars
         value = value.item()
-    if isinstance(value, bool) or not isinstance(value, int | float | Fraction | Decimal):
+    if isinstance(value, bool) or not isinstance(value, int | float | Fraction):
         raise InputError(f"{name} is {shorten(value)}: a number or a symbol is wanted")
-    if isinstance(value, float | Decimal) and not Decimal(value).is_finite():
+    if isinstance(value, float) and not math.isfinite(value):
         raise InputError(f"{name} is {value}: a finite number is wanted")
-    try:
-        in_range = math.isfinite(value) and bool(float(value)) == bool(value)
-    except OverflowError:  # an integer or a fraction beyond a double
-        in_range = False
-    if not in_range:
-        raise _out_of_range(name)
     return sp.Rational(value if isinstance(value, int | Fraction) else str(value))
 
 

@@ -6,7 +6,8 @@ import pytest
 import sympy as sp
 
 from lwa import Material, Sphere
-from lwa.spheres.beads import spheres
+from lwa.base.files import Table
+from lwa.spheres.beads import FILE, read_beads, read_materials
 from lwa.spheres.hertz import MATERIALS
 
 RANGES = {  # E in GPa and density in Mg/m³ of Gere & Goodno, Mechanics of Materials, appendix
@@ -36,8 +37,10 @@ def test_the_papers_beads_have_the_papers_masses(name, mass):
     assert float(sphere.mass) == pytest.approx(mass, rel=0.012)
 
 
-def chain(**tables):
-    return {"chain": {"cell": ["ball"]}} | tables
+def read(**tables):
+    """The bead of a file's tables."""
+    file = Table(tables, "", FILE)
+    return read_beads(file, read_materials(file))["ball"]
 
 
 def ball(**more):
@@ -51,15 +54,15 @@ def test_a_bead_takes_a_mass_a_density_or_that_of_its_material():
         (ball(density=7970.0), 7970 * volume),
         (ball(mass=0.03), 0.03),
     ):
-        (sphere,) = spheres(chain(beads=bead))
+        sphere = read(beads=bead)
         assert float(sphere.mass) == pytest.approx(mass, rel=1e-14)
         assert sphere.material == Material.named("steel 316")
 
 
 def test_a_file_may_change_a_material_or_have_its_own_of_the_same_name():
     own = {"steel 316": {"E": 200e9, "nu": 0.29, "density": 7900.0}}
-    (sphere,) = spheres(chain(beads=ball(), materials=own))
+    sphere = read(beads=ball(), materials=own)
     assert sphere.material == Material("200e9", "0.29", 7900)
     like = {"soft": {"like": "PTFE", "E": 0.6e9}}
-    (sphere,) = spheres(chain(beads=ball(material="soft"), materials=like))
+    sphere = read(beads=ball(material="soft"), materials=like)
     assert sphere.material == Material.named("PTFE", E="0.6e9")
