@@ -127,6 +127,21 @@ def period(*rows: Sequence[Any]) -> int:
     return next(P for P in sizes if all(row[P:] == row[: max(len(row) - P, 0)] for row in rows))
 
 
+def spheres(content: Any) -> list[Sphere]:
+    """Read the spheres of the cell of a parsed file (see the module), in their order.
+
+    >>> steel, ball = {"E": 193e9, "nu": 0.3}, {"mass": 1, "radius": 0.5, "material": "steel"}
+    >>> content = {"materials": {"steel": steel}, "beads": {"ball": ball}}
+    >>> [sphere.mass for sphere in spheres(content | {"chain": {"cell": ["ball", "ball"]}})]
+    [1, 1]
+    """
+    file = Table(content, "", FILE)
+    row = read_row(file, read_beads(file, read_materials(file)))
+    if not row.spheres:
+        raise InputError("chain.cell holds masses: the names of beads are wanted")
+    return row.spheres
+
+
 def _material(value: Any, name: str) -> Material:
     entries = Table(value, name, ("like", "E", "nu", "density"))
     like = entries.read("like", among(MATERIALS)) if "like" in entries else None

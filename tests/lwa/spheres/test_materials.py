@@ -6,8 +6,7 @@ import pytest
 import sympy as sp
 
 from lwa import Material, Sphere
-from lwa.base.files import Table
-from lwa.spheres.beads import FILE, read_beads, read_materials
+from lwa.spheres.beads import spheres
 from lwa.spheres.hertz import MATERIALS
 
 RANGES = {  # E in GPa and density in Mg/m³ of Gere & Goodno, Mechanics of Materials, appendix
@@ -39,8 +38,8 @@ def test_the_papers_beads_have_the_papers_masses(name, mass):
 
 def read(**tables):
     """The bead of a file's tables."""
-    file = Table(tables, "", FILE)
-    return read_beads(file, read_materials(file))["ball"]
+    (sphere,) = spheres({"chain": {"cell": ["ball"]}} | tables)
+    return sphere
 
 
 def ball(**more):
