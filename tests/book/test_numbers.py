@@ -127,19 +127,6 @@ def test_the_papers_pulse():
     assert wave.at(k=second, m1=1, D=1).coefficient_sum.subs(m2, end) == 0
 
 
-def test_an_exchange_of_names():
-    """The paper's G changes by -1/3 times the change of the field, H by -1 times, both of the full
-    closure by once."""
-    ratio = (m1 - m2) / (m1 + m2)
-    due = {"G": ratio / 2 * (k - 1) * (k - 2) * D**2, "H": ratio * (k - 1) * D**2}
-    for closure, factors in ("linear", (sp.Rational(-1, 3), -1)), ("full", (1, 1)):
-        pde = homogenize(Dimer(m1, m2), order=4, closure=closure).pde
-        for (name, change), factor in zip(due.items(), factors, strict=True):
-            c = getattr(pde, name)
-            swapped = c.subs({m1: m2, m2: m1}, simultaneous=True)
-            assert sp.simplify(swapped - c - factor * change) == 0
-
-
 def test_the_number_of_a_cell():
     """Contacts of two stiffnesses; mass below a stretched place, less the place, has variance I."""
     square, part, n, most = map(int, said("cells", "by $\\sqrt{#}/#$ for $n = #$, and by $#$ for"))
