@@ -156,10 +156,6 @@ class ContactLaw(Value):
                 f"the strain is {shorten(p)}: F′ is {sp.N(slope, 4)} there, and sound needs F′ > 0"
             )
 
-    def compressions(self, cell: Cell, force: sp.Expr) -> tuple[sp.Expr, ...]:
-        """The compression of each contact of a cell that pushes with this force."""
-        return (self.compression(cell, force),) * cell.size
-
     def compression(self, cell: Cell, force: sp.Expr) -> sp.Expr:
         """The mean compression of a cell's contacts that push with this force, to 35 digits.
 
@@ -214,9 +210,6 @@ class Power(ContactLaw):
         # p^k/k derived n times: (k-1) … (k-n+1) p^{k-n}; n = -1: p^{k+1}/(k (k+1))
         up, down = (sp.Mul(*(self.k - j for j in r)) for r in (range(1, n), range(n, 1)))
         return up / down * p ** (self.k - n)
-
-    def compressions(self, cell: Cell, force: sp.Expr) -> tuple[sp.Expr, ...]:
-        return tuple(power(real(force, "force") / A, 1 / self.k) for A in cell.stiffnesses)
 
     def compression(self, cell: Cell, force: sp.Expr) -> sp.Expr:
         return power(real(force, "force") / cell.stiffness(self.k), 1 / self.k)

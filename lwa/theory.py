@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any
 
 import sympy as sp
+from sympy.functions.combinatorial.numbers import partition
 
 from lwa.algebra.model import Model
 from lwa.base import latex
@@ -172,25 +173,17 @@ def homogenize(
     model = Model(cell, law, branch).replaced({}, order)
     ring = model.ring
     parameters = len(ring.names) - max(len(ring.variables) - 1, 0)  # the φ_n grow as powers of k
-    _affordable(order, parameters, closure)
-    return Theory(
-        solve(model, order, closure, field, progress=iter if order < SLOW_ORDER else shown)
-    )
-
-
-def _affordable(order: int, parameters: int, closure: str) -> None:
-    """Refuse an order whose result would outgrow memory.
-
-    The order D^{k+n} has at most one monomial per partition of n; its coefficient, of degree n in P
-    free parameters, has at most C(n + P, P) terms. The jets of the velocity multiply the total by
-    about n.
-    """
+    # The order D^{k+n} has at most one monomial per partition of n; its coefficient, of degree n in
+    # P free parameters, has at most C(n + P, P) terms. The jets of the velocity multiply the total
+    # by about n.
     n = min(order, 100)
-    partitions = int(sp.functions.combinatorial.numbers.partition(n))
-    terms = partitions * math.comb(n + parameters, parameters)
+    terms = int(partition(n)) * math.comb(n + parameters, parameters)
     terms *= order if closure == "full" else 1
     if terms > MOST_TERMS:
         raise InputError(
             f"order is {order}: about {terms:.0e} terms, which may take more than 2 GB; give "
             "numbers for the exponent and the cell, or a lower order"
         )
+    return Theory(
+        solve(model, order, closure, field, progress=iter if order < SLOW_ORDER else shown)
+    )

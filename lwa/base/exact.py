@@ -58,15 +58,17 @@ def read_exact(value: Any, name: str) -> sp.Expr:
     if isinstance(value, str):
         expression = _from_text(value.strip(), name)
     elif isinstance(value, sp.Expr):
-        if value.has(sp.nan, sp.oo, -sp.oo, sp.zoo) or value.is_real is False:
-            raise InputError(f"{name} is {shorten(value)}: a finite real number is wanted")
+        real(value, name)
         expression = value.xreplace({f: sp.Rational(str(f)) for f in value.atoms(sp.Float)})
     else:
         expression = _from_number(value, name)
     for number in expression.atoms(sp.Rational):
         p, q = abs(int(number.p)), int(number.q)
         if max(p, q) >= 10**DIGITS or p >= q * 2**1024:  # 2^1024: the first beyond a double
-            raise _out_of_range(name)
+            raise InputError(
+                f"{name} is a number beyond 1e±308 or of more than {DIGITS} digits: give a shorter "
+                "number"
+            )
     return expression
 
 
@@ -82,24 +84,16 @@ def _from_number(value: Any, name: str) -> sp.Rational:
 
 def _from_text(text: str, name: str) -> sp.Expr:
     wanted = "an integer, a decimal, a fraction such as 3/2, or a plain name is wanted"
-    if len(text) > _LONGEST_TEXT:
-        raise InputError(f"{name} is a text of {len(text)} characters: {wanted}")
-    if _NUMBER.fullmatch(text):
+    if len(text) <= _LONGEST_TEXT and _NUMBER.fullmatch(text):
         try:
             return sp.Rational(Fraction(text))
         except ZeroDivisionError:
             raise InputError(f"{name} is {text}: the denominator must not be zero") from None
-    if not _NAME.fullmatch(text) or text.lower() in _NOT_A_NUMBER:
+    if len(text) > _LONGEST_TEXT or not _NAME.fullmatch(text) or text.lower() in _NOT_A_NUMBER:
         raise InputError(f"{name} is {shorten(text)}: {wanted}")
     if keyword.iskeyword(text) or hasattr(sp, text):
         raise InputError(f"{name} is {text!r}, a word with a meaning of its own: choose another")
     return sp.Symbol(text, positive=True)
-
-
-def _out_of_range(name: str) -> InputError:
-    return InputError(
-        f"{name} is a number beyond 1e±308 or of more than {DIGITS} digits: give a shorter number"
-    )
 
 
 def real(value: Any, name: str) -> sp.Expr:

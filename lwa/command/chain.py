@@ -18,7 +18,7 @@ from lwa.cell import Cell, D
 from lwa.command.options import given
 from lwa.command.rows import approximate
 from lwa.law import ContactLaw, Power, for_cell, read_law
-from lwa.spheres.beads import FILE, STRIKER, Row, period, read_beads, read_materials, read_row
+from lwa.spheres.beads import FILE, STRIKER, period, read_beads, read_materials, read_row
 from lwa.spheres.hertz import EXPONENT
 
 
@@ -92,18 +92,14 @@ def _chain(content: Any) -> ChainInput:
         return ChainInput(
             Cell.of_spheres(row.spheres), Power(EXPONENT), force, True, velocity, mass
         )
-    si = file.read("units", among({"SI": True}), False)
-    return ChainInput(*_of_masses(row), force, si, velocity, mass)
-
-
-def _of_masses(row: Row) -> tuple[Cell, ContactLaw]:
-    """Smallest periodic cell of a chain of masses, and its contact law."""
+    # the smallest periodic cell of a chain of masses
     masses, stiffnesses = row.masses * min(row.repeat, 2), row.stiffnesses or [1.0]
     P = period(masses, stiffnesses)
     stiffnesses = [stiffnesses[i % len(stiffnesses)] for i in range(P)]
     spacings = row.spacings
     spacing = sp.Rational(str(sum(spacings) / len(spacings))) if spacings else D
     cell = Cell(tuple(masses[:P]), tuple(stiffnesses), spacing)
-    if row.given.one("k", "law") == "law":
-        return cell, row.given.read("law", read_law)
-    return cell, Power(row.given.read("k", finite))
+    named = row.given.one("k", "law") == "law"
+    law = row.given.read("law", read_law) if named else Power(row.given.read("k", finite))
+    si = file.read("units", among({"SI": True}), False)
+    return ChainInput(cell, law, force, si, velocity, mass)

@@ -19,6 +19,7 @@ from lwa.command.options import (
     angle,
     cell_options,
     given,
+    reader,
     series_options,
     value,
 )
@@ -92,7 +93,7 @@ def dispersion(order: int, style: str, precompression: sp.Expr | None, **options
     "--wavenumber",
     "Wavenumber κ per cell, 0 … pi: a number, a name, or a part of pi such as pi/3.",
     "pi",
-    angle,
+    reader(angle),
 )
 @click.option(
     "--branch",

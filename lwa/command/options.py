@@ -14,7 +14,7 @@ from click.core import ParameterSource
 from lwa.base.exact import integer, read_exact
 from lwa.cell import D, k
 from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS
-from lwa.law import NAMES, ContactLaw, read_law
+from lwa.law import NAMES, read_law
 
 Command = Callable[..., None]
 Option = Callable[[Command], Command]
@@ -30,9 +30,13 @@ def called(option: click.Parameter) -> str:
     return option.opts[0].lstrip("-")
 
 
-def quantity(context: click.Context, option: click.Parameter, text: str | None) -> sp.Expr | None:
-    """Read an integer, a decimal, a fraction or a plain name."""
-    return None if text is None else read_exact(text, called(option))
+def reader(read: Callable[[str, str], Any]) -> Callable[..., Any]:
+    """Make a callback of click that reads a text under the name of its option; None when absent."""
+    return lambda context, option, text: None if text is None else read(text, called(option))
+
+
+quantity = reader(read_exact)
+"""Callback that reads an integer, a decimal, a fraction or a plain name."""
 
 
 def quantities(
@@ -42,24 +46,17 @@ def quantities(
     return tuple(read_exact(part, called(option)) for part in text.split(",")) if text else ()
 
 
-def angle(context: click.Context, option: click.Parameter, text: str) -> sp.Expr:
+def angle(text: str, name: str) -> sp.Expr:
     """Read a quantity or a part of pi, such as pi, pi/3 or 2pi/3."""
     part = re.fullmatch(r"([0-9]*)\*?pi(?:/([1-9][0-9]*))?", text.strip())
     if part is None:
-        return read_exact(text, called(option))
+        return read_exact(text, name)
     return sp.Rational(int(part[1] or 1), int(part[2] or 1)) * sp.pi
 
 
-def count(context: click.Context, option: click.Parameter, text: str | None) -> int | None:
+def count(text: str, name: str) -> int:
     """Read an integer from 1 on."""
-    return None if text is None else integer(read_exact(text, called(option)), called(option), 1)
-
-
-def contact_law(
-    context: click.Context, option: click.Parameter, text: str | None
-) -> ContactLaw | None:
-    """Read NAME or NAME:PARAM,… of a law in `lwa.law.named`."""
-    return None if text is None else read_law(text, called(option))
+    return integer(read_exact(text, name), name, 1)
 
 
 def given(option: str) -> bool:
@@ -102,12 +99,12 @@ def exponent_option(default: str) -> Option:
 
 def order_option(says: str, default: str | None = "4") -> Option:
     """Make the option ``--order``; without a default the command chooses."""
-    return value("--order", says, default, count, "N")
+    return value("--order", says, default, reader(count), "N")
 
 
 def law_option(says: str) -> Option:
     """Make the option ``--law``."""
-    return value("--law", says, None, contact_law, "NAME[:PARAM,…]")
+    return value("--law", says, None, reader(read_law), "NAME[:PARAM,…]")
 
 
 def style_option(languages: Sequence[str] = ()) -> Option:

@@ -171,9 +171,12 @@ class LoadedChain(Value):
     @cached_property
     def spring_constants(self) -> tuple[sp.Expr, ...]:
         """The spring constants A_i F′(δ_i)."""
-        compressions = self.law.compressions(self.cell, self.precompression)
-        pairs = zip(self.cell.stiffnesses, compressions, strict=True)
-        return tuple(sp.powsimp(A * self.law.at(delta, 1)) for A, delta in pairs)
+        constants = {}
+        for A in self.cell.stiffnesses:
+            if A not in constants:
+                delta = self.law.compression(Cell([1], [A]), self.precompression)
+                constants[A] = sp.powsimp(A * self.law.at(delta, 1))
+        return tuple(constants[A] for A in self.cell.stiffnesses)
 
     @cached_property
     def springs(self) -> Dispersion:
