@@ -74,7 +74,7 @@ def test_a_ball_that_falls():
     ball = Sphere("29.0e-3", "9.525e-3", Material(E="193e9", nu="0.3"))
     strike = lwa.pulse_of_strike(Cell.of_spheres([ball]), ball.mass, drop="0.1")
     duration, speed = 1e6 * strike.fwhm("force", "time").value, strike.speed.value
-    words = "carries # kN for # µs, and the pulse runs at # m/s"
+    words = "peaks at # kN and stays above half of that for # µs; the pulse runs at # m/s"
     assert told("intro", words, strike.force.value / 1000, duration, speed)
     in_a_rod = math.sqrt(193e9 / (29e-3 / (4 / 3 * math.pi * 9.525e-3**3)))
     assert abs(in_a_rod / speed - 7) < 0.1  # "a seventh"
