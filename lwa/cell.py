@@ -107,11 +107,9 @@ class Cell(Value):
 
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Cell:
         """The cell with expressions in place of some of its symbols."""
-        return Cell(
-            masses=tuple(x.xreplace(new) for x in self.masses),
-            stiffnesses=tuple(x.xreplace(new) for x in self.stiffnesses),
-            spacing=self.spacing.xreplace(new),
-        )
+        rows = self.masses, self.stiffnesses
+        masses, stiffnesses = ([x.xreplace(new) for x in row] for row in rows)
+        return Cell(masses, stiffnesses, self.spacing.xreplace(new))
 
     @property
     def size(self) -> int:

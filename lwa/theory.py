@@ -158,12 +158,9 @@ def homogenize(
     """
     read_cell(cell)
     order = integer(order, "order", 1)
-    for word, known, name in (
-        (closure, CLOSURES, "closure"),
-        (branch, BRANCHES, "branch"),
-        (field, FIELDS, "field"),
-    ):
-        one_of(word, known, name)
+    one_of(closure, CLOSURES, "closure")
+    one_of(branch, BRANCHES, "branch")
+    one_of(field, FIELDS, "field")
     law = for_cell(law, cell, exponent(k) if law is None else k)
     if not law.homogeneous and branch != "acoustic":
         raise InputError(

@@ -42,12 +42,11 @@ class ChainInput:
         """One line of text with the masses, the contacts and the spacing of the chain."""
         law, cell, k = self.law, self.cell, self.law.exponent
         force = f"A δ^k, k = {k}" if law.homogeneous else f"A F, F = {law.F}"
-        write, units = (approximate, (" kg", f" N/m^({k})", " m")) if self.si else (str, [""] * 3)
-        values = (cell.masses, cell.stiffnesses, [cell.spacing])
-        masses, A, D = (
-            ", ".join(map(write, x)) + unit for x, unit in zip(values, units, strict=True)
-        )
-        return f"masses {masses}; contact force {force}, A = {A}; spacing D = {D}"
+        write = approximate if self.si else str
+        kg, of_A, m = (" kg", f" N/m^({k})", " m") if self.si else ("", "", "")
+        masses, A = (", ".join(map(write, row)) for row in (cell.masses, cell.stiffnesses))
+        chain = f"masses {masses}{kg}; contact force {force}, A = {A}{of_A}"
+        return f"{chain}; spacing D = {write(cell.spacing)}{m}"
 
     def load(self, background: sp.Expr | None, precompression: sp.Expr | None) -> sp.Expr | None:
         """Static force of the file or of the options; raises `lwa.InputError` for two loads."""

@@ -111,8 +111,6 @@ def shock(
         chain.text,
         row("behind", "strain behind", ""),
         Row("ahead", "strain ahead", front.ahead),
-    ]
-    rows += [
         "",
         f"{head['kind'] or 'front'}, speeds dx/dt:",
         row("plateau", "velocity of the wall"),
@@ -126,5 +124,5 @@ def shock(
         "c₋ > 2 c₊: the beads near the wall go on oscillating. The strain behind is that of a wall "
         "at rest beside its neighbours, v_p = ∫ c dp; the mean strain is below it."
     ]
-    notes = notes if front.oscillates else []
+    notes *= front.oscillates
     Answer(head, rows, chain.si, cell.spacing, [front], notes).print(style)

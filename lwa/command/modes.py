@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
 import click
-import numpy as np
 import sympy as sp
 
 from lwa.base.exact import InputError
+from lwa.base.frozen import Shown
 from lwa.command.chain import take_chain
 from lwa.command.options import (
     BACKGROUND,
@@ -75,10 +76,10 @@ def dispersion(order: int, style: str, precompression: sp.Expr | None, **options
     if not any(x.free_symbols for x in numbers):
         edges = loaded.bands.edges()
         head["band_edges_value"] = edges.tolist()
-        head["band_edges_frequency_value"] = (edges / (2 * np.pi)).tolist()
+        head["band_edges_frequency_value"] = (edges / (2 * math.pi)).tolist()
         unit = "s" if chain.si else "unit of time"
         for i, (low, high) in enumerate(edges, start=1):
-            hertz = f" ({low / (2 * np.pi):.6g} … {high / (2 * np.pi):.6g} Hz)" * chain.si
+            hertz = f" ({low / (2 * math.pi):.6g} … {high / (2 * math.pi):.6g} Hz)" * chain.si
             band = f"{low:.{PRINTED_DIGITS}g} … {high:.{PRINTED_DIGITS}g}"
             rows.append(f"  band {i}: {band}, in rad per {unit}{hertz}")
     Answer(head, rows, chain.si, chain.cell.spacing, [linear, loaded]).print(style)
@@ -138,10 +139,6 @@ def envelope(
     equation = schrodinger.envelope(
         cell, law=chain.law, **load, wavenumber=wavenumber, branch=place
     )
-    breather = None
-    if frequency is not None or detuning is not None:
-        angular = frequency and frequency * (2 * sp.pi if chain.si else 1)
-        breather = equation.breather(angular, detuning=detuning)
     turn = 2 * sp.pi if chain.si else sp.S.One
     name = "ω/(2π)" if chain.si else "ω"
     rows: list[Row | str] = [
@@ -161,7 +158,10 @@ def envelope(
         rows.append(f"  {equation.kind} envelopes")
     except InputError as fault:
         rows.append(f"  bright or dark: {fault}")
-    if breather is not None:
+    shown: list[Shown] = [equation]
+    if frequency is not None or detuning is not None:
+        breather = equation.breather(frequency and frequency * turn, detuning=detuning)
+        shown.append(breather)
         shape = "sech" if breather.kind == "bright" else "tanh"
         rows += [
             "",
@@ -171,5 +171,4 @@ def envelope(
             Row("amplitude", "largest displacement by bead", breather.amplitude, "m"),
             Row("width", "width 1/b in cells", breather.width),
         ]
-    shown = [equation, breather] if breather else [equation]
     Answer(head, rows, chain.si, cell.spacing, shown).print(style)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -227,17 +228,14 @@ def _on_background(chain: ChainInput, theory: Theory, field: Background) -> Answ
     # D is the unit of length where it is a symbol; beside a law that is no power it is 1.
     if cell.spacing.is_Symbol and not field.law.homogeneous:
         cell = cell.at(**{cell.spacing.name: 1})
-    try:
+    with suppress(NoSolitaryWave, InputError):  # no wave of this rise, or symbols
         wave = loaded_wave(cell, rise=1, background=field.p0, law=field.law)
         speed = wave.field.speed(wave.strain)
-        values = {"speed": ("V_s", speed)} if not speed.free_symbols - {cell.spacing} else {}
-        for q in QUANTITIES if values else ():
-            values[f"fwhm.{q}"] = (f"FWHM of the {q}", wave.fwhm(q))
-        for key, (label, x) in values.items():
-            digits = PRINTED_DIGITS if key == "speed" else _WIDTH_DIGITS
-            rows.append(Row(key, f"{label} at B = 1", x, digits=digits, expression=False))
-    except (NoSolitaryWave, InputError):
-        pass  # no wave of this rise, or symbols
+        if not speed.free_symbols - {cell.spacing}:
+            rows.append(Row("speed", "V_s at B = 1", speed, expression=False))
+            for q in QUANTITIES:
+                label, width = f"FWHM of the {q} at B = 1", wave.fwhm(q)
+                rows.append(Row(f"fwhm.{q}", label, width, "", _WIDTH_DIGITS, expression=False))
     shown: list[Shown] = [field]
     try:
         kdv = field.kdv
