@@ -350,15 +350,11 @@ def test_struck_lattices():
 
 
 def test_edges_of_a_shock():
-    """El's leading edge, the strongest shock with a trailing edge, and a shock without load."""
-    found = shock(UNIFORM, "2.8561", 1, law=HERTZ)  # (c₋/c₊)^4 = 1.3^4
-    q = 4 * math.acosh(math.sqrt(1.3))
-    leading = 2 * math.sinh(q / 2) / q * math.sqrt(1.5)
-    assert float(found.leading_speed("dispersion")) == pytest.approx(leading)
+    """The strongest shock with a trailing edge, and the peak of a shock without load."""
     (most,) = said("shocks", r"trailing edge up to $c_- = #\,c_+$")
+    found = shock(UNIFORM, sp.Rational(most) ** 4, 1, law=HERTZ)  # c ∝ p^(1/4)
     assert float(found.trailing_speed) == pytest.approx(1.5**0.5 * (2 - float(most)), rel=1e-12)
     bare = shock(UNIFORM, 1, 0, law=HERTZ)
-    assert float(bare.rise) == pytest.approx((12 / 2.5) ** 0.4, rel=1e-12)
     assert told("shocks", "for spheres #. There", bare.peak / bare.rise)
 
 

@@ -10,89 +10,66 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from book.studies.accuracy import (
-    COMPARED,
-    FINEST,
-    HERTZ,
-    METHODS,
-    READINGS,
-    STRUCK_CHAIN,
-    TASKS,
-    THEORIES,
-    accuracy,
-    cost,
-    ladder,
-    place,
-    relative_errors,
-    solitary_wave,
-    struck_chain,
-    timings,
-)
+from book.studies import accuracy as study
 from tests.commands import ended
 from validation.lattice.simulate import COMPILED, simulate
 from validation.pulses.pulse import MeasureError
 from validation.waves.theory import theory_at
 
-# The tasks
-
 
 def test_a_record_without_a_pulse_is_infinitely_wrong():
-    task = struck_chain(1.0, 30, 20, 5.0)  # too short a time
-    ((rtol, errors, seconds),) = timings(task, solitary_wave(20).truth, COMPILED[0], (1e-6,))
-    assert errors == dict.fromkeys(READINGS, math.inf)
+    task = study.struck_chain(1.0, 30, 20, 5.0)  # too short a time
+    ((rtol, errors, seconds),) = study.timings(
+        task, study.solitary_wave(20).truth, COMPILED[0], (1e-6,)
+    )
+    assert errors == dict.fromkeys(study.READINGS, math.inf)
     assert (rtol, seconds > 0) == (1e-6, True)
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", study.METHODS)
 def test_the_error_falls_with_the_tolerance(method):
     """The error falls a hundredfold at least where the tolerance falls by 1e4, to below 1e-6."""
-    task = solitary_wave(20)
-    found = [max(e.values()) for _, e, _ in timings(task, task.truth, method, (1e-5, 1e-9))]
+    task = study.solitary_wave(20)
+    found = [max(e.values()) for _, e, _ in study.timings(task, task.truth, method, (1e-5, 1e-9))]
     assert found[0] < 1e-2
     assert found[1] < min(1e-2 * found[0], 1e-6)
 
 
-@pytest.mark.parametrize("name", TASKS)
+@pytest.mark.parametrize("name", study.TASKS)
 @pytest.mark.slow
 def test_rtol_is_the_error_of_the_peak_force(name):
     """The error is at most 1.5 rtol, in the median 0.005 rtol at least where contacts open: errors
     vary tenfold from one tolerance to the next, as steps meet the kinks elsewhere. On closed
     contacts the higher order is better than the lower one's estimate."""
-    task = TASKS[name]()
-    exact = task.read(simulate(task.scene, rtol=FINEST))
+    task = study.TASKS[name]()
+    exact = task.read(simulate(task.scene, rtol=study.FINEST))
     shares = [
-        relative_errors(task.read(simulate(task.scene, rtol=rtol)), exact)["peak"] / rtol
+        study.relative_errors(task.read(simulate(task.scene, rtol=rtol)), exact)["peak"] / rtol
         for rtol in 10.0 ** np.arange(-11, -3, 0.4)
     ]
     assert max(shares) < 1.5
     assert (0 if name == "precompressed" else 1 / 200) < np.median(shares) < 1
 
 
-# Costs
-
-
 def test_a_cost_counts_only_if_all_longer_runs_are_as_accurate():
     """The lucky run at 1 s does not count, as the one at 2 s is worse; that at 3 s does."""
     runs = [(1e-7, 1), (1e-9, 4), (2e-6, 2), (9e-7, 3)]
-    assert cost(runs, 1e-6) == 3
-    assert cost(runs, 1e-8) == 4
-    assert cost(runs, 1e-5) == 1
-    assert cost(runs, 1e-10) == math.inf
-
-
-# The command
+    assert study.cost(runs, 1e-6) == 3
+    assert study.cost(runs, 1e-8) == 4
+    assert study.cost(runs, 1e-5) == 1
+    assert study.cost(runs, 1e-10) == math.inf
 
 
 def test_the_document_holds_the_contract():
     tasks, names = ["exact", "experiment"], [COMPILED[0], "SciPy DOP853"]
-    report = accuracy(tasks, dict.fromkeys(names, (1e-6, 1e-8)))
+    report = study.accuracy(tasks, dict.fromkeys(names, (1e-6, 1e-8)))
     result = json.loads(json.dumps(report.document(), allow_nan=False))
     for row in result["rows"]:
-        assert row["error"] == max(row[f"{name}_error"] for name in READINGS) < 0.1
+        assert row["error"] == max(row[f"{name}_error"] for name in study.READINGS) < 0.1
         assert row["seconds"] > 0
     methods = {(row["task"], row["method"]) for row in result["rows"]}
     assert methods == set(product(tasks, names))
-    assert {cost["task"] for cost in result["costs"]} == set(tasks)
+    assert {one["task"] for one in result["costs"]} == set(tasks)
     exact, experiment = result["references"]
     assert (exact["task"], exact["peak"], experiment["task"]) == ("exact", 1.0, "experiment")
 
@@ -100,55 +77,56 @@ def test_the_document_holds_the_contract():
 @pytest.mark.slow
 def test_the_command_with_every_method(capsys):
     options = "--task", "exact", "--task", "theory", "--format", "json"
-    status, out, _ = ended(capsys, accuracy.main, *options)
+    status, out, _ = ended(capsys, study.accuracy.main, *options)
     result = json.loads(out)
-    assert (status, {row["method"] for row in result["rows"]}) == (0, set(METHODS))
+    assert (status, {row["method"] for row in result["rows"]}) == (0, set(study.METHODS))
     assert result["theories"]
-
-
-# The ladder of theories
 
 
 @pytest.fixture(scope="module")
 def places():
     """Equal beads at k = 1.1, where every theory has a wave, and the third special ratio."""
-    return place(sp.Rational(11, 10), sp.S.One), place(HERTZ, sp.Rational("0.0901277691"))
+    return study.place(sp.Rational(11, 10), sp.S.One), study.place(
+        study.HERTZ, sp.Rational("0.0901277691")
+    )
 
 
 def test_ladder_in_all_forms(places):
-    report = ladder(places[:1])
+    report = study.ladder(places[:1])
     (document,) = report.document()["theories"]
     rows = {row["theory"]: row for row in document["rows"]}
-    assert list(rows) == list(THEORIES)
+    assert list(rows) == list(study.THEORIES)
     errors = {theory: abs(row["error_value"]["force"]) for theory, row in rows.items()}
     speed = float(theory_at("11/10", 1).at_force(1).speed)
     off = speed / document["truth_value"]["speed"] - 1
     assert rows["linear closure"]["error_value"]["speed"] == pytest.approx(off, rel=1e-9)
     # All closures of equal beads are one theory; each order of the series is better.
     assert errors["linear closure"] == pytest.approx(errors["full closure"], rel=1e-9)
-    rising = [errors[name] for name in THEORIES if name.startswith("ε")]
+    rising = [errors[name] for name in study.THEORIES if name.startswith("ε")]
     assert all(b < a for a, b in pairwise(rising))
     assert errors["canonical field"] > rising[0]
     assert (document["k"], document["omega"], document["truth"]) == ("11/10", "1", "solitary wave")
     lines = csv.DictReader(io.StringIO(report.csv()))
-    assert [line["quantity"] for line in lines] == list(COMPARED)
+    assert [line["quantity"] for line in lines] == list(study.COMPARED)
     assert all(
-        document[f"truth{part}_value"][name] > 0 for part in ("", "_error") for name in COMPARED
+        document[f"truth{part}_value"][name] > 0
+        for part in ("", "_error")
+        for name in study.COMPARED
     )
     for theory, row in rows.items():
         assert row["seconds"] >= 0
         assert theory.startswith("ε") is (row["estimate_value"] is not None)
         for name, estimate in (row["estimate_value"] or {}).items():  # it bounds the error
             assert abs(row["error_value"][name]) <= estimate + 1e-13
-    beads, dimers = ({c.label: c.style for c in p.curves} for p in ladder(places).panels)
-    assert set(beads) == set(THEORIES)
+    beads, dimers = ({c.label: c.style for c in p.curves} for p in study.ladder(places).panels)
+    assert set(beads) == set(study.THEORIES)
     assert dimers.items() <= beads.items()  # a theory's curves look alike in both panels
 
 
 def test_missing_truths_and_sums_are_named():
     """A pulse that a later one overtakes, and a series at k = 8."""
     with pytest.raises(MeasureError, match=r"^not steady: "):
-        place(HERTZ, sp.Rational(11, 20), STRUCK_CHAIN)
-    missing = {row["theory"]: row["missing"] for row in place(sp.S(8), sp.S.One)["rows"]}
+        study.place(study.HERTZ, sp.Rational(11, 20), study.STRUCK_CHAIN)
+    missing = {row["theory"]: row["missing"] for row in study.place(sp.S(8), sp.S.One)["rows"]}
     assert missing["ε^6"].startswith("no sum at k = 8: to ε^6")
     assert missing["linear closure"] is None

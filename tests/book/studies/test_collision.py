@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from book.studies.collision import Continuum, Evolution, collision, in_equation, on_lattice
+from book.studies.collision import Continuum, Evolution, collision
 from lwa import Cell, Dimer, Power
 from lwa.law import named as law
 
@@ -42,16 +42,6 @@ def test_nearer_to_k_1_the_equation_is_better(hertz):
     near = rows(collision(exponents=(sp.Rational(11, 10),)).document())
     for (_, quantity), row in rows(hertz).items():
         assert abs(near["11/10", quantity]["error_value"]) < abs(row["error_value"]), quantity
-
-
-@pytest.mark.parametrize("run", [in_equation, on_lattice])
-def test_equal_pulses_meet_as_one_at_a_wall(run):
-    """The beads at x = 0 rest in the mean, by symmetry: strains of both sides agree."""
-    _, strains, numbers = run(sp.Rational(3, 2), 1.0, 1e-8, 601)
-    assert abs(numbers["drift"]) < 1e-6
-    assert numbers["meeting"] > 1
-    assert numbers["after"] < 1
-    assert strains[0, 0] < 1e-6
 
 
 # The equation by itself

@@ -4,59 +4,24 @@ import json
 
 import numpy as np
 import pytest
-import sympy as sp
 
-from book.studies.hard import (
-    CASES,
-    CLOSURES,
-    FORMS,
-    PRINTED,
-    PROMISED,
-    closed_wave,
-    energy_errors,
-    form,
-    hard,
-    losses,
-    splitting_errors,
-    true_values,
-)
-from lwa import Dimer, homogenize
+from book.studies import hard as study
 from tests.commands import ended
-
-# The last digits
-
-
-@pytest.mark.parametrize("closure", CLOSURES)
-def test_the_reference_is_the_exact_wave_of_these_numbers(closure):
-    """mpmath at the symbols' values, against SymPy with the values put in before the algebra."""
-    k, omega = np.array([1.5, 2.5]), np.array([0.2733, 1.5])
-    symbolic = closed_wave(closure)
-    for arguments in FORMS.values():
-        found = true_values(symbolic, form(symbolic, *arguments), k, omega)
-        for i in range(2):
-            cell = Dimer(1, sp.Rational(omega[i]), spacing=1)
-            pde = homogenize(cell, k=sp.Rational(k[i]), **CLOSURES[closure]).pde
-            number = sp.N(form(pde.traveling_wave(), *arguments), 40)
-            assert abs(sp.Float(found[i], 40) / number - 1) < sp.Float("1e-37"), arguments
-
 
 CORNERS = np.array([1 + 1e-6, 1.5, 3.0, 20.0]), np.array([1e-6, 0.2733, 3.0, 1e6])
 """Corners of the grid, points in its middle, and some without a wave."""
 
 
 def test_every_form_loses_little_and_the_printed_route_more():
-    for (name, source), lost in losses(*CORNERS).items():
+    for (name, source), lost in study.losses(*CORNERS).items():
         known = lost[np.isfinite(lost)]
-        if source == PRINTED:
+        if source == study.PRINTED:
             # (k - 1)² is left of terms of order 1 at k = 1 + 1e-6: some 1e6 ulps are lost at least
             assert known.max() > 1e5
         else:
             assert not np.isinf(lost).any(), (name, source)
-            assert known.max() <= PROMISED, (name, source)
+            assert known.max() <= study.PROMISED, (name, source)
             assert np.isnan(lost).any() or source != "paper's closure"
-
-
-# Motion
 
 
 @pytest.mark.parametrize(
@@ -70,25 +35,22 @@ def test_every_form_loses_little_and_the_printed_route_more():
 )
 def test_a_contact_that_opens_leaves_k_plus_one_orders(k, opens, steps, order):
     steps = np.geomspace(*steps, 4)
-    slope = np.polyfit(np.log(steps), np.log(splitting_errors(k, opens, steps)), 1)[0]
+    slope = np.polyfit(np.log(steps), np.log(study.splitting_errors(k, opens, steps)), 1)[0]
     assert abs(slope - order) < 0.35  # the scatter of an opening's place within its step
 
 
 def test_closed_contacts_do_not_drift_over_ten_thousand_time_units():
-    energy = energy_errors(False, 0.2, 1e4, 20)
+    energy = study.energy_errors(False, 0.2, 1e4, 20)
     early, late = np.abs(energy[1:11]).max(), np.abs(energy[11:]).max()
     assert late < 2 * early < 1e-4
     # order 4: a step of half the size errs by 2^-4, a little less where it swings
-    fine = np.abs(energy_errors(False, 0.1, 1e4, 20)).max()
+    fine = np.abs(study.energy_errors(False, 0.1, 1e4, 20)).max()
     assert fine < np.abs(energy).max() / 10
-
-
-# The command
 
 
 def test_the_document_holds_the_case_that_is_asked_for(capsys):
     options = ("--case", "contact-loss", "--format", "json")
-    status, out, err = ended(capsys, hard.main, *options)
+    status, out, err = ended(capsys, study.hard.main, *options)
     (contacts,) = json.loads(out)["cases"]
     assert (status, err, contacts["ok"]) == (0, "", True)
     for curve in contacts["panel"]["curves"]:  # the fitted orders are the slopes of the lines
@@ -98,10 +60,10 @@ def test_the_document_holds_the_case_that_is_asked_for(capsys):
 
 @pytest.mark.slow
 def test_all_cases_hold_and_state_a_number():
-    whole = hard().document()
+    whole = study.hard().document()
     json.dumps(whole, allow_nan=False)
     cases = {case["case"]: case for case in whole["cases"]}
-    assert (list(cases), whole["ok"]) == (list(CASES), True)
+    assert (list(cases), whole["ok"]) == (list(study.CASES), True)
     assert all(any(key.endswith("_value") for key in case) for case in cases.values())
     assert cases["ulps"]["loss_ulps_value"] < 8
     assert cases["ulps"]["printed_loss_ulps_value"] > 1e5  # near k = 1, as above

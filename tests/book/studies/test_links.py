@@ -83,16 +83,6 @@ def test_a_struck_chain(lattice, mass, speeds, widths, rest):
     assert abs(seen.decay if seen.ringing is None else seen.ringing) < rest
 
 
-@pytest.mark.parametrize("direction", ["across", "along"])
-def test_beads_of_a_packing_have_six_neighbours(direction):
-    layer, i, j, gap = blows.hexagons(direction)
-    inside = (layer > 1) & (layer < layer.max() - 1)
-    assert np.all(np.bincount([*i, *j])[inside] == 6)
-    assert np.hypot(*gap) == pytest.approx(1, abs=1e-12)
-    assert len(np.unique(np.round([i, j, *gap], 9), axis=1).T) == len(i)
-    assert set(layer[j] - layer[i]) == ({0, 1} if direction == "across" else {1, 2})
-
-
 def test_a_packing_across_its_rows_is_a_chain():
     """Small strains: the speed of a chain of 2 (√3/2)^{5/2} times the stiffness, in layers."""
     known, strain = exact_wave([1], 1.5), 1e-4

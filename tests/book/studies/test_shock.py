@@ -25,16 +25,6 @@ def test_plateau_speed_and_peak_of_three_laws():
     assert square["dispersion_error_value"]["speed"] < -0.02
 
 
-@pytest.mark.parametrize(("k", "most"), [(12, 2e-5), (48, 1e-9)])
-def test_hard_spheres_leave_a_wall_at_twice_its_velocity(k, most):
-    n = 40
-    scene = Scene(
-        masses=(1.0,) * n, stiffnesses=(1.0,) * (n - 1), k=k, drive=Drive(velocity=1.0),
-        duration=15.0, bead_sensors=(10,), samples=3001,
-    )  # fmt: skip
-    assert simulate(scene).bead_velocity.max() == pytest.approx(2, rel=most)
-
-
 def test_a_wall_that_recedes_makes_the_fan():
     """c(p) = x/t between the edges c₋ and c₊; the lattice is about a site off at all times."""
     found = front(Cell([1], spacing=1), 1, 2, law=Power("3/2"))
