@@ -54,12 +54,15 @@ _PLACES = 128  # intervals on which F″ that is no polynomial is checked
 def floats(*values: sp.Expr, constants: set[sp.Rational]) -> tuple[sp.Expr, ...]:
     """Floats of numbers, unless all numbers and the constants of their law are short fractions.
 
-    Exact powers such as 0.392^2.091 pass through integers of thousands of digits.
+    Exact powers such as 0.392^2.091 pass through integers of thousands of digits, and so do those
+    of symbols: `lwa.InputError` refuses symbols beside long fractions.
     """
     numbers = {x for x in values if x.is_Rational} | constants
     if all(max(abs(int(x.p)), int(x.q)) <= SHORT for x in numbers):
         return values
-    return tuple(sp.N(x, WORKING) if x.is_number and not x.is_zero else x for x in values)
+    free = set().union(*(x.free_symbols for x in values))
+    demand_numbers(free, f"beside fractions above {SHORT} a front needs numbers")
+    return tuple(sp.N(x, WORKING) if not x.is_zero else x for x in values)
 
 
 def tidy(value: sp.Expr) -> sp.Expr:

@@ -77,6 +77,7 @@ LINES = [
     ("shock --behind 1 --piston 1", "--behind or --piston"),
     ("shock --behind 1 --ahead 1", "there is no shock"),
     ("shock --piston -1", "velocity is -1"),
+    ("shock --k 3.1085 --masses 3,1 --piston D", "'D' has no value: beside fractions above 64"),
 ]
 
 
