@@ -1,11 +1,9 @@
 """The README's example, commands, demonstrations, picture and version."""
 
 import json
-import os
 import re
 import runpy
 import shlex
-import sys
 import tomllib
 from pathlib import Path
 
@@ -14,7 +12,7 @@ from PIL import Image
 
 from lwa.command.cli import COMMANDS
 from lwa.command.cli import main as lwa_main
-from tests.commands import ended, started
+from tests.commands import ended
 from validation.cli import STUDIES
 from validation.cli import main as validate_main
 
@@ -35,12 +33,18 @@ def test_the_python_example(capsys):
 BLOCK = re.findall(r"^\$ (.*?)(?:\s{2,}#.*)?$", CATALOGUE.split("```")[1], re.MULTILINE)
 
 
-def test_the_commands_run_one_after_the_other(capsys, monkeypatch, tmp_path, engine):
-    """Those of `lwa` and those of files, in this process; text stays within 100 columns."""
-    monkeypatch.chdir(tmp_path)
+@pytest.mark.parametrize(
+    "programs",
+    [
+        ("lwa ", "lwa-validate run", "lwa-validate pulses", "lwa-validate compare"),
+        pytest.param(("lwa",), marks=pytest.mark.slow),
+    ],
+    ids=["some", "all"],
+)
+def test_the_commands_run_one_after_the_other(capsys, folder, engine, programs):
+    """Text of `lwa` stays within 100 columns."""
     mains = {"lwa": lwa_main, "lwa-validate": validate_main}
-    files = ("lwa ", "lwa-validate run", "lwa-validate pulses", "lwa-validate compare")
-    for line in filter(lambda x: x.startswith(files), BLOCK):
+    for line in filter(lambda x: x.startswith(programs), BLOCK):
         command, _, file = line.partition(" > ")
         name, *arguments = shlex.split(command)
         status, out, err = ended(capsys, mains[name], *arguments)
@@ -49,20 +53,6 @@ def test_the_commands_run_one_after_the_other(capsys, monkeypatch, tmp_path, eng
             Path(file).write_text(out)
         elif name == "lwa" and "json" not in command:
             assert max(map(len, out.splitlines())) <= 100, line
-
-
-@pytest.mark.slow
-def test_all_commands_run_one_after_the_other(tmp_path):
-    """Pasted in a shell that stops at the first error."""
-    programs = "".join(
-        f'{name}() {{ "{sys.executable}" -m {module} "$@"; }}\n'
-        for name, module in (("lwa", "lwa"), ("lwa-validate", "validation"))
-    )
-    environment = os.environ | {"PYTHONPATH": str(ROOT)}
-    script = ("bash", "-euc", programs + "\n".join(BLOCK))
-    with started(*script, limit=1200, cwd=tmp_path, env=environment) as shell:
-        _, err = shell.communicate()
-    assert shell.returncode == 0, err
 
 
 def test_every_command_and_demonstration_is_listed():
