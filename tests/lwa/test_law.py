@@ -147,11 +147,8 @@ def test_an_open_contact_carries_nothing():
 
 
 def test_large_exponents_are_not_multiplied_out():
-    """φ_n of (1 - δ/d)^{-n} is (n+1) … (n+j-1) δ^{j-1}/(d - δ)^{j-1}; W is its own power."""
+    """φ_3 of (1 - δ/d)^{-n} is (n+1)(n+2) δ²/(d - δ)²; W is its own power."""
     n, d = 10**9, sp.Symbol("m", positive=True)
     law = named("magnetic", n, "m")
-    delta = law.delta
-    for j in range(2, 5):
-        factor = sp.Mul(*(n + i for i in range(1, j)))
-        assert sp.cancel(law.phi(j) - factor * (delta / (d - delta)) ** (j - 1)) == 0
-    assert sp.cancel(law.energy.diff(delta) / (law.F + 1) - law.F / (law.F + 1)) == 0
+    assert sp.cancel(law.phi(3) - (n + 1) * (n + 2) * (law.delta / (d - law.delta)) ** 2) == 0
+    assert sp.cancel(law.energy.diff(law.delta) / (law.F + 1) - law.F / (law.F + 1)) == 0

@@ -177,13 +177,6 @@ def test_a_line_prints_what_a_reader_looks_for(capsys, line):
         assert words in out, words
 
 
-def test_the_linear_waves_of_any_cell_lie_in_their_band(capsys):
-    chain = ("--masses", "1,2,3", "--precompression", "1", "--k", "3/2")
-    found = result(capsys, "envelope", *chain, "--branch", "0", "--wavenumber", "2pi/3")
-    low, high = result(capsys, "dispersion", *chain)["band_edges_value"][0]
-    assert low < found["frequency_value"] < high
-
-
 @pytest.mark.parametrize("load", ["--background", "--precompression"])
 def test_a_load_of_zero_changes_nothing(capsys, load):
     options = ("wave", "--k", "3/2", "--masses", "1,2")
