@@ -1,23 +1,19 @@
-"""The compiled engine: an embedded Runge–Kutta–Nyström pair and a symplectic splitting.
+"""The compiled engine: embedded pairs in Nyström form and a symplectic splitting.
 
 Numba compiles the loops once and keeps them on disk. A run is the same to the last bit every time.
 
-Pair: two solutions of y'' = f(y) with adaptive steps h (`validation.lattice.schemes`). The error of
-a step is the root of the sum over all beads of the squared errors, in the scene's scales of
-displacement and velocity; ``rtol`` bounds this error. F = A δ^k with k = 3/2 has no second
-derivative at a kink, the time at which a contact opens or closes, and a step across a kink would
-err by O(h^{k+1}). So A p_+^k, with a polynomial p close to the contact's compression δ and
-p_+ = max(p, 0), is integrated by a quadrature that knows the kink
-(`validation.lattice.kernel.kinks`).
+Pair: two solutions of y'' = f(y), or of y'' = f(y, y') for damped contacts, with adaptive steps h
+(`validation.lattice.schemes`). The error of a step is the root of the sum over all beads of the
+squared errors, in the scene's scales of displacement and velocity; ``rtol`` bounds this error.
+F = A δ^k with k = 3/2 has no second derivative at a kink, the time at which a contact opens or
+closes, and a step across a kink would err by O(h^{k+1}). So the force of such a contact is
+integrated by a quadrature that knows the kink (`validation.lattice.kernel.kinks`).
 
 Splitting: symplectic, with a fixed step. Every kink leaves an error of O(h^{k+1}), which sets the
 step.
 
 Drive: a first bead of infinite mass with a given motion. Steps end at the end of a ramp and at the
 knots of a file.
-
-Damping: forces depend on velocities, and a Runge–Kutta pair takes the steps
-(`validation.lattice.kernel.damped`).
 
 Front: beads ahead of the front have not moved yet and are left out.
 """
@@ -26,14 +22,10 @@ from __future__ import annotations
 
 import math
 import sys
-from functools import lru_cache
-from typing import Any
 
 import numpy as np
-import scipy
 
 from validation.lattice.cost import RunProgress, check_memory, check_steps, step_limit
-from validation.lattice.damped import COLUMNS, scheme_of, step_recorder
 from validation.lattice.equations import Motion
 from validation.lattice.kernel.advance import advance
 from validation.lattice.kernel.arrays import (
@@ -43,20 +35,20 @@ from validation.lattice.kernel.arrays import (
     Beads,
     Chain,
     Drive,
+    Pair,
     Plan,
-    Tableau,
     initial_progress,
 )
-from validation.lattice.kernel.damped import STEP, Scheme, advance_damped
+from validation.lattice.kernel.kinks import POINTS
 from validation.lattice.kernel.symplectic import advance_split
-from validation.lattice.knots import knot_recorder
+from validation.lattice.knots import Recorder
+from validation.lattice.laws import Contact
 from validation.lattice.result import Run, finished
-from validation.lattice.schemes import SCHEMES, Pair
+from validation.lattice.schemes import SCHEMES, VERNER65
 from validation.lattice.signal import recorded, sampled
 from validation.scenes.checks import positive
 
 _WEAK = 0.1  # least energy of the response in units of the energy that sets the tolerance
-_POINTS = 8  # nodes of the quadrature at a kink
 _NOISE = sys.float_info.epsilon  # in units of the greatest value: a bead that moves less is still
 _BETWEEN_REPORTS = 5e7  # bead evaluations between two reports of progress: some tenths of a second
 # The splitting's step per stage is (rtol/0.01)^0.4 in units of the scene's shortest time, measured
@@ -84,25 +76,22 @@ def _integrated(
 ) -> tuple[Run, float]:
     """Return a run, and the greatest energy of its contacts and free beads."""
     plan, most = _plan(motion, method, rtol, step)
-    n, end, damped = motion.size, motion.scene.duration, motion.scene.damping is not None
+    n, end = motion.size, motion.scene.duration
     chain = _chain(motion)
-    stages, rows = (STEP, COLUMNS) if damped else (SCHEMES[method].stages, 2 * WIDTH)
-    beads = _start(motion, len(chain.A), rows)
+    beads = _start(motion, len(chain.A))
     time, needed = sampled(motion)
-    recorder = (step_recorder if damped else knot_recorder)(
-        motion, chain, plan.scheme, needed, time
-    )
+    recorder = Recorder(motion, chain, needed, time)
     now = initial_progress(plan, _front(motion), motion.free_energy)
-    glance = 1 + int(_BETWEEN_REPORTS / (stages * max(n, SHORTEST)))
-    go = advance_damped if damped else advance if method == "RKN86" else advance_split
+    glance = 1 + int(_BETWEEN_REPORTS / (10 * max(n, SHORTEST)))  # a step has some ten stages
+    go = advance if isinstance(plan.scheme, Pair) else advance_split
     t = 0.0
     with progress() as display:
         while t < end:
             display(t / end)
-            t, _ = go(chain, beads, plan, recorder.store, now, glance)
+            t, _ = go(chain, beads, plan, recorder.knots, now, glance)
             if t < end:
                 check_steps(method, int(now["tries"]), most, t, end)
-            if t == end or now["stored"] == len(recorder.store[0]):
+            if t == end or now["stored"] == len(recorder.knots.time):
                 now["stored"] = recorder.take(int(now["stored"]))
     accelerating = motion.masses[0] * (beads.v[0] ** 2 - motion.start[n] ** 2) / 2
     work = now["work"] + accelerating if motion.scene.drive else 0.0
@@ -118,30 +107,12 @@ def _integrated(
     return run, float(now["response"])
 
 
-def _scheme(motion: Motion, method: str) -> Tableau | Scheme:
-    """Return the coefficients of a method for the contacts of a scene."""
-    if motion.scene.damping is not None:
-        return scheme_of(motion.contact)
-    return _tableau(method, motion.k if motion.contact.law is None else math.inf)
-
-
-@lru_cache
-def _tableau(method: str, k: float) -> Tableau:
-    """Return the coefficients of a method, and the quadrature for kinks of exponent k."""
-    scheme = SCHEMES[method]
-    nothing, table = np.zeros(0), np.zeros((0, 0))
-    points = table
-    if k < scheme.order:  # else the scheme sees no kink
-        u, w = scipy.special.roots_jacobi(_POINTS, 0.0, k)  # of ∫ (1 + u)^k f(u) du from -1 to 1
-        points = np.stack(((1 + u) / 2, w / 2 ** (k + 1)))
-    if not isinstance(scheme, Pair):
-        return Tableau(scheme.kicks, scheme.drifts, nothing, table, table, 0, points)
-    return Tableau(nothing, nothing, *scheme.arrays(WIDTH), scheme.lower, points)
-
-
 def _plan(motion: Motion, method: str, rtol: float, step: float | None) -> tuple[Plan, int]:
     """Return the integration plan, and the greatest number of steps."""
     scheme, scales, end = SCHEMES[method], motion.scales, float(motion.scene.duration)
+    damped = motion.scene.damping is not None
+    if damped and method == "RKN86":
+        scheme = VERNER65
     longest, drive, stops = (
         math.inf if step is None else positive(step, "step"),
         motion.scene.drive,
@@ -150,19 +121,19 @@ def _plan(motion: Motion, method: str, rtol: float, step: float | None) -> tuple
     if drive is not None:
         # Beside a wall no motion has an error that would bound the step, and the work's estimate
         # does not see the quintic's error, h^6, at a kink: 1/8 left 11 rtol in the work, 1/16 one.
-        longest = min(longest, drive.longest_step / (16 if motion.size == 1 else 1))
+        longest = min(longest, drive.longest_step / (16 if motion.size == 1 else 2))
         stops += [t for t in (drive.ramp, *drive.time) if 0 < t < end]
     if isinstance(scheme, Pair):
         most = step_limit(motion.scene, method, end / min(scales.time, longest))
         h = min(_FIRST * rtol ** (1 / 7) * scales.time, longest, end / 100)
     else:
-        natural = min((rtol / _KINKS) ** 0.4, _COARSEST) * scheme.stages
+        natural = min((rtol / _KINKS) ** 0.4, _COARSEST) * len(scheme.drifts)
         mean = natural * min(scales.time, end) if step is None else longest
         most = step_limit(motion.scene, method, end / mean)
         h = end / math.ceil(end / mean)
     check_memory(motion.scene, method, 16)
     plan = Plan(
-        scheme=_scheme(motion, method),
+        scheme=scheme,
         y=rtol * scales.displacement,
         v=rtol * scales.velocity,
         energy=rtol * (scales.energy or 1.0),
@@ -170,30 +141,42 @@ def _plan(motion: Motion, method: str, rtol: float, step: float | None) -> tuple
         longest=longest,
         end=end,
         deepest=scales.compression,
-        quickest=motion.stiffnesses.max(initial=0.0) / motion.masses.min(),
+        lightest=float(motion.masses.min()),
         size=motion.size,
         stops=np.unique(stops),
-        accelerated=motion.loaded or drive is not None,
+        jumps=damped and motion.contact.damping_power == 0 and not motion.contact.pulls,
     )
     return plan, most
 
 
 def _chain(motion: Motion) -> Chain:
     """Build the kernel's chain, padded by beads of infinite mass; the first of them is the wall."""
-    inverse, A, c, rest, load = rows = np.zeros((5, motion.size + 2 * SHORTEST))
+    rows = np.zeros((5, motion.size + 2 * SHORTEST))
     given = 1 / motion.masses, motion.stiffnesses, motion.damping, motion.rest, motion.load
     for row, values in zip(rows, given, strict=True):
         row[: len(values)] = values
     drive, law = motion.scene.drive, motion.contact
     driven = Drive(np.zeros(1), np.zeros((1, 4)), 0.0, 0.0, 0.0, False)
     if drive is not None:
-        inverse[0] = 0.0
+        rows[0, 0] = 0.0
         amplitude, w = drive.oscillation
         driven = Drive(*drive.cubics, float(amplitude), w, float(drive.ramp), True)
-    kind: dict[str, Any] = dict(generated=law.law is not None, pulls=law.pulls, **law.addresses)
-    power = law.damping_power or 0.0
-    # An integer would be another signature, for which numba compiles the engine again.
-    return Chain(inverse, A, c, rest, load, float(motion.k), **kind, p=float(power), drive=driven)
+    # A whole number would be another type, for which numba compiles the engine again.
+    powers = float(motion.k), float(law.damping_power or 0), _exponent(law)
+    damped, call = motion.scene.damping is not None, law.addresses
+    code = call["force"], call["slope"], call["energy"]
+    inverse, A, c, rest, load = rows
+    kinds = damped, law.law is not None
+    return Chain(inverse, A, c, rest, load, *powers, *kinds, *code, law.pulls, driven)
+
+
+def _exponent(law: Contact) -> float:
+    """Return q such that the forces are smooth in u, δ = u^q, where a contact opens or closes.
+
+    F is a series in powers of δ^k, δ^p and δ. For q = 4 weak singularities may be left.
+    """
+    powers = law.k if law.law is None else 0.25, law.damping_power or 0.0
+    return next((q for q in (1.0, 2.0) if all((q * power).is_integer() for power in powers)), 4.0)
 
 
 def _front(motion: Motion) -> int:
@@ -204,13 +187,15 @@ def _front(motion: Motion) -> int:
     return min(motion.size, MARGIN + int(first))
 
 
-def _start(motion: Motion, padded: int, stages: int) -> Beads:
+def _start(motion: Motion, padded: int) -> Beads:
     """Build the kernel's initial state, arrays with room for ``padded`` + 1 beads."""
     n = motion.size
     y, v, next_y, next_v = np.zeros((4, padded + 1))
     y[:n], v[:n] = motion.start[:n], motion.start[n : 2 * n]
-    sums, contacts = np.zeros((6, padded + 1)), np.zeros((3, padded + 1))
-    force, power, given = np.zeros((stages, padded + 1)), np.zeros((2, stages)), np.zeros(4)
+    sums, force = np.zeros((5, padded + 1)), np.zeros((2 * WIDTH, padded + 1))
+    power, given = np.zeros((2, 2 * WIDTH)), np.zeros(2)
     if motion.scene.drive is not None:
         given[0] = motion.scene.drive.at(0.0)[2]
-    return Beads(y, v, next_y, next_v, force, sums, contacts, power, given)
+    return Beads(
+        y, v, next_y, next_v, force, sums, power, given, np.zeros(4), np.zeros((3, POINTS))
+    )

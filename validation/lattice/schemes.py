@@ -1,78 +1,66 @@
 """Coefficients of the compiled integrators.
 
-`RKN86` is the default, an embedded Runge–Kutta–Nyström pair for y'' = f(y) with adaptive steps.
-Stage s evaluates f at y + c_s h v + h² Σ a_sj f_j, with Σ_j a_sj = c_s²/2. A step ends at
-
-    y + h v + h² Σ b_j f_j,    v + h Σ b'_j f_j,
-
-and differs from a solution of lower order by h² Σ e_j f_j and h Σ e'_j f_j, its error. The last
-stage is at the step's end, and is the first of the next step: its row of a is b.
+`RKN86`, an embedded Runge–Kutta–Nyström pair for y'' = f(y), is the default where forces depend on
+displacements alone. `VERNER65` takes damped contacts, y'' = f(y, y'). It is an explicit
+Runge–Kutta pair in Nyström form: stage s evaluates f at y + c_s h v + h² Σ (A²)_sj f_j and
+v + h Σ A_sj f_j, A the pair's matrix. The last stage of both pairs is at the step's end, and is the
+first stage of the next step.
 
 `BLANES_MOAN` is a symmetric splitting of y'' = F(y)/m, for long runs in which all beads move. A
 step of h applies kick 0, drift 0, kick 1, drift 1, …, and a last kick: a kick adds b h F(y)/m to v,
 a drift adds a h v to y. It is symplectic and time-reversible, and keeps the momentum to rounding.
 
-Sources: Dormand, El-Mikkawy and Prince 1987, IMA J. Numer. Anal. 7, 423: RKN8(6)9FM. Blanes and
-Moan 2002, J. Comput. Appl. Math. 142, 313: SRKN_6^b, of order 4, as printed, to all digits.
+Sources: Dormand, El-Mikkawy and Prince 1987, IMA J. Numer. Anal. 7, 423: RKN8(6)9FM. Verner 2010,
+Numer. Algorithms 53, 383: "most efficient" pair of orders 6 and 5, from the author's tables. Blanes
+and Moan 2002, J. Comput. Appl. Math. 142, 313: SRKN_6^b, of order 4, as printed, to all digits.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
-
-Exact = NDArray[np.object_]
-"""Arrays of fractions."""
+from validation.lattice.kernel.arrays import WIDTH, Pair, Splitting
 
 
-@dataclass(frozen=True, eq=False)
-class Pair:
-    """Coefficients of an embedded Runge–Kutta–Nyström pair; b is the last row of a.
-
-    order, lower : orders of the two solutions. a : (S, S). speeds : b'. low, low_speeds : b and b'
-    of the solution of lower order. All coefficients are fractions.
-    """
-
-    order: int
-    lower: int
-    a: Exact
-    speeds: Exact
-    low: Exact
-    low_speeds: Exact
-
-    @property
-    def stages(self) -> int:
-        """Number of evaluations of the forces per step."""
-        return len(self.a) - 1
-
-    def arrays(self, width: int) -> tuple[Array, Array, Array]:
-        """Return the coefficients as float arrays: nodes c, matrix a, and the three rows b', e, e'.
-
-        b' is `speeds`; e = b - `low` and e' = b' - `low_speeds` give the error estimates. The
-        columns of the last two arrays are filled with zeros up to a multiple of ``width``.
-        """
-        ends = np.stack((self.speeds, self.a[-1] - self.low, self.speeds - self.low_speeds))
-        zeros = ((0, 0), (0, -len(self.a) % width))
-        a, ends = (np.pad(rows.astype(float), zeros) for rows in (self.a, ends))
-        return np.sqrt((2 * self.a.sum(axis=1)).astype(float)), a, ends
+def _rows(table: str) -> Array:
+    """Read exact fractions or decimals, a row a line; zeros fill the rows."""
+    rows = [[Fraction(number) for number in row.split()] for row in table.splitlines()]
+    size = max(map(len, rows))
+    return np.array([row + [Fraction(0)] * (size - len(row)) for row in rows])
 
 
-def _pair(order: int, lower: int, rows: str, *ends: str) -> Pair:
-    """Read the rows of a, and b', b and b' of lower order, one a line, without trailing zeros."""
-    table = [row.split() for row in ("", *rows.strip().splitlines(), *ends)]
-    size = len(table) - len(ends)
-    full = np.array([[*map(Fraction, row), *[Fraction(0)] * (size - len(row))] for row in table])
-    return Pair(order, lower, full[:size], *full[size:])
+def _padded(rows: Array) -> Array:
+    """Return floats, with zeros that fill the columns up to a multiple of `WIDTH`."""
+    return np.pad(rows.astype(float), [(0, 0)] * (rows.ndim - 1) + [(0, -rows.shape[-1] % WIDTH)])
 
 
-RKN86 = _pair(
-    8, 6,
-    """
+def _nystrom(table: str) -> Pair:
+    """Read the rows of a, then b', b and b' of lower order; b is the last row of a."""
+    rows = _rows(table)
+    a, (speeds, low, low_speeds) = rows[:-3], rows[-3:]
+    impulses = np.zeros_like(a)
+    impulses[-1] = speeds
+    errors = np.array((a[-1] - low, speeds - low_speeds))
+    nodes = np.sqrt(2 * _padded(a.sum(axis=1)))
+    return Pair(nodes, _padded(a), _padded(impulses), _padded(errors), _padded(speeds @ a), 6)
+
+
+def _explicit(table: str) -> Pair:
+    """Read the rows of A, the last of them b, then b of lower order."""
+    rows = _rows(table)
+    a, low = rows[:-1], rows[-1]
+    moments = a @ a
+    errors = np.array(((a[-1] - low) @ a, a[-1] - low))
+    nodes = _padded(a.sum(axis=1))
+    thirds = a[-1] @ moments
+    return Pair(nodes, _padded(moments), _padded(a), _padded(errors), _padded(thirds), 5)
+
+
+RKN86 = _nystrom(
+    """0
     1/800
     1/600 1/300
     9/200 -9/100 9/100
@@ -80,44 +68,31 @@ RKN86 = _pair(
     227015747/304251000 -54897451/30425100 12942349/10141700 -9499/304251 539/9250
     -1131891597/901789000 41964921/12882700 -6663147/3220675 270954/644135 -108/5875 114/1645
     13836959/3667458 -17731450/1833729 1063919505/156478208 -33213845/39119552 13335/28544 -705/14272 1645/57088
-    223/7938 0 1175/8064 925/6048 41/448 925/14112 1175/72576 0
-    """,  # noqa: E501
-    "223/7938 0 5875/36288 4625/21168 41/224 4625/21168 5875/36288 223/7938 0",
-    "7987313/109941300 0 1610737/44674560 10023263/33505920 -497221/12409600 10023263/78180480"
-    " 1610737/402071040",
-    "7987313/109941300 0 1610737/40207104 10023263/23454144 -497221/6204800 10023263/23454144"
-    " 1610737/40207104 -4251941/54970650 3/20",
-)  # fmt: skip
+    223/7938 0 1175/8064 925/6048 41/448 925/14112 1175/72576 0 0
+    223/7938 0 5875/36288 4625/21168 41/224 4625/21168 5875/36288 223/7938 0
+    7987313/109941300 0 1610737/44674560 10023263/33505920 -497221/12409600 10023263/78180480 1610737/402071040
+    7987313/109941300 0 1610737/40207104 10023263/23454144 -497221/6204800 10023263/23454144 1610737/40207104 -4251941/54970650 3/20"""  # noqa: E501
+)
 
+VERNER65 = _explicit(
+    """0
+    0.06
+    0.019239962962962962962962962962 0.07669337037037037037037037037
+    0.035975 0 0.107925
+    1.318683415233148260919747276431 0 -5.042058063628562225427761634715 4.220674648395413964508014358283
+    -41.872591664327514618037577806443 0 159.432562163137491770036566907034 -122.119213565010030920251620338924 5.531743066200053768252631238332
+    -54.430156935316504332506420512941 0 207.06725136501846442736571738665 -158.610813784589999182874242436505 6.991816585950242321992597280791 -0.018597231062203233977651717995
+    -54.663741787281976802412156480503 0 207.952806255389373451582481669983 -159.288957474499507150895980587142 7.018743740796944434698170760964 -0.018338785905045723064727820051 -0.000511948499788209907787543249
+    0.034389578683570360092788201247 0 0 0.258262455563350340465955809858 0.420937118967353715064255151406 4.405396469669310170148836816197 -176.4831190242986576151740942499 172.36413340141507302940225827119
+    0.049099676483824897309068549279 0 0 0.225111222951652415340139532053 0.469468225302956203943194852504 0.806579224998886770763416180899 0 -0.607119489177795979767295146525 0.056861139440475692411476031787"""  # noqa: E501
+)
 
-@dataclass(frozen=True, eq=False)
-class Splitting:
-    """Coefficients of a splitting: b of the kicks, one more than the a of the drifts."""
-
-    order: int
-    kicks: Array
-    drifts: Array
-
-    @property
-    def stages(self) -> int:
-        """Number of evaluations of the forces per step."""
-        return len(self.drifts)
-
-
-def _palindrome(order: int, kicks: list[float], drifts: list[float]) -> Splitting:
-    """Complete palindromic coefficients from their first parts, so that both sums are 1."""
-    a = [*drifts, 0.5 - sum(drifts)]
-    return Splitting(
-        order,
-        np.array([*kicks, 1 - 2 * sum(kicks), *kicks[::-1]]),
-        np.array([*a, *a[::-1]]),
-    )
-
-
-BLANES_MOAN = _palindrome(
-    4,
-    [0.0829844064174052, 0.396309801498368, -0.0390563049223486],
-    [0.245298957184271, 0.604872665711080],
+_KICKS = 0.0829844064174052, 0.396309801498368, -0.0390563049223486
+_DRIFTS = 0.245298957184271, 0.604872665711080
+_HALF = [*_DRIFTS, 0.5 - sum(_DRIFTS)]
+BLANES_MOAN = Splitting(
+    np.array([*_KICKS, 1 - 2 * sum(_KICKS), *_KICKS[::-1]]), np.array([*_HALF, *_HALF[::-1]])
 )
 
 SCHEMES: dict[str, Pair | Splitting] = {"RKN86": RKN86, "symplectic": BLANES_MOAN}
+ORDERS = {"RKN86": 8, "symplectic": 4}

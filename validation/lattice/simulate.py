@@ -1,8 +1,8 @@
 """Simulation of a scene: `simulate`, `simulate_many` on threads, `twice` at two tolerances.
 
 The compiled engine (`validation.lattice.engine`) has an embedded Runge–Kutta–Nyström (RKN) pair for
-y'' = f(t, y), with adaptive steps, a Runge–Kutta pair for damped contacts, and a symplectic
-splitting. SciPy's methods (`validation.lattice.steppers`) are the reference. Tolerances are
+y'' = f(t, y), a pair for damped contacts, y'' = f(t, y, y'), both with adaptive steps, and a
+symplectic splitting. SciPy's methods (`validation.lattice.steppers`) are the reference. Tolerances are
 relative to the scene's scales, so that results do not depend on the units. A run stores the motion
 of the beads near its sensors only.
 """
@@ -46,13 +46,13 @@ def simulate(
 
     Parameters
     ----------
-    rtol, atol : error in units of the scene's own scales. With the RKN pair the peak force of a
+    rtol, atol : error in units of the scene's own scales. With the default the peak force of a
         struck chain's pulse errs by about ``rtol`` at most, and a motion with many collisions, at
         its end, by some tens of ``rtol``; with the splitting ``rtol`` is the mean error of the
         peak. Both ignore ``atol``. For SciPy's methods rtol, atol bound the local error per step.
     method : one of `COMPILED` or of `METHODS`. A scene with damping or a drive takes all but the
-        splitting; with damping, where forces depend on velocities, the default is a compiled
-        Runge–Kutta pair in place of the RKN pair.
+        splitting; with damping, where forces depend on velocities, the default takes the
+        coefficients of another pair.
     step : greatest step of a compiled method; by default ``rtol`` determines the steps.
     progress : function that opens a display, which is called with the finished fraction of the run.
 

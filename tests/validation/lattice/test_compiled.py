@@ -57,6 +57,12 @@ def test_without_a_directory_to_write_to_a_function_runs(tmp_path):
     assert output(tmp_path, SMALL, **places) == "6\n"
 
 
+@pytest.mark.slow
+def test_on_a_full_disk_a_function_runs(tmp_path):
+    limit = "import resource\nresource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))\n"
+    assert output(tmp_path, limit + SMALL, NUMBA_CACHE_DIR=str(tmp_path / "cache")) == "6\n"
+
+
 def test_the_engine_runs_uncompiled():
     """For a debugger, numba's own switch turns the compilation off."""
     program = (

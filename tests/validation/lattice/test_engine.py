@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from validation.lattice.schemes import SCHEMES
+from validation.lattice.schemes import ORDERS
 from validation.lattice.simulate import COMPILED, simulate, simulate_many
 from validation.scenes.chains import struck
 from validation.scenes.forcing import Drive
@@ -32,7 +32,7 @@ def loaded(k, duration=8.0, **rest):
 )
 def test_the_order_on_a_smooth_problem(method, steps):
     """Slopes 8 and 4 of the error at the end; no tolerance shortens the steps of the pair."""
-    scene, order = loaded(3.0), SCHEMES[method].order
+    scene, order = loaded(3.0), ORDERS[method]
     reference = simulate(scene, method="DOP853", rtol=1e-13, atol=1e-13)
     exact = reference.displacements
     assert reference.compression.min() > 0.1

@@ -1,6 +1,7 @@
 """Damped contacts and driven chains: exact collisions, the ledger of energy, pulses."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -114,20 +115,30 @@ def test_the_error_is_that_of_the_response():
 
 
 def test_order_of_the_damped_steps_and_of_their_interpolant():
-    """Both errors fall like h^8 at least at fixed steps, under a smooth law."""
+    """Both errors fall like h^6 at least at fixed steps, under a smooth law."""
     scene = Scene(
         masses=(1, 0.7, 1), stiffnesses=(1, 1), law=named("exponential", 1), velocities=(0.8,),
         duration=8, damping=Damping("contact", 0.2), bead_sensors=(0, 1, 2), samples=98,
     )  # fmt: skip
     exact = simulate(scene, rtol=1e-13)
     errors = []
-    for h in (0.5, 0.25):
+    for h in (0.2, 0.1):
         run = simulate(scene, rtol=1e-2, step=h)
         moved = np.abs(run.bead_velocity - exact.bead_velocity).max()
         errors.append((np.abs(run.velocities - exact.velocities).max(), moved))
-    at_end, between = np.log2(np.divide(*errors))
-    assert at_end == pytest.approx(8, abs=0.8)
-    assert between > 7.2
+    assert np.log2(np.divide(*errors)).min() > 5.8
+
+
+@pytest.mark.parametrize("damping", [None, Damping("kuwabara_kono", 0.03)])
+def test_sensors_change_no_digit_of_the_motion(damping):
+    chain = Scene(
+        masses=(1, 0.2733) * 12, stiffnesses=(1,) * 23, k=1.5, velocities=(1,), duration=40,
+        damping=damping,
+    )  # fmt: skip
+    watched = replace(chain, bead_sensors=range(24), contact_sensors=range(23))
+    runs = simulate(chain), simulate(watched)
+    for name in ("displacements", "velocities", "dissipated", "step"):
+        np.testing.assert_array_equal(*(getattr(run, name) for run in runs))
 
 
 def test_errors_of_a_measured_pulse_cover_with_damping_and_a_drive():
@@ -188,15 +199,16 @@ def test_scipys_methods_are_references_of_forced_scenes(method):
 
 
 @pytest.mark.parametrize("short", [2e-3, 5e-4, 1e-5])
-def test_a_driven_bead_that_touches_between_two_steps_is_seen(short):
+@pytest.mark.parametrize("damping", [None, Damping("contact", 0.3), Damping("restitution", 0.7)])
+def test_a_driven_bead_that_touches_between_two_steps_is_seen(short, damping):
     """The drive goes ``short`` beyond the second bead; steps of 1e-4 are too short to miss it."""
     scene = Scene(
         masses=(1, 1), stiffnesses=(1e6,), k=1.5, duration=1, displacements=(0, 1 - short),
-        drive=Drive(amplitude=1, frequency=1),
+        drive=Drive(amplitude=1, frequency=1), damping=damping,
     )  # fmt: skip
-    exact = simulate(scene, rtol=1e-13, step=1e-4).velocities[1]
+    exact = simulate(scene, rtol=1e-12, step=1e-4).velocities[1]
     assert exact > 0
-    for rtol in 10.0 ** np.arange(-12, -4):
+    for rtol in 10.0 ** np.arange(-11, -4):
         velocity = simulate(scene, rtol=rtol).velocities[1]
         assert velocity == pytest.approx(exact, abs=10 * rtol * 2 * np.pi), rtol
 

@@ -7,7 +7,15 @@ from typing import Any
 from validation.lattice.kernel.arrays import BLOCK, MARGIN, SHORTEST, Beads, Chain, Knots, Plan
 from validation.lattice.kernel.compiled import SOURCES, ZERO, cached, part
 from validation.lattice.kernel.force import contact_forces
-from validation.lattice.kernel.pair import accepted
+from validation.lattice.kernel.pair import (
+    accept_step,
+    correct_contact,
+    evaluate_stages,
+    mark_kinks,
+    place_of_jump,
+    reject_step,
+    step_error,
+)
 from validation.lattice.kernel.samples import store_knot
 
 _STILL = 1e-13  # in units of the greatest compression: beads that have moved less are still
@@ -17,16 +25,6 @@ _STILL = 1e-13  # in units of the greatest compression: beads that have moved le
 def moving(now: Any) -> int:
     """Return the number of beads to be moved, a multiple of `BLOCK`."""
     return int(max(SHORTEST, -(-now.front // BLOCK) * BLOCK))
-
-
-@part
-def cut(plan: Plan, now: Any) -> tuple[float, float]:
-    """Return the length of the next step and its end, which is the next stop if that is as near."""
-    h, stop = now.h, plan.stops[now.stop]
-    if now.t + h > stop - 1e-9 * h:
-        now.planned = max(now.planned, h)
-        return stop - now.t, stop
-    return h, now.t + h
 
 
 @part
@@ -47,26 +45,46 @@ def _built(sources: int) -> Any:
 
         Returns the time that is reached, and ``sources``.
         """
-        until, stages = now.tries + tries, len(plan.scheme.nodes) - 1
-        moved, hi = now.tries == 0, plan.size
+        until, stages = now.tries + tries, len(plan.scheme.moments) - 1
+        moved, fresh, hi = now.tries == 0, now.tries > 0, plan.size
         while True:
-            # The forces are compiled into each place that calls them, and take the most time there.
+            # The loops of the forces are compiled at each place that calls them.
+            if not fresh:
+                contact_forces(chain, beads, plan, beads.y, beads.v, ZERO, hi)
+                fresh = True
             if moved:
-                contact_forces(chain, beads, plan, beads.y, ZERO, hi)
-                beads.power[1, 0] = beads.v[0] * beads.force[0, 1] if chain.drive.driven else 0.0
                 store_knot(chain, beads, knots, now)
             if not (now.t < plan.end and now.tries < until and now.stored < len(knots.time)):
                 return now.t, sources
             hi = moving(now)
             now.tries += 1
             now.evaluations += stages * hi
-            h, later = cut(plan, now)
-            moved = accepted(chain, beads, plan, now, h, hi)
+            h, stop = now.h, plan.stops[now.stop]
+            stopping = now.t + h > stop - 1e-9 * h
+            if stopping:
+                now.planned, h = max(now.planned, h), stop - now.t
+            evaluate_stages(chain, beads, plan, now.t, h, hi)
+            place, jumps = place_of_jump(chain, beads, plan, h, hi) if plan.jumps else (1.0, 0)
+            if place < 1.0:
+                now.planned, now.h = max(now.planned, h), h * place
+                moved, fresh = False, True
+                continue
+            marks = mark_kinks(chain, beads, plan, h, hi)
+            if marks > 0:
+                for i in range(hi):
+                    if beads.sums[0, i + 1] > 0.0:
+                        correct_contact(chain, beads, plan, h, i)
+            error = step_error(chain, beads, plan, h, hi)
+            moved = error <= 1.0
+            fresh = not moved or jumps + marks == 0
             if moved:
+                accept_step(beads, plan, now, h, hi, error)
                 now.steps += 1
-                now.t = later
-                now.stop += 1 if later == plan.stops[now.stop] else 0
+                now.t = stop if stopping else now.t + h
+                now.stop += 1 if stopping else 0
                 follow(beads, plan, now)
+            else:
+                reject_step(beads, plan, now, h, error)
 
     return advance
 

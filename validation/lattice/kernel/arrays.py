@@ -36,10 +36,10 @@ class Chain(NamedTuple):
     """A chain, padded by beads of infinite mass, of which the first is the wall.
 
     inverse : inverse masses. A, rest, load : stiffnesses, static compressions and static forces of
-    the contacts. k : exponent of a power law. generated : True for any other contact law. force,
-    slope, energy : addresses of the machine code of F, F′ and ∫ F dδ of another law. pulls : True
-    if contacts hold where δ < 0. c, p : of the damping force c δ^p dδ/dt. drive : motion of a first
-    bead that is driven; its inverse mass is 0.
+    the contacts. k : exponent of a power law. damped : True with damping forces c δ^p dδ/dt.
+    generated : True for any other contact law. force, slope, energy : addresses of the machine code
+    of F, F′ and ∫ F dδ of another law. pulls : True if contacts hold where δ < 0. q : F is smooth
+    in u if δ = u^q. drive : motion of a first bead that is driven; its inverse mass is 0.
     """
 
     inverse: Array
@@ -48,13 +48,29 @@ class Chain(NamedTuple):
     rest: Array
     load: Array
     k: float
+    p: float
+    q: float
+    damped: bool
     generated: bool
     force: int
     slope: int
     energy: int
     pulls: bool
-    p: float
     drive: Drive
+
+
+class Law(NamedTuple):
+    """The part of a `Chain` that is one contact's law."""
+
+    A: float
+    c: float
+    k: float
+    p: float
+    q: float
+    damped: bool
+    generated: bool
+    force: int
+    energy: int
 
 
 class Beads(NamedTuple):
@@ -62,15 +78,14 @@ class Beads(NamedTuple):
 
     y, v : displacements and velocities. next_y, next_v : those after the step that is tried.
     force : (stages, padded + 1), force on each bead from behind, less the static force, by stage.
-    sums : (6, padded + 1), sums over stages. Row 0: intermediate results. Row 1: impulse of each
-        contact in a step. Rows 2 and 3: error estimates of each contact's moment and impulse. Rows
-        4 and 5: displacements and velocities at the end of a step of damped contacts.
-    contacts : (3, padded + 1), of damped contacts. Row 0: 1 if it is closed, 0 if open. Row 1:
-        number of a step's stages in which that is wrong, or nearly so. Row 2: greatest force in a
-        step.
+    sums : (5, padded + 1), sums over stages. Row 0: moments, then 1 for each contact with a kink.
+        Row 1: impulse of each contact in a step. Rows 2 and 3: error estimates of each contact's
+        moment and impulse. Row 4: 1 for each contact that closes at the step's end.
     power : (2, stages), power that all contacts dissipate, and power of the drive.
-    given : (4,), accelerations of a driven bead at the step's ends; what kinks add to its work, and
-        to the work's error.
+    given : (2,), accelerations of a driven bead at the step's ends.
+    kinks : (4,), corrections at kinks of the heat and its error, and of the drive's work and its
+        error.
+    points : (3, 10), places of a quadrature, their weights, and the forces there.
     """
 
     y: Array
@@ -79,9 +94,10 @@ class Beads(NamedTuple):
     next_v: Array
     force: Array
     sums: Array
-    contacts: Array
     power: Array
     given: Array
+    kinks: Array
+    points: Array
 
 
 class Knots(NamedTuple):
@@ -96,22 +112,31 @@ class Knots(NamedTuple):
     watched: NDArray[np.int_]
 
 
-class Tableau(NamedTuple):
-    """Coefficients of a scheme, either of a splitting or of an embedded pair.
+class Pair(NamedTuple):
+    """Coefficients of an embedded pair in Nyström form; the last stage is the step's end.
 
-    kicks, drifts : coefficients of a splitting, empty for an embedded pair. nodes, rows, ends :
-    arrays of `validation.lattice.schemes.Pair.arrays`, empty for a splitting. lower : order
-    of the embedded pair's second solution. points : (2, M), nodes and weights of ∫ u^k f(u) du from
-    0 to 1; M is 0 where kinks need no quadrature.
+    Stage s moves a bead by h c_s v + h² Σ_j moments[s, j] f_j, and changes its velocity by
+    h Σ_j impulses[s, j] f_j.
+
+    nodes : (S + 1,), c. moments, impulses : (S + 1, columns); of `impulses` only the last row
+    counts if forces do not depend on velocities. errors : (2, columns), differences of the two
+    solutions, in displacement and velocity. thirds : (columns,), weights of ∫ (1 - x)²/2 f(x) dx.
+    lower : order of the second solution. Columns are filled with zeros to a multiple of `WIDTH`.
     """
+
+    nodes: Array
+    moments: Array
+    impulses: Array
+    errors: Array
+    thirds: Array
+    lower: int
+
+
+class Splitting(NamedTuple):
+    """Coefficients of a splitting: of the kicks, one more than of the drifts."""
 
     kicks: Array
     drifts: Array
-    nodes: Array
-    rows: Array
-    ends: Array
-    lower: int
-    points: Array
 
 
 class Plan(NamedTuple):
@@ -119,10 +144,9 @@ class Plan(NamedTuple):
 
     y, v, energy : tolerances, the errors of displacement, velocity and work allowed in a step.
     h : first step of an embedded pair, fixed step of a splitting. longest : greatest step of an
-    embedded pair. end : duration. deepest : greatest compression. quickest : greatest stiffness
-    divided by the least mass. size : number of beads. stops : times at which steps end, the
-    duration the last of them. accelerated : True if a drive, weight or a load accelerates beads
-    that nothing touches, so that a contact may close and open again within a step.
+    embedded pair. end : duration. deepest : greatest compression. lightest : least mass. size :
+    number of beads. stops : times at which steps end, the duration the last of them. jumps :
+    True if forces jump where contacts close, as damping forces c dδ/dt do.
     """
 
     scheme: Any
@@ -133,14 +157,14 @@ class Plan(NamedTuple):
     longest: float
     end: float
     deepest: float
-    quickest: float
+    lightest: float
     size: int
     stops: Array
-    accelerated: bool
+    jumps: bool
 
 
-_COUNTS = ("steps", "tries", "evaluations", "front", "stored", "stop", "warped", "interval")
-_REALS = ("t", "h", "planned", "restart", "energy", "work", "lost", "response")
+_COUNTS = ("steps", "tries", "evaluations", "front", "stored", "stop")
+_REALS = ("t", "h", "planned", "energy", "work", "lost", "response")
 _PROGRESS = np.dtype([(name, int) for name in _COUNTS] + [(name, float) for name in _REALS])
 
 
@@ -148,18 +172,16 @@ def initial_progress(plan: Plan, front: int, energy: float) -> Any:
     """Return the record of an integration at time 0, which `advance` updates.
 
     front : number of the first bead that is still. energy : initial energy of the contacts and of
-    the free beads. Fields: t, h : time, next step. planned : step that was tried before it was cut
-    short. steps, tries : numbers of steps made and tried. evaluations : sum, over all evaluations
-    of the forces, of the number of beads moved. front : first bead ahead of the motion. stored :
-    number of stored knots. stop : number of the next of ``plan.stops``. warped : 1 if the next step
-    begins where a damped contact closes, otherwise 0. restart : longest step of this kind, by the
-    error of the last one. interval : number of the interval of the
-    drive's motion. work, lost : ∫ v (F - static force) dt of a driven bead, and dissipated energy.
-    response : greatest of the values of ``energy`` on the way.
+    the free beads. Fields: t, h : time, next step. planned : step that was tried before it was
+    cut short. steps, tries : numbers of steps made and tried. evaluations : sum, over all
+    evaluations of the forces, of the number of beads moved. front : first bead ahead of the
+    motion. stored : number of stored knots. stop : number of the next of ``plan.stops``. work,
+    lost : ∫ v (F - static force) dt of a driven bead, and dissipated energy. response :
+    greatest of the values of ``energy`` on the way.
     """
     rows = np.zeros(1, _PROGRESS)
     # Fields of a plain record are attributes in compiled code alone.
     uncompiled = config.DISABLE_JIT  # type: ignore[attr-defined]
     now = (rows.view(np.recarray) if uncompiled else rows)[0]
-    now["front"], now["h"], now["restart"], now["energy"] = front, plan.h, plan.h, energy
+    now["front"], now["h"], now["energy"] = front, plan.h, energy
     return now

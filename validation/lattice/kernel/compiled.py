@@ -44,6 +44,8 @@ _INNER: Any = _OUTER | {"no_cpython_wrapper": True}
 # Inlined into the caller by LLVM, as the calls would take a quarter of a run's time. Inlining by
 # numba ("inline") gives the same code, but takes three times as long to compile.
 part: Callable[[Function], Function] = njit(forceinline=True, **_INNER)
+# Called once a stage: inlined, the loops over beads took twice as long to compile.
+inner: Callable[[Function], Function] = njit(**_INNER)
 # Sums and maxima in the order of the machine's registers, the same in every run.
 summed: Callable[[Function], Function] = njit(
     **_INNER | {"fastmath": {"nsz", "arcp", "contract", "reassoc"}}
@@ -67,11 +69,23 @@ call: Any = intrinsic(_call)
 
 
 def cached(function: Function) -> Function:
-    """Compile a function; its machine code is kept on disk if numba finds a writable directory."""
+    """Compile a function; its machine code is kept on disk if numba can write to a directory."""
     try:
-        return njit(cache=True, **_OUTER)(function)  # type: ignore[no-any-return]
+        compiled: Any = njit(cache=True, **_OUTER)(function)
     except (RuntimeError, OSError):  # numba finds no directory for its cache
         return njit(**_OUTER)(function)  # type: ignore[no-any-return]
+    if compiled is function:  # NUMBA_DISABLE_JIT
+        return function
+    keep = compiled._cache.save_overload
+
+    def keep_if_possible(signature: Any, code: Any) -> None:
+        try:
+            keep(signature, code)
+        except OSError as error:
+            print(f"the engine's machine code is not kept: {error.strerror}", file=sys.stderr)
+
+    compiled._cache.save_overload = keep_if_possible
+    return compiled  # type: ignore[no-any-return]
 
 
 class _Announcement(Listener):

@@ -1,4 +1,4 @@
-"""Contact forces F = A [δ]_+^k of all contacts or of one, and a driven bead's motion."""
+"""Forces of all contacts, F = A [δ]_+^k + c [δ]_+^p dδ/dt ≥ 0, and a driven bead's motion."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Beads, Chain, Drive, Plan
-from validation.lattice.kernel.compiled import ONE, call, index, part
+from validation.lattice.kernel.compiled import ONE, call, index, part, summed
 
 NEGLIGIBLE = 1e-60  # in units of the greatest compression: less is 0, so that no denormals arise
 
@@ -28,6 +28,32 @@ def _loop(value: Any) -> Any:
     return loop
 
 
+def _damped_loop(value: Any, resistance: Any) -> Any:
+    """Compile a loop over contacts with the force A value(chain, d) + c resistance(p, d) dδ/dt.
+
+    least, none : contacts push where δ > least and F > none; both are -∞ for contacts that pull.
+    The loop returns the dissipated power. While a contact that has stopped pushing expands, its
+    elastic energy turns into heat.
+    """
+
+    @summed
+    def loop(
+        chain: Chain, y: Array, v: Array, f: Array, hi: int, least: float, none: float
+    ) -> float:
+        A, rest, load, c, p, lost = chain.A, chain.rest, chain.load, chain.c, chain.p, 0.0
+        for i in range(index(hi)):
+            x, rate = rest[i] + y[i] - y[i + ONE], v[i] - v[i + ONE]
+            d = x if x > least else 0.0
+            elastic = A[i] * value(chain, d)
+            force = elastic + c[i] * resistance(d, p) * rate
+            force = force if (force > none) & (x > least) else 0.0
+            f[i + ONE] = force - load[i]
+            lost += (force - elastic) * rate
+        return lost
+
+    return loop
+
+
 # d^k takes ten times as long as the products and roots of the usual exponents.
 _linear = _loop(part(lambda d, k: d))
 _five_quarters = _loop(part(lambda d, k: d * np.sqrt(np.sqrt(d))))
@@ -35,60 +61,65 @@ _hertz = _loop(part(lambda d, k: d * np.sqrt(d)))
 _square = _loop(part(lambda d, k: d * d))
 _cube = _loop(part(lambda d, k: d * d * d))
 _power = _loop(part(lambda d, k: d**k))
+_damped_hertz = _damped_loop(
+    part(lambda chain, d: d * (np.sqrt(d) if chain.k == 1.5 else 1.0)),
+    part(lambda d, p: np.sqrt(d) if p == 0.5 else (1.0 if p == 0.0 else np.sqrt(np.sqrt(d)))),
+)
+_damped = _damped_loop(
+    part(lambda chain, d: call(chain.force, d) if chain.generated else d**chain.k),
+    part(lambda d, p: 1.0 if p == 0.0 else d**p),
+)
 
 
 @part
-def contact_forces(chain: Chain, beads: Beads, plan: Plan, y: Array, s: Any, hi: int) -> None:
+def contact_forces(
+    chain: Chain, beads: Beads, plan: Plan, y: Array, v: Array, s: Any, hi: int
+) -> None:
     """Compute the forces of the contacts ahead of beads 0 … hi-1, less the static forces.
 
-    y : displacements. The result goes to row s (stage) of ``beads.force``, in column i + 1 for the
-    contact ahead of bead i.
+    y, v : displacements and velocities. The forces go to row s (stage) of ``beads.force``, in
+    column i + 1 for the contact ahead of bead i; the dissipated power and the power of the drive go
+    to ``beads.power``.
     """
-    f, least = beads.force[s], NEGLIGIBLE * plan.deepest
-    if chain.generated:
+    f, least, k = beads.force[s], NEGLIGIBLE * plan.deepest, chain.k
+    if chain.damped:
+        none = 0.0
+        if chain.pulls:
+            least = none = -math.inf
+        simple = (k == 1.5 and chain.p in (0.0, 0.25, 0.5)) or (k == 1.0 and chain.p == 0.0)
+        if simple and not chain.generated:
+            beads.power[0, s] = _damped_hertz(chain, y, v, f, hi, least, none)
+        else:
+            beads.power[0, s] = _damped(chain, y, v, f, hi, least, none)
+    elif chain.generated:
         for i in range(index(hi)):
             d = chain.rest[i] + y[i] - y[i + ONE]
             closed = chain.A[i] > 0.0 and (chain.pulls or d > 0.0)
             f[i + ONE] = (chain.A[i] * call(chain.force, d) if closed else 0.0) - chain.load[i]
-    elif chain.k == 1.5:
+    elif k == 1.5:
         _hertz(chain, y, f, hi, least)
-    elif chain.k == 1.0:
+    elif k == 1.0:
         _linear(chain, y, f, hi, least)
-    elif chain.k == 1.25:
+    elif k == 1.25:
         _five_quarters(chain, y, f, hi, least)
-    elif chain.k == 2.0:
+    elif k == 2.0:
         _square(chain, y, f, hi, least)
-    elif chain.k == 3.0:
+    elif k == 3.0:
         _cube(chain, y, f, hi, least)
     else:
         _power(chain, y, f, hi, least)
+    if chain.drive.driven:
+        beads.power[1, s] = v[0] * f[1]
 
 
 @part
-def power(chain: Chain, d: float) -> float:
-    """Return the power [d]_+^k of a compression d, 0 for an open contact, d < 0."""
-    d = max(d, 0.0)
-    return float(d * np.sqrt(d) if chain.k == 1.5 else d**chain.k)
-
-
-@part
-def stiffness(chain: Chain, d: float, rising: bool) -> float:
-    """Return F′(d) of a contact of unit stiffness, k [d]_+^{k-1} for a power law.
-
-    rising : True for the one-sided limit from d > 0 at d = 0; otherwise F′ is 0 there.
-    """
+def stiffness(chain: Chain, d: float) -> float:
+    """Return F′(d) of a contact of unit stiffness, k [d]_+^{k-1} for a power law."""
     if chain.generated:
         return float(call(chain.slope, d) if chain.pulls or d > 0.0 else 0.0)
-    if d > 0.0 or (d == 0.0 and rising):
-        return float(chain.k * (np.sqrt(d) if chain.k == 1.5 else d ** (chain.k - 1.0)))
-    return 0.0
-
-
-@part
-def relative_acceleration(force: Array, inverse: Array, i: int) -> float:
-    """Return the acceleration of bead i minus that of bead i + 1, from the forces of a stage."""
-    behind, ahead = force[i] - force[i + 1], force[i + 1] - force[i + 2]
-    return float(behind * inverse[i] - ahead * inverse[i + 1])
+    if not d > 0.0:
+        return 0.0
+    return float(chain.k * (np.sqrt(d) if chain.k == 1.5 else d ** (chain.k - 1.0)))
 
 
 @part

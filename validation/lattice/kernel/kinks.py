@@ -1,31 +1,91 @@
-"""Kinks of the force, where a contact opens or closes in a step or near it, and their integrals.
+"""Integrals of a contact's force over a step in which the contact opens or closes.
 
-F = A δ^k has no derivative of order k + 1 at a kink. Over the step, x = 0 … 1, the compression δ is
-approximated by the quintic p(x) with the values of δ, δ' and δ'' at both ends. If p has exactly one
-root r near the step, p = (x - r) q(x), and the integral of p_+^k = |x - r|^k |q|^k over the closed
-side is computed by Gauss–Jacobi quadrature, to which the kink costs no accuracy.
+F has no derivative of order k + 1 where a contact opens or closes, and a quadrature that does not
+know the place errs by O(h^{k+1}). Over the step, x = 0 … 1, the compression is close to the quintic
+p(x) with the values of δ, δ' and δ'' at both ends. `integrals` integrates F(p, p') over the
+intervals in which the contact pushes, by Gauss's rule in u with x = r + (e - r) u^q. There r is the
+root of p at the interval's one end, e its other end, and q makes F smooth in u.
+
+A damped contact that is pulled open can stop pushing before it parts: the force tells, not δ.
 """
 
 from __future__ import annotations
 
+import math
+
+import numpy as np
+
 from lwa.base.arrays import Array
-from validation.lattice.kernel.arrays import Beads, Chain
-from validation.lattice.kernel.compiled import part, summed
-from validation.lattice.kernel.force import power, relative_acceleration
+from validation.lattice.kernel.arrays import Chain, Law
+from validation.lattice.kernel.compiled import call, inner, part, summed
 
 Quintic = tuple[float, float, float, float, float, float]
-"""Coefficients of p; for a kink the root r, then the five coefficients of q."""
+"""Coefficients c0 … c5 of p."""
 
-NEAR = 0.5  # a kink is near if δ at one end of a step is less than NEAR times δ at the other end
-FAR = 1.0  # greatest distance of a kink from the step, in steps
-_EVEN = 0.2  # least q over the step divided by the greatest
-NONE: Quintic = (float("nan"), 0.0, 0.0, 0.0, 0.0, 0.0)
+POINTS = 10  # of the rule, and places that are looked at together
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(POINTS)
+_U, _W = (1 + _NODES) / 2, _WEIGHTS / 2
+NEAR = 0.3  # a kink is near if δ at one end of a step is less than NEAR times δ at the other end
+_FAR = 1.0  # greatest distance of a root from an interval that it shapes, in steps
+_PLACES = 8  # parts of a step at whose ends a contact is looked at
 
 
 @part
-def quintic(c: Quintic, x: float) -> float:
-    """Return the value at x of the quintic with coefficients c."""
-    return c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))))
+def elastic(law: Law, d: float) -> float:
+    """Return the elastic force A F(d) of a contact at a compression d ≥ 0."""
+    if law.generated:
+        return float(law.A * call(law.force, d))
+    power = d * np.sqrt(d) if law.k == 1.5 else (d if law.k == 1.0 else d**law.k)
+    return float(law.A * power)
+
+
+@part
+def drag(law: Law, d: float) -> float:
+    """Return the factor c d^p of the rate dδ/dt in the damping force, at a compression d ≥ 0."""
+    if law.p == 0.0:
+        return law.c
+    return float(law.c * (np.sqrt(d) if law.p == 0.5 else d**law.p))
+
+
+@part
+def push(law: Law, d: float, rate: float) -> float:
+    """Return the force of a contact at a compression d and a rate dδ/dt; contacts do not pull."""
+    if not d > 0.0:
+        return 0.0
+    force = elastic(law, d)
+    return max(force + drag(law, d) * rate, 0.0) if law.damped else force
+
+
+@part
+def pushes(law: Law, d: float, rate: float) -> bool:
+    """Return True if a contact has a force at a compression d and a rate dδ/dt."""
+    return d > 0.0 and (not law.damped or elastic(law, d) + drag(law, d) * rate > 0.0)
+
+
+@part
+def stored(law: Law, d: float) -> float:
+    """Return the elastic energy of a contact at a compression d; 0 for d ≤ 0."""
+    if not d > 0.0:
+        return 0.0
+    if law.generated:
+        return float(law.A * call(law.energy, d))
+    return elastic(law, d) * d / (law.k + 1.0)
+
+
+@part
+def law_of(chain: Chain, i: int) -> Law:
+    """Return the law of contact i."""
+    return Law(
+        chain.A[i], chain.c[i], chain.k, chain.p, chain.q,
+        chain.damped and chain.c[i] > 0.0, chain.generated, chain.force, chain.energy,
+    )  # fmt: skip
+
+
+@part
+def value_and_slope(c: Quintic, x: float) -> tuple[float, float]:
+    """Return p(x) and p'(x)."""
+    p = c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))))
+    return p, c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5])))
 
 
 @part
@@ -38,97 +98,197 @@ def fitted_quintic(d: float, v: float, a: float, end: float, end_v: float, end_a
 
 
 @part
-def fitted_compression(
-    chain: Chain, beads: Beads, h: float, last: int, i: int
-) -> tuple[Quintic, float]:
-    """Return the quintic fit p of contact i's compression over a step, and p(1).
+def near_kink(
+    before: float, after: float, rise: float, end_rise: float, strong: bool, changed: bool
+) -> bool:
+    """Return True if a contact opens or closes in a step, or nearly, with a force that matters.
 
-    last : the stage at the step's end.
+    before, after : compressions at the step's ends. rise, end_rise : their rates times the step.
+    strong : True if the force at one end matters. changed : True if the contact pushes at one end
+    and does not at the other. A contact that is open at both ends can close in between where the
+    tangents at the ends meet at δ > 0.
     """
-    y, v, force, inverse = beads.y, beads.v, beads.force, chain.inverse
-    d = chain.rest[i] + y[i] - y[i + 1]
-    end = chain.rest[i] + beads.next_y[i] - beads.next_y[i + 1]
-    speed, later = h * (v[i] - v[i + 1]), h * (beads.next_v[i] - beads.next_v[i + 1])
-    a = h * h * relative_acceleration(force[0], inverse, i)
-    end_a = h * h * relative_acceleration(force[last], inverse, i)
-    if i == 0:
-        a, end_a = a + h * h * beads.given[0], end_a + h * h * beads.given[1]
-    return fitted_quintic(d, speed, a, end, later, end_a), end
+    most = max(before, after)
+    near = (most > 0.0) & (min(before, after) < NEAR * most)
+    meeting = (after - end_rise) * rise - before * end_rise > 0.0
+    unseen = (most <= 0.0) & (rise > 0.0) & (end_rise < 0.0) & meeting
+    return (strong & (near | changed)) | unseen
 
 
 @part
-def summit(c: Quintic) -> float:
-    """Return the place of the greatest value of a quintic that rises at 0 and falls at 1."""
-    low, high = 0.0, 1.0
-    for _ in range(30):
-        x = 0.5 * (low + high)
-        slope = c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5])))
-        low, high = (x, high) if slope > 0.0 else (low, x)
-    return low
+def _margin(law: Law, c: Quintic, h: float, x: float, closing: bool) -> float:
+    """Return a continuous function of x which is positive where the contact pushes.
+
+    closing : True for a contact that closes; otherwise the contact ends to push, or pushes again.
+    """
+    p, slope = value_and_slope(c, x)
+    if closing or not law.damped:
+        return p
+    return (elastic(law, p) / drag(law, p) if p > 0.0 else 0.0) + slope / h
 
 
 @part
-def meeting(before: float, after: float, nearing: float, parting: float) -> bool:
-    """Return True if a contact that is open at both ends of a step may close and open within it.
-
-    before, after : compressions. nearing, parting : rates at which the beads approach each other at
-    the beginning and part at the end, times the step. The tangents then meet at δ > 0.
-    """
-    above = before * parting + (after + parting) * nearing > 0.0
-    return (max(before, after) <= 0.0) & (nearing > 0.0) & (parting > 0.0) & above
-
-
-@part
-def kink(c: Quintic, end: float) -> Quintic:
-    """Return the root r of a quintic p and the coefficients of q in p = (x - r) q(x).
-
-    c : coefficients of p. end : p(1). Returns `NONE` if p has no root within `FAR` steps of the
-    step, or if q varies too much for the quadrature.
-    """
-    rising = end > c[0]
-    low, high, x = 0.0, 1.0, c[0] / (c[0] - end)
-    if c[0] * end >= 0.0:
-        low, high = (-FAR, 0.0) if rising else (1.0, 1.0 + FAR)
-        if quintic(c, low if rising else high) >= 0.0:
-            return NONE
-    for _ in range(30):  # Newton's method, or bisection where it leaves the interval
-        p = quintic(c, x)
-        slope = c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5])))
-        low, high = (low, x) if (p > 0.0) == rising else (x, high)
-        guess = x - p / slope
-        guess = guess if low < guess < high else (low + high) / 2
-        x, moved = guess, abs(guess - x)
-        if moved < 1e-9:  # the remaining error is of the order of its square
+def _change(law: Law, c: Quintic, h: float, a: float, b: float, closing: bool) -> float:
+    """Return the place between a and b at which the contact begins or ends to push."""
+    # A contact that pushes again before it has parted does so by its force.
+    closing = closing and not value_and_slope(c, a)[0] > 0.0
+    left, right = _margin(law, c, h, a, closing), _margin(law, c, h, b, closing)
+    for _ in range(60):  # the Illinois variant of the rule of false position
+        x = b - right * (b - a) / (right - left) if right != left else 0.5 * (a + b)
+        middle = _margin(law, c, h, x, closing)
+        if middle * right < 0.0:
+            a, left = b, right
+        else:
+            left *= 0.5
+        moved, b, right = abs(x - b), x, middle
+        if moved < 1e-13 or middle == 0.0:  # the last step leaves the square of it, or less
             break
-    # Horner's scheme gives the quotient q of p and x - r.
-    q3 = c[4] + x * c[5]
-    q2 = c[3] + x * q3
-    q1 = c[2] + x * q2
-    q0 = c[1] + x * q1
-    sign = 1.0 if rising else -1.0
-    start, finish = sign * q0, sign * (q0 + q1 + q2 + q3 + c[5])
-    root = sign * (q0 + x * (q1 + x * (q2 + x * (q3 + x * c[5]))))
-    if not min(start, finish, root) >= _EVEN * max(start, finish, root):
-        return NONE
-    return x, q0, q1, q2, q3, c[5]
+    return b
+
+
+@part
+def _root(c: Quintic, x: float, side: float) -> float:
+    """Return the root of p near an end x of an interval, on its outer side (±1); NaN without one.
+
+    The root shapes the substitution alone: two steps of Newton's method are enough.
+    """
+    p, slope = value_and_slope(c, x)
+    if not abs(p) < 1.5 * _FAR * abs(slope) or (
+        side * p * slope > 0.0 and abs(p) > 1e-9 * abs(slope)
+    ):
+        return math.nan
+    r = x - p / slope
+    p, slope = value_and_slope(c, r)
+    r = r - p / slope if slope != 0.0 else math.nan
+    off = side * (r - x)
+    if off > -1e-9 and off < _FAR:
+        return x if off < 0.0 else r
+    return math.nan
+
+
+Integrals = tuple[float, float, float, float]
+"""∫ F, ∫ (1 - x) F, ∫ (1 - x)²/2 F and ∫ F p' over x."""
 
 
 @summed
-def kink_integrals(chain: Chain, points: Array, p: Quintic, z: float) -> tuple[float, float]:
-    """Return ∫ (z - x) p_+^k dx and ∫ p_+^k dx from the root r of p to z, for p = (x - r) q(x).
+def forces_along(law: Law, c: Quintic, h: float, x: Array, f: Array) -> None:
+    """Compute the forces at `POINTS` places x of a contact with the compression p; they go to f."""
+    if law.k == 1.5 and not law.damped and not law.generated:
+        for m in range(POINTS):
+            d = max(value_and_slope(c, x[m])[0], 0.0)
+            f[m] = law.A * (d * np.sqrt(d))
+    else:
+        for m in range(POINTS):
+            p, slope = value_and_slope(c, x[m])
+            f[m] = push(law, p, slope / h)
 
-    p : r and the coefficients of q; both integrals of `NONE` are 0. points : nodes and weights of
-    ∫ u^k f(u) du from 0 to 1. With x = r + (z - r) u, p_+^k is u^k times a smooth function.
+
+@summed
+def _piece(
+    law: Law, c: Quintic, h: float, near: float, far: float, root: float, points: Array
+) -> Integrals:
+    """Return the integrals between near and far; root : the root on the side of near, or NaN."""
+    x, w, f = points[0], points[1], points[2]
+    q, r = (1.0, near) if math.isnan(root) else (law.q, root)
+    span = far - r
+    start = 0.0 if near == r else ((near - r) / span) ** (1.0 / q)
+    scale = abs(span) * (1.0 - start)
+    for m in range(POINTS):
+        u = start + (1.0 - start) * _U[m]
+        pace = 1.0 if q == 1.0 else (2.0 * u if q == 2.0 else 4.0 * u * u * u)
+        x[m], w[m] = r + span * u * pace / q, scale * _W[m] * pace
+    forces_along(law, c, h, x, f)
+    once = twice = third = work = 0.0
+    for m in range(POINTS):
+        force, left = w[m] * f[m], 1.0 - x[m]
+        once += force
+        twice += left * force
+        third += 0.5 * left * left * force
+        work += value_and_slope(c, x[m])[1] * force
+    return once, twice, third, work
+
+
+@inner
+def _closed(law: Law, c: Quintic, h: float, a: float, b: float, points: Array) -> Integrals:
+    """Return the integrals over an interval in which the contact pushes."""
+    low = a if a > 0.0 and not law.damped else _root(c, a, -1.0)
+    high = b if b < 1.0 and not law.damped else _root(c, b, 1.0)
+    if math.isnan(high):
+        return _piece(law, c, h, a, b, low, points)
+    if math.isnan(low):
+        return _piece(law, c, h, b, a, high, points)
+    middle = 0.5 * (a + b)
+    one, two = _piece(law, c, h, a, middle, low, points), _piece(law, c, h, b, middle, high, points)
+    return one[0] + two[0], one[1] + two[1], one[2] + two[2], one[3] + two[3]
+
+
+@part
+def _summit(c: Quintic, a: float, b: float) -> float:
+    """Return the place of the maximum of p between a and b, where p first rises and then falls."""
+    for _ in range(30):
+        x = 0.5 * (a + b)
+        a, b = (x, b) if value_and_slope(c, x)[1] > 0.0 else (a, x)
+    return 0.5 * (a + b)
+
+
+@part
+def _at_most_one_root(c: Quintic) -> bool:
+    """Return True if p has at most one root in the step, by the signs of Bernstein's coefficients.
+
+    The number of roots is at most the number of sign changes (Descartes' rule).
     """
-    side = z - p[0]
-    if not side * p[1] > 0.0:  # open from r to z, or `NONE`
-        return 0.0, 0.0
-    once = twice = 0.0
-    for m in range(points.shape[1]):
-        u = points[0, m]
-        x = p[0] + side * u
-        q = p[1] + x * (p[2] + x * (p[3] + x * (p[4] + x * p[5])))
-        f = points[1, m] * power(chain, side * q)
-        once += f
-        twice += f * (1.0 - u)
-    return side * side * twice, side * once
+    b1, b2 = c[0] + c[1] / 5, c[0] + (4 * c[1] + c[2]) / 10
+    b3 = c[0] + (6 * c[1] + 3 * c[2] + c[3]) / 10
+    b4 = c[0] + (4 * c[1] + 3 * c[2] + 2 * c[3] + c[4]) / 5
+    b5 = c[0] + c[1] + c[2] + c[3] + c[4] + c[5]
+    s0, s1, s2, s3, s4, s5 = c[0] > 0.0, b1 > 0.0, b2 > 0.0, b3 > 0.0, b4 > 0.0, b5 > 0.0
+    return (s0 != s1) + (s1 != s2) + (s2 != s3) + (s3 != s4) + (s4 != s5) < 2
+
+
+@inner
+def integrals(
+    law: Law, c: Quintic, h: float, points: Array
+) -> tuple[float, float, float, float, float]:
+    """Return ∫ F, ∫ (1 - x) F, ∫ (1 - x)²/2 F and ∫ F p' over a step, and the greatest p.
+
+    F(p, p'/h) is the force of a contact whose compression is the quintic with coefficients c.
+    """
+    once = twice = third = work = start = 0.0
+    before, rise = c[0], c[1]
+    pushed = pushes(law, before, rise / h)
+    top = before
+    places = 1 if not law.damped and _at_most_one_root(c) else _PLACES
+    for m in range(1, places + 1):
+        low, high = (m - 1) / places, m / places
+        p, slope = value_and_slope(c, high)
+        a = b = 0.0  # an interval in which the contact pushes, and that ends by now
+        now = pushes(law, p, slope / h)
+        if now and not pushed:
+            start = _change(law, c, h, low, high, True)
+        elif pushed and not now:
+            a, b = start, _change(law, c, h, low, high, False)
+        elif not now and before <= 0.0 and rise > 0.0 and p > 0.0:
+            # A damped contact closes, and no longer pushes where it is looked at.
+            a = _change(law, c, h, low, high, True)
+            b = _change(law, c, h, a, high, False)
+        elif not now and before <= 0.0 and rise > 0.0 and slope < 0.0:
+            peak = _summit(c, low, high)
+            deepest, _ = value_and_slope(c, peak)
+            if deepest > 0.0:  # the contact closes and opens again between two places
+                top = max(top, deepest)
+                a = _change(law, c, h, low, peak, True)
+                b = _change(law, c, h, peak, high, False)
+        if now and m == places:
+            a, b = start, 1.0
+        if b > a:
+            part_of = _closed(law, c, h, a, b, points)
+            once, twice = once + part_of[0], twice + part_of[1]
+            third, work = third + part_of[2], work + part_of[3]
+        pushed, before, rise, top = now, p, slope, max(top, p)
+    return once, twice, third, work, top
+
+
+@part
+def closing_place(law: Law, c: Quintic, h: float) -> float:
+    """Return the place of a step at which a contact, open before, closes."""
+    return _change(law, c, h, 0.0, 1.0, True)

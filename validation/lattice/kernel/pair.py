@@ -1,9 +1,15 @@
-"""A step of an embedded, adaptive Runge–Kutta–Nyström pair, corrected for kinks.
+"""A step of an embedded Runge–Kutta–Nyström pair, corrected for kinks.
 
-b, b', e, e' are the pair's coefficients (`validation.lattice.schemes`). h is the step, and
-x = 0 … 1 the time within the step. p is a quintic close to a contact's compression, p_+ = max(p, 0)
-(`validation.lattice.kernel.kinks`). The impulse of a contact in a step is ∫ F dt, its moment
-h² ∫ (1 - x) F dx: they change the velocities and the displacements of its two beads.
+h is the step, and x = 0 … 1 the time within the step. The impulse of a contact in a step is
+h ∫ F dx, its moment h² ∫ (1 - x) F dx: they change the velocities and the displacements of its two
+beads. At a contact that opens or closes, the pair's quadratures of F(p, p'/h), with a quintic p
+close to the contact's compression, are replaced by accurate integrals
+(`validation.lattice.kernel.kinks`).
+
+The stages lack these corrections: the forces of the contact and its neighbours are computed at
+displacements that err by the moment so far, and at velocities that err by the impulse. Over a step
+this changes their impulses by stiffness × h³ ∫ (1 - x)²/2 F dx, and by damping × moment. The
+neighbours are corrected for it once more, and this second correction counts as error.
 """
 
 from __future__ import annotations
@@ -12,21 +18,32 @@ import math
 from typing import Any
 
 from lwa.base.arrays import Array
-from validation.lattice.kernel.arrays import WIDTH, Beads, Chain, Plan, Tableau
-from validation.lattice.kernel.compiled import ONE, THREE, TWO, ZERO, index, part, summed
-from validation.lattice.kernel.force import contact_forces, drive_motion, interval, power
+from validation.lattice.kernel.arrays import WIDTH, Beads, Chain, Pair, Plan
+from validation.lattice.kernel.compiled import ONE, THREE, TWO, ZERO, index, inner, part, summed
+from validation.lattice.kernel.force import (
+    contact_forces,
+    drive_motion,
+    interval,
+    stiffness,
+)
 from validation.lattice.kernel.kinks import (
-    NEAR,
+    POINTS,
     Quintic,
-    fitted_compression,
-    kink,
-    kink_integrals,
-    meeting,
-    quintic,
-    summit,
+    closing_place,
+    drag,
+    elastic,
+    fitted_quintic,
+    forces_along,
+    integrals,
+    law_of,
+    near_kink,
+    push,
+    stored,
+    value_and_slope,
 )
 
 _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the tolerance
+_JUMP = 0.25  # least effect of a jump at which a step ends, in units of the tolerance
 # Step-size control of Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.4.
 # An error scales as h^{lower + 1}. The next step is _SAFETY times the step with an error equal to
 # the tolerance, as a rejected step costs as much as an accepted one. _GROWTH bounds the effect of
@@ -37,7 +54,7 @@ _SAFETY, _GROWTH, _SHRINKAGE = 0.9, 5.0, 0.1
 _HOPELESS = 1e9  # in units of the tolerance: the power says nothing of such an error
 
 
-@part
+@inner
 def _add_up(
     sums: Array, q: Any, force: Array, row: Array, scale: float, stages: int, hi: int
 ) -> None:
@@ -54,7 +71,7 @@ def _add_up(
 
 
 @summed
-def squared_error(sums: Array, inverse: Array, hi: int) -> float:
+def _squared_error(sums: Array, inverse: Array, hi: int) -> float:
     """Return the sum of squares of the beads' errors, in units of the tolerances."""
     total = 0.0
     for i in range(index(hi)):
@@ -64,157 +81,213 @@ def squared_error(sums: Array, inverse: Array, hi: int) -> float:
     return total
 
 
-@part
-def _attempt(chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int) -> float:
-    """Try a step of the beads 0 … hi-1 at time t; return the error in units of the tolerance."""
-    stages = len(plan.scheme.nodes)
-    y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
-    inverse, rest, force, sums = chain.inverse, chain.rest, beads.force, beads.sums
-    rows, ends, nodes = plan.scheme.rows, plan.scheme.ends, plan.scheme.nodes
-    drive, n, speed = chain.drive, interval(chain.drive, t + h / 2), 0.0
-    for s in range(1, stages):
-        _add_up(sums, ZERO, force, rows[s], h * h, s, hi)
-        ch = nodes[s] * h
-        behind = 0.0
-        for i in range(index(hi)):
-            ahead = sums[ZERO, i + ONE]
-            next_y[i] = y[i] + ch * v[i] + (behind - ahead) * inverse[i]
-            behind = ahead
-        if drive.driven:
-            next_y[0], speed, beads.given[1] = drive_motion(drive, n, t + ch)
-        contact_forces(chain, beads, plan, next_y, index(s), hi)
-        beads.power[1, s] = speed * force[s, 1]
-    _add_up(sums, ONE, force, ends[0], h, stages, hi)
-    _add_up(sums, TWO, force, ends[1], h * h / plan.y, stages, hi)
-    _add_up(sums, THREE, force, ends[2], h / plan.v, stages, hi)
-    for i in range(index(hi)):
-        next_v[i] = v[i] + (sums[ONE, i] - sums[ONE, i + ONE]) * inverse[i]
-    if drive.driven:
-        next_v[0] = speed
-    beads.given[2] = beads.given[3] = 0.0
-    # Mark contacts that open or close within the step or near it, with a force that matters.
-    # A compression δ changes a velocity by at most h A δ^k/m in a step.
-    least = (_SLIGHT * plan.v / (h * plan.quickest)) ** (1.0 / chain.k)
-    near, share = 0, 1.0
-    for i in range(index(hi)):
-        before = rest[i] + y[i] - y[i + ONE]
-        after = rest[i] + next_y[i] - next_y[i + ONE]
-        most = max(before, after)
-        kinked = (most > least) & (min(before, after) < NEAR * most)
-        sums[ZERO, i + ONE] = most if kinked else 0.0
-        near += 1 if kinked else 0
-    if plan.accelerated:
-        for i in range(index(hi)):
-            before = rest[i] + y[i] - y[i + ONE]
-            after = rest[i] + next_y[i] - next_y[i + ONE]
-            nearing, parting = h * (v[i] - v[i + ONE]), h * (next_v[i + ONE] - next_v[i])
-            hidden = meeting(before, after, nearing, parting)
-            sums[ZERO, i + ONE] = -1.0 if hidden else sums[ZERO, i + ONE]
-            near += 1 if hidden else 0
-    if near > 0:
-        for i in range(hi):
-            if sums[0, i + 1] > 0.0 and plan.scheme.points.shape[1] > 0:
-                _correct_contact(chain, beads, plan, h, i)
-            elif sums[0, i + 1] < 0.0 and chain.A[i] > 0.0:
-                share = min(share, _hidden_contact(chain, beads, h, stages - 1, i, least))
-    missed = (h * _integral(ends[2], beads.power[1]) - beads.given[3]) / plan.energy
-    error = math.sqrt(squared_error(sums, inverse, hi) + missed * missed)
-    # The error of which the rule of the next step makes ``share`` of this step.
-    return max(error, (_SAFETY / share) ** (plan.scheme.lower + 1.0)) if share < 1.0 else error
-
-
-@summed
-def _hidden_contact(chain: Chain, beads: Beads, h: float, last: int, i: int, least: float) -> float:
-    """Return the share of a step after which contact i, open at both ends, is compressed most.
-
-    Returns 1 if the quintic fit of its compression nowhere exceeds ``least``. No stage need meet
-    such a contact, so that the error does not tell: the step has to be shortened, to at most its
-    half.
-    """
-    c, _ = fitted_compression(chain, beads, h, last, i)
-    x = summit(c)
-    return min(x, 0.5) if quintic(c, x) > least else 1.0
-
-
 @summed
 def _integral(row: Array, power: Array) -> float:
     """Return Σ row[s] power[s] over the stages s."""
     total = 0.0
-    for s in range(len(row)):
+    for s in range(len(power)):
         total += row[s] * power[s]
     return total
 
 
-@part
-def _correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -> None:
-    """Correct a step for the embedded pair's error at contact i, which opens or closes.
+@inner
+def _fitted(chain: Chain, beads: Beads, h: float, last: int, i: int, opened: bool) -> Quintic:
+    """Return the quintic fit of contact i's compression over a step.
 
-    Replaces the pair's integrals of A p_+^k by accurate ones; the pair's integral of the remaining
-    force F - A p_+^k, which is smoother, remains.
+    last : the stage at the step's end. opened : True for a fit without the contact's own force at
+    the end.
     """
-    inverse, scheme = chain.inverse, plan.scheme
-    p, end = fitted_compression(chain, beads, h, len(scheme.nodes) - 1, i)
-    factored = kink(p, end)
-    if math.isnan(factored[0]):
-        return
-    # From the root to the step's end less from the root to its start; ∫ (1 - x) = ∫ (0 - x) + ∫ 1.
-    twice, once = kink_integrals(chain, scheme.points, factored, 1.0)
-    start_twice, start_once = kink_integrals(chain, scheme.points, factored, 0.0)
-    pair_twice, pair_once, error, error_once = _pair_sums(chain, scheme, p)
-    impulse = chain.A[i] * h * (once - start_once - pair_once)
-    moment = chain.A[i] * h * h * (twice - start_twice - start_once - pair_twice)
-    # The correction moves the contact by e ~ u^{k+2} from the root on, so that p is not quite its
-    # compression: where ∫ k A p^{k-1} e counts, the pair's own estimate is the better judge.
-    most = max(p[0], end)
-    stiff = chain.k * chain.A[i] * power(chain, most) / most
-    apart = (inverse[i] + inverse[i + 1]) * abs(moment)
-    if h * stiff * apart * max(inverse[i], inverse[i + 1]) > (2.0 * chain.k + 2.0) * plan.v:
-        return
+    y, v, f, inverse, rest = beads.y, beads.v, beads.force, chain.inverse, chain.rest
+    end = rest[i] + beads.next_y[i] - beads.next_y[i + 1]
+    end_rate = beads.next_v[i] - beads.next_v[i + 1]
+    own = (0.0 if opened else push(law_of(chain, i), end, end_rate)) - chain.load[i]
+    a = (f[0, i] - f[0, i + 1]) * inverse[i] - (f[0, i + 1] - f[0, i + 2]) * inverse[i + 1]
+    end_a = (f[last, i] - own) * inverse[i] - (own - f[last, i + 2]) * inverse[i + 1]
+    if i == 0:
+        a, end_a = a + beads.given[0], end_a + beads.given[1]
+    d, rate = rest[i] + y[i] - y[i + 1], v[i] - v[i + 1]
+    return fitted_quintic(d, h * rate, h * h * a, end, h * end_rate, h * h * end_a)
+
+
+@summed
+def _sums(pair: Pair, force: Array) -> tuple[float, float, float, float, float]:
+    """Return the pair's ∫ F, ∫ (1 - x) F, ∫ (1 - x)²/2 F, and its errors of moment and impulse."""
+    once = twice = third = error = error_once = 0.0
+    impulses, moments = pair.impulses[-1], pair.moments[-1]
+    for s in range(POINTS):
+        f = force[s]
+        once += impulses[s] * f
+        twice += moments[s] * f
+        third += pair.thirds[s] * f
+        error += pair.errors[0, s] * f
+        error_once += pair.errors[1, s] * f
+    return once, twice, third, error, error_once
+
+
+@part
+def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -> None:
+    """Correct a step for the pair's error at contact i, which opens or closes."""
+    pair, last, inverse = plan.scheme, len(plan.scheme.moments) - 1, chain.inverse
+    law, p = law_of(chain, i), _fitted(chain, beads, h, last, i, False)
+    once, twice, third, work, top = integrals(law, p, h, beads.points)
+    heat = work - (stored(law, p[0] + p[1] + p[2] + p[3] + p[4] + p[5]) - stored(law, p[0]))
+    force, error_heat = beads.points[2], 0.0
+    forces_along(law, p, h, pair.nodes, force)
+    pair_once, pair_twice, pair_third, error, error_once = _sums(pair, force)
+    once, twice, third = once - pair_once, twice - pair_twice, third - pair_third
+    if chain.damped:
+        for s in range(last + 1):
+            d, slope = value_and_slope(p, pair.nodes[s])
+            lost = (force[s] - (elastic(law, d) if d > 0.0 else 0.0)) * slope
+            heat -= pair.impulses[last, s] * lost
+            error_heat += pair.errors[1, s] * lost
+    impulse, moment = h * once, h * h * twice
     beads.next_v[i] -= impulse * inverse[i]
     beads.next_v[i + 1] += impulse * inverse[i + 1]
     beads.next_y[i] -= moment * inverse[i]
     beads.next_y[i + 1] += moment * inverse[i + 1]
-    if i == 0:  # ∫ ΔF v dt with v = next_v - (1 - x) h a
-        beads.given[2] = impulse * beads.next_v[0] - moment * beads.given[1]
-        beads.given[3] = chain.A[0] * h * error_once * beads.next_v[0]
-    beads.sums[2, i + 1] -= chain.A[i] * h * h * error / plan.y
-    beads.sums[3, i + 1] -= chain.A[i] * h * error_once / plan.v
-
-
-@summed
-def _pair_sums(chain: Chain, scheme: Tableau, p: Quintic) -> tuple[float, float, float, float]:
-    """Return the embedded pair's ∫ (1 - x) p_+^k dx and ∫ p_+^k dx over a step, and both errors.
-
-    The four numbers are sums over the stages with the coefficients b, b', e and e'.
-    """
-    nodes, last = scheme.nodes, len(scheme.nodes) - 1
-    once = twice = error = error_once = 0.0
-    for s in range(last + 1):
-        f = power(chain, quintic(p, nodes[s]))
-        once += scheme.ends[0, s] * f
-        twice += scheme.rows[last, s] * f
-        error += scheme.ends[1, s] * f
-        error_once += scheme.ends[2, s] * f
-    return twice, once, error, error_once
+    beads.sums[2, i + 1] -= h * h * error / plan.y
+    beads.sums[3, i + 1] -= h * error_once / plan.v
+    if chain.damped:
+        beads.kinks[0] += heat
+        beads.kinks[1] += error_heat
+    if i == 0 and chain.drive.driven:
+        # ∫ ΔF v dt with v = next_v - (1 - x) h a + (1 - x)²/2 h² da/dt, a at the step's end.
+        change = h * h * third * (beads.given[1] - beads.given[0])
+        beads.kinks[2] = impulse * beads.next_v[0] - moment * beads.given[1] + change
+        beads.kinks[3] = h * error_once * beads.next_v[0]
+    for n in range(max(0, i - 1), i + 2):
+        both = inverse[i] + inverse[i + 1] if n == i else -inverse[max(i, n)]
+        d = top if n == i else chain.rest[n] + beads.next_y[n] - beads.next_y[n + 1]
+        closed = n == i or beads.force[last, n + 1] + chain.load[n] > 0.0
+        if d > 0.0 and chain.A[n] > 0.0 and closed:
+            more = -chain.A[n] * stiffness(chain, d) * h * h * h * third * both
+            if chain.damped:
+                more -= drag(law_of(chain, n), d) * moment * both
+            if n != i:
+                beads.next_v[n] -= more * inverse[n]
+                beads.next_v[n + 1] += more * inverse[n + 1]
+            missed = more / plan.v
+            beads.sums[3, n + 1] += math.copysign(missed, beads.sums[3, n + 1])
 
 
 @part
-def accepted(chain: Chain, beads: Beads, plan: Plan, now: Any, h: float, hi: int) -> bool:
-    """Try a step, set the next step from the error, and return True if the step is accepted."""
-    error = _attempt(chain, beads, plan, now.t, h, hi)
-    root = -1.0 / (plan.scheme.lower + 1)
-    if not error <= 1.0:  # NaN included
-        hopeless = not error < _HOPELESS
-        now.h = h * (_SHRINKAGE if hopeless else max(_SHRINKAGE, _SAFETY * error**root))
-        now.planned = 0.0
-        if hopeless:
-            beads.force[1:] = 0.0  # overflows must not last
-        return False
+def place_of_jump(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> tuple[float, int]:
+    """Return the share of a step up to just behind the first closing whose jump matters, or 1.
+
+    Contacts that close at the end of the step are counted, and marked in row 4 of ``beads.sums``:
+    the step sees them open throughout.
+    """
+    place, count, last = 1.0, 0, len(plan.scheme.moments) - 1
+    for i in range(hi):
+        before = chain.rest[i] + beads.y[i] - beads.y[i + 1]
+        after = chain.rest[i] + beads.next_y[i] - beads.next_y[i + 1]
+        beads.sums[4, i + 1] = 0.0
+        if before <= 0.0 and after > 0.0 and chain.A[i] > 0.0:
+            p = _fitted(chain, beads, h, last, i, True)
+            x = closing_place(law_of(chain, i), p, h)
+            jump = chain.c[i] * abs(value_and_slope(p, x)[1])  # h times the jump of the force
+            jump *= max(chain.inverse[i], chain.inverse[i + 1])
+            behind = 2.0 * _JUMP * plan.v / (jump + 1e-300)  # share of a step in which it counts
+            if 1.0 - x > behind:
+                # In a step that errs the fit says little: the place is looked for once more.
+                place = min(place, max(x + 0.5 * behind, _SHRINKAGE))
+            else:
+                beads.sums[4, i + 1] = 1.0
+                count += 1
+    if place == 1.0 and count > 0:
+        for i in range(hi):
+            if beads.sums[4, i + 1] > 0.0:
+                beads.force[last, i + 1] = -chain.load[i]
+    return place, count
+
+
+@part
+def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int:
+    """Estimate a step's errors, and mark contacts with kinks, with a force that matters.
+
+    Returns the number of marks, which are in row 0 of ``beads.sums``.
+    """
+    pair, last = plan.scheme, len(plan.scheme.moments) - 1
+    beads.kinks[:] = 0.0
+    _add_up(beads.sums, TWO, beads.force, pair.errors[0], h * h / plan.y, last + 1, hi)
+    _add_up(beads.sums, THREE, beads.force, pair.errors[1], h / plan.v, last + 1, hi)
+    if chain.pulls:
+        return 0
+    y, v, next_y, next_v, rest = beads.y, beads.v, beads.next_y, beads.next_v, chain.rest
+    marks, jumped, load = beads.sums[0], beads.sums[4], chain.load
+    start, end = beads.force[0], beads.force[last]
+    least = _SLIGHT * plan.v * plan.lightest / h  # a force F changes a velocity by h F/m
+    count = 0
+    for i in range(index(hi)):
+        before, after = rest[i] + y[i] - y[i + ONE], rest[i] + next_y[i] - next_y[i + ONE]
+        rise, end_rise = h * (v[i] - v[i + ONE]), h * (next_v[i] - next_v[i + ONE])
+        first, then = start[i + ONE] + load[i], end[i + ONE] + load[i]
+        changed = chain.damped & ((first > 0.0) != (then > 0.0))
+        strong = (max(first, then) > least) | (chain.damped & ((before > 0.0) != (after > 0.0)))
+        kink = near_kink(before, after, rise, end_rise, strong, changed)
+        mark = kink & (chain.A[i] > 0.0) & (jumped[i + ONE] == 0.0)
+        marks[i + ONE] = 1.0 if mark else 0.0
+        count += 1 if mark else 0
+    return count
+
+
+@part
+def evaluate_stages(chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int) -> None:
+    """Compute the forces at all stages of a step h of the beads 0 … hi-1 at time t."""
+    pair, last = plan.scheme, len(plan.scheme.moments) - 1
+    y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
+    inverse, force, sums = chain.inverse, beads.force, beads.sums
+    drive, n = chain.drive, interval(chain.drive, t + h / 2)
+    for s in range(1, last + 1):
+        _add_up(sums, ZERO, force, pair.moments[s], h * h, s, hi)
+        ch = pair.nodes[s] * h
+        for i in range(index(hi)):
+            next_y[i] = y[i] + ch * v[i] + (sums[ZERO, i] - sums[ZERO, i + ONE]) * inverse[i]
+        if chain.damped or s == last:
+            _add_up(sums, ONE, force, pair.impulses[s], h, s, hi)
+            for i in range(index(hi)):
+                next_v[i] = v[i] + (sums[ONE, i] - sums[ONE, i + ONE]) * inverse[i]
+        if drive.driven:
+            next_y[0], next_v[0], beads.given[1] = drive_motion(drive, n, t + ch)
+        contact_forces(chain, beads, plan, next_y, next_v, index(s), hi)
+
+
+@part
+def step_error(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> float:
+    """Return the error of a step in units of the tolerance."""
+    error, errors = _squared_error(beads.sums, chain.inverse, hi), plan.scheme.errors[1]
+    for n in range(2):  # of the heat and of the drive's work
+        missed = (h * _integral(errors, beads.power[n]) - beads.kinks[2 * n + 1]) / plan.energy
+        error += missed * missed
+    return math.sqrt(error)
+
+
+@part
+def accept_step(beads: Beads, plan: Plan, now: Any, h: float, hi: int, error: float) -> None:
+    """Move the beads to the end of a step with an error of at most 1, and plan the next step."""
+    last = len(plan.scheme.moments) - 1
+    impulses, power = plan.scheme.impulses[last], beads.power
+    now.lost += h * _integral(impulses, power[0]) + beads.kinks[0]
+    now.work += h * _integral(impulses, power[1]) + beads.kinks[2]
+    now.response = max(now.response, now.energy + now.work - now.lost)
     for i in range(index(hi)):
         beads.y[i], beads.v[i] = beads.next_y[i], beads.next_v[i]
-    now.work += h * _integral(plan.scheme.ends[0], beads.power[1]) + beads.given[2]
-    now.response = max(now.response, now.energy + now.work)
+    # What the next step begins with; it is computed again if this step was corrected.
+    for i in range(index(hi) + ONE):
+        beads.force[0, i] = beads.force[last, i]
+    power[0, 0], power[1, 0] = power[0, last], power[1, last]
     beads.given[0] = beads.given[1]
-    grow = h * min(_GROWTH, _SAFETY * max(error, 1e-9) ** root)
+    grow = h * min(_GROWTH, _SAFETY * max(error, 1e-9) ** (-1.0 / (plan.scheme.lower + 1)))
     now.h, now.planned = min(plan.longest, max(grow, now.planned)), 0.0
-    return True
+
+
+@part
+def reject_step(beads: Beads, plan: Plan, now: Any, h: float, error: float) -> None:
+    """Plan a shorter step after a step with an error above 1, or NaN."""
+    now.planned = 0.0
+    if error < _HOPELESS:
+        now.h = h * max(_SHRINKAGE, _SAFETY * error ** (-1.0 / (plan.scheme.lower + 1)))
+    else:
+        now.h = h * _SHRINKAGE
+        beads.force[1:] = 0.0  # overflows must not last

@@ -1,7 +1,7 @@
 """Interpolated motion of the watched beads within steps, between knots (the ends of steps).
 
-Within a step a displacement is the polynomial of degree 7 with y, y', y'' and y''' at both ends
-(Hermite). If a contact of the bead opens or closes, the double integral of the contact's p_+^k
+Within a step a displacement is the polynomial with y, y', y'' and y''' at both ends (Hermite).
+If a contact of the bead opens or closes, the effect of its force F(p, p'/h)
 (`validation.lattice.kernel.kinks`) is subtracted before the interpolation and added afterwards.
 
 Letters: n numbers the steps, step n leading from knot n to knot n + 1; row q of the arrays belongs
@@ -18,19 +18,22 @@ from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Beads, Chain, Knots
-from validation.lattice.kernel.compiled import SOURCES, cached, part
-from validation.lattice.kernel.force import power, stiffness
+from validation.lattice.kernel.compiled import SOURCES, cached, inner, part
+from validation.lattice.kernel.force import stiffness
 from validation.lattice.kernel.kinks import (
-    NEAR,
-    NONE,
     Quintic,
+    drag,
     fitted_quintic,
-    kink,
-    kink_integrals,
-    quintic,
+    integrals,
+    law_of,
+    near_kink,
+    push,
+    pushes,
+    value_and_slope,
 )
 
 Four = tuple[float, float, float, float]
+_NONE: Quintic = (float("nan"), 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @part
@@ -48,7 +51,7 @@ def store_knot(chain: Chain, beads: Beads, knots: Knots, now: Any) -> None:
     now.stored += 1
 
 
-@part
+@inner
 def _compression(chain: Chain, knots: Knots, n: int, q: int) -> tuple[float, float, float]:
     """Return δ, δ' and δ'' of the contact between the beads of rows q and q + 1, at knot n."""
     near, far = knots.state[n, q], knots.state[n, q + 1]
@@ -56,37 +59,67 @@ def _compression(chain: Chain, knots: Knots, n: int, q: int) -> tuple[float, flo
     return rest + near[0] - far[0], near[1] - far[1], near[2] - far[2]
 
 
-@part
-def _kink(chain: Chain, points: Array, knots: Knots, n: int, q: int) -> Quintic:
-    """Return the `kink` in step n of the contact ahead of the bead of row q, or `NONE`."""
-    if points.shape[1] == 0 or q < 0:
-        return NONE
-    h = knots.time[n + 1] - knots.time[n]
+@inner
+def _kink(chain: Chain, knots: Knots, n: int, q: int) -> Quintic:
+    """Return the quintic of the contact ahead of the bead of row q in step n, if it has a kink.
+
+    Returns `_NONE` otherwise.
+    """
+    if q < 0 or chain.pulls or not chain.A[knots.watched[q]] > 0.0:
+        return _NONE
+    h, law = knots.time[n + 1] - knots.time[n], law_of(chain, knots.watched[q])
     d, v, a = _compression(chain, knots, n, q)
     end, end_v, end_a = _compression(chain, knots, n + 1, q)
-    most = max(d, end)
-    if not (most > 0.0 and min(d, end) < NEAR * most):
-        return NONE
-    return kink(fitted_quintic(d, h * v, h * h * a, end, h * end_v, h * h * end_a), end)
+    changed = (push(law, d, v) > 0.0) != (push(law, end, end_v) > 0.0)
+    if near_kink(d, end, h * v, h * end_v, True, changed):
+        return fitted_quintic(d, h * v, h * h * a, end, h * end_v, h * h * end_a)
+    return _NONE
 
 
-@part
-def _rate(chain: Chain, knots: Knots, n: int, q: int, side: float) -> float:
-    """Return dF/dt of the contact ahead of the bead of row q, at knot n; 0 without a contact.
+@inner
+def _rate(chain: Chain, knots: Knots, n: int, q: int, kink: Quintic) -> float:
+    """Return dF/dt of the contact ahead of the bead of row q, at knot n.
 
-    side : 1 for the limit from later times, -1 for the limit from earlier times.
+    The rate is 0 without a contact, and for a contact with a kink.
     """
-    if q < 0:
+    if q < 0 or not math.isnan(kink[0]):
         return 0.0
-    d, v, _ = _compression(chain, knots, n, q)
-    return float(chain.A[knots.watched[q]] * stiffness(chain, d, side * v > 0.0) * v)
+    i = knots.watched[q]
+    d, v, a = _compression(chain, knots, n, q)
+    rate, law = chain.A[i] * stiffness(chain, d) * v, law_of(chain, i)
+    if chain.damped:
+        if not (chain.pulls or pushes(law, d, v)):
+            return 0.0
+        rate += drag(law, d) * a
+        if chain.p > 0.0:
+            rate += chain.p * drag(law, d) / d * v * v
+    return float(rate)
 
 
-@part
-def _knot(chain: Chain, knots: Knots, n: int, q: int, h: float, side: float) -> Four:
-    """Return y, y', y'' and y''' of the bead of row q at knot n, in units of time h."""
+@inner
+def _effect(
+    chain: Chain, i: int, p: Quintic, unit: float, h: float, x: float, points: Array
+) -> tuple[float, float]:
+    """Return the effect of contact i up to x on y and y' of a bead; unit : ± h² over its mass."""
+    if math.isnan(p[0]) or x == 0.0:
+        return 0.0, 0.0
+    # Over the part of the step up to x the quintic's coefficients are c_j x^j.
+    x2 = x * x
+    part_of = p[0], x * p[1], x2 * p[2], x2 * x * p[3], x2 * x2 * p[4], x2 * x2 * x * p[5]
+    once, twice, _, _, _ = integrals(law_of(chain, i), part_of, h * x, points)
+    return unit * x2 * twice, unit * x * once
+
+
+@inner
+def _knot(
+    chain: Chain, knots: Knots, n: int, q: int, h: float, behind: Quintic, ahead: Quintic
+) -> Four:
+    """Return y, y', y'' and y''' of the bead of row q at knot n, in units of time h.
+
+    behind, ahead : its contacts, if they have kinks; y''' lacks their forces.
+    """
     state = knots.state[n, q]
-    jerk = _rate(chain, knots, n, q - 1, side) - _rate(chain, knots, n, q, side)
+    jerk = _rate(chain, knots, n, q - 1, behind) - _rate(chain, knots, n, q, ahead)
     return (
         state[0],
         h * state[1],
@@ -95,44 +128,33 @@ def _knot(chain: Chain, knots: Knots, n: int, q: int, h: float, side: float) -> 
     )
 
 
-@part
+@inner
 def _without_kink(
-    chain: Chain, points: Array, knot: Four, p: Quintic, unit: float, z: float
+    chain: Chain, knot: Four, i: int, p: Quintic, unit: float, h: float, x: float, points: Array
 ) -> Four:
-    """Subtract from y, y', y'' and y''' at x = z the contribution of a kink p.
-
-    The contribution is ``unit`` times p_+^k to y'', and the integrals from p's root on to y' and y.
-    """
+    """Subtract from y, y' and y'' at x = 0 or 1 the effect of contact i with a kink."""
     if math.isnan(p[0]):
         return knot
-    y, v = kink_integrals(chain, points, p, z)
-    # p = (x - r) q, p' = q + (x - r) q', and (p_+^k)' = k p_+^{k-1} p'
-    q = p[1] + z * (p[2] + z * (p[3] + z * (p[4] + z * p[5])))
-    rise = p[2] + z * (2 * p[3] + z * (3 * p[4] + z * 4 * p[5]))
-    d, slope = (z - p[0]) * q, q + (z - p[0]) * rise
-    rate = stiffness(chain, d, (slope > 0.0) == (z == 0.0)) * slope
-    return (
-        knot[0] - unit * y,
-        knot[1] - unit * v,
-        knot[2] - unit * power(chain, d),
-        knot[3] - unit * rate,
-    )
+    y, v = _effect(chain, i, p, unit, h, x, points)
+    d, slope = value_and_slope(p, x)
+    return knot[0] - y, knot[1] - v, knot[2] - unit * push(law_of(chain, i), d, slope / h), knot[3]
 
 
-@part
+@inner
 def _polynomial(
-    chain: Chain, points: Array, knots: Knots, n: int, q: int, behind: Quintic, ahead: Quintic
+    chain: Chain, knots: Knots, n: int, q: int, behind: Quintic, ahead: Quintic, points: Array
 ) -> tuple[Quintic, float, float]:
     """Return the coefficients c0 … c5 (a tuple), c6 and c7 of y over step n.
 
-    behind, ahead : kinks of the bead's two contacts, whose contributions are left out.
+    behind, ahead : the bead's two contacts, if they have kinks; their effects are left out.
     """
-    h = knots.time[n + 1] - knots.time[n]
-    push, pull = _units(chain, knots, q, h)
-    a, b = _knot(chain, knots, n, q, h, 1.0), _knot(chain, knots, n + 1, q, h, -1.0)
-    for p, unit in ((behind, push), (ahead, pull)):
-        a = _without_kink(chain, points, a, p, unit, 0.0)
-        b = _without_kink(chain, points, b, p, unit, 1.0)
+    h, i = knots.time[n + 1] - knots.time[n], knots.watched[q]
+    unit = h * h * chain.inverse[i]
+    a = _knot(chain, knots, n, q, h, behind, ahead)
+    b = _knot(chain, knots, n + 1, q, h, behind, ahead)
+    for p, contact, force in ((behind, i - 1, unit), (ahead, i, -unit)):
+        a = _without_kink(chain, a, contact, p, force, h, 0.0, points)
+        b = _without_kink(chain, b, contact, p, force, h, 1.0, points)
     c2, c3 = a[2] / 2, a[3] / 6
     # c4 … c7 solve the four conditions at x = 1, of which c0 … c3 leave the remainders r0 … r3.
     r0, r1 = b[0] - a[0] - a[1] - c2 - c3, b[1] - a[1] - 2 * c2 - 3 * c3
@@ -142,57 +164,43 @@ def _polynomial(
     return (a[0], a[1], c2, c3, c4, c5), c6, c7
 
 
-@part
-def _units(chain: Chain, knots: Knots, q: int, h: float) -> tuple[float, float]:
-    """Return two factors for the bead of row q: h² A/m of the contact behind, -h² A/m ahead.
-
-    These factors times p_+^k are the contacts' contributions to the acceleration of the bead (mass
-    m) in units of time h.
-    """
-    i = knots.watched[q]
-    unit = h * h * chain.inverse[i]
-    return unit * chain.A[i - 1], -unit * chain.A[i]
-
-
 def _built(sources: int) -> Any:
     """Compile `interpolate`; its cache is for source code with the hash ``sources``."""
 
     @cached
     def interpolate(
         chain: Chain,
-        points: Array,
         knots: Knots,
         rows: NDArray[np.int_],
         time: Array,
         step: NDArray[np.int_],
         y: Array,
         v: Array,
+        points: Array,
     ) -> int:
         """Compute displacements and velocities of watched beads; they go to y and v, both (R, S).
 
         rows : (R,), rows q of the beads. time : (S,). step : (S,), number of the step that holds
-        each time. Returns ``sources``.
+        each time. points : working memory, as in `Beads`. Returns ``sources``.
         """
         for r in range(len(rows)):
-            q, n = rows[r], -1
-            behind = ahead = low = NONE
-            start = h = c6 = c7 = push = pull = 0.0
+            q, n, i = rows[r], -1, knots.watched[rows[r]]
+            behind = ahead = low = _NONE
+            start = h = c6 = c7 = unit = 0.0
             for s in range(len(time)):
                 if step[s] != n:
                     n = step[s]
                     start, h = knots.time[n], knots.time[n + 1] - knots.time[n]
-                    push, pull = _units(chain, knots, q, h)
-                    behind = _kink(chain, points, knots, n, q - 1)
-                    ahead = _kink(chain, points, knots, n, q)
-                    low, c6, c7 = _polynomial(chain, points, knots, n, q, behind, ahead)
+                    unit = h * h * chain.inverse[i]
+                    behind, ahead = _kink(chain, knots, n, q - 1), _kink(chain, knots, n, q)
+                    low, c6, c7 = _polynomial(chain, knots, n, q, behind, ahead, points)
                 x = (time[s] - start) / h
-                pull_y, pull_v = kink_integrals(chain, points, ahead, x)
-                push_y, push_v = kink_integrals(chain, points, behind, x)
-                smooth = quintic(low, x) + x * x * x * x * x * x * (c6 + x * c7)
-                y[r, s] = smooth + push * push_y + pull * pull_y
-                slope = 4 * low[4] + x * (5 * low[5] + x * (6 * c6 + x * 7 * c7))
-                slope = low[1] + x * (2 * low[2] + x * (3 * low[3] + x * slope))
-                v[r, s] = (slope + push * push_v + pull * pull_v) / h
+                push_y, push_v = _effect(chain, i - 1, behind, unit, h, x, points)
+                pull_y, pull_v = _effect(chain, i, ahead, -unit, h, x, points)
+                smooth, slope = value_and_slope(low, x)
+                x5 = x * x * x * x * x
+                y[r, s] = smooth + x5 * x * (c6 + x * c7) + push_y + pull_y
+                v[r, s] = (slope + x5 * (6 * c6 + x * 7 * c7) + push_v + pull_v) / h
         return sources
 
     return interpolate

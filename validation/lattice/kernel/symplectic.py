@@ -28,7 +28,7 @@ def _built(sources: int) -> Any:
         """
         kicks, drifts, h, until = plan.scheme.kicks, plan.scheme.drifts, plan.h, now.tries + tries
         y, v, force, inverse = beads.y, beads.v, beads.force, chain.inverse
-        contact_forces(chain, beads, plan, y, ZERO, plan.size)
+        contact_forces(chain, beads, plan, y, v, ZERO, plan.size)
         if now.tries == 0:
             store_knot(chain, beads, knots, now)
         while now.t < plan.end and now.tries < until and now.stored < len(knots.time):
@@ -39,7 +39,7 @@ def _built(sources: int) -> Any:
                     u = v[i] + b * (force[ZERO, i] - force[ZERO, i + ONE]) * inverse[i]
                     v[i] = u
                     y[i] = y[i] + a * u
-                contact_forces(chain, beads, plan, y, ZERO, hi)
+                contact_forces(chain, beads, plan, y, v, ZERO, hi)
             b = h * kicks[len(drifts)]
             for i in range(index(hi)):
                 v[i] = v[i] + b * (force[ZERO, i] - force[ZERO, i + ONE]) * inverse[i]

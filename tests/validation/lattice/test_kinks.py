@@ -1,0 +1,98 @@
+"""Integrals of a contact's force along a quintic, against adaptive quadrature between the kinks."""
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numba import njit
+from scipy.integrate import quad
+
+from validation.lattice.kernel.kinks import POINTS, Law, integrals
+
+
+@njit
+def compiled(law, quintic, h, points):
+    return integrals(law, quintic, h, points)
+
+
+def force(law, quintic, h, x):
+    d, rate = np.polyval(quintic[::-1], x), np.polyval(np.polyder(quintic[::-1]), x) / h
+    if d <= 0:
+        return 0.0
+    return max(law.A * d**law.k + (law.c * d**law.p * rate if law.damped else 0.0), 0.0)
+
+
+def kinks(law, quintic, h):
+    """Places between 0 and 1 at which the contact begins or ends to push, by bisection."""
+    x = np.linspace(0, 1, 4001)
+    pushes = [force(law, quintic, h, place) > 0 for place in x]
+    found = []
+    for n in np.flatnonzero(np.diff(pushes)):
+        a, b = x[n], x[n + 1]
+        while b - a > 1e-15:
+            middle = (a + b) / 2
+            a, b = (middle, b) if (force(law, quintic, h, middle) > 0) == pushes[n] else (a, middle)
+        found.append(b)
+    return found
+
+
+def expected(law, quintic, h):
+    """∫ F, ∫ (1 - x) F and ∫ (1 - x)²/2 F, with x = a + (b - a) (3 u² - 2 u³) between kinks."""
+    places = [0.0, *kinks(law, quintic, h), 1.0]
+    total = np.zeros(3)
+    for a, b in itertools.pairwise(places):
+        for n, weight in enumerate((lambda x: 1.0, lambda x: 1 - x, lambda x: (1 - x) ** 2 / 2)):
+
+            def integrand(u, a=a, b=b, weight=weight):
+                x = a + (b - a) * (3 * u * u - 2 * u**3)
+                return 6 * u * (1 - u) * (b - a) * weight(x) * force(law, quintic, h, x)
+
+            total[n] += quad(integrand, 0, 1, epsabs=1e-14, epsrel=1e-12, limit=200)[0]
+    return total
+
+
+def contact(k, c, p):
+    """With the least q = 1, 2 or 4 for which q k and q p are whole, as `_exponent` has it."""
+    q = next((q for q in (1.0, 2.0) if (q * k).is_integer() and (q * p).is_integer()), 4.0)
+    return Law(1.0, c, k, p, q, c > 0, False, 0, 0)
+
+
+# Exponents and damping (k, c, p), and the error over the greatest impulse: δ^{1/4} wants u^4, of
+# which ten points resolve less.
+LAWS = {
+    (1.5, 0.0, 0.0): 1e-9, (1.0, 0.0, 0.0): 1e-14, (2.0, 0.0, 0.0): 1e-14,
+    (1.5, 0.3, 0.0): 1e-9, (1.5, 0.3, 0.5): 1e-9, (1.5, 0.2, 0.25): 1e-7,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("law", LAWS)
+@settings(max_examples=40)
+@given(
+    ends=st.tuples(st.floats(-1, -0.01), st.floats(0.01, 1)),
+    rises=st.tuples(st.floats(0.5, 1.7), st.floats(0.5, 1.7)),
+    opening=st.booleans(),
+)
+def test_a_contact_that_closes_or_opens(law, ends, rises, opening):
+    """Cubics whose slopes at the ends are 0.5 … 1.7 times the mean slope."""
+    start, end = ends[::-1] if opening else ends
+    jump = end - start
+    rise, end_rise = jump * rises[0], jump * rises[1]
+    curve = start, rise, 3 * jump - 2 * rise - end_rise, rise + end_rise - 2 * jump, 0.0, 0.0
+    check(law, curve, LAWS[law])
+
+
+@pytest.mark.parametrize("law", LAWS)
+@settings(max_examples=20)
+@given(depth=st.floats(1e-5, 0.3), place=st.floats(0.1, 0.9), bend=st.floats(0.1, 3))
+def test_a_contact_that_closes_and_opens(law, depth, place, bend):
+    """Parabolas of a greatest compression ``depth``, at a place of the step."""
+    check(law, (depth - bend * place**2, 2 * bend * place, -bend, 0.0, 0.0, 0.0), LAWS[law])
+
+
+def check(law, curve, bound):
+    law = contact(*law)
+    found = compiled(law, curve, 1.0, np.empty((3, POINTS)))
+    wanted = expected(law, curve, 1.0)
+    assert np.abs(np.array(found[:3]) - wanted).max() <= bound * wanted[0] + 1e-16
