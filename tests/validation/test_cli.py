@@ -55,8 +55,22 @@ chain = {cell = [1, 0.5], repeat = 10, k = 1.5, spacings = 2}
 striker = {velocity = 1}
 sensors = {beads = [9], contacts = [4, 12]}
 """
+LONG = """
+duration = 400
+chain = {cell = [1], repeat = 300, k = 1.5}
+striker = {velocity = 1}
+sensors = {contacts = [100, 200]}
+"""
 NAMES = ["bead 9", "contact 4", "contact 12", "contact 19"]
 """Sensors of the scene, and one more."""
+
+
+def test_a_long_chains_record_holds_enough_samples_for_its_pulses(capsys, folder):
+    """The scene names no number of samples."""
+    (folder / "long.toml").write_text(LONG)
+    assert run(capsys, "run", "long.toml", "--out", "long.csv")[0] == 0
+    status, text, _ = run(capsys, "pulses", "long.csv")
+    assert (status, "contact 100" in text, "contact 200" in text) == (0, True, True)
 
 
 @pytest.fixture

@@ -46,7 +46,7 @@ _TABLES = {  # that a file may leave out
     "start": ("velocities", "displacements", "overlap"),
     "sensors": ("beads", "contacts"),
 }
-_NUMBERS = ("samples", "gravity", "precompression")
+_NUMBERS = ("gravity", "precompression")
 KEYS: Mapping[str, Sequence[str]] = {"file": FILE, "chain": CHAIN, **_TABLES}
 """Keys of a file, and of each of its tables."""
 
@@ -85,11 +85,15 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
             raise SceneError("striker and start are both there: one says how the beads start")
         velocities = (tables["striker"].read("velocity", finite),)
     duration = file.read("duration", positive)
+    # A pulse that passes the chain once in the duration has 20 samples a bead: a half width of one
+    # bead then holds more than the 16 that `validation.pulses.noisy` wants. 100,000 spare memory.
+    samples = min(max(1001, 20 * n), 100_000)
     result = Scene(
         **chain,
         **{key: file.entries[key] for key in _NUMBERS if key in file},
         wall=wall,
         duration=duration,
+        samples=file.entries.get("samples", samples),
         units=file.read("units", among({"SI": "SI"}), "SI" if row else ""),
         displacements=start.read("displacements", each(finite), ()),
         velocities=velocities,
