@@ -66,6 +66,8 @@ def take_chain(options: dict[str, Any]) -> ChainInput:
             raise InputError(f"--{name} and --spheres are both given: spheres have their own")
         return read_chain(file)
     cell = Cell(chosen["masses"], chosen["stiffnesses"], chosen.get("spacing", D))
+    if cell.spacing.is_Symbol and chosen["k"] == cell.spacing:
+        raise InputError(f"k is {cell.spacing}: the name is that of the spacing, a unit of length")
     return ChainInput(cell, for_cell(chosen.get("law"), cell, chosen["k"]))
 
 

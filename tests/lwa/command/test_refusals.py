@@ -44,6 +44,7 @@ LINES = [
     ("derive --law general --k 2", "one of them"),
     ("derive --law hertz2:delta,1", "'delta': the name means the compression"),
     ("dispersion --precompression -1", "must be positive"),
+    ("wave --k D --masses 3,1", "k is D: the name is that of the spacing"),
     ("wave --k 29000", "exponents from 1/100 to 1000"),
     ("wave --k 3 --masses 1,100", "a compact wave needs"),
     ("wave --order 3", "order is 3"),
