@@ -2,9 +2,9 @@
 
 The compiled engine (`validation.lattice.engine`) has an embedded Runge–Kutta–Nyström (RKN) pair for
 y'' = f(t, y), a pair for damped contacts, y'' = f(t, y, y'), both with adaptive steps, and a
-symplectic splitting. SciPy's methods (`validation.lattice.steppers`) are the reference. Tolerances are
-relative to the scene's scales, so that results do not depend on the units. A run stores the motion
-of the beads near its sensors only.
+symplectic splitting. SciPy's methods (`validation.lattice.steppers`) are the reference. Tolerances
+are relative to the scene's scales, so that results do not depend on the units. A run stores the
+motion of the beads near its sensors only.
 """
 
 from __future__ import annotations
