@@ -66,7 +66,8 @@ def follow(
     """
     while True:
         run, response = _integrated(motion, method, rtol, step, progress)
-        if not 0 < response < _WEAK * motion.scales.energy:
+        least = 8 * _NOISE * motion.scales.energy  # rounding of the energy
+        if not least < response < _WEAK * motion.scales.energy:
             return run
         motion = Motion(motion.scene, response)
 

@@ -58,6 +58,17 @@ def test_without_a_directory_to_write_to_a_function_runs(tmp_path):
 
 
 @pytest.mark.slow
+def test_a_damaged_cache_is_written_again(tmp_path):
+    cache = {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    output(tmp_path, SMALL, **cache)
+    (file,) = (tmp_path / "cache").rglob("*.nbi")
+    whole = file.read_bytes()
+    file.write_bytes(whole[:-40])
+    assert output(tmp_path, SMALL, **cache) == "6\n"
+    assert len(file.read_bytes()) == len(whole)
+
+
+@pytest.mark.slow
 def test_on_a_full_disk_a_function_runs(tmp_path):
     limit = "import resource\nresource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))\n"
     assert output(tmp_path, limit + SMALL, NUMBA_CACHE_DIR=str(tmp_path / "cache")) == "6\n"

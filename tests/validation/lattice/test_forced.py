@@ -99,6 +99,15 @@ def test_the_work_of_a_shaken_bead_whose_contact_opens(n, mass, rtol):
     assert abs(simulate(scene, rtol=rtol).energy_drift) < 5 * rtol
 
 
+def test_a_drive_that_leaves_its_contact_is_on_its_books():
+    """Nothing but the drive moves: rounding is no response that sets scales."""
+    away = Drive(time=(0, 0.3, 0.6, 0.9, 1.2), displacement=(-0.7, -1.2, -1.3, -1.8, -1.9))
+    scene = Scene(masses=(0.64, 0.3), stiffnesses=(1,), wall=0.1, k=1.5, duration=1, drive=away)
+    run = simulate(scene)
+    assert abs(run.work) > 0.1
+    assert abs(run.energy_drift) < 1e-14
+
+
 def test_the_error_is_that_of_the_response():
     """A fast drive leaves the chain; a slow collision behind it is as accurate as without it."""
     damped = dict(k=1.5, duration=80.0, damping=Damping("kuwabara_kono", 0.1))

@@ -76,7 +76,15 @@ def cached(function: Function) -> Function:
         return njit(**_OUTER)(function)  # type: ignore[no-any-return]
     if compiled is function:  # NUMBA_DISABLE_JIT
         return function
-    keep = compiled._cache.save_overload
+    cache = compiled._cache
+    known, keep = cache.load_overload, cache.save_overload
+
+    def load_if_possible(signature: Any, context: Any) -> Any:
+        try:
+            return known(signature, context)
+        except Exception:  # pickled by another version of this package, or damaged
+            cache.flush()
+            return None
 
     def keep_if_possible(signature: Any, code: Any) -> None:
         try:
@@ -84,7 +92,7 @@ def cached(function: Function) -> Function:
         except OSError as error:
             print(f"the engine's machine code is not kept: {error.strerror}", file=sys.stderr)
 
-    compiled._cache.save_overload = keep_if_possible
+    cache.load_overload, cache.save_overload = load_if_possible, keep_if_possible
     return compiled  # type: ignore[no-any-return]
 
 
