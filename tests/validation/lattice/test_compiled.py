@@ -33,7 +33,7 @@ def output(folder, program, **environment):
     (folder / "program.py").write_text(program)
     paths = f"{folder}{os.pathsep}{PACKAGES}"
     done = subprocess.run(
-        [sys.executable, "program.py"], stdout=subprocess.PIPE, text=True, check=True, timeout=300,
+        [sys.executable, "program.py"], capture_output=True, text=True, check=True, timeout=300,
         cwd=folder, env=os.environ | {"PYTHONPATH": paths} | environment,
     )  # fmt: skip
     return done.stdout
