@@ -1,33 +1,29 @@
 """Pulses of measured records: a spline fitted to noisy samples, and errors from the noise.
 
-The noise is the standard deviation σ of the samples before the pulse. The first pulse is located in
-a moving mean, and a spline of degree 5 is fitted to the samples about it by least squares: arrival,
-peak and FWHM are those of the spline. The number of its coefficients is the best by Schwarz's
-criterion (Ann. Statist. 6, 461, 1978) times `_FINER`, and at least `_MORE` more: where the
-criterion stops a bias is as large as the scatter.
+The record before the pulse gives the base and its slope, by a straight line, and the noise: its
+standard deviation and its correlations, from the residuals of the line. The first pulse is located
+in a moving mean, and a spline of degree 5 is fitted to the samples about it by least squares:
+arrival, peak and FWHM are those of the spline. The number of its coefficients is the best by
+Schwarz's criterion (Ann. Statist. 6, 461, 1978), for as many samples as are independent, times
+`_FINER`, and at least `_MORE` more: where the criterion stops a bias is as large as the scatter.
 
-Errors are one standard deviation, for white noise: `_DRAWS` splines are drawn from the distribution
-of the coefficients, and `_WITHIN` of their numbers lie within the error. So an arrival is uncertain
-by the distance of two humps if the noise hides which of them is the higher. If the record has too
-few samples for the wanted coefficients, the error also holds the difference to a coarser spline.
-
-Measured with 200 noisy copies at each of 0.2, 0.5 and 2 % of the peak, beads 8, 16 and 24 of the
-paper's 1:1 and 2:1 columns: at 1 MHz (76 to 135 samples a width) the bias of each number is below a
-third of its scatter, and 61 to 81 % of the errors cover; with 35 samples a width 59 to 74 % cover.
-With 17 samples 59 to 82 % cover, or more where the error holds what is not resolved (it is then up
-to 15 times the scatter). At other sensors 56 % cover at least, but for the arrival at a flat top of
-two humps (contact 16 of the 2:1 column: 46 %).
+Errors are one standard deviation: `_DRAWS` records of noise with the spectrum of the noise before
+the pulse are added, base and spline are fitted to each, and `_WITHIN` of the numbers lie within the
+error. So an arrival is uncertain by the distance of two humps if the noise hides which of them is
+the higher. If the record has too few samples for the wanted coefficients, the error also holds the
+difference to a coarser spline.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import BSpline, make_lsq_spline
+from scipy.signal import find_peaks
 
 from lwa.base.arrays import Array
 from validation.pulses.pulse import Measured, MeasureError, derived, highest_pulse
@@ -35,9 +31,11 @@ from validation.pulses.signals import Piecewise, checked
 
 _BESIDE = 0.3  # widths in front of the rise and behind the fall that the fit takes in
 _READ = 0.1  # widths likewise in which the spline is read: its ends follow the noise
-_BEFORE = 2.0  # widths between the samples of the noise and the rise
-_CALM = 10  # fewest samples that show the noise
+_BEFORE = 2.0  # widths between the samples of the base and the rise
+_LEAD = 10.0  # widths of the base: a straight line errs by the square of its length
+_CALM = 16  # fewest samples of the base, over a width at least
 _FEWEST = 16  # samples above half the peak; with 12 the errors no longer cover
+_MOST = 400  # samples above half the peak; of more, neighbours are averaged
 _DEGREE = 5  # of the spline
 _LOWEST, _HIGHEST, _STEP = 8, 120, 1.2  # numbers of coefficients that are tried, and their ratio
 _FINER, _MORE = 1.5, 8  # coefficients in the end: a multiple, and at least so many more
@@ -48,62 +46,81 @@ _GRID = 400  # intervals on which drawn splines are read
 _MISFIT = 2.0  # residuals over σ², from which on they are the noise
 _SMOOTH = 0.01  # noise of the moving mean over the peak
 _LOW = 0.45  # share of the peak below which a pulse has fallen, so that noise at half is no end
+_APART = 0.2  # share of the peak to which the signal falls between pulses that do not overlap
+_HUMP = 0.25  # depth, over the peak, of the dip between two pulses; less lies in a pulse
+_LATER = 0.1  # smallest peak of a later pulse over the first
 _LOUDEST = 0.05  # greatest noise over the peak, for which the pulse is located
+_EQUAL = 1e-6  # of the record's range: samples that differ less are equal
 
 
 @dataclass(frozen=True)
 class NoisyPulse:
-    """First pulse of a record, each number with one standard deviation as its error.
+    """A pulse of a record, each number with one standard deviation as its error.
 
-    numbers : arrival, peak above ``base``, fwhm, by these names.
-    base : mean of the samples before the pulse, unless it was given.
+    numbers : arrival, peak above the base, fwhm, by these names.
+    base : mean of the samples before the first pulse.
     """
 
     numbers: Mapping[str, Measured]
     base: float
 
 
-def noisy_pulse(time: ArrayLike, values: ArrayLike, base: float | None = None) -> NoisyPulse:
+def noisy_pulse(time: ArrayLike, values: ArrayLike) -> NoisyPulse:
     """Measure the first pulse of a record with noise, sample times and values (S,).
 
-    base : the value without a pulse, if it is known; by default the mean before the pulse. With a
-    known base the record may begin at its pulse: the noise is then that of the residuals.
+    Raises `MeasureError` for a record without a whole pulse or without a part before the pulse, for
+    a pulse that is clipped, inverted, overlaps another one, or has fewer than 16 samples above half
+    of its peak, and for noise above 5 % of the peak.
 
-    Raises `MeasureError` for a record without a whole pulse, with fewer than 16 samples above half
-    of its peak, and with noise above 5 % of the peak.
-
-    >>> t = np.linspace(-3, 3, 601)
-    >>> noise = 0.01 * np.random.default_rng(0).normal(size=601)
+    >>> t = np.linspace(-4, 3, 701)
+    >>> noise = 0.01 * np.random.default_rng(0).normal(size=701)
     >>> noisy_pulse(t, np.exp(-9 * t**2) + noise).numbers["fwhm"]  # √(4 ln 2)/3
-    0.555 ± 3e-03
+    0.557 ± 3e-03
+    """
+    return next(noisy_pulses(time, values))
+
+
+def noisy_pulses(time: ArrayLike, values: ArrayLike) -> Iterator[NoisyPulse]:
+    """Measure the pulses of a record one after the other, as `noisy_pulse` does the first.
+
+    All have the base and the noise of the record before the first pulse. Raises `MeasureError`
+    where the next pulse, of a tenth of the first one's peak or more, cannot be measured.
     """
     t, f = checked(time, values)
     size = float(np.abs(f).max()) or 1.0  # so that squares neither over- nor underflow
-    f, base = f / size, None if base is None else base / size
-    rise, fall = _place(t, f - (f[:_CALM].mean() if base is None else base))
+    f = f / size
+    levels = np.unique(f)
+    gaps = np.diff(levels)
+    least = _EQUAL * (levels[-1] - levels[0])
+    resolution = float(min(gaps[gaps > least], default=0.0))
+    rise, fall = _place(t, f - f[:_CALM].mean())
     width = fall - rise
-    if (few := int(np.count_nonzero((t > rise) & (t < fall)))) < _FEWEST:
+    lead = (t < rise - _BEFORE * width) & (t > rise - (_BEFORE + _LEAD) * width)
+    if np.count_nonzero(lead) < _CALM or np.ptp(t[lead]) < 0.9 * width:
         raise MeasureError(
-            f"{few} samples lie above half the pulse's peak: at least {_FEWEST} are wanted"
+            f"no part of the record is before the pulse: {np.count_nonzero(lead)} samples lie "
+            f"{_BEFORE:g} widths before it, {_CALM} over a width are wanted for base and noise"
         )
-    calm = f[t < rise - _BEFORE * width]
-    noise = float(np.std(calm, ddof=1)) if len(calm) >= _CALM else math.nan
-    drift = 0.0  # error of the base
-    if base is None:
-        if math.isnan(noise):
-            raise MeasureError(
-                f"{len(calm)} samples lie {_BEFORE:g} widths or more before the pulse: "
-                f"{_CALM} are wanted for its noise and its static force"
-            )
-        base, drift = float(np.mean(calm)), noise / math.sqrt(len(calm))
-    near = (t >= rise - _BESIDE * width) & (t <= fall + _BESIDE * width)
-    ends = rise - _READ * width, fall + _READ * width
-    numbers = _numbers(t[near], f[near] - base, noise, drift, ends)
-    if noise > _LOUDEST * numbers["peak"].value:
-        share = noise / numbers["peak"].value
-        raise MeasureError(f"the noise is {share:.1%} of the peak: at most {_LOUDEST:.0%} is read")
-    numbers["peak"] = derived(lambda peak: peak * size, numbers["peak"])
-    return NoisyPulse(numbers, base * size)
+    line = np.polynomial.Polynomial.fit(t[lead], f[lead], 1)
+    base, first = float(f[lead].mean()), 0.0
+    stuck = (
+        resolution / math.sqrt(12) if np.std(f[lead] - line(t[lead])) < resolution / 2 else 0.0
+    )  # error of a base
+    block = max(1, int(np.count_nonzero((t > rise) & (t < fall))) // _MOST)
+    while True:
+        _check_top(t, f, (rise, fall), resolution, size)
+        whole = len(t) // block * block
+        rows = np.array((t, f, lead), float)[:, :whole]
+        at, values, calm = rows.reshape(3, -1, block).mean(axis=2)
+        numbers = _measured(at, values - line(at), calm == 1, (rise, fall), stuck)
+        first = first or numbers["peak"].value
+        numbers["peak"] = derived(lambda peak: peak * size, numbers["peak"])
+        yield NoisyPulse(numbers, base * size)
+        behind = t > 2 * fall - rise
+        later = f[behind] - line(t[behind])
+        if not later.max(initial=0.0) > _LATER * first:
+            return
+        rise, fall = _place(t[behind], later)
 
 
 def _place(t: Array, f: Array) -> tuple[float, float]:
@@ -113,6 +130,11 @@ def _place(t: Array, f: Array) -> tuple[float, float]:
     highest = max(f.max(), np.finfo(float).tiny)
     count = math.ceil(min(max(1.0, (noise / (_SMOOTH * highest)) ** 2), len(f)))
     g = np.convolve(f, np.full(count, 1 / count), "same")
+    if -g.min() > max(g.max(), 0):
+        raise MeasureError(
+            "the signal falls farther below its start than it rises: it is inverted "
+            "(--unit 'CH1=-1 N/N' turns it), or begins in a pulse"
+        )
     if not g.max() > 0:
         raise MeasureError("no pulse is in the record: its signal is nowhere positive")
     start = int(np.argmax(g > g.max() / 2))
@@ -125,6 +147,14 @@ def _place(t: Array, f: Array) -> tuple[float, float]:
         raise MeasureError(
             f"the pulse is not wholly in the record: its {side} does not pass half its peak"
         )
+    foot = np.flatnonzero(g < _APART * g[top])
+    sides = np.split(foot, [np.searchsorted(foot, top)])
+    low, high = max(sides[0], default=-1) + 1, min(sides[1], default=len(g))
+    tilted = g[low:high] + np.linspace(0, _EQUAL * g[top], high - low)  # no two peaks are equal
+    humps, _ = find_peaks(np.pad(tilted, 1), prominence=_HUMP * g[top])
+    if len(humps) > 1:
+        times = " and ".join(f"{t[low + hump - 1]:.4g}" for hump in humps[:2])
+        raise MeasureError(f"pulses overlap: peaks at {times} without a fall to {_APART:.0%}")
     return float(t[below[after - 1]]), float(t[below[after]])
 
 
@@ -136,38 +166,88 @@ def _fitted(t: Array, f: Array, count: int) -> BSpline:
     return make_lsq_spline(t, f, knots, _DEGREE)
 
 
-def _numbers(
-    t: Array, f: Array, noise: float, drift: float, ends: tuple[float, float]
-) -> dict[str, Measured]:
-    """Return arrival, peak and FWHM of the spline through samples, with their errors.
+def _check_top(
+    t: Array, f: Array, sides: tuple[float, float], resolution: float, size: float
+) -> None:
+    """Refuse a pulse between two times that has few samples or that is clipped.
 
-    noise : of the samples, or NaN. drift : error of their base. ends : times between which the
-    pulse lies.
+    resolution : distance of neighbouring values. size : unit of the values.
     """
-    n = len(t)
+    inside = np.flatnonzero((t > sides[0]) & (t < sides[1]))
+    if (few := len(inside)) < _FEWEST:
+        raise MeasureError(
+            f"{few} samples lie above half the pulse's peak: at least {_FEWEST} are wanted"
+        )
+    top, low = f[inside].max(), f[inside].min()
+    below = np.append(np.flatnonzero(f[inside] < top - _EQUAL * np.ptp(f)), few)
+    runs = np.diff(below, prepend=-1) - 1
+    # A smooth pulse 1 - e (t/width)², e ≈ 2.7, stays within a resolution of its top as long as
+    # 2 width √(resolution/(e peak)); twice as long, and three samples, are no top.
+    longest = 3 + 4 * few * math.sqrt(resolution / (2.7 * 2 * (top - low)))
+    if runs.max() > longest:
+        end = inside[below[np.argmax(runs)] - 1]
+        start = end - runs.max() + 1
+        raise MeasureError(
+            f"the record saturates at {top * size:.4g} from {t[start]:.6g} to {t[end]:.6g}: "
+            "a larger range of the recorder is wanted"
+        )
+
+
+def _measured(
+    t: Array, f: Array, lead: Array, sides: tuple[float, float], stuck: float
+) -> dict[str, Measured]:
+    """Return arrival, peak and FWHM of a pulse between two times, with their errors.
+
+    t, f : samples over their base. lead : which of them are before the first pulse. stuck : error
+    of all samples alike, from rounding to the resolution.
+    """
+    width = sides[1] - sides[0]
+    near = (t >= sides[0] - _BESIDE * width) & (t <= sides[1] + _BESIDE * width)
+    ends = sides[0] - _READ * width, sides[1] + _READ * width
+    before, t, f, calm = t[lead], t[near], f[near], f[lead]
+    # Correlations of the noise, up to the first lag without.
+    both = np.fft.irfft(np.abs(np.fft.rfft(calm, 2 * len(calm))) ** 2)[: len(calm)] / len(calm)
+    both = both[: max(1, int(np.argmax(np.append(both, 0.0) <= 0)))]
+    length = float(1 + 2 * np.sum(both[1:] / both[0])) if both[0] else 1.0
+    n, rounding = len(t), (np.finfo(float).eps * np.abs(f).max()) ** 2
     highest = min(_HIGHEST, int(_DENSEST * n))
     tries = math.ceil(math.log(highest / _LOWEST) / math.log(_STEP))
     counts = np.geomspace(_LOWEST, highest, tries + 1).round().astype(int)
     squares = np.array([np.sum((_fitted(t, f, count)(t) - f) ** 2) for count in counts])
-    rounding = (np.finfo(float).eps * np.abs(f).max()) ** 2
-    scatter = squares / (n - counts)
-    variance = rounding + (scatter[-1] if math.isnan(noise) else noise**2)
+    variance = rounding + float(np.var(calm, ddof=2))
     for _ in range(2):  # once more with the noise of the residuals, where that is the larger one
-        best = int(counts[np.argmin(squares / variance + counts * math.log(n))])
+        criterion = squares / (variance * length) + counts * math.log(max(n / length, 2))
+        best = int(counts[np.argmin(criterion)])
         wanted = max(math.ceil(_FINER * best), best + _MORE)
         spline = _fitted(t, f, min(wanted, highest))
         left = float(np.sum((spline(t) - f) ** 2)) / (n - len(spline.c))
         if left <= _MISFIT * variance:
             break
         variance = left
-    errors = _spread(spline, t, math.sqrt(variance), drift, ends)
+    draws = _noise(both, len(calm) + n)
+    draws[: len(calm)] *= calm.std()
+    draws[len(calm) :] *= math.sqrt(variance)
+    errors = _spread(spline, t, before, draws, stuck, ends)
     numbers = _read(spline, ends)
+    if numbers[1] and (share := math.sqrt(variance) / numbers[1]) > _LOUDEST:
+        raise MeasureError(f"the noise is {share:.1%} of the peak: at most {_LOUDEST:.0%} is read")
     if wanted > highest:
         coarse = _read(_fitted(t, f, max(_LOWEST, round(highest / _COARSER))), ends)
         errors = np.hypot(errors, np.subtract(numbers, coarse))
     names = ("arrival", "peak", "fwhm")
     found = zip(names, numbers, errors.tolist(), strict=True)
     return {name: Measured(value, value + error) for name, value, error in found}
+
+
+def _noise(both: Array, count: int) -> Array:
+    """Draw records of noise of variance 1, (count, `_DRAWS`), with given correlations by lag."""
+    size = count + len(both)
+    spectrum = np.maximum(np.fft.rfft(both, size).real - both[0] / 2, 0)
+    white = np.random.default_rng(0).normal(size=(size, _DRAWS))
+    if not spectrum.any():
+        return white[:count]
+    shaped = np.fft.rfft(white, axis=0) * np.sqrt(spectrum / spectrum.mean())[:, np.newaxis]
+    return np.asarray(np.fft.irfft(shaped, size, axis=0)[:count])
 
 
 def _read(spline: BSpline, ends: tuple[float, float]) -> tuple[float, float, float]:
@@ -179,17 +259,23 @@ def _read(spline: BSpline, ends: tuple[float, float]) -> tuple[float, float, flo
 
 
 def _spread(
-    spline: BSpline, t: Array, noise: float, drift: float, ends: tuple[float, float]
+    spline: BSpline,
+    t: Array,
+    before: Array,
+    noise: Array,
+    stuck: float,
+    ends: tuple[float, float],
 ) -> Array:
-    """Return the errors of arrival, peak and FWHM of a spline, from draws of its coefficients.
+    """Return the errors of arrival, peak and FWHM of a spline through samples at times t.
 
-    noise : of the samples at times t. drift : error of their base.
+    before : times of the samples that give the base. noise : (len(before) + len(t), `_DRAWS`), at
+    both. stuck : error of all samples alike.
     """
-    # With the basis QR at the samples, the coefficients c of least squares have R δc = noise.
-    R = np.linalg.qr(BSpline.design_matrix(t, spline.t, _DEGREE).toarray(), mode="r")
-    rng = np.random.default_rng(0)
-    off = noise * np.linalg.solve(R, rng.normal(size=(len(R), _DRAWS)))
-    off += drift * rng.normal(size=_DRAWS)
+    calm, near = noise[: len(before)], noise[len(before) :]
+    x, ahead = before - before.mean(), t - before.mean()
+    near = near - calm.mean(axis=0) - np.outer(ahead, x @ calm / (x @ x))  # the base is a line
+    off = _fitted(t, near, len(spline.c)).c
+    off += stuck * np.random.default_rng(1).normal(size=_DRAWS)
     grid, draw = np.linspace(*ends, _GRID + 1), np.arange(_DRAWS + 1)
     f = BSpline(spline.t, np.column_stack((spline.c, spline.c[:, np.newaxis] + off)), _DEGREE)(grid)
     # The vertex of the parabola through the highest value and its neighbours, in grid steps.

@@ -215,6 +215,38 @@ def speeds_between(
     )
 
 
+def echoes(sensors: Sequence[Reading]) -> list[tuple[Reading, bool]]:
+    """Return the later pulses at sensors: delay behind the first pulse, and peak over its peak.
+
+    With each pulse comes whether it is reflected: whether it reaches this sensor and another one of
+    the kind in the reverse order of the first pulse, or no other sensor tells.
+    """
+    found = {(r.kind, r.places, r.pulse): r for r in sensors}
+    later = []
+    for r in sensors:
+        first = found[r.kind, r.places, 1]
+        if r.pulse == 1:
+            continue
+        if r.missing:
+            later.append((r, False))
+            continue
+        at, start = r.numbers["arrival"], first.numbers["arrival"]
+        ratio = r.numbers["peak"].value / first.numbers["peak"].value
+        error = sum(one.numbers["peak"].relative_error for one in (r, first))
+        delay = at.value - start.value
+        delays = {
+            "delay": Measured(delay, delay + at.error + start.error),
+            "ratio": Measured(ratio, ratio * (1 + error)),
+        }
+        reflected = True
+        for other in sensors:
+            if (other.kind, other.pulse) == (r.kind, r.pulse) and other is not r and other.numbers:
+                ahead = found[other.kind, other.places, 1].numbers["arrival"].value - start.value
+                reflected = ahead * (other.numbers["arrival"].value - at.value) < 0
+        later.append((replace(r, numbers=delays), reflected))
+    return later
+
+
 @dataclass(frozen=True)
 class Train:
     """A pulse at several beads or contacts: ``pulses`` of dynamic force by number, from 1."""

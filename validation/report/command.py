@@ -106,22 +106,36 @@ def output_option(name: str, suffixes: Sequence[str], says: str) -> Any:
     return option(name, callback=read, metavar="FILE", type=click.Path(), says=says)
 
 
-def column_option() -> Any:
-    """Return the option --column of a study that reads a measured file: new names of columns."""
+def column_options(function: Any) -> Any:
+    """Give a study that reads a measured file its options --column and --unit."""
 
     def read(context: click.Context, given: click.Parameter, pairs: Sequence[str]) -> Any:
         renamed = {}
         for pair in pairs:
             name, equals, header = (part.strip() for part in pair.partition("="))
             if not (name and equals and header) or name in renamed:
-                raise SceneError(f"column is {shorten(pair)}: NAME=HEADER is wanted, once a name")
+                wanted = f"{given.metavar} is wanted, once a name"
+                raise SceneError(f"{called(given)} is {shorten(pair)}: {wanted}")
             renamed[name] = header
         return renamed
 
-    says = "Header that stands for a column in the file, as in --column time='CH1 t'; repeatable."
-    return option(
-        "--column", "renamed", callback=read, multiple=True, metavar="NAME=HEADER", says=says
-    )
+    for names, metavar, says in (
+        (
+            ("--unit", "units"),
+            "NAME=UNIT",
+            "Unit of a column whose header has none, as in --unit time=ms, or its calibration, as "
+            "in --unit 'CH1=12.5 N/V'; repeatable. If one unit is stated, all are wanted.",
+        ),
+        (
+            ("--column", "renamed"),
+            "NAME=HEADER",
+            "Header that stands for a column in the file, as in --column time='CH1 t'; repeatable. "
+            "The lines before the header are skipped.",
+        ),
+    ):
+        choice = option(*names, callback=read, multiple=True, metavar=metavar, says=says)
+        function = choice(function)
+    return function
 
 
 def number(context: click.Context, given: click.Parameter, value: str | None) -> float | None:

@@ -1,16 +1,21 @@
-"""Columns of measured files: CSV with a header that names each column and its unit.
+"""Columns of measured files, each with its unit.
 
-The header is the first line that is neither empty nor begins with #. "Force (mN)" or "force [mN]"
-names the column "force" and its unit: values are returned in SI. Values of a column without a unit
-are returned as they are. A header with a semicolon is separated by semicolons, and numbers below it
-may have decimal commas; any other header is separated by commas.
+A file is text in UTF-8 or Latin-1, as oscilloscopes write it. The header is the first line that
+names the wanted columns, and the lines before the header are skipped. A header with a tab is
+separated by tabs, another one with a semicolon by semicolons, any other by commas; with tabs or
+semicolons numbers may have decimal commas. Blank entries end a column.
+
+Units are stated, never guessed: in the header, as in "Force (mN)" or "force [mN]"; in a row under
+the header; or by the user. Values are returned in SI. A file in which no unit is stated at all is
+in the scene's own numbers; if one unit is stated, every column that is used needs one.
 """
 
 from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,98 +26,142 @@ from lwa.base.arrays import Array
 from lwa.base.exact import shorten
 from validation.scenes.checks import SceneError
 
-TIME: Mapping[str, float] = {"s": 1.0, "ms": 1e-3, "µs": 1e-6, "us": 1e-6, "ns": 1e-9}
-_FORCE = {"N": 1.0, "mN": 1e-3, "kN": 1e3}
+TIME: Mapping[str, float] = {
+    **{"s": 1.0, "sec": 1.0, "second": 1.0, "seconds": 1.0},
+    **{"ms": 1e-3, "µs": 1e-6, "us": 1e-6, "ns": 1e-9},
+}
 LENGTH: Mapping[str, float] = {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "um": 1e-6}
+_FORCE = {"N": 1.0, "mN": 1e-3, "kN": 1e3, "Newton": 1.0}
 _SPEED = {"m/s": 1.0, "km/s": 1e3, "mm/s": 1e-3}
+_VOLTAGE = {"V": 1.0, "mV": 1e-3, "Volt": 1.0}
 _UNITS: Mapping[str, Mapping[str, float]] = {
     "time": TIME,
-    **dict.fromkeys(("force", "force_error", "force_value"), _FORCE),
-    **dict.fromkeys(("displacement", "compression", "compression_value"), LENGTH),
-    **dict.fromkeys(("speed", "speed_error", "velocity"), _SPEED),
+    **dict.fromkeys(("force", "force_error"), _FORCE),
+    "displacement": LENGTH,
+    **dict.fromkeys(("speed", "speed_error"), _SPEED),
 }  # by the last word of a column's name
 LONGEST = 100  # times the simulated time that a record may last
-_SENSOR = re.compile(r"(?:(bead|contact) )?(?:([1-9]\d{0,8}) )?(dynamic )?force")
+_NAME = re.compile(r"(?:(bead|contact) )?(?:([1-9]\d{0,8}) )?(?:dynamic )?(\w+)")  # of a column
 _HEADER = re.compile(r"\s*(.*?)\s*(?:\(([^()]*)\)|\[([^][]*)\])?\s*")  # name, (unit) or [unit]
+_CALIBRATION = re.compile(r"([-+.\deE]+)\s*(\S+)/(\w+)")  # number, unit, per unit of the file
 
 
 @dataclass(frozen=True, eq=False)
 class MeasuredFile:
-    """Names, units and texts of the columns of a file; `read` makes one, `column` reads numbers.
+    """Names, units and entries of the columns of a file; `read` makes one.
 
     names, units : of the columns, in the order of the file; names in lower case, "" for a column
-    without a unit.
+    without a unit. given : units and calibrations by the user, or "".
     """
 
     path: Path
     names: tuple[str, ...]
     units: tuple[str, ...]
+    given: tuple[str, ...]
     lines: tuple[tuple[int, list[str]], ...]  # number of the line in the file, and its entries
     decimal: str  # the decimal separator
 
     @classmethod
-    def read(cls, path: str | Path, renamed: Mapping[str, str] | None = None) -> MeasuredFile:
-        """Read a file. ``renamed``: headers, with or without their unit, by the new names.
+    def read(
+        cls,
+        path: str | Path,
+        *wanted: str,
+        renamed: Mapping[str, str] | None = None,
+        units: Mapping[str, str] | None = None,
+    ) -> MeasuredFile:
+        """Read a file. Its header is the first line with columns of the wanted quantities (the last
+        words of their names) and with all that are renamed.
 
-        Upper and lower case are alike, but for headers that differ in nothing else.
+        renamed : headers, with or without their unit, by the new names. Upper and lower case are
+        alike, but for headers that differ in nothing else. units : by names, new or old, units
+        of columns without one, or calibrations, such as "12.5 N/V".
 
-        Raises `SceneError`, in one line, for a file that cannot be read, and for a header in
-        ``renamed`` that the file does not have once.
+        Raises `SceneError`, in one line, for a file that cannot be read or has no such header, for
+        an unknown new name, and for a unit of a column that the file does not have once.
         """
+        for name in renamed or {}:
+            if not (match := _NAME.fullmatch(name.lower())) or match[3] not in _UNITS:
+                known = "time, bead 8 force, contact 8 force, speed, displacement"
+                raise SceneError(f"column is {shorten(name)}: a name such as {known} is wanted")
+        renamed = {name.lower(): header for name, header in (renamed or {}).items()}
         try:
-            text = files.content(Path(path)).decode("utf-8-sig")
-            numbered = list(enumerate(text.splitlines(), start=1))
-            while numbered and (not (line := numbered[0][1].strip()) or line.startswith("#")):
-                del numbered[0]
-            mark = ";" if numbered and ";" in numbered[0][1] else ","
-            entries = csv.reader((line for _, line in numbered), delimiter=mark)
-            rows = [(n, row) for (n, _), row in zip(numbered, entries, strict=False) if row]
-        except UnicodeDecodeError:
-            raise SceneError(f"{path}: not a text in UTF-8") from None
+            content = files.content(Path(path))
+            try:
+                text = content.decode("utf-8-sig")
+            except UnicodeDecodeError:
+                text = content.decode("latin-1")
+            lines = text.replace("\r\n", "\n").split("\n")
+            for start, line in enumerate(lines):  # noqa: B007
+                mark = next((mark for mark in "\t;" if mark in line), ",")
+                header = next(csv.reader([line], delimiter=mark), [])
+                names, old, stated = _named(header, renamed)
+                if {*wanted} <= {name.split(" ")[-1] for name in names} and {*renamed} <= {*names}:
+                    break
+            else:
+                columns = ", ".join((*wanted, *renamed.values()))
+                raise SceneError(f"no line names {columns}: --column NAME=HEADER names a column")
+            reader = csv.reader(lines[start + 1 :], delimiter=mark)
+            rows = [
+                (start + 1 + reader.line_num, row) for row in reader if any(map(str.strip, row))
+            ]
         except (OSError, csv.Error, SceneError) as error:
             raise SceneError(f"{path}: {files.reason(error)}") from None
-        header = rows[0][1] if rows else []
-        names, units = [], []
-        for entry in header:
-            name, *brackets = _HEADER.fullmatch(" ".join(entry.split())).groups()  # type: ignore[union-attr]
-            names.append(name)
-            units.append((brackets[0] or brackets[1] or "").strip().replace("μ", "µ"))
-        for name, old in (renamed or {}).items():
-            known = list(zip(map(str.strip, header), names, strict=True))
-            places = [i for i, both in enumerate(known) if old in both]
-            # A header in another case will do, unless "t" and "T" are both there.
-            alike = [i for i, both in enumerate(known) if old.lower() in map(str.lower, both)]
-            places = places or alike
+        first = next(i for i, name in enumerate(names) if name.split(" ")[-1] == wanted[0])
+        if (
+            rows
+            and (entry := "".join(rows[0][1][first : first + 1]))
+            and not re.search(r"\d", entry)
+        ):
+            below = [entry.strip(" ()[]") for entry in rows.pop(0)[1]] + [""] * len(names)
+            stated = [unit or under for unit, under in zip(stated, below, strict=False)]
+        given = [""] * len(names)
+        for name, unit in (units or {}).items():
+            places = [i for i, n in enumerate(names) if name.lower() in (n, old[i].lower())]
             if len(places) != 1:
-                found = shorten(header)
-                raise SceneError(f"{path}: one column {old} is wanted, the header has {found}")
-            names = ["" if other.lower() == name.lower() else other for other in names]
-            names[places[0]] = name
-        return cls(
-            Path(path),
-            tuple(name.lower() for name in names),
-            tuple(units),
-            tuple(rows[1:]),
-            ",."[mark == ","],
-        )
+                wrong = f"unit is of {shorten(name)}: the header has {shorten(header)}"
+                raise SceneError(f"{path}: {wrong}")
+            given[places[0]] = unit.replace("μ", "µ").strip()
+        both = tuple(unit.replace("μ", "µ") for unit in stated), tuple(given)
+        return cls(Path(path), tuple(names), *both, tuple(rows), ",."[mark == ","])
 
     def column(self, name: str) -> Array:
-        """Return the values of a column, (N,), in SI if the header names a unit.
+        """Return the values of a column, (N,), in SI if the file has units.
 
         Raises `SceneError`, in one line, unless there is one such column, its unit is one of this
         quantity's, and its entries are finite numbers.
         """
         if self.names.count(name) != 1:
             found = shorten(list(self.names))
-            raise SceneError(f"{self.path}: one column {name} is wanted, the header has {found}")
-        at = self.names.index(name)
-        unit, known = self.units[at], _UNITS.get(name.split()[-1], {"": 1.0})
-        if unit and unit not in known:
-            wanted = f"one of {', '.join(known)} is wanted"
-            raise SceneError(f"{self.path}: column {name} is in {shorten(unit)}: {wanted}")
-        values, size = np.empty(len(self.lines)), known.get(unit, 1.0)
-        for i, (line, row) in enumerate(self.lines):
-            entry = row[at].strip() if at < len(row) else ""
+            raise SceneError(
+                f"{self.path}: one column {name} is wanted (see --column), the header has {found}"
+            )
+        return self._values(self.names.index(name))
+
+    def record(self, sensor: SensorColumn) -> tuple[Array, Array]:
+        """Return the times and the forces of a sensor, each (N,), as `column` does.
+
+        The times of "bead 8 force" are those of the column "bead 8 time"; else those of the nearest
+        column "time" on the left, or of the only one.
+        """
+        own = sensor.name.replace("dynamic ", "").replace("force", "time")
+        times = [i for i, name in enumerate(self.names) if name == "time"]
+        left = [i for i in times if i < sensor.place or len(times) == 1]
+        places = [i for i, name in enumerate(self.names) if name == own != "time"] or left
+        if not places:
+            raise SceneError(f"{self.path}: {sensor.name} has no column {own} or time on its left")
+        time, force = self._values(places[-1]), self._values(sensor.place)
+        if len(time) < len(force):
+            raise SceneError(f"{self.path}: {sensor.name} has more samples than times")
+        return time[: len(force)], force
+
+    def _values(self, at: int) -> Array:
+        """Return the values of the column at a place of the header."""
+        name, size = self.names[at], self._size(at)
+        entries = [(n, row[at].strip() if at < len(row) else "") for n, row in self.lines]
+        while entries and not entries[-1][1]:
+            del entries[-1]
+        values = np.empty(len(entries))
+        for i, (line, entry) in enumerate(entries):
             try:
                 values[i] = float(entry.replace(self.decimal, ".")) * size
             except ValueError:
@@ -122,28 +171,41 @@ class MeasuredFile:
                 raise SceneError(f"{self.path}: {fault}")
         return values
 
+    def _size(self, at: int) -> float:
+        """Return the number in SI of one unit of a column, 1 in a file without units."""
+        name, unit, given = self.names[at], self.units[at], self.given[at]
+        if not any(self.units) and not any(self.given):
+            return 1.0
+        known, factors = _UNITS[name.split()[-1]], _CALIBRATION.fullmatch(given)
+        if factors or not (unit and given) or unit == given:
+            number, to, per = factors.groups() if factors else ("1", *2 * (unit or given,))
+            by = _VOLTAGE if per in _VOLTAGE else known
+            with suppress(KeyError, ValueError):
+                return float(number) * known[to] / by[per] * by[unit or per]
+        says = f"the unit {shorten(unit)}" if unit else "no unit"
+        says += f" and is given {shorten(given)}" if given else ""
+        raise SceneError(
+            f"{self.path}: column {name} has {says}: one of "
+            f"{', '.join(known)} is wanted, or a calibration such as --unit 'CH1=12.5 N/V'"
+        )
 
-def columns(
-    path: str | Path,
-    *wanted: str,
-    optional: Sequence[str] = (),
-    renamed: Mapping[str, str] | None = None,
-) -> dict[str, Array]:
-    """Return the wanted columns of a measured file and those optional ones that it has, by name.
 
-    Raises `SceneError` as `MeasuredFile` does, and for new names that none of the columns has.
-    """
-    refuse_unknown(renamed, (*wanted, *optional))
-    file = MeasuredFile.read(path, renamed)
-    present = (name for name in optional if name in file.names)
-    return {name: file.column(name) for name in (*wanted, *present)}
-
-
-def refuse_unknown(renamed: Mapping[str, str] | None, known: Sequence[str]) -> None:
-    """Refuse a new name of a column that is not among the known ones."""
-    for name in renamed or {}:
-        if name.lower() not in known:
-            raise SceneError(f"column is {shorten(name)}: one of {', '.join(known)} is wanted")
+def _named(header: list[str], renamed: Mapping[str, str]) -> tuple[list[str], ...]:
+    """Return the new names of the entries of a header, the old names, and the units."""
+    parts = [_HEADER.fullmatch(" ".join(entry.split())).groups() for entry in header]  # type: ignore[union-attr]
+    old = [name for name, *_ in parts]
+    names = [name.lower() for name in old]
+    for new, wanted in renamed.items():
+        both = [{entry.strip(), name} for entry, name in zip(header, old, strict=True)]
+        # A header in another case will do, unless "t" and "T" are both there.
+        exact = [wanted in pair for pair in both]
+        alike = [wanted.lower() in map(str.lower, pair) for pair in both]
+        hits = exact if any(exact) else alike
+        names = [
+            new if hit else "" if name == new else name
+            for name, hit in zip(names, hits, strict=True)
+        ]
+    return names, old, [(round_ or square or "").strip() for _, round_, square in parts]
 
 
 @dataclass(frozen=True)
@@ -151,9 +213,9 @@ class SensorColumn:
     """A column with the force of a sensor, such as "bead 15 force"."""
 
     name: str
+    place: int  # in the header
     kind: str  # "bead" or "contact"
     number: int | None  # counted from 1; None for the only sensor of a file
-    dynamic: bool  # True without the static force
 
 
 def sensor_columns(file: MeasuredFile, of: str = "contact") -> list[SensorColumn]:
@@ -163,10 +225,9 @@ def sensor_columns(file: MeasuredFile, of: str = "contact") -> list[SensorColumn
 
     Raises `SceneError` for two columns of one sensor, and for several of which one has no number.
     """
-    named = [(name, match) for name in file.names if (match := _SENSOR.fullmatch(name))]
-    sensors = [
-        SensorColumn(n, m[1] or of, int(m[2]) if m[2] else None, bool(m[3])) for n, m in named
-    ]
+    named = [(i, m) for i, name in enumerate(file.names) if (m := _NAME.fullmatch(name))]
+    named = [(i, m) for i, m in named if m[3] == "force"]
+    sensors = [SensorColumn(m[0], i, m[1] or of, int(m[2]) if m[2] else None) for i, m in named]
     if len(sensors) > 1 and (without := [s.name for s in sensors if s.number is None]):
         raise SceneError(f"{file.path}: {shorten(without[0])} has no number: several are there")
     if len({(sensor.kind, sensor.number) for sensor in sensors}) < len(sensors):

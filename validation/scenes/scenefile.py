@@ -33,7 +33,7 @@ from lwa.spheres.beads import (
 )
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes.checks import SceneError, finite, positive
-from validation.scenes.columns import check_span, columns
+from validation.scenes.columns import MeasuredFile, check_span
 from validation.scenes.forcing import DAMPINGS, Damping, Drive
 from validation.scenes.scene import Scene
 
@@ -198,6 +198,7 @@ def _drive(given: Table, duration: float, folder: Path) -> Drive:
 def _motion(folder: Path, duration: float, value: Any, name: str) -> dict[str, Any]:
     if not isinstance(value, str):
         raise SceneError(f"{name} is {shorten(value)}: the name of a CSV file is wanted")
-    motion = columns(folder / value, "time", "displacement")
+    file = MeasuredFile.read(folder / value, "time", "displacement")
+    motion = {name: file.column(name) for name in ("time", "displacement")}
     check_span(folder / value, motion["time"], duration)
     return motion

@@ -14,16 +14,11 @@ from validation.pictures import Curve, Panel
 from validation.pulses.noisy import noisy_pulse
 from validation.pulses.pulse import Measured, MeasureError
 from validation.pulses.sensors import READINGS, record, static_forces
-from validation.report.command import column_option, study
+from validation.report.command import column_options, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError
-from validation.scenes.columns import (
-    MeasuredFile,
-    check_span,
-    refuse_unknown,
-    sensor_columns,
-)
+from validation.scenes.columns import MeasuredFile, check_span, sensor_columns
 from validation.scenes.scene import Scene
 from validation.scenes.scenefile import read_scene
 
@@ -42,33 +37,35 @@ _NOTE = (
 @study(
     click.argument("scene", type=click.Path()),
     click.argument("measured", type=click.Path()),
-    column_option(),
+    column_options,
 )
 def compare(
     scene: str,
     measured: str,
     renamed: Mapping[str, str] | None = None,
+    units: Mapping[str, str] | None = None,
     run_progress: RunProgress = silent,
 ) -> Report:
     """Measured forces at the sensors of a scene beside the simulated ones: arrival, peak, FWHM.
 
     SCENE is a scene file, as of `lwa-validate run`. MEASURED, a CSV file, has the columns time and,
-    for each sensor, such as "bead 15 force" (static force included) or "bead 15 dynamic force"; for
-    a single sensor also "force" or "dynamic force". Units in the header are read.
+    for each sensor, such as "bead 15 force"; for a single sensor also "force". Units are stated in
+    the header or by --unit; without any the file is in the scene's own numbers. Base and slope of a
+    record are those of its part before the pulse.
 
     ``rows``: ``kind``, ``number``, ``quantity`` ("arrival", "peak" or "fwhm"), ``simulated_value``,
     ``measured_value`` and ``difference_value``, measured less simulated, with errors;
     ``shift_value``.
     """
     chain = read_scene(scene)
-    time, forces, pulses = _read(measured, chain, renamed)
+    records, pulses = _read(measured, chain, renamed, units)
     simulation = record(chain, progress=run_progress)
     label, t = simulation.run.label, simulation.run.time
     rows: list[tuple[Any, ...]] = []
     curves: list[Curve] = []
     shift, first, start = 0.0, "", Measured(0.0, 0.0)
     for i, (reading, track) in enumerate(zip(simulation.sensors, simulation.tracks, strict=True)):
-        if reading.name not in forces:
+        if reading.name not in records:
             continue
         if reading.missing:
             raise SceneError(f"{reading.name}: {reading.missing}")
@@ -87,7 +84,7 @@ def compare(
             rows.append((printed, track.kind, track.number, name, *numbers))
         curves += [
             Curve(f"{reading.name}, simulated", t, track.force(t), f"C{i}-"),
-            Curve("measured", time + shift, forces[reading.name], f"C{i}."),
+            Curve("measured", records[reading.name][0] + shift, records[reading.name][1], f"C{i}."),
         ]
     unit = f"{shift:.6g} s" if chain.units else f"{shift:.6g}"
     return Report(
@@ -100,30 +97,33 @@ def compare(
 
 
 def _read(
-    file: str, chain: Scene, renamed: Mapping[str, str] | None
-) -> tuple[Array, dict[str, Array], dict[str, dict[str, Measured]]]:
-    """Read the measured dynamic forces at sensors of a scene, at least one.
+    file: str, chain: Scene, renamed: Mapping[str, str] | None, units: Mapping[str, str] | None
+) -> tuple[dict[str, tuple[Array, Array]], dict[str, dict[str, Measured]]]:
+    """Read measured forces at sensors of a scene, at least one.
 
-    Returns the times, and by the sensors' names the forces and the numbers of their first pulses.
+    Returns, by the sensors' names, times and forces over their base, and the numbers of the first
+    pulses.
     """
-    static = static_forces(chain)
-    if not static:
+    names = [*static_forces(chain)]
+    if not names:
         raise SceneError("the scene names no sensors")
-    measured = MeasuredFile.read(file, renamed)
-    time, forces, used = measured.column("time"), dict[str, Array](), ["time"]
-    check_span(file, time, chain.duration)
+    measured = MeasuredFile.read(file, "time", "force", renamed=renamed, units=units)
+    if not chain.units and (any(measured.units) or any(measured.given)):
+        raise SceneError(
+            f"{file}: its units are stated, the scene's are not: units = 'SI' is wanted"
+        )
+    records, pulses = {}, {}
     for sensor in sensor_columns(measured):
-        name = f"{sensor.kind} {sensor.number}"
-        if sensor.number is None and len(static) == 1:
-            (name,) = static
-        if name in static:
-            used.append(sensor.name)
-            forces[name] = measured.column(sensor.name) - (not sensor.dynamic) * static[name]
-    if not forces:
-        raise SceneError(f"{file}: no column is {' or '.join(f'{n} force' for n in static)}")
-    refuse_unknown(renamed, used)
-    try:
-        pulses = {name: dict(noisy_pulse(time, f, 0.0).numbers) for name, f in forces.items()}
-    except MeasureError as error:
-        raise MeasureError(f"{file}: {error}") from None
-    return time, forces, pulses
+        alone = sensor.number is None and len(names) == 1
+        name = names[0] if alone else f"{sensor.kind} {sensor.number}"
+        if name in names:
+            time, force = measured.record(sensor)
+            check_span(file, time, chain.duration)
+            try:
+                pulse = noisy_pulse(time, force)
+            except MeasureError as error:
+                raise MeasureError(f"{file}: {sensor.name}: {error}") from None
+            records[name], pulses[name] = (time, force - pulse.base), dict(pulse.numbers)
+    if not records:
+        raise SceneError(f"{file}: no column is {' or '.join(f'{name} force' for name in names)}")
+    return records, pulses

@@ -19,12 +19,12 @@ from lwa.command.options import quantities, quantity
 from lwa.spheres.beads import spheres as read_spheres
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Measured
-from validation.report.command import column_option, option, study
+from validation.report.command import column_options, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.chains import numeric_cell
 from validation.scenes.checks import SceneError, one_of
-from validation.scenes.columns import columns
+from validation.scenes.columns import MeasuredFile
 from validation.waves.contact_law import Medium, fit_power, weights
 
 _ROOT = 1e-13  # error of ln E, beside rounding
@@ -51,7 +51,7 @@ _LEAST = 6  # pulses: three more than the coefficients of the curvature's fit
         type=click.Choice(("contact", "bead")),
         says="Where the sensors sit; the force of a bead is the mean of its two contacts'.",
     ),
-    column_option(),
+    column_options,
 )
 def law(
     data: str,
@@ -61,10 +61,11 @@ def law(
     material: str | None = None,
     of: str = "contact",
     renamed: Mapping[str, str] | None = None,
+    units: Mapping[str, str] | None = None,
 ) -> Report:
     """Contact law from pulses. DATA, a CSV file, has the columns force (peak force) and speed.
     Columns force_error and speed_error, if both are there, are standard deviations that weight the
-    pulses. Units in the header are read.
+    pulses. Units are stated in the header or by --unit, or no column has one.
 
     of: "contact", or "bead" for forces of equal beads; they are divided by the share of a
     contact's force that a bead feels at the fitted k. From k = 1.9 on the force of a bead has two
@@ -75,7 +76,7 @@ def law(
     an unknown material, ``E_value``, with their errors; ``correlation_value`` of k and ln A;
     ``residual_value`` of ln V; ``one_power``.
     """
-    force, speed, weight = _pulses(data, renamed)
+    force, speed, weight = _pulses(data, renamed, units)
     content: dict[str, Any] = {}
     if spheres is None:
         cell = Cell(numeric_cell(masses or (1,)).masses, spacing=1 if spacing is None else spacing)
@@ -112,11 +113,17 @@ def law(
     )
 
 
-def _pulses(data: str, renamed: Mapping[str, str] | None) -> tuple[Array, Array, Array | None]:
+def _pulses(
+    data: str, renamed: Mapping[str, str] | None, units: Mapping[str, str] | None
+) -> tuple[Array, Array, Array | None]:
     """Read `_LEAST` or more pulses; return rising forces, speeds and weights (None if none)."""
-    read = columns(data, "force", "speed", optional=("force_error", "speed_error"), renamed=renamed)
-    order = np.argsort(read["force"])
-    force, speed, *deviations = (values[order] for values in read.values())
+    file = MeasuredFile.read(data, "force", "speed", renamed=renamed, units=units)
+    errors = (name for name in ("force_error", "speed_error") if name in file.names)
+    read = [file.column(name) for name in ("force", "speed", *errors)]
+    if len({*map(len, read)}) > 1:
+        raise SceneError(f"{data}: columns of one length are wanted, not of {[*map(len, read)]}")
+    order = np.argsort(read[0])
+    force, speed, *deviations = (values[order] for values in read)
     if len(force) < _LEAST or not (force[0] > 0 and speed.min() > 0):
         raise SceneError(f"{data}: at least {_LEAST} pulses of positive force and speed are wanted")
     if (different := len(np.unique(force))) < _LEAST - 2:

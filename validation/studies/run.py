@@ -48,6 +48,8 @@ def report(recording: Recording, every: bool = False) -> Report:
     Keys of the JSON document:
     ``sensors``: ``kind``, ``number``, with ``every`` ``pulse``, counted from 1, ``arrival_value``,
     ``peak_value`` (of the dynamic force), ``fwhm_value``, ``static_force_value``, ``missing``;
+    ``echoes`` of later pulses: ``kind``, ``number``, ``pulse``, ``reflected``, ``delay_value``
+    behind the first pulse and ``ratio_value`` of their peaks (`validation.pulses.sensors.echoes`);
     ``speeds``: ``kind``, ``from``, ``to``, ``speed_sites_value``, ``speed_value`` (null without
     spacings), ``missing``; each measured value with its error, as ``arrival_error_value``, and all
     null where ``missing`` is the reason; ``energy_drift_value``, and ``momentum_drift_value``, null

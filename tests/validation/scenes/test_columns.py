@@ -1,34 +1,64 @@
-"""The reader of measured files: units, separators, new names, and what is refused."""
+"""The reader of measured files: units that are stated, and what is refused."""
 
 import numpy as np
 import pytest
 
-from validation.scenes.columns import LENGTH, TIME, amount, check_span, columns
+from validation.scenes.columns import (
+    LENGTH,
+    TIME,
+    MeasuredFile,
+    amount,
+    check_span,
+    sensor_columns,
+)
 from validation.scenes.scene import SceneError
 
 
-def written(tmp_path, text, encoding="utf-8"):
+def read(tmp_path, text, *wanted, encoding="utf-8", **options):
     file = tmp_path / "record.csv"
     file.write_bytes(text.encode(encoding))
-    return file
+    return MeasuredFile.read(file, *(wanted or ("time", "force")), **options)
+
+
+def values(file, *names):
+    return [file.column(name).tolist() for name in names]
 
 
 @pytest.mark.parametrize(
     ("column", "size"),
     [
         *(("time (s)", 1), ("time [ms]", 1e-3), ("time (µs)", 1e-6), ("time [\u03bcs]", 1e-6)),
-        *(("time (us)", 1e-6), ("time [ns]", 1e-9)),
-        *(("bead 15 force (N)", 1), ("bead 15 dynamic force (mN)", 1e-3), ("force (kN)", 1e3)),
+        *(("time (us)", 1e-6), ("time [ns]", 1e-9), ("time (second)", 1)),
+        *(("bead 15 force (N)", 1), ("contact 15 force (mN)", 1e-3), ("force (kN)", 1e3)),
         *(("displacement (m)", 1), ("displacement(mm)", 1e-3), ("displacement [ µm ]", 1e-6)),
         *(("speed (m/s)", 1), ("speed (km/s)", 1e3), ("speed_error (mm/s)", 1e-3)),
     ],
 )
 def test_units_are_read(tmp_path, column, size):
     name = column.partition("(")[0].partition("[")[0].strip()
-    file = written(tmp_path, f"{column},strain\n7,2\n")
-    found = columns(file, name, "strain")
-    assert found[name] == pytest.approx([7 * size], rel=1e-15)
-    assert found["strain"].tolist() == [2]
+    file = read(tmp_path, f"{column},strain\n7,2\n", name.split(" ")[-1])
+    assert file.column(name) == pytest.approx([7 * size], rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("header", "units", "size"),
+    [
+        ("time (s),CH1 (mN)", {}, 1e-3),
+        ("time (s),CH1", {"CH1": "mN"}, 1e-3),
+        ("time (s),CH1", {"force": "kN"}, 1e3),
+        ("time (s),CH1 (V)", {"CH1": "12.5 N/V"}, 12.5),
+        ("time (s),CH1 (mV)", {"CH1": "12.5 N/V"}, 12.5e-3),
+        ("time (s),CH1 (V)", {"ch1": "1.5e3 mN/mV"}, 1.5e3),
+        ("time (s),CH1", {"CH1": "-2 N/V"}, -2),
+        ("time (s),CH1 (mN)", {"CH1": "-1 N/N"}, -1e-3),
+        ("time,CH1", {}, 1),
+        ("time,CH1\n(s),(kN)", {}, 1e3),
+    ],
+)
+def test_units_are_stated_by_header_row_or_user(tmp_path, header, units, size):
+    file = read(tmp_path, f"{header}\n1,7\n", renamed={"force": "CH1"}, units=units)
+    assert file.column("time").tolist() == [1]
+    assert file.column("force") == pytest.approx([7 * size], rel=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -36,58 +66,80 @@ def test_units_are_read(tmp_path, column, size):
     [
         "time (ms),force (N)\n1.5,-2e3\n2.5,4\n",
         "time (ms);force (N)\n1,5;-2e3\n2,5;4\n",
-        "time (ms);force (N)\n1.5;-2e3\n2.5;4\n",
-        "\ufeff# oscilloscope, 1 MHz; 8 bit\n\n#\n time (ms) , force (N) \r\n1.5,-2e3\r\n\r\n2.5,4",
-        'CH2,"time (ms)","force (N)"\n7,"1.5","-2e3"\n8,2.5,4\n',
+        "time (ms)\tforce (N)\n1,5\t-2e3\n2.5\t4\n",
+        "\ufeff# oscilloscope, 1 MHz; 8 bit\n\nTime,12:03\n time (ms) , force (N) \r\n1.5,-2e3"
+        "\r\n\r\n2.5,4",
+        'CH2,"time (ms)","force (N)"\n7,"1.5","-2e3"\n8,2.5,4\n9,,\n',
     ],
 )
-def test_separators_decimals_and_comments(tmp_path, text):
-    found = columns(written(tmp_path, text), "time", "force")
-    assert found["time"] == pytest.approx([1.5e-3, 2.5e-3], rel=1e-15)
-    assert found["force"].tolist() == [-2000, 4]
-
-
-def test_a_column_is_renamed_with_or_without_its_unit(tmp_path):
-    file = written(tmp_path, "time,CH1 t (ms),CH2 [N]\n0,1,2\n")
-    for header in ("CH1 t", "CH1 t (ms)"):
-        found = columns(file, "time", "force", renamed={"time": header, "force": "CH2"})
-        assert (found["time"].tolist(), found["force"].tolist()) == ([1e-3], [2.0])
+def test_separators_decimals_and_lines_before_the_header(tmp_path, text):
+    found = values(read(tmp_path, text), "time", "force")
+    assert found == [pytest.approx([1.5e-3, 2.5e-3], rel=1e-15), [-2000, 4]]
 
 
 def test_names_are_compared_without_regard_to_case(tmp_path):
-    file = written(tmp_path, "Time (ms),FORCE,T,t\n1,2,3,4\n")
-    found = columns(file, "time", "force")
-    assert (found["time"].tolist(), found["force"].tolist()) == ([1e-3], [2.0])
-    for header, value in (("t", 4.0), ("T", 3.0), ("force", 2.0)):
-        assert columns(file, "time", renamed={"time": header})["time"].tolist() == [value]
+    text = "Time (s),FORCE (N),T (s),t (s)\n1,2,3,4\n"
+    assert values(read(tmp_path, text), "time", "force") == [[1], [2]]
+    for header, value in (("t", 4.0), ("T", 3.0), ("force", 2.0), ("T (s)", 3.0)):
+        file = read(tmp_path, text.replace("(N)", "(s)"), "time", renamed={"time": header})
+        assert values(file, "time") == [[value]]
+
+
+def test_each_sensor_has_its_own_times(tmp_path):
+    """By name; else the column on the left, or the only one of the file."""
+    texts = {
+        "t (s),1 force (N),t (s),2 force (N)\n1,5,2,6\n": {"time": "t"},
+        "bead 2 time (s),1 time (s),bead 2 force (N),1 force (N)\n2,1,6,5\n": {},
+    }
+    for text, renamed in texts.items():
+        file = read(tmp_path, text, renamed=renamed)
+        found = {s.number: [x.tolist() for x in file.record(s)] for s in sensor_columns(file)}
+        assert found == {1: [[1], [5]], 2: [[2], [6]]}
+    file = read(tmp_path, "1 force,time,2 force\n5,1,6\n,2,7\n")
+    assert [file.record(s)[0].tolist() for s in sensor_columns(file)] == [[1], [1, 2]]
+
+
+HEAD = "time (s),force (N)\n"
 
 
 @pytest.mark.parametrize(
-    ("text", "renamed", "named"),
+    ("text", "options", "named"),
     [
-        ("time (min),force\n1,2\n", {}, "column time is in 'min': one of s, ms"),
-        ("time (N),force\n1,2\n", {}, "column time is in 'N'"),
-        ("time (s),force (lbf)\n1,2\n", {}, "column force is in 'lbf'"),
-        ("time,force,force (N)\n1,2,3\n", {}, "one column force is wanted"),
-        ("time,strain\n1,2\n", {}, "one column force is wanted"),
-        ("# only a comment\n", {}, "one column time is wanted"),
+        ("time (min),force (N)\n1,2\n", {}, "column time has the unit 'min': one of s, sec"),
+        ("time (s),force (lbf)\n1,2\n", {}, "column force has the unit 'lbf': one of N"),
+        ("time (s),force (V)\n1,2\n", {}, "--unit 'CH1=12.5 N/V'"),
+        ("time,force (N)\n1,2\n", {}, "column time has no unit"),
+        ("time (s),force\n1,2\n", {}, "column force has no unit"),
+        ("time,force\n1,2\n", {"units": {"force": "N"}}, "column time has no unit"),
+        (f"{HEAD}1,2\n", {"units": {"force": "mN"}}, "'N' and is given 'mN'"),
+        (f"{HEAD}1,2\n", {"units": {"force": "12.5 N/V"}}, None),
+        (f"{HEAD}1,2\n", {"units": {"force": "x N/V"}}, "is given 'x N/V'"),
+        (f"{HEAD}1,2\n", {"units": {"CH9": "N"}}, "unit is of 'CH9'"),
+        ("time (s),force (N),force (N)\n1,2,3\n", {}, "one column force is wanted"),
+        ("time,strain\n1,2\n", {}, "no line names time, force: --column"),
+        ("# only a comment\n", {}, "no line names time, force: --column"),
+        ("\x00\xff\n", {"encoding": "latin-1"}, "--column"),
         ("time;force\n1,5;2;3\n1.500,5;2\n", {}, "column time, line 3: '1.500,5'"),
-        ("# a\ntime,force\n1,2\n3\n", {}, "column force, line 4: ''"),
+        ("# a\ntime,force\n1,2\n3\n4,5\n", {}, "column force, line 4: ''"),
         ("time,force\n1,inf\n", {}, "column force, line 2: 'inf'"),
-        ("time,force\n1,2\n", {"time": "CH1"}, "one column CH1 is wanted"),
-        ("time,force\n1,2\n", {"tme": "force"}, "column is 'tme'"),
+        ("time,force\n1,2\n", {"renamed": {"time": "CH1"}}, "no line names time, force, CH1"),
+        ("time,force\n1,2\n", {"renamed": {"tme": "force"}}, "column is 'tme'"),
+        ("time,force\n1,2\n", {"renamed": {"bead x force": "force"}}, "column is 'bead x force'"),
     ],
 )
-def test_bad_files_are_refused_in_one_line(tmp_path, text, renamed, named):
+def test_bad_files_are_refused_in_one_line(tmp_path, text, options, named):
+    if named is None:
+        named = "force has the unit 'N' and is given '12.5 N/V'"
     with pytest.raises(SceneError) as refused:
-        columns(written(tmp_path, text), "time", "force", renamed=renamed)
+        values(read(tmp_path, text, **options), "time", "force")
     assert named in str(refused.value)
     assert "\n" not in str(refused.value)
 
 
-def test_a_text_in_another_encoding_is_refused(tmp_path):
-    with pytest.raises(SceneError, match="UTF-8"):
-        columns(written(tmp_path, "time (µs),force\n1,2\n", "latin-1"), "time")
+def test_more_forces_than_times_are_refused(tmp_path):
+    file = read(tmp_path, "time,force\n1,2\n,3\n")
+    with pytest.raises(SceneError, match="more samples than times"):
+        file.record(*sensor_columns(file))
 
 
 def test_amounts_with_a_unit():

@@ -197,7 +197,7 @@ ROWS = "".join(f"{n},{n}\n" for n in range(1, 9))
 @pytest.mark.parametrize(
     ("text", "options", "named"),
     [
-        ("force,time\n1,2\n", {}, "column speed"),
+        ("force,time\n1,2\n", {}, "no line names force, speed"),
         ("force,speed\n1,2\n", {}, "at least 6 pulses"),
         ("force,speed\n" + "-1,2\n" * 9, {}, "positive force and speed"),
         ("force,speed\n" + ROWS, {"masses": (1, 2), "of": "bead"}, "of is bead"),
