@@ -29,6 +29,22 @@ def test_the_inverse_width_of_equal_spheres():
     assert canonical_wave(Cell([1]), "3/2").beta == sp.sqrt(10) / (5 * D)
 
 
-def test_the_paper_has_two_pages():
-    """At about 500 words a page, as the Journal of Open Source Software prints them."""
-    assert 400 < len(TEXT.split()) < 1000
+SECTIONS = (
+    "Summary", "Statement of need", "State of the field", "Software design",
+    "Evidence of correctness", "Research impact statement", "References",
+)  # fmt: skip
+
+
+def test_the_form_of_the_journal():
+    """The words and the sections that the Journal of Open Source Software asks for."""
+    assert 750 <= len(TEXT.partition("# Summary")[2].split()) <= 1750
+    assert tuple(re.findall("^# (.*)$", TEXT, re.MULTILINE)) == SECTIONS
+    (open_,) = re.findall("<!--(.*?)-->", TEXT, re.DOTALL)
+    assert {"authors", "affiliations", "date", "history"} <= set(re.findall(r"\w+", open_))
+
+
+def test_every_program_of_the_readme_is_named():
+    readme = (BOOK.parent / "README.md").read_text().partition("## What else")[2].partition("##")[0]
+    programs = re.findall(r"^\| \[(\S+)\]", readme, re.MULTILINE)
+    assert len(programs) > 4
+    assert not [name for name in programs if name not in TEXT]
