@@ -33,6 +33,10 @@ DIGITS = 330
 MOST_CANCELLED = 20_000
 """Digits that the terms of an exact number may cancel before it is evaluated in vain."""
 
+# Bits that a power is written out to: about 1000 digits. A square root, of bits (1 + 2), is of less
+# than 1024 bits then, beyond which SymPy's search for factors fails with an OverflowError.
+_POWER_BITS = 3000
+
 
 def shorten(value: object) -> str:
     """The ``repr`` of an offending value, cut to one short line for a message."""
@@ -163,15 +167,27 @@ def evaluated(value: sp.Expr, digits: int) -> sp.Expr:
     return sp.N(value, digits, maxn=MOST_CANCELLED)
 
 
+class Unmultiplied(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymPy
+    """A number that SymPy does not multiply out in a power; it prints and evaluates as usual."""
+
+    def _eval_is_positive(self) -> bool:
+        return bool(self.args[0].is_positive)
+
+    def _eval_evalf(self, precision: int) -> sp.Expr:
+        return self.args[0]._eval_evalf(precision)
+
+
 def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
-    """The power base^exponent.
+    """The power base^exponent without numbers of more than a thousand digits.
 
-    Raises `InputError` where the numbers are too long for SymPy.
-
-    >>> power(sp.Rational(9, 4), sp.Rational(3, 2))
-    27/8
+    >>> power(sp.Rational(9, 4), sp.Rational(3, 2)), power(sp.Rational(9, 4), sp.Rational(1, 9999))
+    (27/8, (9/4)**(1/9999))
     """
-    try:
-        return base**exponent
-    except OverflowError:  # SymPy finds no factors of integers beyond 2^1024
-        raise InputError(f"{shorten(base)} has too many digits for a power: round it") from None
+    factor = base.as_coeff_Mul()[0]
+    if factor not in (0, 1) and factor.is_Rational and exponent.is_Rational:
+        # SymPy takes whole powers out of roots: (1/3)^(1 + 1/99999) = 3^(99998/99999)/3^2 passes
+        # through 3^99999.
+        bits = int(factor.p).bit_length() + int(factor.q).bit_length()
+        if bits * (abs(int(exponent.p)) + int(exponent.q)) > _POWER_BITS:
+            base = Unmultiplied(base)
+    return base**exponent
