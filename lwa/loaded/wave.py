@@ -27,6 +27,7 @@ Errors are bounds on measured differences to exact and struck waves (`book/studi
 `book/studies/struck.py`) in units of the amplitude Δ = ln(F′(p0+B)/V̂²), which vanishes with B/p0,
 and without load with k - 1. Strongly unlike contacts driven hard have widths 20 to 34 % too small
 and squared speeds up to 6 % off: there, and without load, the width of a pair has no bound: NaN.
+Unlike masses without load radiate, some all of the wave: neither has a bound.
 """
 
 from __future__ import annotations
@@ -73,7 +74,7 @@ _FOOT = 1e-40  # part of the rise at which the sound ahead of the wave is comput
 _ALIKE = 0.1, 0.15, 1.8  # equal particles and nearest links, with and without a load
 _FARTHER = 0.1, 0.3, 1.2  # one particle a cell, links to farther ones
 _LOADED_PAIR = 0.5, 0.8, 0.3  # two unlike masses or links under a load
-_BARE_PAIR = 0.16, nan, 1.8  # two unlike masses or links without a load
+_BARE_PAIR = 0.16, nan, 1.8  # two equal masses with unlike links, without a load
 _NONE = nan, nan, nan
 
 
@@ -236,8 +237,10 @@ class LoadedWave(Ends):
         lattice, bare, rule = self.lattice, added > _BARE, _NONE
         if lattice.alike or lattice.size == 1:
             rule = _ALIKE if lattice.alike else _FARTHER
-        elif lattice.size == 2:
-            rule = _BARE_PAIR if bare else _LOADED_PAIR
+        elif lattice.size == 2 and not bare:
+            rule = _LOADED_PAIR
+        elif lattice.size == 2 and len({*lattice.masses}) == 1:
+            rule = _BARE_PAIR
         heard = lattice.resonators and not (bare and lattice.alike and lattice.size == 1)
         if delta > rule[2] or heard or self._quadrature.B < 0:
             rule = _NONE
