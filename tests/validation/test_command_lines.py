@@ -19,7 +19,7 @@ COUNTS = ("0", "1", "2", "8", "38", "-1", "1000000000", "1.5", "x", "", "15,34")
 FILES = ("pulses.csv", "flat.csv", "nan.csv", "wild.csv", "run.csv", "paper.toml", "none.csv", ".")
 RENAMED = ("time=x", "time", "a=b=c", "=", "")
 OPTIONS = {
-    "exact": {"--k": NUMBERS, "--masses": NUMBERS, "--background": NUMBERS},
+    "exact": {"--k": NUMBERS, "--masses": NUMBERS},
     "resonances": {"--k": NUMBERS, "--count": ("1", "0", "7", "x")},
     "law": {
         "": FILES, "--masses": NUMBERS, "--spacing": NUMBERS, "--spheres": FILES,

@@ -30,20 +30,19 @@ Errors: residual, tail and rounding."""
 @study(
     EXPONENT,
     option("--masses", callback=quantities, default="1", says="Mass of all beads, or two in turn."),
-    option("--background", default=0.0, says="Static compression divided by the peak; 0: no load."),
 )
-def exact(k: float, masses: tuple[sp.Expr, ...], background: float = 0.0) -> Report:
+def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
     """Exact solitary wave of the lattice: speed, widths and amplitudes.
 
     The peak contact force is 1. Two masses have a solitary wave at special ratios only
     (`resonances`).
 
-    ``k_value``, ``masses_value``, ``background_value``, ``half_period_value``, ``residual_value``,
-    ``solitary``; with errors, as ``c2_error_value``: ``c2_value``, ``c_value``, ``tail_value`` and
-    by quantity ``amplitude_value``, ``fwhm_value``.
+    ``k_value``, ``masses_value``, ``half_period_value``, ``residual_value``, ``solitary``;
+    with errors, as ``c2_error_value``: ``c2_value``, ``c_value``, ``tail_value`` and by quantity
+    ``amplitude_value``, ``fwhm_value``.
     """
     given = [float(mass) for mass in numeric_cell(masses).masses]
-    return wave_report(exact_wave(given, k, background=background))
+    return wave_report(exact_wave(given, k))
 
 
 def wave_report(wave: ExactWave) -> Report:
@@ -53,17 +52,15 @@ def wave_report(wave: ExactWave) -> Report:
     # One row of all numbers; "fwhm force" becomes an entry of fwhm_value.
     columns = tuple(Column(name.replace(" ", "."), error=True) for name in numbers)
     (values,) = Table(columns, (tuple(numbers.values()),)).document()
-    load = f"; background strain {wave.background:g}: strains and forces are above it"
     return Report(
-        f"masses {wave.masses[0]:.10g}, {wave.masses[1]:.10g}; k = {wave.k:g}; A = D = 1"
-        f"{load if wave.background else ''}\nc² = {numbers['c2']}, c = {numbers['c']}\n"
+        f"masses {wave.masses[0]:.10g}, {wave.masses[1]:.10g}; k = {wave.k:g}; A = D = 1\n"
+        f"c² = {numbers['c2']}, c = {numbers['c']}\n"
         f"solitary: tail {wave.tail:.0e} of the peak strain, residual {wave.residual:.0e}",
         (Table(_COLUMNS, rows, note=_NOTE),),
         panels=tuple(wave.pictured()),
         data={
             "k_value": wave.k,
             "masses_value": wave.masses,
-            "background_value": wave.background,
             "half_period_value": wave.half_period,
             "residual_value": wave.residual,
             "solitary": wave.solitary,
