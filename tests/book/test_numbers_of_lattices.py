@@ -4,18 +4,40 @@ The numbers are read out of the pages: a number of the text that is changed turn
 """
 
 import math
+from fractions import Fraction
 from itertools import chain
 
+import numpy as np
 import pytest
 import sympy as sp
 
+from book.studies.disorder import disorder, single_losses
+from book.studies.gravity import front_width
 from book.studies.links import CASES, links
+from book.studies.precompressed import precompressed
 from book.studies.shock import shock as driven
 from book.studies.struck import struck
-from lwa import Cell, LoadedChain, Material, Power, Sphere, envelope, loaded_wave, shock
-from tests.book.prose import limited, said, told
+from book.studies.widths import widths
+from lwa import (
+    Cell,
+    Dimer,
+    LoadedChain,
+    Material,
+    Power,
+    Sphere,
+    canonical_wave,
+    envelope,
+    homogenize,
+    loaded_wave,
+    shock,
+)
+from tests.book.prose import bounds, limited, said, told
+from validation import Damping, Scene, measure, simulate
+from validation.scenes.chains import PTFE_BEAD, STEEL_BEAD
 
+k, m1, m2 = sp.symbols("k m1 m2", positive=True)
 HERTZ = Power("3/2")
+PAIR = Cell.of_spheres([STEEL_BEAD, PTFE_BEAD])
 
 
 def test_the_experiment_of_the_breather():
@@ -118,3 +140,164 @@ def test_driven_chains():
     )
     limited("shocks", "under a load is right within # %", loaded)
     assert told("shocks", "the plateau's strain is # % below", *(-error for error in bare))
+
+
+# --- a chain under load, and under its own weight
+
+
+def test_nesterenkos_relation():
+    """By two integrations of a power, for four cells, with the limit of weak waves."""
+    z, p = sp.symbols("zeta p0", positive=True)
+    square = 2 / (k * (k + 1)) * (z ** (k + 1) - (k + 1) * z + k) / (z - 1) ** 2
+    stored, B = (lambda v: v ** (k + 1) / (k * (k + 1))), p * (z - 1)
+    direct = 2 * (stored(p + B) - stored(p) - p**k / k * B) / B**2 / p ** (k - 1)
+    assert sp.simplify(sp.powsimp(sp.expand(direct - square), force=True)) == 0
+    expected = square.subs({k: sp.Rational(3, 2), z: sp.Rational(4, 3)}).n(30)
+    for cell in (Dimer(m1, m2), Cell([1, 2, 3]), Cell([1, 1], stiffnesses=[1, 8])):
+        wave = canonical_wave(cell, "3/2").on_background("p0").field
+        ratio = (wave.speed(p / 3) / wave.sound_speed).subs(p, 2).n(30)
+        assert abs(ratio**2 - expected) < 1e-25
+        kdv = wave.kdv
+        assert sp.simplify(kdv.nonlinearity - kdv.sound_speed / (4 * p)) == 0
+        assert sp.simplify(kdv.dispersion - wave.I * kdv.sound_speed / 2) == 0
+        assert sp.simplify(kdv.width(1) - sp.sqrt(24 * wave.I * p)) == 0
+
+
+def test_flanks_fall_exponentially():
+    pulse = canonical_wave(Cell([1], spacing=1), "3/2").on_background(0.1, 1)
+    q = np.sqrt(12 * (float(pulse.speed / pulse.sound_speed) ** 2 - 1))  # I = 1/12
+    near, far = pulse.along(np.array([15.0, 15.5]) / q, "strain")
+    assert np.log(near / far) == pytest.approx(0.5, rel=1e-3)
+
+
+def test_gap_of_the_papers_chain():
+    """Frequencies scale as the load to the power 1/6; the edges of the gap have a fixed ratio."""
+    edges = [LoadedChain(PAIR, HERTZ, load).bands.edges() for load in (1, 10)]
+    (power,) = said("pressed", "scales as $F_0^{#}$")
+    assert edges[0][:, 1] / edges[1][:, 1] == pytest.approx(
+        0.1 ** float(Fraction(power)), rel=1e-12
+    )
+    assert edges[0][1, 0] / edges[0][0, 1] == pytest.approx(math.sqrt(450 / 123), rel=1e-12)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("masses", [(1,), (1, "1/2"), (1, "1/4")])
+def test_lattice_beside_nesterenkos_relation(masses):
+    rows = precompressed(masses=masses, ratios=(0.1, 0.3, 1, 3, 10)).document()["rows"]
+    off = [100 * abs(row["error_value"]) for row in rows]
+    words = "within # % of the line up to dynamic forces of # loads, and within # % up to # loads"
+    weak, end, strong, last = map(float, said("pressed", words))
+    assert off == sorted(off)
+    assert (end, last) == (0.3, 10)
+    assert off[1] < weak
+    assert off[-1] < strong
+
+
+def test_front_of_an_upright_chain():
+    """Its derivation's integral, wavenumber and unit; the rest is in `studies/test_gravity.py`."""
+    assert told("pressed", r"$\ell_{3/2} = #$", front_width(1.5))
+    x, X, W, I = sp.symbols("x X Omega I", positive=True)
+    for power in (sp.Rational(5, 4), sp.Rational(3, 2), sp.S(2)):
+        sound = sp.sqrt(power * (3 * x) ** ((power - 1) / power) / 3)
+        spread = 2 * power / (3 - power) * x / sound**3
+        assert sp.simplify(sp.integrate(sound**-3, (x, 0, X)) / spread.subs(x, X)) == 1
+    wavenumber = W + I * W**3 / 2  # Ω² = κ² - I κ⁴ at c0 = 1
+    square = wavenumber**2 - I * wavenumber**4
+    assert sp.expand(sp.series(sp.sqrt(square), W, 0, 5).removeO() - W) == 0
+    A = float(Cell.of_spheres([STEEL_BEAD]).stiffnesses[0])
+    unit = math.sqrt(9.81) * np.cbrt(0.45e-3 * 9.81 / A)  # √(g ℓ), ℓ = (m g/A)^{2/3}
+    blow, shown = said("pressed", "a blow of # to steel beads of 4.76 mm is # m/s")
+    assert float(blow) * unit == pytest.approx(float(shown), abs=5e-3)
+
+
+# --- the paper's column, unequal masses, damping
+
+
+def test_unequal_masses():
+    """Losses at one bead, and the decay along chains of random masses."""
+    excess = np.array([0.0025, 0.005, 0.01, 0.02])
+    basis = np.stack([np.ones(4), np.sqrt(excess)], axis=1)
+    fits, heavier, lighter = (
+        [],
+        *(
+            [
+                loss.value / size**2
+                for loss, size in zip(single_losses(s * excess), excess, strict=True)
+            ]
+            for s in (1, -1)
+        ),
+    )
+    for losses, words in (
+        (heavier, "holds within # % with $L_2 = #$ and $L_{5/2} = #$"),
+        (lighter, "bead costs more: $L_2 = #$ and $L_{5/2} = #$, within # %"),
+    ):
+        fits.append(np.linalg.lstsq(basis, losses, rcond=None)[0])
+        off = 100 * np.abs(basis @ fits[-1] / losses - 1)
+        numbers = [*said("column", words)]
+        most = numbers.pop(0 if words.startswith("holds") else -1)
+        assert bounds(off, most)
+        assert fits[-1] == pytest.approx([float(x) for x in numbers], rel=0.02)
+    # an upper bound for masses within a percent: heavier beads cost less
+    assert 38 * np.dot(fits[1], (1e-4 / 3, 1e-5 / 3.5)) < 1e-4
+    for spread, digits in ((0.1, 5), (0.2, 5), (0.4, 4)):
+        found = disorder(spread=spread, chains=20, sites=200).data
+        shown = said("column", f"| {spread} | # | # ± # |")
+        keys = "theory_value", "decay_value", "decay_error_value"
+        assert [float(x) for x in shown] == [round(found[key], digits) for key in keys]
+        assert abs(found["theory_value"] / found["decay_value"] - 1) < 0.2
+    local = disorder(spread=0.5, chains=20, sites=200).tables[0].records()[1:]
+    ends = (row["decay_value"] for row in (local[0], local[-1]))
+    assert told("column", r"$\varsigma = 0.5$ the decay per site falls from # to #", *ends)
+
+
+@pytest.fixture(scope="module")
+def column():
+    """Pulses of the beads 14 to 35 of the paper's column, by bead."""
+    scene = Scene.of_cell(
+        PAIR, 19, "3/2", velocities=(1.37,), duration=1.2e-3, samples=6001,
+        bead_sensors=range(13, 35),
+    )  # fmt: skip
+    run = simulate(scene)
+    return dict(enumerate((measure(run.time, force) for force in run.bead_force), 14))
+
+
+def test_speeds_of_the_papers_column(column):
+    force = (column[15].peak + column[34].peak) / 2
+    for wave, words in (
+        (homogenize(PAIR, k="3/2").pde.traveling_wave(), "theory is # to # % too slow"),
+        (canonical_wave(PAIR, "3/2"), "too slow, and the canonical wave # to # %"),
+    ):
+        speed = float(wave.at_force(float(force), of="bead").speed)
+        slow = [
+            100 - 100 * speed * (column[b].arrival - column[a].arrival) / ((b - a) * 4.76e-3)
+            for a, b in ((15, 33), (16, 34))
+        ]
+        assert told("column", words, *sorted(slow))
+    drop = float(said("column", "from a height of # centimetres")[0]) / 100
+    assert told("column", "striker at # m/s", math.sqrt(2 * 9.81 * drop))
+
+
+def test_the_papers_errors_of_the_width():
+    wide = widths().document()
+    met = {(d["quantity"], d["unit"]): len(d["reproduced"]) for d in wide["definitions"]}
+    assert len(met) == 10  # "of ten definitions"
+    assert [name.split()[0] for (name, _), n in met.items() if n > 1] == ["PTFE"]
+    lines = wide["lines_value"]["linear"]
+    assert lines["m1 ≫ m2"] / lines["m1 = m2"] == pytest.approx(math.sqrt(2), rel=1e-9)
+    over, under = (float(x) / 100 for x in said("column", "With $+#$ % and $#$ % their ratio"))
+    (middle,) = said("column", "the middle one is about $#$ %")
+    for end, error in (("m1 ≫ m2", over), ("m1 = m2", under)):
+        implied = (1 + error) * lines["m2/m1 = 0.27"] / lines[end] - 1
+        assert 100 * implied == pytest.approx(float(middle), abs=0.05)
+
+
+@pytest.mark.parametrize(("kind", "power"), [("contact", 1), ("kuwabara_kono", -1)])
+def test_speed_or_slowness_is_linear_in_damped_chains(kind, power):
+    scene = Scene(
+        masses=(1.0,) * 160, stiffnesses=(1.0,) * 159, k=1.5, velocities=(1.0,), duration=180.0,
+        samples=9001, contact_sensors=range(30, 131, 20), damping=Damping(kind, 0.002),
+    )  # fmt: skip
+    run = simulate(scene)
+    times = [measure(run.time, force).arrival for force in run.contact_force]
+    slopes = np.diff(np.diff(times) ** -power)
+    assert slopes[-1] == pytest.approx(slopes[0], rel=1e-3)

@@ -15,10 +15,10 @@ PROSE = {page: CELL.sub("", text) for page, text in TEXTS.items()}
 PARTS = (BOOK / "_toc.yml").read_text().split("caption:")[1:4]
 CHAPTERS = [page for part in PARTS for page in re.findall(r"file: (\w+)", part)]
 
-LATER = {"pressed", "disorder", "upright", "damping", "column", "open", "experiment"}
+LATER = {"open", "experiment"}
 """Pages that still have hidden assertions, exercises without a solution and a tag a section."""
 
-NEW, LINES = 14, 3520
+NEW, LINES = 14, 3300
 COLUMN = 85
 """Results that were looked up and not found, lines of Markdown, and characters of visible code."""
 
