@@ -1,0 +1,45 @@
+"""The examples of docstrings are accepted by mypy in strict mode; the README's: `test_readme`."""
+
+import ast
+import doctest
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+
+def with_examples(source):
+    """The text of a module with the examples of its docstrings behind it, one function each."""
+    kinds = ast.Module, ast.ClassDef, ast.FunctionDef
+    texts = [ast.get_docstring(node) for node in ast.walk(ast.parse(source)) if type(node) in kinds]
+    for i, text in enumerate(filter(None, texts)):
+        lines = "".join(part.source for part in doctest.DocTestParser().get_examples(text))
+        if lines:
+            source += f"\n\ndef _example_{i}() -> None:\n" + re.sub(
+                "^(?=.)", "    ", lines, flags=re.M
+            )
+    return source
+
+
+@pytest.mark.slow
+@pytest.mark.optional("mypy")
+def test_mypy_accepts_every_example(tmp_path):
+    shadows = []
+    for package in ("lwa", "validation"):
+        for file in sorted((ROOT / package).rglob("*.py")):
+            source = file.read_text()
+            if (changed := with_examples(source)) != source:
+                shadow = tmp_path / f"{len(shadows)}.py"
+                shadow.write_text(changed)
+                shadows += ["--shadow-file", str(file.relative_to(ROOT)), str(shadow)]
+    assert len(shadows) > 90
+    command = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(tmp_path / "cache")]
+    found = subprocess.run(
+        [*command, *shadows, "lwa", "validation"],
+        cwd=ROOT, capture_output=True, text=True, timeout=300, check=False,
+    )  # fmt: skip
+    assert found.returncode == 0, found.stdout
