@@ -52,14 +52,13 @@ def reading_tables(
     if later := echoes(sensors):
         time = "delay (s)" if si else "delay"
         echo_columns = (
-            *(
-                Column("", "later pulse"),
-                Column("kind"),
-                Column("number"),
-                Column("pulse", "pulse"),
-            ),
-            *(Column("reflected", "runs", format=lambda back: "back" if back else "on"),),
-            *(Column(*both, error=True) for both in (("delay", time), ("ratio", "peak/first"))),
+            Column("", "later pulse"),
+            Column("kind"),
+            Column("number"),
+            Column("pulse", "pulse"),
+            Column("reflected", "runs", format=lambda back: "back" if back else "on"),
+            Column("delay", time, error=True),
+            Column("ratio", "peak/first", error=True),
         )
         rows = [
             (r.name, r.kind, *r.places, r.pulse, back, *map(r.numbers.get, ("delay", "ratio")))

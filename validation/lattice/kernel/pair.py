@@ -130,17 +130,18 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
     pair, last, inverse = plan.scheme, len(plan.scheme.moments) - 1, chain.inverse
     law, p = law_of(chain, i), _fitted(chain, beads, h, last, i, False)
     once, twice, third, work, top = integrals(law, p, h, beads.points)
-    heat = work - (stored(law, p[0] + p[1] + p[2] + p[3] + p[4] + p[5]) - stored(law, p[0]))
-    force, error_heat = beads.points[2], 0.0
+    force = beads.points[2]
     forces_along(law, p, h, pair.nodes, force)
     pair_once, pair_twice, pair_third, error, error_once = _sums(pair, force)
     once, twice, third = once - pair_once, twice - pair_twice, third - pair_third
     if chain.damped:
+        heat = work - (stored(law, value_and_slope(p, 1.0)[0]) - stored(law, p[0]))
         for s in range(last + 1):
             d, slope = value_and_slope(p, pair.nodes[s])
             lost = (force[s] - (elastic(law, d) if d > 0.0 else 0.0)) * slope
             heat -= pair.impulses[last, s] * lost
-            error_heat += pair.errors[1, s] * lost
+            beads.kinks[1] += pair.errors[1, s] * lost
+        beads.kinks[0] += heat
     impulse, moment = h * once, h * h * twice
     beads.next_v[i] -= impulse * inverse[i]
     beads.next_v[i + 1] += impulse * inverse[i + 1]
@@ -148,9 +149,6 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
     beads.next_y[i + 1] += moment * inverse[i + 1]
     beads.sums[2, i + 1] -= h * h * error / plan.y
     beads.sums[3, i + 1] -= h * error_once / plan.v
-    if chain.damped:
-        beads.kinks[0] += heat
-        beads.kinks[1] += error_heat
     if i == 0 and chain.drive.driven:
         # ∫ ΔF v dt with v = next_v - (1 - x) h a + (1 - x)²/2 h² da/dt, a at the step's end.
         change = h * h * third * (beads.given[1] - beads.given[0])

@@ -70,7 +70,7 @@ def _kink(chain: Chain, knots: Knots, n: int, q: int) -> Quintic:
     h, law = knots.time[n + 1] - knots.time[n], law_of(chain, knots.watched[q])
     d, v, a = _compression(chain, knots, n, q)
     end, end_v, end_a = _compression(chain, knots, n + 1, q)
-    changed = (push(law, d, v) > 0.0) != (push(law, end, end_v) > 0.0)
+    changed = pushes(law, d, v) != pushes(law, end, end_v)
     if near_kink(d, end, h * v, h * end_v, True, changed):
         return fitted_quintic(d, h * v, h * h * a, end, h * end_v, h * h * end_a)
     return _NONE
