@@ -46,7 +46,7 @@ def test_the_decay_is_the_mean_loss_at_single_beads(spread, chains, share):
 
 @pytest.mark.slow
 def test_a_decay_that_changes_along_the_chain_fails():
-    """The pulse disintegrates at spread 0.5; its local decays: the check of `book/disorder.md`."""
+    """The pulse disintegrates at spread 0.5; its local decays: the check of `book/column.md`."""
     wide = disorder(spread=0.5, chains=20)
     assert not wide.ok
     assert wide.document()["decay_change_value"] < -2e-3
