@@ -23,6 +23,12 @@ BUFFER = 2**18  # numbers that the engine stores between two calls of `take`
 _MOST_BYTES = 2**28  # bytes of the motion that a run keeps
 
 
+def _with_neighbours(beads: Beads) -> NDArray[np.int_]:
+    """Return the increasing numbers of beads and their neighbours."""
+    near = np.add.outer(np.asarray(beads, int), (-1, 0, 1))
+    return np.unique(near[near >= 0])
+
+
 @dataclass(frozen=True, eq=False)
 class KnotPath:
     """A `validation.lattice.signal.Path` through knots (`validation.lattice.kernel.samples`)."""
@@ -43,10 +49,14 @@ class KnotPath:
 
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]:
         """Return displacements and velocities (beads, S) at times (S,) within the run."""
-        rows = np.searchsorted(self.knots.watched, beads)
+        # A bead's acceleration changes with its neighbours' displacements.
+        rows = np.flatnonzero(np.isin(self.knots.watched, _with_neighbours(beads)))
         step = np.searchsorted(self.time[1:-1], time, side="right")
+        ends, points = np.empty((2, len(rows), 4)), np.empty((3, POINTS))
         y, v = np.empty((2, len(rows), len(time)))
-        interpolate(self.chain, self.knots, rows, time, step, y, v, np.empty((3, POINTS)))
+        interpolate(self.chain, self.knots, rows, time, step, y, v, ends, points)
+        own = np.searchsorted(self.knots.watched[rows], beads)
+        y, v = y[own], v[own]
         if self.motion.scene.drive is not None and 0 in beads:
             y[0], v[0], _ = self.motion.scene.drive.at(time)
         return y, v
@@ -61,11 +71,9 @@ class Recorder:
 
     def __init__(self, motion: Motion, chain: Chain, needed: NDArray[np.int_], time: Array) -> None:
         self.motion, self.chain, self.needed, self.time = motion, chain, needed, time
-        # A bead's acceleration changes with its neighbours' displacements.
-        near = {j + m for j in needed.tolist() for m in (-1, 0, 1)}
-        watched = np.array(sorted(near - {-1}), int)
-        most = 2 + BUFFER // (3 * len(watched) + 1)
-        self.knots = Knots(np.empty(most), np.empty((most, len(watched), 3)), watched)
+        watched = _with_neighbours(needed)
+        most = 2 + BUFFER // (4 * len(watched) + 1)
+        self.knots = Knots(np.empty(most), np.empty((most, len(watched), 4)), watched)
         self.y, self.v = np.empty((2, len(needed), len(time)))
         self.parts: list[tuple[Array, Array]] = []
         self.done = self.size = 0

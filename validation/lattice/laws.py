@@ -64,8 +64,14 @@ class Contact:
         if self.damping_power is None:
             return elastic
         closed = compression if self.pulls else np.maximum(compression, 0.0)
-        total = elastic + (damping * (closed**self.damping_power * rate).T).T
-        return total if self.pulls else np.where(compression > 0, np.maximum(total, 0.0), 0.0)
+        force = np.asarray(closed**self.damping_power)  # in place: records are large
+        force *= rate
+        force.T[...] *= damping
+        force += elastic
+        if not self.pulls:
+            np.maximum(force, 0.0, out=force)
+            force[compression <= 0.0] = 0.0
+        return force
 
     def _evaluated(self, order: int, compression: Array) -> Array:
         function = _functions(self.law)[order]

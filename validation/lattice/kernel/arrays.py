@@ -103,7 +103,8 @@ class Beads(NamedTuple):
 class Knots(NamedTuple):
     """The motion of W watched beads at up to C knots, the ends of steps.
 
-    time : (C,), times of the knots. state : (C, W, 3), displacement, velocity and acceleration.
+    time : (C,), times of the knots. state : (C, W, 4), displacement, velocity, acceleration, and 1
+    if the step to the knot was corrected for a kink of the contact ahead of the bead; otherwise 0.
     watched : (W,), increasing numbers of the beads.
     """
 

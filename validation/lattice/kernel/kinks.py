@@ -44,6 +44,8 @@ def drag(law: Law, d: float) -> float:
     """Return the factor c d^p of the rate dδ/dt in the damping force, at a compression d ≥ 0."""
     if law.p == 0.0:
         return law.c
+    if law.p == 0.25:  # of a constant coefficient of restitution of Hertzian contacts
+        return float(law.c * np.sqrt(np.sqrt(d)))
     return float(law.c * (np.sqrt(d) if law.p == 0.5 else d**law.p))
 
 

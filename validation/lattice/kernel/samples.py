@@ -1,8 +1,9 @@
 """Interpolated motion of the watched beads within steps, between knots (the ends of steps).
 
 Within a step a displacement is the polynomial with y, y', y'' and y''' at both ends (Hermite).
-If a contact of the bead opens or closes, the effect of its force F(p, p'/h)
-(`validation.lattice.kernel.kinks`) is subtracted before the interpolation and added afterwards.
+If the step was corrected for a kink of the bead's contact, the effect of the contact's force
+F(p, p'/h) (`validation.lattice.kernel.kinks`) is subtracted before the interpolation and added
+afterwards.
 
 Letters: n numbers the steps, step n leading from knot n to knot n + 1; row q of the arrays belongs
 to bead ``watched[q]``, row q + 1 to the next bead; h is the step, x = 0 … 1 the time within it.
@@ -10,14 +11,13 @@ to bead ``watched[q]``, row q + 1 to the next bead; h is the step, x = 0 … 1 t
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
-from validation.lattice.kernel.arrays import Beads, Chain, Knots
+from validation.lattice.kernel.arrays import Beads, Chain, Knots, Law
 from validation.lattice.kernel.compiled import SOURCES, cached, inner, part
 from validation.lattice.kernel.force import stiffness
 from validation.lattice.kernel.kinks import (
@@ -26,14 +26,10 @@ from validation.lattice.kernel.kinks import (
     fitted_quintic,
     integrals,
     law_of,
-    near_kink,
     push,
     pushes,
     value_and_slope,
 )
-
-Four = tuple[float, float, float, float]
-_NONE: Quintic = (float("nan"), 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @part
@@ -48,113 +44,88 @@ def store_knot(chain: Chain, beads: Beads, knots: Knots, now: Any) -> None:
         state[0], state[1], state[2] = beads.y[j], beads.v[j], force * chain.inverse[j]
         if j == 0 and chain.drive.driven:
             state[2] = beads.given[0]
+        state[3] = 0.0 if chain.pulls else beads.sums[0, j + 1]
     now.stored += 1
 
 
-@inner
-def _compression(chain: Chain, knots: Knots, n: int, q: int) -> tuple[float, float, float]:
+@part
+def _compression(knots: Knots, n: int, q: int, rest: float) -> tuple[float, float, float]:
     """Return δ, δ' and δ'' of the contact between the beads of rows q and q + 1, at knot n."""
     near, far = knots.state[n, q], knots.state[n, q + 1]
-    rest = chain.rest[knots.watched[q]]
     return rest + near[0] - far[0], near[1] - far[1], near[2] - far[2]
 
 
-@inner
-def _kink(chain: Chain, knots: Knots, n: int, q: int) -> Quintic:
-    """Return the quintic of the contact ahead of the bead of row q in step n, if it has a kink.
-
-    Returns `_NONE` otherwise.
-    """
-    if q < 0 or chain.pulls or not chain.A[knots.watched[q]] > 0.0:
-        return _NONE
-    h, law = knots.time[n + 1] - knots.time[n], law_of(chain, knots.watched[q])
-    d, v, a = _compression(chain, knots, n, q)
-    end, end_v, end_a = _compression(chain, knots, n + 1, q)
-    changed = pushes(law, d, v) != pushes(law, end, end_v)
-    if near_kink(d, end, h * v, h * end_v, True, changed):
-        return fitted_quintic(d, h * v, h * h * a, end, h * end_v, h * h * end_a)
-    return _NONE
+@part
+def _quintic(knots: Knots, n: int, q: int, rest: float) -> Quintic:
+    """Return the quintic of the contact between the beads of rows q and q + 1 in step n."""
+    h = knots.time[n + 1] - knots.time[n]
+    d, v, a = _compression(knots, n, q, rest)
+    end, end_v, end_a = _compression(knots, n + 1, q, rest)
+    return fitted_quintic(d, h * v, h * h * a, end, h * end_v, h * h * end_a)
 
 
-@inner
-def _rate(chain: Chain, knots: Knots, n: int, q: int, kink: Quintic) -> float:
-    """Return dF/dt of the contact ahead of the bead of row q, at knot n.
-
-    The rate is 0 without a contact, and for a contact with a kink.
-    """
-    if q < 0 or not math.isnan(kink[0]):
-        return 0.0
-    i = knots.watched[q]
-    d, v, a = _compression(chain, knots, n, q)
-    rate, law = chain.A[i] * stiffness(chain, d) * v, law_of(chain, i)
-    if chain.damped:
+@part
+def _rate(chain: Chain, law: Law, d: float, v: float, a: float) -> float:
+    """Return dF/dt of a contact from δ, δ' and δ''."""
+    rate = law.A * stiffness(chain, d) * v
+    if law.damped:
         if not (chain.pulls or pushes(law, d, v)):
             return 0.0
-        rate += drag(law, d) * a
-        if chain.p > 0.0:
-            rate += chain.p * drag(law, d) / d * v * v
+        resistance = drag(law, d)
+        rate += resistance * a
+        if law.p > 0.0:
+            rate += law.p * resistance / d * v * v
     return float(rate)
 
 
 @inner
-def _effect(
-    chain: Chain, i: int, p: Quintic, unit: float, h: float, x: float, points: Array
-) -> tuple[float, float]:
-    """Return the effect of contact i up to x on y and y' of a bead; unit : ± h² over its mass."""
-    if math.isnan(p[0]) or x == 0.0:
-        return 0.0, 0.0
+def _effect(law: Law, p: Quintic, h: float, x: float, points: Array) -> tuple[float, float, float]:
+    """Return the effect of a contact's force up to x on y, y' and y'' of a bead with h² = mass."""
+    d, slope = value_and_slope(p, x)
     # Over the part of the step up to x the quintic's coefficients are c_j x^j.
     x2 = x * x
     part_of = p[0], x * p[1], x2 * p[2], x2 * x * p[3], x2 * x2 * p[4], x2 * x2 * x * p[5]
-    once, twice, _, _, _ = integrals(law_of(chain, i), part_of, h * x, points)
-    return unit * x2 * twice, unit * x * once
+    once, twice, _, _, _ = integrals(law, part_of, h * x, points)
+    return x2 * twice, x * once, push(law, d, slope / h)
 
 
-@inner
-def _knot(
-    chain: Chain, knots: Knots, n: int, q: int, h: float, behind: Quintic, ahead: Quintic
-) -> Four:
-    """Return y, y', y'' and y''' of the bead of row q at knot n, in units of time h.
+@part
+def _smooth_ends(
+    chain: Chain, knots: Knots, n: int, rows: NDArray[np.int_], ends: Array, points: Array
+) -> None:
+    """Compute y, y', y'' and y''' at the ends of step n, less the effects of contacts with kinks.
 
-    behind, ahead : its contacts, if they have kinks; y''' lacks their forces.
+    They go to ``ends``, (2, R, 4).
     """
-    state = knots.state[n, q]
-    jerk = _rate(chain, knots, n, q - 1, behind) - _rate(chain, knots, n, q, ahead)
-    return (
-        state[0],
-        h * state[1],
-        h * h * state[2],
-        h * h * h * jerk * chain.inverse[knots.watched[q]],
-    )
+    h = knots.time[n + 1] - knots.time[n]
+    for end in range(2):
+        for r in range(len(rows)):
+            state, row = knots.state[n + end, rows[r]], ends[end, r]
+            row[0], row[1], row[2], row[3] = state[0], h * state[1], h * h * state[2], 0.0
+        for r in range(len(rows) - 1):
+            q = rows[r]
+            i = knots.watched[q]
+            near, far = h * h * chain.inverse[i], h * h * chain.inverse[i + 1]
+            law, rest = law_of(chain, i), chain.rest[i]
+            if knots.state[n + 1, q, 3] > 0.0:
+                p = _quintic(knots, n, q, rest)
+                changes = _effect(law, p, h, float(end), points)
+                for m in range(3):
+                    ends[end, r, m] += near * changes[m]
+                    ends[end, r + 1, m] -= far * changes[m]
+            else:
+                d, v, a = _compression(knots, n + end, q, rest)
+                rate = h * _rate(chain, law, d, v, a)
+                ends[end, r, 3] -= near * rate
+                ends[end, r + 1, 3] += far * rate
 
 
-@inner
-def _without_kink(
-    chain: Chain, knot: Four, i: int, p: Quintic, unit: float, h: float, x: float, points: Array
-) -> Four:
-    """Subtract from y, y' and y'' at x = 0 or 1 the effect of contact i with a kink."""
-    if math.isnan(p[0]):
-        return knot
-    y, v = _effect(chain, i, p, unit, h, x, points)
-    d, slope = value_and_slope(p, x)
-    return knot[0] - y, knot[1] - v, knot[2] - unit * push(law_of(chain, i), d, slope / h), knot[3]
+@part
+def _septic(a: Array, b: Array) -> tuple[Quintic, float, float]:
+    """Return the coefficients c0 … c5, c6 and c7 of y from y … y''' at x = 0 (a) and at x = 1 (b).
 
-
-@inner
-def _polynomial(
-    chain: Chain, knots: Knots, n: int, q: int, behind: Quintic, ahead: Quintic, points: Array
-) -> tuple[Quintic, float, float]:
-    """Return the coefficients c0 … c5 (a tuple), c6 and c7 of y over step n.
-
-    behind, ahead : the bead's two contacts, if they have kinks; their effects are left out.
+    The coefficients c0 … c5 are a tuple.
     """
-    h, i = knots.time[n + 1] - knots.time[n], knots.watched[q]
-    unit = h * h * chain.inverse[i]
-    a = _knot(chain, knots, n, q, h, behind, ahead)
-    b = _knot(chain, knots, n + 1, q, h, behind, ahead)
-    for p, contact, force in ((behind, i - 1, unit), (ahead, i, -unit)):
-        a = _without_kink(chain, a, contact, p, force, h, 0.0, points)
-        b = _without_kink(chain, b, contact, p, force, h, 1.0, points)
     c2, c3 = a[2] / 2, a[3] / 6
     # c4 … c7 solve the four conditions at x = 1, of which c0 … c3 leave the remainders r0 … r3.
     r0, r1 = b[0] - a[0] - a[1] - c2 - c3, b[1] - a[1] - 2 * c2 - 3 * c3
@@ -176,31 +147,41 @@ def _built(sources: int) -> Any:
         step: NDArray[np.int_],
         y: Array,
         v: Array,
+        ends: Array,
         points: Array,
     ) -> int:
         """Compute displacements and velocities of watched beads; they go to y and v, both (R, S).
 
-        rows : (R,), rows q of the beads. time : (S,). step : (S,), number of the step that holds
-        each time. points : working memory, as in `Beads`. Returns ``sources``.
+        rows : (R,), rows q of the beads; only beads between two others of them come out right.
+        time : (S,), increasing. step : (S,), number of the step that holds each time. ends :
+        (2, R, 4), working memory. points : as in `Beads`. Returns ``sources``.
         """
-        for r in range(len(rows)):
-            q, n, i = rows[r], -1, knots.watched[rows[r]]
-            behind = ahead = low = _NONE
-            start = h = c6 = c7 = unit = 0.0
-            for s in range(len(time)):
-                if step[s] != n:
-                    n = step[s]
-                    start, h = knots.time[n], knots.time[n + 1] - knots.time[n]
-                    unit = h * h * chain.inverse[i]
-                    behind, ahead = _kink(chain, knots, n, q - 1), _kink(chain, knots, n, q)
-                    low, c6, c7 = _polynomial(chain, knots, n, q, behind, ahead, points)
-                x = (time[s] - start) / h
-                push_y, push_v = _effect(chain, i - 1, behind, unit, h, x, points)
-                pull_y, pull_v = _effect(chain, i, ahead, -unit, h, x, points)
-                smooth, slope = value_and_slope(low, x)
-                x5 = x * x * x * x * x
-                y[r, s] = smooth + x5 * x * (c6 + x * c7) + push_y + pull_y
-                v[r, s] = (slope + x5 * (6 * c6 + x * 7 * c7) + push_v + pull_v) / h
+        last = 0
+        while last < len(time):
+            first, n = last, step[last]
+            while last < len(time) and step[last] == n:
+                last += 1
+            start, h = knots.time[n], knots.time[n + 1] - knots.time[n]
+            _smooth_ends(chain, knots, n, rows, ends, points)
+            for r in range(len(rows)):
+                low, c6, c7 = _septic(ends[0, r], ends[1, r])
+                for s in range(first, last):
+                    x = (time[s] - start) / h
+                    smooth, slope = value_and_slope(low, x)
+                    x5 = x * x * x * x * x
+                    y[r, s] = smooth + x5 * x * (c6 + x * c7)
+                    v[r, s] = (slope + x5 * (6 * c6 + x * 7 * c7)) / h
+            for r in range(len(rows) - 1):
+                q, i = rows[r], knots.watched[rows[r]]
+                if knots.state[n + 1, q, 3] > 0.0:
+                    p = _quintic(knots, n, q, chain.rest[i])
+                    near, far = h * h * chain.inverse[i], h * h * chain.inverse[i + 1]
+                    for s in range(first, last):
+                        x = (time[s] - start) / h
+                        moment, impulse, _ = _effect(law_of(chain, i), p, h, x, points)
+                        y[r, s], y[r + 1, s] = y[r, s] - near * moment, y[r + 1, s] + far * moment
+                        v[r, s] -= near * impulse / h
+                        v[r + 1, s] += far * impulse / h
         return sources
 
     return interpolate
