@@ -13,12 +13,12 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 from concurrent.futures import Future
 from itertools import islice
-from typing import Any, Literal, overload
+from typing import Any
 
 import numpy as np
 
 from lwa.base.exact import shorten
-from validation.lattice.cost import IntegrationError, RunProgress, silent
+from validation.lattice.cost import RunProgress, silent
 from validation.lattice.equations import Motion
 from validation.lattice.result import Run
 from validation.lattice.schemes import SCHEMES
@@ -89,31 +89,15 @@ def _check(scene: Scene, method: str, step: float | None) -> None:
         raise SceneError(f"step is {shorten(step)}: {method} takes none in this scene")
 
 
-@overload
 def simulate_many(
-    scenes: Iterable[Scene],
-    *,
-    workers: int | None = ...,
-    errors: Literal["raise"] = ...,
-    **options: Any,
-) -> Iterator[Run]: ...
-
-
-@overload
-def simulate_many(
-    scenes: Iterable[Scene], *, workers: int | None = ..., errors: Literal["return"], **options: Any
-) -> Iterator[Run | SceneError | IntegrationError]: ...
-
-
-def simulate_many(
-    scenes: Iterable[Scene], *, workers: int | None = None, errors: str = "raise", **options: Any
-) -> Iterator[Run | SceneError | IntegrationError]:
+    scenes: Iterable[Scene], *, workers: int | None = None, **options: Any
+) -> Iterator[Run]:
     """Simulate many scenes on threads; yields the runs in the order of the scenes.
 
     workers : number of threads, by default one for each core; compiled methods run in parallel.
-        ``scenes`` is iterated only as needed, some scenes ahead.
-    errors : "raise" raises the error of a run that fails when the run would be yielded; "return"
-        yields the error in place of the run. options : those of `simulate`.
+        ``scenes`` is iterated only as needed, some scenes ahead. options : those of `simulate`.
+
+    The error of a run that fails is raised when the run would be yielded.
 
     >>> from dataclasses import replace
     >>> chain = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9)
@@ -121,7 +105,6 @@ def simulate_many(
     ...  simulate_many(replace(chain, velocities=(v,)) for v in (1, 2))]
     [np.float64(1.0), np.float64(2.0)]
     """
-    one_of(errors, ("raise", "return"), "errors")
     ahead: deque[Future[Run]] = deque()
     waiting, count = iter(scenes), cores() if workers is None else workers
     with threads(count) as pool:
@@ -130,12 +113,7 @@ def simulate_many(
             ahead.extend(pool.submit(simulate, scene, **options) for scene in more)
             if not ahead:
                 return
-            run = ahead.popleft()
-            failure = run.exception() if errors == "return" else None
-            if isinstance(failure, SceneError | IntegrationError):
-                yield failure
-            else:
-                yield run.result()
+            yield ahead.popleft().result()
 
 
 def twice(scene: Scene, fine: float, coarse: float, **options: Any) -> tuple[Run, Run]:
