@@ -23,7 +23,7 @@ from validation.report.command import column_options, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.chains import numeric_cell
-from validation.scenes.checks import SceneError, one_of
+from validation.scenes.checks import SceneError
 from validation.scenes.columns import MeasuredFile
 from validation.waves.contact_law import Medium, fit_power, weights
 
@@ -45,12 +45,6 @@ _LEAST = 6  # pulses: three more than the coefficients of the curvature's fit
         says="File of a cell of spheres, in place of --masses.",
     ),
     option("--material", metavar="NAME", says="Material in this file whose modulus E is wanted."),
-    option(
-        "--of",
-        default="contact",
-        type=click.Choice(("contact", "bead")),
-        says="Where the sensors sit; the force of a bead is the mean of its two contacts'.",
-    ),
     column_options,
 )
 def law(
@@ -59,17 +53,12 @@ def law(
     spacing: Any = None,
     spheres: str | None = None,
     material: str | None = None,
-    of: str = "contact",
     renamed: Mapping[str, str] | None = None,
     units: Mapping[str, str] | None = None,
 ) -> Report:
     """Contact law from pulses. DATA, a CSV file, has the columns force (peak force) and speed.
     Columns force_error and speed_error, if both are there, are standard deviations that weight the
     pulses. Units are stated in the header or by --unit, or no column has one.
-
-    of: "contact", or "bead" for forces of equal beads; they are divided by the share of a
-    contact's force that a bead feels at the fitted k. From k = 1.9 on the force of a bead has two
-    humps, of which either may be the higher: time pulses at contacts then.
 
     Peak contact forces and speeds are in the units of the masses and the spacing, by default those
     of unit mass and spacing; with spheres they are in N and m/s. ``k_value``, ``A_value`` and, of
@@ -83,7 +72,7 @@ def law(
     else:
         content = load(spheres, "a list of spheres", lambda x: entries(x, "the file"))
         cell = Cell.of_spheres(read_spheres(content))
-    medium = Medium.of(cell, one_of(of, ("contact", "bead"), "of"))
+    medium = Medium.of(cell)
     fit = fit_power(medium, force, speed, weight)
     numbers = {"k": fit.k, "A": fit.A}
     if material is not None:

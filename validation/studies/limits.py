@@ -11,13 +11,13 @@ With m1 ≫ m2 the light beads only pass the force on: a uniform chain of spacin
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import sympy as sp
 
-from lwa import Dimer, PhysicalWave, TravelingWave, homogenize
+from lwa import PhysicalWave, TravelingWave
 from lwa.base.progress import Progress
 from validation.lattice.result import Run
 from validation.lattice.simulate import simulate
@@ -32,7 +32,6 @@ from validation.waves.theory import LEADING_POWERS, QUANTITIES, theory_at, theor
 
 EXPONENTS = (sp.Rational(3, 2), sp.Rational(5, 4), sp.Rational(11, 10))
 EQUAL, LIGHT = sp.Integer(1), sp.Rational(1, 1000)  # ω = m2/m1; effects of LIGHT² do not show
-LIMIT = (4 * LIGHT, LIGHT, LIGHT / 4)  # ω from which the lattice at k = 3/2 is extrapolated to 0
 PLACES = (4, 6, 8)  # supports run
 # rtol and atol of chains with one mass and with two. Light beads set the step, far below the needs
 # of the pulse at the same tolerance.
@@ -53,7 +52,6 @@ _COLUMNS = (
     Column("ok", "holds"),
 )
 _CHAINS = {
-    "0": "ω = m2/m1 → 0, extrapolated from runs at small ω",
     "1": "m1 = m2, ω = 1",
     str(LIGHT): f"m1 ≫ m2, ω = {LIGHT}",
 }
@@ -71,12 +69,11 @@ Row = tuple[tuple[Any, ...], Finding]  # cells below `_COLUMNS`, and the error a
 def limits(progress: Progress[Case] = iter) -> Report:
     """Limits of the theory: equal masses, m1 ≫ m2 and k → 1 (a few seconds).
 
-    ``rows``: ``quantity``, ``k`` and ``omega`` (exact; ``k`` null for results from all k, ``omega``
-    0 for the limit), ``theory`` (exact), ``theory_value``, ``lattice_value``,
+    ``rows``: ``quantity``, ``k`` and ``omega`` (exact; ``k`` null for results from all k),
+    ``theory`` (exact), ``theory_value``, ``lattice_value``,
     ``lattice_error_value``, ``error_value`` (theory over lattice - 1), ``bound_value``, ``ok``.
     """
     cases = [(k, omega) for omega in (EQUAL, LIGHT) for k in EXPONENTS]
-    cases += [(EXPONENTS[0], omega) for omega in LIMIT if omega != LIGHT]
     waves = {case: theory_at(*case) for case in cases}
     lattice = {case: lattice_wave(waves[case]) for case in progress(cases)}
     rows: list[Row] = []
@@ -85,7 +82,6 @@ def limits(progress: Progress[Case] = iter) -> Report:
         for quantity in QUANTITIES:
             measured = [lattice[k, omega][quantity] for k in EXPONENTS]
             rows += quantity_rows(quantity, omega, [t[quantity] for t in theory], measured)
-    rows += _limit_rows([lattice[EXPONENTS[0], omega] for omega in LIMIT])
     cells, findings = zip(*rows, strict=True)
     return Report(
         "The theory's limits on the lattice",
@@ -106,7 +102,7 @@ def _row(
 ) -> Row:
     """Compare theory and lattice in one quantity.
 
-    k : None for a result of all exponents. omega : 0 for the limit ω → 0.
+    k : None for a result of all exponents.
     bound : largest expected |theory/lattice - 1|.
     """
     value = float(sp.N(theory, 17))
@@ -223,15 +219,3 @@ def quantity_rows(
         _row(power, None, omega, sp.Integer(law.order), orders, law.order_bound),
         _row(limit, None, omega, law.coefficient, coefficients, bound),
     ]
-
-
-def _limit_rows(waves: list[dict[str, Measured]]) -> Iterator[Row]:
-    """Compare theory and lattice in the limit ω → 0 at the first k, linearly extrapolated in ω."""
-    k = EXPONENTS[0]
-    symbols = homogenize(Dimer("m1", "m2", spacing=1), k=k).pde.traveling_wave()
-    m1, m2 = symbols.cell.masses
-    for quantity, theory in theory_values(symbols).items():
-        coarse, middle, fine = (wave[quantity].value for wave in waves)
-        limit = Measured((4 * fine - middle) / 3, (4 * middle - coarse) / 3)
-        at_zero, bound = sp.simplify(theory.subs({m1: 1, m2: 0})), LEADING_POWERS[quantity].bound(k)
-        yield _row(quantity, k, sp.Integer(0), at_zero, limit, bound)

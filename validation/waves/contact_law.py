@@ -43,38 +43,27 @@ _NEAR = 1.2  # times 80 sites, over which the pulse must lead
 
 @dataclass(frozen=True, eq=False)
 class Medium:
-    """Mass, spacing and speed ratio R(k) of the chain in which pulses were measured.
-
-    share : peak force at the sensors over that of a contact, a function of k; 1 for contacts.
-    """
+    """Mass, spacing and speed ratio R(k) of the chain in which pulses were measured."""
 
     mass: float  # mean mass m̄
     spacing: float  # D
     ratio: Callable[[Any], Array]  # R(k), 1 ≤ k ≤ 4
     ratio_error: float  # relative error of R, for unequal beads at the k where it is measured
-    share: Callable[[Any], Array] = np.ones_like
 
     @classmethod
-    def of(cls, cell: Cell, sensors: str = "contact") -> Medium:
-        """Make the medium of a chain whose cell has one or two beads, all numbers.
-
-        sensors : "contact", or "bead" for sensors in equal beads.
-        """
+    def of(cls, cell: Cell) -> Medium:
+        """Make the medium of a chain whose cell has one or two beads, all numbers."""
         if cell.size > 2:
             raise SceneError(f"the cell has {cell.size} beads: one or two are wanted")
         for name, value in (("spacing", cell.spacing), *(("mass", m) for m in cell.masses)):
             if not value.is_number:
                 raise SceneError(f"{name} is {value}: a number is wanted")
-        if sensors == "bead" and not cell.uniform:
-            raise SceneError("of is bead: the beads differ, and so do their forces")
         ratio = speed_ratio(sp.Rational(cell.masses[-1] / cell.masses[0]))
-        share = bead_share() if sensors == "bead" else np.ones_like
-        return cls(float(sum(cell.masses)) / cell.size, float(cell.spacing), *ratio, share)
+        return cls(float(sum(cell.masses)) / cell.size, float(cell.spacing), *ratio)
 
     def log_stiffness(self, slope: Any, constant: Any) -> Array:
-        """Return ln A of the power law with ln V = slope · ln F + constant, F at the sensors."""
+        """Return ln A of the power law with ln V = slope · ln F + constant, F of contacts."""
         k = _exponent(slope)
-        constant = constant + slope * np.log(self.share(k))  # of the force of a contact
         unit = np.log(2 * self.ratio(k) / ((k + 1) * self.mass)) / 2
         return np.asarray(2 * k * (constant - math.log(self.spacing) - unit))
 
@@ -109,24 +98,6 @@ def speed_ratio(omega: sp.Rational) -> tuple[Callable[[Any], Array], float]:
             error = max(error, 2 * speed.relative_error)
         ratio = scipy.interpolate.CubicSpline(exponents, ratios)
     return lambda k: np.asarray(ratio(np.clip(k, 1, 4))), error
-
-
-@lru_cache
-def bead_share() -> Callable[[Any], Array]:
-    """Return the peak force of a bead over that of a contact in the exact wave, a function of k.
-
-    The force of a bead is the mean of its two contacts': 0.707 of a contact's at k = 3/2. From
-    k = 1.9 on it has two humps.
-    """
-    places = np.linspace(0, 1, 201)
-
-    def exact(k: float) -> float:
-        wave = exact_wave([1], k)  # its contact force is 1 at its peak
-        return float(np.max(wave.force(places - 0.5) + wave.force(places + 0.5)) / 2)
-
-    k = np.geomspace(1.01, 4, 60)
-    share = scipy.interpolate.CubicSpline(k, np.vectorize(exact)(k))
-    return lambda k: np.asarray(share(np.clip(k, 1.01, 4)))
 
 
 @dataclass(frozen=True, eq=False)

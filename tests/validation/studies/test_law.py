@@ -10,13 +10,12 @@ import sympy as sp
 
 from lwa import Cell
 from tests.commands import ended
-from validation import cli, measure, simulate
-from validation.scenes.chains import struck
+from validation import cli, simulate
 from validation.scenes.scene import SceneError
 from validation.studies import paper
 from validation.studies.law import law
 from validation.studies.run import example
-from validation.waves.contact_law import Medium, bead_share, fit_power, weights
+from validation.waves.contact_law import Medium, fit_power, weights
 from validation.waves.solver import exact_wave
 
 FORCES = np.geomspace(0.1, 10, 12)
@@ -104,26 +103,6 @@ def test_the_error_of_exact_data_covers_rounding(saved):
     assert found["k_error_value"] > 0
 
 
-def test_forces_of_beads_give_the_law_of_the_contacts(saved):
-    """Struck chains, k = 1.3 and 1.5, at contacts and in beads: 0.707 of the force at 3/2."""
-    for k in (1.3, 1.5):
-        rows, power = [], (k - 1) / (k + 1)
-        for v in np.geomspace(0.1, 2, 8):
-            sensors = {"bead_sensors": (40, 60), "contact_sensors": (40,), "samples": 2}
-            scene = struck((1,), 80, k, velocities=(v,), duration=90 / v**power, **sensors)
-            run = simulate(scene, rtol=1e-8)
-            first, second = (measure(run.signal("bead", i)) for i in (40, 60))
-            rows.append((first.peak, 20 / (second.arrival - first.arrival)))
-            share = first.peak / measure(run.signal("contact", 40)).peak
-        assert share == pytest.approx(float(bead_share()(k)), rel=2e-3)
-        assert k != 1.5 or share == pytest.approx(0.707, abs=2e-3)
-        file = saved(rows)
-        found = law(file, of="bead").document()
-        assert found["k_value"] == pytest.approx(k, rel=2e-3)
-        assert found["A_value"] == pytest.approx(1, rel=5e-3)
-        assert law(file).document()["A_value"] > 1.05  # taken for forces of contacts
-
-
 @pytest.mark.parametrize("scale", [1e-8, 0.9055, 1e8])
 def test_rounding_of_the_speeds_is_no_second_power(chain, scale):
     """Without noise the scatter of the data is that of their last digits."""
@@ -200,8 +179,6 @@ ROWS = "".join(f"{n},{n}\n" for n in range(1, 9))
         ("force,time\n1,2\n", {}, "no line names force, speed"),
         ("force,speed\n1,2\n", {}, "at least 6 pulses"),
         ("force,speed\n" + "-1,2\n" * 9, {}, "positive force and speed"),
-        ("force,speed\n" + ROWS, {"masses": (1, 2), "of": "bead"}, "of is bead"),
-        ("force,speed\n" + ROWS, {"of": "wall"}, "of is 'wall'"),
         ("F,speed\n" + "1,2\n" * 9, {"renamed": {"F": "force"}}, "column is 'F'"),
         ("force,speed\n" + "1,2\n" * 9, {}, "1 different forces"),
         ("force,speed\n" + ROWS, {"masses": (1, 2, 3)}, "the cell has 3 beads"),

@@ -59,11 +59,11 @@ def test_the_laws_follow_from_the_series(quantity):
 def test_all_hold(report):
     document = json.loads(json.dumps(report.document(), allow_nan=False))
     assert document["ok"] is report.ok is True
-    assert len(document["rows"]) == len(document["findings"]) == 44
+    assert len(document["rows"]) == len(document["findings"]) == 40
     for row in document["rows"]:
         assert row["error_value"] == row["theory_value"] / row["lattice_value"] - 1
         assert abs(row["error_value"]) <= row["bound_value"]
-    assert report.text().count("  ok") == 44
+    assert report.text().count("  ok") == 40
     assert max(map(len, report.text().splitlines())) <= 80
 
 
@@ -83,17 +83,10 @@ def test_the_errors_cover_the_exact_waves_of_equal_beads(found, k):
 
 @pytest.mark.parametrize("quantity", QUANTITIES)
 def test_light_beads_only_hand_the_force_on(found, quantity):
-    """ω → 0 is the uniform chain of twice the spacing, on the lattice as in the theory."""
+    """At ω = 1/1000 the chain is the uniform chain of twice the spacing, to 1.5 ω."""
     scale = 1 if quantity.startswith("speed") else 2
-    (uniform, one), (limit, none), (_, few) = (
-        found[quantity, EXPONENTS[0], omega] for omega in (EQUAL, 0, LIGHT)
-    )
-    assert sp.simplify(limit - scale * uniform) == 0
-    # the extrapolation's own error, doubled: it is an estimate
-    assert abs(none.value - scale * one.value) <= 2 * none.error + scale * one.error
-    assert none.relative_error < 2e-5
-    # and ω = 1/1000 is as near to it as the theory says: within 1.5 ω
-    assert few.value == pytest.approx(none.value, rel=1.5 * float(LIGHT))
+    (_, equal), (_, light) = (found[quantity, EXPONENTS[0], omega] for omega in (EQUAL, LIGHT))
+    assert light.value == pytest.approx(scale * equal.value, rel=1.5 * float(LIGHT))
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES)
