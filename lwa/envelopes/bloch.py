@@ -26,7 +26,8 @@ MOST_SYMBOLS = 5  # beyond which exact coefficients take seconds
 K2, K3, K4 = sp.symbols("K2 K3 K4", positive=True)
 """Coefficients of the force K2 δ + K3 δ² + K4 δ³ on top of the load, under `lwa.general()`."""
 
-X = sp.Dummy("x")
+X = sp.Symbol("x")
+"""Squared frequency ω² of a mode; the numbers of a chain stand beside it as Dummies."""
 
 
 def cell_mode(
