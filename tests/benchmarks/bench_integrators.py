@@ -81,6 +81,8 @@ def test_cost(name):
         rows = []
         for rtol in 10.0 ** -np.arange(4, -np.log10(end) + 0.1, 0.5):
             found, seconds = timed(partial(run, rtol=rtol))
+            if method in COMPILED and found.path is None:  # too many steps are not kept
+                break
             force = found.signal(*sensor)(times) if method in COMPILED else found
             rows.append((np.abs(force - exact).max() / exact.max(), seconds))
         assert min(rows)[0] < 1e-3

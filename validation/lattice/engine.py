@@ -144,7 +144,7 @@ def _plan(motion: Motion, method: str, rtol: float, step: float | None) -> tuple
         deepest=scales.compression,
         lightest=float(motion.masses.min()),
         size=motion.size,
-        stops=np.unique(stops),
+        stops=np.array(sorted({*stops}), float),
         jumps=damped and motion.contact.damping_power == 0 and not motion.contact.pulls,
     )
     return plan, most

@@ -120,12 +120,17 @@ class Motion:
         stored = self.stiffnesses * energies - self.load * (compression - self.rest)
         return float(np.sum(self.masses * v * v) / 2 + stored.sum())
 
+    @cached_property
+    def initial_energy(self) -> float:
+        """Energy of the initial state."""
+        return self.energy(self.start)
+
     @property
     def free_energy(self) -> float:
         """Initial energy of the contacts and of the beads that are not driven."""
         driven = self.scene.drive is not None
         given = self.masses[0] * self.start[self.size] ** 2 / 2 if driven else 0.0
-        return float(self.energy(self.start) - given)
+        return float(self.initial_energy - given)
 
     def momentum_drift(self, end: Array) -> float | None:
         """Return the momentum's change up to ``end`` divided by Σ m|v|; None with wall or drive."""
@@ -143,7 +148,7 @@ class Motion:
         energy, n, A = self.response, self.size, self.stiffnesses
         if energy is None:
             fastest = 0.0 if self.scene.drive is None else self.scene.drive.fastest
-            energy = self.energy(self.start) + float(self.masses.mean() * fastest * fastest)
+            energy = self.initial_energy + float(self.masses.mean() * fastest * fastest)
         deepest = at_rest = self.rest.max(initial=0.0) if self.loaded else 0.0
         stiffest = A.max(initial=0.0)
         pressed = self.compression(self.start[:n]).max(initial=0.0) > deepest

@@ -50,12 +50,13 @@ class KnotPath:
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]:
         """Return displacements and velocities (beads, S) at times (S,) within the run."""
         # A bead's acceleration changes with its neighbours' displacements.
-        rows = np.flatnonzero(np.isin(self.knots.watched, _with_neighbours(beads)))
+        near = _with_neighbours(beads)
+        rows = np.searchsorted(self.knots.watched, near)
         step = np.searchsorted(self.time[1:-1], time, side="right")
         ends, points = np.empty((2, len(rows), 4)), np.empty((3, POINTS))
         y, v = np.empty((2, len(rows), len(time)))
         interpolate(self.chain, self.knots, rows, time, step, y, v, ends, points)
-        own = np.searchsorted(self.knots.watched[rows], beads)
+        own = np.searchsorted(near, beads)
         y, v = y[own], v[own]
         if self.motion.scene.drive is not None and 0 in beads:
             y[0], v[0], _ = self.motion.scene.drive.at(time)

@@ -168,9 +168,9 @@ def finished(
     displacements, velocities = end[:n].copy(), end[n : 2 * n].copy()
     arrays: dict[str, Any] = records | {"displacements": displacements, "velocities": velocities}
     dissipated, work = map(float, end[2 * n :])
-    drift = motion.energy(end) - motion.energy(motion.start) + dissipated - work
+    drift = motion.energy(end) - motion.initial_energy + dissipated - work
     step = motion.scene.duration / steps
-    if not math.isfinite(drift + sum(float(np.sum(array)) for array in arrays.values())):
+    if not math.isfinite(drift + sum(float(array.sum()) for array in arrays.values())):
         raise IntegrationError(
             f"the motion overflows: choose other units, or a step of {step:g} is too long"
         )

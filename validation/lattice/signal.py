@@ -99,7 +99,7 @@ def recorded(motion: Motion, beads: NDArray[np.int_], y: Array, v: Array) -> dic
 
 def _rows(values: Array, numbers: NDArray[np.int_]) -> Array:
     """Return rows of an array, without a copy if they follow one another."""
-    if len(numbers) and (np.diff(numbers) == 1).all():
+    if len(numbers) > 1 and (np.diff(numbers) == 1).all():
         return values[numbers[0] : numbers[-1] + 1]
     return values[numbers]
 
