@@ -11,6 +11,7 @@ and elsewhere the last digits of vectorised functions (tests/lwa/wave) and latti
 """
 
 import random
+from itertools import product
 
 import numpy as np
 import pytest
@@ -35,31 +36,24 @@ def holds(error, deviation, doubt=0.0):
     return deviation <= error + doubt and error <= LOOSE * (deviation + doubt)
 
 
-def sums(exponents, orders):
-    """Errors and deviations, over the value, of the sums of all quantities of equal beads."""
-    every, found = series(expand(Cell([1]), max(orders))), []
-    for k in map(sp.Rational, exponents):
-        true = lattice(float(k))[0]
-        for name, row in every.items():
-            unit = row.prefactor * (k - 1) ** row.power
-            for order in orders:
-                total = resum(row.coefficients[: order + 1], k - 1, unit=unit)
-                found.append((total.error / true[name], abs(total.value / true[name] - 1)))
-    return np.array(found).T
-
-
 @pytest.mark.parametrize(
     ("exponents", "orders"),
     [
         (("1.1", "3/2", "2", "2.05", "2.3", "2.6", "2.75", "3.25"), (6, 10, 16)),
         pytest.param([f"{k / 20}" for k in range(21, 71, 4)], range(6, 17), marks=pytest.mark.slow),
     ],
-    ids=["240", "1430"],
+    ids=["216", "1287"],
 )
 def test_the_error_of_a_sum(exponents, orders):
     """At most 1 % of the sums are outside, none by a factor of 2; the median is not loose."""
-    error, deviation = sums(exponents, orders)
-    assert len(error) == len(exponents) * len(orders) * 9
+    every, found = series(expand(EQUAL, max(orders))), []
+    for k, order in product(map(sp.Rational, exponents), orders):
+        true = lattice(float(k))[0]
+        for name, row in every.items():
+            unit = row.prefactor * (k - 1) ** row.power
+            total = resum(row.coefficients[: order + 1], k - 1, unit=unit)
+            found.append((total.error / true[name], abs(total.value / true[name] - 1)))
+    error, deviation = np.array(found).T
     outside = np.maximum(deviation - 1e-12, 0) / error  # the lattice's waves are good to 1e-12
     assert outside.max() < 2
     assert np.mean(outside > 1) < 0.01
@@ -132,34 +126,29 @@ SHOCKS = {
 }
 
 
-def deviations(front, chain):
-    """Name → error, deviation from a driven chain, and doubt of the latter; for stated results."""
-    push, late = (
-        float(front.law.at(sp.Float(chain.peak + doubts * chain.peak_doubt))) for doubts in (0, 3)
-    )
-    measured = {
-        **dict.fromkeys(RULES, (chain.speed, 3 * chain.speed_doubt)),
-        "peak": (chain.peak, 3 * chain.peak_doubt),
-        "peak_force": (push, abs(late - push)),
-    }
-    found = {}
-    for name in measured.keys() & front.errors.keys():
-        value = float(front.leading_speed(name) if name in RULES else getattr(front, name))
-        true, doubt = measured[name]
-        error = front.errors[name] * abs(value)
-        found[name] = error, abs(value - true), doubt + 5e-5 * abs(true)
+def deviations(front):
+    """Name → error, at most which the front is off a driven chain, and the deviation."""
+    chain, found = drive(front), {}
+    push, late = (float(front.law.at(sp.Float(chain.peak + n * chain.peak_doubt))) for n in (0, 3))
+    for name, true, doubt in (
+        *((rule, chain.speed, 3 * chain.speed_doubt) for rule in RULES),
+        ("peak", chain.peak, 3 * chain.peak_doubt),
+        ("peak_force", push, abs(late - push)),
+    ):
+        if name in front.errors:
+            value = float(front.leading_speed(name) if name in RULES else getattr(front, name))
+            found[name] = error, deviation = front.errors[name] * abs(value), abs(value - true)
+            assert deviation <= error + doubt + 5e-5 * abs(true), (name, front)
     return found
 
 
 @pytest.mark.parametrize("name", SHOCKS)
 def test_the_errors_of_a_shock(name):
     law, *strains, tight = SHOCKS[name]
-    front = shock(EQUAL, *strains, law=law)
-    found = deviations(front, drive(front))
-    for key, (error, deviation, doubt) in found.items():
-        assert deviation <= error + doubt, key
-        assert key not in tight or error <= LOOSE * deviation, key
-    assert {*tight} <= {*found}
+    found = deviations(shock(EQUAL, *strains, law=law))
+    for key in tight:
+        error, deviation = found[key]
+        assert error <= LOOSE * deviation, key
 
 
 @pytest.mark.slow
@@ -172,25 +161,16 @@ def test_the_error_of_the_trailing_edge(k, behind):
     assert holds(error, abs(speed - trailing_edge(front, chain)))
 
 
-def random_front(rng):
-    """A random law of the named ones, strains with a jump that a run resolves, or the refusal."""
-
-    def between(low, high):
-        return sp.Rational(f"{rng.uniform(low, high):.3g}")
-
-    chains = [
-        (lambda: Power(between(1.05, 9)), (0.3, 10), rng.choice([0, 1])),
-        (lambda: named("hertz2", 1, between(0.05, 10)), (0.5, 30), rng.choice([0, 1])),
-        (lambda: named("exponential", between(0.2, 2)), (0, 2), between(0, 1)),
-        (lambda: named("magnetic", between(1, 9), 1), (0, 0.6), between(0, 0.4)),
-        (lambda: named("lennard-jones", 1), (0, 0.5), between(0, 0.3)),
-        (lambda: named("polynomial", between(-1, 2), between(-1, 2)), (-1, 2), between(0, 1)),
-    ]
-    law, span, ahead = rng.choice(chains)
-    try:
-        return shock(EQUAL, between(*span), ahead, law=law())
-    except InputError as refusal:
-        return refusal
+RANDOM = [  # a law, the ranges of its parameters and of the strains behind and ahead
+    ("power", (1.05, 9), (0.3, 10), (0, 0)),
+    ("power", (1.05, 9), (0.3, 10), (1, 1)),
+    ("hertz2", (1, 1), (0.05, 10), (0.5, 30), (0, 0)),
+    ("hertz2", (1, 1), (0.05, 10), (0.5, 30), (1, 1)),
+    ("exponential", (0.2, 2), (0, 2), (0, 1)),
+    ("magnetic", (1, 9), (1, 1), (0, 0.6), (0, 0.4)),
+    ("lennard-jones", (1, 1), (0, 0.5), (0, 0.3)),
+    ("polynomial", (-1, 2), (-1, 2), (-1, 2), (0, 1)),
+]
 
 
 @pytest.mark.slow
@@ -198,15 +178,13 @@ def test_thirty_random_shocks():
     """Each number is right within its error, or refused; 300 of them once, by hand."""
     rng, tested = random.Random(33), 0
     while tested < 30:
-        front = random_front(rng)
-        if isinstance(front, InputError):
-            assert len(str(front)) > 20
+        name, *ranges = rng.choice(RANDOM)
+        *numbers, behind, ahead = (sp.Rational(f"{rng.uniform(*span):.3g}") for span in ranges)
+        try:
+            front = shock(EQUAL, behind, ahead, law=named(name, *numbers))
+        except InputError:
             continue
-        if front.kind != "shock" or front.ratio < 1.03:  # the train takes too long to form
-            continue
-        if not front.errors:  # neither rule has a number
-            continue
-        tested += 1
-        found = deviations(front, drive(front))
-        for key, (error, deviation, doubt) in found.items():
-            assert deviation <= error + doubt, (key, front)
+        # the train of a smaller jump takes too long to form; no errors: neither rule has a number
+        if front.kind == "shock" and front.ratio >= 1.03 and front.errors:
+            tested += 1
+            deviations(front)

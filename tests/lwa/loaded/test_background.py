@@ -13,19 +13,14 @@ from book.studies.hard import true_wave
 from lwa import (
     Cell,
     Dimer,
-    InputError,
     KdV,
-    Law,
     Material,
-    NoSolitaryWave,
     Power,
     Sphere,
     canonical_wave,
-    general,
-    homogenize,
     loaded_wave,
 )
-from lwa.law import DELTA, named
+from lwa.law import named
 from lwa.loaded.background import Background
 from tests.identity import same
 
@@ -209,50 +204,6 @@ def test_unlike_contacts_are_compressed_by_their_mean(k, force, load):
     root = 1 / float(sp.Rational(k))
     mean = sum((force / A) ** root - (load / A) ** root for A in (3, 5)) / 2
     assert float(wave.compression) == pytest.approx(mean, rel=1e-14)
-
-
-def test_waves_exist_on_the_stiffening_side_only():
-    for law, load, rise, reason in (
-        (HERTZ, 1, "-1/2", "only B > 0"),
-        (Power("1/2"), 1, "1/2", "only B < 0"),
-        (Power("1/2"), 1, -1, "would open"),
-        (Power("1/2"), 0, -1, "no load"),
-        (Power(1), 1, 1, "linear"),
-        (named("polynomial", 1, 0), 0, "-1/10", "does not stiffen"),
-        (named("polynomial", -1, 0), 0, "7/10", "not positive"),
-        (named("polynomial", 1, -1), 0, "67/100", "does not stiffen"),
-        (Law(DELTA - sp.sin(DELTA)), 0, "1e-3", "cancel"),  # 1 - cos δ is 0 in floats below 1e-8
-    ):
-        with pytest.raises(NoSolitaryWave, match=reason):
-            wave_of(law, load, rise)
-    with pytest.raises(NoSolitaryWave, match="force is 5, below precompression 10"):
-        loaded_wave(CHAIN, force=5, precompression=10, law=HERTZ)
-    with pytest.raises(NoSolitaryWave, match="no sound"):
-        _ = wave_of(HERTZ, 0, 1).kdv
-
-
-def test_bad_arguments_are_refused():
-    for call, reason in (
-        (lambda: wave_of(HERTZ, -1, 1), "must not be negative"),
-        (lambda: wave_of(HERTZ, 1, 0), "rise is 0"),
-        (lambda: wave_of(HERTZ, "p0", 1).fwhm(), "has no value"),
-        (lambda: wave_of(HERTZ, 1, 1).fwhm("colour"), "quantity"),
-        (lambda: wave_of(HERTZ, 1, 1).along(["x"]), "x is"),
-        (lambda: wave_of(HERTZ, 1, 1).along(math.nan), "finite"),
-        (lambda: wave_of(general(), 1, 1).fwhm(), "no expression"),
-        (lambda: wave_of(general(), 0, 1, Dimer(1, 1, stiffnesses=[1, 2])), "shares"),
-        (lambda: loaded_wave(CHAIN, force=2, rise=1), "not by both"),
-        (lambda: loaded_wave(CHAIN, law=HERTZ, k=2), "one of them"),
-        (lambda: loaded_wave(CHAIN, law=named("hertz2", 1, 1)), "has no value"),
-        (lambda: canonical_wave(Cell([1]), 2).at_force(1, precompression=-1), "positive"),
-        (
-            lambda: loaded_wave(CHAIN, force=2, precompression=1, law=named("polynomial", -1, 0)),
-            "reach",
-        ),
-        (lambda: homogenize(Dimer(1, 2)).pde.traveling_wave().on_background(1), "canonical"),
-    ):
-        with pytest.raises(InputError, match=reason):
-            call()
 
 
 def test_symbols_take_their_numbers():

@@ -12,16 +12,14 @@ from lwa import (
     Cell,
     InputError,
     Lattice,
-    Law,
     Link,
-    NoSolitaryWave,
     Power,
     Resonator,
     canonical_wave,
     hexagonal,
     loaded_wave,
 )
-from lwa.law import DELTA, named
+from lwa.law import named
 
 HERTZ = Power("3/2")
 LAWS = (named("hertz2", 1, "1/2"), named("exponential", "1/2"), named("magnetic", 4, 3))
@@ -129,31 +127,6 @@ def test_plane_waves_of_hexagonal_packings():
     assert other.static(1).compressions[0] == pytest.approx(
         float(named("hertz2", 1, 1).compression(Cell([1]), 1 / sp.sqrt(3))), rel=1e-14
     )
-
-
-def test_waves_that_do_not_exist_and_bad_forces():
-    soft = Lattice([1, 1], [Link(0, 1, named("polynomial", "-1/2", 0)), Link(1, 2, Power(1))])
-    chain = Lattice([1], [Link(0, 1, HERTZ)])
-    attracting = Law(-DELTA / 50)
-    attracted = Lattice([1], [Link(0, 1, HERTZ), Link(0, 3, attracting)])
-    for call, error, reason in (
-        (lambda: loaded_wave(chain, force=1, precompression=1), NoSolitaryWave, "no wave"),
-        (lambda: loaded_wave(chain, force=-1), InputError, "positive"),
-        (lambda: loaded_wave(chain, force=1, precompression=-1), InputError, "positive"),
-        (lambda: loaded_wave(chain, force="1/2", precompression=1), NoSolitaryWave, "stiffen"),
-        (lambda: loaded_wave(soft, force="2/5", precompression="1/5"), NoSolitaryWave, "stiffen"),
-        (
-            lambda: loaded_wave(attracted, force=2, precompression=1),
-            NoSolitaryWave,
-            "I is not positive",
-        ),
-        (lambda: loaded_wave(chain, force="F").fwhm(), InputError, "has no value"),
-        (lambda: loaded_wave(chain, force=1).fwhm("colour"), InputError, "quantity"),
-        (lambda: loaded_wave(chain, force=1).fwhm(extent="colour"), InputError, "extent"),
-        (lambda: loaded_wave(chain, force=1).along(["x"]), InputError, "xi|x is"),
-    ):
-        with pytest.raises(error, match=reason):
-            call()
 
 
 def test_errors_are_nan_where_nothing_was_measured():

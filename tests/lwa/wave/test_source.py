@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from lwa import Cell, Dimer, NoSolitaryWave, canonical_wave, homogenize
+from lwa import Cell, Dimer, canonical_wave, homogenize
 from lwa.wave.source import LANGUAGES, module, wave_functions
 from tests.lwa.command.answers import run
 from tests.lwa.wave.compilers import PROGRAMS, compiled, in_node
@@ -228,11 +228,6 @@ def test_names_that_have_another_meaning(language, run_in):
     assert found["beta"](*(numbers[s] for s in beta.arguments)) == pytest.approx(
         expected, rel=1e-14
     )
-
-
-def test_a_wave_that_does_not_exist_has_no_functions():
-    with pytest.raises(NoSolitaryWave):
-        wave_of("paper").at(k=3, m1=1, m2=100).code("c")
 
 
 @pytest.mark.parametrize("language", ["numpy", "c"])
