@@ -1,0 +1,78 @@
+"""The pulse that a wall sends back: scaling, another integrator, and the modulus from the delay."""
+
+import numpy as np
+import pytest
+import scipy
+
+from book.studies.wall import BEAD, SOFTEST, STIFFEST, echo, modulus, wall
+from lwa import Material
+from lwa.spheres.hertz import stiffness
+from validation.pulses.pulse import Measured
+from validation.scenes.checks import SceneError
+
+
+def test_softer_walls_answer_later():
+    rows = wall().document()["rows"]
+    delays = [row["delay_value"] for row in rows]
+    assert np.all(np.diff(delays) < 0)
+    assert all(row["delay_error_value"] < 1e-8 for row in rows)
+
+
+def test_times_scale_with_the_blow_and_the_ratio_does_not_change():
+    slow, fast = (echo(3e9, velocity=v) for v in (0.01, 5))
+    assert slow[0].value / fast[0].value == pytest.approx(500**0.2, rel=1e-9)
+    assert slow[1].value == pytest.approx(fast[1].value, rel=1e-9)
+
+
+def test_the_wall_counts_by_one_modulus():
+    one, other = echo(3e9, 0.3), echo(3e9 * (1 - 0.45**2) / (1 - 0.3**2), 0.45)
+    assert [x.value for x in one] == pytest.approx([x.value for x in other], rel=1e-9)
+
+
+def test_another_integrator_gives_the_same_echo():
+    """Newton's equations of the chain by SciPy; peaks of the force by parabolas."""
+    n, m = 20, float(BEAD.mass)
+    A = np.full(n, float(stiffness(BEAD, BEAD)))
+    A[-1] = float(stiffness(BEAD, Material("3e9", "0.3")))
+
+    def force(y):
+        return A * np.maximum(y - np.append(y[1:], 0), 0) ** 1.5
+
+    def rates(t, state):
+        push = force(state[:n])
+        return np.append(state[n:], (np.append(0, push[:-1]) - push) / m)
+
+    start = np.zeros(2 * n)
+    start[n] = 0.5
+    times = np.linspace(0, 1.5e-3, 15_001)
+    found = scipy.integrate.solve_ivp(
+        rates, (0, times[-1]), start, "DOP853", t_eval=times, rtol=1e-10, atol=1e-14
+    )
+    F = np.array([force(y)[9] for y in found.y[:n].T])
+    tops = [i for i in range(1, len(F) - 1) if F[i - 1] < F[i] >= F[i + 1] and F[i] > 0.5 * F.max()]
+    assert len(tops) == 2
+    peaks = [
+        (times[i] + 0.5 * times[1] * (F[i - 1] - F[i + 1]) / (F[i - 1] - 2 * F[i] + F[i + 1]), F[i])
+        for i in tops
+    ]
+    delay, ratio = echo(3e9)
+    assert peaks[1][0] - peaks[0][0] == pytest.approx(delay.value, abs=2e-10)
+    assert peaks[1][1] / peaks[0][1] == pytest.approx(ratio.value, rel=1e-5)
+
+
+def test_the_modulus_is_read_from_the_delay_with_its_error():
+    """The ± is the change of the modulus with the delay, at both ends of the delay's error."""
+    delay, _ = echo(70e9)
+    read = modulus(Measured(delay.value, delay.value + 1e-6))
+    assert read.value == pytest.approx(70e9, rel=1e-7)
+    later, earlier = (modulus(Measured(delay.value + d, delay.value + d)) for d in (1e-6, -1e-6))
+    apart = max(abs(other.value - read.value) for other in (later, earlier))
+    assert read.error == pytest.approx(apart, rel=1e-6)
+    assert 1e-2 < read.relative_error < 5e-2
+
+
+@pytest.mark.parametrize("E", [SOFTEST / 2, 2 * STIFFEST])
+def test_delays_of_no_wall_are_refused(E):
+    delay, _ = echo(E)
+    with pytest.raises(SceneError, match="delay is"):
+        modulus(delay)
