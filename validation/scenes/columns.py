@@ -72,8 +72,8 @@ class MeasuredFile:
         """Read a file. Its header is the first line with columns of the wanted quantities (the last
         words of their names) and with all that are renamed.
 
-        renamed : headers, with or without their unit, by the new names. Upper and lower case are
-        alike, but for headers that differ in nothing else. units : by names, new or old, units
+        renamed : headers as they stand in the file, with or without their unit, by the new names;
+        upper and lower case of other names are alike. units : by names, new or old, units
         of columns without one, or calibrations, such as "12.5 N/V".
 
         Raises `SceneError`, in one line, for a file that cannot be read or has no such header, for
@@ -193,18 +193,11 @@ class MeasuredFile:
 def _named(header: list[str], renamed: Mapping[str, str]) -> tuple[list[str], ...]:
     """Return the new names of the entries of a header, the old names, and the units."""
     parts = [_HEADER.fullmatch(" ".join(entry.split())).groups() for entry in header]  # type: ignore[union-attr]
-    old = [name for name, *_ in parts]
-    names = [name.lower() for name in old]
-    for new, wanted in renamed.items():
-        both = [{entry.strip(), name} for entry, name in zip(header, old, strict=True)]
-        # A header in another case will do, unless "t" and "T" are both there.
-        exact = [wanted in pair for pair in both]
-        alike = [wanted.lower() in map(str.lower, pair) for pair in both]
-        hits = exact if any(exact) else alike
-        names = [
-            new if hit else "" if name == new else name
-            for name, hit in zip(names, hits, strict=True)
-        ]
+    old, new = [name for name, *_ in parts], {header: name for name, header in renamed.items()}
+    names = []
+    for entry, name in zip(header, old, strict=True):
+        other = "" if name.lower() in renamed else name.lower()
+        names.append(new.get(entry.strip(), new.get(name, other)))
     return names, old, [(round_ or square or "").strip() for _, round_, square in parts]
 
 
