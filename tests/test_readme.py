@@ -21,7 +21,7 @@ from validation.cli import main as validate_main
 
 ROOT = Path(__file__).parent.parent
 README, CHANGELOG, CATALOGUE = (
-    (ROOT / name).read_text() for name in ("README.md", "CHANGELOG.md", "book/commands.md")
+    (ROOT / name).read_text() for name in ("README.md", "CHANGELOG.md", "book/reference.md")
 )
 
 
