@@ -13,7 +13,6 @@ from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
-import scipy
 import sympy as sp
 from sympy.codegen.rewriting import expm1_opt, optimize
 
@@ -89,25 +88,19 @@ class Contact:
         return np.array([float(law.compression(cell, sp.Float(F, 40))) for F in different])[place]
 
     def reached_by(self, energy: float, start: float) -> float:
-        """Return the compression that an energy reaches from ``start``; only a scale for powers."""
+        """Return a scale of the compression that an energy reaches from ``start``."""
         if self.law is None:
             return float(np.float64(energy) ** (1 / (self.k + 1)))  # of δ^{k+1}/(k+1) = energy
 
-        def excess(end: float) -> float:
-            d = np.array([start, end])
-            stored = np.diff(self.energy(d)) - self.force(d)[0] * np.diff(d)
-            return float(stored[0]) - energy
-
-        low, step, below = start, 1e-3, -energy  # first a bracket, in growing steps
-        while step > 1e-12 * max(low, 1e-3):  # towards a pole or a barrier in ever smaller steps
-            above = excess(low + step)
-            if above > 0:
-                return float(scipy.optimize.brentq(excess, low, low + step))
-            if np.isfinite(above) and above > below:
-                low, step, below = low + step, 1.5 * step, above
-            else:
-                step /= 2
-        return low
+        # The first of many places at which the energy is reached, or a pole; else a barrier.
+        d = start + np.geomspace(1e-15, 1e15, 7000)
+        stored = (
+            self.energy(d)
+            - self.energy(np.array(start))
+            - self.force(np.array(start)) * (d - start)
+        )
+        reached = np.flatnonzero(~(stored < energy))
+        return float(d[reached[0] if len(reached) else np.argmax(stored)])
 
     @property
     def addresses(self) -> dict[str, int]:
