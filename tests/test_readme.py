@@ -23,6 +23,7 @@ ROOT = Path(__file__).parent.parent
 README, CHANGELOG, CATALOGUE = (
     (ROOT / name).read_text() for name in ("README.md", "CHANGELOG.md", "book/reference.md")
 )
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 
 
 def test_the_python_example(capsys):
@@ -101,6 +102,17 @@ def test_the_picture_shows_what_its_script_computes(engine):
         assert f"at {speed:.1f} m/s" in README
 
 
+def test_a_registrys_page_has_no_link_into_the_repository():
+    """The package's description is the README without its picture."""
+    hook = PROJECT["tool"]["hatch"]["metadata"]["hooks"]["fancy-pypi-readme"]
+    text = README
+    for rule in hook["substitutions"]:
+        text = re.sub(rule["pattern"], rule["replacement"], text)
+    assert hook["fragments"] == [{"path": "README.md"}]
+    assert 300 < len(README) - len(text) < 600  # the picture and its caption
+    assert re.findall(r"\]\((\w+)", text).count("https") == text.count("](")
+
+
 def test_citation_and_changelog_agree():
     """Version and date of the release, in all three places."""
     cited = (ROOT / "CITATION.cff").read_text()
@@ -110,5 +122,4 @@ def test_citation_and_changelog_agree():
     )
     newest = re.search(r"^## \[(.*?)\] - (\S+)$", CHANGELOG, re.MULTILINE)
     assert newest.groups() == release
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    assert project["version"] == release[0]
+    assert PROJECT["project"]["version"] == release[0]
