@@ -18,10 +18,12 @@ def compiled(law, quintic, h, points):
 
 
 def force(law, quintic, h, x):
-    d, rate = np.polyval(quintic[::-1], x), np.polyval(np.polyder(quintic[::-1]), x) / h
+    d = slope = 0.0
+    for coefficient in reversed(quintic):
+        d, slope = d * x + coefficient, slope * x + d
     if d <= 0:
         return 0.0
-    return max(law.A * d**law.k + (law.c * d**law.p * rate if law.damped else 0.0), 0.0)
+    return max(law.A * d**law.k + (law.c * d**law.p * slope / h if law.damped else 0.0), 0.0)
 
 
 def kinks(law, quintic, h):
