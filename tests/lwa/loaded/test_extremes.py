@@ -11,9 +11,12 @@ from book.studies.hard import true_wave
 from lwa import (
     Cell,
     Dimer,
+    Lattice,
     Law,
+    Link,
     NoSolitaryWave,
     Power,
+    Resonator,
     canonical_wave,
     homogenize,
     loaded_wave,
@@ -27,28 +30,66 @@ LIMITED = Law(DELTA + DELTA**2 - DELTA**3)  # Q(v) = 1 + 2v/3 - v²/2 about 0: w
 
 CASES = [
     (Power("1/2"), 1, -0.999),
-    (Power(50), 0.5, 1.0),
+    (Power("11/10"), 0, 1.0),
+    (Power("11/10"), 0.01, 1.0),
+    (Power(5), 0.5, 1.0),
     (HERTZ, 1, 1e-12),
-    (named("lennard-jones", 1), 0, 0.99),
+    (named("lennard-jones", 1), 0, 0.1),
     (named("magnetic", 4, 1), 0, 0.99),
     (LIMITED, 0, 0.6666),
 ]
+SHARP = [(Power(50), 0.5, 1.0), (named("lennard-jones", 1), 0, 0.99)]  # profiles are refused
 
 
 def wave_of(law, load, rise, cell=CHAIN):
     return loaded_wave(cell, rise=rise, background=load, law=law)
 
 
-@pytest.mark.parametrize(("law", "p0", "B"), CASES, ids=str)
-def test_speed_and_widths_to_the_last_digits(law, p0, B):
-    """To 1e-12 of mpmath's quadrature; next to a pole the rounding of p0 + B counts."""
+@pytest.mark.parametrize(("law", "p0", "B"), CASES + SHARP, ids=str)
+def test_speed_widths_and_profile_to_the_last_digits(law, p0, B):
+    """To 1e-12 of mpmath's quadrature, 1e-9 of the larger of v and B/1000 along the profile.
+
+    Next to a pole the rounding of p0 + B counts.
+    """
+    heights = B * np.array([0.99, 0.7, 0.5, 0.3, 0.01, 1e-6])
     with mpmath.workdps(30 + 3 * max(0, int(-np.log10(abs(B))))):  # Q cancels at small B
         speed, place, height = true_wave(law, p0, B)
         widths = [2 * float(place(v)) for v in (mpmath.mpf(B) / 2, height)]
+        places = [float(place(mpmath.mpf(v))) for v in heights]
     wave = wave_of(law, p0, B)
     assert float(wave.field.speed(wave.strain)) == pytest.approx(float(speed), rel=2e-14)
     for quantity, width in zip(("strain", "force"), widths, strict=True):
         assert float(wave.fwhm(quantity)) == pytest.approx(width, rel=1e-12)
+    if (law, p0, B) in CASES:
+        off = np.abs(wave.along(places, "strain") - heights)
+        assert np.all(off <= 1e-9 * np.maximum(abs(heights), 1e-3 * abs(B)))
+
+
+NETWORK = Lattice(
+    [1, 2], [Link(0, 1, HERTZ), Link(1, 2, HERTZ), Link(0, 2, Power(2))], spacing="1/2"
+)
+RINGING = Lattice([1], [Link(0, 1, Power(2))], [Resonator(0, "1/2", 200)])
+LAWS = HERTZ, named("hertz2", 1, 1), named("magnetic", 4, 3)
+
+
+@pytest.mark.parametrize("chain", [*LAWS, NETWORK, RINGING], ids=str)
+@pytest.mark.parametrize("excess", ["1e-6", "1e-15"])
+def test_a_force_hardly_above_the_load(chain, excess):
+    """Width and excess of V over sound are those of KdV, for F - F0 = F′ δ, δ with all digits."""
+    known = chain in LAWS
+    options = {"law": chain} if known else {}
+    lattice, tiny = CHAIN if known else chain, sp.Rational(excess)
+    wave = loaded_wave(lattice, force=1 + tiny, precompression=1, **options)
+    slope = (wave.sound_speed / lattice.spacing) ** 2 * lattice.mass
+    off = float(excess) + (1e-13 if known else 1e-8)
+    rise = sp.N(wave.strain, 20, maxn=200)
+    assert float(rise * lattice.spacing * slope / tiny) == pytest.approx(1, rel=off)
+    width = 2 * math.acosh(math.sqrt(2)) * float(sp.N(wave.kdv.width(rise), 20))
+    assert float(wave.fwhm("strain")) == pytest.approx(width, rel=off + 1e-12)
+    if known:  # 20 digits of V
+        above = sp.N(wave.speed / wave.sound_speed - 1, 10, maxn=400)
+        expected = wave.kdv.nonlinearity * rise / 3 / wave.sound_speed
+        assert float(above / expected) == pytest.approx(1, rel=off + 1e-3)
 
 
 @pytest.mark.parametrize("ratio", [1e-300, 1e-100, 1e100, 1e308])

@@ -182,25 +182,11 @@ def test_errors_cover_the_exact_wave(lattice, force, load):
         exact(lattice, force, load),
         loaded_wave(lattice, force=force, precompression=load),
     )
+    assert load or float(wave.sound_speed) < 1e-9
     missed = abs(float(wave.speed) - math.sqrt(known.square))
     assert missed < wave.speed_error < 30 * missed
     missed = abs(float(wave.fwhm(known.of)) - known.fwhm)
     assert missed < wave.fwhm_error(known.of) < 30 * missed
-
-
-NETWORK = Lattice([1, 2], [Link(0, 1, HERTZ), Link(1, 2, HERTZ), Link(0, 2, Power(2))])
-RINGING = Lattice([1], [Link(0, 1, Power(2))], [Resonator(0, "1/2", 200)])
-
-
-@pytest.mark.parametrize("lattice", [NETWORK, RINGING])
-@pytest.mark.parametrize("excess", ["1e-6", "1e-15"])
-def test_a_force_hardly_above_the_load_of_a_lattice(lattice, excess):
-    """The width is that of KdV, for F - F0 = F′ B, and small B has all its digits."""
-    wave = loaded_wave(lattice, force=1 + sp.Rational(excess), precompression=1)
-    slope = float((wave.sound_speed / lattice.spacing) ** 2 * lattice.mass)
-    assert float(wave.compression) * slope == pytest.approx(float(excess), rel=float(excess) + 1e-8)
-    width = 2 * math.acosh(math.sqrt(2)) * float(wave.kdv.width(float(excess) / slope))
-    assert float(wave.fwhm("strain")) == pytest.approx(width, rel=float(excess) + 1e-8)
 
 
 def test_four_particles_with_an_exponential_second_neighbour():
