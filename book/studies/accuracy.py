@@ -44,8 +44,9 @@ from validation.report.table import Column, Table
 from validation.scenes import chains
 from validation.scenes.checks import one_of
 from validation.scenes.scene import Scene
+from validation.studies.limits import theory_at
+from validation.studies.paper import recorded_chain
 from validation.waves.solver import exact_wave, measured
-from validation.waves.theory import theory_at
 
 WANTED = (1e-4, 1e-6, 1e-8, 1e-10)
 """Relative errors of the peak force at which costs are compared."""
@@ -118,7 +119,7 @@ def experiment() -> Task:
     Units are the striker's mass and velocity and the first contact's stiffness. The contact of
     beads 33 and 34 is measured, before the wall reflects the pulse.
     """
-    si = chains.chain_scene(1.37, 38, (16, 34), 0.0, 1e-3, N=2)
+    si = recorded_chain((16, 34), N=2)
     m, A = si.masses[0], si.stiffnesses[0]
     scene = Scene(
         masses=tuple(mass / m for mass in si.masses),

@@ -38,7 +38,8 @@ from validation.report.table import Column, Finding, Table
 from validation.scenes.chains import struck
 from validation.scenes.checks import between, integer
 from validation.scenes.scene import Scene
-from validation.waves.theory import of_momentum, theory_at
+from validation.studies.limits import theory_at
+from validation.studies.paper import of_momentum
 
 PLACES = 10  # contacts at which the pulse is measured, equally far from each other
 NODES = 5  # excesses of either sign at which the loss at a single bead is measured

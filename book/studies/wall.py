@@ -32,7 +32,7 @@ from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError, integer, items, positive
 from validation.scenes.scene import Scene
-from validation.waves.theory import of_momentum
+from validation.studies.paper import of_momentum
 
 BEAD = Sphere("29.0e-3", "9.525e-3", Material("193e9", "0.3"))  # steel, 19.05 mm
 MODULI = (1e9, 3e9, 10e9, 30e9, 70e9, 200e9)  # in Pa: polymers to steel

@@ -24,8 +24,15 @@ from validation.report.command import study
 from validation.report.result import Report
 from validation.report.table import Column, Table, percent
 from validation.scenes.chains import DIAMETER
-from validation.studies.paper import BEADS, HERTZ, SENSORS, TOLERANCES, chain_cell, recorded_chain
-from validation.waves.theory import bead_fwhm
+from validation.studies.paper import (
+    BEADS,
+    HERTZ,
+    SENSORS,
+    TOLERANCES,
+    bead_fwhm,
+    chain_cell,
+    recorded_chain,
+)
 
 FIRST_BEAD = 10  # from here on the width no longer changes on its way; the average starts here
 STATED = {"m1 ≫ m2": 0.092, "m2/m1 = 0.27": 0.025, "m1 = m2": 0.228}  # by the paper

@@ -25,7 +25,7 @@ OPTIONS = {
         "": FILES, "--masses": NUMBERS, "--spacing": NUMBERS, "--spheres": FILES,
         "--material": ("ptfe", "steel", "x", ""), "--degree": COUNTS,
     },
-    "paper": {"--velocity": NUMBERS, "--beads": ("8", "12", "0", "x"), "--sensors": COUNTS},
+    "paper": {"--velocity": NUMBERS},
     "run": {
         "": FILES, "--method": ("RKN86", "symplectic", "x"), "--rtol": NUMBERS,
         "--out": ("o.csv", "o.json", "o.npz", "x/y.csv", ""),

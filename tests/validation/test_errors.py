@@ -20,10 +20,10 @@ from validation.pulses import steady
 from validation.pulses.pulse import Measured, exponent
 from validation.pulses.sensors import record
 from validation.scenes import scenefile
+from validation.studies.limits import theory_at
 from validation.waves import contact_law
 from validation.waves.resonances import solve
 from validation.waves.solver import exact_wave, measured
-from validation.waves.theory import theory_at
 
 paper, figures, limits, runs = (
     importlib.import_module(f"validation.studies.{name}")
@@ -102,29 +102,22 @@ def of_paper(**options):
     return {quantity: number for quantity, _, number, *_ in paper.paper(**options).tables[0].rows}
 
 
-def of_figures(chains, moduli, **options):
-    speeds = {N: figures.chain_speed(N, **options) for N in chains}
-    found = {(N, name): s[name] for N, s in speeds.items() for name in ("speed", "force")}
-    for E in moduli:
-        s = figures.scaling(E, **options)
-        for values, errors in ((s.speed, s.speed_error), (s.force, s.force_error)):
-            for value, error in zip(values, errors, strict=True):
-                found[E, len(found)] = Measured(value, value + error)
-        found[E, "exponent"] = s.exponent
-    return found
+def test_paper():
+    # ± is rtol at least, and the chain of 38 beads loses a hundredth of that
+    assert held(of_paper(), of_paper(tolerances=FINER)) >= 1e-3
 
 
-def test_paper_and_figures():
-    of_chains = (of_figures((2, 5), (), **options) for options in ({}, {"tolerances": FINER}))
-    largest = held(of_paper(), of_paper(tolerances=FINER)), held(*of_chains)
-    assert max(largest) >= 1 / LARGEST
+def of_figures(**options):
+    s, found = figures.scaling(figures.MODULI[0], **options), {}
+    for values, errors in ((s.speed, s.speed_error), (s.force, s.force_error)):
+        for value, error in zip(values, errors, strict=True):
+            found[len(found)] = Measured(value, value + error)
+    return found | {"exponent": s.exponent}
 
 
 @pytest.mark.slow
 def test_figures():
-    moduli = figures.MODULI[:1]
-    found, finer = of_figures((5,), moduli), of_figures((5,), moduli, tolerances=FINER)
-    assert held(found, finer) >= 1 / LARGEST
+    assert held(of_figures(), of_figures(tolerances=FINER)) >= 1 / LARGEST
 
 
 def of_widths(monkeypatch, tolerances):
@@ -145,8 +138,8 @@ def test_widths(monkeypatch):
 def test_limits():
     """The error is what the pulse has yet to shed: the finer run is read farther away."""
     largest = []
-    for case in (("3/2", 1), ("11/10", 1), ("3/2", "1/1000"), ("5/4", "1/1000")):
-        wave = theory_at(*case)
+    for k in ("3/2", "11/10"):
+        wave = theory_at(k, 1)
         finer = limits.lattice_wave(wave, places=(8, 12, 16))
         largest.append(held(limits.lattice_wave(wave), finer))
     assert max(largest) >= 1 / LARGEST

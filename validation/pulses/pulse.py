@@ -139,15 +139,6 @@ def leading_pulses(signal: Signal, k: float, shares: Sequence[float] = (0.5,)) -
     return grid.highest(stop=stop, shares=shares)
 
 
-def first_passage(signal: Signal, level: float) -> float:
-    """Return the first time at which a signal rises above a level, else raise `MeasureError`."""
-    grid = _Grid(signal)
-    above = int(np.argmax(grid.f > level))
-    if not above:
-        raise MeasureError(f"the signal does not rise above {level:g} within the record")
-    return grid.crossing(above - 1, level)
-
-
 class _Grid:
     """Values of a signal at `_POINTS` points in each smooth interval."""
 

@@ -29,8 +29,8 @@ T = TypeVar("T")
 class Study(Generic[P]):
     """A function that returns a `Report`, with a ``command`` that prints the report."""
 
-    def __init__(self, function: Callable[P, Report], options: Sequence[Any], epilog: str) -> None:
-        self.function, self.options, self.epilog = function, options, epilog
+    def __init__(self, function: Callable[P, Report], options: Sequence[Any]) -> None:
+        self.function, self.options = function, options
         update_wrapper(self, function)
 
     def __call__(self, *arguments: P.args, **options: P.kwargs) -> Report:
@@ -63,29 +63,25 @@ class Study(Generic[P]):
         for option in (*_OUTPUT, *reversed(self.options)):  # help shows the last decoration first
             run = option(run)
         summary, _, _ = (inspect.getdoc(function) or "").partition("\n\n")
-        command = click.command(
-            function.__name__, help=summary, epilog=self.epilog, context_settings=HELP
-        )
-        return command(run)
+        return click.command(function.__name__, help=summary, context_settings=HELP)(run)
 
     def main(self, arguments: Sequence[str] | None = None) -> None:
         """Run the command as a program, for a file that defines one study and is executed."""
         run_command(self.command, f"{self.function.__name__}.py", arguments)
 
 
-def study(*options: Any, epilog: str = "") -> Callable[[Callable[P, Report]], Study[P]]:
+def study(*options: Any) -> Callable[[Callable[P, Report]], Study[P]]:
     """Return a decorator that gives a function returning a `Report` a command (see `Study`).
 
     The command has the function's name.
 
     options : options of the command, made by `option` or Click, one for each parameter.
-    epilog : text below the options in the command's help.
 
     A function may have two further parameters, which the command sets: ``progress`` shows how many
     cases are done, and ``run_progress`` how far a run of the lattice is
     (`validation.lattice.cost.RunProgress`).
     """
-    return lambda function: Study(function, options, epilog)
+    return lambda function: Study(function, options)
 
 
 def option(*names: str, default: Any = None, says: str = "", **more: Any) -> Any:

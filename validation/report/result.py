@@ -63,7 +63,6 @@ class Report(Pictured):
     panels : panels of the picture.
     notes : explanations below the tables.
     data : entries that go to JSON unchanged.
-    width : characters of a line of text, at most.
 
     >>> from validation.report.table import Column
     >>> row = Table((Column("n", "sites"), Column("c_value", "speed", format=".3f")), ((8, 1.25),))
@@ -80,7 +79,6 @@ class Report(Pictured):
     panels: tuple[Panel, ...] = ()
     notes: tuple[str, ...] = ()
     data: Mapping[str, Any] = field(default_factory=dict)
-    width: int = WIDTH
 
     @property
     def ok(self) -> bool:
@@ -102,8 +100,8 @@ class Report(Pictured):
         """The report as plain text: beside other printed tables only the findings that fail."""
         failing_only = any(table.parts() for table in self.tables)
         printed = [finding for finding in self.findings if not (failing_only and finding.ok)]
-        title, *notes = (wrap(text, self.width) for text in (self.title, *self.notes))
-        tables = (t.text(self.width) for t in (*self.tables, findings_table(printed)))
+        title, *notes = (wrap(text, WIDTH) for text in (self.title, *self.notes))
+        tables = (t.text() for t in (*self.tables, findings_table(printed)))
         return "\n\n".join(filter(None, (title, *tables, *notes, self.verdict)))
 
     def _repr_html_(self) -> str:

@@ -12,14 +12,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lwa import Cell
-from lwa.expansion import physical
 from lwa.spheres.hertz import Material, Sphere
 from validation.scenes.checks import SceneError
 from validation.scenes.scene import Scene
 
 STEEL, PTFE = Material.named("steel 316"), Material.named("PTFE")
 DIAMETER = 4.76e-3  # of all beads, in m
-GRAVITY = float(physical.GRAVITY)  # in m/s²
 STEEL_BEAD = Sphere("0.45e-3", DIAMETER / 2, STEEL)
 PTFE_BEAD = Sphere("0.123e-3", DIAMETER / 2, PTFE)
 
@@ -44,34 +42,6 @@ def numeric_cell(masses: Sequence[Any]) -> Cell:
         if not mass.is_number:
             raise SceneError(f"mass is {mass}: a number is wanted")
     return cell
-
-
-def chain_scene(
-    velocity: float,
-    beads: int,
-    sensors: Sequence[int],
-    gravity: float,
-    duration: float,
-    N: int = 1,
-    ptfe: Sphere = PTFE_BEAD,
-) -> Scene:
-    """Return the N:1 chain of steel and PTFE of Porter et al. (2008), struck by its first bead.
-
-    velocity, gravity, duration : in m/s, m/s² and s. sensors : beads, counted from 1; the two
-    contacts of each of them and the contact of the steel wall behind the chain are recorded too.
-    N : steel beads in a cell. ptfe : the other bead.
-    """
-    around = sorted({bead - 1 + side for bead in sensors for side in (-1, 0)})
-    return Scene.of_beads(
-        [STEEL_BEAD if number % (N + 1) else ptfe for number in range(1, beads + 1)],
-        wall=STEEL,
-        velocities=(velocity,),
-        gravity=gravity,
-        bead_sensors=[bead - 1 for bead in sensors],
-        contact_sensors=[*around, beads - 1],
-        duration=duration,
-        samples=60 * beads,
-    )
 
 
 def carrying(

@@ -3,11 +3,10 @@
 A steel bead strikes a chain in which PTFE and steel beads alternate. The chain has 38 beads,
 numbered from 1 (the striker), and ends in a steel wall. As in the paper, sensors sit in beads 15
 and 34, the peak force is F_m = (F_15 + F_34)/2, and the speed V_s is the distance of the two beads
-over the time between their peaks. The force of a bead is the mean of its two contacts' forces; the
-static forces of gravity are subtracted.
+over the time between their peaks. The force of a bead is the mean of its two contacts' forces.
 
 Bead 15 is steel and bead 34 PTFE: the shapes of their pulses differ, so that V_s is not the speed
-of the pulse. The speed between beads of one kind stands beside it.
+of the pulse. The speed between beads of one kind stands beside V_s.
 
 The amplitude of the theory's wave is set in turn by F_m, by V_s, and by the striker's momentum, as
 if the pulse took all of it.
@@ -15,13 +14,16 @@ if the pulse took all of it.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from itertools import chain
 
+import scipy
 import sympy as sp
 
-from lwa import Cell, PhysicalWave, Sphere, canonical_wave, homogenize
-from lwa.command.options import quantities
+from lwa import Cell, PhysicalWave, Sphere, TravelingWave, canonical_wave, homogenize
+from lwa.base.exact import number
+from lwa.wave.closed import CompactWave
 from validation.lattice.cost import RunProgress, silent
 from validation.lattice.result import Run
 from validation.lattice.simulate import twice
@@ -31,13 +33,13 @@ from validation.pulses.sensors import Train
 from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table, percent
-from validation.scenes.chains import DIAMETER, GRAVITY, PTFE_BEAD, STEEL_BEAD, chain_scene
-from validation.scenes.checks import SceneError, between, integer, items
+from validation.scenes.chains import DIAMETER, PTFE_BEAD, STEEL, STEEL_BEAD
+from validation.scenes.checks import between, positive
 from validation.scenes.scene import Scene
-from validation.waves.theory import bead_fwhm, of_momentum, of_speed
 
 HERTZ = sp.Rational(3, 2)
 BEADS, SENSORS, VELOCITY = 38, (15, 34), 1.37  # sensors are numbered from the striker, 1; in m/s
+LIKE = (15, 33), (16, 34)  # beads of one kind, both steel and both PTFE
 TOLERANCES = (1e-10, 1e-9)  # rtol of the run that counts and of the run that gives its errors
 SOURCES = ("F_m", "speed", "striker")
 """Names of the quantities that set the theory's amplitude."""
@@ -62,11 +64,10 @@ _COLUMNS = (
     ),
 )
 _NOTE = """\
-The force of a bead is the mean of its two contacts'; numbers that name no bead
-are means over both sensor beads (odd ones are steel, even ones PTFE) or over
-their four contacts. The theory's amplitude is set by F_m, by V_s, or by all of
-the striker's momentum; error: theory/lattice - 1. Between steel and PTFE, V_s
-compares peaks of different shape, and is not the pulse's speed.
+The force of a bead is the mean of its two contacts'; numbers that name no bead are means over both
+sensor beads (odd ones are steel, even ones PTFE) or over their four contacts. The theory's
+amplitude is set by F_m, by V_s, or by all of the striker's momentum; error: theory/lattice - 1.
+Between steel and PTFE, V_s compares peaks of different shape, and is not the pulse's speed.
 ±: error of the integration."""
 
 
@@ -76,65 +77,54 @@ def chain_cell(N: int = 1, ptfe: Sphere = PTFE_BEAD) -> Cell:
 
 
 def recorded_chain(
-    sensors: Sequence[int],
-    velocity: float = VELOCITY,
-    N: int = 1,
-    ptfe: Sphere = PTFE_BEAD,
-    beads: int = BEADS,
-    gravity: float = 0.0,
+    sensors: Sequence[int], velocity: float = VELOCITY, N: int = 1, ptfe: Sphere = PTFE_BEAD
 ) -> Scene:
-    """Return the struck N:1 chain, until the pulse has run to the wall and back."""
+    """Return the N:1 chain of steel and PTFE, struck by its first bead, until the pulse has run to
+    the wall and back.
+
+    sensors : beads, counted from 1; the two contacts of each of them and the contact of the steel
+    wall behind the chain are recorded too. velocity : in m/s. N : steel beads in a cell. ptfe : the
+    other bead.
+    """
     momentum = float(STEEL_BEAD.mass) * velocity
     pulse = of_momentum(canonical_wave(chain_cell(N, ptfe), HERTZ), momentum)
-    # A pulse with all of the striker's momentum needs two thirds of this time to the wall.
-    duration = 1.6 * beads * DIAMETER / float(pulse.speed)
-    return chain_scene(velocity, beads, sensors, gravity, duration, N, ptfe)
+    around = sorted({bead - 1 + side for bead in sensors for side in (-1, 0)})
+    return Scene.of_beads(
+        [STEEL_BEAD if place % (N + 1) else ptfe for place in range(1, BEADS + 1)],
+        wall=STEEL,
+        velocities=(velocity,),
+        bead_sensors=[bead - 1 for bead in sensors],
+        contact_sensors=[*around, BEADS - 1],
+        # A pulse with all of the striker's momentum needs two thirds of this time to the wall.
+        duration=1.6 * BEADS * DIAMETER / float(pulse.speed),
+        samples=60 * BEADS,
+    )
 
 
 @study(
     option("--velocity", default=VELOCITY, says="Velocity of the striker in m/s."),
-    option("--beads", default=BEADS, says="Number of beads, the striker included."),
-    option("--sensors", callback=quantities, default="15,34", says="Two beads; 1 is the striker."),
-    option(
-        "--gravity",
-        flag_value=str(GRAVITY),
-        default=0.0,
-        show_default=False,
-        says="Let the chain stand upright, under its own weight.",
-    ),
 )
 def paper(
     velocity: float = VELOCITY,
-    beads: int = BEADS,
-    sensors: tuple[int, int] = SENSORS,
-    gravity: float = 0.0,
     tolerances: tuple[float, float] = TOLERANCES,
     run_progress: RunProgress = silent,
 ) -> Report:
     """The experiment of Porter et al. (2008): a chain of steel and PTFE beads in turn is struck at
     one end. Speed, peak force and FWHM on the lattice, and by the theory.
 
-    gravity: in m/s², towards the wall. tolerances: of the run and of the less accurate run that
-    gives its errors. Raises `SceneError` for values out of range, and `MeasureError` if the pulse
-    is not whole at a sensor before the wall reflects it.
+    tolerances: of the run and of the less accurate run that gives its errors. Raises `SceneError`
+    for a velocity out of range.
 
-    ``velocity_value``, ``beads``, ``sensors``, ``gravity_value``, ``rows``: ``quantity``, ``unit``,
-    ``lattice_value``, ``lattice_error_value``, and by the quantity that sets the theory's amplitude
-    (``F_m``, ``speed``, ``striker``) ``theory_value`` {…} and ``error_value`` {…}, theory over
-    lattice - 1.
+    ``velocity_value``, ``beads``, ``sensors``, ``rows``: ``quantity``, ``unit``, ``lattice_value``,
+    ``lattice_error_value``, and by the quantity that sets the theory's amplitude (``F_m``,
+    ``speed``, ``striker``) ``theory_value`` {…} and ``error_value`` {…}, theory over lattice - 1.
     """
     velocity = between(velocity, "velocity", 1e-6, 1000)
-    beads = integer(beads, "beads", 8, 2000)
-    pair = tuple(integer(bead, "sensor", 2, beads - 1) for bead in items(sensors, "sensors"))
-    if len(pair) != 2 or not pair[0] < pair[1]:
-        wanted = "two beads are wanted, the one nearer to the striker first"
-        raise SceneError(f"sensors are {', '.join(map(str, pair))}: {wanted}")
-    recorded = sorted({*pair, *chain.from_iterable(like_pairs(pair))})
-    scene = recorded_chain(recorded, velocity, beads=beads, gravity=gravity)
+    scene = recorded_chain(sorted({*SENSORS, *chain.from_iterable(LIKE)}), velocity)
     run, check = twice(scene, *tolerances, progress=run_progress)
 
     def measured(run: Run) -> dict[str, float]:
-        return numbers(Train.of(run), Train.of(run, "contact"), pair)
+        return numbers(Train.of(run), Train.of(run, "contact"))
 
     lattice = compared(measured, run, check, rtol=tolerances[0])
     wave = homogenize(chain_cell(), k=HERTZ).pde.traveling_wave()
@@ -143,82 +133,93 @@ def paper(
         of_speed(wave, lattice["speed V_s"].value),
         of_momentum(wave, float(STEEL_BEAD.mass) * velocity),
     )
-    theories = [theory_numbers(wave, pair) for wave in waves]
+    theories = [theory_numbers(wave) for wave in waves]
     rows = []
     for name, value in lattice.items():
         unit = "µs" if name.endswith("in time") else _UNITS[name.split()[0]]
         pairs = [(theory[name], theory[name] / value.value - 1) for theory in theories]
         rows.append((name, unit, value, *chain.from_iterable(pairs)))
     return Report(
-        f"{beads} beads, steel (the striker, {velocity:g} m/s) and PTFE in turn, steel wall, "
-        f"{f'gravity {gravity:g} m/s²' if gravity else 'no gravity'}; "
-        f"sensors in beads {pair[0]} and {pair[1]}",
+        f"{BEADS} beads, steel (the striker, {velocity:g} m/s) and PTFE in turn, steel wall; "
+        f"sensors in beads {SENSORS[0]} and {SENSORS[1]}",
         (Table(_COLUMNS, tuple(rows), "rows", note=_NOTE),),
-        panels=(_panel(run, pair, waves[0]),),
-        data={
-            "velocity_value": velocity,
-            "beads": beads,
-            "sensors": pair,
-            "gravity_value": gravity,
-        },
-        width=80,
+        panels=(_panel(run, waves[0]),),
+        data={"velocity_value": velocity, "beads": BEADS, "sensors": SENSORS},
     )
 
 
-def theory_numbers(wave: PhysicalWave, pair: tuple[int, ...] = SENSORS) -> dict[str, float]:
-    """Return the `numbers` of the theory's wave; pair : the two sensor beads."""
-    V, sensors = float(wave.speed), range(pair[0] - 1, pair[1] + 1)
+def theory_numbers(wave: PhysicalWave) -> dict[str, float]:
+    """Return the `numbers` of the theory's wave."""
+    V = float(wave.speed)
 
     def train(peak: float, fwhm: float) -> Train:
-        half, times = fwhm / V / 2, {i: i * DIAMETER / V for i in sensors}
+        half, times = fwhm / V / 2, {i: i * DIAMETER / V for i in range(1, BEADS + 1)}
         return Train({i: Pulse(t, peak, t - half, t + half) for i, t in times.items()}, DIAMETER)
 
     beads = train(float(wave.bead_force), bead_fwhm(wave.wave))
     contacts = train(float(wave.contact_force), float(wave.fwhm("force")))
-    return numbers(beads, contacts, pair)
+    return numbers(beads, contacts)
 
 
-def numbers(beads: Train, contacts: Train, pair: tuple[int, ...]) -> dict[str, float]:
-    """Return speeds, peak forces and FWHM at the two sensor beads ``pair``, in `_UNITS`.
+def numbers(beads: Train, contacts: Train) -> dict[str, float]:
+    """Return speeds, peak forces and FWHM at the two beads `SENSORS`, in `_UNITS`.
 
     Numbers whose names hold no bead are means over both beads or over their four contacts.
     """
-    first, second = (beads.only([bead]) for bead in pair)
-    both, around = beads.only(pair), contacts.only([b + side for b in pair for side in (-1, 0)])
+    both = beads.only(SENSORS)
+    around = contacts.only([bead + side for bead in SENSORS for side in (-1, 0)])
     sites = both.speed / DIAMETER
     return {
         "speed V_s": both.speed,
-        f"peak bead force F_{pair[0]}": first.peak,
-        f"peak bead force F_{pair[1]}": second.peak,
+        **{f"peak bead force F_{bead}": both.only([bead]).peak for bead in SENSORS},
         "peak bead force F_m": both.peak,
         "peak contact force": around.peak,
-        f"FWHM of F_{pair[0]}": first.fwhm * sites,
-        f"FWHM of F_{pair[1]}": second.fwhm * sites,
+        **{f"FWHM of F_{bead}": both.only([bead]).fwhm * sites for bead in SENSORS},
         "FWHM of bead force": both.fwhm * sites,
         "FWHM of bead force in time": 1e6 * both.fwhm,
         "FWHM of contact force": around.fwhm * sites,
         "FWHM of contact force in time": 1e6 * around.fwhm,
-        **{f"speed from bead {a} to {b}": beads.only((a, b)).speed for a, b in like_pairs(pair)},
+        **{f"speed from bead {a} to {b}": beads.only((a, b)).speed for a, b in LIKE},
     }
 
 
-def like_pairs(pair: tuple[int, ...]) -> list[tuple[int, int]]:
-    """Return pairs of like beads (both steel, both PTFE), each next to one of two sensor beads.
-
-    >>> like_pairs((15, 34)), like_pairs((15, 33))
-    ([(15, 33), (16, 34)], [])
-    """
-    first, second = pair
-    unlike = (second - first) % 2 and second - first > 1
-    return [(first, second - 1), (first + 1, second)] if unlike else []
+def of_speed(wave: TravelingWave, speed: float) -> PhysicalWave:
+    """Return the theory's wave with a given speed dx/dt; `SceneError` unless it is positive."""
+    return _with(wave, "speed", speed, -1)
 
 
-def _panel(run: Run, pair: tuple[int, ...], theory: PhysicalWave) -> Panel:
-    """Return a panel of dynamic forces at two beads, and the theory's wave with each peak."""
+def of_momentum(wave: TravelingWave, momentum: float) -> PhysicalWave:
+    """Return the theory's wave with a given momentum; `SceneError` unless it is positive."""
+    return _with(wave, "momentum", momentum, 1)
+
+
+def _with(wave: TravelingWave, name: str, amount: float, sign: int) -> PhysicalWave:
+    """Return the wave at which a quantity, ∝ F^{(k + sign)/(2k)}, has the given amount."""
+    unit, exponent = PhysicalWave(wave, sp.S.One), (wave.k + sign) / (2 * wave.k)
+    ratio = positive(amount, name) / number(getattr(unit, name))
+    return PhysicalWave(wave, math.exp(math.log(ratio) / number(exponent)))
+
+
+def bead_fwhm(wave: CompactWave) -> float:
+    """Return the FWHM of a bead's force, a length that does not depend on the amplitude."""
+    k, D = number(wave.k), number(wave.D)
+    beta = (k - 1) / (2 * D * math.sqrt(number(wave.coefficient_sum)))
+
+    def force(x: float) -> float:
+        """Return a bead's force: cos^p(β(x ± D/2)) summed, p = 2k/(k-1), each 0 off its arch."""
+        sides = (beta * (x + side) for side in (-D / 2, D / 2))
+        return math.fsum(math.cos(y) ** (2 * k / (k - 1)) for y in sides if abs(y) < math.pi / 2)
+
+    half, end = force(0.0) / 2, (math.pi / beta + D) / 2
+    return 2 * float(scipy.optimize.brentq(lambda x: force(x) - half, 0, end, xtol=1e-14 * end))
+
+
+def _panel(run: Run, theory: PhysicalWave) -> Panel:
+    """Return a panel of the forces at two beads, and the theory's wave with each peak."""
     curves = []
-    for i, (bead, pulse) in enumerate(Train.of(run).only(pair).pulses.items()):
+    for i, (bead, pulse) in enumerate(Train.of(run).only(SENSORS).pulses.items()):
         (force,) = run.bead_force[[j == bead - 1 for j in run.scene.bead_sensors]]
         wave = theory.curve(run.time - pulse.arrival)
-        curves.append(Curve(f"bead {bead}, lattice", 1e6 * run.time, force - force[0], f"C{i}-"))
+        curves.append(Curve(f"bead {bead}, lattice", 1e6 * run.time, force, f"C{i}-"))
         curves.append(Curve(f"bead {bead}, theory by F_m", 1e6 * run.time, wave, f"C{i}--"))
-    return Panel("time (µs)", "dynamic force, mean of the bead's contacts (N)", tuple(curves))
+    return Panel("time (µs)", "force, mean of the bead's contacts (N)", tuple(curves))

@@ -12,10 +12,10 @@ from validation.pulses.noisy import noisy_pulses
 from validation.pulses.pulse import MeasureError
 from validation.pulses.sensors import SPEEDS, Reading, speeds_between
 from validation.report.command import column_options, option, study
-from validation.report.readings import reading_tables
 from validation.report.result import Report
 from validation.scenes.checks import SceneError, one_of
 from validation.scenes.columns import LENGTH, MeasuredFile, amount, sensor_columns
+from validation.studies.run import reading_tables
 
 _KINDS = ("bead", "contact")
 _NOTE = (

@@ -9,7 +9,7 @@ header, but not the result. Forces are total: static forces are included.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -20,11 +20,19 @@ import numpy as np
 from validation.lattice.cost import RunProgress
 from validation.lattice.result import Records, Run
 from validation.lattice.simulate import COMPILED, METHODS
-from validation.pulses.sensors import LESS, TOLERANCE, Recording, record
+from validation.pulses.sensors import (
+    LESS,
+    READINGS,
+    SPEEDS,
+    TOLERANCE,
+    Reading,
+    Recording,
+    echoes,
+    record,
+)
 from validation.report.command import option, output_option, study
-from validation.report.readings import reading_tables
 from validation.report.result import Report, replacing
-from validation.report.table import plain
+from validation.report.table import Column, Table, plain
 from validation.scenes import scenefile
 from validation.scenes.checks import SceneError
 
@@ -84,6 +92,72 @@ def report(recording: Recording, every: bool = False) -> Report:
     )
 
 
+def reading_tables(
+    sensors: Sequence[Reading],
+    speeds: Sequence[Reading],
+    labels: Sequence[str],
+    si: bool,
+    every: bool = False,
+) -> tuple[tuple[Table, ...], str]:
+    """Return the tables ``sensors`` and ``speeds``, with later pulses also ``echoes``, and lines on
+    the numbers that are missing.
+
+    sensors : with later pulses of a sensor behind its first one. labels : of arrival, peak and
+    FWHM. si : True for results in SI units. every : True for all pulses in the table ``sensors``,
+    in a column with the number of the pulse at its sensor, False for the first ones.
+
+    The table of the sensors, which is the CSV, also holds the speeds of the first pulses from the
+    sensor before; they are not printed twice.
+    """
+    columns = [Column("", "sensor"), Column("kind"), Column("number")]
+    if every:
+        columns.append(Column("pulse", "pulse"))
+    for name, label in zip(READINGS, labels, strict=True):
+        columns.append(Column(name, label, error=True))
+    columns += [Column("static_force_value"), Column("missing")]
+    columns += [Column(name, error=True) for name in SPEEDS]
+    arriving = {f"{r.kind} {r.places[1]}": r.numbers for r in speeds}
+    pulses = []
+    for r in (r for r in sensors if every or r.pulse == 1):
+        before = arriving.get(r.name, {}) if r.pulse == 1 else {}
+        row = [r.name, r.kind, *r.places, *([r.pulse] if every else [])]
+        row += [*map(r.numbers.get, READINGS), r.static, r.missing, *map(before.get, SPEEDS)]
+        pulses.append(tuple(row))
+    speed_columns = [Column("", "speed"), Column("kind"), Column("from"), Column("to")]
+    units = ("sites/s", "m/s") if si else ("sites/time", "length/time")
+    for name, label in zip(SPEEDS, units, strict=True):
+        speed_columns.append(Column(name, label, error=True))
+    speed_columns.append(Column("missing"))
+    legs = ((r.name, r.kind, *r.places, *map(r.numbers.get, SPEEDS), r.missing) for r in speeds)
+    tables = [
+        Table(tuple(columns), tuple(pulses), "sensors"),
+        Table(tuple(speed_columns), tuple(legs), "speeds"),
+    ]
+    if later := echoes(sensors):
+        time = "delay (s)" if si else "delay"
+        echo_columns = (
+            Column("", "later pulse"),
+            Column("kind"),
+            Column("number"),
+            Column("pulse", "pulse"),
+            Column("reflected", "runs", format=lambda back: "back" if back else "on"),
+            Column("delay", time, error=True),
+            Column("ratio", "peak/first", error=True),
+        )
+        rows = [
+            (r.name, r.kind, *r.places, r.pulse, back, *map(r.numbers.get, ("delay", "ratio")))
+            for r, back in later
+            if not r.missing
+        ]
+        tables.append(Table(echo_columns, tuple(rows), "echoes"))
+    lines = (
+        f"{r.name}{f', pulse {r.pulse}' if r.pulse > 1 else ''}: {r.missing}"
+        for r in (*sensors, *speeds)
+        if r.missing
+    )
+    return tuple(tables), "\n".join(lines)
+
+
 def keys() -> str:
     """Return the list of the keys of a scene file, with examples."""
     return (resources.files("validation.scenes") / "keys.toml").read_text(encoding="utf-8")
@@ -115,8 +189,6 @@ def store(run: Run, document: Mapping[str, Any], file: Path) -> None:
 
 _METHODS = click.Choice((*COMPILED, *METHODS))
 _INTEGRATOR = f"Integrator: {' and '.join(COMPILED)} are compiled, the others SciPy's."
-_SHOWN = example(EXAMPLES[0]).replace("\n\n", "\n")
-_EPILOG = f"\b\nA scene file, in SI units if its beads are of materials:\n{_SHOWN}"
 _RTOL = f"Relative tolerance. Errors are differences to a run with {LESS:g} times this tolerance."
 
 
@@ -149,7 +221,6 @@ _RTOL = f"Relative tolerance. Errors are differences to a run with {LESS:g} time
         default=False,
         says="Measure all pulses at each sensor, not only the first.",
     ),
-    epilog=_EPILOG,
 )
 def run(
     scene: str,

@@ -14,7 +14,7 @@ from book.studies import accuracy as study
 from tests.commands import ended
 from validation.lattice.simulate import COMPILED, simulate
 from validation.pulses.pulse import MeasureError
-from validation.waves.theory import theory_at
+from validation.studies.limits import theory_at
 
 
 def test_a_record_without_a_pulse_is_infinitely_wrong():

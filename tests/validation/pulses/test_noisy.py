@@ -1,5 +1,7 @@
 """Pulses of noisy records: bias and coverage by draws, against the same pulse without noise."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy
@@ -7,7 +9,7 @@ import scipy
 from validation import simulate
 from validation.pulses.noisy import noisy_pulse, noisy_pulses
 from validation.pulses.pulse import MeasureError, first_pulse
-from validation.scenes.chains import chain_scene
+from validation.studies.paper import recorded_chain
 
 NUMBERS = ("arrival", "peak", "fwhm")
 STATIC = 1.5
@@ -18,7 +20,7 @@ def signals():
     """Dynamic forces of beads of the paper's 1:1 and 2:1 columns, by column and bead."""
     found = {}
     for N in (1, 2):
-        run = simulate(chain_scene(1.37, 38, (8, 16, 24), 0.0, 1.2e-3, N))
+        run = simulate(replace(recorded_chain((8, 16, 24), N=N), duration=1.2e-3))
         found |= {(N, i + 1): run.signal("bead", i) for i in run.scene.bead_sensors}
     return found
 

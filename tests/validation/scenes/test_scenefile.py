@@ -19,7 +19,7 @@ from validation.scenes import scenefile
 from validation.scenes.chains import STEEL
 from validation.scenes.scene import Scene, SceneError
 from validation.scenes.scenefile import read_scene, scene
-from validation.studies.paper import chain_scene
+from validation.studies.paper import recorded_chain
 from validation.studies.run import example, keys
 
 PAPER = example("paper")
@@ -41,8 +41,8 @@ def toml_file(text):
 
 
 def test_the_experiment_of_the_paper():
-    chain = chain_scene(1.37, 38, (15, 34), 0.0, 1.2e-3)
-    assert toml_file(PAPER) == dataclasses.replace(chain, contact_sensors=(), samples=1001)
+    own = {"duration": 1.2e-3, "contact_sensors": (), "samples": 1001}
+    assert toml_file(PAPER) == dataclasses.replace(recorded_chain((15, 34)), **own)
 
 
 def test_every_other_key():

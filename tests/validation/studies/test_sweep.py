@@ -21,8 +21,8 @@ from validation.lattice.threads import cluster
 from validation.pulses.pulse import Measured
 from validation.pulses.steady import LABELS, Point, PointFile
 from validation.scenes.checks import Failure
+from validation.studies.limits import theory_at
 from validation.studies.sweep import AHEAD, measured, report, sweep, theory
-from validation.waves.theory import theory_at
 
 R = sp.Rational
 QUICK = {"stretch": 2, "jobs": 1}

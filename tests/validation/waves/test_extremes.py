@@ -13,8 +13,8 @@ import sympy as sp
 from lwa import NoSolitaryWave
 from tests.passage import passage
 from validation.scenes.chains import carrying
+from validation.studies.limits import LEADING_POWERS, theory_at
 from validation.waves.resonances import solve
-from validation.waves.theory import LEADING_POWERS, theory_at
 
 
 def theory_errors(wave):

@@ -9,7 +9,7 @@ from scipy.integrate import quad
 
 from lwa import Dimer, homogenize
 from validation.scenes.checks import SceneError
-from validation.waves.theory import bead_fwhm, of_momentum, of_speed
+from validation.studies.paper import bead_fwhm, of_momentum, of_speed
 
 WAVES = {
     k: homogenize(Dimer("1", "1/4", stiffnesses=(3, 3), spacing="1/2"), k=k).pde.traveling_wave()
