@@ -13,7 +13,7 @@ STUDIES = {
     "exact": ("exact", "Exact solitary wave of the lattice: speed, widths and amplitudes."),
     "figures": ("figures", "The figures of Porter et al. (2008), computed (a few seconds)."),
     "law": ("law", "Contact law from measured forces and speeds of pulses."),
-    "limits": ("limits", "The theory's limit k → 1 on chains of equal beads (a few seconds)."),
+    "limits": ("limits", "The theory's limits: equal masses, m1 ≫ m2, k → 1 (a few seconds)."),
     "paper": ("paper", "The steel:PTFE chain of the paper: speed, peak force and FWHM."),
     "pulses": ("pulses", "Arrival, peak, FWHM and speeds of pulses in measured records."),
     "resonances": ("exact", "Mass ratios of the dimers with a solitary wave."),
