@@ -166,19 +166,6 @@ def test_exact_numbers_are_those_of_floats(cell, kappa):
         assert not chain.nonlinearity.has(sp.Float)
 
 
-def test_units_of_real_spheres():
-    """The bands of Boechler et al., PRL 104, 244302 (2010): steel and aluminium beads at 20 N."""
-    cell = Cell(["28.84e-3", "9.75e-3"], ["5.46e9", "5.46e9"], "19.05e-3")
-    edges = [(sp.pi, "acoustic", 4.711), (sp.pi, "optical", 8.101), (0, "optical", 9.371)]
-    for kappa, branch, kilohertz in edges:
-        found = envelope(cell, law=HERTZ, precompression=20, wavenumber=kappa, branch=branch)
-        omega = float(found.numeric().frequency)
-        assert omega / (2e3 * np.pi) == pytest.approx(kilohertz, rel=1e-3)
-    load = envelope(cell, law=HERTZ, precompression=20)
-    static = envelope(cell, law=HERTZ, background=load.compression / cell.spacing)
-    assert float(static.nonlinearity) == pytest.approx(float(load.nonlinearity), rel=1e-9)
-
-
 def test_resonances_are_refused_by_name():
     """Sound is the one mode with c_g = c_0; second harmonics may be optical modes."""
     with pytest.raises(InputError, match="sound, c_g = c_0, has no envelope"):
