@@ -108,11 +108,9 @@ def test_paper():
 
 
 def of_figures(**options):
-    s, found = figures.scaling(figures.MODULI[0], **options), {}
-    for values, errors in ((s.speed, s.speed_error), (s.force, s.force_error)):
-        for value, error in zip(values, errors, strict=True):
-            found[len(found)] = Measured(value, value + error)
-    return found | {"exponent": s.exponent}
+    rows = figures.scaling(figures.MODULI[0], **options)
+    speeds, forces = ([row[i] for row in rows] for i in (2, 3))
+    return dict(enumerate((*speeds, *forces, exponent(forces, speeds))))
 
 
 @pytest.mark.slow

@@ -15,7 +15,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import partial
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -43,7 +42,7 @@ _TABLES = {  # that a file may leave out
     "damping": DAMPINGS,
     "drive": ("velocity", "amplitude", "frequency", "ramp", "file", "time", "displacement"),
     "striker": STRIKER,
-    "start": ("velocities", "displacements", "overlap"),
+    "start": ("velocities", "displacements"),
     "sensors": ("beads", "contacts"),
 }
 _NUMBERS = ("gravity", "precompression")
@@ -88,7 +87,7 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     # A pulse that passes the chain once in the duration has 20 samples a bead: a half width of one
     # bead then holds more than the 16 that `validation.pulses.noisy` wants. 100,000 spare memory.
     samples = min(max(1001, 20 * n), 100_000)
-    result = Scene(
+    return Scene(
         **chain,
         **{key: file.entries[key] for key in _NUMBERS if key in file},
         wall=wall,
@@ -102,19 +101,6 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
         bead_sensors=sensors.read("beads", _sensors(n), ()),
         contact_sensors=sensors.read("contacts", _sensors(n - (wall is None)), ()),
     )
-    if (i := _overlap(result)) and start.entries.get("overlap") is not True:
-        into = f"bead {i} into {'the wall' if i == n else f'bead {i + 1}'}"
-        raise SceneError(f"start.displacements press {into}: start.overlap = true allows it")
-    return result
-
-
-def _overlap(source: Scene) -> int:
-    """Return the number (from 1) of the first contact pressed at the start, not at rest; or 0."""
-    if source.gravity or source.precompression:
-        return 0
-    pairs = pairwise((*source.displacements, 0.0))  # beyond them, and at the wall
-    deeper = (i for i, (y, after) in enumerate(pairs, start=1) if y > after)
-    return next((i for i in deeper if i <= source.contact_count), 0)
 
 
 def _sensors(count: int) -> Reader:

@@ -8,8 +8,6 @@ from typing import Any
 
 import click
 import numpy as np
-import scipy
-import sympy as sp
 
 from lwa import Cell
 from lwa.base.arrays import Array
@@ -18,7 +16,7 @@ from lwa.base.files import entries, load
 from lwa.command.options import quantities, quantity
 from lwa.spheres.beads import spheres as read_spheres
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Measured
+from validation.pulses.pulse import Measured, derived
 from validation.report.command import column_options, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
@@ -27,7 +25,6 @@ from validation.scenes.checks import SceneError
 from validation.scenes.columns import MeasuredFile
 from validation.waves.contact_law import Medium, fit_power, weights
 
-_ROOT = 1e-13  # error of ln E, beside rounding
 _POWER = (Column("", "F = A δ^k"), Column("", "value", error=True))
 _UNITS = "A bead's mass or the distance is 1 as none is given: see --masses, --spacing, --spheres."
 _NOTE = "±: 95 % intervals by the scatter of the data."
@@ -36,13 +33,13 @@ _LEAST = 6  # pulses: three more than the coefficients of the curvature's fit
 
 @study(
     click.argument("data", type=click.Path()),
-    option("--masses", callback=quantities, says="Mass of all beads (default 1), or two in turn."),
+    option("--masses", callback=quantities, says="Mass of a bead; by default 1."),
     option("--spacing", callback=quantity, says="Distance between bead centers; by default 1."),
     option(
         "--spheres",
         metavar="FILE",
         type=click.Path(),
-        says="File of a cell of spheres, in place of --masses.",
+        says="File of equal spheres, in place of --masses.",
     ),
     option("--material", metavar="NAME", says="Material in this file whose modulus E is wanted."),
     column_options,
@@ -125,26 +122,16 @@ def _pulses(
 
 
 def _modulus(content: dict[str, Any], material: str, stiffness: Measured) -> Measured:
-    """Return E of a material in a file of spheres, from the stiffness A of their Hertz contacts."""
+    """Return E of a material in a file of equal spheres, from the stiffness A of their contacts."""
 
-    def log_stiffness(log_E: float) -> float:
-        """Return ln A at a given ln E, from the mean compression of a cell's contacts."""
+    def contact(E: float) -> float:
+        """Return A at a given E."""
         changed = copy.deepcopy(content)
         given = changed.setdefault("materials", {}).setdefault(material, {"like": material})
-        given["E"] = float(np.exp(log_E))
-        cell = Cell.of_spheres(read_spheres(changed))
-        A = np.array([float(sp.N(contact)) for contact in cell.stiffnesses])
-        return float(-1.5 * np.log(np.mean(A ** (-1 / 1.5))))
+        given["E"] = E
+        return float(Cell.of_spheres(read_spheres(changed)).stiffnesses[0])
 
-    low, high = np.log(1e3), np.log(1e15)
-    if not log_stiffness(low) < np.log(stiffness.value) < log_stiffness(high):
-        raise SceneError(
-            f"material is {shorten(material)}: no E of it makes the contacts' A = "
-            f"{stiffness.value:.4g}"
-        )
-
-    def modulus(A: float) -> float:
-        root = scipy.optimize.brentq(lambda x: log_stiffness(x) - np.log(A), low, high, xtol=_ROOT)
-        return float(np.exp(root))
-
-    return Measured(modulus(stiffness.value), modulus(stiffness.check) * (1 + 2 * _ROOT))
+    if not contact(2.0) > contact(1.0):
+        raise SceneError(f"material is {shorten(material)}: the spheres are not made of it")
+    # Hertz: A = E √(2R)/(3 (1 - ν²)), proportional to E.
+    return derived(lambda A: A / contact(1.0), stiffness)

@@ -1,8 +1,8 @@
-"""The contact law of a chain from the peak contact forces F and the speeds V of its pulses.
+"""The contact law of a chain of equal beads from peak contact forces F and speeds V of its pulses.
 
-**One power.** For F = A δ^k, mean mass m̄ and spacing D the lattice's wave has
+**One power.** For F = A δ^k, mass m and spacing D the lattice's wave has
 
-    V²/D² = R(k) 2/((k+1) m̄) A^{1/k} F^{(k-1)/k},
+    V²/D² = R(k) 2/((k+1) m) A^{1/k} F^{(k-1)/k},
 
 where R is the squared speed of the lattice's wave divided by that of the long-wave theory. So ln V
 is linear in ln F; least squares give k and A, and with k = 3/2 (Hertz) the unknown Young's modulus
@@ -18,48 +18,55 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 from typing import Any
 
 import numpy as np
 import scipy
-import sympy as sp
 
 from lwa import Cell
 from lwa.base.arrays import Array
 from validation.pulses.pulse import Measured
-from validation.pulses.steady import STRETCH, point
 from validation.scenes.checks import SceneError
 from validation.waves.solver import exact_wave
 
-_UNIFORM, _ERROR = 20, 1e-10  # degree of R(k) of equal beads, and its measured relative error
-_EXPONENTS = ("5/4", "3/2", "2", "5/2", "3", "4")  # at which R of unequal beads is measured
 _DRAWS = 1000  # of the coefficients of ln V, for the errors
 _HERTZ = 1.5
 LEAST, MOST = 1.01, 4.0  # k: below, speeds do not depend on force; beyond, R is not known
 LARGEST = 700.0  # |ln A|, at most
-_NEAR = 1.2  # times 80 sites, over which the pulse must lead
+
+
+@cache
+def _series() -> np.polynomial.Chebyshev:
+    """Return R(k), 1.008 ≤ k ≤ 4, as an interpolant of degree 20."""
+    exact = np.vectorize(lambda k: exact_wave([1], k).c2 * (k + 1) / 2)
+    # The lowest node is at k = 1.012: there are no exact waves below 1.01.
+    return np.polynomial.Chebyshev.interpolate(exact, 20, (1.008, 4))
+
+
+def speed_ratio(k: Any) -> Array:
+    """Return R(k), squared speed of the lattice's pulse over the theory's, 1 ≤ k ≤ 4."""
+    return np.asarray(_series()(np.clip(k, 1, 4)))
 
 
 @dataclass(frozen=True, eq=False)
 class Medium:
     """Mass, spacing and speed ratio R(k) of the chain in which pulses were measured."""
 
-    mass: float  # mean mass m̄
+    mass: float  # m
     spacing: float  # D
-    ratio: Callable[[Any], Array]  # R(k), 1 ≤ k ≤ 4
-    ratio_error: float  # relative error of R, for unequal beads at the k where it is measured
+    ratio: Callable[[Any], Array] = speed_ratio
+    ratio_error: float = 1e-10  # relative, measured between the nodes
 
     @classmethod
     def of(cls, cell: Cell) -> Medium:
-        """Make the medium of a chain whose cell has one or two beads, all numbers."""
-        if cell.size > 2:
-            raise SceneError(f"the cell has {cell.size} beads: one or two are wanted")
-        for name, value in (("spacing", cell.spacing), *(("mass", m) for m in cell.masses)):
+        """Make the medium of a chain whose cell is one bead, all numbers."""
+        if cell.size > 1:
+            raise SceneError(f"the cell has {cell.size} beads: equal beads are wanted")
+        for name, value in (("spacing", cell.spacing), ("mass", cell.masses[0])):
             if not value.is_number:
                 raise SceneError(f"{name} is {value}: a number is wanted")
-        ratio = speed_ratio(sp.Rational(cell.masses[-1] / cell.masses[0]))
-        return cls(float(sum(cell.masses)) / cell.size, float(cell.spacing), *ratio)
+        return cls(float(cell.masses[0]), float(cell.spacing))
 
     def log_stiffness(self, slope: Any, constant: Any) -> Array:
         """Return ln A of the power law with ln V = slope · ln F + constant, F of contacts."""
@@ -71,33 +78,6 @@ class Medium:
 def _exponent(slope: Any) -> Any:
     """Return k = 1/(1 - 2 d ln V/d ln F), at most 50."""
     return 1 / (1 - 2 * np.minimum(slope, 0.49))
-
-
-@lru_cache(maxsize=16)
-def speed_ratio(omega: sp.Rational) -> tuple[Callable[[Any], Array], float]:
-    """Return R(k), squared speed of the lattice's pulse over the theory's, and its relative error.
-
-    The chain has masses 1, ω, 1, ω, …; unequal beads are struck, and the leading pulse is timed.
-    """
-    ratio: Callable[[Any], Any]
-    if omega == 1:
-        exact = np.vectorize(lambda k: exact_wave([1], k).c2 * (k + 1) / 2)
-        # The lowest node is at k = 1.012: there are no exact waves below 1.01.
-        ratio = np.polynomial.Chebyshev.interpolate(exact, _UNIFORM, (1.008, 4))
-        error = _ERROR
-    else:
-        exponents, ratios, error = [1.0], [1.0], 0.0
-        for k in map(sp.Rational, _EXPONENTS):
-            # Pulses are measured near the blow, where one that is overtaken later still leads.
-            pulse = point(k, omega, STRETCH, farther=_NEAR)
-            if pulse.missing:
-                raise SceneError(f"no speed of the lattice's pulse at k = {k}: {pulse.missing}")
-            speed = pulse.numbers["speed"]
-            exponents.append(float(k))
-            ratios.append(speed.value**2 * float((k + 1) * (1 + omega) / 4))
-            error = max(error, 2 * speed.relative_error)
-        ratio = scipy.interpolate.CubicSpline(exponents, ratios)
-    return lambda k: np.asarray(ratio(np.clip(k, 1, 4))), error
 
 
 @dataclass(frozen=True, eq=False)

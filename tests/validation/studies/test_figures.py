@@ -8,7 +8,7 @@ import pytest
 
 from lwa import canonical_wave
 from validation.scenes.chains import PTFE_BEAD
-from validation.studies.figures import MODULI, RECORDED, figures, scaling
+from validation.studies.figures import HEIGHTS, MODULI, RECORDED, figures, scaling
 from validation.studies.paper import HERTZ, chain_cell
 
 
@@ -33,31 +33,33 @@ def document(whole):
 
 def test_the_fitted_exponent_is_the_published_one(document):
     """The lattice scales exactly but for the integrator: V ~ F^{1/6}, published as 0.1666."""
-    for row in document["scalings"]:
-        assert abs(row["exponent_value"] - 1 / 6) <= 2 * row["exponent_error_value"] + 1e-12
-        assert row["exponent_error_value"] < 1e-6
-        assert f"{row['exponent_value']:.5f}"[:6] == "0.1666"
-    assert [row["modulus_value"] for row in document["scalings"]] == list(MODULI)
-    assert document["scaling"] == document["scalings"][0]
+    found = document["scaling"]
+    assert abs(found["exponent_value"] - 1 / 6) <= 2 * found["exponent_error_value"] + 1e-12
+    assert found["exponent_error_value"] < 1e-6
+    assert f"{found['exponent_value']:.5f}"[:6] == "0.1666"
 
 
 def test_the_errors_of_the_scaling_cover_a_finer_run(document):
     """Of speeds and forces at a looser tolerance; a thousandth of them would not cover."""
-    rough, fine = scaling(MODULI[0], (1e-7, 1e-6)), document["scaling"]
-    for name in ("speed", "force"):
-        off = np.abs(np.subtract(getattr(rough, name), fine[f"{name}_value"]))
-        share = off / getattr(rough, f"{name}_error")
+    fine = document["rows"][: len(HEIGHTS)]
+    for i, name in ((2, "speed"), (3, "force")):
+        rough = [row[i] for row in scaling(MODULI[0], (1e-7, 1e-6))]
+        off = [abs(n.value - row[f"{name}_value"]) for n, row in zip(rough, fine, strict=True)]
+        share = np.array(off) / [number.error for number in rough]
         assert 1e-3 < share.max() <= 1, name
 
 
 def test_the_theorys_line_is_parallel_to_the_lattices(document):
     """Speeds of `lwa`'s wave at a bead's peak force; below the lattice's, by one share of them."""
-    for row in document["scalings"]:
-        ptfe = replace(PTFE_BEAD, material=replace(PTFE_BEAD.material, E=row["modulus_value"]))
+    for modulus in MODULI:
+        rows = [row for row in document["rows"] if row["modulus_value"] == modulus]
+        assert [row["height_value"] for row in rows] == list(HEIGHTS)
+        ptfe = replace(PTFE_BEAD, material=replace(PTFE_BEAD.material, E=modulus))
         wave = canonical_wave(chain_cell(ptfe=ptfe), HERTZ)
-        for F, V in zip(row["force_value"], row["theory_value"], strict=True):
-            assert pytest.approx(float(wave.at_force(F, of="bead").speed), rel=1e-9) == V
-        share = np.array(row["theory_value"]) / row["speed_value"]
+        for row in rows:
+            speed = float(wave.at_force(row["force_value"], of="bead").speed)
+            assert speed == pytest.approx(row["theory_value"], rel=1e-9)
+        share = np.array([row["theory_value"] / row["speed_value"] for row in rows])
         assert share == pytest.approx(share[0], rel=1e-6)  # both go as F^{1/6}
         assert 0.95 < share[0] < 1
 

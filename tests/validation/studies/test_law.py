@@ -1,7 +1,6 @@
 """The contact law read off pulses: exact data, noise, the lattice, and bad files."""
 
 import json
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -10,11 +9,10 @@ import sympy as sp
 
 from lwa import Cell
 from tests.commands import ended
-from validation import cli, simulate
+from validation import cli
+from validation.scenes.chains import STEEL_BEAD
 from validation.scenes.scene import SceneError
-from validation.studies import paper
 from validation.studies.law import law
-from validation.studies.run import example
 from validation.waves.contact_law import Medium, fit_power, weights
 from validation.waves.solver import exact_wave
 
@@ -124,22 +122,22 @@ def test_a_law_of_two_powers_is_not_one_power(chain):
     assert not fit_power(chain, force, V).one_power
 
 
-@pytest.mark.slow
-def test_the_modulus_of_ptfe_comes_back_from_the_papers_chain(saved, tmp_path):
-    """Twelve drop heights; timed between beads of one kind, 16 and 34, as unlike peaks do not."""
-    rows = []
-    for height in np.geomspace(0.02, 1.2, 12):
-        scene = paper.recorded_chain((16, 34), math.sqrt(2 * 9.81 * height))
-        run = simulate(scene, rtol=1e-8)
-        contacts = paper.Train.of(run, "contact")
-        rows.append((contacts.peak, paper.Train.of(run).speed))
+def test_the_modulus_comes_back_from_the_speeds_of_its_spheres(saved, tmp_path, chain):
+    """Steel of 206 GPa under another modulus; a material of no sphere is refused."""
+    steel = STEEL_BEAD.material
+    sphere = Cell.of_spheres([replace(STEEL_BEAD, material=replace(steel, E=206e9))])
+    V = speeds(Medium.of(sphere), 1.5, float(sphere.stiffnesses[0]))
+    file = saved(np.c_[FORCES, V], "force (N),speed (m/s)")
     beads = tmp_path / "beads.toml"
-    beads.write_text(example("paper"))
-    file = saved(rows, "force (N),speed (m/s)")
-    found = law(file, spheres=str(beads), material="ptfe").document()
-    assert found["k_value"] == pytest.approx(1.5, rel=1e-6)
-    # The pulse is the steady one to some tenths of a percent of its speed; E goes as V³.
-    assert found["E_value"] == pytest.approx(1.46e9, rel=0.005)
+    beads.write_text(
+        "[beads.ball]\nmass = 0.45e-3\nradius = 2.38e-3\nmaterial = 'steel 316'\n"
+        "[chain]\ncell = ['ball']\n"
+    )
+    found = law(file, spheres=str(beads), material="steel 316").document()
+    assert found["E_value"] == pytest.approx(206e9, rel=1e-9)
+    assert abs(found["E_value"] - 206e9) <= found["E_error_value"]
+    with pytest.raises(SceneError, match="material is 'PTFE'"):
+        law(file, spheres=str(beads), material="PTFE")
 
 
 def test_units_that_were_not_given_are_said(saved, chain):
