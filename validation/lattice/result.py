@@ -32,16 +32,25 @@ _FINEST = 1000  # places, and times, of a map
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Records(Pictured):
-    """Records of the sensors of a scene; S is the number of samples.
+class Run(Pictured):
+    """Records of the sensors in a simulation, its final state, and the drift of its invariants.
 
-    Forces are total: the static force of gravity and precompression is included.
+    Forces are total: the static force of gravity and precompression is included. S is the number of
+    samples; all arrays are read-only.
 
     time : (S,), sample times.
     contact_force, compression : (contacts, S), at the scene's contact sensors; the compression of a
         gap is negative.
     bead_force, bead_displacement, bead_velocity : (beads, S), at the bead sensors; the force is the
         mean of the bead's two contacts, the displacement counts from the equilibrium.
+    displacements, velocities : (n,), of all beads at the end.
+    energy_drift : change of the energy above equilibrium divided by its initial value (0 if this is
+        0).
+    momentum_drift : change of the momentum divided by Σ m|v| at the end; None with a wall or drive.
+    bead_evaluations : sum over all evaluations of the forces of the number of beads that moved.
+    step : mean step.
+    path : motion of the beads near sensors throughout the run, for `signal`.
+    dissipated, work : energy that damped contacts have turned into heat, and work of the drive.
     """
 
     scene: Scene
@@ -51,6 +60,15 @@ class Records(Pictured):
     bead_force: Array
     bead_displacement: Array
     bead_velocity: Array
+    displacements: Array
+    velocities: Array
+    energy_drift: float
+    momentum_drift: float | None
+    bead_evaluations: int
+    step: float
+    path: Path | None = field(default=None, compare=False)
+    dissipated: float = 0.0
+    work: float = 0.0
 
     def __repr__(self) -> str:
         sensors = len(self.scene.bead_sensors) + len(self.scene.contact_sensors)
@@ -113,33 +131,6 @@ class Records(Pictured):
                 forces_map = Map(force, places, self.time[t], forces[x, t].T)
                 maps.append(Panel(kind, time, map=forces_map))
         return [Panel(time, force, tuple(curves), legend_above=True), *maps] if curves else maps
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Run(Records):
-    """Records of a simulation, its final state, and the drift of its invariants.
-
-    All arrays are read-only; further fields are those of `Records`.
-
-    displacements, velocities : (n,), of all beads at the end.
-    energy_drift : change of the energy above equilibrium divided by its initial value (0 if this is
-        0).
-    momentum_drift : change of the momentum divided by Σ m|v| at the end; None with a wall or drive.
-    bead_evaluations : sum over all evaluations of the forces of the number of beads that moved.
-    step : mean step.
-    path : motion of the beads near sensors throughout the run, for `signal`.
-    dissipated, work : energy that damped contacts have turned into heat, and work of the drive.
-    """
-
-    displacements: Array
-    velocities: Array
-    energy_drift: float
-    momentum_drift: float | None
-    bead_evaluations: int
-    step: float
-    path: Path | None = field(default=None, compare=False)
-    dissipated: float = 0.0
-    work: float = 0.0
 
     def signal(self, kind: str, number: int, quantity: str = "force") -> SensorSignal:
         """Return a quantity at a sensor as a function of time; the records are its samples.
