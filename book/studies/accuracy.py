@@ -287,7 +287,7 @@ def place(k: sp.Rational, omega: sp.Rational, kind: str = SOLITARY) -> Place:
     }
 
 
-# Mass ratios of the Hertz dimer's solitary waves are from `validation.waves.resonances`.
+# Mass ratios of the Hertz dimer's solitary waves are from `validation.waves.solver`.
 CASES = tuple(
     (sp.Rational(k), sp.Rational(omega), kind)
     for exponents, ratios, kind in (

@@ -18,7 +18,7 @@ from lwa.law import NAMES, named
 from tests.book.prose import BOOK, bounds, limited, said, told
 from validation import Damping, Scene, exact_wave, measure, simulate
 from validation.scenes.chains import carrying
-from validation.waves.resonances import resonances
+from validation.waves.solver import resonances
 
 sys.path.append(str(BOOK))  # the pages' own modules
 from trust import trust

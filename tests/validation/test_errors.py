@@ -22,8 +22,7 @@ from validation.pulses.sensors import record
 from validation.scenes import scenefile
 from validation.studies.limits import theory_at
 from validation.waves import contact_law
-from validation.waves.resonances import solve
-from validation.waves.solver import exact_wave, measured
+from validation.waves.solver import exact_wave, measured, solve
 
 paper, figures, limits, runs = (
     importlib.import_module(f"validation.studies.{name}")

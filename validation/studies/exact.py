@@ -12,9 +12,8 @@ from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.chains import numeric_cell
-from validation.waves.profile import ExactWave
-from validation.waves.resonances import resonances as special_ratios
 from validation.waves.solver import exact_wave, measured
+from validation.waves.solver import resonances as special_ratios
 
 _COLUMNS = (
     Column("of", "of"),
@@ -41,12 +40,7 @@ def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
     with errors, as ``c2_error_value``: ``c2_value``, ``c_value``, ``tail_value`` and by quantity
     ``amplitude_value``, ``fwhm_value``.
     """
-    given = [float(mass) for mass in numeric_cell(masses).masses]
-    return wave_report(exact_wave(given, k))
-
-
-def wave_report(wave: ExactWave) -> Report:
-    """Return the report of a solitary wave."""
+    wave = exact_wave([float(mass) for mass in numeric_cell(masses).masses], k)
     numbers = measured(wave)
     rows = tuple((q, numbers[f"amplitude {q}"], numbers[f"fwhm {q}"]) for q in QUANTITIES)
     # One row of all numbers; "fwhm force" becomes an entry of fwhm_value.

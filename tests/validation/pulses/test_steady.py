@@ -13,8 +13,7 @@ from validation.pulses.pulse import leading_pulses
 from validation.pulses.signals import spline
 from validation.pulses.steady import LABELS, STRETCH, point
 from validation.scenes.scene import Scene
-from validation.waves.resonances import solve
-from validation.waves.solver import exact_wave
+from validation.waves.solver import exact_wave, solve
 
 R = sp.Rational
 HERTZ = R(3, 2)

@@ -14,7 +14,7 @@ from lwa import NoSolitaryWave
 from tests.passage import passage
 from validation.scenes.chains import carrying
 from validation.studies.limits import LEADING_POWERS, theory_at
-from validation.waves.resonances import solve
+from validation.waves.solver import solve
 
 
 def theory_errors(wave):
