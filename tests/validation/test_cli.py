@@ -80,22 +80,6 @@ def scene_file(tmp_path):
     return file
 
 
-def test_the_json_of_a_run_holds_its_pulses(capsys, scene_file):
-    status, out, err = run(capsys, "run", str(scene_file), "--format", "json")
-    assert (status, err) == (0, "")
-    found = json.loads(out)
-    assert [f"{s['kind']} {s['number']}" for s in found["sensors"]] == NAMES[:3]
-    for sensor in found["sensors"]:
-        for name in ("arrival", "peak", "fwhm"):
-            assert 0 < sensor[f"{name}_error_value"] < 1e-4 * sensor[f"{name}_value"]
-        assert sensor["missing"] is None
-    (speed,) = found["speeds"]
-    assert (speed["from"], speed["to"], speed["missing"]) == (4, 12, None)
-    time = found["sensors"][2]["arrival_value"] - found["sensors"][1]["arrival_value"]
-    assert speed["speed_sites_value"] == pytest.approx(8 / time, rel=1e-12)
-    assert speed["speed_value"] == pytest.approx(16 / time, rel=1e-12)
-
-
 def test_a_stored_run_holds_the_result_and_the_records(capsys, folder, scene_file):
     stored = "o.json"
     scene_file.write_text(SCENE.replace("12]", "12, 19]").replace("= 30", "= 20"))

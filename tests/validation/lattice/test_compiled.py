@@ -15,7 +15,8 @@ from validation.scenes.scene import Scene
 PACKAGES = Path(validation.__file__).parents[1]
 RUN = """
 from validation import Scene, simulate
-simulate(Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9, velocities=(1,)))
+scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9, velocities=(1,))
+print(*simulate(scene, rtol=1e-6).velocities)
 """
 SMALL = """
 from validation.lattice.kernel.compiled import cached
@@ -50,14 +51,6 @@ def test_an_edit_of_any_source_of_the_kernel_compiles_again(engine, tmp_path):
 
 
 @pytest.mark.slow
-def test_without_a_directory_to_write_to_a_function_runs(tmp_path):
-    """A file is where a folder belongs, which root cannot make either."""
-    (tmp_path / "__pycache__").write_text("")
-    places = dict.fromkeys(("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR"), "/dev/null/home")
-    assert output(tmp_path, SMALL, **places) == "6\n"
-
-
-@pytest.mark.slow
 def test_a_damaged_cache_is_written_again(tmp_path):
     cache = {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
     output(tmp_path, SMALL, **cache)
@@ -69,20 +62,22 @@ def test_a_damaged_cache_is_written_again(tmp_path):
 
 
 @pytest.mark.slow
-def test_on_a_full_disk_a_function_runs(tmp_path):
-    limit = "import resource\nresource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))\n"
-    assert output(tmp_path, limit + SMALL, NUMBA_CACHE_DIR=str(tmp_path / "cache")) == "6\n"
+@pytest.mark.parametrize(
+    ("head", "places"),
+    [
+        ("", dict.fromkeys(("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR"), "/dev/null/home")),
+        ("import resource\nresource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))\n", {}),
+    ],
+    ids=("no directory", "full disk"),
+)
+def test_a_function_runs_where_no_cache_can_be_written(tmp_path, head, places):
+    """A file is where a folder belongs, which root cannot make either."""
+    if places:
+        (tmp_path / "__pycache__").write_text("")
+    assert output(tmp_path, head + SMALL, **places) == "6\n"
 
 
-def test_the_engine_runs_uncompiled():
+def test_the_engine_runs_uncompiled(tmp_path):
     """For a debugger, numba's own switch turns the compilation off."""
-    program = (
-        "from validation import Scene, simulate\n"
-        "scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9, velocities=(1,))\n"
-        "print(*simulate(scene, rtol=1e-6).velocities)"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", program], stdout=subprocess.PIPE, text=True, check=True,
-        timeout=300, env=os.environ | {"NUMBA_DISABLE_JIT": "1"},
-    )  # fmt: skip
-    assert [*map(float, done.stdout.split())] == pytest.approx([0, 1], abs=1e-5)
+    velocities = output(tmp_path, RUN, NUMBA_DISABLE_JIT="1").split()
+    assert [*map(float, velocities)] == pytest.approx([0, 1], abs=1e-5)

@@ -11,9 +11,8 @@ from hypothesis import strategies as st
 
 from tests.validation.lattice.test_random_scenes import drawn
 from validation.lattice import cost
-from validation.lattice.simulate import METHODS, simulate
+from validation.lattice.simulate import simulate
 from validation.pulses.sensors import record
-from validation.scenes.chains import struck
 from validation.scenes.scene import Scene, SceneError
 from validation.studies.run import RECORDS
 
@@ -23,23 +22,9 @@ PRESSED = Scene(
 )  # fmt: skip
 
 
-def watched(what, **options):
-    """A run, and the shares of its duration reported on the way."""
+def test_scipys_methods_report_their_progress():
     shares = []
-    return simulate(what, progress=lambda: nullcontext(shares.append), **options), shares
-
-
-@pytest.mark.parametrize("what", [struck((1, 0.01), 20, duration=25), PRESSED])
-def test_the_pair_stays_far_below_the_limit_of_its_steps(what, monkeypatch):
-    """A limit of a fifth is kept as well; the run is over before a glance at its progress."""
-    monkeypatch.setattr(cost, "_DENSEST", cost._DENSEST // 5)
-    _, shares = watched(what, rtol=1e-13)
-    assert shares == [0]
-
-
-@pytest.mark.parametrize("method", METHODS)
-def test_scipys_methods_report_their_progress(method):
-    _, shares = watched(PRESSED, method=method, rtol=1e-5)
+    simulate(PRESSED, method="DOP853", rtol=1e-5, progress=lambda: nullcontext(shares.append))
     assert shares[0] == 0
     assert shares[-1] == max(shares) == 1
 

@@ -1,15 +1,11 @@
 """The compiled engine against exact motions, SciPy's reference, and its own whole chain."""
 
-from dataclasses import replace
-from itertools import product
-
 import numpy as np
 import pytest
 
 from validation.lattice.schemes import ORDERS
 from validation.lattice.simulate import COMPILED, simulate, simulate_many
 from validation.scenes.chains import struck
-from validation.scenes.forcing import Drive
 from validation.scenes.scene import Scene
 from validation.studies.run import RECORDS
 
@@ -84,55 +80,6 @@ def test_beads_that_meet_after_a_long_flight(k):
         back = simulate(again, rtol=rtol)
         assert back.velocities == pytest.approx([-1.0, 0.0], abs=30 * rtol), rtol
         assert abs(back.energy_drift) < 30 * rtol
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("stiffness", "error"), [(1.0, 1e-6), (1e-4, 1e-3)])
-def test_the_splitting_resolves_a_light_bead(stiffness, error):
-    """A bead of mass 1/1000 rattles between heavy ones; its motion sets the step.
-
-    In weak contacts a step of the heavy beads' is too long to see an opening well.
-    """
-    heavy, contacts = (1.0,) * 10, (1.0,) * 9
-    scene = Scene(
-        masses=(*heavy, 1e-3, *heavy), stiffnesses=(*contacts, stiffness, stiffness, *contacts),
-        k=1.5, velocities=(1.0,), contact_sensors=(9, 10, 13), samples=4001,
-        # The weaker the contacts, the longer the heavy beads take to exchange their momentum.
-        duration=30.0 + 8 * (stiffness**-0.4 - 1),
-    )  # fmt: skip
-    exact = simulate(scene, method="DOP853", rtol=1e-12, atol=1e-12)
-    closed = exact.compression[:2] > 0
-    assert np.count_nonzero(closed[:, 1:] & ~closed[:, :-1]) >= 10  # it rattles
-    run = simulate(scene, method="symplectic", rtol=1e-6)
-    off = np.abs(run.contact_force - exact.contact_force).max()
-    assert off < error * exact.contact_force.max()
-    assert abs(run.energy_drift) < 1e-4
-
-
-def test_the_work_of_a_drive_begins_with_the_first_force():
-    """A contact that is compressed at the start pushes the driven bead from the first instant."""
-    scene = Scene(
-        masses=(1,) * 10, stiffnesses=(1,) * 9, k=1.5, displacements=(0, -0.5), duration=5,
-        drive=Drive(velocity=1),
-    )  # fmt: skip
-    for rtol in (1e-5, 1e-7):
-        assert abs(simulate(scene, rtol=rtol).energy_drift) < 0.1 * rtol  # 0.6 without
-
-
-def test_a_driven_bead_that_leaves_its_contact_counts_with_its_acceleration():
-    """The error of steps and of samples about the kink: 0.1 rtol, and 1.2 without."""
-    scene = Scene(
-        masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, samples=301, contact_sensors=(0,)
-    )
-    for duration, amplitude in product(np.linspace(2, 9, 7), (1, 3)):
-        drive = Drive(amplitude=amplitude, frequency=0.15)
-        driven = replace(scene, duration=float(duration), drive=drive)
-        exact = simulate(driven, method="DOP853", rtol=1e-13, atol=1e-13)
-        for rtol in (1e-7, 1e-9):
-            run = simulate(driven, rtol=rtol)
-            off = np.abs(run.contact_force - exact.contact_force).max()
-            assert off < 0.2 * rtol * exact.contact_force.max()
-            assert np.abs(run.velocities - exact.velocities).max() < 0.2 * rtol
 
 
 def test_many_scenes_run_as_single_ones_and_are_taken_lazily():

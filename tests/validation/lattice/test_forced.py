@@ -1,14 +1,12 @@
 """Damped contacts and driven chains: exact collisions, the ledger of energy, pulses."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from lwa.law import named
 from validation.lattice.simulate import simulate
-from validation.pulses.sensors import LESS, record
 from validation.scenes.forcing import Damping, Drive, damping_ratio, restitution
 from validation.scenes.scene import Scene
 
@@ -57,36 +55,15 @@ def test_the_energy_lost_is_the_energy_dissipated(kind):
     np.testing.assert_allclose(force(run.time), run.contact_force[1], atol=1e-14)
 
 
-@pytest.mark.parametrize("method", ["RKN86", "DOP853"])
-@pytest.mark.parametrize(
-    "forcing",
-    [
-        dict(damping=Damping("contact", 0.1)),
-        dict(drive=Drive(amplitude=0.0, frequency=1.0)),
-        dict(drive=Drive(velocity=0.0), damping=Damping("kuwabara_kono", 0.1)),
-    ],
-)
-def test_a_scene_at_rest_stays_at_rest(forcing, method):
+@pytest.mark.parametrize("drive", [None, Drive(amplitude=0.0, frequency=1.0), Drive(velocity=0.0)])
+def test_a_scene_at_rest_stays_at_rest(drive):
     scene = Scene(
-        masses=(1, 1), stiffnesses=(1,), k=1.5, duration=3, bead_sensors=(0, 1), **forcing
-    )
-    run = simulate(scene, method=method)
+        masses=(1, 1), stiffnesses=(1,), k=1.5, duration=3, bead_sensors=(0, 1), drive=drive,
+        damping=Damping("kuwabara_kono", 0.1),
+    )  # fmt: skip
+    run = simulate(scene)
     for name in ("bead_displacement", "velocities", "energy_drift", "dissipated", "work"):
         assert not np.any(getattr(run, name)), name
-
-
-@pytest.mark.parametrize("k", [1, 1.5, 3])
-@pytest.mark.parametrize("damping", [None, Damping("contact", 0.1)])
-def test_the_work_of_a_piston_against_a_wall(k, damping):
-    """One bead of given motion, so that only the work and the dissipated energy have errors."""
-    A, v, end, gamma = 2.0, 0.3, 3.0, damping.value if damping else 0.0
-    scene = Scene(
-        masses=(1,), stiffnesses=(), wall=A, k=k, duration=end, damping=damping,
-        drive=Drive(velocity=v),
-    )  # fmt: skip
-    run, stored = simulate(scene), A * (v * end) ** (k + 1) / (k + 1)
-    assert run.dissipated == pytest.approx(gamma * v * v * end, abs=1e-9 * stored)
-    assert run.work == pytest.approx(stored + run.dissipated, abs=2e-9 * stored)
 
 
 @pytest.mark.parametrize(("n", "mass", "rtol"), [(2, 1.0, 1e-6), (4, 0.2, 1e-10)])
@@ -138,33 +115,6 @@ def test_order_of_the_damped_steps_and_of_their_interpolant():
     assert np.log2(np.divide(*errors)).min() > 5.8
 
 
-@pytest.mark.parametrize("damping", [None, Damping("kuwabara_kono", 0.03)])
-def test_sensors_change_no_digit_of_the_motion(damping):
-    chain = Scene(
-        masses=(1, 0.2733) * 12, stiffnesses=(1,) * 23, k=1.5, velocities=(1,), duration=40,
-        damping=damping,
-    )  # fmt: skip
-    watched = replace(chain, bead_sensors=range(24), contact_sensors=range(23))
-    runs = simulate(chain), simulate(watched)
-    for name in ("displacements", "velocities", "dissipated", "step"):
-        np.testing.assert_array_equal(*(getattr(run, name) for run in runs))
-
-
-def test_errors_of_a_measured_pulse_cover_with_damping_and_a_drive():
-    chain = dict(
-        masses=(1,) * 30, stiffnesses=(1,) * 29, k=1.5, duration=40, contact_sensors=(10, 20),
-        damping=Damping("kuwabara_kono", 0.02),
-    )  # fmt: skip
-    for motion in (dict(velocities=(1,)), dict(drive=Drive(velocity=0.5))):
-        scene = Scene(**chain, **motion)
-        exact = record(scene, rtol=1e-11)
-        for reading, true in zip(record(scene, rtol=1e-6).sensors, exact.sensors, strict=True):
-            for name, measured in reading.numbers.items():
-                off = abs(measured.value - true.numbers[name].value)
-                assert off <= measured.error
-                assert measured.error < 30 * LESS * 1e-6 * abs(measured.value)
-
-
 def test_a_shaken_linear_bead_oscillates_with_the_exact_amplitude():
     """One free bead between the driven bead and a wall, k = 1: y = a κ/(2κ - w²) sin(wt), in steady
     motion, with a resonant part that a long ramp does not excite."""
@@ -193,17 +143,15 @@ def test_a_drive_from_rows_is_the_motion_that_they_sample():
     assert run.momentum_drift is None
 
 
-@pytest.mark.parametrize("method", ["DOP853", "LSODA"])
-def test_scipys_methods_are_references_of_forced_scenes(method):
+def test_scipys_methods_are_references_of_forced_scenes():
     """A chain under load, whose damped contacts stay closed: motion, work and dissipated energy."""
     scene = Scene(
         masses=(1, 0.5, 1), stiffnesses=(1, 2), wall=1, k=1.5, precompression=1, duration=10,
         damping=Damping("contact", 0.1), drive=Drive(amplitude=0.1, frequency=0.2, ramp=3),
     )  # fmt: skip
-    ours, theirs = (simulate(scene, method=m, rtol=1e-10, atol=1e-10) for m in ("RKN86", method))
+    ours, theirs = (simulate(scene, method=m, rtol=1e-10, atol=1e-10) for m in ("RKN86", "DOP853"))
     for name in ("displacements", "velocities", "dissipated", "work"):
-        # some hundred steps of LSODA, each with its error
-        np.testing.assert_allclose(getattr(theirs, name), getattr(ours, name), atol=3e-8)
+        np.testing.assert_allclose(getattr(theirs, name), getattr(ours, name), atol=3e-9)
     assert min(ours.dissipated, ours.work) > 1e-3
 
 

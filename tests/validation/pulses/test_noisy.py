@@ -47,15 +47,12 @@ def quality(signal, share, copies, samples=None):
     return np.abs(off.mean(axis=0)) / scatter, np.median(errors, axis=0) / scatter, within
 
 
-PLACES = [(N, bead) for N in (1, 2) for bead in (8, 16, 24)]
-
-
 @pytest.mark.parametrize("share", [0.002, 0.005, 0.02])
 @pytest.mark.parametrize(
     ("place", "copies"),
     [
-        *(((1, 16), 50), ((2, 8), 50), ((2, 16), 50)),
-        *(pytest.param(place, 200, marks=pytest.mark.slow) for place in PLACES),
+        *(((1, 16), 50), ((2, 8), 50)),
+        *(pytest.param(place, 200, marks=pytest.mark.slow) for place in ((1, 24), (2, 16))),
     ],
 )
 def test_errors_are_one_standard_deviation(signals, place, share, copies):
@@ -67,13 +64,12 @@ def test_errors_are_one_standard_deviation(signals, place, share, copies):
     assert np.all((within > least) & (within < most)), within
 
 
-@pytest.mark.parametrize("place", [(2, 8), (2, 16)])
-def test_too_few_samples_make_errors_larger(signals, place):
+def test_too_few_samples_make_errors_larger(signals):
     """17 samples a width of a pulse with ripples: errors cover, and are 30 times too large at most.
 
     Mended: a bias of twice the scatter, and 24 % covered.
     """
-    bias, error, within = quality(signals[place], 0.002, 50, 17)
+    bias, error, within = quality(signals[2, 8], 0.002, 50, 17)
     assert np.all(bias < np.maximum(error, 1) / 3)
     assert np.all(within > 0.6)
     assert np.all(error < 30)
@@ -129,16 +125,16 @@ def test_errors_cover_the_noise_of_a_laboratory(signals, kind, copies):
     assert np.all((share > 0.6 - spread) & (share < 0.8 + spread)), share
 
 
-def test_a_short_lead_leaves_the_base_uncertain(signals):
+@pytest.mark.parametrize(("lead", "louder"), [(3.5, 1), (12, 10)])
+def test_a_short_lead_and_noise_of_the_pulse_itself_are_in_the_error(lead, louder):
     """A line through a width and a half of samples errs more at the pulse than the fit does."""
-    t, pulse = record(signals[1, 24], 60)
-    t = t[t > pulse.rise - 3.5 * pulse.fwhm]
-    rng, clean = np.random.default_rng(8), signals[1, 24](t)
-    within, copies = 0, 100
-    for _ in range(copies):
-        peak = noisy_pulse(t, clean + 0.005 * pulse.peak * rng.normal(size=len(t))).numbers["peak"]
-        within += abs(peak.value - pulse.peak) < peak.error
-    assert 0.55 <= within / copies <= 0.85
+    rng, t = np.random.default_rng(8), np.arange(-lead - 0.5, 2.5, 0.03)
+    clean, within = 0.7 + np.exp(-4 * np.log(2) * t**2), 0
+    for _ in range(60):
+        noise = 0.01 * np.where(t > -1.5, 1, 1 / louder) * rng.normal(size=len(t))
+        peak = noisy_pulse(t, clean + noise).numbers["peak"]
+        within += abs(peak.value - 1) < peak.error
+    assert 0.5 <= within / 60 <= 0.9
 
 
 @pytest.mark.parametrize(("samples", "bound"), [(17, 1e-3), (70, 1e-6)])
@@ -190,17 +186,6 @@ NOISE = np.random.default_rng(2).normal(size=400)
 def test_records_without_a_measurable_pulse_are_refused(f, named):
     with pytest.raises(MeasureError, match=named):
         noisy_pulse(N, f)
-
-
-def test_the_noise_of_the_pulse_itself_counts():
-    """Noise that is ten times as large on the pulse as before it."""
-    t = np.arange(0.0, 12, 0.02)
-    pulse, rng, within = np.exp(-((t - 8) ** 2)), np.random.default_rng(11), 0
-    for _ in range(100):
-        noise = 0.01 * np.where(t > 5, 1.0, 0.1) * rng.normal(size=len(t))
-        found = noisy_pulse(t, 0.7 + pulse + noise).numbers
-        within += abs(found["peak"].value - 1) < found["peak"].error
-    assert 55 <= within <= 85
 
 
 def test_many_samples_are_averaged():

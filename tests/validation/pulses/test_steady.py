@@ -44,17 +44,6 @@ def test_a_solitary_wave_agrees_with_newtons_method(k, omega):
         assert numbers[name].error < 1e-5
 
 
-def test_a_pulse_decays_but_for_the_special_ratio():
-    # what a pulse leaves behind vanishes at the ratio as the square of the distance from it
-    near = at(HERTZ, SPECIAL)["decay"]
-    assert abs(near.value) < 1e-7
-    assert at(HERTZ, "0.72")["decay"].value > 0.005
-    below, above = (at(HERTZ, SPECIAL + step)["decay"].value for step in (-R(1, 50), R(1, 50)))
-    assert min(below, above) > 1000 * abs(near.value)
-    half = at(HERTZ, SPECIAL + R(1, 100))["decay"].value
-    assert above / half == pytest.approx(4, rel=0.25)
-
-
 def test_the_decay_is_per_site():
     """Against the slope of the log of peak forces over the site, from one run read by hand."""
     sites = tuple(range(30, 62, 2))

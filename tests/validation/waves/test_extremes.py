@@ -5,14 +5,12 @@ Lengths in D; m1 = A = D = 1.
 
 import math
 
-import numpy as np
 import pytest
 import scipy
 import sympy as sp
 
 from lwa import NoSolitaryWave
 from tests.passage import passage
-from validation.scenes.chains import carrying
 from validation.studies.limits import LEADING_POWERS, theory_at
 from validation.waves.solver import solve
 
@@ -34,31 +32,6 @@ def test_the_theorys_error_vanishes_by_its_law_as_k_goes_to_one():
             share = error / epsilon**law.order / float(law.coefficient)
             # the next term of the series is O(ε) of this one
             assert abs(share - 1) < 3 * epsilon, quantity
-
-
-def test_the_lattice_carries_the_theorys_wave_at_k_of_1_001():
-    """A force of 30 sites at half maximum: a chain of 620 beads."""
-    k = 1.001
-    theory = theory_at(sp.Rational(str(k)), sp.Integer(1)).at_force(1)
-    start, sites = 160, 300
-    bead = np.arange(2 * start + sites) - start
-    scene = carrying(
-        (1.0,) * len(bead),
-        theory.along(bead[:-1] + 0.5, "strain"),
-        theory.along(bead, "velocity"),
-        k=k,
-        contact_sensors=(start + 60, start + sites),
-        samples=4001,
-        duration=(sites + 0.7 * start) / float(theory.speed),
-    )
-    passed = passage(scene)
-    at_equal_strain = passed.speed / passed.strain ** ((k - 1) / 2)
-    assert abs(at_equal_strain / float(theory.speed) - 1) < (k - 1) ** 2
-    assert abs(passed.fwhm / float(theory.fwhm("force")) - 1) < k - 1
-    assert abs(passed.run.energy_drift) < 1e-9
-
-
-# k = 2 and 3
 
 
 # k = 20, near hard spheres
@@ -96,59 +69,7 @@ def test_near_hard_spheres_a_pulse_is_a_row_of_collisions(hard_wave):
     assert theory_errors(hard_wave)["FWHM of force"] > 1
 
 
-# ω from 1e-6 to 1e6
-
-
-@pytest.fixture(scope="module")
-def uniform():
-    return solve((1.0, 1.0), 1.5)
-
-
-def slaved(uniform, heavy, light):
-    """Heavy beads with the uniform chain's wave at spacing 2D, the light ones at rest among them.
-
-    A heavy bead has the next one behind two springs in a row, of 2^{-k}: both contacts have half of
-    the strain 2 r, velocities are √2 times as large.
-    """
-    start, cells = 20, 60
-    site = np.arange(2 * cells) - start
-    pair = np.floor(site[:-1] / 2) + 0.5
-    behind, ahead = (uniform.velocity(np.floor((site + i) / 2)) for i in (0, 1))
-    pace = math.sqrt(2) * uniform.c / math.sqrt(heavy)
-    return carrying(
-        tuple(np.where(site % 2 == 0, heavy, light)),
-        uniform.strain(pair),
-        (behind + ahead) / 2 * math.sqrt(2 / heavy),
-        k=uniform.k,
-        duration=70 / pace,
-        contact_sensors=(40, 80),
-        samples=4001,
-    )
-
-
-@pytest.mark.parametrize("omega", [1e-2, 1e-3])
-def test_slaved_beads_slow_the_limit_by_a_share_of_their_mass(uniform, omega):
-    """Every cell has the mass 1 + ω: a speed lower by ω/2 at most, and by no less than ω/4."""
-    passed = passage(slaved(uniform, 1.0, omega), 1e-9)
-    off = passed.speed / (math.sqrt(2) * uniform.c) - 1
-    assert -omega / 2 < off < -omega / 4
-    assert abs(passed.run.momentum_drift) < 1e-12
-    assert abs(passed.run.energy_drift) < 1e-9
-    # light first or heavy first, the chain is the same in other units of mass
-    mirrored = passage(slaved(uniform, 1 / omega, 1.0), 1e-9)
-    pace = mirrored.speed / math.sqrt(omega)
-    assert pace == pytest.approx(passed.speed, rel=1e-9)
-
-
 # No compact wave
-
-
-def test_the_closure_has_no_wave_from_three_on_at_k_of_three():
-    """(G+H+I)/D² is in the ratio of (3 - ω)(2 + ω)."""
-    assert theory_at(3, "2.999").width > 0
-    for omega, number in (("3", "0"), ("3.001", "-")):
-        with pytest.raises(NoSolitaryWave, match=rf"^\(G\+H\+I\)/D² is {number}"):
-            theory_at(3, omega)
 
 
 @pytest.mark.parametrize(

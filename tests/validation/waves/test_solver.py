@@ -121,20 +121,6 @@ def test_the_special_ratios_are_the_published_ones(specials):
     assert longer == pytest.approx(ratios, rel=1e-10)
 
 
-def test_the_tail_changes_from_none_to_some_through_a_special_ratio(specials):
-    """Near it the tail is proportional to the distance, and the wave is never called solitary."""
-    omega, off = specials[0].omega, np.array([-1e-4, -1e-5, 1e-5, 1e-4])
-    L = specials[0].half_period
-    waves = [solve((1.0, omega * (1 + d)), 1.5, L, start=specials[0]) for d in off]
-    tails = np.array([w.tail for w in waves])
-    assert tails[[0, 3]] / tails[[1, 2]] == pytest.approx([10, 10], rel=0.2)
-    assert not any(w.solitary for w in waves)
-    # o in the tail changes its sign
-    signs = [np.sign(w.strain(0.7 * L) - w.strain(-0.7 * L)) for w in waves]
-    assert signs[:2] == [-s for s in signs[2:]]
-    assert exact_wave([1, omega], 1.5).solitary
-
-
 def test_special_ratios_for_other_exponents(specials):
     """They move with k: by steps of 0.1, and back in one; all are solitary."""
     two = resonances(2, 2)
