@@ -1,4 +1,4 @@
-"""The examples of docstrings are accepted by mypy in strict mode; the README's: `test_readme`."""
+"""The examples of docstrings and of the README are accepted by mypy in strict mode."""
 
 import ast
 import doctest
@@ -28,6 +28,9 @@ def with_examples(source):
 @pytest.mark.slow
 @pytest.mark.optional("mypy")
 def test_mypy_accepts_every_example(tmp_path):
+    (readme,) = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    program = tmp_path / "readme.py"
+    program.write_text(readme)
     shadows = []
     for package in ("lwa", "validation"):
         for file in sorted((ROOT / package).rglob("*.py")):
@@ -39,7 +42,7 @@ def test_mypy_accepts_every_example(tmp_path):
     assert len(shadows) > 90
     command = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(tmp_path / "cache")]
     found = subprocess.run(
-        [*command, *shadows, "lwa", "validation"],
+        [*command, *shadows, "lwa", "validation", str(program)],
         cwd=ROOT, capture_output=True, text=True, timeout=300, check=False,
     )  # fmt: skip
     assert found.returncode == 0, found.stdout

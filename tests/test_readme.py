@@ -1,12 +1,9 @@
 """The README's example, commands, demonstrations, picture and version."""
 
 import json
-import os
 import re
 import runpy
 import shlex
-import subprocess
-import sys
 import tomllib
 from pathlib import Path
 
@@ -32,24 +29,6 @@ def test_the_python_example(capsys):
     expected = re.findall(r"^print\(.*\)\s+# ([^:\n]*)", example, re.MULTILINE)
     assert capsys.readouterr().out.splitlines() == expected
     assert len(expected) == example.count("print(")
-
-
-@pytest.mark.slow
-def test_the_python_example_passes_a_users_type_checker(tmp_path):
-    """mypy --strict, but for SymPy itself, which has no types."""
-    (example,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
-    (tmp_path / "program.py").write_text(example)
-    strict = (
-        "--strict",
-        "--disable-error-code=import-untyped",
-        f"--cache-dir={tmp_path / 'cache'}",
-    )
-    call = [sys.executable, "-m", "mypy", *strict, "program.py"]
-    environment = os.environ | {"PYTHONPATH": str(ROOT)}
-    found = subprocess.run(
-        call, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=120
-    )
-    assert found.returncode == 0, found.stdout
 
 
 BLOCK = re.findall(r"^\$ (.*?)(?:\s{2,}#.*)?$", CATALOGUE.split("```")[1], re.MULTILINE)

@@ -119,9 +119,7 @@ class NumericWave(Value):
         if not np.all((omega >= 1 / LARGEST) & (omega <= LARGEST)):
             raise InputError(f"ω = m2/m1 is not between {1 / LARGEST:g} and {LARGEST:g}")
         with np.errstate(all="ignore"):  # outside the domain of waves
-            _, e = np.frexp(np.maximum(1.0, omega))  # a power of two, which rounds nothing
-            masses = np.ldexp(1.0, -e), np.ldexp(omega, -e)
-            coefficient_sum, factor, excess = self._compiled(k, *masses)
+            coefficient_sum, factor, excess = self._compiled(k, 1.0, omega)
             conditions = {"k > 1": k > 1, "G+H+I > 0": coefficient_sum > 0, "V² > 0": factor > 0}
             exists = np.logical_and.reduce(np.broadcast_arrays(*conditions.values()))
         if self.missing == "raise" and not np.all(exists):

@@ -108,6 +108,8 @@ CALLS = [
     (lambda: ONE.at_force("F").curve([0]), "has no value: a curve needs numbers"),
     (lambda: ONE.at_force(1).fwhm("force", "area"), "extent is 'area'"),
     (lambda: WAVE.numeric().beta(np.nan, 1.0), "k is nan"),
+    (lambda: WAVE.numeric().beta(1.5, 1e151), "ω = m2/m1 is not between"),
+    (lambda: WAVE.numeric().beta(1.5, 1e-300), "ω = m2/m1 is not between"),
     (lambda: WAVE.numeric().beta(1.5, -1.0), r"ω = m2/m1 is -1\.0: it must be positive"),
     (lambda: WAVE.numeric().speed(1.5, 1.0, B=-1.0), r"B is -1\.0: it must be positive"),
     (lambda: WAVE.numeric(missing="zero"), "missing is 'zero'"),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from lwa import Dimer, InputError, NoSolitaryWave, canonical_wave, homogenize
+from lwa import Dimer, NoSolitaryWave, canonical_wave, homogenize
 
 WAVE = homogenize(Dimer("m1", "m2")).pde.traveling_wave()
 NUMERIC = WAVE.numeric()
@@ -28,7 +28,7 @@ def test_closed_forms_at_random_points_are_good_to_1e11(name):
         "width": numeric.width(k, w),
         "force": numeric.fwhm(k, w, "force"),
         "speed": numeric.speed(k, w, 2.0),
-        "log B": numeric.log_amplitude(k, w, 2.0),
+        "log B": numeric.log_amplitude(k, w),
     }
     for i, (k_i, w_i) in enumerate(zip(k, w, strict=True)):
         try:
@@ -38,7 +38,7 @@ def test_closed_forms_at_random_points_are_good_to_1e11(name):
             continue
         if min(at.coefficient_sum, at.speed_factor) < 1e-3:  # the edge of the domain
             continue
-        log_B = (sp.log(4) - sp.log(at.speed_factor)) / (at.k - 1)
+        log_B = -sp.log(at.speed_factor) / (at.k - 1)
         exact = (at.beta, at.width, at.fwhm("force"), at.speed(2), log_B)
         for values, value in zip(found.values(), exact, strict=True):
             reference = sp.N(value, 50)
@@ -47,18 +47,12 @@ def test_closed_forms_at_random_points_are_good_to_1e11(name):
     assert checked > 20
 
 
-def test_mass_ratios_at_the_end_of_the_range():
-    """At k = 3/2 the paper's β tends to √(3/8) and V² to 0 as ω → ∞; beyond is refused by name."""
+def test_mass_ratios_at_the_end_of_the_range_and_arrays():
+    """At k = 3/2 the paper's β tends to √(3/8) and V² to 0 as ω → ∞."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert float(NUMERIC.beta(1.5, 1e150)) == pytest.approx(np.sqrt(3 / 8), rel=1e-11)
         assert 0 < float(NUMERIC.speed(1.5, 1e150)) < 1e-149
-        for omega in (1e151, 1e-300):
-            with pytest.raises(InputError, match="ω = m2/m1 is not between"):
-                NUMERIC.beta(1.5, omega)
-
-
-def test_arrays_broadcast():
     k, w = np.array([[1.25], [1.5]]), np.array([0.1, 1.0, 10.0])
     beta = NUMERIC.beta(k, w)
     assert beta.shape == (2, 3)
@@ -66,13 +60,12 @@ def test_arrays_broadcast():
     assert 1e9 < NUMERIC.log_amplitude(1 + 1e-9, 1.0, V=2.0) < np.inf
 
 
-def test_missing_waves_raise_or_are_nan_on_request():
-    for k, omega, words in (
-        (3.0, 100.0, r"G\+H\+I > 0$"),
-        (1.6, 1e3, "V² > 0$"),
-        (1.0, 1.0, "k > 1$"),
-    ):
-        with pytest.raises(NoSolitaryWave, match=f"k = {k}, ω = {omega}: .*{words}"):
-            NUMERIC.width([1.5, k], [1.0, omega])
-    found = WAVE.numeric(missing="nan").width([1.5, 3.0, 1.0], [1.0, 100.0, 1.0])
-    assert np.isnan(found).tolist() == [False, True, True]
+@pytest.mark.parametrize(
+    ("k", "omega", "words"),
+    [(3.0, 100.0, "G[+]H[+]I > 0$"), (1.6, 1e3, "V² > 0$"), (1.0, 1.0, "k > 1$")],
+)
+def test_missing_waves_raise_or_are_nan_on_request(k, omega, words):
+    with pytest.raises(NoSolitaryWave, match=f"k = {k}, ω = {omega}: .*{words}"):
+        NUMERIC.width([1.5, k], [1.0, omega])
+    found = WAVE.numeric(missing="nan").width([1.5, k], [1.0, omega])
+    assert np.isnan(found).tolist() == [False, True]
