@@ -15,6 +15,7 @@ Deng, Nasrollahi, Rizzo and Li 2016, Sensors 16, 5, test materials by this delay
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Sequence
 from typing import Any
 
@@ -68,7 +69,9 @@ def echo(
         contact_sensors=(integer(sensor, "sensor", 2, beads - 2) - 1,),
         duration=2.5 * beads * float(2 * bead.radius / pulse.speed) + held,
     )
-    later = [reading.numbers for reading, _ in echoes(record(scene, every=True).sensors)]
+    later = [
+        reading.numbers for reading, _ in echoes(record(scene, every=True).sensors, operator.add)
+    ]
     if not later:
         raise MeasureError(f"contact {sensor}: no pulse comes back from the wall")
     highest = max(later, key=lambda numbers: numbers["ratio"].value)

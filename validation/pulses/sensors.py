@@ -215,8 +215,12 @@ def speeds_between(
     )
 
 
-def echoes(sensors: Sequence[Reading]) -> list[tuple[Reading, bool]]:
+def echoes(
+    sensors: Sequence[Reading], total: Callable[[float, float], float]
+) -> list[tuple[Reading, bool]]:
     """Return the later pulses at sensors: delay behind the first pulse, and peak over its peak.
+
+    total : error of a delay or a ratio as a function of the errors of both pulses.
 
     With each pulse comes whether it is reflected: whether it reaches this sensor and another one of
     the kind in the reverse order of the first pulse, or no other sensor tells.
@@ -232,10 +236,10 @@ def echoes(sensors: Sequence[Reading]) -> list[tuple[Reading, bool]]:
             continue
         at, start = r.numbers["arrival"], first.numbers["arrival"]
         ratio = r.numbers["peak"].value / first.numbers["peak"].value
-        error = sum(one.numbers["peak"].relative_error for one in (r, first))
+        error = total(*(one.numbers["peak"].relative_error for one in (r, first)))
         delay = at.value - start.value
         delays = {
-            "delay": Measured(delay, delay + at.error + start.error),
+            "delay": Measured(delay, delay + total(at.error, start.error)),
             "ratio": Measured(ratio, ratio * (1 + error)),
         }
         reflected = True

@@ -79,7 +79,7 @@ def pulses(
     lengths = dict(zip(SPEEDS, (1.0,) if apart is None else (1.0, apart), strict=False))
     places = [{name: r.places[0] * size for name, size in lengths.items()} for r in firsts]
     speeds = speeds_between(firsts, places, math.hypot)  # independent noise
-    tables, missing = reading_tables(found, speeds, labels, si)
+    tables, missing = reading_tables(found, speeds, labels, si, math.hypot)
     axes = ("time (s)", "force (N)") if si else ("time", "force")
     panel = Panel(*axes, tuple(curves), legend_above=True)
     notes = (missing, _NOTE.format("SI" if si else "the file's own"))

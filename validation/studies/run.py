@@ -9,7 +9,8 @@ header, but not the result. Forces are total: static forces are included.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+import operator
+from collections.abc import Callable, Mapping, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -81,7 +82,7 @@ def report(recording: Recording, every: bool = False) -> Report:
     peak = "peak dynamic force" if any(scene.load) else "peak force"
     labels = [run.label(name) for name in ("arrival", peak, "FWHM")]
     tables, missing = reading_tables(
-        recording.sensors, recording.speeds, labels, bool(scene.units), every
+        recording.sensors, recording.speeds, labels, bool(scene.units), operator.add, every
     )
     return Report(
         f"{title}, momentum {momentum}",
@@ -97,14 +98,16 @@ def reading_tables(
     speeds: Sequence[Reading],
     labels: Sequence[str],
     si: bool,
+    total: Callable[[float, float], float],
     every: bool = False,
 ) -> tuple[tuple[Table, ...], str]:
     """Return the tables ``sensors`` and ``speeds``, with later pulses also ``echoes``, and lines on
     the numbers that are missing.
 
     sensors : with later pulses of a sensor behind its first one. labels : of arrival, peak and
-    FWHM. si : True for results in SI units. every : True for all pulses in the table ``sensors``,
-    in a column with the number of the pulse at its sensor, False for the first ones.
+    FWHM. si : True for results in SI units. total : error of a difference as a function of two
+    errors. every : True for all pulses in the table ``sensors``, in a column with the number of the
+    pulse at its sensor, False for the first ones.
 
     The table of the sensors, which is the CSV, also holds the speeds of the first pulses from the
     sensor before; they are not printed twice.
@@ -133,7 +136,7 @@ def reading_tables(
         Table(tuple(columns), tuple(pulses), "sensors"),
         Table(tuple(speed_columns), tuple(legs), "speeds"),
     ]
-    if later := echoes(sensors):
+    if later := echoes(sensors, total):
         time = "delay (s)" if si else "delay"
         echo_columns = (
             Column("", "later pulse"),
