@@ -50,21 +50,13 @@ class Map:
     """Values over two axes, shown as colours; cells without a value (NaN) are hatched.
 
     label : label of the colour bar.
-    x, y, values : coordinates (X,) and (Y,), and values (Y, X).
-    low, high : ends of the colour scale, by default the range of the values. Values beyond an end
-        have the colour of that end.
-    scale : "log" for logarithmic colours.
-    colours : Matplotlib's name of the colour map.
+    x, y, values : equidistant coordinates (X,) and (Y,), and values (Y, X).
     """
 
     label: str
     x: Array
     y: Array
     values: Array
-    low: float | None = None
-    high: float | None = None
-    scale: str = ""
-    colours: str = "viridis"
 
 
 @dataclass(frozen=True)
@@ -151,7 +143,7 @@ def draw(plot: Axes, panel: Panel) -> None:
     scales = {f"{axis}scale": "log" for axis in panel.scale}
     plot.set(xlabel=panel.x, ylabel=panel.y, title=panel.title, **scales)
     if panel.map is not None:
-        _draw_map(plot, panel.map, panel.scale)
+        _draw_map(plot, panel.map)
     for i, curve in enumerate(panel.curves):
         x, y = np.asarray(curve.x, float), np.asarray(curve.y, float)
         error = None if curve.error is None else np.asarray(curve.error, float)
@@ -178,25 +170,10 @@ def _label_plainly(axis: Axis) -> None:
         axis.set_minor_formatter(NullFormatter())
 
 
-def _draw_map(plot: Axes, colours: Map, scale: str) -> None:
-    """Draw a map into Matplotlib's axes; ``scale`` names the logarithmic axes."""
-    from matplotlib.colors import LogNorm, Normalize  # loaded as late as Matplotlib
-
-    norm = (LogNorm if colours.scale else Normalize)(colours.low, colours.high)
-    below = colours.low is not None and bool(np.nanmin(colours.values) < colours.low)
-    above = colours.high is not None and bool(np.nanmax(colours.values) > colours.high)
-    extend = ("neither", "min", "max", "both")[below + 2 * above]
-    x, y = _borders(colours.x, "x" in scale), _borders(colours.y, "y" in scale)
+def _draw_map(plot: Axes, colours: Map) -> None:
+    """Draw a map into Matplotlib's axes."""
     # Pixels in a PDF, too: viewers are slow with one rectangle for each value.
     values = np.ma.masked_invalid(colours.values)
-    image = plot.pcolormesh(x, y, values, norm=norm, cmap=colours.colours, rasterized=True)
-    plot.figure.colorbar(image, ax=plot, label=colours.label, extend=extend)
+    image = plot.pcolormesh(colours.x, colours.y, values, shading="nearest", rasterized=True)
+    plot.figure.colorbar(image, ax=plot, label=colours.label)
     plot.patch.set(facecolor="w", edgecolor="0.4", hatch="xxx")  # unlike any colour of a map
-
-
-def _borders(centres: Array, log: bool) -> Array:
-    """Return the borders of a map's cells, halfway between neighbouring centres on the axis."""
-    x = np.log(centres) if log else centres
-    half = np.diff(x) / 2
-    borders = np.concatenate(([x[0] - half[0]], x[:-1] + half, [x[-1] + half[-1]]))
-    return np.exp(borders) if log else borders

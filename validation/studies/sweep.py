@@ -25,7 +25,7 @@ from lwa.base.arrays import Array
 from lwa.base.exact import InputError, read_exact, shorten
 from lwa.base.progress import Progress
 from validation.lattice.threads import cluster, threads
-from validation.pictures import Curve, Map, Panel
+from validation.pictures import Curve, Panel
 from validation.pulses.steady import LABELS, STRETCH, Key, Point, PointFile, point
 from validation.report.command import option, study
 from validation.report.result import Report, output_file
@@ -56,7 +56,7 @@ is no measure of the theory's error."""
 def report(ks: Axis, omegas: Axis, points: Sequence[Point], stretch: int = STRETCH) -> Report:
     """Return the report of points, in rising order of k, then of ω, beside the theories.
 
-    Table ``points`` has the missing values' reasons; the panels are maps over ω and k, or curves.
+    Table ``points`` has the missing values' reasons.
     """
     waves, numbers = theory(ks, omegas), {q: [p.numbers.get(q) for p in points] for q in LABELS}
     value, error = (
@@ -86,53 +86,36 @@ def report(ks: Axis, omegas: Axis, points: Sequence[Point], stretch: int = STRET
     columns, values = zip(*cells, strict=True)
     heads = {str(k): f"k = {k}" for k in ks}
     missing = [f"k = {p.k}, ω = {p.omega}: {p.missing}" for p in points if p.missing is not None]
-    panels = _maps if len(ks) > 1 < len(omegas) else _curves
     return Report(
         "The steady pulse of a struck dimer chain",
         (Table(columns, tuple(zip(*values, strict=True)), "points", by="k", heads=heads),),
-        panels=tuple(panels(ks, omegas, value, error, waves)),
+        panels=tuple(_panels(ks, omegas, value, error, waves)),
         notes=("\n".join(missing), _NOTE),
         data={"stretch": stretch, "missing": len(missing)},
     )
 
 
-def _maps(
+def _panels(
     ks: Axis, omegas: Axis, value: Grids, error: Grids, waves: Mapping[str, Grids]
 ) -> Iterator[Panel]:
-    """Yield maps of width, speed, decay, and of the error of the paper's closure."""
-    x, y = (np.array(axis, float) for axis in (omegas, ks))
-    theory = 100 * (waves["linear"]["width"] / value["width"] - 1)
-    # ends of the colours
-    least, largest = 1e-7, min(np.nanmax([*np.abs(theory).flat, 1e-3]), 50.0)
-    decay = np.maximum(value["decay"], least / 2)  # positive, for the logarithm
-    percents = f"FWHM of force: {CLOSURES['linear']}/lattice - 1 (%)"
-    i, j = np.nonzero(error["width"] > 0.01 * value["width"])
-    unsure = (Curve("", x[j], y[i], "rx"),)
-    title = "hatched: no value; red ×: width known to less than 1 %"
-    for colours in (
-        Map(LABELS["width"], x, y, value["width"]),
-        Map(LABELS["speed"], x, y, value["speed"]),
-        Map(LABELS["decay"], x, y, decay, least, scale="log", colours="cividis"),
-        Map(percents, x, y, theory, -largest, largest, colours="PuOr"),
-    ):
-        yield Panel(_OMEGA, "k", unsure, "x" if x[-1] > 50 * x[0] else "", title, colours)
+    """Yield curves of each quantity over ω, one for each k; of a single ω, over k.
 
-
-def _curves(
-    ks: Axis, omegas: Axis, value: Grids, error: Grids, waves: Mapping[str, Grids]
-) -> Iterator[Panel]:
-    """Yield curves of each quantity along the axis with more than one value."""
-    along_k = ks, "k", f"ω = {omegas[0]}"
-    axis, x, title = along_k if len(ks) > 1 else (omegas, _OMEGA, f"k = {ks[0]}")
-    for name, label in LABELS.items():
-        y, bar = value[name].ravel(), error[name].ravel()
-        if log := name == "decay":  # a decay below its error is drawn as its error
-            y = np.fmax(y, bar)
-        curves = [Curve("lattice", axis, y, "ko", bar)]
-        for style, (closure, wave) in zip(("C0-", "C1--"), waves.items(), strict=True):
-            if name in wave:
-                curves.append(Curve(CLOSURES[closure], axis, wave[name].ravel(), style))
-        yield Panel(x, label, tuple(curves), "y" * log, title)
+    A single curve has the theories beside it.
+    """
+    over_k = len(omegas) == 1
+    axis, others, x, name = (ks, omegas, "k", _OMEGA) if over_k else (omegas, ks, _OMEGA, "k")
+    for quantity, label in LABELS.items():
+        rows, bars = (grid[quantity].T if over_k else grid[quantity] for grid in (value, error))
+        if log := quantity == "decay":  # a decay below its error is drawn as its error
+            rows = np.fmax(rows, bars)
+        curves = [
+            Curve(f"{name} = {other}", axis, row, error=bar)
+            for other, row, bar in zip(others, rows, bars, strict=True)
+        ]
+        for closure, wave in waves.items() if len(others) == 1 else ():
+            if quantity in wave:
+                curves.append(Curve(CLOSURES[closure], axis, wave[quantity].ravel()))
+        yield Panel(x, label, tuple(curves), "y" * log)
 
 
 def theory(ks: Axis, omegas: Axis) -> dict[str, dict[str, Array]]:
@@ -201,9 +184,6 @@ def measured(
         except (BrokenExecutor, CancelledError) as error:
             gone = "the workers are gone before the sweep is done: killed, or out of memory?"
             raise Failure(gone) from error
-        finally:
-            for future in futures:
-                future.cancel()
     return [points[key] for key in product(ks, omegas)]
 
 
@@ -232,8 +212,8 @@ def sweep(
     address: str | None = None,
     progress: Progress[Key] = iter,
 ) -> Report:
-    """Maps over k and m2/m1: width, speed and decay of a struck chain's pulse. The 160 points of
-    the default grid take half a minute.
+    """Width, speed and decay of a struck chain's pulse over k and m2/m1. The 160 points of the
+    default grid take half a minute.
 
     ks, omegas: texts such as "5/4:3:8, 4", or exact numbers; floats count as their decimals.
     stretch: cells between places of measurement at k ≥ 3/2, see `validation.pulses.steady`.

@@ -192,15 +192,13 @@ def test_the_document_is_json_and_complete(result, points):
     assert last["canonical"]["width_value"] > 0
 
 
-def test_the_picture_has_maps_or_curves(result, points):
-    width, _, decay, theory_error = (panel.map for panel in result.panels)
-    expected = [[k + omega for omega in (0.5, 1, 50)] for k in (1.5, 2, 6)]
-    expected[1][1] = np.nan
-    np.testing.assert_array_equal(width.values, expected)
-    assert (decay.values[~np.isnan(decay.values)] > 0).all()
-    assert theory_error.low == -theory_error.high
-    (unsure,) = result.panels[0].curves
-    assert (unsure.x.tolist(), unsure.y.tolist()) == ([0.5], [2.0])
+def test_the_picture_has_a_curve_for_each_exponent(result, points):
+    """A single curve, over either axis, has the theories beside it."""
+    assert [len(panel.curves) for panel in result.panels] == [3, 3, 3, 3]
+    for k, curve in zip(AXES[0], result.panels[0].curves, strict=True):
+        values = [float(k + omega) for omega in AXES[1]]
+        np.testing.assert_array_equal(curve.y, [np.nan if x == 3 else x for x in values])
+    assert all((curve.y[1:] > 0).all() for curve in result.panels[3].curves[::2])
     ks, omegas = AXES
     for axes, step in (((ks[:1], omegas), 1), ((ks, omegas[:1]), 3)):
         some = points[: 3 * step : step]
