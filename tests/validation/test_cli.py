@@ -61,8 +61,6 @@ chain = {cell = [1], repeat = 300, k = 1.5}
 striker = {velocity = 1}
 sensors = {contacts = [100, 200]}
 """
-NAMES = ["bead 9", "contact 4", "contact 12", "contact 19"]
-"""Sensors of the scene, and one more."""
 
 
 def test_a_long_chains_record_holds_enough_samples_for_its_pulses(capsys, folder):
@@ -90,12 +88,8 @@ def test_a_stored_run_holds_the_result_and_the_records(capsys, folder, scene_fil
     *_, last = found["sensors"]
     assert last["peak_value"] is None
     assert last["missing"].startswith("the pulse is not wholly")
-    head, sensors, speeds, missing = first[1].split("\n\n", 3)
-    assert head.startswith("20 beads, 19 contacts, k = 1.5; duration 20, energy drift ")
-    assert [line.split("  ")[0] for line in sensors.splitlines()[1:4]] == NAMES[:3]
-    assert speeds.splitlines()[1].startswith("contact 4 → 12  ")
-    assert f"contact 19: {last['missing']}" in missing
-    assert "contact 12 → 19: one of the two has no pulse" in missing
+    assert f"contact 19: {last['missing']}" in first[1]
+    assert "contact 12 → 19: one of the two has no pulse" in first[1]
 
 
 def test_force_is_total_in_every_output(capsys, scene_file, tmp_path):

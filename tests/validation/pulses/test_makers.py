@@ -45,87 +45,77 @@ def lines(*columns, mark=",", form="{:.6e}", end="\n"):
     return end.join(mark.join(map(form.format, row)) for row in zip(*columns, strict=True)) + end
 
 
-CH = {"time": "TIME", "contact 8 force": "CH1", "contact 14 force": "CH2"}
-VOLTS = {"CH1": "12.5 N/V", "CH2": "12.5 N/V"}
+VOLTS = "12.5 N/V"
+AB = "CH1", "CH2"
 
 
 def tektronix(t, F, V):
     head = "Model,MDO3024\nFirmware Version,1.30\n\nHorizontal Units,s\nSample Interval,1e-06\n"
     text = f"{head}Vertical Units,V,V\n\nLabel,,\nTIME,CH1,CH2\n{lines(t, *V)}"
-    return text, {"renamed": CH, "units": {"TIME": "s"} | VOLTS}
+    return text, (*AB, "TIME"), {"TIME": "s", "CH1": VOLTS, "CH2": VOLTS}
 
 
 def lecroy(t, F, V):
     head = "LECROYHDO6104,1234,Waveform\nSegments,1,SegmentSize,701\nSegment,TrigTime,Time\n"
     text = f"{head}#1,23-Nov-2026 10:11:12,0\nTime,Ampl\n{lines(t, V[0])}"
-    names = {"contact 8 force": "Ampl"}
-    return text, {"renamed": names, "units": {"Time": "s", "Ampl": "12.5 N/V"}}
+    return text, ("Ampl",), {"Time": "s", "Ampl": VOLTS}
 
 
 def keysight(t, F, V):
     text = "x-axis,1,2\r\nsecond,Volt,Volt\r\n" + lines(t, *V, form="{:+.5E}", end="\r\n")
-    names = {"time": "x-axis", "contact 8 force": "1", "contact 14 force": "2"}
-    return text, {"renamed": names, "units": {"1": "12.5 N/V", "2": "12.5 N/V"}}
+    return text, ("1", "2", "x-axis"), {"1": VOLTS, "2": VOLTS}
 
 
 def labview(t, F, V):
     head = "LabVIEW Measurement\t\nWriter_Version\t2\nSeparator\tTab\n***End_of_Header***\t\n\t\n"
     head += "Channels\t2\t\nX_Dimension\tTime\tTime\t\n***End_of_Header***\t\t\n"
     text = f"{head}X_Value\tVoltage\tVoltage_0\tComment\n" + lines(t, *V, mark="\t")
-    names = {"time": "X_Value", "contact 8 force": "Voltage", "contact 14 force": "Voltage_0"}
-    volts = {"Voltage": "12.5 N/V", "Voltage_0": "12.5 N/V"}
-    return text, {"renamed": names, "units": {"X_Value": "s"} | volts}
+    units = {"X_Value": "s", "Voltage": VOLTS, "Voltage_0": VOLTS}
+    return text, ("Voltage", "Voltage_0", "X_Value"), units
 
 
 def rigol(t, F, V):
     text = "Time(s),CH1(V),CH2(V),\n" + lines(t, *V).replace("\n", ",\n")
-    return text, {"renamed": CH | {"time": "Time(s)"}, "units": VOLTS}
+    return text, (*AB, "Time(s)"), {"CH1": VOLTS, "CH2": VOLTS}
 
 
 def picoscope(t, F, V):
     text = f"Time,Channel A,Channel B\n(ms),(mV),(mV)\n\n{lines(1e3 * t, *(1e3 * V))}"
-    names = {"contact 8 force": "Channel A", "contact 14 force": "Channel B"}
-    return text, {"renamed": names, "units": dict.fromkeys(names.values(), "12.5 N/V")}
+    return text, ("Channel A", "Channel B"), {"Channel A": VOLTS, "Channel B": VOLTS}
 
 
 def rohde_schwarz(t, F, V):
-    names = {"time": "in s", "contact 8 force": "C1 in V", "contact 14 force": "C2 in V"}
-    units = {"in s": "s", "C1 in V": "12.5 N/V", "C2 in V": "12.5 N/V"}
-    return f"in s,C1 in V,C2 in V\n{lines(t, *V)}", {"renamed": names, "units": units}
+    units = {"in s": "s", "C1 in V": VOLTS, "C2 in V": VOLTS}
+    return f"in s,C1 in V,C2 in V\n{lines(t, *V)}", ("C1 in V", "C2 in V", "in s"), units
 
 
 def siglent(t, F, V):
     head = "Record Length,Analog:701\nSample Interval,1.0E-06\nVertical Scale,CH1:0.50\n"
-    names = {"time": "Second", "contact 14 force": "Volt"}
-    units = {"Second": "s", "Volt": "12.5 N/V"}
-    return f"{head}Source,CH2\nSecond,Volt\n{lines(t, V[1])}", {"renamed": names, "units": units}
+    text = f"{head}Source,CH2\nSecond,Volt\n{lines(t, V[0])}"
+    return text, ("Volt", None, "Second"), {"Second": "s", "Volt": VOLTS}
 
 
 def logger_in_german(t, F, V):
     text = "Zeit [µs];Kraft A [N];Kraft B [kN]\r\n"
     text += lines(1e6 * t, F[0], F[1] / 1e3, mark=";", end="\r\n").replace(".", ",")
-    names = {"time": "Zeit", "contact 8 force": "Kraft A", "contact 14 force": "Kraft B"}
-    return text.encode("latin-1"), {"renamed": names}
+    return text.encode("latin-1"), ("Kraft A", "Kraft B", "Zeit"), {}
 
 
 def a_time_for_each_channel(t, F, V):
     text = "Time (s)\tDev1/ai0 (V)\tTime (s)\tDev1/ai1 (V)\n" + lines(t, V[0], t, V[1], mark="\t")
-    names = {"contact 8 force": "Dev1/ai0", "contact 14 force": "Dev1/ai1"}
-    return text, {"renamed": names, "units": dict.fromkeys(names.values(), "12.5 N/V")}
+    return text, ("Dev1/ai0", "Dev1/ai1"), {"Dev1/ai0": VOLTS, "Dev1/ai1": VOLTS}
 
 
 def with_a_byte_order_mark(t, F, V):
     text = '\ufeff"Data from 23.11.2026"\r\n\r\n"Time (s)","AI 1 (N)","AI 2 (N)"\r\n'
-    names = {"contact 8 force": "AI 1", "contact 14 force": "AI 2"}
-    return text + lines(t, *F, end="\r\n"), {"renamed": names}
+    return text + lines(t, *F, end="\r\n"), ("AI 1", "AI 2"), {}
 
 
 def a_data_frame(t, F, V):
     """With a column of row numbers; the shorter channel ends in blank cells."""
     rows = lines(np.arange(len(t)), t, *F, form="{:.9g}").splitlines()
     rows[-40:] = [row.rpartition(",")[0] + "," for row in rows[-40:]]
-    text = ",time (s),contact 8 force (N),contact 14 force (N)\n" + "\n".join(rows) + "\n"
-    return text, {}
+    return ",time (s),8 force (N),14 force (N)\n" + "\n".join(rows) + "\n", (), {}
 
 
 @pytest.mark.parametrize(
@@ -136,11 +126,16 @@ def a_data_frame(t, F, V):
     ],
 )
 def test_pulses_are_read_within_three_errors(chain, tmp_path, style):
+    """The kind of the sensors is in their names or is given."""
     time, forces, true = chain
-    text, options = style(time, forces, np.round(forces / CALIBRATION, 7))
+    text, headers, units = style(time, forces, np.round(forces / CALIBRATION, 7))
     file = tmp_path / "record.csv"
     file.write_bytes(text if isinstance(text, bytes) else text.encode())
-    found = pulses(file, distance=str(SPACING), **options).document()
+    names = zip(("bead 8 force", "14 force", "time"), headers, strict=False)
+    options = {"renamed": {name: header for name, header in names if header}, "units": units}
+    of = "bead" if headers else "contact"
+    found = pulses(file, distance=str(SPACING), of=of, **options).document()
+    assert all(row["kind"] == of for row in found["sensors"])
     assert len(found["sensors"]) == 2 - (style in (lecroy, siglent))
     for row in found["sensors"]:
         arrival, peak, fwhm = true[CONTACTS.index(row["number"])]
