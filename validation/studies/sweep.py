@@ -9,10 +9,11 @@ with contact force 1 at its peak, in the paper's closure and for the full closur
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import BrokenExecutor, CancelledError, Executor, as_completed
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from contextlib import AbstractContextManager, nullcontext
-from itertools import product
+from itertools import islice, product
 from pathlib import Path
+from queue import SimpleQueue
 from typing import Any
 
 import click
@@ -38,7 +39,8 @@ RANGES = {"k": (Rational(21, 20), Rational(6)), "omega": (Rational(1, 100), Rati
 CLOSURES = {"linear": "paper's closure", "canonical": "full closure, canonical field"}
 """Theories beside the lattice, with their labels."""
 
-_MOST = 300  # values of an axis: 90,000 points take half a day
+_MOST = 1000  # values of an axis
+AHEAD = 1000  # points that wait for a worker, whatever the size of the grid
 Axis = Sequence[Rational]
 Grids = Mapping[str, Array]  # quantity → (len(ks), len(omegas)); NaN where missing
 
@@ -174,16 +176,23 @@ def measured(
     unkept: tuple[dict[Key, Point], Callable[[Point], None]] = {}, lambda _: None
     with workers as executor, file.opened() if file else nullcontext(unkept) as (points, keep):
         missing = [key for key in product(ks, omegas) if key not in points]
-        futures = [executor.submit(point, *key, stretch) for key in missing]
-        done = as_completed(futures)
+        waiting, done = iter(missing), SimpleQueue[Future[Point]]()
+        ahead: set[Future[Point]] = set()
         try:
             for _ in progress(missing):
-                new = next(done).result()
+                for key in islice(waiting, AHEAD - len(ahead)):
+                    ahead.add(future := executor.submit(point, *key, stretch))
+                    future.add_done_callback(done.put)
+                ahead.remove(future := done.get())
+                new = future.result()
                 points[new.k, new.omega] = new
                 keep(new)
         except (BrokenExecutor, CancelledError) as error:
             gone = "the workers are gone before the sweep is done: killed, or out of memory?"
             raise Failure(gone) from error
+        finally:
+            for future in ahead:
+                future.cancel()
     return [points[key] for key in product(ks, omegas)]
 
 

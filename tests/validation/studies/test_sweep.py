@@ -6,7 +6,7 @@ import signal
 import socket
 import sqlite3
 import sys
-from concurrent.futures import BrokenExecutor
+from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
 from contextlib import closing
 from itertools import product
 
@@ -22,7 +22,7 @@ from validation.pulses.pulse import Measured
 from validation.pulses.steady import LABELS, Point, PointFile
 from validation.scenes.checks import Failure
 from validation.studies.limits import theory_at
-from validation.studies.sweep import report, sweep, theory
+from validation.studies.sweep import AHEAD, measured, report, sweep, theory
 
 R = sp.Rational
 QUICK = {"stretch": 2, "jobs": 1}
@@ -110,6 +110,28 @@ def test_two_sweeps_do_not_write_one_file(tmp_path):
     file = tmp_path / "s.sqlite"
     with PointFile(file, 2).opened(), pytest.raises(InputError, match=r"s\.sqlite: .*locked"):
         sweep([2], [1], file=file, **QUICK)
+
+
+def test_few_points_wait_for_a_worker():
+    """A grid of 40 values by 50 never has more than `AHEAD` points in the executor."""
+
+    class Counting(ThreadPoolExecutor):
+        def submit(self, function, k, omega, stretch):
+            nonlocal most
+            most = max(most, len(todo) - len(finished))
+            return super().submit(lambda: finished.append(k) or Point(k, omega, None, {}, "no"))
+
+    most, todo, finished = 0, [], []
+    grid = tuple(map(R, range(2, 42))), tuple(R(n, 10) for n in range(1, 51))
+
+    def progress(keys):
+        for key in keys:
+            todo.append(key)
+            yield key
+
+    found = measured(*grid, 2, None, Counting(2), progress)
+    assert [(p.k, p.omega) for p in found] == [*product(*grid)]
+    assert most <= AHEAD
 
 
 # A cluster
@@ -243,7 +265,7 @@ def test_the_command(capsys, tmp_path):
     [
         (("--k", "1"), "k is 1:"),
         (("--k", "1:2"), "k is '1:2':"),
-        (("--k", "1:2:301"), "the count of k is 301:"),
+        (("--k", "1:2:1001"), "the count of k is 1001:"),
         (("--omega", "__import__('os')"), "omega is "),
         (("--file", "s.txt"), "file is s.txt:"),
         (("--jobs", "0", "--file", "s.sqlite"), "jobs is 0:"),
