@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -45,7 +44,6 @@ _TABLES = {  # that a file may leave out
     "start": ("velocities", "displacements"),
     "sensors": ("beads", "contacts"),
 }
-_NUMBERS = ("gravity", "precompression")
 KEYS: Mapping[str, Sequence[str]] = {"file": FILE, "chain": CHAIN, **_TABLES}
 """Keys of a file, and of each of its tables."""
 
@@ -83,20 +81,24 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
         if "start" in file:
             raise SceneError("striker and start are both there: one says how the beads start")
         velocities = (tables["striker"].read("velocity", finite),)
+    damping = None
+    if "damping" in file:
+        kind = tables["damping"].one(*DAMPINGS)
+        damping = Damping(kind, tables["damping"].entries[kind])
     duration = file.read("duration", positive)
     # A pulse that passes the chain once in the duration has 20 samples a bead: a half width of one
     # bead then holds more than the 16 that `validation.pulses.noisy` wants. 100,000 spare memory.
     samples = min(max(1001, 20 * n), 100_000)
     return Scene(
         **chain,
-        **{key: file.entries[key] for key in _NUMBERS if key in file},
+        **{key: file.entries[key] for key in ("gravity", "precompression") if key in file},
         wall=wall,
         duration=duration,
         samples=file.entries.get("samples", samples),
         units=file.read("units", among({"SI": "SI"}), "SI" if row else ""),
         displacements=start.read("displacements", each(finite), ()),
         velocities=velocities,
-        damping=_damping(tables["damping"]) if "damping" in file else None,
+        damping=damping,
         drive=_drive(tables["drive"], duration, folder) if "drive" in file else None,
         bead_sensors=sensors.read("beads", _sensors(n), ()),
         contact_sensors=sensors.read("contacts", _sensors(n - (wall is None)), ()),
@@ -170,21 +172,13 @@ def _wall(given: Table, row: Sequence[Sphere], materials: Mapping[str, Material]
     return float(stiffness(row[-1], given.read("material", among(materials))))
 
 
-def _damping(given: Table) -> Damping:
-    kind = given.one(*DAMPINGS)
-    return Damping(kind, given.entries[kind])
-
-
 def _drive(given: Table, duration: float, folder: Path) -> Drive:
     """Read the motion of bead 1; the key ``file`` names a CSV file of its time and displacement."""
-    numbers = {key: value for key, value in given.entries.items() if key != "file"}
-    return Drive(**numbers | given.read("file", partial(_motion, folder, duration), {}))
-
-
-def _motion(folder: Path, duration: float, value: Any, name: str) -> dict[str, Any]:
-    if not isinstance(value, str):
-        raise SceneError(f"{name} is {shorten(value)}: the name of a CSV file is wanted")
-    file = MeasuredFile.read(folder / value, "time", "displacement")
-    motion = {name: file.column(name) for name in ("time", "displacement")}
-    check_span(folder / value, motion["time"], duration)
-    return motion
+    motion = dict(given.entries)
+    if "file" in given:
+        if not isinstance(name := motion.pop("file"), str):
+            raise SceneError(f"drive.file is {shorten(name)}: the name of a CSV file is wanted")
+        file = MeasuredFile.read(folder / name, "time", "displacement")
+        motion |= {name: file.column(name) for name in ("time", "displacement")}
+        check_span(folder / name, motion["time"], duration)
+    return Drive(**motion)

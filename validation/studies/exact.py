@@ -11,7 +11,6 @@ from validation.pictures import Curve, Panel
 from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
-from validation.scenes.chains import numeric_cell
 from validation.waves.solver import exact_wave, measured
 from validation.waves.solver import resonances as special_ratios
 
@@ -40,7 +39,7 @@ def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
     with errors, as ``c2_error_value``: ``c2_value``, ``c_value``, ``tail_value`` and by quantity
     ``amplitude_value``, ``fwhm_value``.
     """
-    wave = exact_wave([float(mass) for mass in numeric_cell(masses).masses], k)
+    wave = exact_wave(masses, k)
     numbers = measured(wave)
     rows = tuple((q, numbers[f"amplitude {q}"], numbers[f"fwhm {q}"]) for q in QUANTITIES)
     # One row of all numbers; "fwhm force" becomes an entry of fwhm_value.

@@ -20,7 +20,6 @@ from validation.pulses.pulse import Measured, derived
 from validation.report.command import column_options, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
-from validation.scenes.chains import numeric_cell
 from validation.scenes.checks import SceneError
 from validation.scenes.columns import MeasuredFile
 from validation.waves.contact_law import Medium, fit_power, weights
@@ -65,7 +64,7 @@ def law(
     force, speed, weight = _pulses(data, renamed, units)
     content: dict[str, Any] = {}
     if spheres is None:
-        cell = Cell(numeric_cell(masses or (1,)).masses, spacing=1 if spacing is None else spacing)
+        cell = Cell(masses or (1,), spacing=1 if spacing is None else spacing)
     else:
         content = load(spheres, "a list of spheres", lambda x: entries(x, "the file"))
         cell = Cell.of_spheres(read_spheres(content))

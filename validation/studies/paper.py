@@ -8,8 +8,8 @@ over the time between their peaks. The force of a bead is the mean of its two co
 Bead 15 is steel and bead 34 PTFE: the shapes of their pulses differ, so that V_s is not the speed
 of the pulse. The speed between beads of one kind stands beside V_s.
 
-The amplitude of the theory's wave is set in turn by F_m, by V_s, and by the striker's momentum, as
-if the pulse took all of it.
+The amplitude of the theory's wave is set in turn by F_m and by the striker's momentum, as if the
+pulse took all of it.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ HERTZ = sp.Rational(3, 2)
 BEADS, SENSORS, VELOCITY = 38, (15, 34), 1.37  # sensors are numbered from the striker, 1; in m/s
 LIKE = (15, 33), (16, 34)  # beads of one kind, both steel and both PTFE
 TOLERANCES = (1e-10, 1e-9)  # rtol of the run that counts and of the run that gives its errors
-SOURCES = ("F_m", "speed", "striker")
+SOURCES = ("F_m", "striker")
 """Names of the quantities that set the theory's amplitude."""
 
 _UNITS = {"speed": "m/s", "peak": "N", "FWHM": "sites"}  # by the first word; µs "in time"
@@ -66,7 +66,7 @@ _COLUMNS = (
 _NOTE = """\
 The force of a bead is the mean of its two contacts'; numbers that name no bead are means over both
 sensor beads (odd ones are steel, even ones PTFE) or over their four contacts. The theory's
-amplitude is set by F_m, by V_s, or by all of the striker's momentum; error: theory/lattice - 1.
+amplitude is set by F_m or by all of the striker's momentum; error: theory/lattice - 1.
 Between steel and PTFE, V_s compares peaks of different shape, and is not the pulse's speed.
 ±: error of the integration."""
 
@@ -117,7 +117,7 @@ def paper(
 
     ``velocity_value``, ``beads``, ``sensors``, ``rows``: ``quantity``, ``unit``, ``lattice_value``,
     ``lattice_error_value``, and by the quantity that sets the theory's amplitude (``F_m``,
-    ``speed``, ``striker``) ``theory_value`` {…} and ``error_value`` {…}, theory over lattice - 1.
+    ``striker``) ``theory_value`` {…} and ``error_value`` {…}, theory over lattice - 1.
     """
     velocity = between(velocity, "velocity", 1e-6, 1000)
     scene = recorded_chain(sorted({*SENSORS, *chain.from_iterable(LIKE)}), velocity)
@@ -130,7 +130,6 @@ def paper(
     wave = homogenize(chain_cell(), k=HERTZ).pde.traveling_wave()
     waves = (
         PhysicalWave(wave, lattice["peak bead force F_m"].value, "bead"),
-        of_speed(wave, lattice["speed V_s"].value),
         of_momentum(wave, float(STEEL_BEAD.mass) * velocity),
     )
     theories = [theory_numbers(wave) for wave in waves]
@@ -183,21 +182,11 @@ def numbers(beads: Train, contacts: Train) -> dict[str, float]:
     }
 
 
-def of_speed(wave: TravelingWave, speed: float) -> PhysicalWave:
-    """Return the theory's wave with a given speed dx/dt; `SceneError` unless it is positive."""
-    return _with(wave, "speed", speed, -1)
-
-
 def of_momentum(wave: TravelingWave, momentum: float) -> PhysicalWave:
     """Return the theory's wave with a given momentum; `SceneError` unless it is positive."""
-    return _with(wave, "momentum", momentum, 1)
-
-
-def _with(wave: TravelingWave, name: str, amount: float, sign: int) -> PhysicalWave:
-    """Return the wave at which a quantity, ∝ F^{(k + sign)/(2k)}, has the given amount."""
-    unit, exponent = PhysicalWave(wave, sp.S.One), (wave.k + sign) / (2 * wave.k)
-    ratio = positive(amount, name) / number(getattr(unit, name))
-    return PhysicalWave(wave, math.exp(math.log(ratio) / number(exponent)))
+    ratio = positive(momentum, "momentum") / number(PhysicalWave(wave, sp.S.One).momentum)
+    # The momentum is proportional to F^{(k + 1)/(2k)}.
+    return PhysicalWave(wave, math.exp(math.log(ratio) * number(2 * wave.k / (wave.k + 1))))
 
 
 def bead_fwhm(wave: CompactWave) -> float:

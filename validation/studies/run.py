@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 import operator
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,6 @@ import click
 import numpy as np
 
 from validation.lattice.cost import RunProgress
-from validation.lattice.result import Run
 from validation.lattice.simulate import COMPILED, METHODS
 from validation.pulses.sensors import (
     LESS,
@@ -181,18 +180,6 @@ RECORDS = (
 )
 
 
-def store(run: Run, document: Mapping[str, Any], file: Path) -> None:
-    """Write a run and the document of its result; only a complete file replaces an old one."""
-    with replacing(file) as new, new.open("wb") as stream:
-        if file.suffix.lower() == ".csv":
-            columns = run.columns()
-            rows = np.column_stack(list(columns.values()))
-            np.savetxt(stream, rows, "%s", ",", header=",".join(columns), comments="")
-        else:
-            records = {f"{name}_value": plain(getattr(run, name)) for name in RECORDS}
-            stream.write(json.dumps({**document, "records": records}).encode())
-
-
 _METHODS = click.Choice((*COMPILED, *METHODS))
 _INTEGRATOR = f"Integrator: {' and '.join(COMPILED)} are compiled, the others SciPy's."
 _RTOL = f"Relative tolerance. Errors are differences to a run with {LESS:g} times this tolerance."
@@ -245,6 +232,15 @@ def run(
         raise SceneError(f"out is {out}, but the scene names no sensors")
     recording = record(chain, method=method, rtol=rtol, every=pulses, progress=run_progress)
     result = report(recording, every=pulses)
-    if out is not None:
-        store(recording.run, result.document(), out)
+    if out is None:
+        return result
+    done = recording.run
+    with replacing(out) as new, new.open("wb") as stream:
+        if out.suffix.lower() == ".csv":
+            columns = done.columns()
+            rows = np.column_stack(list(columns.values()))
+            np.savetxt(stream, rows, "%s", ",", header=",".join(columns), comments="")
+        else:
+            records = {f"{name}_value": plain(getattr(done, name)) for name in RECORDS}
+            stream.write(json.dumps({**result.document(), "records": records}).encode())
     return result
