@@ -1,5 +1,7 @@
 """The report of any scene: its table for programs, and its view in a notebook."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from validation.pulses.sensors import record
@@ -43,10 +45,14 @@ def test_every_pulse_of_a_train_is_listed():
     assert "pulse" not in report(record(scene)).document()["sensors"][0]
 
 
-def test_a_damped_run_states_the_dissipated_energy():
-    scene = struck((1,), 12, duration=12, contact_sensors=(5,), damping=Damping("contact", 0.05))
-    found = record(scene, rtol=1e-8)
-    shown = report(found)
+def test_a_report_states_what_is_conserved_and_what_is_lost():
+    free = struck((1.0, 0.5), 20, duration=20, contact_sensors=(8, 12))
+    shown = report(record(free, rtol=1e-9)).document()
+    assert abs(shown["energy_drift_value"]) < 1e-8
+    assert abs(shown["momentum_drift_value"]) < 1e-13  # by Newton's third law, to rounding
+    damped = replace(free, wall=1.0, gravity=0.01, damping=Damping("contact", 0.05))
+    shown = report(found := record(damped, rtol=1e-8))
+    assert shown.document()["momentum_drift_value"] is None
     assert shown.document()["dissipated_value"] == found.run.dissipated > 0
     assert f"dissipated {found.run.dissipated:.6g}" in " ".join(shown.text().split())
     assert "work_value" not in shown.document()

@@ -250,7 +250,7 @@ def test_the_command(capsys, tmp_path):
     """A range is exact and equidistant, and a value that stands there twice counts once."""
     file, picture = tmp_path / "s.sqlite", tmp_path / "s.svg"
     status, out, err = ended(
-        capsys, cli.main, "sweep", "--k", "3/2", "--omega", "0.45:1:3,1", "--stretch", "2",
+        capsys, cli.main, "sweep", "--k", "3/2", "--omega", "0.45:1:3,9/20", "--stretch", "2",
         "--file", str(file), "--plot", str(picture), "--format", "json",
     )  # fmt: skip
     assert (status, err) == (0, "")

@@ -121,6 +121,19 @@ def test_the_special_ratios_are_the_published_ones(specials):
     assert longer == pytest.approx(ratios, rel=1e-10)
 
 
+def test_the_tail_grows_from_none_at_a_special_ratio(specials):
+    """The odd part outside the pulse: in proportion to the distance, with its sign."""
+    L, tails = specials[0].half_period, []
+    for off in (-1e-4, 1e-5):
+        wave = solve((1.0, specials[0].omega * (1 + off)), 1.5, L, start=specials[0])
+        x = L * np.linspace(0.6, 1, 4001)
+        odd = (wave.strain(x) - wave.strain(-x)) / 2
+        assert wave.tail == pytest.approx(np.abs(odd).max(), rel=1e-4)
+        assert not wave.solitary
+        tails.append(odd[1000])
+    assert tails[0] / tails[1] == pytest.approx(-10, rel=0.2)
+
+
 @pytest.mark.parametrize(
     ("k", "count"),
     [(2, 2), *(pytest.param(*x, marks=pytest.mark.slow) for x in ((1.2, 4), (5, 2)))],
