@@ -104,21 +104,17 @@ def test_force_is_total_in_every_output(capsys, scene_file, tmp_path):
         capsys, "run", str(scene_file), "--out", stored, "--plot", picture, "--format", "json"
     )
     assert status == 0
-    header, *lines = Path(csv).read_text().splitlines()
-    names = header.split(",")
-    assert names[:4] == [
-        "time (s)", "bead 9 force (N)", "bead 9 displacement (m)", "bead 9 velocity (m/s)",
-    ]  # fmt: skip
-    columns = dict(zip(names, np.array([line.split(",") for line in lines], float).T, strict=True))
-    records = json.loads(Path(stored).read_text())["records"]
-    for i in (4, 12):
-        force = records["contact_force_value"][(4, 12).index(i)]
-        np.testing.assert_array_equal(columns[f"contact {i} force (N)"], force)
+    columns = np.genfromtxt(csv, delimiter=",", names=True, deletechars="")
+    assert columns.dtype.names[:4] == (
+        "time_(s)", "bead_9_force_(N)", "bead_9_displacement_(m)", "bead_9_velocity_(m/s)",
+    )  # fmt: skip
+    records = json.loads(Path(stored).read_text())["records"]["contact_force_value"]
+    for i, force in zip((4, 12), records, strict=True):
+        np.testing.assert_array_equal(columns[f"contact_{i}_force_(N)"], force)
         assert force[0] == pytest.approx(load, rel=1e-12)
     assert "force (N)" in Path(picture).read_text()
     for sensor in json.loads(out)["sensors"]:
-        name = f"{sensor['kind']} {sensor['number']}"
-        force = columns[f"{name} force (N)"]
+        force = columns[f"{sensor['kind']}_{sensor['number']}_force_(N)"]
         assert sensor["static_force_value"] == load
         assert force.max() - load == pytest.approx(sensor["peak_value"], rel=1e-3)
 

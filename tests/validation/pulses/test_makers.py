@@ -133,9 +133,9 @@ def test_pulses_are_read_within_three_errors(chain, tmp_path, style):
     file.write_bytes(text if isinstance(text, bytes) else text.encode())
     names = zip(("bead 8 force", "14 force", "time"), headers, strict=False)
     options = {"renamed": {name: header for name, header in names if header}, "units": units}
-    of = "bead" if headers else "contact"
-    found = pulses(file, distance=str(SPACING), of=of, **options).document()
-    assert all(row["kind"] == of for row in found["sensors"])
+    options |= {"of": "bead"} if headers else {}
+    found = pulses(file, distance=str(SPACING), **options).document()
+    assert all(row["kind"] == options.get("of", "contact") for row in found["sensors"])
     assert len(found["sensors"]) == 2 - (style in (lecroy, siglent))
     for row in found["sensors"]:
         arrival, peak, fwhm = true[CONTACTS.index(row["number"])]

@@ -64,20 +64,16 @@ def test_a_power_law_is_recovered_from_its_speeds(chain, k, A):
 def test_known_errors_weight_the_pulses(chain):
     """Every second pulse has twenty times the noise: with weights k errs less, within its error."""
     rng, exact = np.random.default_rng(3), speeds(chain, 1.5, 1.0)
-    noise = np.where(np.arange(len(FORCES)) % 2, 0.05, 0.0025)
-    hits, plain, weighted = 0, [], []
-    for _ in range(100):
+    noise, off = np.where(np.arange(len(FORCES)) % 2, 0.05, 0.0025), []
+    for _ in range(60):
         force, speed = (1 + noise * rng.normal(size=(2, len(FORCES)))) * (FORCES, exact)
         weight = weights(force, speed, noise * force, noise * speed)
-        fit = fit_power(chain, force, speed, weight)
-        hits += abs(fit.k.value - 1.5) <= fit.k.error
-        weighted.append(fit.k.value - 1.5)
-        plain.append(fit_power(chain, force, speed).k.value - 1.5)
-    assert hits >= 90  # 95 expected; the spread of 100 draws is 2.2
-    assert np.std(weighted) < np.std(plain) / 3
+        off.append([fit_power(chain, force, speed, w).k.value - 1.5 for w in (weight, None)])
+    weighted, plain = np.std(off, axis=0)
+    assert weighted < plain / 3
     weight = weights(FORCES, exact, noise * FORCES, noise * exact)
     error = fit_power(chain, FORCES, exact, weight).k.error  # residuals of 0 do not hide the noise
-    assert np.std(weighted) < error < 2.5 * np.std(weighted)
+    assert 1.8 * weighted < error < 2.5 * weighted
 
 
 def test_errors_in_a_file_come_in_two_positive_columns(saved, chain):
@@ -109,17 +105,11 @@ def test_rounding_of_the_speeds_is_no_second_power(chain, scale):
         assert fit_power(chain, force, scale * force ** (1 / 6)).one_power
 
 
-def test_a_law_of_two_powers_is_not_one_power(chain):
-    """F = δ^{3/2} + δ^{5/2}, its speeds by S = 2 W/δ² and R of the local exponent."""
-    delta = np.geomspace(0.05, 2, 22)
-    force, energy = delta**1.5 + delta**2.5, delta**2.5 / 2.5 + delta**3.5 / 3.5
-    S = 2 * energy / delta**2
-    s = np.gradient(np.log(S), np.log(force), edge_order=2)
-    k = 1 / (1 - s)
-    for _ in range(20):  # R changes with F, too
-        V = np.sqrt(chain.ratio(k) * S / chain.mass) * chain.spacing
-        k = 1 / (1 - 2 * np.gradient(np.log(V), np.log(force), edge_order=2))
-    assert not fit_power(chain, force, V).one_power
+def test_a_curved_law_is_not_one_power(chain):
+    x = np.log(FORCES)
+    fit = fit_power(chain, FORCES, np.exp(x / 6 + 0.02 * x**2))
+    assert fit.curvature.value == pytest.approx(0.02, rel=1e-9)
+    assert not fit.one_power
 
 
 def test_the_modulus_comes_back_from_the_speeds_of_its_spheres(saved, tmp_path, chain):
