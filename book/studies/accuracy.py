@@ -198,7 +198,7 @@ derivation and evaluation.
 
 
 _LADDER = (
-    Column("quantity"),
+    Column("quantity", format=_HEADS.__getitem__),
     Column("k", "k"),
     Column("omega", "m2/m1", format=lambda omega: f"{float(omega):.4g}"),
     Column("truth_value", "truth", format=".6g"),
@@ -232,7 +232,7 @@ def ladder(places: Sequence[Place]) -> Report:
     dimers = [(p["omega"], p) for p in places if p["omega"] != 1 and p["k"] == HERTZ]
     return Report(
         "",
-        (Table(_LADDER, tuple(rows), "", title, note, by="quantity", heads=_HEADS),),
+        (Table(_LADDER, tuple(rows), "", title, note, by="quantity"),),
         panels=(
             _panel("k - 1", "theories, equal beads", equal),
             _panel("m2/m1", "theories, dimers, k = 3/2", dimers),

@@ -364,8 +364,8 @@ def hard(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
         for name, report in cases.items()
         for row in findings_table(report.findings).rows
     ]
-    heads = {name: f"{name}\n{report.title}" for name, report in cases.items()}
-    findings = Table((Column("case"), *FINDING_COLUMNS), tuple(rows), by="case", heads=heads)
+    case = Column("case", format=lambda name: f"{name}\n{cases[name].title}")
+    findings = Table((case, *FINDING_COLUMNS), tuple(rows), by="case")
     return Report(
         "Hard cases",
         (findings, *(table for report in cases.values() for table in report.tables)),

@@ -17,7 +17,7 @@ from typing import Any
 from lwa.base.exact import InputError
 from lwa.base.files import reason
 from validation.pictures import Panel, Pictured, svg
-from validation.report.table import WIDTH, Finding, Table, findings_table, plain, wrap
+from validation.report.table import Finding, Table, findings_table, plain, wrap
 
 
 def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
@@ -98,9 +98,9 @@ class Report(Pictured):
 
     def text(self) -> str:
         """The report as plain text: beside other printed tables only the findings that fail."""
-        failing_only = any(table.parts() for table in self.tables)
+        failing_only = any(table.text() for table in self.tables)
         printed = [finding for finding in self.findings if not (failing_only and finding.ok)]
-        title, *notes = (wrap(text, WIDTH) for text in (self.title, *self.notes))
+        title, *notes = (wrap(text) for text in (self.title, *self.notes))
         tables = (t.text() for t in (*self.tables, findings_table(printed)))
         return "\n\n".join(filter(None, (title, *tables, *notes, self.verdict)))
 

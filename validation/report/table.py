@@ -7,7 +7,7 @@ import io
 import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from textwrap import fill
 from typing import Any
 
@@ -74,8 +74,7 @@ class Table:
 
     key : JSON name of the table; the first table with keys is the CSV of a report.
     title, note : printed above and below the table.
-    by : key of a column by whose values the printed table is divided.
-    heads : printed heading of each part, by the value; by default the value itself.
+    by : key of a column by whose values the printed table is divided; its text heads each part.
     """
 
     columns: tuple[Column, ...]
@@ -84,7 +83,6 @@ class Table:
     title: str = ""
     note: str = ""
     by: str = ""
-    heads: Mapping[str, str] = field(default_factory=dict)
 
     def records(self) -> list[dict[str, Any]]:
         """Return JSON names (with their dots) and values of each row, in the order of columns."""
@@ -126,27 +124,19 @@ class Table:
             writer.writerow(json.dumps(x) if isinstance(x, list | dict) else x for x in cells)
         return text.getvalue()
 
-    def parts(self) -> list[tuple[str, Lines]]:
-        """Return the printed parts: headings, and lines of cells below the column labels.
-
-        There is one part for each value of the column ``by``, by default a single part, and none
-        without column labels or rows.
-        """
+    def text(self) -> str:
+        """The table as text, a part for each value of the column ``by``; empty without labels."""
         printed = [(i, column) for i, column in enumerate(self.columns) if column.label]
         header = [f"{c.label} ({c.unit})" if c.unit else c.label for _, c in printed]
         keys = [column.key for column in self.columns]
         parts: dict[str, list[Sequence[str]]] = {}
         for row in self.rows if printed else ():
-            group = str(row[keys.index(self.by)]) if self.by else ""
-            lines = parts.setdefault(group, [header])
+            at = keys.index(self.by) if self.by else 0
+            lines = parts.setdefault(self.columns[at].text(row[at]) if self.by else "", [header])
             lines.append([column.text(row[i]) for i, column in printed])
-        return [(self.heads.get(group, group), lines) for group, lines in parts.items()]
-
-    def text(self, width: int = WIDTH) -> str:
-        """The table as text in lines of a width; empty without column labels or rows."""
-        parts = [f"{head}\n{aligned(lines, width)}".lstrip("\n") for head, lines in self.parts()]
-        blocks = wrap(self.title, width), "\n\n".join(parts), wrap(self.note, width)
-        return "\n".join(filter(None, blocks)) if parts else ""
+        blocks = (f"{head}\n{aligned(lines)}".lstrip("\n") for head, lines in parts.items())
+        texts = wrap(self.title), "\n\n".join(blocks), wrap(self.note)
+        return "\n".join(filter(None, texts)) if parts else ""
 
 
 @dataclass(frozen=True)
@@ -210,7 +200,7 @@ def plain(value: Any) -> Any:
     return value
 
 
-def aligned(lines: Lines, width: float = math.inf) -> str:
+def aligned(lines: Lines, width: float = WIDTH) -> str:
     """Align columns of text: the first one left, the others right.
 
     Columns beyond the width of a line follow in a block of their own, after the first column.
@@ -238,9 +228,9 @@ def aligned(lines: Lines, width: float = math.inf) -> str:
     return "\n\n".join(texts)
 
 
-def wrap(text: str, width: int) -> str:
-    """Break the lines of a text that are longer than a width."""
-    return "\n".join(fill(line, width, break_long_words=False) for line in text.splitlines())
+def wrap(text: str) -> str:
+    """Break the lines of a text that are longer than `WIDTH`."""
+    return "\n".join(fill(line, WIDTH, break_long_words=False) for line in text.splitlines())
 
 
 def bounds(low: float, high: float) -> str:

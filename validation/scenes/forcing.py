@@ -123,20 +123,16 @@ class Drive:
             finite(self.amplitude, "drive.amplitude")
             positive(self.frequency, "drive.frequency")
             between(self.ramp, "drive.ramp", 0, math.inf, "it must not be negative")
-        self._check_size()
-
-    def _check_size(self) -> None:
-        """Raise `SceneError` if the acceleration overflows."""
         amplitude, w = self.oscillation
         pace = 1 / self.ramp if self.ramp else 0.0
-        largest = abs(amplitude) * (w * w + 60 * pace * pace)
+        acceleration = abs(amplitude) * (w * w + 60 * pace * pace)
         if self.time:
             try:
                 with np.errstate(all="ignore"):
-                    largest = float(np.abs(self._spline.c).max())
+                    acceleration = float(np.abs(self._spline.c).max())
             except ValueError:  # SciPy's, of slopes that overflow
-                largest = math.inf
-        if not math.isfinite(largest):
+                acceleration = math.inf
+        if not math.isfinite(acceleration):
             raise SceneError("the drive's acceleration comes out as inf: choose other units")
 
     @cached_property

@@ -58,12 +58,13 @@ _SUPPORT = LeadingPower(1, sp.Rational(1, 20), 0.077, 0.2, 0.02)
 _SPEED = LeadingPower(2, -sp.Rational(3, 40), 0.075, 0.15, 0.01)
 LEADING_POWERS = dict(zip(QUANTITIES, (_WIDTH, _WIDTH, _SUPPORT, _SPEED), strict=True))
 
+_CHAINS = {EQUAL: "m1 = m2, ω = 1", LIGHT: f"m1 ≫ m2, ω = {LIGHT}"}
 _COLUMNS = (
     Column("quantity"),
     Column("", "quantity"),
     Column("", "k"),
     Column("k"),
-    Column("omega"),
+    Column("omega", format=_CHAINS.__getitem__),
     Column("theory"),
     Column("theory_value", "theory", format=".5g"),
     Column("lattice", "lattice", error=True),
@@ -71,7 +72,6 @@ _COLUMNS = (
     Column("bound_value", "bound", format=lambda bound: percent(bound).lstrip("+")),
     Column("ok", "holds"),
 )
-_CHAINS = {"1": "m1 = m2, ω = 1", str(LIGHT): f"m1 ≫ m2, ω = {LIGHT}"}
 _NOTE = """\
 Lengths in D, m1 = A = D = 1; force and strain of a contact; error: theory/lattice - 1. From all k:
 the order n of the error in k - 1, and the limit of error/(k-1)^n as k → 1. ±: change of the
@@ -101,7 +101,7 @@ def limits(progress: Progress[TravelingWave] = iter) -> Report:
     cells, findings = zip(*rows, strict=True)
     return Report(
         "The theory's limits on the lattice",
-        (Table(_COLUMNS, cells, "rows", by="omega", heads=_CHAINS, note=_NOTE),),
+        (Table(_COLUMNS, cells, "rows", by="omega", note=_NOTE),),
         findings,
         tuple(_panel(rows, omega) for omega in (EQUAL, LIGHT)),
     )

@@ -69,7 +69,7 @@ def report(ks: Axis, omegas: Axis, points: Sequence[Point], stretch: int = STRET
         for part in ("value", "error")
     )
     cells: list[tuple[Column, Iterable[Any]]] = [
-        (Column("k"), [p.k for p in points]),
+        (Column("k", format="k = {}".format), [p.k for p in points]),
         (Column("omega", _OMEGA), [p.omega for p in points]),
     ]
     for name in ("width", "speed"):
@@ -86,11 +86,10 @@ def report(ks: Axis, omegas: Axis, points: Sequence[Point], stretch: int = STRET
     for closure, wave in waves.items():
         cells += [(Column(f"theory.{closure}.{q}_value"), x.ravel()) for q, x in wave.items()]
     columns, values = zip(*cells, strict=True)
-    heads = {str(k): f"k = {k}" for k in ks}
     missing = [f"k = {p.k}, ω = {p.omega}: {p.missing}" for p in points if p.missing is not None]
     return Report(
         "The steady pulse of a struck dimer chain",
-        (Table(columns, tuple(zip(*values, strict=True)), "points", by="k", heads=heads),),
+        (Table(columns, tuple(zip(*values, strict=True)), "points", by="k"),),
         panels=tuple(_panels(ks, omegas, value, error, waves)),
         notes=("\n".join(missing), _NOTE),
         data={"stretch": stretch, "missing": len(missing)},

@@ -73,11 +73,6 @@ class ExactWave(Pictured):
         return self.masses[1] / self.masses[0]
 
     @property
-    def samples(self) -> int:
-        """Number of Fourier coefficients."""
-        return len(self.even)
-
-    @property
     def solitary(self) -> bool:
         """True if tail and residual are below `TOLERANCE`."""
         return max(self.tail, self.residual) < TOLERANCE
@@ -107,7 +102,7 @@ class ExactWave(Pictured):
 
         Strain and force are those of contact 0, the velocity is that of bead 0.
         """
-        xi = np.linspace(-self.half_period, self.half_period, 4 * self.samples + 1)
+        xi = np.linspace(-self.half_period, self.half_period, 4 * len(self.even) + 1)
         return summit(self._quantity(name), xi)
 
     def fwhm(self, name: str = "strain") -> float:
@@ -115,7 +110,7 @@ class ExactWave(Pictured):
 
         Raises `MeasureError` for a hump that does not fall to half its peak.
         """
-        xi = np.linspace(-self.half_period, self.half_period, self.samples + 1)
+        xi = np.linspace(-self.half_period, self.half_period, len(self.even) + 1)
         return highest_pulse(Piecewise(xi, self._quantity(name))).fwhm
 
     def launched(self, start: int, sites: int, **rest: Any) -> Scene:
@@ -160,14 +155,14 @@ class ExactWave(Pictured):
 
     def _velocity(self, xi: ArrayLike, bead: int) -> Array:
         """Velocity up to a constant: the integral of v' = (force ahead - force behind)/(m c)."""
-        sign, q = (-1 if bead % 2 else 1), np.pi / self.half_period * np.arange(1, self.samples)
+        sign, q = (-1 if bead % 2 else 1), np.pi / self.half_period * np.arange(1, len(self.even))
         push = -2 * np.sin(q / 2) * self.even[1:] + sign * 2 * np.cos(q / 2) * self.odd[1:]
         row = np.append(0.0, -push / q) / (self.masses[bead % 2] * self.c)
         return self._sum(xi, row, 0 * row)
 
     def _sum(self, xi: ArrayLike, even: Array, odd: Array) -> Array:
         """Evaluate the Fourier sum Σ even_j cos(q_j ξ) + odd_j sin(q_j ξ) at any ξ."""
-        rows = np.append(even - 1j * odd, np.zeros(-self.samples % _ROW)).reshape(-1, _ROW)
+        rows = np.append(even - 1j * odd, np.zeros(-len(self.even) % _ROW)).reshape(-1, _ROW)
         q = np.pi / self.half_period * np.arange(rows.size)
         # e^{iqξ} of every q as a product of two, of the first 16 q and of every 16th q: special
         # ratios are found in a tenth less time than with a sine and a cosine for every q.
@@ -188,7 +183,7 @@ def at_unit_force(
     wave = wave.times(1 / (problem.p0 + wave.peak("strain")[1]))
     tail = 0.0
     if not problem.uniform:
-        outside = np.linspace(OUTSIDE * problem.L, problem.L, 2 * wave.samples)
+        outside = np.linspace(OUTSIDE * problem.L, problem.L, 2 * len(wave.even))
         _, tail = summit(lambda x: np.abs(wave.strain(x) - wave.strain(-x)) / 2, outside)
     xi = newton.periodic_grid(wave.half_period, 2 * problem.n)
     even, odd = newton.coefficients(wave.force(xi))

@@ -23,7 +23,7 @@ from validation.report.table import (
 TABLE = Table(
     (
         Column("k", "k"),
-        Column("chain"),
+        Column("chain", format=lambda name: f"chain {name}"),
         Column("speed", "speed", "m/s", error=True),
         Column("error_value.F_m", "by F_m", format="+.1%"),
         Column("", "unit"),
@@ -35,7 +35,6 @@ TABLE = Table(
     ),
     "rows",
     by="chain",
-    heads={"a": "chain A"},
 )
 
 
@@ -63,13 +62,13 @@ def test_csv_holds_the_same_numbers():
 def test_text_falls_into_parts():
     first, second = TABLE.text().split("\n\n")
     assert [line.split() for line in first.splitlines()] == [
-        ["chain", "A"],
+        ["chain", "a"],
         ["k", "speed", "(m/s)", "by", "F_m", "unit"],
         ["3/2", "2.0", "±", "2e-01", "+25.0%", "m/s"],
         ["3", "4.0", "±", "5e-01", "-", "m/s"],
     ]
     assert [line.split() for line in second.splitlines()] == [
-        ["b"],
+        ["chain", "b"],
         ["k", "speed", "(m/s)", "by", "F_m", "unit"],
         ["2", "-", "-50.0%", "<m/s>"],
     ]
