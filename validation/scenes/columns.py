@@ -5,8 +5,9 @@ names the wanted columns, and the lines before the header are skipped. A header 
 separated by tabs, another one with a semicolon by semicolons, any other by commas; with tabs or
 semicolons numbers may have decimal commas. Blank entries end a column.
 
-Units are stated, never guessed: in the header, as in "Force (mN)" or "force [mN]"; in a row under
-the header; or by the user. Values are returned in SI. A file in which no unit is stated at all is
+Units are stated, never guessed: in the header, as in "Force (mN)" or "force [mN]"; in a row without
+numbers under the header; or by the user, who may also give a calibration per unit of the file, as
+in "12.5 N/V". Values are returned in SI. A file in which no unit is stated at all is
 in the scene's own numbers; if one unit is stated, every column that is used needs one.
 """
 
@@ -26,38 +27,34 @@ from lwa.base.arrays import Array
 from lwa.base.exact import shorten
 from validation.scenes.checks import SceneError
 
-TIME: Mapping[str, float] = {
-    **{"s": 1.0, "sec": 1.0, "second": 1.0, "seconds": 1.0},
+_TIME = {
+    **dict.fromkeys(("s", "sec", "second", "seconds"), 1.0),
     **{"ms": 1e-3, "µs": 1e-6, "us": 1e-6, "ns": 1e-9},
 }
-LENGTH: Mapping[str, float] = {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "um": 1e-6}
+_LENGTH = {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "um": 1e-6}
 _FORCE = {"N": 1.0, "mN": 1e-3, "kN": 1e3, "Newton": 1.0}
 _SPEED = {"m/s": 1.0, "km/s": 1e3, "mm/s": 1e-3}
-_VOLTAGE = {"V": 1.0, "mV": 1e-3, "Volt": 1.0}
 _UNITS: Mapping[str, Mapping[str, float]] = {
-    "time": TIME,
-    **dict.fromkeys(("force", "force_error"), _FORCE),
-    "displacement": LENGTH,
-    **dict.fromkeys(("speed", "speed_error"), _SPEED),
+    **{"time": _TIME, "displacement": _LENGTH, "force": _FORCE, "force_error": _FORCE},
+    **{"speed": _SPEED, "speed_error": _SPEED},
 }  # by the last word of a column's name
 LONGEST = 100  # times the simulated time that a record may last
 _NAME = re.compile(r"(?:(bead|contact) )?(?:([1-9]\d{0,8}) )?(?:dynamic )?(\w+)")  # of a column
-_HEADER = re.compile(r"\s*(.*?)\s*(?:\(([^()]*)\)|\[([^][]*)\])?\s*")  # name, (unit) or [unit]
-_CALIBRATION = re.compile(r"([-+.\deE]+)\s*(\S+)/(\w+)")  # number, unit, per unit of the file
+_HEADER = re.compile(r"(.*?) ?(?:[([] ?([^][()]*?) ?[])])?")  # name, (unit) or [unit]
+_CALIBRATION = re.compile(r"([-+.\deE]+)\s*(\S+)/(\w+)")  # number, unit, unit of the file
 
 
 @dataclass(frozen=True, eq=False)
 class MeasuredFile:
     """Names, units and entries of the columns of a file; `read` makes one.
 
-    names, units : of the columns, in the order of the file; names in lower case, "" for a column
-    without a unit. given : units and calibrations by the user, or "".
+    names : of the columns, in the order of the file; names in lower case. units : of each column,
+    by the file and by the user, who may give a calibration; "" for none.
     """
 
     path: Path
     names: tuple[str, ...]
-    units: tuple[str, ...]
-    given: tuple[str, ...]
+    units: tuple[tuple[str, str], ...]
     lines: tuple[tuple[int, list[str]], ...]  # number of the line in the file, and its entries
     decimal: str  # the decimal separator
 
@@ -77,52 +74,59 @@ class MeasuredFile:
         of columns without one, or calibrations, such as "12.5 N/V".
 
         Raises `SceneError`, in one line, for a file that cannot be read or has no such header, for
-        an unknown new name, and for a unit of a column that the file does not have once.
+        an unknown new name, and for a unit of a column that the file does not have.
         """
         for name in renamed or {}:
             if not (match := _NAME.fullmatch(name.lower())) or match[3] not in _UNITS:
                 known = "time, bead 8 force, contact 8 force, speed, displacement"
                 raise SceneError(f"column is {shorten(name)}: a name such as {known} is wanted")
         renamed = {name.lower(): header for name, header in (renamed or {}).items()}
+        new = {header: name for name, header in renamed.items()}
+        given = {
+            name.lower(): unit.replace("μ", "µ").strip() for name, unit in (units or {}).items()
+        }
         try:
             content = files.content(Path(path))
             try:
                 text = content.decode("utf-8-sig")
             except UnicodeDecodeError:
                 text = content.decode("latin-1")
-            lines = text.replace("\r\n", "\n").split("\n")
-            for start, line in enumerate(lines):  # noqa: B007
+            lines = text.replace("μ", "µ").split("\n")
+            for start, line in enumerate(lines, start=1):  # noqa: B007
                 mark = next((mark for mark in "\t;" if mark in line), ",")
-                header = next(csv.reader([line], delimiter=mark), [])
-                names, old, stated = _named(header, renamed)
+                cells = next(csv.reader([line], delimiter=mark))
+                header = [" ".join(cell.split()) for cell in cells]
+                parts = [_HEADER.fullmatch(cell).groups("") for cell in header]  # type: ignore[union-attr]
+                names = []
+                for cell, (name, _) in zip(header, parts, strict=True):
+                    other = "" if name.lower() in renamed else name.lower()
+                    names.append(new.get(cell, new.get(name, other)))
                 if {*wanted} <= {name.split(" ")[-1] for name in names} and {*renamed} <= {*names}:
                     break
             else:
                 columns = ", ".join((*wanted, *renamed.values()))
                 raise SceneError(f"no line names {columns}: --column NAME=HEADER names a column")
-            reader = csv.reader(lines[start + 1 :], delimiter=mark)
-            rows = [
-                (start + 1 + reader.line_num, row) for row in reader if any(map(str.strip, row))
-            ]
+            reader = csv.reader(lines[start:], delimiter=mark)
+            rows = [(start + reader.line_num, row) for row in reader if any(map(str.strip, row))]
         except (OSError, csv.Error, SceneError) as error:
             raise SceneError(f"{path}: {files.reason(error)}") from None
-        first = next(i for i, name in enumerate(names) if name.split(" ")[-1] == wanted[0])
-        if (
-            rows
-            and (entry := "".join(rows[0][1][first : first + 1]))
-            and not re.search(r"\d", entry)
-        ):
-            below = [entry.strip(" ()[]") for entry in rows.pop(0)[1]] + [""] * len(names)
+        decimal = "." if mark == "," else ","
+        stated = [unit for _, unit in parts]
+        if rows and np.isnan([_number(cell, decimal) for cell in rows[0][1]]).all():
+            below = [cell.strip(" ()[]") for cell in rows.pop(0)[1]] + [""] * len(names)
             stated = [unit or under for unit, under in zip(stated, below, strict=False)]
-        given = [""] * len(names)
-        for name, unit in (units or {}).items():
-            places = [i for i, n in enumerate(names) if name.lower() in (n, old[i].lower())]
-            if len(places) != 1:
-                wrong = f"unit is of {shorten(name)}: the header has {shorten(header)}"
-                raise SceneError(f"{path}: {wrong}")
-            given[places[0]] = unit.replace("μ", "µ").strip()
-        both = tuple(unit.replace("μ", "µ") for unit in stated), tuple(given)
-        return cls(Path(path), tuple(names), *both, tuple(rows), ",."[mark == ","])
+        old = [name.lower() for name, _ in parts]
+        if unknown := [name for name in units or {} if name.lower() not in (*names, *old)]:
+            wrong = f"unit is of {shorten(unknown[0])}: the header has {shorten(header)}"
+            raise SceneError(f"{path}: {wrong}")
+        added = [given.get(name) or given.get(o, "") for name, o in zip(names, old, strict=True)]
+        both = zip(stated, added, strict=True)
+        return cls(Path(path), tuple(names), tuple(both), tuple(rows), decimal)
+
+    @property
+    def has_units(self) -> bool:
+        """Whether a unit is stated, by the file or by the user; values are in SI then."""
+        return any(map(any, self.units))
 
     def column(self, name: str) -> Array:
         """Return the values of a column, (N,), in SI if the file has units.
@@ -156,49 +160,40 @@ class MeasuredFile:
 
     def _values(self, at: int) -> Array:
         """Return the values of the column at a place of the header."""
-        name, size = self.names[at], self._size(at)
-        entries = [(n, row[at].strip() if at < len(row) else "") for n, row in self.lines]
-        while entries and not entries[-1][1]:
-            del entries[-1]
-        values = np.empty(len(entries))
-        for i, (line, entry) in enumerate(entries):
-            try:
-                values[i] = float(entry.replace(self.decimal, ".")) * size
-            except ValueError:
-                values[i] = np.nan
-            if not np.isfinite(values[i]):
-                fault = f"column {name}, line {line}: {shorten(entry)} is no finite number"
+        cells = [(line, row[at].strip() if at < len(row) else "") for line, row in self.lines]
+        while cells and not cells[-1][1]:
+            del cells[-1]
+        values = self._size(at) * np.array([_number(cell, self.decimal) for _, cell in cells])
+        for (line, cell), value in zip(cells, values, strict=True):
+            if not np.isfinite(value):
+                fault = f"column {self.names[at]}, line {line}: {shorten(cell)} is no finite number"
                 raise SceneError(f"{self.path}: {fault}")
         return values
 
     def _size(self, at: int) -> float:
         """Return the number in SI of one unit of a column, 1 in a file without units."""
-        name, unit, given = self.names[at], self.units[at], self.given[at]
-        if not any(self.units) and not any(self.given):
+        if not self.has_units:
             return 1.0
-        known, factors = _UNITS[name.split()[-1]], _CALIBRATION.fullmatch(given)
-        if factors or not (unit and given) or unit == given:
-            number, to, per = factors.groups() if factors else ("1", *2 * (unit or given,))
-            by = _VOLTAGE if per in _VOLTAGE else known
+        name, (unit, given) = self.names[at], self.units[at]
+        known, match = _UNITS[name.split()[-1]], _CALIBRATION.fullmatch(given)
+        number, to, of = match.groups() if match else ("1", *2 * (given or unit,))
+        if unit in ("", of):
             with suppress(KeyError, ValueError):
-                return float(number) * known[to] / by[per] * by[unit or per]
+                return float(number) * known[to]
         says = f"the unit {shorten(unit)}" if unit else "no unit"
         says += f" and is given {shorten(given)}" if given else ""
         raise SceneError(
-            f"{self.path}: column {name} has {says}: one of "
-            f"{', '.join(known)} is wanted, or a calibration such as --unit 'CH1=12.5 N/V'"
+            f"{self.path}: column {name} has {says}: one of {', '.join(known)} is wanted, or a "
+            f"calibration such as --unit 'CH1=12.5 N/{unit or 'V'}'"
         )
 
 
-def _named(header: list[str], renamed: Mapping[str, str]) -> tuple[list[str], ...]:
-    """Return the new names of the entries of a header, the old names, and the units."""
-    parts = [_HEADER.fullmatch(" ".join(entry.split())).groups() for entry in header]  # type: ignore[union-attr]
-    old, new = [name for name, *_ in parts], {header: name for name, header in renamed.items()}
-    names = []
-    for entry, name in zip(header, old, strict=True):
-        other = "" if name.lower() in renamed else name.lower()
-        names.append(new.get(entry.strip(), new.get(name, other)))
-    return names, old, [(round_ or square or "").strip() for _, round_, square in parts]
+def _number(cell: str, decimal: str) -> float:
+    """Return the number in a cell, NaN if it holds none."""
+    try:
+        return float(cell.replace(decimal, "."))
+    except ValueError:
+        return np.nan
 
 
 @dataclass(frozen=True)
@@ -227,19 +222,6 @@ def sensor_columns(file: MeasuredFile, of: str = "contact") -> list[SensorColumn
         names = shorten([sensor.name for sensor in sensors])
         raise SceneError(f"{file.path}: two columns of {names} are of one sensor")
     return sorted(sensors, key=lambda sensor: sensor.kind)
-
-
-def amount(text: str, name: str, units: Mapping[str, float]) -> float:
-    """Read a positive number that a unit may follow, such as "4.76 mm", as a number in SI."""
-    number, unit = re.fullmatch(r"(.*?)\s*([^\W\d]*)", text.strip()).groups()  # type: ignore[union-attr]
-    try:
-        value = float(number) * ({"": 1.0} | dict(units))[unit.replace("μ", "µ")]
-    except (ValueError, KeyError):
-        value = np.nan
-    if not 0 < value < np.inf:
-        wanted = f"a positive number is wanted, perhaps with one of the units {', '.join(units)}"
-        raise SceneError(f"{name} is {shorten(text)}: {wanted}")
-    return value
 
 
 def check_span(path: str | Path, time: Array, duration: float) -> None:

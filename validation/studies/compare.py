@@ -108,7 +108,7 @@ def _read(
     if not names:
         raise SceneError("the scene names no sensors")
     measured = MeasuredFile.read(file, "time", "force", renamed=renamed, units=units)
-    if not chain.units and (any(measured.units) or any(measured.given)):
+    if not chain.units and (measured.has_units):
         raise SceneError(
             f"{file}: its units are stated, the scene's are not: units = 'SI' is wanted"
         )

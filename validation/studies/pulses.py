@@ -11,10 +11,10 @@ from validation.pictures import Curve, Panel
 from validation.pulses.noisy import noisy_pulses
 from validation.pulses.pulse import MeasureError
 from validation.pulses.sensors import SPEEDS, Reading, speeds_between
-from validation.report.command import column_options, option, study
+from validation.report.command import column_options, number, option, study
 from validation.report.result import Report
-from validation.scenes.checks import SceneError, one_of
-from validation.scenes.columns import LENGTH, MeasuredFile, amount, sensor_columns
+from validation.scenes.checks import SceneError, one_of, positive
+from validation.scenes.columns import MeasuredFile, sensor_columns
 from validation.studies.run import reading_tables
 
 _KINDS = ("bead", "contact")
@@ -26,7 +26,7 @@ _NOTE = (
 
 @study(
     click.argument("records", type=click.Path()),
-    option("--distance", metavar="LENGTH", says="Distance of neighbouring beads, as in '4.76 mm'."),
+    option("--distance", callback=number, says="Of neighbouring beads, in m or the file's unit."),
     option(
         "--of",
         default="contact",
@@ -37,7 +37,7 @@ _NOTE = (
 )
 def pulses(
     records: str,
-    distance: str | None = None,
+    distance: float | None = None,
     of: str = "contact",
     renamed: Mapping[str, str] | None = None,
     units: Mapping[str, str] | None = None,
@@ -45,7 +45,7 @@ def pulses(
     """Pulses at sensors, and the speeds between them. RECORDS, a CSV file, has the columns time
     and, for each sensor, such as "bead 15 force", "contact 15 force", "15 force" or, of a single
     sensor, "force". Beads and contacts are counted from 1. Units are stated in the header or by
-    --unit: results are then in SI; without any they are in the file's own units, as is a distance.
+    --unit: results are then in SI, as is a distance; without any they are in the file's own units.
     "bead 15 time" is the time of one sensor, the nearest column time on its left that of others.
 
     ``sensors``, ``speeds`` and ``echoes`` as of `validation.studies.run`, the static force from the
@@ -54,9 +54,9 @@ def pulses(
     Raises `MeasureError` where no sensor has a pulse.
     """
     one_of(of, _KINDS, "of")
-    apart = None if distance is None else amount(str(distance), "distance", LENGTH)
+    apart = None if distance is None else positive(distance, "distance")
     file = MeasuredFile.read(records, "time", "force", renamed=renamed, units=units)
-    si = any(file.units) or any(file.given)
+    si = file.has_units
     sensors = sensor_columns(file, of)
     if not sensors:
         raise SceneError(f"{records}: no column is the force of a sensor, such as contact 15 force")

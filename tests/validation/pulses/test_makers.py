@@ -63,7 +63,7 @@ def lecroy(t, F, V):
 
 def keysight(t, F, V):
     text = "x-axis,1,2\r\nsecond,Volt,Volt\r\n" + lines(t, *V, form="{:+.5E}", end="\r\n")
-    return text, ("1", "2", "x-axis"), {"1": VOLTS, "2": VOLTS}
+    return text, ("1", "2", "x-axis"), dict.fromkeys("12", "12.5 N/Volt")
 
 
 def labview(t, F, V):
@@ -81,7 +81,11 @@ def rigol(t, F, V):
 
 def picoscope(t, F, V):
     text = f"Time,Channel A,Channel B\n(ms),(mV),(mV)\n\n{lines(1e3 * t, *(1e3 * V))}"
-    return text, ("Channel A", "Channel B"), {"Channel A": VOLTS, "Channel B": VOLTS}
+    return (
+        text,
+        ("Channel A", "Channel B"),
+        {"Channel A": "0.0125 N/mV", "Channel B": "0.0125 N/mV"},
+    )
 
 
 def rohde_schwarz(t, F, V):
@@ -134,7 +138,7 @@ def test_pulses_are_read_within_three_errors(chain, tmp_path, style):
     names = zip(("bead 8 force", "14 force", "time"), headers, strict=False)
     options = {"renamed": {name: header for name, header in names if header}, "units": units}
     options |= {"of": "bead"} if headers else {}
-    found = pulses(file, distance=str(SPACING), **options).document()
+    found = pulses(file, distance=SPACING, **options).document()
     assert all(row["kind"] == options.get("of", "contact") for row in found["sensors"])
     assert len(found["sensors"]) == 2 - (style in (lecroy, siglent))
     for row in found["sensors"]:
