@@ -33,7 +33,7 @@ from lwa.base.exact import InputError, integer, one_of, positive, shorten, signe
 from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
-from lwa.envelopes.bloch import cell_mode
+from lwa.envelopes.modes import cell_mode
 from lwa.envelopes.response import Mode
 from lwa.law import ContactLaw, for_cell, substituted
 from lwa.linear.bloch import BRANCHES

@@ -158,8 +158,9 @@ def terms(
         Jet(tuple((n + base, e) for n, e in monomial.x), monomial.t): coefficient
         for monomial, coefficient in (algebra or closure.algebra).terms(polynomial).items()
     }
-    ordered = dict(sorted(raw.items(), key=lambda item: _complexity(item[0])))
-    return Terms(closure.model, ordered, power, divisor)
+    # The paper's order: u_xx³, u_xx u_xxx, u_xxxx; jets with u_τ last.
+    ordered = sorted(raw, key=lambda jet: (bool(jet.t), -sum(e for _, e in jet.x), jet))
+    return Terms(closure.model, {jet: raw[jet] for jet in ordered}, power, divisor)
 
 
 def by_order(coefficients: Mapping[int, Terms], form: str, linear: bool = True) -> list[str]:
@@ -173,8 +174,3 @@ def by_order(coefficients: Mapping[int, Terms], form: str, linear: bool = True) 
         rows = [f"    {found.text(jet)}: {found[jet]}" for jet in jets]
         lines += [f"  {form.format(n)}:", *rows] if rows else []
     return lines
-
-
-def _complexity(jet: Jet) -> tuple[bool, int, Jet]:
-    """Sort key of the paper's order: u_xx³, u_xx u_xxx, u_xxxx; jets with u_τ last."""
-    return bool(jet.t), -sum(e for _, e in jet.x), jet

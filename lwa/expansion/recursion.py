@@ -189,7 +189,8 @@ class Recursion:
         fields.pushes.append(self._derivatives(fields.force[-1][n], fields.pushes))
         slope = self.zero
         for m, term in enumerate(fields.means[n]):  # s_0 = P∂/(e^{P∂} - 1) of the mean strain
-            if factor := _bernoulli(m):
+            # Bernoulli's numbers, with B_1 = -1/2
+            if factor := fmpq(-1, 2) if m == 1 else to_flint(bernoulli(m)):
                 slope = slope + fmpq(self.P**m, factorial(m)) * factor * term
         for i in P:
             fields.slope[i].append(slope)
@@ -213,8 +214,3 @@ def _last(a: Series, b: Series) -> fmpq_mpoly:
     """Coefficient of t^n in the product a · b of two series, n the last order of a."""
     n = len(a) - 1
     return sum((x * b[n - j] for j, x in enumerate(a) if x), 0 * b[0])
-
-
-def _bernoulli(m: int) -> fmpq:
-    """The Bernoulli number B_m, with B_1 = -1/2."""
-    return fmpq(-1, 2) if m == 1 else to_flint(bernoulli(m))

@@ -122,7 +122,9 @@ def module(functions: Sequence[Function], language: str, title: Sequence[str]) -
     names: dict[sp.Symbol, sp.Symbol] = {}
     arguments = (s for f in functions for s in f.arguments)
     local = (s for f in functions for s, _ in f.local)
-    for symbol in sorted(dict.fromkeys(arguments), key=_is_given) + list(dict.fromkeys(local)):
+    # The name of a symbol of the chain yields to those of ξ, B, V_s and F.
+    ordered = sorted(dict.fromkeys(arguments), key=lambda symbol: symbol not in _ARGUMENTS)
+    for symbol in ordered + list(dict.fromkeys(local)):
         name = symbol.name
         if not name.isidentifier():
             raise InputError(f"{shorten(name)} is no name of a variable in a program")
@@ -161,11 +163,6 @@ TITLE = (
     "xi = x - V_s tau, |xi| <= pi/(2 beta), written by lwa. There is one where",
     "k > 1, G + H + I > 0 and V_s^2 > 0, which is not checked here.",
 )
-
-
-def _is_given(symbol: sp.Symbol) -> bool:
-    """True for a symbol of the chain, whose name yields to those of ξ, B, V_s and F."""
-    return symbol not in _ARGUMENTS
 
 
 class Functions(dict[str, Function]):
