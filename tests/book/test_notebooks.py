@@ -39,10 +39,11 @@ def test_no_cell_needs_the_book_or_myst(notebooks, book, page):
 
 
 @pytest.mark.slow
-def test_a_notebook_runs_in_an_empty_folder(notebooks, book, tmp_path):
+@pytest.mark.parametrize("page", ["cells", "experiment"])
+def test_a_notebook_runs_in_an_empty_folder(notebooks, book, tmp_path, page):
     from nbclient import NotebookClient
 
-    cells, there = notebooks.notebook("cells", book), {"metadata": {"path": tmp_path}}
+    cells, there = notebooks.notebook(page, book), {"metadata": {"path": tmp_path}}
     NotebookClient(cells, timeout=200, kernel_name="python3", resources=there).execute()
 
 
