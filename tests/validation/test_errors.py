@@ -20,8 +20,8 @@ from validation.pulses import steady
 from validation.pulses.pulse import Measured, exponent
 from validation.pulses.sensors import record
 from validation.scenes import scenefile
+from validation.studies.law import Medium, fit_power
 from validation.studies.limits import theory_at
-from validation.waves import contact_law
 from validation.waves.solver import exact_wave, measured, solve
 
 paper, figures, limits, runs = (
@@ -156,11 +156,11 @@ def test_exact():
 def test_intervals_of_the_law_are_those_of_their_scatter():
     """The ± of k, ln A and curvature in 200 draws: two to three standard deviations, as of t."""
     rng, force = np.random.default_rng(6), np.geomspace(0.1, 10, 12)
-    medium = contact_law.Medium.of(Cell((1,), spacing=1))
+    medium = Medium.of(Cell((1,), spacing=1))
     true = exact_wave([1], 1.5).c * force ** (1 / 6)
     rows = []
     for _ in range(200):
-        fit = contact_law.fit_power(medium, force, true * (1 + 0.01 * rng.normal(size=12)))
+        fit = fit_power(medium, force, true * (1 + 0.01 * rng.normal(size=12)))
         logs = math.log(fit.A.value), fit.A.relative_error
         rows.append((fit.k.value, fit.k.error, *logs, fit.curvature.value, fit.curvature.error))
     values, errors = np.array(rows)[:, ::2], np.array(rows)[:, 1::2]

@@ -1,13 +1,30 @@
-"""The contact law of a chain from measured peak forces and speeds, as a report."""
+"""The contact law of a chain of equal beads from peak contact forces F and speeds V of its pulses.
+
+**One power.** For F = A δ^k, mass m and spacing D the lattice's wave has
+
+    V²/D² = R(k) 2/((k+1) m) A^{1/k} F^{(k-1)/k},
+
+where R is the squared speed of the lattice's wave divided by that of the long-wave theory. So ln V
+is linear in ln F; least squares give k and A, and with k = 3/2 (Hertz) the unknown Young's modulus
+E of one material.
+
+Errors are 95 % intervals. The size of the noise is estimated from the residuals. Standard
+deviations of the data, if known, weight the data, and the noise is at least theirs: the residuals
+of few pulses may be small by chance.
+"""
 
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import click
 import numpy as np
+import scipy
 
 from lwa import Cell
 from lwa.base.arrays import Array
@@ -22,12 +39,16 @@ from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError
 from validation.scenes.columns import MeasuredFile
-from validation.waves.contact_law import Medium, fit_power, weights
+from validation.waves.solver import exact_wave
 
+_DRAWS = 1000  # of the coefficients of ln V, for the errors
+_HERTZ = 1.5
+LEAST, MOST = 1.01, 4.0  # k: below, speeds do not depend on force; beyond, R is not known
+LARGEST = 700.0  # |ln A|, at most
 _POWER = (Column("", "F = A δ^k"), Column("", "value", error=True))
 _UNITS = "A bead's mass or the distance is 1 as none is given: see --masses, --spacing, --spheres."
 _NOTE = "±: 95 % intervals by the scatter of the data."
-_LEAST = 6  # pulses: three more than the coefficients of the curvature's fit
+_FEWEST = 6  # pulses: three more than the coefficients of the curvature's fit
 
 
 @study(
@@ -101,7 +122,7 @@ def law(
 def _pulses(
     data: str, renamed: Mapping[str, str] | None, units: Mapping[str, str] | None
 ) -> tuple[Array, Array, Array | None]:
-    """Read `_LEAST` or more pulses; return rising forces, speeds and weights (None if none)."""
+    """Read `_FEWEST` or more pulses; return rising forces, speeds and weights (None if none)."""
     file = MeasuredFile.read(data, "force", "speed", renamed=renamed, units=units)
     errors = (name for name in ("force_error", "speed_error") if name in file.names)
     read = [file.column(name) for name in ("force", "speed", *errors)]
@@ -109,10 +130,12 @@ def _pulses(
         raise SceneError(f"{data}: columns of one length are wanted, not of {[*map(len, read)]}")
     order = np.argsort(read[0])
     force, speed, *deviations = (values[order] for values in read)
-    if len(force) < _LEAST or not (force[0] > 0 and speed.min() > 0):
-        raise SceneError(f"{data}: at least {_LEAST} pulses of positive force and speed are wanted")
-    if (different := len(np.unique(force))) < _LEAST - 2:
-        raise SceneError(f"{data}: {different} different forces: {_LEAST - 2} or more are wanted")
+    if len(force) < _FEWEST or not (force[0] > 0 and speed.min() > 0):
+        raise SceneError(
+            f"{data}: at least {_FEWEST} pulses of positive force and speed are wanted"
+        )
+    if (different := len(np.unique(force))) < _FEWEST - 2:
+        raise SceneError(f"{data}: {different} different forces: {_FEWEST - 2} or more are wanted")
     if not deviations:
         return force, speed, None
     if len(deviations) != 2 or not min(map(np.min, deviations)) > 0:
@@ -134,3 +157,132 @@ def _modulus(content: dict[str, Any], material: str, stiffness: Measured) -> Mea
         raise SceneError(f"material is {shorten(material)}: the spheres are not made of it")
     # Hertz: A = E √(2R)/(3 (1 - ν²)), proportional to E.
     return derived(lambda A: A / contact(1.0), stiffness)
+
+
+@cache
+def _series() -> np.polynomial.Chebyshev:
+    """Return R(k), 1.008 ≤ k ≤ 4, as an interpolant of degree 20."""
+    exact = np.vectorize(lambda k: exact_wave([1], k).c2 * (k + 1) / 2)
+    # The lowest node is at k = 1.012: there are no exact waves below 1.01.
+    return np.polynomial.Chebyshev.interpolate(exact, 20, (1.008, 4))
+
+
+def speed_ratio(k: Any) -> Array:
+    """Return R(k), squared speed of the lattice's pulse over the theory's, 1 ≤ k ≤ 4."""
+    return np.asarray(_series()(np.clip(k, 1, 4)))
+
+
+@dataclass(frozen=True, eq=False)
+class Medium:
+    """Mass, spacing and speed ratio R(k) of the chain in which pulses were measured."""
+
+    mass: float  # m
+    spacing: float  # D
+    ratio: Callable[[Any], Array] = speed_ratio
+    ratio_error: float = 1e-10  # relative, measured between the nodes
+
+    @classmethod
+    def of(cls, cell: Cell) -> Medium:
+        """Make the medium of a chain whose cell is one bead, all numbers."""
+        if cell.size > 1:
+            raise SceneError(f"the cell has {cell.size} beads: equal beads are wanted")
+        for name, value in (("spacing", cell.spacing), ("mass", cell.masses[0])):
+            if not value.is_number:
+                raise SceneError(f"{name} is {value}: a number is wanted")
+        return cls(float(cell.masses[0]), float(cell.spacing))
+
+    def log_stiffness(self, slope: Any, constant: Any) -> Array:
+        """Return ln A of the power law with ln V = slope · ln F + constant, F of contacts."""
+        k = _exponent(slope)
+        unit = np.log(2 * self.ratio(k) / ((k + 1) * self.mass)) / 2
+        return np.asarray(2 * k * (constant - math.log(self.spacing) - unit))
+
+
+def _exponent(slope: Any) -> Any:
+    """Return k = 1/(1 - 2 d ln V/d ln F), at most 50."""
+    return 1 / (1 - 2 * np.minimum(slope, 0.49))
+
+
+@dataclass(frozen=True, eq=False)
+class PowerFit:
+    """Fit of F = A δ^k, with 95 % errors."""
+
+    k: Measured
+    A: Measured
+    correlation: float  # of k and ln A
+    hertz: Measured  # A at k = 3/2
+    curvature: Measured  # coefficient of (ln F)² in a parabola for ln V; 0 for one power
+    residual: float  # standard deviation of ln V from the fit
+
+    @property
+    def one_power(self) -> bool:
+        """True if one power fits: the curvature of ln V(ln F) is 0 within its error."""
+        return abs(self.curvature.value) <= self.curvature.error
+
+
+def weights(force: Array, speed: Array, force_error: Array, speed_error: Array) -> Array:
+    """Return the weights (N,) of pulses, from the standard deviations of their forces and speeds.
+
+    A residual of ln V = slope · ln F + constant has the variance (σ_V/V)² + (slope σ_F/F)², with
+    the slope of a first fit without weights. The weights are the inverse standard deviations.
+    """
+    slope = np.polyfit(np.log(force), np.log(speed), 1)[0]
+    return np.asarray(1 / np.hypot(speed_error / speed, slope * force_error / force))
+
+
+def fit_power(medium: Medium, force: Array, speed: Array, weight: Array | None = None) -> PowerFit:
+    """Fit one power F = A δ^k to peak forces and speeds (N,), N ≥ 4, by least squares of ln V.
+
+    weight : (N,), see `weights`; by default all pulses weigh the same.
+    """
+    x, y = np.log(force), np.log(speed)
+    (slope, constant), middle = _fit(x, y, 1, weight)
+    k, log_A = _exponent(slope), medium.log_stiffness(slope, constant - slope * middle)
+    if not LEAST <= k[0] <= MOST:
+        wanted = f"laws with k from {LEAST:g} to {MOST:g} are read"
+        raise SceneError(f"k is {k[0]:.3g} by the best fit: {wanted}")
+    sixth = (_HERTZ - 1) / (2 * _HERTZ)
+    (hertz,), _ = _fit(x, y - sixth * x, 0, weight)
+    (curvature, *_), _ = _fit(x, y, 2, weight)
+
+    def stiffness(log_A: Array, k: float) -> Measured:
+        log = _interval(log_A)
+        error = log.error + k * medium.ratio_error  # A ~ R^{-k}
+        if not abs(log.value) + error < LARGEST:
+            raise SceneError(f"A is e^({log}) by the best fit: this is no number of a computer")
+        return Measured(math.exp(log.value), math.exp(log.value + error))
+
+    return PowerFit(
+        _interval(k),
+        stiffness(log_A, float(k[0])),
+        float(np.corrcoef(k, log_A)[0, 1]),
+        stiffness(medium.log_stiffness(sixth, hertz), _HERTZ),
+        _interval(curvature),
+        float(np.std(y - np.polyval((slope[0], constant[0]), x - middle))),
+    )
+
+
+def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, float]:
+    """Fit a polynomial in x - middle; return coefficients (degree + 1, 1 + draws) and middle."""
+    w = np.ones_like(x) if weight is None else weight
+    middle = float(np.average(x, weights=w**2))  # slope and constant are uncorrelated about it
+    best, covariance = np.polyfit(x - middle, y, degree, w=w, cov="unscaled")
+    freedom = len(x) - degree - 1
+    scatter = np.sum((w * (y - np.polyval(best, x - middle))) ** 2) / freedom
+    covariance = covariance * (scatter if weight is None else max(scatter, 1.0))
+    # On data without scatter the rounding of ln F, of ln V and of the fit is left.
+    rounding = 2 * np.finfo(float).eps * (1 + np.abs(x) + np.abs(y))
+    change = np.linalg.pinv(w[:, np.newaxis] * np.vander(x - middle, degree + 1)) * w
+    largest = np.abs(change) @ rounding
+    # Coefficients, highest first, of the best fit, then draws from their distribution: Student's t
+    # with the scatter of the residuals.
+    shape = covariance + np.outer(largest, largest)
+    noise = scipy.stats.multivariate_t(None, shape, freedom, allow_singular=True)
+    draws = noise.rvs(_DRAWS, random_state=0).reshape(_DRAWS, degree + 1)
+    return np.vstack((best, best + draws)).T, middle
+
+
+def _interval(values: Array) -> Measured:
+    """Return the best fit's value, the first, with half the 95 % interval of the draws' values."""
+    error = np.ptp(np.quantile(values[1:], (0.025, 0.975))) / 2
+    return Measured(float(values[0]), float(values[0] + error))

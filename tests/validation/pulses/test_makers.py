@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import scipy
 
-from validation.studies.pulses import pulses
+from validation.studies.records import pulses
 
 N, MASS, A = 24, 29e-3, 9.4e9  # steel spheres of 19.05 mm
 CONTACTS, CALIBRATION, SPACING = (8, 14), 12.5, 19.05e-3

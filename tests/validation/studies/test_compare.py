@@ -10,7 +10,7 @@ from tests.commands import ended
 from validation import cli, simulate
 from validation.scenes.scene import SceneError
 from validation.scenes.scenefile import read_scene
-from validation.studies.compare import compare
+from validation.studies.records import compare
 
 SCENE = """
 duration = 40

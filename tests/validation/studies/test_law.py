@@ -12,8 +12,7 @@ from tests.commands import ended
 from validation import cli
 from validation.scenes.chains import STEEL_BEAD
 from validation.scenes.scene import SceneError
-from validation.studies.law import law
-from validation.waves.contact_law import Medium, fit_power, weights
+from validation.studies.law import Medium, fit_power, law, weights
 from validation.waves.solver import exact_wave
 
 FORCES = np.geomspace(0.1, 10, 12)

@@ -8,7 +8,7 @@ import pytest
 from tests.commands import ended
 from validation import cli
 from validation.scenes.scene import SceneError
-from validation.studies.pulses import pulses
+from validation.studies.records import pulses
 
 SCENE = """
 duration = 60
