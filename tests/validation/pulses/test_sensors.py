@@ -109,20 +109,6 @@ def stiffness():
     return 1.5 * 3.0 ** (2 / 3) * F0 ** (1 / 3)
 
 
-@pytest.mark.parametrize("method", ["DOP853", "symplectic"])
-def test_a_squeezed_chain_swings_in_bloch_waves(method):
-    """One bead free, the wall fixed: cos q(i + 1/2), q = π/(2n + 1), returns after its period."""
-    n, small = 12, 1e-6
-    q = math.pi / (2 * n + 1)
-    shape = small * np.cos(q * (np.arange(n) + 0.5))
-    omega = 2 * math.sqrt(stiffness()) * math.sin(q / 2)
-    scene = squeezed((1,) * n, duration=2 * math.pi / omega, displacements=shape)
-    run = simulate(scene, method=method)
-    # What is left of k ≠ 1 is of the order of the strain over that of F0.
-    np.testing.assert_allclose(run.displacements, shape, atol=small * small)
-    np.testing.assert_allclose(run.velocities, 0, atol=small * small * omega)
-
-
 def test_small_pulses_travel_at_the_speed_of_sound():
     """A pulse e^{-x²/2s²} of a dimer: at c = √(2K/(m1 + m2)) sites, less what disperses.
 
