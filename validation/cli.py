@@ -11,7 +11,7 @@ from lwa.command.cli import HELP, Commands, run, version
 STUDIES = {
     "compare": ("records", "Measured forces beside the simulation of their scene."),
     "exact": ("exact", "Exact solitary wave of the lattice: speed, widths and amplitudes."),
-    "figures": ("figures", "The figures of Porter et al. (2008), computed (a few seconds)."),
+    "figures": ("paper", "The figures of Porter et al. (2008), computed (a few seconds)."),
     "law": ("law", "Contact law from measured forces and speeds of pulses."),
     "limits": ("limits", "The theory's limits: equal masses, m1 ≫ m2, k → 1 (a few seconds)."),
     "paper": ("paper", "The steel:PTFE chain of the paper: speed, peak force and FWHM."),

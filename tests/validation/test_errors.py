@@ -24,9 +24,9 @@ from validation.studies.law import Medium, fit_power
 from validation.studies.limits import theory_at
 from validation.waves.solver import exact_wave, measured, solve
 
-paper, figures, limits, runs = (
+paper, limits, runs = (
     importlib.import_module(f"validation.studies.{name}")
-    for name in ("paper", "figures", "limits", "run")
+    for name in ("paper", "limits", "run")
 )
 disorder, gravity, precompressed, widths = (
     importlib.import_module(f"book.studies.{name}")
@@ -107,14 +107,14 @@ def test_paper():
 
 
 def of_figures(**options):
-    rows = figures.scaling(figures.MODULI[0], **options)
+    rows = paper.scaling(paper.MODULI[0], **options)
     speeds, forces = ([row[i] for row in rows] for i in (2, 3))
     return dict(enumerate((*speeds, *forces, exponent(forces, speeds))))
 
 
 @pytest.mark.slow
 def test_figures():
-    assert held(of_figures(), of_figures(tolerances=FINER)) >= 1 / LARGEST
+    assert held(of_figures(), of_figures(tolerances=FINER)) >= 1e-3  # as above
 
 
 def of_widths(monkeypatch, tolerances):

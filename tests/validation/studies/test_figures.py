@@ -8,8 +8,15 @@ import pytest
 
 from lwa import canonical_wave
 from validation.scenes.chains import PTFE_BEAD
-from validation.studies.figures import HEIGHTS, MODULI, RECORDED, figures, scaling
-from validation.studies.paper import HERTZ, chain_cell
+from validation.studies.paper import (
+    HEIGHTS,
+    HERTZ,
+    MODULI,
+    RECORDED,
+    chain_cell,
+    figures,
+    scaling,
+)
 
 
 @pytest.fixture(scope="module")
