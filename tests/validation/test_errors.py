@@ -25,8 +25,7 @@ from validation.studies.limits import theory_at
 from validation.waves.solver import exact_wave, measured, solve
 
 paper, limits, runs = (
-    importlib.import_module(f"validation.studies.{name}")
-    for name in ("paper", "limits", "run")
+    importlib.import_module(f"validation.studies.{name}") for name in ("paper", "limits", "run")
 )
 disorder, gravity, precompressed, widths = (
     importlib.import_module(f"book.studies.{name}")
