@@ -69,6 +69,7 @@ def test_the_modulus_of_the_wall_is_read_within_its_error(page):
     assert abs(read.value - true) < 3 * read.error < 0.1 * true
 
 
+@pytest.mark.slow
 def test_the_series_of_the_open_questions():
     """Growth of the roots, the best partial sums, and the two stages of the ratios."""
     page = cells_of("open")

@@ -213,6 +213,7 @@ def test_front_of_an_upright_chain():
 # --- the paper's column, unequal masses, damping
 
 
+@pytest.mark.slow
 def test_unequal_masses():
     """Losses at one bead, and the decay along chains of random masses."""
     excess = np.array([0.0025, 0.005, 0.01, 0.02])

@@ -42,6 +42,7 @@ def test_equal_beads():
     assert 2 < even / weak < 3.34
 
 
+@pytest.mark.slow
 def test_the_strongest_waves_of_all_default_chains_are_measured():
     """A wave in a fourth default chain, of four beads, fell apart: the command had no output."""
     found = rows(ratios=RATIOS[-1:])
@@ -49,6 +50,7 @@ def test_the_strongest_waves_of_all_default_chains_are_measured():
     assert all(abs(row["error_value"]) < 0.025 for row in found)
 
 
+@pytest.mark.slow
 def test_masses_matter_to_widths_only():
     """A weak wave of any cell: the same V/c0, and √(12 I) the width of equal beads; I = 1/12,
     1/9 for masses 2, 1."""
