@@ -65,7 +65,7 @@ def parameters(cell: Cell, k: sp.Expr) -> Parameters:
     model = shares_model(cell, k)
     wave = Observables(model, 1)
     trace = [float(t) for t in Dispersion(cell, model.k).trace.values()]
-    trace[0] = 0.0  # 2 cos(Pκ) = 2 at κ = 0, where one root is 0
+    # 2 cos(Pκ) = 2 = t_0 at κ = 0, where one root is 0: the others are those of Σ t_m Ω^{2m-2}
     optical = min(np.roots(trace[:0:-1]).real, default=math.inf)
     phi_1 = wave.log_force(0)[sp.S.One]
     slopes = (float(phi_1.get(d, 0)) for d in (2, 4))

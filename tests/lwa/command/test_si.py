@@ -82,11 +82,6 @@ def test_a_wave_of_spheres_has_the_values_of_python(capsys, file):
     found = result(capsys, *options, "--force", "10")
     for name in ("compression", "speed", "bead_velocity", "force"):
         assert found[f"{name}_value"] == float(getattr(wave, name))
-        assert abs(sp.N(sp.sympify(found[name]) / getattr(wave, name) - 1, 50)) < 1e-40
-    for quantity in ("strain", "force", "velocity"):
-        assert found["fwhm_value"][quantity] == float(wave.fwhm(quantity))
-        assert found["fwhm_time_value"][quantity] == float(wave.fwhm(quantity, "time"))
-    assert found["B_value"] == float(wave.strain)
     out = said(capsys, *options, "--force", "10")
     for words in ("masses 0.00045, 0.000123 kg", f"A = {float(A):.15g}", "D = 0.00476 m"):
         assert words in out

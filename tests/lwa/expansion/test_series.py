@@ -7,7 +7,6 @@ import sympy as sp
 
 from lwa import Cell, Dimer, ExpandedWave, InputError, expand, pulse_of_strike
 from lwa.base.exact import signed
-from lwa.expansion.radiation import parameters
 from tests.identity import same
 
 
@@ -26,13 +25,6 @@ def test_k_replaces_the_symbol_wherever_it_stands() -> None:
         assert ours.value == pytest.approx(own.value, rel=1e-14)
         assert ours.error == pytest.approx(own.error, rel=1e-9)
     assert symbolic.at(k=k) == numeric
-
-
-def test_radiation_of_irrational_shares_is_that_of_their_neighbours() -> None:
-    """Shares are generators of the ring where they are irrational, and numbers where not."""
-    near = parameters(Cell([1, 1], [1, 8]), sp.Rational(3, 2))
-    for k in (sp.Rational(3, 2) + sp.Rational(1, 10**9), sp.Rational(3, 2) - sp.sqrt(2) / 10**9):
-        assert parameters(Cell([1, 1], [1, 8]), k) == pytest.approx(near, rel=1e-7)
 
 
 def test_an_unlike_contacts_radiation_counts_in_the_error() -> None:

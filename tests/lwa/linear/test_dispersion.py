@@ -110,16 +110,6 @@ def test_long_waves_keep_their_digits():
     assert np.all(abs(chain.bands.branches(kappa)[:, 0] - series) < 1e-15)
 
 
-@given(cells(sizes=(2, 3, 4, 5)), st.floats(0, 6))
-@settings(max_examples=10)
-def test_two_cells_in_one_fold_the_bands(cell, kappa):
-    chain = Dispersion(cell)
-    double = Dispersion(Cell(cell.masses * 2, stiffnesses=cell.stiffnesses * 2))
-    assert double.acoustic(8) == chain.acoustic(8)
-    folded = chain.bands.branches([kappa, kappa + np.pi / cell.size]).ravel()
-    assert np.allclose(double.bands.branches(kappa), np.sort(folded), 0, 2e-13)
-
-
 def high_precision(cell, kappa, branch):
     """Ω by mpmath's Hermitian eigenvalues."""
     P = cell.size
@@ -171,31 +161,15 @@ def test_bands(cell):
     assert np.all(np.diff(chain.bands.branches(half), axis=0) * direction > -ROUNDING)
 
 
-def test_the_eigenvalues_of_a_ring_of_unlike_contacts():
-    """Eight cells in a ring, linearised by differences of the force."""
-    masses, stiffnesses, k, F0 = (1.0, 2.0, 0.5), (1.0, 3.0, 2.0), 1.5, 0.7
+def test_springs_of_the_laws():
+    """A_i F′ = k A_i^{1/k} F0^{1-1/k} of unlike contacts, and the bands of these springs."""
+    masses, stiffnesses, k, F0 = (1, 2, "1/2"), np.array([1.0, 3.0, 2.0]), 1.5, 0.7
     chain = LoadedChain(Cell(masses, stiffnesses, 1), Power(k), F0)
-    cells, P, h = 8, 3, 1e-6
-    size = cells * P
-    delta = (F0 / np.array(stiffnesses)) ** (1 / k)
-
-    def forces(u):
-        bends = np.tile(delta, cells) + u - np.roll(u, -1)
-        push = np.tile(stiffnesses, cells) * bends**k
-        return np.roll(push, 1) - push
-
-    rows = [(forces(h * e) - forces(-h * e)) / (2 * h) for e in np.eye(size)]
-    inertia = np.tile(masses, cells)
-    omega2 = np.linalg.eigvals(-np.array(rows) / inertia[:, None]).real
-    expected = np.sort(np.sqrt(np.maximum(omega2, 0)))
-    q = 2 * np.pi * np.arange(cells) / size
-    found = np.sort(chain.bands.branches(q).ravel())
-    assert found == pytest.approx(expected, abs=1e-4)  # √ of the differences' 1e-9 at ω = 0
-    edges = chain.bands.edges()
-    assert np.all(edges[:, 0] <= edges[:, 1])
-
-
-def test_springs_of_another_law():
+    springs = k * stiffnesses ** (1 / k) * F0 ** (1 - 1 / k)
+    assert np.array(chain.spring_constants, float) == pytest.approx(springs, rel=1e-13)
+    linear = LoadedChain(Cell(masses, springs, 1), Power(1), 1)
+    q = np.linspace(-3, 3, 7)
+    assert chain.bands.branches(q) == pytest.approx(linear.bands.branches(q), rel=1e-12)
     law = named("exponential", 2)
     chain = LoadedChain(Cell([1], [3], 1), law, 6)
     # (e^{2δ} - 1)/2 = 2, and A F′ = 3 e^{2δ}
