@@ -3,7 +3,7 @@
 A chain of steel spheres is struck at one end and touches a flat wall at the other. The contact with
 the wall is Hertz's, of stiffness A_w (`lwa.spheres.hertz`): a thick wall that carries no sound
 away. The softer the wall, the longer it holds the last beads, and the later the pulse is back at a
-contact inside the chain. Delay: time from the incident pulse to the highest pulse that follows it.
+contact inside the chain. Delay: time from the incident pulse to the pulse that follows it.
 Ratio: of their peak forces.
 
 Scaling: with the velocity v of the blow all times go as v^{-1/5}, and the ratio does not change.
@@ -61,7 +61,7 @@ def echo(
     wall = Material(positive(E, "E"), nu)
     beads = integer(beads, "beads", 5, 1000)
     pulse = of_momentum(canonical_wave(Cell.of_spheres([bead]), "3/2"), m * v)
-    held = _HOLD * (m / float(stiffness(bead, wall))) ** 0.4 / v**0.2
+    held = _HOLD * (m / float(stiffness(bead, wall))) ** 0.4
     scene = Scene.of_beads(
         [bead] * beads,
         wall=wall,
@@ -69,13 +69,10 @@ def echo(
         contact_sensors=(integer(sensor, "sensor", 2, beads - 2) - 1,),
         duration=2.5 * beads * float(2 * bead.radius / pulse.speed) + held,
     )
-    later = [
-        reading.numbers for reading, _ in echoes(record(scene, every=True).sensors, operator.add)
-    ]
-    if not later:
+    later = echoes(record(scene, every=True).sensors, operator.add)
+    if not later or not (numbers := later[0][0].numbers):
         raise MeasureError(f"contact {sensor}: no pulse comes back from the wall")
-    highest = max(later, key=lambda numbers: numbers["ratio"].value)
-    return highest["delay"], highest["ratio"]
+    return numbers["delay"], numbers["ratio"]
 
 
 def modulus(delay: Measured, nu: float = 0.3, **chain: Any) -> Measured:

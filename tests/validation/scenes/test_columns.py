@@ -38,6 +38,7 @@ def test_units_are_read(tmp_path, column, size):
         ("time (s),CH1 (V)", {"ch1": "1.5 kN/V"}, 1.5e3),
         ("time (s),CH1", {"CH1": "-2 N/V"}, -2),
         ("time (s),CH1 (pC)", {"CH1": "5 mN/pC"}, 5e-3),
+        ("time (s),CH1\nms", {"force": "kN"}, 1e3),
         ("time,CH1", {}, 1),
     ],
 )
@@ -50,7 +51,7 @@ def test_units_are_stated_by_header_row_or_user(tmp_path, header, units, size):
 @pytest.mark.parametrize(
     "text",
     [
-        "time (ms)\tforce (N)\n1,5\t-2e3\n2.5\t4\n",
+        "\ufefftime (ms)\tforce (N)\n1,5\t-2e3\n2.5\t4\n",
         "# 1 MHz; 8 bit\n\nTime,12:03\n time (ms) , force (N) \r\n1.5,-2e3\r\n\r\n2.5,4",
         'CH2,"time (ms)","force (N)"\n7,"1.5","-2e3"\n8,2.5,4\n9,,\n',
     ],
@@ -71,7 +72,9 @@ def test_names_are_compared_without_regard_to_case_but_for_renamed_ones(tmp_path
 @pytest.mark.parametrize(
     ("text", "times"),
     [
-        ("bead 2 time (s),1 time (s),bead 2 force (N),1 force (N)\n2,1,6,5\n", [[2], [1]]),
+        ("bead 2 time,1 time,bead 2 dynamic force,1 force\n2,1,6,5\n", [[2], [1]]),
+        ("time,1 force,time,2 force\n1,5,2,6\n", [[1], [2]]),
+        ("time,force,time\n1,5,2\n", [[1]]),
         ("1 force,time,2 force\n5,1,6\n,2,7\n", [[1], [1, 2]]),
     ],
 )
@@ -102,6 +105,7 @@ HEAD = "time (s),force (N)\n"
         ("# a\ntime,force\n1,2\n3\n4,5\n", {}, "column force, line 4: ''"),
         ("time,force\n1,inf\n", {}, "column force, line 2: 'inf'"),
         ("time,force\n1,2\n", {"renamed": {"time": "CH1"}}, "no line names time, force, CH1"),
+        ("time,force\n1,2\n", {"renamed": {"8 force": "CH1"}}, "no line names time, force, CH1"),
         ("time,force\n1,2\n", {"renamed": {"bead x force": "force"}}, "column is 'bead x force'"),
     ],
 )
