@@ -61,7 +61,7 @@ def echo(
     wall = Material(positive(E, "E"), nu)
     beads = integer(beads, "beads", 5, 1000)
     pulse = of_momentum(canonical_wave(Cell.of_spheres([bead]), "3/2"), m * v)
-    held = _HOLD * (m / float(stiffness(bead, wall))) ** 0.4
+    held = _HOLD * (m / float(stiffness(bead, wall))) ** 0.4 / v**0.2
     scene = Scene.of_beads(
         [bead] * beads,
         wall=wall,
