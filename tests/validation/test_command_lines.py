@@ -18,20 +18,25 @@ NUMBERS = (
 COUNTS = ("0", "1", "2", "8", "38", "-1", "1000000000", "1.5", "x", "", "15,34")
 FILES = ("pulses.csv", "flat.csv", "nan.csv", "wild.csv", "run.csv", "paper.toml", "none.csv", ".")
 RENAMED = ("time=x", "time", "a=b=c", "=", "")
+UNITS = ("time=ms", "force=2 N/V", "speed=m/s", "1 force=1e999 N/V", "x=s", "time=1..e N/V", "=")
 OPTIONS = {
     "exact": {"--k": NUMBERS, "--masses": NUMBERS},
     "resonances": {"--k": NUMBERS, "--count": ("1", "0", "7", "x")},
     "law": {
         "": FILES, "--masses": NUMBERS, "--spacing": NUMBERS, "--spheres": FILES,
         "--material": ("ptfe", "steel", "x", ""), "--degree": COUNTS,
+        "--unit": UNITS,
     },
     "paper": {"--velocity": NUMBERS},
     "run": {
         "": FILES, "--method": ("RKN86", "symplectic", "x"), "--rtol": NUMBERS,
         "--out": ("o.csv", "o.json", "o.npz", "x/y.csv", ""),
     },
-    "compare": {"": FILES, " ": FILES, "--column": RENAMED},
-    "pulses": {"": FILES, "--distance": NUMBERS, "--of": ("bead", "x"), "--column": RENAMED},
+    "compare": {"": FILES, " ": FILES, "--column": RENAMED, "--unit": UNITS},
+    "pulses": {
+        "": FILES, "--distance": NUMBERS, "--of": ("bead", "x"), "--column": RENAMED,
+        "--unit": UNITS,
+    },
     "sweep": {
         "--k": ("3/2", "x", "1:2", "0", "7"), "--omega": ("1", "x", "0", "1e300"),
         "--stretch": ("2", "0", "x"), "--file": ("s.sqlite", "pulses.csv", "x/y.sqlite", ""),

@@ -149,8 +149,8 @@ class MeasuredFile:
         """
         own = sensor.name.replace("dynamic ", "").replace("force", "time")
         times = [i for i, name in enumerate(self.names) if name == "time"]
-        left = [i for i in times if i < sensor.place or len(times) == 1]
-        places = [i for i, name in enumerate(self.names) if name == own != "time"] or left
+        places = [i for i, name in enumerate(self.names) if name == own != "time"]
+        places = places or [i for i in times if i < sensor.place or len(times) == 1]
         if not places:
             raise SceneError(f"{self.path}: {sensor.name} has no column {own} or time on its left")
         time, force = self._values(places[-1]), self._values(sensor.place)
@@ -213,9 +213,11 @@ def sensor_columns(file: MeasuredFile, of: str = "contact") -> list[SensorColumn
 
     Raises `SceneError` for two columns of one sensor, and for several of which one has no number.
     """
-    named = [(i, m) for i, name in enumerate(file.names) if (m := _NAME.fullmatch(name))]
-    named = [(i, m) for i, m in named if m[3] == "force"]
-    sensors = [SensorColumn(m[0], i, m[1] or of, int(m[2]) if m[2] else None) for i, m in named]
+    sensors = [
+        SensorColumn(name, place, m[1] or of, int(m[2]) if m[2] else None)
+        for place, name in enumerate(file.names)
+        if (m := _NAME.fullmatch(name)) and m[3] == "force"
+    ]
     if len(sensors) > 1 and (without := [s.name for s in sensors if s.number is None]):
         raise SceneError(f"{file.path}: {shorten(without[0])} has no number: several are there")
     if len({(sensor.kind, sensor.number) for sensor in sensors}) < len(sensors):
