@@ -82,6 +82,7 @@ def test_a_bad_value_is_refused_by_name(change, named):
         (Drive, {"velocity": 1, "amplitude": 1, "frequency": 1}, "drive has not one motion"),
         (Drive, {"amplitude": 1, "frequency": 0}, "drive.frequency is 0"),
         (Drive, {"amplitude": 1e300, "frequency": 1e10}, "the drive's acceleration comes out as"),
+        (Drive, {"amplitude": 1, "frequency": 1, "ramp": 1e-200}, "the drive's accel"),
         (Drive, {"velocity": 1, "ramp": "x"}, "drive.ramp is 'x'"),
         (Drive, {"time": (0, 1), "displacement": (0, 1)}, "drive has 2 times"),
         (Drive, {"time": (0, 1, 2, 2), "displacement": (0,) * 4}, "drive.time must"),

@@ -17,6 +17,7 @@ from lwa.spheres import beads
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes import scenefile
 from validation.scenes.chains import STEEL
+from validation.scenes.forcing import DAMPINGS, Damping
 from validation.scenes.scene import Scene, SceneError
 from validation.scenes.scenefile import read_scene, scene
 from validation.studies.paper import recorded_chain
@@ -257,13 +258,17 @@ def test_any_file_is_read_or_refused_in_one_line(data):
     [
         {"start": {"displacements": [0.1]}},
         {"chain": {"cell": [1, 2], "law": "hertz2:1,1/2", "stiffnesses": 1}},
-        {"damping": {"restitution": 0.9}},
         {"drive": {"velocity": 0.0}},
         {"drive": {"time": [0.0, 0.3, 0.6, 1.0], "displacement": [0.0, 1.0, 0.0, 0.0]}},
     ],
 )
 def test_these_keys_are_read(keys):
     assert scene(GOOD | keys) != scene(GOOD)
+
+
+def test_the_damping_is_of_its_kind_and_value():
+    for kind in DAMPINGS:
+        assert scene(GOOD | {"damping": {kind: 0.9}}).damping == Damping(kind, 0.9)
 
 
 def test_a_law_that_is_a_power_is_read_as_its_exponent():
@@ -278,9 +283,10 @@ def test_a_drive_is_read_from_a_file_beside_the_scene(tmp_path):
     assert scene(chain).drive.displacement == (0, 1e-3, 2e-3, 0)
     file.write_text(json.dumps(chain | {"drive": {"file": path.name}}))
     assert read_scene(file) == scene(chain)
-    for content in ("0,1\n", "time,displacement\n0,x\n", ""):
+    long = "time,displacement\n0,0\n1,0\n2,0\n100,0\n"
+    for content in ("0,1\n", "time,displacement\n0,x\n", "", long):
         path.write_text(content)
-        with pytest.raises(SceneError, match=r"shaker.csv: .*(line names|column)"):
+        with pytest.raises(SceneError, match=r"shaker.csv: .*(line names|column|units of time)"):
             scene(chain)
     with pytest.raises(SceneError, match=r"^none.csv: No such file"):
         scene(chain | {"drive": {"file": "none.csv"}})
