@@ -39,7 +39,11 @@ _PULSES = (
 
 @study(
     click.argument("records", type=click.Path()),
-    option("--distance", callback=number, says="Of neighbouring beads, in m or the file's unit."),
+    option(
+        "--distance",
+        callback=number,
+        says="Distance of neighbouring beads: in m, or in the unit of a file without units.",
+    ),
     option(
         "--of",
         default="contact",
