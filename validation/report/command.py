@@ -102,6 +102,16 @@ def output_option(name: str, suffixes: Sequence[str], says: str) -> Any:
     return option(name, callback=read, metavar="FILE", type=click.Path(), says=says)
 
 
+_UNIT = (
+    "Unit of a column whose header has none, as in --unit time=ms, or its calibration, as in "
+    "--unit 'CH1=12.5 N/V'; repeatable. If one unit is stated, all are wanted."
+)
+_COLUMN = (
+    "Header that stands for a column in the file, as in --column time='CH1 t'; repeatable. The "
+    "lines before the header are skipped."
+)
+
+
 def column_options(function: Any) -> Any:
     """Give a study that reads a measured file its options --column and --unit."""
 
@@ -115,23 +125,10 @@ def column_options(function: Any) -> Any:
             renamed[name] = header
         return renamed
 
-    for names, metavar, says in (
-        (
-            ("--unit", "units"),
-            "NAME=UNIT",
-            "Unit of a column whose header has none, as in --unit time=ms, or its calibration, as "
-            "in --unit 'CH1=12.5 N/V'; repeatable. If one unit is stated, all are wanted.",
-        ),
-        (
-            ("--column", "renamed"),
-            "NAME=HEADER",
-            "Header that stands for a column in the file, as in --column time='CH1 t'; repeatable. "
-            "The lines before the header are skipped.",
-        ),
-    ):
-        choice = option(*names, callback=read, multiple=True, metavar=metavar, says=says)
-        function = choice(function)
-    return function
+    pairs = {"callback": read, "multiple": True}
+    unit = option("--unit", "units", metavar="NAME=UNIT", says=_UNIT, **pairs)
+    column = option("--column", "renamed", metavar="NAME=HEADER", says=_COLUMN, **pairs)
+    return column(unit(function))
 
 
 def number(context: click.Context, given: click.Parameter, value: str | None) -> float | None:

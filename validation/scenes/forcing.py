@@ -98,25 +98,17 @@ class Drive:
         motions = (self.velocity is not None) + harmonic + bool(self.time or self.displacement)
         times, places = len(self.time), len(self.displacement)
         increasing = self.time[:1] in ((), (0,)) and (np.diff(self.time) > 0).all()
-        for wrong, message in (
-            (
-                motions != 1,
-                "drive has not one motion: velocity, amplitude and frequency, or time "
-                "and displacement are wanted",
-            ),
-            (
-                self.ramp != 0 and not harmonic,
-                f"drive.ramp is {shorten(self.ramp)}: it belongs to amplitude and frequency",
-            ),
-            (
-                times != places or 0 < times < 4,
-                f"drive has {times} times and {places} "
-                "displacements: equally many, four or more, are wanted",
-            ),
-            (not increasing, "drive.time must begin with 0 and increase"),
-        ):
-            if wrong:
-                raise SceneError(message)
+        if motions != 1:
+            wanted = "velocity, amplitude and frequency, or time and displacement are wanted"
+            raise SceneError(f"drive has not one motion: {wanted}")
+        if self.ramp != 0 and not harmonic:
+            wrong = "it belongs to amplitude and frequency"
+            raise SceneError(f"drive.ramp is {shorten(self.ramp)}: {wrong}")
+        if times != places or 0 < times < 4:
+            wanted = "equally many, four or more, are wanted"
+            raise SceneError(f"drive has {times} times and {places} displacements: {wanted}")
+        if not increasing:
+            raise SceneError("drive.time must begin with 0 and increase")
         if self.velocity is not None:
             finite(self.velocity, "drive.velocity")
         elif harmonic:
