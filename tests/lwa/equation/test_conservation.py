@@ -4,7 +4,7 @@ import pytest
 import sympy as sp
 from sympy.calculus.euler import euler_equations
 
-from lwa import Cell, D, Dimer, InputError, homogenize
+from lwa import Cell, D, Dimer, homogenize
 from lwa.equation.terms import Jet
 from tests.lwa.fields import energy_density, right_side
 
@@ -40,25 +40,25 @@ def test_the_canonical_field_has_an_energy_at_third_order(k):
     assert (jet, coefficient) == (Jet(((2, 2),)), -pde.I / 2)
 
 
-def test_the_canonical_field_is_in_conservation_form_at_every_order():
-    for cell in (Dimer("m1", "m2"), Cell(["m1", "m1", "m2"])):
-        assert homogenize(cell, 8, closure="full", field="center").pde.conservative
-    # three different masses have no mirror symmetry and even orders from D^{k+4} on
-    chiral = homogenize(Cell([1, 2, 3]), 8, closure="full", field="center").pde
-    assert chiral.conservative
-    assert chiral.vanishing == (2,)
-
-
-def test_the_first_field_of_the_full_closure_conserves_momentum_up_to_third_order_only():
-    assert homogenize(Dimer("m1", "m2"), 4, closure="full").pde.conservative
-    assert not homogenize(Dimer("m1", "m2"), 6, closure="full").pde.conservative
-
-
-def test_the_optical_branch_does_not_conserve_momentum():
-    pde = homogenize(Dimer("m1", "m2"), branch="optical").pde
-    assert not pde.conservative
-    with pytest.raises(InputError, match="acoustic"):
-        pde.traveling_wave()
+@pytest.mark.parametrize(
+    ("cell", "order", "kind", "conservative"),
+    [
+        (Dimer("m1", "m2"), 8, {"closure": "full", "field": "center"}, True),
+        (Cell(["m1", "m1", "m2"]), 8, {"closure": "full", "field": "center"}, True),
+        # three different masses have no mirror symmetry and even orders from D^{k+4} on
+        (Cell([1, 2, 3]), 8, {"closure": "full", "field": "center"}, True),
+        (Dimer("m1", "m2"), 4, {"closure": "full"}, True),
+        (Dimer("m1", "m2"), 6, {"closure": "full"}, False),
+        (Dimer("m1", "m2"), 3, {}, False),  # asked of D^{k+3} at least
+        (Dimer("m1", "m2"), 4, {"branch": "optical"}, False),
+    ],
+)
+def test_which_equations_conserve_momentum(cell, order, kind, conservative):
+    """The canonical field's at every order, the first field's up to the third order only."""
+    pde = homogenize(cell, order, **kind).pde
+    assert pde.conservative == conservative
+    if cell == Cell([1, 2, 3]):
+        assert pde.vanishing == (2,)
 
 
 @pytest.mark.parametrize(("masses", "conservative"), [((1, 1), True), ((3, 1), False)])

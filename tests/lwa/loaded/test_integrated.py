@@ -9,6 +9,7 @@ from scipy.interpolate import CubicSpline
 
 from lwa import Lattice, Link, Power, loaded_wave
 from lwa.law import named
+from validation import measure
 
 WIDTHS, PART = 40, 24.0
 """FWHM over which a wave runs before it is timed, and sites over which it is timed."""
@@ -33,15 +34,6 @@ def random_lattice(seed):
     load = float(draw.choice([0.0, 1.0, 1.0]))
     rise = round(math.exp(draw.uniform(-2, 0.5)), 2)
     return Lattice(masses[: 1 + (seed % 4 > 1)], links), load + rise, load
-
-
-def peak(times, values):
-    """Time and height of the largest value, between the samples."""
-    n = int(np.argmax(values))
-    n = min(max(n, 4), len(values) - 5)
-    near = CubicSpline(times[n - 4 : n + 5], values[n - 4 : n + 5])
-    at = min(near.derivative().roots(extrapolate=False), key=lambda t: abs(t - times[n]))
-    return at, float(near(at))
 
 
 def passage(lattice, wave):
@@ -78,9 +70,11 @@ def passage(lattice, wave):
     start = np.concatenate([falling(x) - falling(fine[-1]), wave.along(x, "velocity")])
     run = solve_ivp(rate, (0, times[-1]), start, "DOP853", times, rtol=1e-9, atol=1e-11)
     cells = [round((5 * width + way + extra) / P) for extra in (0, PART)]
-    first, last = ([peak(times, run.y[i[n]] - run.y[j[n]]) for i, j, _ in links[:P]] for n in cells)
-    speed = P * (cells[1] - cells[0]) / (last[0][0] - first[0][0])
-    rises = [(a + b) / 2 for (_, a), (_, b) in zip(first, last, strict=True)]
+    first, last = (
+        [measure(times, run.y[i[n]] - run.y[j[n]]) for i, j, _ in links[:P]] for n in cells
+    )
+    speed = P * (cells[1] - cells[0]) / (last[0].arrival - first[0].arrival)
+    rises = [(a.peak + b.peak) / 2 for a, b in zip(first, last, strict=True)]
     if P == 1:  # the static force at the peak strain
         strain = float(lattice.static(wave.precompression).strain)
         return speed, float(lattice.statics.force(np.array(strain + rises[0])))
@@ -91,14 +85,16 @@ def passage(lattice, wave):
 SLOW = [pytest.param(n, marks=pytest.mark.slow) for n in range(3, 20)]
 
 
-@pytest.mark.parametrize("seed", [0, 2, *SLOW])
+@pytest.mark.parametrize("seed", [0, 2, "alike", *SLOW])
 def test_the_speed_is_right_within_its_error(seed):
     """Of seeds 0 to 19, with what the wave has left when it passes.
 
     A wave whose error is NaN has no bound to be held to: unlike particles without a load radiate,
     seed 14 all of the wave.
     """
-    lattice, force, load = random_lattice(seed)
+    lattice, force, load = random_lattice(14 if seed == "alike" else seed)
+    if seed == "alike":  # equal masses
+        lattice = Lattice((1, 1), lattice.links)
     wave = loaded_wave(lattice, force=force, precompression=load)
     if not math.isnan(wave.speed_error):
         speed, found = passage(lattice, wave)
