@@ -236,8 +236,7 @@ class Scene:
         masses = tuple(_number(m, "mass") for m in cell.masses) * repeats
         stiffnesses = tuple(_number(A, "stiffness") for A in cell.stiffnesses) * repeats
         spacings = (float(cell.spacing),) * (len(masses) - 1) if cell.spacing.is_number else ()
-        contacts = stiffnesses[:-1]
-        return cls(masses=masses, stiffnesses=contacts, k=k, spacings=spacings, **rest)
+        return cls(masses=masses, stiffnesses=stiffnesses[:-1], k=k, spacings=spacings, **rest)
 
     @classmethod
     def of_beads(

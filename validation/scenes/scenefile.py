@@ -12,7 +12,6 @@ Unknown keys are refused, and every fault is one line that names the key.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -112,22 +111,21 @@ def _sensors(count: int) -> Reader:
 
 def _defects(value: Any, name: str) -> list[Table]:
     """Read the tables of ``defects``, at most one of each bead and contact."""
-    defects: list[Table] = each(_defect)(value, name)
-    kinds = [defect.one("contact", "bead") for defect in defects]
-    rows = zip(kinds, defects, strict=True)
-    for at, tables in Counter(f"{kind} {shorten(row.entries[kind])}" for kind, row in rows).items():
-        if tables > 1:
-            raise SceneError(f"{name} has {tables} tables of {at}: one is wanted")
-    return defects
+    found: dict[str, Table] = {}
+    for defect in each(_defect)(value, name):
+        kind = defect.one("contact", "bead")
+        if (at := f"{kind} {shorten(defect.entries[kind])}") in found:
+            raise SceneError(f"{name} has two tables of {at}: one is wanted")
+        found[at] = defect
+    return [*found.values()]
 
 
 def _defect(value: Any, name: str) -> Table:
     """Read one table of ``defects``."""
-    of_contact = "contact" in entries(value, name)
-    given = Table(value, name, ("contact", "stiffness") if of_contact else ("bead", "like", "mass"))
-    given.one("contact", "bead")
-    if not of_contact:
-        given.one("like", "mass")
+    if "contact" in entries(value, name):
+        return Table(value, name, ("contact", "stiffness"))
+    given = Table(value, name, ("bead", "like", "mass"))
+    given.one("like", "mass")
     return given
 
 

@@ -63,7 +63,7 @@ def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
 
 
 _RATIOS = (
-    Column("mass_ratio", "m2/m1", format=".6g"),
+    Column("mass_ratios", "m2/m1", format=".6g"),
     Column("c2_value", "c² at peak force 1", format=".6g"),
     Column("tail_value", "tail", format=".0e"),
     Column("residual_value", "residual", format=".0e"),
@@ -80,10 +80,10 @@ def resonances(k: float, count: int) -> Report:
     waves, xi = special_ratios(k, count), np.linspace(-5, 5, 1001)
     rows = tuple((wave.omega, wave.c2, wave.tail, wave.residual) for wave in waves)
     curves = (Curve(f"m2/m1 = {w.omega:.4f}", xi, w.force(xi), "-") for w in waves)
-    names = "mass_ratios", "c2_value", "tail_value", "residual_value"
     return Report(
         f"k = {k:g}: dimers with a solitary wave",
         (Table(_RATIOS, rows),),
         panels=(Panel("ξ / D", "force of a contact", tuple(curves)),),
-        data={"k_value": k} | dict(zip(names, zip(*rows, strict=True), strict=True)),
+        data={"k_value": k}
+        | {c.key: values for c, values in zip(_RATIOS, zip(*rows, strict=True), strict=True)},
     )

@@ -153,7 +153,7 @@ REFUSED = [
     ({"defects": [{"bead": 4, "mass": 1}]}, "defects number 1.bead is 4"),
     ({"defects": [{"bead": 1, "like": "ball"}]}, "defects number 1.like names a bead"),
     ({"defects": [{"contact": 3, "stiffness": 1}]}, "defects number 1.contact is 3"),
-    ({"defects": [{"bead": 3, "mass": m} for m in (1, 2)]}, "defects has 2 tables of bead 3"),
+    ({"defects": [{"bead": 3, "mass": m} for m in (1, 2)]}, "defects has two tables of bead 3"),
     ({"wall": {"material": "steel"}}, "wall.material is given"),
     ({"wall": {"material": "wood"}} | BALLS, "wall.material is 'wood': one of steel, steel 316, "),
     ({"striker": {"velocity": 1}, "start": {}}, "striker and start are both there"),
