@@ -45,14 +45,14 @@ springs = st.floats(0.2, 5)
 @settings(max_examples=40, deadline=None)
 @given(st.data())
 def test_the_coefficient_is_that_of_the_bloch_branch(data):
-    """Random cells of P = 1 … 4 particles with links of range 1 … 3, against eigenvalues."""
+    """Random cells of P = 1 … 4 particles, links of range 1 … 3 in any order, and eigenvalues."""
     P = data.draw(st.integers(1, 4))
     ends = [(i, i + 1, data.draw(springs)) for i in range(P)]
     for _ in range(data.draw(st.integers(0, 3))):
         i = data.draw(st.integers(0, P - 1))
         ends.append((i, i + data.draw(st.integers(1, 3)), data.draw(springs)))
     masses = [data.draw(springs) for _ in range(P)]
-    lattice = Lattice(masses, springs_of(*ends))
+    lattice = Lattice(masses, springs_of(*data.draw(st.permutations(ends))))
     I, c2 = numeric_dispersion(masses, ends)
     found = lattice.statics.samples(np.array(1.0))
     assert found[2] == pytest.approx(I, rel=1e-5, abs=1e-5)  # differences of 1e-10 over q² = 1e-5
@@ -82,15 +82,6 @@ def test_hertz_and_linear_contacts_in_turn():
     )
     assert float(number.speed) == pytest.approx(float(wave.speed.subs(at)), rel=1e-14)
     assert number._square == pytest.approx(float(number.speed) ** 2, rel=2e-14)  # by quadrature
-
-
-def test_the_order_of_links_does_not_matter():
-    """Masses 1, 2, 5 with springs 1, 2, 7: I by eigenvalues."""
-    ends = [(0, 1, 1.0), (1, 2, 2.0), (2, 3, 7.0)]
-    known, _ = numeric_dispersion([1, 2, 5], ends)
-    for row in (ends, [ends[i] for i in (2, 0, 1)]):
-        lattice = Lattice([1, 2, 5], springs_of(*row))
-        assert lattice.statics.samples(np.array(1.0))[2] == pytest.approx(known, rel=1e-5)
 
 
 @pytest.mark.parametrize("force", ["1/1000", "1", "40"])
