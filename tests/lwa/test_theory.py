@@ -1,8 +1,10 @@
-"""One call from cell to theory, and what it refuses."""
+"""One call from a cell to its theory: decimals, progress, particles in any order."""
 
 import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from lwa import Dimer, homogenize
+from lwa import Cell, Dimer, homogenize
 from tests.commands import terminal
 
 
@@ -22,3 +24,20 @@ def test_high_orders_show_their_progress_on_a_terminal(capsys):
         assert "orders:" in shown()
     homogenize(Dimer(1, 2), 12, k="3/2")
     assert capsys.readouterr().err == ""
+
+
+values = st.fractions(min_value="1/9", max_value=9, max_denominator=9)
+
+
+@given(st.lists(values, min_size=2, max_size=4), st.integers(1, 3))
+@settings(max_examples=10)
+def test_the_canonical_equation_is_the_same_from_every_particle(masses, n):
+    """Particles named anew change the field that the wave equation is about, and no wave."""
+    n %= len(masses)
+    found, again = (
+        homogenize(Cell(cell), 7, k="3/2", closure="full", field="center").pde.coefficients
+        for cell in (masses, masses[n:] + masses[:n])
+    )
+    assert {n: dict(terms) for n, terms in found.items()} == {
+        n: dict(terms) for n, terms in again.items()
+    }
