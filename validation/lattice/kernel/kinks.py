@@ -25,7 +25,6 @@ Quintic = tuple[float, float, float, float, float, float]
 POINTS = 10  # of the rule, and places that are looked at together
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(POINTS)
 _U, _W = (1 + _NODES) / 2, _WEIGHTS / 2
-NEAR = 0.3  # a kink is near if δ at one end of a step is less than NEAR times δ at the other end
 _FAR = 1.0  # greatest distance of a root from an interval that it shapes, in steps
 _PLACES = 8  # parts of a step at whose ends a contact is looked at
 
@@ -97,24 +96,6 @@ def fitted_quintic(d: float, v: float, a: float, end: float, end_v: float, end_a
     # c3, c4 and c5 solve the conditions at x = 1, of which d, v and c2 leave r0, r1 and r2.
     r0, r1, r2 = end - d - v - c2, end_v - v - 2 * c2, end_a - 2 * c2
     return (d, v, c2, 10 * r0 - 4 * r1 + r2 / 2, -15 * r0 + 7 * r1 - r2, 6 * r0 - 3 * r1 + r2 / 2)
-
-
-@part
-def near_kink(
-    before: float, after: float, rise: float, end_rise: float, strong: bool, changed: bool
-) -> bool:
-    """Return True if a contact opens or closes in a step, or nearly, with a force that matters.
-
-    before, after : compressions at the step's ends. rise, end_rise : their rates times the step.
-    strong : True if the force at one end matters. changed : True if the contact pushes at one end
-    and does not at the other. A contact that is open at both ends can close in between where the
-    tangents at the ends meet at δ > 0.
-    """
-    most = max(before, after)
-    near = (most > 0.0) & (min(before, after) < NEAR * most)
-    meeting = (after - end_rise) * rise - before * end_rise > 0.0
-    unseen = (most <= 0.0) & (rise > 0.0) & (end_rise < 0.0) & meeting
-    return (strong & (near | changed)) | unseen
 
 
 @part
@@ -233,20 +214,6 @@ def _summit(c: Quintic, a: float, b: float) -> float:
     return 0.5 * (a + b)
 
 
-@part
-def _at_most_one_root(c: Quintic) -> bool:
-    """Return True if p has at most one root in the step, by the signs of Bernstein's coefficients.
-
-    The number of roots is at most the number of sign changes (Descartes' rule).
-    """
-    b1, b2 = c[0] + c[1] / 5, c[0] + (4 * c[1] + c[2]) / 10
-    b3 = c[0] + (6 * c[1] + 3 * c[2] + c[3]) / 10
-    b4 = c[0] + (4 * c[1] + 3 * c[2] + 2 * c[3] + c[4]) / 5
-    b5 = c[0] + c[1] + c[2] + c[3] + c[4] + c[5]
-    s0, s1, s2, s3, s4, s5 = c[0] > 0.0, b1 > 0.0, b2 > 0.0, b3 > 0.0, b4 > 0.0, b5 > 0.0
-    return (s0 != s1) + (s1 != s2) + (s2 != s3) + (s3 != s4) + (s4 != s5) < 2
-
-
 @inner
 def integrals(
     law: Law, c: Quintic, h: float, points: Array
@@ -259,9 +226,8 @@ def integrals(
     before, rise = c[0], c[1]
     pushed = pushes(law, before, rise / h)
     top = before
-    places = 1 if not law.damped and _at_most_one_root(c) else _PLACES
-    for m in range(1, places + 1):
-        low, high = (m - 1) / places, m / places
+    for m in range(1, _PLACES + 1):
+        low, high = (m - 1) / _PLACES, m / _PLACES
         p, slope = value_and_slope(c, high)
         a = b = 0.0  # an interval in which the contact pushes, and that ends by now
         now = pushes(law, p, slope / h)
@@ -280,7 +246,7 @@ def integrals(
                 top = max(top, deepest)
                 a = _change(law, c, h, low, peak, True)
                 b = _change(law, c, h, peak, high, False)
-        if now and m == places:
+        if now and m == _PLACES:
             a, b = start, 1.0
         if b > a:
             part_of = _closed(law, c, h, a, b, points)

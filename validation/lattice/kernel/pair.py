@@ -36,13 +36,14 @@ from validation.lattice.kernel.kinks import (
     forces_along,
     integrals,
     law_of,
-    near_kink,
     push,
     stored,
     value_and_slope,
 )
 
 _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the tolerance
+# A contact is nearly open at a step's one end if δ there is less than _NEAR times δ at the other.
+_NEAR = 0.3
 _JUMP = 0.25  # least effect of a jump at which a step ends, in units of the tolerance
 # Step-size control of Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.4.
 # An error scales as h^{lower + 1}. The next step is _SAFETY times the step with an error equal to
@@ -223,7 +224,13 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
         first, then = start[i + ONE] + load[i], end[i + ONE] + load[i]
         changed = chain.damped & ((first > 0.0) != (then > 0.0))
         strong = (max(first, then) > least) | (chain.damped & ((before > 0.0) != (after > 0.0)))
-        kink = near_kink(before, after, rise, end_rise, strong, changed)
+        most = max(before, after)
+        near = (most > 0.0) & (min(before, after) < _NEAR * most)
+        # A contact that is open at both ends can close in between where the tangents at the ends
+        # meet at δ > 0.
+        meeting = (after - end_rise) * rise - before * end_rise > 0.0
+        unseen = (most <= 0.0) & (rise > 0.0) & (end_rise < 0.0) & meeting
+        kink = (strong & (near | changed)) | unseen
         mark = kink & (chain.A[i] > 0.0) & (jumped[i + ONE] == 0.0)
         marks[i + ONE] = 1.0 if mark else 0.0
         count += 1 if mark else 0
