@@ -38,11 +38,16 @@ everything optional is installed."""
 
 
 def pytest_collection_modifyitems(items):
-    """Put the theory first: of two processes one derives while the other compiles the engine."""
+    """Put the theory first: of two processes one derives while the other compiles the engine.
+
+    What the book's demonstrations show is tested with the slow tests.
+    """
     items.sort(key=lambda item: not item.nodeid.startswith(("tests/lwa/", "lwa/")))
     for item in items:
         if item.nodeid.startswith(("tests/validation/", "tests/book/studies/")):
             item.fixturenames.insert(0, "engine")
+        if item.nodeid.startswith("tests/book/studies/") and "refusals" not in item.nodeid:
+            item.add_marker("slow")
 
 
 def pytest_collection_finish(session):

@@ -70,7 +70,7 @@ LAWS = {
 
 
 @pytest.mark.parametrize("law", LAWS)
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(
     ends=st.tuples(st.floats(-1, -0.01), st.floats(0.01, 1)),
     rises=st.tuples(st.floats(0.5, 1.7), st.floats(0.5, 1.7)),
