@@ -57,6 +57,17 @@ def test_a_shift_and_a_scale_come_back(capsys, files, tmp_path):
     assert "contact 12, simulated" in picture.read_text()
 
 
+def test_the_clock_of_a_record_may_start_anywhere(files):
+    scene, measured = files
+    header, *lines = Path(measured).read_text().splitlines()
+    rows = [line.split(",", 1) for line in lines]
+    late = [f"{float(time) + 5000!r},{rest}" for time, rest in rows]
+    Path(measured).write_text("\n".join([header, *late]) + "\n")
+    assert compare(scene, measured).document()["shift_value"] == pytest.approx(
+        LATE - 5000, abs=1e-6
+    )
+
+
 def test_a_single_sensor_needs_no_name(files, tmp_path):
     scene, measured = tmp_path / "one.toml", tmp_path / "plain.csv"
     scene.write_text(SCENE.replace("[12, 18]", "[12]"))
