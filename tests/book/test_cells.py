@@ -9,7 +9,7 @@ import pytest
 from scipy.stats import binom
 
 from lwa import Cell, expand
-from tests.book.prose import BOOK
+from tests.book.prose import BOOK, CELL
 from validation.pulses.pulse import first_pulse
 
 sys.path.append(str(BOOK))  # the pages' own modules
@@ -20,9 +20,8 @@ def cells_of(page):
     """Names that the cells of a page define; lines of options and of IPython are left out."""
     matplotlib.use("agg")
     text, names = (BOOK / f"{page}.md").read_text(encoding="utf-8"), {}
-    for cell in re.findall(r"^```\{code-cell\} python\n(.*?)^```$", text, re.M | re.S):
-        code = re.sub(r"\A---\n.*?^---$", "", cell, flags=re.M | re.S)
-        exec(re.sub(r"^[%:].*$|^plt\.style.*$", "", code, flags=re.M), names)
+    for _, code in CELL.findall(text):
+        exec(re.sub(r"^%.*$|^plt\.style.*$", "", code, flags=re.M), names)
     return names
 
 

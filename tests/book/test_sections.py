@@ -6,11 +6,9 @@ from collections import Counter
 import pytest
 
 from lwa import hertz
-from tests.book.prose import BOOK
+from tests.book.prose import BOOK, CELL
 
 TEXTS = {page.stem: page.read_text(encoding="utf-8") for page in BOOK.glob("*.md")}
-OPTIONS = r"(---\n.*?^---\n|(?::[^\n]*\n)*)"
-CELL = re.compile(rf"^```\{{code-cell\}} python\n{OPTIONS}(.*?)^```$", re.DOTALL | re.MULTILINE)
 PROSE = {page: CELL.sub("", text) for page, text in TEXTS.items()}
 PARTS = (BOOK / "_toc.yml").read_text().split("caption:")[1:4]
 CHAPTERS = [page for part in PARTS for page in re.findall(r"file: (\w+)", part)]
