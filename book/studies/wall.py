@@ -17,6 +17,7 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Sequence
+from functools import cache
 from typing import Any
 
 import scipy
@@ -82,6 +83,7 @@ def modulus(delay: Measured, nu: float = 0.3, **chain: Any) -> Measured:
     Raises `SceneError` for a delay that no wall from `SOFTEST` to `STIFFEST` makes.
     """
 
+    @cache  # the ends of the search are those of each root
     def late(log_E: float) -> float:
         return echo(math.exp(log_E), nu, **chain)[0].value
 

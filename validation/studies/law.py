@@ -153,10 +153,11 @@ def _modulus(content: dict[str, Any], material: str, stiffness: Measured) -> Mea
         given["E"] = E
         return float(Cell.of_spheres(read_spheres(changed)).stiffnesses[0])
 
-    if not contact(2.0) > contact(1.0):
+    unit = contact(1.0)
+    if not contact(2.0) > unit:
         raise SceneError(f"material is {shorten(material)}: the spheres are not made of it")
     # Hertz: A = E √(2R)/(3 (1 - ν²)), proportional to E.
-    return derived(lambda A: A / contact(1.0), stiffness)
+    return derived(lambda A: A / unit, stiffness)
 
 
 @cache

@@ -78,26 +78,30 @@ the order n of the error in k - 1, and the limit of error/(k-1)^n as k → 1. ±
 lattice's number over the last stretch, and the rounding of its seven digits, which JSON does not
 have."""
 
+Case = tuple[sp.Rational, sp.Rational]  # k and ω of one run
 Row = tuple[tuple[Any, ...], Finding]  # cells below `_COLUMNS`, and the error as a finding
 
 
 @study()
-def limits(progress: Progress[TravelingWave] = iter) -> Report:
+def limits(progress: Progress[Case] = iter) -> Report:
     """Limits of the theory: equal masses, m1 ≫ m2 and k → 1 (a few seconds).
 
     ``rows``: ``quantity``, ``k`` and ``omega`` (exact; ``k`` null for results from all k),
     ``theory`` (exact), ``theory_value``, ``lattice_value``, ``lattice_error_value``,
     ``error_value`` (theory over lattice - 1), ``bound_value``, ``ok``.
     """
-    waves = [theory_at(k, omega) for omega in (EQUAL, LIGHT) for k in EXPONENTS]
-    measured = [lattice_wave(wave) for wave in progress(waves)]
-    theories = [(w.fwhm("force"), w.fwhm("strain"), w.width, w.speed(1)) for w in waves]
+    cases = [(k, omega) for omega in (EQUAL, LIGHT) for k in EXPONENTS]
+    waves = {case: theory_at(*case) for case in cases}
+    lattice = {case: lattice_wave(waves[case]) for case in progress(cases)}
     rows: list[Row] = []
-    for omega, place in ((EQUAL, 0), (LIGHT, len(EXPONENTS))):
-        those = slice(place, place + len(EXPONENTS))
-        for quantity, values in zip(QUANTITIES, zip(*theories[those], strict=True), strict=True):
-            lattice = [numbers[quantity] for numbers in measured[those]]
-            rows += quantity_rows(quantity, omega, values, lattice)
+    for omega in (EQUAL, LIGHT):
+        alike = [waves[k, omega] for k in EXPONENTS]
+        theory = zip(
+            *((w.fwhm("force"), w.fwhm("strain"), w.width, w.speed(1)) for w in alike), strict=True
+        )
+        for quantity, values in zip(QUANTITIES, theory, strict=True):
+            measured = [lattice[k, omega][quantity] for k in EXPONENTS]
+            rows += quantity_rows(quantity, omega, values, measured)
     cells, findings = zip(*rows, strict=True)
     return Report(
         "The theory's limits on the lattice",
@@ -204,11 +208,11 @@ def quantity_rows(
         (quantity, str(k), k, value, measured, law.constant * float(k - 1) ** law.order)
         for k, value, measured in zip(EXPONENTS, theory, lattice, strict=True)
     ]
-    orders, limits = derived(order, *lattice), derived(coefficient, *lattice)
+    orders, coefficients = derived(order, *lattice), derived(coefficient, *lattice)
     name, limit = f"{quantity}: order of its error", f"{quantity}: error/(k-1)^{law.order} at k → 1"
     compared_numbers += [
         (name, "order", None, sp.Integer(law.order), orders, law.order_bound),
-        (limit, "→ 1", None, law.coefficient, limits, law.coefficient_bound + slack),
+        (limit, "→ 1", None, law.coefficient, coefficients, law.coefficient_bound + slack),
     ]
     rows = []
     for name, kind, k, expected, number, bound in compared_numbers:

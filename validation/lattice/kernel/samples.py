@@ -79,14 +79,13 @@ def _rate(chain: Chain, law: Law, d: float, v: float, a: float) -> float:
 
 
 @inner
-def _effect(law: Law, p: Quintic, h: float, x: float, points: Array) -> tuple[float, float, float]:
-    """Return the effect of a contact's force up to x on y, y' and y'' of a bead with h² = mass."""
-    d, slope = value_and_slope(p, x)
+def _effect(law: Law, p: Quintic, h: float, x: float, points: Array) -> tuple[float, float]:
+    """Return the effect of a contact's force up to x on y and y' of a bead with h² = mass."""
     # Over the part of the step up to x the quintic's coefficients are c_j x^j.
     x2 = x * x
     part_of = p[0], x * p[1], x2 * p[2], x2 * x * p[3], x2 * x2 * p[4], x2 * x2 * x * p[5]
     once, twice, _, _, _ = integrals(law, part_of, h * x, points)
-    return x2 * twice, x * once, push(law, d, slope / h)
+    return x2 * twice, x * once
 
 
 @part
@@ -109,7 +108,9 @@ def _smooth_ends(
             law, rest = law_of(chain, i), chain.rest[i]
             if knots.state[n + 1, q, 3] > 0.0:
                 p = _quintic(knots, n, q, rest)
-                changes = _effect(law, p, h, float(end), points)
+                moment, impulse = _effect(law, p, h, float(end), points)
+                delta, slope = value_and_slope(p, float(end))
+                changes = moment, impulse, push(law, delta, slope / h)
                 for m in range(3):
                     ends[end, r, m] += near * changes[m]
                     ends[end, r + 1, m] -= far * changes[m]
@@ -178,7 +179,7 @@ def _built(sources: int) -> Any:
                     near, far = h * h * chain.inverse[i], h * h * chain.inverse[i + 1]
                     for s in range(first, last):
                         x = (time[s] - start) / h
-                        moment, impulse, _ = _effect(law_of(chain, i), p, h, x, points)
+                        moment, impulse = _effect(law_of(chain, i), p, h, x, points)
                         y[r, s], y[r + 1, s] = y[r, s] - near * moment, y[r + 1, s] + far * moment
                         v[r, s] -= near * impulse / h
                         v[r + 1, s] += far * impulse / h
