@@ -98,11 +98,11 @@ class Report(Pictured):
 
     def text(self) -> str:
         """The report as plain text: beside other printed tables only the findings that fail."""
-        failing_only = any(table.text() for table in self.tables)
-        printed = [finding for finding in self.findings if not (failing_only and finding.ok)]
+        tables = [table.text() for table in self.tables]
+        printed = [finding for finding in self.findings if not (any(tables) and finding.ok)]
         title, *notes = (wrap(text) for text in (self.title, *self.notes))
-        tables = (t.text() for t in (*self.tables, findings_table(printed)))
-        return "\n\n".join(filter(None, (title, *tables, *notes, self.verdict)))
+        texts = title, *tables, findings_table(printed).text(), *notes, self.verdict
+        return "\n\n".join(filter(None, texts))
 
     def _repr_html_(self) -> str:
         """The text and the picture, for a notebook."""
