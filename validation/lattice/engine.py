@@ -46,7 +46,6 @@ from validation.lattice.laws import Contact
 from validation.lattice.result import Run, finished
 from validation.lattice.schemes import SCHEMES, VERNER65
 from validation.lattice.signal import recorded, sampled
-from validation.scenes.checks import positive
 
 _WEAK = 0.1  # least energy of the response in units of the energy that sets the tolerance
 _NOISE = sys.float_info.epsilon  # in units of the greatest value: a bead that moves less is still
@@ -58,14 +57,15 @@ _FIRST = 4.0  # first step of a pair over rtol^(1/7), in units of the scene's sh
 
 
 def follow(
-    motion: Motion, method: str, rtol: float, step: float | None, progress: RunProgress
+    motion: Motion, method: str, rtol: float, longest: float, progress: RunProgress
 ) -> Run:
-    """Integrate a scene by a method of `SCHEMES`; the arguments are those of `simulate`.
+    """Integrate a scene by a method of `SCHEMES` in steps of at most ``longest``.
 
-    A run whose tolerance is set by a drive, and whose response turns out far weaker, is made again.
+    A splitting's steps have this length, unless it is infinite. A run whose tolerance is set by a drive, and whose response turns out far weaker, is
+    made again.
     """
     while True:
-        run, response = _integrated(motion, method, rtol, step, progress)
+        run, response = _integrated(motion, method, rtol, longest, progress)
         least = 8 * _NOISE * motion.scales.energy  # rounding of the energy
         if not least < response < _WEAK * motion.scales.energy:
             return run
@@ -73,10 +73,10 @@ def follow(
 
 
 def _integrated(
-    motion: Motion, method: str, rtol: float, step: float | None, progress: RunProgress
+    motion: Motion, method: str, rtol: float, longest: float, progress: RunProgress
 ) -> tuple[Run, float]:
     """Return a run, and the greatest energy of its contacts and free beads."""
-    plan, most = _plan(motion, method, rtol, step)
+    plan, most = _plan(motion, method, rtol, longest)
     n, end = motion.size, motion.scene.duration
     chain = _chain(motion)
     beads = _start(motion, len(chain.A))
@@ -102,23 +102,18 @@ def _integrated(
         state,
         {"time": time} | recorded(motion, needed, recorder.y, recorder.v),
         steps=int(now["steps"]),
-        bead_evaluations=int(now["evaluations"]),
         path=recorder.path(),
     )
     return run, float(now["response"])
 
 
-def _plan(motion: Motion, method: str, rtol: float, step: float | None) -> tuple[Plan, int]:
+def _plan(motion: Motion, method: str, rtol: float, longest: float) -> tuple[Plan, int]:
     """Return the integration plan, and the greatest number of steps."""
     scheme, scales, end = SCHEMES[method], motion.scales, float(motion.scene.duration)
     damped = motion.scene.damping is not None
     if damped and method == "RKN86":
         scheme = VERNER65
-    longest, drive, stops = (
-        math.inf if step is None else positive(step, "step"),
-        motion.scene.drive,
-        [end],
-    )
+    drive, stops = motion.scene.drive, [end]
     if drive is not None:
         # Beside a wall no motion has an error that would bound the step, and the work's estimate
         # does not see the quintic's error, h^6, at a kink: 1/8 left 11 rtol in the work, 1/16 one.
@@ -129,7 +124,7 @@ def _plan(motion: Motion, method: str, rtol: float, step: float | None) -> tuple
         h = min(_FIRST * rtol ** (1 / 7) * scales.time, longest, end / 100)
     else:
         natural = min((rtol / _KINKS) ** 0.4, _COARSEST) * len(scheme.drifts)
-        mean = natural * min(scales.time, end) if step is None else longest
+        mean = natural * min(scales.time, end) if math.isinf(longest) else longest
         most = step_limit(motion.scene, method, end / mean)
         h = end / math.ceil(end / mean)
     check_memory(motion.scene, method, 16)

@@ -47,7 +47,6 @@ class Run(Pictured):
     energy_drift : change of the energy above equilibrium divided by its initial value (0 if this is
         0).
     momentum_drift : change of the momentum divided by Σ m|v| at the end; None with a wall or drive.
-    bead_evaluations : sum over all evaluations of the forces of the number of beads that moved.
     step : mean step.
     path : motion of the beads near sensors throughout the run, for `signal`.
     dissipated, work : energy that damped contacts have turned into heat, and work of the drive.
@@ -64,7 +63,6 @@ class Run(Pictured):
     velocities: Array
     energy_drift: float
     momentum_drift: float | None
-    bead_evaluations: int
     step: float
     path: Path | None = field(default=None, compare=False)
     dissipated: float = 0.0

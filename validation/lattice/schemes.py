@@ -95,4 +95,3 @@ BLANES_MOAN = Splitting(
 )
 
 SCHEMES: dict[str, Pair | Splitting] = {"RKN86": RKN86, "symplectic": BLANES_MOAN}
-ORDERS = {"RKN86": 8, "symplectic": 4}

@@ -89,19 +89,12 @@ def recorded(motion: Motion, beads: NDArray[np.int_], y: Array, v: Array) -> dic
         for sensors in (motion.scene.contact_sensors, motion.scene.bead_sensors)
     )
     return {
-        "contact_force": _rows(forces, at_contacts),
-        "compression": _rows(compressions, at_contacts),
-        "bead_force": _rows(means, at_beads),
-        "bead_displacement": _rows(y, at_beads),
-        "bead_velocity": _rows(v, at_beads),
+        "contact_force": forces[at_contacts],
+        "compression": compressions[at_contacts],
+        "bead_force": means[at_beads],
+        "bead_displacement": y[at_beads],
+        "bead_velocity": v[at_beads],
     }
-
-
-def _rows(values: Array, numbers: NDArray[np.int_]) -> Array:
-    """Return rows of an array, without a copy if they follow one another."""
-    if len(numbers) > 1 and (np.diff(numbers) == 1).all():
-        return values[numbers[0] : numbers[-1] + 1]
-    return values[numbers]
 
 
 def sampled(motion: Motion) -> tuple[Array, NDArray[np.int_]]:

@@ -8,16 +8,9 @@ from typing import Any
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
-from validation.lattice.cost import (
-    IntegrationError,
-    RunProgress,
-    check_memory,
-    check_steps,
-    step_limit,
-)
+from validation.lattice.cost import IntegrationError, check_memory, step_limit
 from validation.lattice.equations import Motion
 from validation.lattice.result import Run, finished
 from validation.lattice.signal import Beads, recorded, sampled
@@ -47,41 +40,32 @@ class DensePath:
         return y, v
 
 
-def integrate(motion: Motion, method: str, rtol: float, atol: float, progress: RunProgress) -> Run:
-    """Integrate a scene with one of `METHODS`; the arguments are those of `simulate`."""
-    scales, end, n = motion.scales, motion.scene.duration, motion.size
-    y, v, drive = scales.displacement, scales.velocity, motion.scene.drive
-    longest = math.inf if drive is None else drive.longest_step
-    most = step_limit(motion.scene, method, end / min(scales.time, longest))
+def integrate(motion: Motion, method: str, rtol: float, longest: float) -> Run:
+    """Integrate a scene with one of `METHODS`, with steps of at most ``longest``.
+
+    ``rtol`` bounds the errors in a step, relative to the state and to the scene's scales.
+    """
+    scales, scene, n = motion.scales, motion.scene, motion.size
+    y, v = scales.displacement, scales.velocity
+    if scene.drive is not None:
+        longest = min(longest, scene.drive.longest_step)
+    step_limit(scene, method, scene.duration / min(scales.time, longest))
     jacobian = (2 * n + 2) ** 2 * 8 if method in METHODS[3:] else 0  # bytes; the others need none
-    check_memory(motion.scene, method, 4, jacobian)
-    calls = 0
-    with progress() as display:
-
-        def rates(t: float, state: Array) -> NDArray[np.float64]:
-            nonlocal calls
-            calls += 1
-            # at most 12 a step, and one for each number of the state in a Jacobian
-            check_steps(method, calls // (2 * n + 20), most, t, end)
-            display(min(t / end, 1.0))
-            return motion(t, state)
-
-        found = scipy.integrate.solve_ivp(
-            rates,
-            (0.0, end),
-            motion.start,
-            method,
-            dense_output=True,
-            rtol=rtol,
-            atol=atol * np.repeat([y, v, scales.energy or 1.0], [n, n, 2]),
-            max_step=longest,
-            first_step=min(1e-3 * y / v, end),  # SciPy's own guess depends on the units
-        )
-        display(1.0)
+    check_memory(scene, method, 4, jacobian)
+    found = scipy.integrate.solve_ivp(
+        motion,
+        (0.0, scene.duration),
+        motion.start,
+        method,
+        dense_output=True,
+        rtol=rtol,
+        atol=rtol * np.repeat([y, v, scales.energy or 1.0], [n, n, 2]),
+        max_step=longest,
+        first_step=min(1e-3 * y / v, scene.duration),  # SciPy's own guess depends on the units
+    )
     if not found.success:
         raise IntegrationError(f"integration stopped at t = {found.t[-1]:g}: {found.message}")
     time, beads = sampled(motion)
-    watched, path = beads if len(beads) else np.zeros(1, int), DensePath(found.sol, n)
-    records = {"time": time} | recorded(motion, watched, *path(watched, time))
-    steps, last = len(found.t) - 1, found.y[:, -1]
-    return finished(motion, last, records, steps=steps, bead_evaluations=found.nfev * n, path=path)
+    path = DensePath(found.sol, n)
+    records = {"time": time} | recorded(motion, beads, *path(beads, time))
+    return finished(motion, found.y[:, -1], records, steps=len(found.t) - 1, path=path)

@@ -165,7 +165,7 @@ def lattice_wave(wave: TravelingWave, places: Sequence[float] = PLACES) -> dict[
         contact_sensors=[sensor + side for sensor in sensors for side in range(2 * size)],
         duration=(beads - start - support / 4) / V,
     )
-    run = simulate(scene, rtol=TOLERANCE, atol=TOLERANCE)
+    run = simulate(scene, rtol=TOLERANCE)
     # The support over ∫F dx / F_m, as ∫ cos^{2k/(k-1)}(βx) dx is Euler's beta function over β.
     unit = support * float(wave.beta / sp.beta(k / (k - 1) + 0.5, 0.5))
 

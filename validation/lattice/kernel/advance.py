@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from validation.lattice.kernel.arrays import BLOCK, MARGIN, SHORTEST, Beads, Chain, Knots, Plan
-from validation.lattice.kernel.compiled import SOURCES, ZERO, cached, part
+from validation.lattice.kernel.compiled import SOURCES, ZERO, cached, once
 from validation.lattice.kernel.force import contact_forces
 from validation.lattice.kernel.pair import (
     accept_step,
@@ -21,13 +21,13 @@ from validation.lattice.kernel.samples import store_knot
 _STILL = 1e-13  # in units of the greatest compression: beads that have moved less are still
 
 
-@part
+@once
 def moving(now: Any) -> int:
     """Return the number of beads to be moved, a multiple of `BLOCK`."""
     return int(max(SHORTEST, -(-now.front // BLOCK) * BLOCK))
 
 
-@part
+@once
 def follow(beads: Beads, plan: Plan, now: Any) -> None:
     """Move the front to the first bead that is still."""
     while now.front < plan.size and abs(beads.y[now.front - MARGIN]) > _STILL * plan.deepest:
@@ -45,8 +45,7 @@ def _built(sources: int) -> Any:
 
         Returns the time that is reached, and ``sources``.
         """
-        until, stages = now.tries + tries, len(plan.scheme.moments) - 1
-        moved, fresh, hi = now.tries == 0, now.tries > 0, plan.size
+        until, moved, fresh, hi = now.tries + tries, now.tries == 0, now.tries > 0, plan.size
         while True:
             # The loops of the forces are compiled at each place that calls them.
             if not fresh:
@@ -58,7 +57,6 @@ def _built(sources: int) -> Any:
                 return now.t, sources
             hi = moving(now)
             now.tries += 1
-            now.evaluations += stages * hi
             h, stop = now.h, plan.stops[now.stop]
             stopping = now.t + h > stop - 1e-9 * h
             if stopping:

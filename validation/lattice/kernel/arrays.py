@@ -164,7 +164,7 @@ class Plan(NamedTuple):
     jumps: bool
 
 
-_COUNTS = ("steps", "tries", "evaluations", "front", "stored", "stop")
+_COUNTS = ("steps", "tries", "front", "stored", "stop")
 _REALS = ("t", "h", "planned", "energy", "work", "lost", "response")
 _PROGRESS = np.dtype([(name, int) for name in _COUNTS] + [(name, float) for name in _REALS])
 
@@ -174,8 +174,7 @@ def initial_progress(plan: Plan, front: int, energy: float) -> Any:
 
     front : number of the first bead that is still. energy : initial energy of the contacts and of
     the free beads. Fields: t, h : time, next step. planned : step that was tried before it was
-    cut short. steps, tries : numbers of steps made and tried. evaluations : sum, over all
-    evaluations of the forces, of the number of beads moved. front : first bead ahead of the
+    cut short. steps, tries : numbers of steps made and tried. front : first bead ahead of the
     motion. stored : number of stored knots. stop : number of the next of ``plan.stops``. work,
     lost : ∫ v (F - static force) dt of a driven bead, and dissipated energy. response :
     greatest of the values of ``energy`` on the way.

@@ -17,7 +17,7 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Chain, Law
-from validation.lattice.kernel.compiled import call, inner, part, summed
+from validation.lattice.kernel.compiled import call, inner, once, part, summed
 
 Quintic = tuple[float, float, float, float, float, float]
 """Coefficients c0 … c5 of p."""
@@ -256,7 +256,7 @@ def integrals(
     return once, twice, third, work, top
 
 
-@part
+@once
 def closing_place(law: Law, c: Quintic, h: float) -> float:
     """Return the place of a step at which a contact, open before, closes."""
     return _change(law, c, h, 0.0, 1.0, True)

@@ -19,27 +19,9 @@ from typing import Any
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import WIDTH, Beads, Chain, Pair, Plan
-from validation.lattice.kernel.compiled import ONE, THREE, TWO, ZERO, index, inner, part, summed
-from validation.lattice.kernel.force import (
-    contact_forces,
-    drive_motion,
-    interval,
-    stiffness,
-)
-from validation.lattice.kernel.kinks import (
-    POINTS,
-    Quintic,
-    closing_place,
-    drag,
-    elastic,
-    fitted_quintic,
-    forces_along,
-    integrals,
-    law_of,
-    push,
-    stored,
-    value_and_slope,
-)
+from validation.lattice.kernel import kinks
+from validation.lattice.kernel.compiled import ONE, THREE, TWO, ZERO, index, inner, once, part, summed
+from validation.lattice.kernel.force import contact_forces, drive_motion, interval, stiffness
 
 _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the tolerance
 # A contact is nearly open at a step's one end if δ there is less than _NEAR times δ at the other.
@@ -92,7 +74,7 @@ def _integral(row: Array, power: Array) -> float:
 
 
 @inner
-def _fitted(chain: Chain, beads: Beads, h: float, last: int, i: int, opened: bool) -> Quintic:
+def _fitted(chain: Chain, beads: Beads, h: float, last: int, i: int, opened: bool) -> kinks.Quintic:
     """Return the quintic fit of contact i's compression over a step.
 
     last : the stage at the step's end. opened : True for a fit without the contact's own force at
@@ -101,13 +83,13 @@ def _fitted(chain: Chain, beads: Beads, h: float, last: int, i: int, opened: boo
     y, v, f, inverse, rest = beads.y, beads.v, beads.force, chain.inverse, chain.rest
     end = rest[i] + beads.next_y[i] - beads.next_y[i + 1]
     end_rate = beads.next_v[i] - beads.next_v[i + 1]
-    own = (0.0 if opened else push(law_of(chain, i), end, end_rate)) - chain.load[i]
+    own = (0.0 if opened else kinks.push(kinks.law_of(chain, i), end, end_rate)) - chain.load[i]
     a = (f[0, i] - f[0, i + 1]) * inverse[i] - (f[0, i + 1] - f[0, i + 2]) * inverse[i + 1]
     end_a = (f[last, i] - own) * inverse[i] - (own - f[last, i + 2]) * inverse[i + 1]
     if i == 0:
         a, end_a = a + beads.given[0], end_a + beads.given[1]
     d, rate = rest[i] + y[i] - y[i + 1], v[i] - v[i + 1]
-    return fitted_quintic(d, h * rate, h * h * a, end, h * end_rate, h * h * end_a)
+    return kinks.fitted_quintic(d, h * rate, h * h * a, end, h * end_rate, h * h * end_a)
 
 
 @summed
@@ -115,7 +97,7 @@ def _sums(pair: Pair, force: Array) -> tuple[float, float, float, float, float]:
     """Return the pair's ∫ F, ∫ (1 - x) F, ∫ (1 - x)²/2 F, and its errors of moment and impulse."""
     once = twice = third = error = error_once = 0.0
     impulses, moments = pair.impulses[-1], pair.moments[-1]
-    for s in range(POINTS):
+    for s in range(kinks.POINTS):
         f = force[s]
         once += impulses[s] * f
         twice += moments[s] * f
@@ -125,21 +107,21 @@ def _sums(pair: Pair, force: Array) -> tuple[float, float, float, float, float]:
     return once, twice, third, error, error_once
 
 
-@part
+@once
 def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -> None:
     """Correct a step for the pair's error at contact i, which opens or closes."""
     pair, last, inverse = plan.scheme, len(plan.scheme.moments) - 1, chain.inverse
-    law, p = law_of(chain, i), _fitted(chain, beads, h, last, i, False)
-    once, twice, third, work, top = integrals(law, p, h, beads.points)
+    law, p = kinks.law_of(chain, i), _fitted(chain, beads, h, last, i, False)
+    once, twice, third, work, top = kinks.integrals(law, p, h, beads.points)
     force = beads.points[2]
-    forces_along(law, p, h, pair.nodes, force)
+    kinks.forces_along(law, p, h, pair.nodes, force)
     pair_once, pair_twice, pair_third, error, error_once = _sums(pair, force)
     once, twice, third = once - pair_once, twice - pair_twice, third - pair_third
     if chain.damped:
-        heat = work - (stored(law, value_and_slope(p, 1.0)[0]) - stored(law, p[0]))
+        heat = work - (kinks.stored(law, kinks.value_and_slope(p, 1.0)[0]) - kinks.stored(law, p[0]))
         for s in range(last + 1):
-            d, slope = value_and_slope(p, pair.nodes[s])
-            lost = (force[s] - (elastic(law, d) if d > 0.0 else 0.0)) * slope
+            d, slope = kinks.value_and_slope(p, pair.nodes[s])
+            lost = (force[s] - (kinks.elastic(law, d) if d > 0.0 else 0.0)) * slope
             heat -= pair.impulses[last, s] * lost
             beads.kinks[1] += pair.errors[1, s] * lost
         beads.kinks[0] += heat
@@ -162,7 +144,7 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
         if d > 0.0 and chain.A[n] > 0.0 and closed:
             more = -chain.A[n] * stiffness(chain, d) * h * h * h * third * both
             if chain.damped:
-                more -= drag(law_of(chain, n), d) * moment * both
+                more -= kinks.drag(kinks.law_of(chain, n), d) * moment * both
             if n != i:
                 beads.next_v[n] -= more * inverse[n]
                 beads.next_v[n + 1] += more * inverse[n + 1]
@@ -170,7 +152,7 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
             beads.sums[3, n + 1] += math.copysign(missed, beads.sums[3, n + 1])
 
 
-@part
+@once
 def place_of_jump(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> tuple[float, int]:
     """Return the share of a step up to just behind the first closing whose jump matters, or 1.
 
@@ -184,8 +166,8 @@ def place_of_jump(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> 
         beads.sums[4, i + 1] = 0.0
         if before <= 0.0 and after > 0.0 and chain.A[i] > 0.0:
             p = _fitted(chain, beads, h, last, i, True)
-            x = closing_place(law_of(chain, i), p, h)
-            jump = chain.c[i] * abs(value_and_slope(p, x)[1])  # h times the jump of the force
+            x = kinks.closing_place(kinks.law_of(chain, i), p, h)
+            jump = chain.c[i] * abs(kinks.value_and_slope(p, x)[1])  # h times the jump of the force
             jump *= max(chain.inverse[i], chain.inverse[i + 1])
             behind = 2.0 * _JUMP * plan.v / (jump + 1e-300)  # share of a step in which it counts
             if 1.0 - x > behind:
@@ -201,7 +183,7 @@ def place_of_jump(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> 
     return place, count
 
 
-@part
+@once
 def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int:
     """Estimate a step's errors, and mark contacts with kinks, with a force that matters.
 
@@ -237,7 +219,7 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
     return count
 
 
-@part
+@once
 def evaluate_stages(chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int) -> None:
     """Compute the forces at all stages of a step h of the beads 0 … hi-1 at time t."""
     pair, last = plan.scheme, len(plan.scheme.moments) - 1
@@ -258,7 +240,7 @@ def evaluate_stages(chain: Chain, beads: Beads, plan: Plan, t: float, h: float, 
         contact_forces(chain, beads, plan, next_y, next_v, index(s), hi)
 
 
-@part
+@once
 def step_error(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> float:
     """Return the error of a step in units of the tolerance."""
     error, errors = _squared_error(beads.sums, chain.inverse, hi), plan.scheme.errors[1]
@@ -287,7 +269,7 @@ def accept_step(beads: Beads, plan: Plan, now: Any, h: float, hi: int, error: fl
     now.h, now.planned = min(plan.longest, max(grow, now.planned)), 0.0
 
 
-@part
+@once
 def reject_step(beads: Beads, plan: Plan, now: Any, h: float, error: float) -> None:
     """Plan a shorter step after a step with an error above 1, or NaN."""
     now.planned = 0.0

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Beads, Chain, Knots, Law
-from validation.lattice.kernel.compiled import SOURCES, cached, inner, part
+from validation.lattice.kernel.compiled import SOURCES, cached, inner, once, part
 from validation.lattice.kernel.force import stiffness
 from validation.lattice.kernel.kinks import (
     Quintic,
@@ -88,7 +88,7 @@ def _effect(law: Law, p: Quintic, h: float, x: float, points: Array) -> tuple[fl
     return x2 * twice, x * once
 
 
-@part
+@once
 def _smooth_ends(
     chain: Chain, knots: Knots, n: int, rows: NDArray[np.int_], ends: Array, points: Array
 ) -> None:

@@ -45,7 +45,6 @@ def _built(sources: int) -> Any:
                 v[i] = v[i] + b * (force[ZERO, i] - force[ZERO, i + ONE]) * inverse[i]
             now.tries += 1
             now.steps += 1
-            now.evaluations += len(drifts) * hi
             # no sum of steps: equal steps are rounded to one side, 1e-10 after 1e5 of them
             now.t = now.steps * h if now.t + 1.5 * h < plan.end else plan.end
             follow(beads, plan, now)
