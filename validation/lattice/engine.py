@@ -35,6 +35,7 @@ from validation.lattice.kernel.arrays import (
     Beads,
     Chain,
     Drive,
+    Law,
     Pair,
     Plan,
     initial_progress,
@@ -56,13 +57,11 @@ _KINKS, _COARSEST = 0.01, 0.2
 _FIRST = 4.0  # first step of a pair over rtol^(1/7), in units of the scene's shortest time
 
 
-def follow(
-    motion: Motion, method: str, rtol: float, longest: float, progress: RunProgress
-) -> Run:
-    """Integrate a scene by a method of `SCHEMES` in steps of at most ``longest``.
+def follow(motion: Motion, method: str, rtol: float, longest: float, progress: RunProgress) -> Run:
+    """Integrate a scene by a method of `SCHEMES`, in steps of at most ``longest``.
 
-    A splitting's steps have this length, unless it is infinite. A run whose tolerance is set by a drive, and whose response turns out far weaker, is
-    made again.
+    A splitting's steps have this length, unless it is infinite. A run whose tolerance is set by a
+    drive, and whose response turns out far weaker, is made again.
     """
     while True:
         run, response = _integrated(motion, method, rtol, longest, progress)
@@ -148,22 +147,29 @@ def _plan(motion: Motion, method: str, rtol: float, longest: float) -> tuple[Pla
 def _chain(motion: Motion) -> Chain:
     """Build the kernel's chain, padded by beads of infinite mass; the first of them is the wall."""
     rows = np.zeros((5, motion.size + 2 * SHORTEST))
-    given = 1 / motion.masses, motion.stiffnesses, motion.damping, motion.rest, motion.load
+    with np.errstate(all="ignore"):
+        ratios = np.where(motion.damping > 0, motion.damping / motion.stiffnesses, 0.0)
+    given = 1 / motion.masses, motion.stiffnesses, ratios, motion.rest, motion.load
     for row, values in zip(rows, given, strict=True):
         row[: len(values)] = values
-    drive, law = motion.scene.drive, motion.contact
+    drive, contact, call = motion.scene.drive, motion.contact, motion.contact.addresses
     driven = Drive(np.zeros(1), np.zeros((1, 4)), 0.0, 0.0, 0.0, False)
     if drive is not None:
         rows[0, 0] = 0.0
         amplitude, w = drive.oscillation
         driven = Drive(*drive.cubics, float(amplitude), w, float(drive.ramp), True)
-    # A whole number would be another type, for which numba compiles the engine again.
-    powers = float(motion.k), float(law.damping_power or 0), _exponent(law)
-    damped, call = motion.scene.damping is not None, law.addresses
-    code = call["force"], call["slope"], call["energy"]
-    inverse, A, c, rest, load = rows
-    kinds = damped, law.law is not None
-    return Chain(inverse, A, c, rest, load, *powers, *kinds, *code, law.pulls, driven)
+    law = Law(
+        # A whole number would be another type, for which numba compiles the engine again.
+        k=float(motion.k),
+        p=float(contact.damping_power or 0),
+        q=_exponent(contact),
+        generated=contact.law is not None,
+        force=call["force"],
+        slope=call["slope"],
+        energy=call["energy"],
+        pulls=contact.pulls,
+    )
+    return Chain(*rows, motion.scene.damping is not None, law, driven)
 
 
 def _exponent(law: Contact) -> float:
@@ -193,5 +199,5 @@ def _start(motion: Motion, padded: int) -> Beads:
     if motion.scene.drive is not None:
         given[0] = motion.scene.drive.at(0.0)[2]
     return Beads(
-        y, v, next_y, next_v, force, sums, power, given, np.zeros(4), np.zeros((3, POINTS))
+        y, v, next_y, next_v, force, sums, power, given, np.zeros(4), np.zeros((4, POINTS))
     )

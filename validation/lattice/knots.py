@@ -44,8 +44,9 @@ class KnotPath:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Restore a pickled path: a law's machine code has another address in each process."""
-        chain = state["chain"]._replace(**state["motion"].contact.addresses)
-        self.__dict__.update(state | {"chain": chain})
+        chain = state["chain"]
+        law = chain.law._replace(**state["motion"].contact.addresses)
+        self.__dict__.update(state | {"chain": chain._replace(law=law)})
 
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]:
         """Return displacements and velocities (beads, S) at times (S,) within the run."""
@@ -53,7 +54,7 @@ class KnotPath:
         near = _with_neighbours(beads)
         rows = np.searchsorted(self.knots.watched, near)
         step = np.searchsorted(self.time[1:-1], time, side="right")
-        ends, points = np.empty((2, len(rows), 4)), np.empty((3, POINTS))
+        ends, points = np.empty((2, len(rows), 4)), np.empty((4, POINTS))
         y, v = np.empty((2, len(rows), len(time)))
         interpolate(self.chain, self.knots, rows, time, step, y, v, ends, points)
         own = np.searchsorted(near, beads)

@@ -13,55 +13,57 @@ from validation.lattice.kernel.kinks import POINTS, Law, integrals
 
 
 @njit
-def compiled(law, quintic, h, points):
-    return integrals(law, quintic, h, points)
+def compiled(law, r, quintic, h, points):
+    return integrals(law, r, quintic, h, points)
 
 
-def force(law, quintic, h, x):
+def force(contact, quintic, h, x):
+    law, r = contact
     d = slope = 0.0
     for coefficient in reversed(quintic):
         d, slope = d * x + coefficient, slope * x + d
     if d <= 0:
         return 0.0
-    return max(law.A * d**law.k + (law.c * d**law.p * slope / h if law.damped else 0.0), 0.0)
+    return max(d**law.k + r * d**law.p * slope / h, 0.0)
 
 
-def kinks(law, quintic, h):
+def kinks(contact, quintic, h):
     """Places between 0 and 1 at which the contact begins or ends to push, by bisection."""
     x = np.linspace(0, 1, 4001)
-    pushes = [force(law, quintic, h, place) > 0 for place in x]
+    pushes = [force(contact, quintic, h, place) > 0 for place in x]
     found = []
     for n in np.flatnonzero(np.diff(pushes)):
         a, b = x[n], x[n + 1]
         while b - a > 1e-15:
             middle = (a + b) / 2
-            a, b = (middle, b) if (force(law, quintic, h, middle) > 0) == pushes[n] else (a, middle)
+            same = (force(contact, quintic, h, middle) > 0) == pushes[n]
+            a, b = (middle, b) if same else (a, middle)
         found.append(b)
     return found
 
 
-def expected(law, quintic, h):
+def expected(contact, quintic, h):
     """∫ F, ∫ (1 - x) F and ∫ (1 - x)²/2 F, with x = a + (b - a) (3 u² - 2 u³) between kinks."""
-    places = [0.0, *kinks(law, quintic, h), 1.0]
+    places = [0.0, *kinks(contact, quintic, h), 1.0]
     total = np.zeros(3)
     for a, b in itertools.pairwise(places):
         for n, weight in enumerate((lambda x: 1.0, lambda x: 1 - x, lambda x: (1 - x) ** 2 / 2)):
 
             def integrand(u, a=a, b=b, weight=weight):
                 x = a + (b - a) * (3 * u * u - 2 * u**3)
-                return 6 * u * (1 - u) * (b - a) * weight(x) * force(law, quintic, h, x)
+                return 6 * u * (1 - u) * (b - a) * weight(x) * force(contact, quintic, h, x)
 
             total[n] += quad(integrand, 0, 1, epsabs=1e-14, epsrel=1e-12, limit=200)[0]
     return total
 
 
-def contact(k, c, p):
+def contact(k, r, p):
     """With the least q = 1, 2 or 4 for which q k and q p are whole, as `_exponent` has it."""
     q = next((q for q in (1.0, 2.0) if (q * k).is_integer() and (q * p).is_integer()), 4.0)
-    return Law(1.0, c, k, p, q, c > 0, False, 0, 0)
+    return Law(k, p, q, False, 0, 0, 0, False), r
 
 
-# Exponents and damping (k, c, p), and the error over the greatest impulse: δ^{1/4} wants u^4, of
+# Exponents and damping (k, r, p), and the error over the greatest impulse: δ^{1/4} wants u^4, of
 # which ten points resolve less.
 LAWS = {
     (1.5, 0.0, 0.0): 1e-9, (1.0, 0.0, 0.0): 1e-14, (2.0, 0.0, 0.0): 1e-14,
@@ -94,7 +96,7 @@ def test_a_contact_that_closes_and_opens(law, depth, place, bend):
 
 
 def check(law, curve, bound):
-    law = contact(*law)
-    found = compiled(law, curve, 1.0, np.empty((3, POINTS)))
-    wanted = expected(law, curve, 1.0)
+    touching = contact(*law)
+    found = compiled(*touching, curve, 1.0, np.empty((4, POINTS)))
+    wanted = expected(touching, curve, 1.0)
     assert np.abs(np.array(found[:3]) - wanted).max() <= bound * wanted[0] + 1e-16

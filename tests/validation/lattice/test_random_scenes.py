@@ -89,9 +89,7 @@ def difference(run, exact, unit):
 def check(seed):
     scene = drawn(seed)
     try:
-        exact, near = (
-            simulate(scene, method="DOP853", rtol=rtol) for rtol in (1e-13, 1e-11)
-        )
+        exact, near = (simulate(scene, method="DOP853", rtol=rtol) for rtol in (1e-13, 1e-11))
     except IntegrationError:  # rounding hides the motion at 1e-13: nothing is known
         return
     unit = units(scene, exact)

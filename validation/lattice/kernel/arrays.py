@@ -32,45 +32,40 @@ class Drive(NamedTuple):
     driven: bool
 
 
-class Chain(NamedTuple):
-    """A chain, padded by beads of infinite mass, of which the first is the wall.
+class Law(NamedTuple):
+    """The law that all contacts share, for unit stiffness: F(δ) + r [δ]_+^p dδ/dt.
 
-    inverse : inverse masses. A, rest, load : stiffnesses, static compressions and static forces of
-    the contacts. k : exponent of a power law. damped : True with damping forces c δ^p dδ/dt.
-    generated : True for any other contact law. force, slope, energy : addresses of the machine code
-    of F, F′ and ∫ F dδ of another law. pulls : True if contacts hold where δ < 0. q : F is smooth
-    in u if δ = u^q. drive : motion of a first bead that is driven; its inverse mass is 0.
+    k : exponent of a power law F = [δ]_+^k. p : exponent of the damping. q : the force is smooth in
+    u if δ = u^q. generated : True for any other law. force, slope, energy : addresses of the
+    machine code of F, F′ and ∫ F dδ of another law. pulls : True if contacts hold where δ < 0.
     """
 
-    inverse: Array
-    A: Array
-    c: Array
-    rest: Array
-    load: Array
     k: float
     p: float
     q: float
-    damped: bool
     generated: bool
     force: int
     slope: int
     energy: int
     pulls: bool
-    drive: Drive
 
 
-class Law(NamedTuple):
-    """The part of a `Chain` that is one contact's law."""
+class Chain(NamedTuple):
+    """A chain, padded by beads of infinite mass, of which the first is the wall.
 
-    A: float
-    c: float
-    k: float
-    p: float
-    q: float
+    inverse : inverse masses. A, r, rest, load : stiffnesses, damping coefficients over stiffnesses,
+    static compressions and static forces of the contacts. damped : True with damping. law : law of
+    all contacts. drive : motion of a first bead that is driven; its inverse mass is 0.
+    """
+
+    inverse: Array
+    A: Array
+    r: Array
+    rest: Array
+    load: Array
     damped: bool
-    generated: bool
-    force: int
-    energy: int
+    law: Law
+    drive: Drive
 
 
 class Beads(NamedTuple):
@@ -83,9 +78,8 @@ class Beads(NamedTuple):
         moment and impulse. Row 4: 1 for each contact that closes at the step's end.
     power : (2, stages), power that all contacts dissipate, and power of the drive.
     given : (2,), accelerations of a driven bead at the step's ends.
-    kinks : (4,), corrections at kinks of the heat and its error, and of the drive's work and its
-        error.
-    points : (3, 10), places of a quadrature, their weights, and the forces there.
+    corrections : (4,), at kinks, of the heat and its error, and of the drive's work and its error.
+    points : (4, 10), places of a quadrature, their weights, the forces there, and sums.
     """
 
     y: Array
@@ -96,7 +90,7 @@ class Beads(NamedTuple):
     sums: Array
     power: Array
     given: Array
-    kinks: Array
+    corrections: Array
     points: Array
 
 

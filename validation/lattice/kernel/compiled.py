@@ -56,7 +56,7 @@ summed: Callable[[Function], Function] = njit(
 )
 # Unsigned indices: a signed one may count from the end, which keeps a loop from vectorising.
 index = np.uint64
-ZERO, ONE, TWO, THREE = map(index, range(4))
+ZERO, ONE = index(0), index(1)
 
 
 def _call(typing: Any, address: Any, x: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Forces of all contacts, F = A [δ]_+^k + c [δ]_+^p dδ/dt ≥ 0, and a driven bead's motion."""
+"""Forces of all contacts, A (F(δ) + r [δ]_+^p dδ/dt) ≥ 0, and a driven bead's motion."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from lwa.base.arrays import Array
-from validation.lattice.kernel.arrays import Beads, Chain, Drive, Plan
+from validation.lattice.kernel.arrays import Beads, Chain, Drive, Law, Plan
 from validation.lattice.kernel.compiled import ONE, call, index, part, summed
 
 NEGLIGIBLE = 1e-60  # in units of the greatest compression: less is 0, so that no denormals arise
@@ -19,7 +19,7 @@ def _loop(value: Any) -> Any:
 
     @part
     def loop(chain: Chain, y: Array, f: Array, hi: int, least: float) -> None:
-        A, rest, load, k = chain.A, chain.rest, chain.load, chain.k
+        A, rest, load, k = chain.A, chain.rest, chain.load, chain.law.k
         for i in range(index(hi)):
             d = rest[i] + y[i] - y[i + ONE]
             d = d if d > least else 0.0
@@ -29,7 +29,7 @@ def _loop(value: Any) -> Any:
 
 
 def _damped_loop(value: Any, resistance: Any) -> Any:
-    """Compile a loop over contacts with the force A value(chain, d) + c resistance(p, d) dδ/dt.
+    """Compile a loop over contacts with the force A (value(law, d) + r resistance(d, p) dδ/dt).
 
     least, none : contacts push where δ > least and F > none; both are -∞ for contacts that pull.
     The loop returns the dissipated power. While a contact that has stopped pushing expands, its
@@ -40,15 +40,15 @@ def _damped_loop(value: Any, resistance: Any) -> Any:
     def loop(
         chain: Chain, y: Array, v: Array, f: Array, hi: int, least: float, none: float
     ) -> float:
-        A, rest, load, c, p, lost = chain.A, chain.rest, chain.load, chain.c, chain.p, 0.0
+        A, rest, load, r, law, lost = chain.A, chain.rest, chain.load, chain.r, chain.law, 0.0
         for i in range(index(hi)):
             x, rate = rest[i] + y[i] - y[i + ONE], v[i] - v[i + ONE]
             d = x if x > least else 0.0
-            elastic = A[i] * value(chain, d)
-            force = elastic + c[i] * resistance(d, p) * rate
+            elastic = value(law, d)
+            force = elastic + r[i] * resistance(d, law.p) * rate
             force = force if (force > none) & (x > least) else 0.0
-            f[i + ONE] = force - load[i]
-            lost += (force - elastic) * rate
+            f[i + ONE] = A[i] * force - load[i]
+            lost += A[i] * (force - elastic) * rate
         return lost
 
     return loop
@@ -71,11 +71,11 @@ _hertz = _loop(part(lambda d, k: d * np.sqrt(d)))
 _quarters = _loop(_of_quarters)
 _power = _loop(part(lambda d, k: d**k))
 _damped_hertz = _damped_loop(
-    part(lambda chain, d: d * (np.sqrt(d) if chain.k == 1.5 else 1.0)),
+    part(lambda law, d: d * (np.sqrt(d) if law.k == 1.5 else 1.0)),
     part(lambda d, p: np.sqrt(d) if p == 0.5 else (1.0 if p == 0.0 else np.sqrt(np.sqrt(d)))),
 )
 _damped = _damped_loop(
-    part(lambda chain, d: call(chain.force, d) if chain.generated else d**chain.k),
+    part(lambda law, d: call(law.force, d) if law.generated else d**law.k),
     part(lambda d, p: 1.0 if p == 0.0 else d**p),
 )
 
@@ -90,21 +90,21 @@ def contact_forces(
     column i + 1 for the contact ahead of bead i; the dissipated power and the power of the drive go
     to ``beads.power``.
     """
-    f, least, k = beads.force[s], NEGLIGIBLE * plan.deepest, chain.k
+    f, least, law, k = beads.force[s], NEGLIGIBLE * plan.deepest, chain.law, chain.law.k
     if chain.damped:
         none = 0.0
-        if chain.pulls:
+        if law.pulls:
             least = none = -math.inf
-        simple = (k == 1.5 and chain.p in (0.0, 0.25, 0.5)) or (k == 1.0 and chain.p == 0.0)
-        if simple and not chain.generated:
+        simple = (k == 1.5 and law.p in (0.0, 0.25, 0.5)) or (k == 1.0 and law.p == 0.0)
+        if simple and not law.generated:
             beads.power[0, s] = _damped_hertz(chain, y, v, f, hi, least, none)
         else:
             beads.power[0, s] = _damped(chain, y, v, f, hi, least, none)
-    elif chain.generated:
+    elif law.generated:
         for i in range(index(hi)):
             d = chain.rest[i] + y[i] - y[i + ONE]
-            closed = chain.A[i] > 0.0 and (chain.pulls or d > 0.0)
-            f[i + ONE] = (chain.A[i] * call(chain.force, d) if closed else 0.0) - chain.load[i]
+            closed = chain.A[i] > 0.0 and (law.pulls or d > 0.0)
+            f[i + ONE] = (chain.A[i] * call(law.force, d) if closed else 0.0) - chain.load[i]
     elif k == 1.5:
         _hertz(chain, y, f, hi, least)
     elif k < 5.0 and 4.0 * k == int(4.0 * k):
@@ -116,13 +116,13 @@ def contact_forces(
 
 
 @part
-def stiffness(chain: Chain, d: float) -> float:
+def stiffness(law: Law, d: float) -> float:
     """Return F′(d) of a contact of unit stiffness, k [d]_+^{k-1} for a power law."""
-    if chain.generated:
-        return float(call(chain.slope, d) if chain.pulls or d > 0.0 else 0.0)
+    if law.generated:
+        return float(call(law.slope, d) if law.pulls or d > 0.0 else 0.0)
     if not d > 0.0:
         return 0.0
-    return float(chain.k * (np.sqrt(d) if chain.k == 1.5 else d ** (chain.k - 1.0)))
+    return float(law.k * (np.sqrt(d) if law.k == 1.5 else d ** (law.k - 1.0)))
 
 
 @part

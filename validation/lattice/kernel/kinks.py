@@ -3,8 +3,9 @@
 F has no derivative of order k + 1 where a contact opens or closes, and a quadrature that does not
 know the place errs by O(h^{k+1}). Over the step, x = 0 … 1, the compression is close to the quintic
 p(x) with the values of δ, δ' and δ'' at both ends. `integrals` integrates F(p, p') over the
-intervals in which the contact pushes, by Gauss's rule in u with x = r + (e - r) u^q. There r is the
-root of p at the interval's one end, e its other end, and q makes F smooth in u.
+intervals in which the contact pushes, for unit stiffness, by Gauss's rule in u with
+x = z + (e - z) u^q, z the root of p at one end of the interval and e the other end, so that F is
+smooth in u.
 
 A damped contact that is pulled open can stop pushing before it parts: the force tells, not δ.
 """
@@ -16,7 +17,7 @@ import math
 import numpy as np
 
 from lwa.base.arrays import Array
-from validation.lattice.kernel.arrays import Chain, Law
+from validation.lattice.kernel.arrays import Law
 from validation.lattice.kernel.compiled import call, inner, once, part, summed
 
 Quintic = tuple[float, float, float, float, float, float]
@@ -31,55 +32,42 @@ _PLACES = 8  # parts of a step at whose ends a contact is looked at
 
 @part
 def elastic(law: Law, d: float) -> float:
-    """Return the elastic force A F(d) of a contact at a compression d ≥ 0."""
+    """Return the elastic force F(d) at a compression d ≥ 0."""
     if law.generated:
-        return float(law.A * call(law.force, d))
-    power = d * np.sqrt(d) if law.k == 1.5 else (d if law.k == 1.0 else d**law.k)
-    return float(law.A * power)
+        return float(call(law.force, d))
+    return float(d * np.sqrt(d) if law.k == 1.5 else (d if law.k == 1.0 else d**law.k))
 
 
 @part
 def drag(law: Law, d: float) -> float:
-    """Return the factor c d^p of the rate dδ/dt in the damping force, at a compression d ≥ 0."""
+    """Return the factor d^p of r dδ/dt in the damping force, at a compression d ≥ 0."""
     if law.p == 0.0:
-        return law.c
+        return 1.0
     if law.p == 0.25:  # of a constant coefficient of restitution of Hertzian contacts
-        return float(law.c * np.sqrt(np.sqrt(d)))
-    return float(law.c * (np.sqrt(d) if law.p == 0.5 else d**law.p))
+        return float(np.sqrt(np.sqrt(d)))
+    return float(np.sqrt(d) if law.p == 0.5 else d**law.p)
 
 
 @part
-def push(law: Law, d: float, rate: float) -> float:
-    """Return the force of a contact at a compression d and a rate dδ/dt; contacts do not pull."""
+def push(law: Law, r: float, d: float, rate: float) -> float:
+    """Return the force at a compression d and a rate dδ/dt; contacts do not pull."""
     if not d > 0.0:
         return 0.0
-    force = elastic(law, d)
-    return max(force + drag(law, d) * rate, 0.0) if law.damped else force
+    return max(elastic(law, d) + r * drag(law, d) * rate, 0.0) if r > 0.0 else elastic(law, d)
 
 
 @part
-def pushes(law: Law, d: float, rate: float) -> bool:
+def pushes(law: Law, r: float, d: float, rate: float) -> bool:
     """Return True if a contact has a force at a compression d and a rate dδ/dt."""
-    return d > 0.0 and (not law.damped or elastic(law, d) + drag(law, d) * rate > 0.0)
+    return d > 0.0 and (not r > 0.0 or elastic(law, d) + r * drag(law, d) * rate > 0.0)
 
 
 @part
 def stored(law: Law, d: float) -> float:
-    """Return the elastic energy of a contact at a compression d; 0 for d ≤ 0."""
+    """Return the elastic energy; 0 for d ≤ 0."""
     if not d > 0.0:
         return 0.0
-    if law.generated:
-        return float(law.A * call(law.energy, d))
-    return elastic(law, d) * d / (law.k + 1.0)
-
-
-@part
-def law_of(chain: Chain, i: int) -> Law:
-    """Return the law of contact i."""
-    return Law(
-        chain.A[i], chain.c[i], chain.k, chain.p, chain.q,
-        chain.damped and chain.c[i] > 0.0, chain.generated, chain.force, chain.energy,
-    )  # fmt: skip
+    return float(call(law.energy, d)) if law.generated else elastic(law, d) * d / (law.k + 1.0)
 
 
 @part
@@ -99,26 +87,26 @@ def fitted_quintic(d: float, v: float, a: float, end: float, end_v: float, end_a
 
 
 @part
-def _margin(law: Law, c: Quintic, h: float, x: float, closing: bool) -> float:
+def _margin(law: Law, r: float, c: Quintic, h: float, x: float, closing: bool) -> float:
     """Return a continuous function of x which is positive where the contact pushes.
 
     closing : True for a contact that closes; otherwise the contact ends to push, or pushes again.
     """
     p, slope = value_and_slope(c, x)
-    if closing or not law.damped:
+    if closing or not r > 0.0:
         return p
-    return (elastic(law, p) / drag(law, p) if p > 0.0 else 0.0) + slope / h
+    return (elastic(law, p) / (r * drag(law, p)) if p > 0.0 else 0.0) + slope / h
 
 
 @part
-def _change(law: Law, c: Quintic, h: float, a: float, b: float, closing: bool) -> float:
+def _change(law: Law, r: float, c: Quintic, h: float, a: float, b: float, closing: bool) -> float:
     """Return the place between a and b at which the contact begins or ends to push."""
     # A contact that pushes again before it has parted does so by its force.
     closing = closing and not value_and_slope(c, a)[0] > 0.0
-    left, right = _margin(law, c, h, a, closing), _margin(law, c, h, b, closing)
+    left, right = _margin(law, r, c, h, a, closing), _margin(law, r, c, h, b, closing)
     for _ in range(60):  # the Illinois variant of the rule of false position
         x = b - right * (b - a) / (right - left) if right != left else 0.5 * (a + b)
-        middle = _margin(law, c, h, x, closing)
+        middle = _margin(law, r, c, h, x, closing)
         if middle * right < 0.0:
             a, left = b, right
         else:
@@ -149,60 +137,56 @@ def _root(c: Quintic, x: float, side: float) -> float:
     return math.nan
 
 
-Integrals = tuple[float, float, float, float]
-"""∫ F, ∫ (1 - x) F, ∫ (1 - x)²/2 F and ∫ F p' over x."""
-
-
 @summed
-def forces_along(law: Law, c: Quintic, h: float, x: Array, f: Array) -> None:
+def forces_along(law: Law, r: float, c: Quintic, h: float, x: Array, f: Array) -> None:
     """Compute the forces at `POINTS` places x of a contact with the compression p; they go to f."""
-    if law.k == 1.5 and not law.damped and not law.generated:
+    if law.k == 1.5 and not r > 0.0 and not law.generated:
         for m in range(POINTS):
             d = max(value_and_slope(c, x[m])[0], 0.0)
-            f[m] = law.A * (d * np.sqrt(d))
+            f[m] = d * np.sqrt(d)
     else:
         for m in range(POINTS):
             p, slope = value_and_slope(c, x[m])
-            f[m] = push(law, p, slope / h)
+            f[m] = push(law, r, p, slope / h)
 
 
 @summed
-def _piece(
-    law: Law, c: Quintic, h: float, near: float, far: float, root: float, points: Array
-) -> Integrals:
-    """Return the integrals between near and far; root : the root on the side of near, or NaN."""
-    x, w, f = points[0], points[1], points[2]
-    q, r = (1.0, near) if math.isnan(root) else (law.q, root)
-    span = far - r
-    start = 0.0 if near == r else ((near - r) / span) ** (1.0 / q)
+def _add_piece(
+    law: Law, r: float, c: Quintic, h: float, near: float, far: float, root: float, points: Array
+) -> None:
+    """Add the integrals between near and far; root : the root on the side of near, or NaN."""
+    x, w, f, sums = points[0], points[1], points[2], points[3]
+    q, zero = (1.0, near) if math.isnan(root) else (law.q, root)
+    span = far - zero
+    start = 0.0 if near == zero else ((near - zero) / span) ** (1.0 / q)
     scale = abs(span) * (1.0 - start)
     for m in range(POINTS):
         u = start + (1.0 - start) * _U[m]
         pace = 1.0 if q == 1.0 else (2.0 * u if q == 2.0 else 4.0 * u * u * u)
-        x[m], w[m] = r + span * u * pace / q, scale * _W[m] * pace
-    forces_along(law, c, h, x, f)
-    once = twice = third = work = 0.0
+        x[m], w[m] = zero + span * u * pace / q, scale * _W[m] * pace
+    forces_along(law, r, c, h, x, f)
     for m in range(POINTS):
         force, left = w[m] * f[m], 1.0 - x[m]
-        once += force
-        twice += left * force
-        third += 0.5 * left * left * force
-        work += value_and_slope(c, x[m])[1] * force
-    return once, twice, third, work
+        sums[0] += force
+        sums[1] += left * force
+        sums[2] += 0.5 * left * left * force
+        sums[3] += value_and_slope(c, x[m])[1] * force
 
 
 @inner
-def _closed(law: Law, c: Quintic, h: float, a: float, b: float, points: Array) -> Integrals:
-    """Return the integrals over an interval in which the contact pushes."""
-    low = a if a > 0.0 and not law.damped else _root(c, a, -1.0)
-    high = b if b < 1.0 and not law.damped else _root(c, b, 1.0)
+def _add_closed(
+    law: Law, r: float, c: Quintic, h: float, a: float, b: float, points: Array
+) -> None:
+    """Add the integrals over an interval in which the contact pushes."""
+    low = a if a > 0.0 and not r > 0.0 else _root(c, a, -1.0)
+    high = b if b < 1.0 and not r > 0.0 else _root(c, b, 1.0)
     if math.isnan(high):
-        return _piece(law, c, h, a, b, low, points)
-    if math.isnan(low):
-        return _piece(law, c, h, b, a, high, points)
-    middle = 0.5 * (a + b)
-    one, two = _piece(law, c, h, a, middle, low, points), _piece(law, c, h, b, middle, high, points)
-    return one[0] + two[0], one[1] + two[1], one[2] + two[2], one[3] + two[3]
+        _add_piece(law, r, c, h, a, b, low, points)
+    elif math.isnan(low):
+        _add_piece(law, r, c, h, b, a, high, points)
+    else:
+        _add_piece(law, r, c, h, a, 0.5 * (a + b), low, points)
+        _add_piece(law, r, c, h, b, 0.5 * (a + b), high, points)
 
 
 @part
@@ -216,47 +200,47 @@ def _summit(c: Quintic, a: float, b: float) -> float:
 
 @inner
 def integrals(
-    law: Law, c: Quintic, h: float, points: Array
+    law: Law, r: float, c: Quintic, h: float, points: Array
 ) -> tuple[float, float, float, float, float]:
     """Return ∫ F, ∫ (1 - x) F, ∫ (1 - x)²/2 F and ∫ F p' over a step, and the greatest p.
 
     F(p, p'/h) is the force of a contact whose compression is the quintic with coefficients c.
     """
-    once = twice = third = work = start = 0.0
+    start = 0.0
+    for m in range(4):
+        points[3, m] = 0.0
     before, rise = c[0], c[1]
-    pushed = pushes(law, before, rise / h)
+    pushed = pushes(law, r, before, rise / h)
     top = before
     for m in range(1, _PLACES + 1):
         low, high = (m - 1) / _PLACES, m / _PLACES
         p, slope = value_and_slope(c, high)
         a = b = 0.0  # an interval in which the contact pushes, and that ends by now
-        now = pushes(law, p, slope / h)
+        now = pushes(law, r, p, slope / h)
         if now and not pushed:
-            start = _change(law, c, h, low, high, True)
+            start = _change(law, r, c, h, low, high, True)
         elif pushed and not now:
-            a, b = start, _change(law, c, h, low, high, False)
+            a, b = start, _change(law, r, c, h, low, high, False)
         elif not now and before <= 0.0 and rise > 0.0 and p > 0.0:
             # A damped contact closes, and no longer pushes where it is looked at.
-            a = _change(law, c, h, low, high, True)
-            b = _change(law, c, h, a, high, False)
+            a = _change(law, r, c, h, low, high, True)
+            b = _change(law, r, c, h, a, high, False)
         elif not now and before <= 0.0 and rise > 0.0 and slope < 0.0:
             peak = _summit(c, low, high)
             deepest, _ = value_and_slope(c, peak)
             if deepest > 0.0:  # the contact closes and opens again between two places
                 top = max(top, deepest)
-                a = _change(law, c, h, low, peak, True)
-                b = _change(law, c, h, peak, high, False)
+                a = _change(law, r, c, h, low, peak, True)
+                b = _change(law, r, c, h, peak, high, False)
         if now and m == _PLACES:
             a, b = start, 1.0
         if b > a:
-            part_of = _closed(law, c, h, a, b, points)
-            once, twice = once + part_of[0], twice + part_of[1]
-            third, work = third + part_of[2], work + part_of[3]
+            _add_closed(law, r, c, h, a, b, points)
         pushed, before, rise, top = now, p, slope, max(top, p)
-    return once, twice, third, work, top
+    return points[3, 0], points[3, 1], points[3, 2], points[3, 3], top
 
 
 @once
-def closing_place(law: Law, c: Quintic, h: float) -> float:
+def closing_place(law: Law, r: float, c: Quintic, h: float) -> float:
     """Return the place of a step at which a contact, open before, closes."""
-    return _change(law, c, h, 0.0, 1.0, True)
+    return _change(law, r, c, h, 0.0, 1.0, True)

@@ -18,9 +18,9 @@ import math
 from typing import Any
 
 from lwa.base.arrays import Array
-from validation.lattice.kernel.arrays import WIDTH, Beads, Chain, Pair, Plan
 from validation.lattice.kernel import kinks
-from validation.lattice.kernel.compiled import ONE, THREE, TWO, ZERO, index, inner, once, part, summed
+from validation.lattice.kernel.arrays import WIDTH, Beads, Chain, Pair, Plan
+from validation.lattice.kernel.compiled import ONE, ZERO, index, inner, once, part, summed
 from validation.lattice.kernel.force import contact_forces, drive_motion, interval, stiffness
 
 _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the tolerance
@@ -58,8 +58,8 @@ def _squared_error(sums: Array, inverse: Array, hi: int) -> float:
     """Return the sum of squares of the beads' errors, in units of the tolerances."""
     total = 0.0
     for i in range(index(hi)):
-        y = (sums[TWO, i] - sums[TWO, i + ONE]) * inverse[i]
-        v = (sums[THREE, i] - sums[THREE, i + ONE]) * inverse[i]
+        y = (sums[index(2), i] - sums[index(2), i + ONE]) * inverse[i]
+        v = (sums[index(3), i] - sums[index(3), i + ONE]) * inverse[i]
         total += y * y + v * v
     return total
 
@@ -83,7 +83,8 @@ def _fitted(chain: Chain, beads: Beads, h: float, last: int, i: int, opened: boo
     y, v, f, inverse, rest = beads.y, beads.v, beads.force, chain.inverse, chain.rest
     end = rest[i] + beads.next_y[i] - beads.next_y[i + 1]
     end_rate = beads.next_v[i] - beads.next_v[i + 1]
-    own = (0.0 if opened else kinks.push(kinks.law_of(chain, i), end, end_rate)) - chain.load[i]
+    own = 0.0 if opened else chain.A[i] * kinks.push(chain.law, chain.r[i], end, end_rate)
+    own -= chain.load[i]
     a = (f[0, i] - f[0, i + 1]) * inverse[i] - (f[0, i + 1] - f[0, i + 2]) * inverse[i + 1]
     end_a = (f[last, i] - own) * inverse[i] - (own - f[last, i + 2]) * inverse[i + 1]
     if i == 0:
@@ -111,40 +112,41 @@ def _sums(pair: Pair, force: Array) -> tuple[float, float, float, float, float]:
 def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -> None:
     """Correct a step for the pair's error at contact i, which opens or closes."""
     pair, last, inverse = plan.scheme, len(plan.scheme.moments) - 1, chain.inverse
-    law, p = kinks.law_of(chain, i), _fitted(chain, beads, h, last, i, False)
-    once, twice, third, work, top = kinks.integrals(law, p, h, beads.points)
+    A, r, law, p = chain.A[i], chain.r[i], chain.law, _fitted(chain, beads, h, last, i, False)
+    once, twice, third, work, top = kinks.integrals(law, r, p, h, beads.points)
     force = beads.points[2]
-    kinks.forces_along(law, p, h, pair.nodes, force)
+    kinks.forces_along(law, r, p, h, pair.nodes, force)
     pair_once, pair_twice, pair_third, error, error_once = _sums(pair, force)
-    once, twice, third = once - pair_once, twice - pair_twice, third - pair_third
+    once, twice, third = A * (once - pair_once), A * (twice - pair_twice), A * (third - pair_third)
     if chain.damped:
-        heat = work - (kinks.stored(law, kinks.value_and_slope(p, 1.0)[0]) - kinks.stored(law, p[0]))
+        end, _ = kinks.value_and_slope(p, 1.0)
+        heat = work - kinks.stored(law, end) + kinks.stored(law, p[0])
         for s in range(last + 1):
             d, slope = kinks.value_and_slope(p, pair.nodes[s])
             lost = (force[s] - (kinks.elastic(law, d) if d > 0.0 else 0.0)) * slope
             heat -= pair.impulses[last, s] * lost
-            beads.kinks[1] += pair.errors[1, s] * lost
-        beads.kinks[0] += heat
+            beads.corrections[1] += A * pair.errors[1, s] * lost
+        beads.corrections[0] += A * heat
     impulse, moment = h * once, h * h * twice
     beads.next_v[i] -= impulse * inverse[i]
     beads.next_v[i + 1] += impulse * inverse[i + 1]
     beads.next_y[i] -= moment * inverse[i]
     beads.next_y[i + 1] += moment * inverse[i + 1]
-    beads.sums[2, i + 1] -= h * h * error / plan.y
-    beads.sums[3, i + 1] -= h * error_once / plan.v
+    beads.sums[2, i + 1] -= h * h * A * error / plan.y
+    beads.sums[3, i + 1] -= h * A * error_once / plan.v
     if i == 0 and chain.drive.driven:
         # ∫ ΔF v dt with v = next_v - (1 - x) h a + (1 - x)²/2 h² da/dt, a at the step's end.
         change = h * h * third * (beads.given[1] - beads.given[0])
-        beads.kinks[2] = impulse * beads.next_v[0] - moment * beads.given[1] + change
-        beads.kinks[3] = h * error_once * beads.next_v[0]
+        beads.corrections[2] = impulse * beads.next_v[0] - moment * beads.given[1] + change
+        beads.corrections[3] = h * A * error_once * beads.next_v[0]
     for n in range(max(0, i - 1), i + 2):
         both = inverse[i] + inverse[i + 1] if n == i else -inverse[max(i, n)]
         d = top if n == i else chain.rest[n] + beads.next_y[n] - beads.next_y[n + 1]
         closed = n == i or beads.force[last, n + 1] + chain.load[n] > 0.0
         if d > 0.0 and chain.A[n] > 0.0 and closed:
-            more = -chain.A[n] * stiffness(chain, d) * h * h * h * third * both
+            more = -chain.A[n] * stiffness(law, d) * h * h * h * third * both
             if chain.damped:
-                more -= kinks.drag(kinks.law_of(chain, n), d) * moment * both
+                more -= chain.A[n] * chain.r[n] * kinks.drag(law, d) * moment * both
             if n != i:
                 beads.next_v[n] -= more * inverse[n]
                 beads.next_v[n + 1] += more * inverse[n + 1]
@@ -166,8 +168,9 @@ def place_of_jump(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> 
         beads.sums[4, i + 1] = 0.0
         if before <= 0.0 and after > 0.0 and chain.A[i] > 0.0:
             p = _fitted(chain, beads, h, last, i, True)
-            x = kinks.closing_place(kinks.law_of(chain, i), p, h)
-            jump = chain.c[i] * abs(kinks.value_and_slope(p, x)[1])  # h times the jump of the force
+            x = kinks.closing_place(chain.law, chain.r[i], p, h)
+            _, slope = kinks.value_and_slope(p, x)
+            jump = chain.A[i] * chain.r[i] * abs(slope)  # h times the jump of the force
             jump *= max(chain.inverse[i], chain.inverse[i + 1])
             behind = 2.0 * _JUMP * plan.v / (jump + 1e-300)  # share of a step in which it counts
             if 1.0 - x > behind:
@@ -190,10 +193,10 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
     Returns the number of marks, which are in row 0 of ``beads.sums``.
     """
     pair, last = plan.scheme, len(plan.scheme.moments) - 1
-    beads.kinks[:] = 0.0
-    _add_up(beads.sums, TWO, beads.force, pair.errors[0], h * h / plan.y, last + 1, hi)
-    _add_up(beads.sums, THREE, beads.force, pair.errors[1], h / plan.v, last + 1, hi)
-    if chain.pulls:
+    beads.corrections[:] = 0.0
+    _add_up(beads.sums, index(2), beads.force, pair.errors[0], h * h / plan.y, last + 1, hi)
+    _add_up(beads.sums, index(3), beads.force, pair.errors[1], h / plan.v, last + 1, hi)
+    if chain.law.pulls:
         return 0
     y, v, next_y, next_v, rest = beads.y, beads.v, beads.next_y, beads.next_v, chain.rest
     marks, jumped, load = beads.sums[0], beads.sums[4], chain.load
@@ -245,8 +248,8 @@ def step_error(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> flo
     """Return the error of a step in units of the tolerance."""
     error, errors = _squared_error(beads.sums, chain.inverse, hi), plan.scheme.errors[1]
     for n in range(2):  # of the heat and of the drive's work
-        missed = (h * _integral(errors, beads.power[n]) - beads.kinks[2 * n + 1]) / plan.energy
-        error += missed * missed
+        missed = h * _integral(errors, beads.power[n]) - beads.corrections[2 * n + 1]
+        error += (missed / plan.energy) ** 2
     return math.sqrt(error)
 
 
@@ -255,8 +258,8 @@ def accept_step(beads: Beads, plan: Plan, now: Any, h: float, hi: int, error: fl
     """Move the beads to the end of a step with an error of at most 1, and plan the next step."""
     last = len(plan.scheme.moments) - 1
     impulses, power = plan.scheme.impulses[last], beads.power
-    now.lost += h * _integral(impulses, power[0]) + beads.kinks[0]
-    now.work += h * _integral(impulses, power[1]) + beads.kinks[2]
+    now.lost += h * _integral(impulses, power[0]) + beads.corrections[0]
+    now.work += h * _integral(impulses, power[1]) + beads.corrections[2]
     now.response = max(now.response, now.energy + now.work - now.lost)
     for i in range(index(hi)):
         beads.y[i], beads.v[i] = beads.next_y[i], beads.next_v[i]

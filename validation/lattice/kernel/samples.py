@@ -17,19 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
+from validation.lattice.kernel import kinks
 from validation.lattice.kernel.arrays import Beads, Chain, Knots, Law
 from validation.lattice.kernel.compiled import SOURCES, cached, inner, once, part
 from validation.lattice.kernel.force import stiffness
-from validation.lattice.kernel.kinks import (
-    Quintic,
-    drag,
-    fitted_quintic,
-    integrals,
-    law_of,
-    push,
-    pushes,
-    value_and_slope,
-)
+from validation.lattice.kernel.kinks import Quintic, fitted_quintic, value_and_slope
 
 
 @part
@@ -44,7 +36,7 @@ def store_knot(chain: Chain, beads: Beads, knots: Knots, now: Any) -> None:
         state[0], state[1], state[2] = beads.y[j], beads.v[j], force * chain.inverse[j]
         if j == 0 and chain.drive.driven:
             state[2] = beads.given[0]
-        state[3] = 0.0 if chain.pulls else beads.sums[0, j + 1]
+        state[3] = 0.0 if chain.law.pulls else beads.sums[0, j + 1]
     now.stored += 1
 
 
@@ -65,13 +57,13 @@ def _quintic(knots: Knots, n: int, q: int, rest: float) -> Quintic:
 
 
 @part
-def _rate(chain: Chain, law: Law, d: float, v: float, a: float) -> float:
-    """Return dF/dt of a contact from δ, δ' and δ''."""
-    rate = law.A * stiffness(chain, d) * v
-    if law.damped:
-        if not (chain.pulls or pushes(law, d, v)):
+def _rate(law: Law, r: float, d: float, v: float, a: float) -> float:
+    """Return dF/dt of a contact of unit stiffness from δ, δ' and δ''."""
+    rate = stiffness(law, d) * v
+    if r > 0.0:
+        if not (law.pulls or kinks.pushes(law, r, d, v)):
             return 0.0
-        resistance = drag(law, d)
+        resistance = r * kinks.drag(law, d)
         rate += resistance * a
         if law.p > 0.0:
             rate += law.p * resistance / d * v * v
@@ -79,12 +71,14 @@ def _rate(chain: Chain, law: Law, d: float, v: float, a: float) -> float:
 
 
 @inner
-def _effect(law: Law, p: Quintic, h: float, x: float, points: Array) -> tuple[float, float]:
-    """Return the effect of a contact's force up to x on y and y' of a bead with h² = mass."""
+def _effect(
+    law: Law, r: float, p: Quintic, h: float, x: float, points: Array
+) -> tuple[float, float]:
+    """Return the effect of a unit contact's force up to x on y and y' of a bead with h² = mass."""
     # Over the part of the step up to x the quintic's coefficients are c_j x^j.
     x2 = x * x
     part_of = p[0], x * p[1], x2 * p[2], x2 * x * p[3], x2 * x2 * p[4], x2 * x2 * x * p[5]
-    once, twice, _, _, _ = integrals(law, part_of, h * x, points)
+    once, twice, _, _, _ = kinks.integrals(law, r, part_of, h * x, points)
     return x2 * twice, x * once
 
 
@@ -104,19 +98,19 @@ def _smooth_ends(
         for r in range(len(rows) - 1):
             q = rows[r]
             i = knots.watched[q]
-            near, far = h * h * chain.inverse[i], h * h * chain.inverse[i + 1]
-            law, rest = law_of(chain, i), chain.rest[i]
+            scale, rest, ratio = h * h * chain.A[i], chain.rest[i], chain.r[i]
+            near, far = scale * chain.inverse[i], scale * chain.inverse[i + 1]
             if knots.state[n + 1, q, 3] > 0.0:
                 p = _quintic(knots, n, q, rest)
-                moment, impulse = _effect(law, p, h, float(end), points)
+                moment, impulse = _effect(chain.law, ratio, p, h, float(end), points)
                 delta, slope = value_and_slope(p, float(end))
-                changes = moment, impulse, push(law, delta, slope / h)
+                changes = moment, impulse, kinks.push(chain.law, ratio, delta, slope / h)
                 for m in range(3):
                     ends[end, r, m] += near * changes[m]
                     ends[end, r + 1, m] -= far * changes[m]
             else:
                 d, v, a = _compression(knots, n + end, q, rest)
-                rate = h * _rate(chain, law, d, v, a)
+                rate = h * _rate(chain.law, ratio, d, v, a)
                 ends[end, r, 3] -= near * rate
                 ends[end, r + 1, 3] += far * rate
 
@@ -176,10 +170,11 @@ def _built(sources: int) -> Any:
                 q, i = rows[r], knots.watched[rows[r]]
                 if knots.state[n + 1, q, 3] > 0.0:
                     p = _quintic(knots, n, q, chain.rest[i])
-                    near, far = h * h * chain.inverse[i], h * h * chain.inverse[i + 1]
+                    scale = h * h * chain.A[i]
+                    near, far = scale * chain.inverse[i], scale * chain.inverse[i + 1]
                     for s in range(first, last):
                         x = (time[s] - start) / h
-                        moment, impulse = _effect(law_of(chain, i), p, h, x, points)
+                        moment, impulse = _effect(chain.law, chain.r[i], p, h, x, points)
                         y[r, s], y[r + 1, s] = y[r, s] - near * moment, y[r + 1, s] + far * moment
                         v[r, s] -= near * impulse / h
                         v[r + 1, s] += far * impulse / h
