@@ -57,7 +57,9 @@ _KINKS, _COARSEST = 0.01, 0.2
 _FIRST = 4.0  # first step of a pair over rtol^(1/7), in units of the scene's shortest time
 
 
-def follow(motion: Motion, method: str, rtol: float, longest: float, progress: RunProgress) -> Run:
+def integrate(
+    motion: Motion, method: str, rtol: float, longest: float, progress: RunProgress
+) -> Run:
     """Integrate a scene by a method of `SCHEMES`, in steps of at most ``longest``.
 
     A splitting's steps have this length, unless it is infinite. A run whose tolerance is set by a
@@ -152,7 +154,7 @@ def _chain(motion: Motion) -> Chain:
     given = 1 / motion.masses, motion.stiffnesses, ratios, motion.rest, motion.load
     for row, values in zip(rows, given, strict=True):
         row[: len(values)] = values
-    drive, contact, call = motion.scene.drive, motion.contact, motion.contact.addresses
+    drive, contact = motion.scene.drive, motion.contact
     driven = Drive(np.zeros(1), np.zeros((1, 4)), 0.0, 0.0, 0.0, False)
     if drive is not None:
         rows[0, 0] = 0.0
@@ -164,12 +166,11 @@ def _chain(motion: Motion) -> Chain:
         p=float(contact.damping_power or 0),
         q=_exponent(contact),
         generated=contact.law is not None,
-        force=call["force"],
-        slope=call["slope"],
-        energy=call["energy"],
         pulls=contact.pulls,
+        **contact.addresses,
     )
-    return Chain(*rows, motion.scene.damping is not None, law, driven)
+    inverse, A, r, rest, load = rows
+    return Chain(inverse, A, r, rest, load, motion.scene.damping is not None, law, driven)
 
 
 def _exponent(law: Contact) -> float:

@@ -63,14 +63,8 @@ class Contact:
         if self.damping_power is None:
             return elastic
         closed = compression if self.pulls else np.maximum(compression, 0.0)
-        force = np.asarray(closed**self.damping_power)  # in place: records are large
-        force *= rate
-        force.T[...] *= damping
-        force += elastic
-        if not self.pulls:
-            np.maximum(force, 0.0, out=force)
-            force[compression <= 0.0] = 0.0
-        return force
+        force = np.asarray(elastic + (damping * (closed**self.damping_power * rate).T).T)
+        return force if self.pulls else np.where(compression > 0.0, np.maximum(force, 0.0), 0.0)
 
     def _evaluated(self, order: int, compression: Array) -> Array:
         function = _functions(self.law)[order]
@@ -94,13 +88,10 @@ class Contact:
 
         # The first of many places at which the energy is reached, or a pole; else a barrier.
         d = start + np.geomspace(1e-15, 1e15, 7000)
-        stored = (
-            self.energy(d)
-            - self.energy(np.array(start))
-            - self.force(np.array(start)) * (d - start)
-        )
-        reached = np.flatnonzero(~(stored < energy))
-        return float(d[reached[0] if len(reached) else np.argmax(stored)])
+        at_start = np.array(start)
+        work = self.energy(d) - self.energy(at_start) - self.force(at_start) * (d - start)
+        reached = np.flatnonzero(~(work < energy))
+        return float(d[reached[0] if len(reached) else np.argmax(work)])
 
     @property
     def addresses(self) -> dict[str, int]:

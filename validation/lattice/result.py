@@ -21,7 +21,6 @@ _SI = {
     "time": "s",
     "arrival": "s",
     "FWHM": "s",
-    "energy": "J",
     "force": "N",
     "compression": "m",
     "displacement": "m",
@@ -82,25 +81,8 @@ class Run(Pictured):
         """The scene's equations of motion."""
         return Motion(self.scene)
 
-    @property
-    def energy(self) -> Array:
-        """Kinetic and elastic energy above equilibrium at the sample times, (S,).
-
-        Raises `SceneError` unless the scene has sensors at all beads.
-        """
-        sensors, size = self.scene.bead_sensors, self.scene.size
-        if len(sensors) < size:
-            text = f"energy needs sensors at all {size} beads: the scene has {len(sensors)}"
-            raise SceneError(text)
-        order = np.argsort(sensors)
-        states = np.concatenate((self.bead_displacement[order], self.bead_velocity[order]))
-        return np.array([self._motion.energy(state) for state in states.T])
-
     def columns(self) -> dict[str, Array]:
-        """Return time and all records, each (S,), by names such as "bead 15 force (N)".
-
-        The energy is included if all beads have sensors.
-        """
+        """Return time and all records, each (S,), by names such as "bead 15 force (N)"."""
         scene = self.scene
         values = {"time": self.time}
         for row, i in enumerate(scene.bead_sensors):
@@ -109,8 +91,6 @@ class Run(Pictured):
         for row, i in enumerate(scene.contact_sensors):
             values[f"contact {i + 1} force"] = self.contact_force[row]
             values[f"contact {i + 1} compression"] = self.compression[row]
-        if len(scene.bead_sensors) == scene.size:
-            values["energy"] = self.energy
         return {self.label(name): row for name, row in values.items()}
 
     def pictured(self) -> list[Panel]:

@@ -19,11 +19,12 @@ from typing import Any
 import numpy as np
 
 from lwa.base.exact import shorten
+from validation.lattice import steppers
 from validation.lattice.cost import RunProgress, silent
 from validation.lattice.equations import Motion
 from validation.lattice.result import Run
 from validation.lattice.schemes import SCHEMES
-from validation.lattice.steppers import METHODS, integrate
+from validation.lattice.steppers import METHODS
 from validation.lattice.threads import cores, threads
 from validation.scenes.checks import SceneError, between, one_of, positive
 from validation.scenes.scene import Scene
@@ -79,10 +80,10 @@ def simulate(
     with np.errstate(over="ignore", invalid="ignore"):
         motion = Motion(scene)
         if method in METHODS:
-            return integrate(motion, method, rtol, longest)
-        from validation.lattice.engine import follow  # start-up: numba takes its time
+            return steppers.integrate(motion, method, rtol, longest)
+        from validation.lattice import engine  # start-up: numba takes its time
 
-        return follow(motion, method, rtol, longest, progress)
+        return engine.integrate(motion, method, rtol, longest, progress)
 
 
 def simulate_many(

@@ -1,4 +1,4 @@
-"""The result of a run: its pictures, columns and energy."""
+"""The result of a run: its pictures."""
 
 from dataclasses import replace
 
@@ -9,7 +9,6 @@ from matplotlib.figure import Figure
 from lwa import InputError
 from validation.lattice.simulate import simulate
 from validation.scenes.chains import struck
-from validation.scenes.scene import SceneError
 
 THREE = struck((1,), 3, duration=3)
 
@@ -28,13 +27,3 @@ def test_a_run_is_drawn_into_given_axes():
     assert ax.get_legend().get_window_extent().y0 >= ax.bbox.y1  # on no curve
     with pytest.raises(InputError, match="no picture"):
         simulate(THREE).plot()
-
-
-def test_energy_over_time_is_a_record_with_sensors_at_all_beads():
-    sensors = (3, *range(3), *range(4, 10))
-    scene = struck((1, 0.5), 10, wall=1, precompression=0.5, duration=9, bead_sensors=sensors)
-    run = simulate(scene)
-    assert run.energy == pytest.approx(0.5, rel=1e-7)  # of the blow, conserved
-    np.testing.assert_array_equal(run.columns()["energy"], run.energy)
-    with pytest.raises(SceneError, match="sensors at all 10 beads"):
-        simulate(replace(scene, bead_sensors=(0, 1))).energy  # noqa: B018

@@ -28,7 +28,7 @@ def moving(now: Any) -> int:
 
 
 @once
-def follow(beads: Beads, plan: Plan, now: Any) -> None:
+def advance_front(beads: Beads, plan: Plan, now: Any) -> None:
     """Move the front to the first bead that is still."""
     while now.front < plan.size and abs(beads.y[now.front - MARGIN]) > _STILL * plan.deepest:
         now.front += 1
@@ -80,7 +80,7 @@ def _built(sources: int) -> Any:
                 now.steps += 1
                 now.t = stop if stopping else now.t + h
                 now.stop += 1 if stopping else 0
-                follow(beads, plan, now)
+                advance_front(beads, plan, now)
             else:
                 reject_step(beads, plan, now, h, error)
 

@@ -177,12 +177,8 @@ def place_of_jump(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> 
                 # In a step that errs the fit says little: the place is looked for once more.
                 place = min(place, max(x + 0.5 * behind, _SHRINKAGE))
             else:
-                beads.sums[4, i + 1] = 1.0
+                beads.sums[4, i + 1], beads.force[last, i + 1] = 1.0, -chain.load[i]
                 count += 1
-    if place == 1.0 and count > 0:
-        for i in range(hi):
-            if beads.sums[4, i + 1] > 0.0:
-                beads.force[last, i + 1] = -chain.load[i]
     return place, count
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from validation.lattice.kernel.advance import follow, moving
+from validation.lattice.kernel.advance import advance_front, moving
 from validation.lattice.kernel.arrays import Beads, Chain, Knots, Plan
 from validation.lattice.kernel.compiled import ONE, SOURCES, ZERO, cached, index
 from validation.lattice.kernel.force import contact_forces
@@ -47,7 +47,7 @@ def _built(sources: int) -> Any:
             now.steps += 1
             # no sum of steps: equal steps are rounded to one side, 1e-10 after 1e5 of them
             now.t = now.steps * h if now.t + 1.5 * h < plan.end else plan.end
-            follow(beads, plan, now)
+            advance_front(beads, plan, now)
             store_knot(chain, beads, knots, now)
         return now.t, sources
 
