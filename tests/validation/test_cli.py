@@ -15,12 +15,7 @@ from validation import cli
 from validation.report import command
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
-from validation.scenes.scenefile import scene
 from validation.studies.run import EXAMPLES
-
-
-def toml(text):
-    return scene(tomllib.loads(text))
 
 
 def run(capsys, *arguments):
@@ -181,23 +176,30 @@ def test_refused_runs_print_one_line_and_leave_no_file(capsys, folder, options, 
 
 
 BAD = [
-    ("run",),
-    ("run", "missing.toml"),
-    ("paper", "--velocity", "__import__('os')"),
-    ("paper", "--format", "xml"),
-    ("exact", "--masses", "1,0.2733"),
-    ("pulses", "records.csv", "--column", "time"),
-    ("--nothing",),
+    ("run", "Missing argument"),
+    ("run missing.toml", "missing.toml: No such file"),
+    ("paper --velocity __import__('os')", "velocity is "),
+    ("paper --format xml", "Invalid value for '--format'"),
+    ("exact --masses 1,0.2733", "no solitary wave"),
+    ("pulses records.csv --column time", "column is 'time'"),
+    ("--nothing", ""),
+    ("sweep --k 1", "k is 1:"),
+    ("sweep --k 1:2", "k is '1:2':"),
+    ("sweep --k 1:2:1001", "the count of k is 1001:"),
+    ("sweep --omega __import__('os')", "omega is "),
+    ("sweep --file s.txt", "file is s.txt:"),
+    ("sweep --jobs 0 --file s.sqlite", "jobs is 0:"),
+    ("sweep --jobs 2 --cluster tcp://a:1", "jobs is 2:"),
 ]
 
 
-@pytest.mark.parametrize("arguments", BAD, ids=" ".join)
-def test_bad_input_prints_one_line_with_status_2(capsys, arguments):
-    status, out, err = run(capsys, *arguments)
-    assert (status, out) == (2, "")
-    assert err.startswith("lwa-validate: ")
-    assert err.count("\n") == 1
+@pytest.mark.parametrize(("line", "message"), BAD)
+def test_bad_input_prints_one_line_with_status_2_and_leaves_no_file(capsys, folder, line, message):
+    status, out, err = run(capsys, *line.split())
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert err.startswith(f"lwa-validate: {message}")
     assert len(err) < 200
+    assert list(folder.iterdir()) == []
 
 
 def test_help_and_no_arguments(capsys):

@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import sympy as sp
 from scipy.integrate import DOP853
-
-from lwa.law import Power
+from scipy.optimize import brentq
 
 PLACES = np.linspace(0, 1, 13)[1:]  # in a step, at which the contacts are looked at
 PATIENCE = 100_000  # steps
@@ -43,15 +42,15 @@ class Reference:
         wall = () if scene.wall is None else (scene.wall,)
         self.A = np.array(scene.stiffnesses + wall)
         self.load = np.array(scene.load)
-        law = scene.law or Power(scene.k)
-        delta = law.delta
-        self.F, self.U = (sp.lambdify(delta, sp.N(e, 17)) for e in (law.F, law.energy))
-        self.pulls = scene.law is not None and bool(law.slope().subs(delta, 0).is_positive)
-        if scene.law is None:
-            self.F, self.U = lambda d: d**scene.k, lambda d: d ** (scene.k + 1) / (scene.k + 1)
-        self.rest = np.zeros(len(self.A))
+        k, law, forces = scene.k, scene.law, self.load / self.A
+        if law is None:
+            self.F, self.U, self.pulls = lambda d: d**k, lambda d: d ** (k + 1) / (k + 1), False
+            self.rest = forces ** (1 / k)
+        else:
+            self.F, self.U = (sp.lambdify(law.delta, sp.N(e, 17)) for e in (law.F, law.energy))
+            self.pulls = bool(law.slope().subs(law.delta, 0).is_positive)
+            self.rest = np.array([brentq(lambda d, f=f: self.F(d) - f, 0, 50) for f in forces])
         if self.load.any():
-            self.rest = np.array([self._pressed(f) for f in self.load / self.A])
             self.load = self.A * self.F(self.rest)
         self.c, self.p = np.zeros(len(self.A)), 0.0
         if scene.damping is not None:
@@ -60,15 +59,6 @@ class Reference:
             self.p = scene.damping.power(scene.k)
             self.c = scene.damping.coefficients(scene.k, self.A, reduced)
         self.closed = np.zeros(len(self.A), bool)
-
-    def _pressed(self, force):
-        low, high = 0.0, 1.0
-        while self.F(high) < force:
-            high *= 2
-        for _ in range(200):
-            middle = (low + high) / 2
-            low, high = (middle, high) if self.F(middle) < force else (low, middle)
-        return (low + high) / 2
 
     def gaps(self, y, v):
         """Compressions and their rates; the wall is a bead at 0."""
@@ -81,16 +71,17 @@ class Reference:
         elastic = self.A * self.F(pressed)
         return elastic, elastic + self.c * (pressed**self.p if self.p else 1.0) * rate
 
+    def push(self, d, rate):
+        """Forces over δ^p, which have no power less than 1."""
+        pressed = np.maximum(d, 0)
+        power = pressed ** (self.scene.k - self.p) if self.scene.law is None else self.F(pressed)
+        return self.A * power + self.c * rate
+
     def active(self, d, rate):
         """True for contacts that push: whether they should be closed."""
         if self.pulls:
             return np.ones(len(d), bool)
-        pressed = np.maximum(d, 0)
-        if self.scene.law is None:  # the force over δ^p, which has no power less than 1
-            push = self.A * pressed ** (self.scene.k - self.p) + self.c * rate
-        else:
-            push = self.A * self.F(pressed) + self.c * rate
-        return (d > 0) & ((self.c == 0) | (push > 0))
+        return (d > 0) & ((self.c == 0) | (self.push(d, rate) > 0))
 
     def __call__(self, t, state):
         n, drive = self.n, self.scene.drive
@@ -229,20 +220,11 @@ def first_change(ref, stepper, t, state, least):
 
 def lateness(ref, state, t, i):
     """How long ago a contact's change was, to first order; negative before the change."""
-    n = ref.n
-    rates = ref(t, state)
-    d, rate = (x[i] for x in ref.gaps(state[:n], state[n : 2 * n]))
-    _, second = (x[i] for x in ref.gaps(rates[:n], rates[n : 2 * n]))
-    k, p = ref.scene.k - ref.p, ref.c[i]
-    if not ref.closed[i] and not (p and d > 1e-9):
-        return d / rate
-    if p == 0:
-        return d / rate
-    if ref.scene.law is None:
-        push = ref.A[i] * max(d, 0) ** k + p * rate
-        slope = ref.A[i] * k * max(d, 0) ** (k - 1) * rate + p * second
-    else:
-        e = 1e-7 * max(abs(d), 1e-9)
-        push = ref.A[i] * ref.F(max(d, 0)) + p * rate
-        slope = ref.A[i] * (ref.F(max(d, 0) + e) - ref.F(max(d, 0))) / e * rate + p * second
-    return push / slope
+    n, rates = ref.n, ref(t, state)
+    d, rate = ref.gaps(state[:n], state[n : 2 * n])
+    _, second = ref.gaps(rates[:n], rates[n : 2 * n])
+    if ref.c[i] == 0 or (not ref.closed[i] and d[i] <= 1e-9):
+        return d[i] / rate[i]
+    e = 1e-7 * max(abs(d[i] / rate[i]), 1e-9)  # of time
+    push, later = ref.push(d, rate)[i], ref.push(d + e * rate, rate + e * second)[i]
+    return e * push / (later - push)

@@ -13,19 +13,15 @@ from validation.scenes.scene import Scene
 TIGHT = dict(rtol=1e-12)
 
 
-def pair(k, v=1.0, **rest):
-    return Scene(
-        masses=(1.0, 3.0), stiffnesses=(2.0,), k=k, velocities=(v,),
-        duration=12 * v ** (2 / (k + 1) - 1),
-        contact_sensors=(0,), **rest,
-    )  # fmt: skip
-
-
 @pytest.mark.parametrize(
     ("k", "v", "share"), [(1, 1, 0.3), (1.5, 1, 0.9), (1.5, 10, 0.05), (3, 0.2, 0.3)]
 )
 def test_beads_part_with_a_share_of_their_speed(k, v, share):
-    run = simulate(pair(k, v, damping=Damping("restitution", share)), **TIGHT)
+    scene = Scene(
+        masses=(1.0, 3.0), stiffnesses=(2.0,), k=k, velocities=(v,), contact_sensors=(0,),
+        duration=12 * v ** (2 / (k + 1) - 1), damping=Damping("restitution", share),
+    )  # fmt: skip
+    run = simulate(scene, **TIGHT)
     assert run.velocities[1] - run.velocities[0] == pytest.approx(share * v, rel=1e-10)
     assert run.contact_force.min() == 0  # no contact pulls
     lost = (1 - share**2) * 0.75 * v**2 / 2

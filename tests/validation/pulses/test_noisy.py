@@ -26,7 +26,7 @@ def signals():
 
 
 def record(signal, samples=None, widths=5):
-    """Sample times, with so many samples a width or at 1 MHz, and the pulse itself."""
+    """Sample times, so many a width or at 1 MHz, and the pulse itself."""
     pulse = first_pulse(signal)
     start, end = pulse.arrival - widths * pulse.fwhm, pulse.arrival + 3 * pulse.fwhm
     return np.arange(start, end, pulse.fwhm / samples if samples else 1e-6), pulse
@@ -44,14 +44,23 @@ def slow(count, rng):
     return noise / np.linalg.norm(response)
 
 
+def drift(t):
+    return (t - t[0]) / np.ptp(t)
+
+
+def hum(t, rng):
+    return np.sin(2 * np.pi * (50 * t + rng.random()))
+
+
 LITTLE = white(0.005)
 KINDS = {  # of a record, by times, forces, peak and generator
     "white, 0.2 %": white(0.002),
     "white, 2 %": white(0.02),
     "low-passed at 50 kHz": lambda t, f, P, rng: f + 0.005 * P * slow(len(t), rng),
-    "drift": lambda t, f, P, rng: LITTLE(t, f, P, rng) + 0.02 * P * (t - t[0]) / np.ptp(t),
-    "hum": lambda t, f, P, rng: (
-        LITTLE(t, f, P, rng) + 0.02 * P * np.sin(2 * np.pi * (50 * t + rng.random()))
+    "drift": lambda t, f, P, rng: LITTLE(t, f, P, rng) + 0.02 * P * drift(t),
+    "hum": lambda t, f, P, rng: LITTLE(t, f, P, rng) + 0.02 * P * hum(t, rng),
+    "drift and hum": lambda t, f, P, rng: (
+        LITTLE(t, f, P, rng) + 0.02 * P * (drift(t) + hum(t, rng))
     ),
     "8 bits": lambda t, f, P, rng: P / 200 * np.round(200 * f / P + 0.5 * rng.normal(size=len(t))),
 }
@@ -72,7 +81,8 @@ def quality(signal, kind, copies, samples=None):
     return np.abs(off.mean(axis=0)) / scatter, np.median(errors, axis=0) / scatter, within
 
 
-FEW = [*(((1, 16), kind, 50) for kind in KINDS), *(((2, 8), kind, 50) for kind in [*KINDS][:2])]
+FEW = [((1, 16), kind, 50) for kind in ("low-passed at 50 kHz", "drift and hum", "8 bits")]
+FEW += [((2, 8), "white, 2 %", 50)]
 MANY = [*(((1, 24), kind, 200) for kind in KINDS), *(((2, 16), kind, 200) for kind in [*KINDS][:2])]
 
 
@@ -81,8 +91,7 @@ MANY = [*(((1, 24), kind, 200) for kind in KINDS), *(((2, 16), kind, 200) for ki
     [*FEW, *(pytest.param(*case, marks=pytest.mark.slow) for case in MANY)],
 )
 def test_errors_are_one_standard_deviation(signals, place, kind, copies):
-    """A third of the scatter and 60 … 80 %: with one spread of the share of 200 copies, 3 %, more,
-    and with two spreads of 50 copies."""
+    """Bias: a third of the scatter; share: 60 … 80 %, one spread of 200 copies more, two of 50."""
     bias, _, within = quality(signals[place], kind, copies)
     more, least, most = {50: (2 / np.sqrt(50), 0.47, 0.93), 200: (0, 0.57, 0.83)}[copies]
     assert np.all(bias < 1 / 3 + more), bias
@@ -90,11 +99,8 @@ def test_errors_are_one_standard_deviation(signals, place, kind, copies):
 
 
 def test_too_few_samples_make_errors_larger(signals):
-    """17 samples a width of a pulse with ripples: errors cover, and are 30 times too large at most.
-
-    Mended: a bias of twice the scatter, and 24 % covered.
-    """
-    bias, error, within = quality(signals[2, 8], "white, 0.2 %", 50, 17)
+    """17 samples a width of a pulse with ripples: errors cover, 30 times too large at most."""
+    bias, error, within = quality(signals[2, 8], "white, 0.2 %", 25, 17)
     assert np.all(bias < np.maximum(error, 1) / 3)
     assert np.all(within > 0.6)
     assert np.all(error < 30)
@@ -104,10 +110,10 @@ def test_the_arrival_of_two_equal_humps_is_uncertain_by_their_distance():
     t, rng, covered = np.arange(-20, 10, 0.03), np.random.default_rng(5), 0
     f = np.exp(-((t - 0.9) ** 2)) + np.exp(-((t + 0.9) ** 2))
     later = abs(t[np.argmax(f)])
-    for _ in range(60):
+    for _ in range(30):
         noisy = noisy_pulse(t, f + 0.02 * rng.normal(size=len(t))).numbers["arrival"]
         covered += abs(noisy.value - later) < noisy.error
-    assert covered > 0.45 * 60  # half of the copies have the other hump as the higher one
+    assert covered > 0.45 * 30  # half of the copies have the other hump as the higher one
 
 
 @pytest.mark.parametrize(("lead", "louder"), [(3.5, 1), (12, 10)])
@@ -115,11 +121,11 @@ def test_a_short_lead_and_noise_of_the_pulse_itself_are_in_the_error(lead, loude
     """A line through a width and a half of samples errs more at the pulse than the fit does."""
     rng, t = np.random.default_rng(8), np.arange(-lead - 0.5, 2.5, 0.03)
     clean, within = 0.7 + np.exp(-4 * np.log(2) * t**2), 0
-    for _ in range(60):
+    for _ in range(40):
         noise = 0.01 * np.where(t > -1.5, 1, 1 / louder) * rng.normal(size=len(t))
         peak = noisy_pulse(t, clean + noise).numbers["peak"]
         within += abs(peak.value - 1) < peak.error
-    assert 0.5 <= within / 60 <= 0.9
+    assert 0.5 <= within / 40 <= 0.9
 
 
 @pytest.mark.parametrize(("samples", "bound"), [(17, 1e-3), (70, 1e-6)])
@@ -174,9 +180,9 @@ def test_records_without_a_measurable_pulse_are_refused(f, named):
 
 
 def test_many_samples_are_averaged():
-    """A hundred thousand samples a width: the errors are those of the samples themselves."""
-    t = np.linspace(-6, 3, 900_001)
+    """Thirty thousand samples a width: the errors are those of the samples themselves."""
+    t = np.linspace(-6, 3, 270_001)
     f = np.exp(-((2 * t) ** 2 * np.log(2))) + 0.02 * np.random.default_rng(3).normal(size=len(t))
+    numbers = noisy_pulse(t, f).numbers
     for name, value in (("arrival", 0), ("peak", 1), ("fwhm", 1)):
-        number = noisy_pulse(t, f).numbers[name]
-        assert abs(number.value - value) < 3 * number.error < 3e-3
+        assert abs(numbers[name].value - value) < 3 * numbers[name].error < 6e-3

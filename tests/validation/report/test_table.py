@@ -12,13 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from validation.pulses.pulse import Measured
-from validation.report.table import (
-    Column,
-    Finding,
-    Table,
-    aligned,
-    plain,
-)
+from validation.report.table import Column, Finding, Table, aligned, plain
 
 TABLE = Table(
     (

@@ -13,11 +13,12 @@ from hypothesis import strategies as st
 
 from lwa import Cell
 from lwa.base import files
+from lwa.law import named
 from lwa.spheres import beads
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes import scenefile
 from validation.scenes.chains import STEEL
-from validation.scenes.forcing import DAMPINGS, Damping
+from validation.scenes.forcing import DAMPINGS, Damping, Drive
 from validation.scenes.scene import Scene, SceneError
 from validation.scenes.scenefile import read_scene, scene
 from validation.studies.paper import recorded_chain
@@ -37,28 +38,16 @@ sensors = {beads = [9, 1]}
 """
 
 
-def toml_file(text):
-    return scene(tomllib.loads(text))
-
-
 def test_the_experiment_of_the_paper():
     own = {"duration": 1.2e-3, "contact_sensors": (), "samples": 1001}
-    assert toml_file(PAPER) == dataclasses.replace(recorded_chain((15, 34)), **own)
+    assert scene(tomllib.loads(PAPER)) == dataclasses.replace(recorded_chain((15, 34)), **own)
 
 
 def test_every_other_key():
-    assert toml_file(TRIMER) == Scene(
-        masses=(1, 1, 0.25, 1, 7, 0.25, 1, 1, 0.25),
-        stiffnesses=(0.5, 2, 3, 1, 2, 3, 1, 2),
-        spacings=(1,) * 8,
-        k=1.25,
-        duration=20,
-        precompression=0.5,
-        wall=4,
-        velocities=(1, 1),
-        displacements=(0.1,),
-        bead_sensors=(8, 0),
-    )
+    wanted = {"k": 1.25, "duration": 20, "precompression": 0.5, "wall": 4, "spacings": (1,) * 8}
+    wanted |= {"velocities": (1, 1), "displacements": (0.1,), "bead_sensors": (8, 0)}
+    masses, stiffnesses = (1, 1, 0.25, 1, 7, 0.25, 1, 1, 0.25), (0.5, 2, 3, 1, 2, 3, 1, 2)
+    assert scene(tomllib.loads(TRIMER)) == Scene(masses=masses, stiffnesses=stiffnesses, **wanted)
 
 
 def test_the_list_of_keys_holds_every_key():
@@ -82,13 +71,6 @@ def test_the_list_of_keys_holds_every_key():
     assert scene(content).spacings == (1.0,) * 37
 
 
-def test_sensors_at_all_beads_and_contacts():
-    sensors = {"sensors": {"beads": "all", "contacts": "all"}}
-    assert scene(GOOD | sensors).bead_sensors == (0, 1, 2)
-    assert scene(GOOD | sensors).contact_sensors == (0, 1)
-    assert scene(GOOD | sensors | {"wall": {"stiffness": 1}}).contact_sensors == (0, 1, 2)
-
-
 def test_a_defect_may_be_a_bead_of_the_file_or_a_mass():
     big = Sphere(mass=1e-3, radius=5e-3, material=Material(72e9, 0.17))
     text = (
@@ -96,7 +78,7 @@ def test_a_defect_may_be_a_bead_of_the_file_or_a_mass():
         + "[materials.glass]\nE = 72e9\nnu = 0.17\n[beads.big]\nmass = 1e-3\nradius = 5e-3\n"
         + 'material = "glass"\n[[defects]]\nbead = 4\nlike = "big"\n[[defects]]\nbead = 7\nmass = 9'
     )
-    changed, plain = toml_file(text), toml_file(PAPER)
+    changed, plain = scene(tomllib.loads(text)), scene(tomllib.loads(PAPER))
     steel = Sphere(mass=0.45e-3, radius=2.38e-3, material=STEEL)
     assert changed.stiffnesses[2:4] == (float(stiffness(steel, big)),) * 2
     assert changed.spacings[2:4] == (7.38e-3,) * 2
@@ -106,14 +88,9 @@ def test_a_defect_may_be_a_bead_of_the_file_or_a_mass():
     assert changed.stiffnesses[4:] == plain.stiffnesses[4:]
 
 
-def test_stiffnesses_of_a_cell_or_of_all_contacts():
-    chain = {"cell": [1, 2], "repeat": 2, "k": 1.5}
-    for values, found in [(3, (3, 3, 3)), ([1, 2], (1, 2, 1)), ([1, 2, 3], (1, 2, 3))]:
-        assert scene({"duration": 1, "chain": chain | {"stiffnesses": values}}).stiffnesses == found
-
-
 def test_the_cell_of_a_scene_is_read_by_the_theory():
-    cell, chain = Cell.of_spheres(beads.spheres(tomllib.loads(PAPER))), toml_file(PAPER)
+    content = tomllib.loads(PAPER)
+    cell, chain = Cell.of_spheres(beads.spheres(content)), scene(content)
     assert chain.masses[:2] == tuple(map(float, cell.masses))
     assert chain.stiffnesses[:2] == pytest.approx([float(A) for A in cell.stiffnesses], rel=1e-15)
     assert chain.spacings[:2] == (float(cell.spacing),) * 2
@@ -130,6 +107,8 @@ GOOD = {
     "sensors": {"beads": [2], "contacts": [1]},
 }
 BALLS, WALL = {"chain": {"cell": ["ball", "ball"]}}, {"wall": {"stiffness": 1}}
+MOTION = {"time": [0.0, 0.3, 0.6, 1.0], "displacement": [0.0, 1.0, 0.0, 0.0]}
+ALL = {"sensors": {"beads": "all", "contacts": "all"}}
 BALL = GOOD["beads"]["ball"]
 NAN = float("nan")
 
@@ -166,18 +145,11 @@ REFUSED = [
 ]
 
 
-def one_line(caught):
-    message = str(caught.value)
-    assert "\n" not in message
-    assert len(re.sub(r"^/\S+/", "", message)) < 200
-
-
 @pytest.mark.parametrize(("change", "named"), REFUSED)
 def test_a_bad_scene_is_refused_by_the_key(change, named):
     scene(GOOD)
-    with pytest.raises(SceneError, match=rf"^{named}") as caught:
+    with pytest.raises(SceneError, match=rf"^{named}[^\n]{{,160}}$"):
         scene(GOOD | change)
-    one_line(caught)
 
 
 DEEP = b"[" * 100_000
@@ -198,11 +170,6 @@ FILES = [
 ]
 
 
-def test_a_number_is_no_file():
-    with pytest.raises(SceneError, match="1 is no file name"):
-        read_scene(1)
-
-
 @pytest.mark.parametrize(("name", "content", "named"), FILES, ids=range(len(FILES)))
 def test_a_bad_file_is_refused_by_its_name(tmp_path, name, content, named):
     file = tmp_path / name
@@ -212,10 +179,9 @@ def test_a_bad_file_is_refused_by_its_name(tmp_path, name, content, named):
         file.write_bytes(content)
     with pytest.raises(SceneError) as caught:
         read_scene(file)
-    found = str(caught.value)
-    assert found.startswith(f"{file}: ")
-    assert re.match(named, found.removeprefix(f"{file}: "))
-    one_line(caught)
+    assert re.fullmatch(f"{re.escape(str(file))}: ({named})[^\n]{{,160}}", str(caught.value))
+    with pytest.raises(SceneError, match="1 is no file name"):
+        read_scene(1)
 
 
 leaves = st.one_of(
@@ -244,36 +210,37 @@ def test_any_file_is_read_or_refused_in_one_line(data):
             break
         at = at[key]
     at[key] = data.draw(anything)
+    message = ""
     try:
         scene(content)
     except SceneError as error:
         message = str(error)
-    else:
-        message = ""
     assert "\n" not in message
 
 
+def four(**keys):
+    """Four beads whose table of the chain has further keys."""
+    return {"chain": {"cell": [1, 2], "repeat": 2} | keys}
+
+
 @pytest.mark.parametrize(
-    "keys",
+    ("keys", "fields"),
     [
-        {"start": {"displacements": [0.1]}},
-        {"chain": {"cell": [1, 2], "law": "hertz2:1,1/2", "stiffnesses": 1}},
-        {"drive": {"velocity": 0.0}},
-        {"drive": {"time": [0.0, 0.3, 0.6, 1.0], "displacement": [0.0, 1.0, 0.0, 0.0]}},
+        (ALL, {"bead_sensors": (0, 1, 2), "contact_sensors": (0, 1)}),
+        (ALL | WALL, {"contact_sensors": (0, 1, 2)}),
+        (four(k=1.5, stiffnesses=3), {"stiffnesses": (3, 3, 3)}),
+        (four(k=1.5, stiffnesses=[1, 2]), {"stiffnesses": (1, 2, 1)}),
+        (four(k=1.5, stiffnesses=[1, 2, 3]), {"stiffnesses": (1, 2, 3)}),
+        (four(law="power:3/2"), {"k": 1.5, "law": None}),
+        (four(law="hertz2:1,1/2"), {"law": named("hertz2", 1, "1/2")}),
+        ({"drive": {"velocity": 2.0}}, {"drive": Drive(velocity=2)}),
+        ({"drive": MOTION}, {"drive": Drive(**MOTION)}),
+        *(({"damping": {kind: 0.9}}, {"damping": Damping(kind, 0.9)}) for kind in DAMPINGS),
     ],
 )
-def test_these_keys_are_read(keys):
-    assert scene(GOOD | keys) != scene(GOOD)
-
-
-def test_the_damping_is_of_its_kind_and_value():
-    for kind in DAMPINGS:
-        assert scene(GOOD | {"damping": {kind: 0.9}}).damping == Damping(kind, 0.9)
-
-
-def test_a_law_that_is_a_power_is_read_as_its_exponent():
-    chain = {"cell": [1, 2, 3]}
-    assert scene(GOOD | {"chain": chain | {"law": "power:3/2"}}) == scene(GOOD)
+def test_keys_and_the_fields_that_they_set(keys, fields):
+    found = scene(GOOD | keys)
+    assert {name: getattr(found, name) for name in fields} == fields
 
 
 def test_a_drive_is_read_from_a_file_beside_the_scene(tmp_path):

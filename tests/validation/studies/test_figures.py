@@ -9,15 +9,7 @@ import pytest
 from lwa import canonical_wave
 from validation.pulses.pulse import Measured, exponent
 from validation.scenes.chains import PTFE_BEAD
-from validation.studies.paper import (
-    HEIGHTS,
-    HERTZ,
-    MODULI,
-    RECORDED,
-    chain_cell,
-    figures,
-    scaling,
-)
+from validation.studies.paper import HEIGHTS, HERTZ, MODULI, RECORDED, chain_cell, figures, scaling
 
 QUANTITIES = ("speed", "force")
 

@@ -51,8 +51,7 @@ def test_near_hard_spheres_a_pulse_is_a_row_of_collisions(hard_wave):
 
 
 @pytest.mark.parametrize(
-    ("k", "exponents", "sign"),
-    [("3", (1.6, 2.0, 2.5, 3.0), r"\(G\+H\+I\)"), ("8/5", (1.6,), "V²")],
+    ("k", "exponents", "sign"), [("3", (1.6, 2.0, 2.5, 3.0), r"\(G\+H\+I\)"), ("8/5", (1.6,), "V²")]
 )
 def test_where_the_papers_closure_has_no_wave_the_lattice_has_one(k, exponents, sign):
     """At a special ratio ω < 1 the wave is solitary; the same chain, its beads named the other way
