@@ -1,15 +1,15 @@
 """Every ± of `lwa-validate`: it covers a known deviation and is at most 30 times too large.
 
-The deviation is that from the same computation at a hundred times the cost, which arguments set:
-tolerances, distances, samples; the ± of fits is held to the scatter of drawn noise. Studies of the
-book are held to their ± only. The ± of measured records: `tests/validation/pulses`.
+The deviation is that from the same computation at a hundred times the cost; the ± of fits is held
+to the scatter of drawn noise. Studies of the book are held to their ± only. The ± of measured
+records, of `limits` and `figures`: `tests/validation/pulses`, `tests/validation/studies`.
 """
 
 import importlib
 import math
 import tomllib
 from dataclasses import replace
-from itertools import product
+from itertools import chain, product
 
 import numpy as np
 import pytest
@@ -21,12 +21,9 @@ from validation.pulses.pulse import Measured, exponent
 from validation.pulses.sensors import record
 from validation.scenes import scenefile
 from validation.studies.law import Medium, fit_power
-from validation.studies.limits import theory_at
 from validation.waves.solver import exact_wave, measured, solve
 
-paper, limits, runs = (
-    importlib.import_module(f"validation.studies.{name}") for name in ("paper", "limits", "run")
-)
+paper, runs = (importlib.import_module(f"validation.studies.{name}") for name in ("paper", "run"))
 disorder, gravity, precompressed, widths = (
     importlib.import_module(f"book.studies.{name}")
     for name in ("disorder", "gravity", "precompressed", "widths")
@@ -38,11 +35,7 @@ FINER = (1e-13, 1e-12)  # tolerances of the run that counts and of the run that 
 
 
 def held(numbers, finer):
-    """The largest difference from finer numbers over its ±: at most 1.
-
-    Of numbers whose ± has one rule, a test wants one difference of a thirtieth of its ± or more; a
-    single difference may be small by chance.
-    """
+    """The largest difference from finer numbers over its ±: at most 1, and a test wants 1/30."""
     assert numbers.keys() == finer.keys()
     assert numbers
     off = {
@@ -52,11 +45,6 @@ def held(numbers, finer):
     }
     assert max(off.values(), default=0) <= 1, max(off.items(), key=lambda item: item[1])
     return max(off.values(), default=0)
-
-
-def measurements(values):
-    """The values that have a ±, without exact ones and words."""
-    return {name: value for name, value in values.items() if isinstance(value, Measured)}
 
 
 def of_run(name, **options):
@@ -105,40 +93,20 @@ def test_paper():
     assert held(of_paper(), of_paper(tolerances=FINER)) >= 1e-3
 
 
-def of_figures(**options):
-    rows = paper.scaling(paper.MODULI[0], **options)
-    speeds, forces = ([row[i] for row in rows] for i in (2, 3))
-    return dict(enumerate((*speeds, *forces, exponent(forces, speeds))))
-
-
-@pytest.mark.slow
-def test_figures():
-    assert held(of_figures(), of_figures(tolerances=FINER)) >= 1e-3  # as above
-
-
-def of_widths(monkeypatch, tolerances):
-    monkeypatch.setattr(widths, "TOLERANCES", tolerances)
-    rows = widths.widths().tables[0].rows
-    return {(i, j): x for i, row in enumerate(rows) for j, x in enumerate(row) if known(x)}
-
-
-def known(number):
-    return isinstance(number, Measured) and not math.isnan(number.error)
+def measurements(values):
+    """The numbers whose ± is known, by their names."""
+    numbers = {name: x for name, x in values.items() if isinstance(x, Measured)}
+    return {name: x for name, x in numbers.items() if not math.isnan(x.error)}
 
 
 @pytest.mark.slow
 def test_widths(monkeypatch):
-    held(*(of_widths(monkeypatch, tolerances) for tolerances in (widths.TOLERANCES, FINER)))
-
-
-def test_limits():
-    """The error is what the pulse has yet to shed: the finer run is read farther away."""
-    largest = []
-    for k in ("3/2", "11/10"):
-        wave = theory_at(k, 1)
-        finer = limits.lattice_wave(wave, places=(8, 12, 16))
-        largest.append(held(limits.lattice_wave(wave), finer))
-    assert max(largest) >= 1 / LARGEST
+    found = []
+    for tolerances in (widths.TOLERANCES, FINER):
+        monkeypatch.setattr(widths, "TOLERANCES", tolerances)
+        rows = widths.widths().tables[0].rows
+        found.append(measurements(dict(enumerate(chain.from_iterable(rows)))))
+    held(*found)
 
 
 def test_exact():
@@ -153,12 +121,12 @@ def test_exact():
 
 
 def test_intervals_of_the_law_are_those_of_their_scatter():
-    """The ± of k, ln A and curvature in 200 draws: two to three standard deviations, as of t."""
+    """The ± of k, ln A and curvature in 100 draws: two to three standard deviations, as of t."""
     rng, force = np.random.default_rng(6), np.geomspace(0.1, 10, 12)
     medium = Medium.of(Cell((1,), spacing=1))
     true = exact_wave([1], 1.5).c * force ** (1 / 6)
     rows = []
-    for _ in range(200):
+    for _ in range(100):
         fit = fit_power(medium, force, true * (1 + 0.01 * rng.normal(size=12)))
         logs = math.log(fit.A.value), fit.A.relative_error
         rows.append((fit.k.value, fit.k.error, *logs, fit.curvature.value, fit.curvature.error))
@@ -179,10 +147,11 @@ def test_precompressed(masses, ratio):
 @pytest.mark.slow
 def test_gravity():
     """Ten times as deep, and at a hundredth of the tolerance; the exponent's limit is 1/3."""
-    chain = gravity.Upright(Cell((1,), spacing=1), 1.5, 1000)
+    column = gravity.Upright(Cell((1,), spacing=1), 1.5, 1000)
+    finer = replace(column, tolerances=(1e-7, 1e-6))
     found, deeper, finer = (
         dict(zip(("exponent", "prefactor"), one.fitted(*one.fronts()), strict=True))
-        for one in (chain, replace(chain, beads=10_000), replace(chain, tolerances=(1e-7, 1e-6)))
+        for one in (column, replace(column, beads=10_000), finer)
     )
     held(found, deeper)
     held(found, finer)
@@ -203,10 +172,7 @@ POINTS += [("2", "1/4"), ("6", "3/10")]
 
 @pytest.mark.slow
 def test_sweep():
-    """Ten times as far, where the pulse is not yet overtaken.
-
-    A point without numbers states the reason.
-    """
+    """Ten times as far, where the pulse is not overtaken; a point without numbers says why."""
     largest = []
     for k, omega in POINTS:
         point = sp.Rational(k), sp.Rational(omega)

@@ -69,25 +69,14 @@ def test_a_scene_or_an_option_is_refused_by_name(scene, options, named):
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("rtol", [0, 1e-3, 1.0000001e-5, "x"])
-def test_a_recording_refuses_a_tolerance_of_no_error(rtol):
-    with pytest.raises(SceneError, match=f"^rtol is {rtol!r}"):
-        record(CHAIN, rtol=rtol)
-
-
 def test_rounding_that_hides_the_motion_ends_a_run():
-    """The steps would shrink to a millionth; `record` sees it before the run."""
+    """The steps would shrink to a millionth; `record` sees it, and loose tolerances, before."""
     heavy = replace(CHAIN, wall=1.0, gravity=1e12, duration=0.05)
     with pytest.raises(cost.IntegrationError, match=r"^\d+ steps of RKN86"):
         simulate(heavy, rtol=1e-12)
-    with pytest.raises(SceneError, match=r"^rtol is 1e-10"):
-        record(heavy)
-
-
-def test_a_step_that_is_too_long_is_not_silent():
-    scene = replace(CHAIN, wall=1.0, precompression=1.0, k=3.0, duration=1000.0)
-    with pytest.raises(cost.IntegrationError, match=r"overflows: .* a step of 20 "):
-        simulate(scene, method="symplectic", step=20.0)
+    for scene, rtol in ((heavy, 1e-10), (CHAIN, 1.0000001e-5)):
+        with pytest.raises(SceneError, match=f"^rtol is {rtol!r}"):
+            record(scene, rtol=rtol)
 
 
 def test_the_error_of_a_scene_among_many_is_raised_in_its_place():

@@ -20,15 +20,10 @@ from validation.scenes.scenefile import scene
 from validation.studies.run import example
 
 
-def numbers(found):
-    return {s.name: s.numbers for s in found.sensors}
-
-
 def test_the_first_example_is_right_within_its_errors():
     """Arrivals and peaks by SciPy's DOP853 at 1e-13 and roots of dF/dt; LAMMPS agrees."""
-    text = example("paper")
-    found = record(replace(scene(tomllib.loads(text)), samples=101))
-    here, (speed,) = numbers(found), found.speeds
+    found = record(replace(scene(tomllib.loads(example("paper"))), samples=101))
+    here, (speed,) = {s.name: s.numbers for s in found.sensors}, found.speeds
     for measured, true in (
         (here["bead 15"]["arrival"], 0.00043509719567379),
         (here["bead 15"]["peak"], 6.3239617629857),
@@ -92,37 +87,20 @@ def test_a_hump_of_about_half_the_maximum_is_in_the_error(off):
     assert arrival.error == pytest.approx(3 if abs(off) < 1e-4 else 0, abs=1e-6)
 
 
-# --- precompression -------------------------------------------------------------------------
-
-F0 = 2.0
-
-
-def squeezed(masses, **rest):
-    n = len(masses)
-    return Scene(
-        masses=masses, stiffnesses=(3.0,) * (n - 1), wall=3.0, k=1.5, precompression=F0, **rest
-    )
-
-
-def stiffness():
-    """dF/dδ = k A^{1/k} F0^{(k-1)/k} of a contact that carries F0."""
-    return 1.5 * 3.0 ** (2 / 3) * F0 ** (1 / 3)
-
-
 def test_small_pulses_travel_at_the_speed_of_sound():
     """A pulse e^{-x²/2s²} of a dimer: at c = √(2K/(m1 + m2)) sites, less what disperses.
 
-    By Ω² = κ²(1 - Iκ²) the peak is slower by 3I/(2s²) at first, and by O(1/s⁴) more. The sensors
-    are 6s away from the start, where the light beads rattle a little.
+    K = k A^{1/k} F0^{(k-1)/k}; by Ω² = κ²(1 - Iκ²) the peak is slower by 3I/(2s²) at first, and by
+    O(1/s⁴) more. The sensors are 6s away from the start, where the light beads rattle a little.
     """
-    s, n, small = 16.0, 400, 1e-5
-    masses = (1.0, 0.5) * (n // 2)
-    c = math.sqrt(2 * stiffness() / 1.5)
+    s, n, small, A, F0 = 16.0, 400, 1e-5, 3.0, 2.0
+    c = math.sqrt(2 * 1.5 * A ** (2 / 3) * F0 ** (1 / 3) / 1.5)
     x = np.arange(n) - 110.0
     strain = small * np.exp(-(x**2) / (2 * s**2))
     shape = -small * s * math.sqrt(math.pi / 2) * erf(x / s / math.sqrt(2))
-    scene = squeezed(
-        masses, duration=240 / c, displacements=shape - shape[-1], velocities=c * strain,
+    scene = Scene(
+        masses=(1.0, 0.5) * (n // 2), stiffnesses=(A,) * (n - 1), wall=A, k=1.5, precompression=F0,
+        duration=240 / c, displacements=shape - shape[-1], velocities=c * strain,
         contact_sensors=(206, 290),
     )  # fmt: skip
     (speed,) = record(scene).speeds

@@ -24,25 +24,28 @@ sensors = {contacts = [12, 18]}
 LATE, STRONGER = 2.5, 1.02
 
 
+HEADER = "time,contact 12 force,contact 18 dynamic force"
+
+
 @pytest.fixture
-def files(tmp_path):
-    scene, measured = tmp_path / "scene.toml", tmp_path / "measured.csv"
-    scene.write_text(SCENE)
-    run = simulate(read_scene(scene), rtol=1e-10)
+def files(folder):
+    Path("scene.toml").write_text(SCENE)
+    run = simulate(read_scene("scene.toml"), rtol=1e-10)
     first, second = run.contact_force
-    np.savetxt(
-        measured,
-        np.column_stack((run.time - LATE, first, STRONGER * (second - 0.1))),
-        delimiter=",",
-        header="time,contact 12 force,contact 18 dynamic force",
-        comments="",
-    )
-    return str(scene), str(measured)
+    save(np.column_stack((run.time - LATE, first, STRONGER * (second - 0.1))))
+    return "scene.toml", "measured.csv"
 
 
-def test_a_shift_and_a_scale_come_back(capsys, files, tmp_path):
-    picture = tmp_path / "p.svg"
-    options = ("--format", "json", "--plot", str(picture))
+def save(rows, header=HEADER):
+    np.savetxt("measured.csv", rows, delimiter=",", header=header, comments="")
+
+
+def saved():
+    return np.loadtxt("measured.csv", delimiter=",", skiprows=1)
+
+
+def test_a_shift_and_a_scale_come_back(capsys, files):
+    options = ("--format", "json", "--plot", "p.svg")
     status, out, err = ended(capsys, cli.main, "compare", *files, *options)
     assert (status, err) == (0, "")
     found = json.loads(out)
@@ -54,45 +57,27 @@ def test_a_shift_and_a_scale_come_back(capsys, files, tmp_path):
         # Behind the dip after the pulse the fit's residuals hide a part of its error.
         bound = 10 * row["difference_error_value"] + 1e-9
         assert abs(row["measured_value"] - scale * row["simulated_value"]) <= bound < 1e-3
-    assert "contact 12, simulated" in picture.read_text()
+    assert "contact 12, simulated" in Path("p.svg").read_text()
 
 
-def test_the_clock_of_a_record_may_start_anywhere(files):
-    scene, measured = files
-    header, *lines = Path(measured).read_text().splitlines()
-    rows = [line.split(",", 1) for line in lines]
-    late = [f"{float(time) + 5000!r},{rest}" for time, rest in rows]
-    Path(measured).write_text("\n".join([header, *late]) + "\n")
-    assert compare(scene, measured).document()["shift_value"] == pytest.approx(
-        LATE - 5000, abs=1e-6
-    )
-
-
-def test_a_single_sensor_needs_no_name(files, tmp_path):
-    scene, measured = tmp_path / "one.toml", tmp_path / "plain.csv"
-    scene.write_text(SCENE.replace("[12, 18]", "[12]"))
-    lines = [line.split(",")[:2] for line in Path(files[1]).read_text().splitlines()[1:]]
-    measured.write_text("\n".join(map(",".join, [["time", "force"], *lines])))
-    named = compare(str(scene), files[1]).document()
-    assert compare(str(scene), str(measured)).document() == named
-    assert named["shift_value"] == pytest.approx(LATE, abs=1e-6)
+def test_a_single_sensor_needs_no_name_and_the_clock_starts_anywhere(files):
+    Path("scene.toml").write_text(SCENE.replace("[12, 18]", "[12]"))
+    rows, named = saved(), compare(*files).document()
+    save(rows[:, :2], "time,force")
+    assert compare(*files).document() == named
+    save(np.add(rows, (5000, 0, 0)))
+    assert compare(*files).document()["shift_value"] == pytest.approx(LATE - 5000, abs=1e-6)
 
 
 def test_the_error_of_a_later_arrival_holds_that_of_the_shift(files):
     """Without the first sensor's column the second is the one by which records are shifted."""
-
-    def errors():
-        rows = compare(*files).document()["rows"]
-        return [row["measured_error_value"] for row in rows if row["quantity"] == "arrival"]
-
-    names, *lines = Path(files[1]).read_text().splitlines()
-    rows = np.array([line.split(",") for line in lines], float)
+    rows, errors = saved(), []
     rows[:, 1:] += 0.005 * np.random.default_rng(7).normal(size=rows[:, 1:].shape)
-    np.savetxt(files[1], rows, delimiter=",", header=names, comments="")
-    first, second = errors()
-    header = names.replace("contact 12 force,", "")
-    np.savetxt(files[1], rows[:, [0, 2]], delimiter=",", header=header, comments="")
-    (alone,) = errors()
+    for columns, header in ([0, 1, 2], HEADER), ([0, 2], HEADER.replace("contact 12 force,", "")):
+        save(rows[:, columns], header)
+        found = compare(*files).document()["rows"]
+        errors += [row["measured_error_value"] for row in found if row["quantity"] == "arrival"]
+    first, second, alone = errors
     assert second == pytest.approx(np.hypot(first, alone), rel=1e-6)
     assert second > 1.05 * alone
 

@@ -23,7 +23,6 @@ eps, X = sp.symbols("epsilon X", positive=True)
 
 @pytest.fixture(scope="module")
 def report():
-    """The lattice itself, some seconds."""
     return limits()
 
 
@@ -74,26 +73,17 @@ def test_all_hold(report):
     assert max(map(len, report.text().splitlines())) <= 100
 
 
-@pytest.mark.parametrize("k", EXPONENTS)
-def test_the_errors_cover_the_exact_waves_of_equal_beads(found, k):
-    wave = exact_wave([1], float(k))
-    true = {
-        "FWHM of force": wave.fwhm("force"),
-        "FWHM of strain": wave.fwhm("strain"),
-        "speed V_s at B = 1": wave.c / float(k) ** 0.5,
-    }
-    for quantity, value in true.items():
-        _, number = found[quantity, k, EQUAL]
-        assert abs(number.value - value) <= number.error, quantity
-        assert k != EXPONENTS[0] or number.error < 1e-6
-
-
-@pytest.mark.parametrize("quantity", QUANTITIES)
-def test_light_beads_only_hand_the_force_on(found, quantity):
-    """At ω = 1/1000 the chain is the uniform chain of twice the spacing, to 1.5 ω."""
-    scale = 1 if quantity.startswith("speed") else 2
-    (_, equal), (_, light) = (found[quantity, EXPONENTS[0], omega] for omega in (EQUAL, LIGHT))
-    assert light.value == pytest.approx(scale * equal.value, rel=1.5 * float(LIGHT))
+def test_the_errors_cover_the_exact_waves_of_equal_beads(found):
+    """The error is what the pulse has yet to shed; it is not thirty times too large."""
+    shares = []
+    for k in EXPONENTS:
+        wave = exact_wave([1], float(k))
+        true = wave.fwhm("force"), wave.fwhm("strain"), wave.c / float(k) ** 0.5
+        for quantity, value in zip((*QUANTITIES[:2], QUANTITIES[3]), true, strict=True):
+            _, number = found[quantity, k, EQUAL]
+            shares.append(abs(number.value - value) / number.error)
+            assert k != EXPONENTS[0] or number.error < 1e-6
+    assert 1 / 30 < max(shares) <= 1
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES)
@@ -101,11 +91,7 @@ def test_light_beads_only_hand_the_force_on(found, quantity):
     ("omega", "wrong"), [(EQUAL, 0.9995), (EQUAL, 1.0005), (LIGHT, 0.998), (LIGHT, 1.002)]
 )
 def test_a_theory_off_by_half_a_permille_is_refused(found, quantity, omega, wrong):
-    """Were the formula another one, by so little, at least one row would fail.
-
-    At ω = 1/1000 by 2 ‰: the law there holds only to O(ω). A lattice with an error of a tenth is
-    too rough for any row.
-    """
+    """At ω = 1/1000 by 2 ‰: the law there holds to O(ω). An error of a tenth fails every row."""
 
     def hold(theory, lattice):
         return [finding.ok for _, finding in quantity_rows(quantity, omega, theory, lattice)]

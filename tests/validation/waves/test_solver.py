@@ -1,9 +1,8 @@
-"""Exact waves: against each other's discretisation, published numbers, theory and the lattice."""
+"""Exact waves: other discretisations, published numbers, the equations of motion, the lattice."""
 
 import json
 import re
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -27,7 +26,7 @@ def specials():
 
 
 def test_the_widths_of_the_hertz_chain(hertz):
-    """The widths of a simulated struck chain, and further digits by convergence."""
+    """The widths of a simulated struck chain; further digits by another grid."""
     assert hertz.fwhm("force") == pytest.approx(1.411928, abs=5e-7)
     assert hertz.fwhm("strain") == pytest.approx(1.725713, abs=5e-7)
     finer = solve((1.0, 1.0), 1.5, 9, 200)
@@ -36,14 +35,6 @@ def test_the_widths_of_the_hertz_chain(hertz):
     assert finer.c2 == pytest.approx(hertz.c2, rel=1e-13)
     assert (hertz.solitary, hertz.tail) == (True, 0.0)
     assert hertz.residual < 1e-14
-
-
-def test_convergence_is_spectral():
-    """Every 4 points more gain a factor 10 at least; 16 points on 6 sites are good to 6e-9."""
-    exact = solve((1.0, 1.0), 1.5, points=120).fwhm("force")
-    found = [solve((1.0, 1.0), 1.5, points=n).fwhm("force") for n in (8, 12, 16)]
-    errors = [abs(value - exact) for value in found]
-    assert all(b < a / 10 for a, b in pairwise(errors)), errors
 
 
 @pytest.mark.parametrize(
@@ -79,10 +70,7 @@ def test_the_equations_of_motion_hold_at_any_point(k, p0):
 
 
 def came_back(wave, sites=100):
-    """The largest change of strain and velocity when the wave has gone ``sites`` further; the run.
-
-    The chain holds the wave and runs until the wave is there.
-    """
+    """The largest change of strain and velocity when a chain's wave is ``sites`` on; the run."""
     scene = wave.launched(20, sites, duration=sites / wave.c, contact_sensors=(60,), samples=4001)
     run = simulate(scene, method="symplectic", rtol=1e-11)
     compression, velocity = -np.diff(scene.displacements), np.array(scene.velocities)
@@ -91,10 +79,9 @@ def came_back(wave, sites=100):
 
 
 def test_the_wave_put_into_the_lattice_comes_back_to_itself(hertz):
-    """After 100 sites to rounding, 1e-13: no other wave is so near to being steady."""
+    """After 100 sites to rounding, 1e-13; a speed wrong by 1e-8 would show."""
     change, run = came_back(hertz)
     assert change < 1e-11
-    # a speed wrong by 1e-8 alone would show
     assert came_back(replace(hertz, c2=hertz.c2 * (1 + 2e-8)))[0] > 1e-7
     pulse = measure(run.time, run.contact_force[0])
     # the spline's error on 4001 samples
@@ -175,10 +162,9 @@ def test_units_of_mass_and_relabelling(k, unit):
     assert next(speeds) == pytest.approx(next(speeds), rel=1e-9, abs=1e-9 * one.c)
 
 
-@pytest.mark.parametrize("off", [0, 5e-8, -5e-8])
-def test_a_ratio_in_seven_digits_is_the_special_ratio(specials, off):
+def test_a_ratio_in_seven_digits_is_the_special_ratio(specials):
     """The wave has the special ratio's masses, and the report says so."""
-    one, two = exact(1.5, (2, 2 * specials[1].omega * (1 + off))).document()["masses_value"]
+    one, two = exact(1.5, (2, 2 * specials[1].omega * (1 - 5e-8))).document()["masses_value"]
     assert (one, two) == pytest.approx((2, 2 * specials[1].omega), rel=1e-13)
 
 
@@ -186,20 +172,14 @@ def test_a_ratio_in_seven_digits_is_the_special_ratio(specials, off):
     ("omega", "k"),
     [
         (0.3428457811 * (1 + 2e-7), 1.5),
-        (0.6, 1.5),
         (1 / 0.6, 1.5),
         pytest.param(0.3, 1.1, marks=pytest.mark.slow),
     ],
 )
 def test_a_ratio_without_a_solitary_wave_names_the_ways_on_and_no_tail(omega, k):
-    with pytest.raises(NoWave) as caught:
+    masses = re.escape(f"k = {k:g}, masses 1, {omega:.10g}")
+    with pytest.raises(NoWave, match=rf"{masses}: see resonances \(nearest .*\) and sweep$"):
         exact_wave([1, omega], k)
-    message = str(caught.value)
-    assert "\n" not in message
-    assert f"k = {k:g}, masses 1, {omega:.10g}" in message
-    assert "resonances" in message
-    assert "sweep" in message
-    assert "tail" not in message
 
 
 def test_the_report_holds_every_number_of_a_wave(hertz):
@@ -234,11 +214,8 @@ def test_the_report_holds_every_number_of_a_wave(hertz):
 def test_bad_input(masses, options, named):
     with pytest.raises(SceneError, match=rf"^{re.escape(named)}(\W|$)"):
         exact_wave(masses, **{"k": 1.5} | options)
-
-
-def test_bad_counts_and_names(hertz):
     for count in (0, 7):
         with pytest.raises(SceneError, match=f"^count is {count}"):
             resonances(1.5, count)
     with pytest.raises(ValueError, match="quantity is"):
-        hertz.fwhm("mass")
+        exact_wave([1], 1.5).fwhm("mass")
