@@ -1,7 +1,6 @@
 """Records in the styles of makers of oscilloscopes and loggers, read to the pulses they hold.
 
-The chain is integrated by SciPy. Two sensors record the force of a contact, as N or as volts of
-12.5 N, with noise of half a percent, one sample a microsecond.
+Two contacts of a chain, in N or in volts of 12.5 N, each microsecond, with noise of half a percent.
 """
 
 import numpy as np
@@ -17,7 +16,7 @@ TRIGGER = 1.9e-4  # time at which the clock of the recorder is 0
 
 @pytest.fixture(scope="module")
 def chain():
-    """Times in s and forces in N of both contacts, and arrival, peak and FWHM of their pulses."""
+    """SciPy's times and forces of both contacts, and arrival, peak and FWHM of their pulses."""
 
     def forces(y):
         return A * np.maximum(y[:-1] - y[1:], 0) ** 1.5
@@ -81,11 +80,8 @@ def rigol(t, F, V):
 
 def picoscope(t, F, V):
     text = f"Time,Channel A,Channel B\n(ms),(mV),(mV)\n\n{lines(1e3 * t, *(1e3 * V))}"
-    return (
-        text,
-        ("Channel A", "Channel B"),
-        {"Channel A": "0.0125 N/mV", "Channel B": "0.0125 N/mV"},
-    )
+    names = "Channel A", "Channel B"
+    return text, names, dict.fromkeys(names, "0.0125 N/mV")
 
 
 def rohde_schwarz(t, F, V):

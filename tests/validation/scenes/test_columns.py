@@ -1,5 +1,7 @@
 """The reader of measured files: units that are stated, and what is refused."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -110,21 +112,16 @@ HEAD = "time (s),force (N)\n"
     ],
 )
 def test_bad_files_are_refused_in_one_line(tmp_path, text, options, named):
-    with pytest.raises(SceneError) as refused:
+    with pytest.raises(SceneError, match=rf"^[^\n]*{re.escape(named)}[^\n]*$"):
         values(read(tmp_path, text, **options), "time", "force")
-    assert named in str(refused.value)
-    assert "\n" not in str(refused.value)
 
 
-def test_more_forces_than_times_are_refused(tmp_path):
+def test_records_of_another_time_or_without_times_are_refused(tmp_path):
+    for record in ((-1.0, 2.0), (1.9, 199.0)):
+        check_span("f", np.array(record), 2.0)
+    for record in ((2.1, 3.0), (-3.0, -0.1), (0.0, 200.0), (-100.0, 100.0)):
+        with pytest.raises(SceneError, match=f"from {record[0]:g} to {record[1]:g}, .* to 2"):
+            check_span("f", np.array(record), 2.0)
     file = read(tmp_path, "time,force\n1,2\n,3\n")
     with pytest.raises(SceneError, match="more samples than times"):
         file.record(*sensor_columns(file))
-
-
-@pytest.mark.parametrize("record", [(2.1, 3.0), (-3.0, -0.1), (0.0, 200.0), (-100.0, 100.0)])
-def test_a_record_of_another_time_is_refused_with_both_spans(record):
-    check_span("f", np.array((-1.0, 2.0)), 2.0)
-    check_span("f", np.array((1.9, 199.0)), 2.0)
-    with pytest.raises(SceneError, match=f"from {record[0]:g} to {record[1]:g}, .* to 2"):
-        check_span("f", np.array(record), 2.0)

@@ -19,23 +19,19 @@ from validation.scenes.scene import Scene, SceneError
 GOOD = dict(masses=(1, 2, 3), stiffnesses=(1, 1), k=1.5, duration=1.0)
 
 
-NAN, X = float("nan"), sp.Symbol("x", positive=True)
+NAN, X = math.nan, sp.Symbol("x", positive=True)
 OPEN = Law(sp.Piecewise((X, X < 1)), X)
 PAIRED = {"k": math.nan}  # a scene without k, for a law
-
-
 REFUSED = [
     (dict(masses=()), "masses is empty"),
     (dict(masses=(1, 1, NAN)), r"masses\[2\] is nan"),
     (dict(masses=(1, 1e-320, 1)), r"masses\[1\] is 1e-320"),
-    (dict(masses=(1, Decimal("sNaN"), 1)), r"masses\[1\] is Decimal\('sNaN'\)"),
     (dict(masses=5), "masses is 5"),
     (dict(stiffnesses=(1,)), "1 stiffnesses for 3 beads"),
     (dict(stiffnesses=(1, -1)), r"stiffnesses\[1\] is -1"),
     (dict(k=0.5), "k is 0.5"),
     (dict(k=sp.Symbol("k")), "k is k"),
     (dict(k=Decimal("sNaN")), r"k is Decimal\('sNaN'\)"),
-    (dict(duration=Decimal("sNaN")), r"duration is Decimal\('sNaN'\)"),
     (dict(gravity=9.81), "gravity is 9.81"),
     (dict(precompression=1), "precompression is 1"),
     (dict(precompression=-1, wall=1), "precompression is -1"),
@@ -65,11 +61,9 @@ REFUSED = [
 
 @pytest.mark.parametrize(("change", "named"), REFUSED)
 def test_a_bad_value_is_refused_by_name(change, named):
-    with pytest.raises(SceneError, match=rf"^{named}") as caught:
+    assert issubclass(SceneError, InputError)
+    with pytest.raises(SceneError, match=rf"^{named}[^\n]{{,130}}$"):
         Scene(**{**GOOD, **change})
-    assert isinstance(caught.value, InputError)
-    assert "\n" not in str(caught.value)
-    assert len(str(caught.value)) < 160
 
 
 @pytest.mark.parametrize(
@@ -138,13 +132,9 @@ def test_the_beads_of_the_experiment():
 
 def test_of_beads():
     scene = Scene.of_beads([STEEL_BEAD, PTFE_BEAD, PTFE_BEAD], wall=STEEL, duration=1)
-    assert scene.masses == (0.45e-3, 0.123e-3, 0.123e-3)
-    assert scene.stiffnesses == (
-        float(stiffness(STEEL_BEAD, PTFE_BEAD)),
-        float(stiffness(PTFE_BEAD, PTFE_BEAD)),
-    )
-    assert scene.wall == float(stiffness(PTFE_BEAD, STEEL))
-    assert scene.k == 1.5
+    assert (scene.masses, scene.k) == ((0.45e-3, 0.123e-3, 0.123e-3), 1.5)
+    pairs = (STEEL_BEAD, PTFE_BEAD), (PTFE_BEAD, PTFE_BEAD), (PTFE_BEAD, STEEL)
+    assert (*scene.stiffnesses, scene.wall) == tuple(float(stiffness(*pair)) for pair in pairs)
     for bad in ([], [STEEL_BEAD, "bead"], STEEL_BEAD):
         with pytest.raises(SceneError, match=r"^bead"):
             Scene.of_beads(bad, duration=1)

@@ -7,7 +7,6 @@ import numpy as np
 from validation.pulses.sensors import record
 from validation.scenes.chains import struck
 from validation.scenes.forcing import Damping
-from validation.scenes.scene import Scene
 from validation.studies.run import report
 
 
@@ -28,11 +27,8 @@ def test_many_sensors_are_drawn_as_a_map():
 
 def test_every_pulse_of_a_train_is_listed():
     """A heavy striker sends a train; each pulse is the higher the earlier it arrives."""
-    masses = (10.0, *(1.0,) * 60)
-    scene = Scene(
-        masses=masses, stiffnesses=(1.0,) * 60, k=1.5, duration=60, velocities=(1,),
-        contact_sensors=(30,),
-    )  # fmt: skip
+    chain = struck((1.0,), 61, duration=60, contact_sensors=(30,))
+    scene = replace(chain, masses=(10.0, *chain.masses[1:]))
     found = record(scene, every=True)
     rows = report(found, every=True).document()["sensors"]
     assert [row["pulse"] for row in rows] == list(range(1, len(rows) + 1))

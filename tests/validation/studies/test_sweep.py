@@ -17,7 +17,7 @@ import sympy as sp
 from lwa import InputError
 from tests.commands import ended
 from validation import cli
-from validation.lattice.threads import cluster
+from validation.lattice.threads import cluster, threads
 from validation.pulses.pulse import Measured
 from validation.pulses.steady import LABELS, Point, PointFile
 from validation.scenes.checks import Failure
@@ -28,13 +28,12 @@ R = sp.Rational
 QUICK = {"stretch": 2, "jobs": 1}
 """The shortest chains, one after another."""
 
-KS, OMEGAS = (2, "5/2"), (1, "1/2")
-GRID = [(R(k), R(omega)) for k in KS for omega in ("1/2", 1)]
+KS, OMEGAS = (R(2), R(3)), (R(1, 2), R(1))
 
 
 @pytest.fixture(scope="module")
 def reference():
-    return numbers(sweep(KS, OMEGAS, **QUICK))
+    return measured(KS, OMEGAS, 2, None, threads(1), iter)
 
 
 def numbers(found):
@@ -51,31 +50,29 @@ def stopped(error):
     return progress
 
 
-@pytest.fixture(scope="module")
-def content(tmp_path_factory):
+@pytest.fixture
+def file(reference, tmp_path):
     """A sweep's file of two points with numbers and one that has none."""
-    file = tmp_path_factory.mktemp("sweep") / "s.sqlite"
-    sweep([2], OMEGAS, file=file, **QUICK)
-    with PointFile(file, 2).opened() as (points, keep):
-        assert len(points) == 2
-        keep(Point(R(3), R(1), None, {}, "it “broke”\n"))
-    return file.read_bytes()
+    path = tmp_path / "s.sqlite"
+    with PointFile(path, 2).opened() as (_, keep):
+        for point in (*reference[:2], Point(R(4), R(1), None, {}, "it “broke”\n")):
+            keep(point)
+    return path
 
 
-def test_an_interrupted_sweep_resumes_and_grows(content, reference, tmp_path):
+def test_an_interrupted_sweep_resumes_and_grows(file, reference):
     """Finished points come back bit for bit; only new ones are computed."""
-    file, computed = tmp_path / "s.sqlite", []
-    file.write_bytes(content)
+    computed = []
     with pytest.raises(KeyboardInterrupt):
         sweep(KS, OMEGAS, file=file, progress=stopped(KeyboardInterrupt), **QUICK)
     options = {"file": file, "progress": lambda todo: computed.extend(todo) or todo} | QUICK
     whole = sweep(KS, OMEGAS, **options)
     assert len(computed) == 1
-    assert numbers(whole) == reference
-    again = sweep([*KS, 3], OMEGAS, **options)
-    assert computed[1:] == [(3, R(1, 2))]
+    assert numbers(whole) == numbers(report(KS, OMEGAS, reference, 2))
+    again = sweep([*KS, 4], [1], **options)
+    assert computed == [(3, 1)]
     assert numbers(again)[-1]["missing"] == "it “broke”\n"
-    assert [path.name for path in tmp_path.iterdir()] == ["s.sqlite"]
+    assert [path.name for path in file.parent.iterdir()] == ["s.sqlite"]
 
 
 @pytest.mark.parametrize(
@@ -87,9 +84,9 @@ def test_an_interrupted_sweep_resumes_and_grows(content, reference, tmp_path):
         (lambda data: data.execute("alter table points add column x"), "file is"),
     ],
 )
-def test_another_file_is_refused_and_left_alone(content, tmp_path, change, words):
-    file = tmp_path / "s.sqlite"
-    file.write_bytes(content if words != "not a database" else 100 * b"a,b,c,d,e\n")
+def test_another_file_is_refused_and_left_alone(file, change, words):
+    if words == "not a database":
+        file.write_bytes(100 * b"a,b,c,d,e\n")
     with closing(sqlite3.connect(file, isolation_level=None)) as data:
         change(data)
     before = file.read_bytes()
@@ -145,7 +142,7 @@ def test_a_cluster_that_loses_a_worker_loses_no_point(reference):
                 yield key
 
         found = sweep(KS, OMEGAS, stretch=2, address=local.scheduler_address, progress=progress)
-    assert numbers(found) == reference
+    assert numbers(found) == numbers(report(KS, OMEGAS, reference, 2))
 
 
 @with_dask
@@ -228,18 +225,17 @@ def test_the_theory_is_that_of_lwa():
         assert np.isnan(values[1, 2]), name  # G + H + I < 0: no wave
 
 
-def test_the_command(capsys, tmp_path):
+def test_the_command(capsys, file):
     """A range is exact and equidistant, and a value that stands there twice counts once."""
-    file, picture = tmp_path / "s.sqlite", tmp_path / "s.svg"
-    status, out, err = ended(
-        capsys, cli.main, "sweep", "--k", "3/2", "--omega", "0.45:1:3,9/20", "--stretch", "2",
-        "--file", str(file), "--plot", str(picture), "--format", "json",
-    )  # fmt: skip
+    picture = file.with_name("s.svg")
+    grid = ("--k", "2", "--omega", "0.5:1:3,1/2", "--stretch", "2", "--file", str(file))
+    options = ("--plot", str(picture), "--format", "json")
+    status, out, err = ended(capsys, cli.main, "sweep", *grid, *options)
     assert (status, err) == (0, "")
-    assert [p["omega"] for p in json.loads(out)["points"]] == ["9/20", "29/40", "1"]
+    assert [p["omega"] for p in json.loads(out)["points"]] == ["1/2", "3/4", "1"]
     assert picture.read_text().startswith("<?xml")
     with PointFile(file, 2).opened() as (points, _):
-        assert len(points) == 3
+        assert len(points) == 4
 
 
 def test_lost_workers_are_reported():
