@@ -116,8 +116,8 @@ def errors(seed, tolerances=TOLERANCES):
     return amplification, np.array(found) / np.array(tolerances)[:, None]
 
 
-# Seeds of every damping and drive, of laws that pull and that open, whose references are quick.
-FEW = [(seed, 1e-9) for seed in (0, 4, 8, 10, 14, 20, 36, 50, 75, 93, 716)]
+# Seeds of every damping, of laws that pull and that open, whose references are quick.
+FEW = [(seed, 1e-9) for seed in (4, 8, 14, 50, 93, 716)]
 # A sample within a step of 4.5 decay times of a light bead. The step's own estimate is near 0: the
 # interpolant errs by 303 unless its error is estimated, too.
 FEW += [(352, 1e-9)]

@@ -37,9 +37,7 @@ def test_todas_soliton_runs_through_200_beads_at_its_own_speed():
     ("law", "loaded"),
     [
         (named("hertz2", 1, "1/2"), False),
-        (named("hertz2", 1, "1/2"), True),
         (named("magnetic", 4, 2), False),
-        (named("polynomial", "1/4", "1/10"), True),
         (named("exponential", 1), False),
         (Law(sp.tanh(sp.Symbol("x")), sp.Symbol("x")), True),
     ],

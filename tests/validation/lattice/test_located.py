@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from book.studies.accuracy import FINEST, TASKS, relative_errors, solitary_wave, struck_chain
+from book.studies.accuracy import FINEST, TASKS, struck_chain
 from tests.validation.lattice.forced import follow
 from validation.lattice.equations import Motion
 from validation.lattice.simulate import simulate
@@ -33,10 +33,3 @@ def difference(task):
 def test_forces_agree_with_located_kinks(task):
     """The rounding of some thousand steps: a few 1e-13."""
     assert difference(task()) < 5e-12
-
-
-def test_the_exact_wave_arrives_on_time():
-    """Within the residual of the wave itself, which is 1e-12 of its speed at most."""
-    task = solitary_wave(20)
-    found = task.read(simulate(task.scene, rtol=FINEST))
-    assert max(relative_errors(found, task.truth).values()) < 5e-12

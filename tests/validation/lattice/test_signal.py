@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from lwa.law import named
+from validation.lattice.laws import Contact
 from validation.lattice.simulate import simulate
 from validation.scenes.scene import Scene, SceneError
 
@@ -60,10 +61,23 @@ def test_samples_are_values_of_the_signals(method):
             assert (np.diff(signal.times) > 0).all()
 
 
-def test_the_law_of_a_pickled_run_finds_its_machine_code_in_another_process(tmp_path):
-    """A law's machine code lies elsewhere there: a call of the old address ended the process."""
-    law = named("exponential", 1)
-    run = simulate(replace(LINEAR, k=1, law=law))
+TODA = replace(LINEAR, law=named("exponential", 1), samples=3)
+
+
+def test_the_law_of_a_pickled_run_is_at_its_new_address(monkeypatch):
+    """A law's machine code lies elsewhere in another process."""
+    run = simulate(TODA)
+    stored, elsewhere = pickle.dumps(run), {**run.path.motion.contact.addresses, "force": 7}
+    monkeypatch.setattr(Contact, "addresses", elsewhere)
+    assert pickle.loads(stored).path.chain.force == 7
+    monkeypatch.undo()
+    assert pickle.loads(stored).signal("contact", 0)(0.5) == run.signal("contact", 0)(0.5) > 0
+
+
+@pytest.mark.slow
+def test_a_pickled_run_is_read_in_another_process(tmp_path):
+    """A call of the old address ends the process."""
+    run = simulate(TODA)
     (tmp_path / "run").write_bytes(pickle.dumps(run))
     program = "import pickle; run = pickle.load(open('run', 'rb'))"
     other = subprocess.run(

@@ -74,7 +74,7 @@ def test_the_linear_chain_moves_by_the_exponential_of_its_matrix(method, rtol):
 
 
 @given(exponents, st.lists(positive, min_size=1, max_size=6), positive, st.sampled_from((0.0, 2.0)))
-@settings(max_examples=20)
+@settings(max_examples=10)
 def test_equilibrium_stays_and_carries_the_weight_and_the_load(k, masses, A, load):
     n = len(masses)
     sensors = dict(contact_sensors=range(n), bead_sensors=range(n), samples=3)

@@ -110,10 +110,7 @@ def test_small_pulses_travel_at_the_speed_of_sound():
 
 
 def test_errors_of_pulses_among_rattling_beads_cover_what_exceeds_the_tolerance():
-    """Light beads that rattle amplify errors: many numbers err by more than rtol.
-
-    The errors are differences of two runs there, and cover nine of ten, all to a factor of 5.
-    """
+    """Differences of two runs cover nine of ten such errors, and all to a factor of 5."""
     scene = struck((1, 0.27), 60, contact_sensors=(20, 21, 40, 41), duration=110.0, samples=2)
     exact, found = (record(scene, rtol=rtol, every=True).sensors for rtol in (1e-13, TOLERANCE))
     known = {(r.kind, r.places, r.pulse): r.numbers for r in exact}

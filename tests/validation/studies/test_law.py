@@ -58,7 +58,7 @@ def test_known_errors_weight_the_pulses(chain):
     """Every second pulse has twenty times the noise: with weights k errs less, within its error."""
     rng, exact = np.random.default_rng(3), speeds(chain, 1.5, 1.0)
     noise, off = np.where(np.arange(len(FORCES)) % 2, 0.05, 0.0025), []
-    for _ in range(60):
+    for _ in range(40):
         force, speed = (1 + noise * rng.normal(size=(2, len(FORCES)))) * (FORCES, exact)
         weight = weights(force, speed, noise * force, noise * speed)
         off.append([fit_power(chain, force, speed, w).k.value - 1.5 for w in (weight, None)])

@@ -43,7 +43,7 @@ def test_the_width_inside_a_bead_is_where_its_force_is_half(wave):
     assert float(wave.fwhm("force")) < width < float(wave.fwhm("force") + sp.Rational(1, 2))
 
 
-@pytest.mark.parametrize("amount", [0, float("nan"), "1"])
-def test_bad_amounts(amount):
-    with pytest.raises(SceneError, match=r"^momentum is [^\n]*$"):
-        of_momentum(WAVES["3/2"], amount)
+def test_bad_amounts():
+    for amount in (0, float("nan"), "1"):
+        with pytest.raises(SceneError, match=r"^momentum is [^\n]*$"):
+            of_momentum(WAVES["3/2"], amount)

@@ -185,12 +185,11 @@ def test_a_ratio_without_a_solitary_wave_names_the_ways_on_and_no_tail(omega, k)
 def test_the_report_holds_every_number_of_a_wave(hertz):
     found = json.loads(json.dumps(exact(1.5, (1,)).document(), allow_nan=False))
     assert found["c_value"] ** 2 == pytest.approx(found["c2_value"], rel=1e-14)
-    for name in QUANTITIES:
-        assert found["fwhm_value"][name] == hertz.fwhm(name)
-        assert found["amplitude_value"][name] == hertz.peak(name)[1]
-        assert 0 < found["fwhm_error_value"][name] < 1e-11
-    assert (found["solitary"], found["tail_value"]) == (True, 0)
-    assert found["residual_value"] == hertz.residual
+    assert found["fwhm_value"] == {name: hertz.fwhm(name) for name in QUANTITIES}
+    assert found["amplitude_value"] == {name: hertz.peak(name)[1] for name in QUANTITIES}
+    assert all(0 < error < 1e-11 for error in found["fwhm_error_value"].values())
+    numbers = found["solitary"], found["tail_value"], found["residual_value"]
+    assert numbers == (True, 0, hertz.residual)
 
 
 @pytest.mark.parametrize(
