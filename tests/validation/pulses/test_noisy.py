@@ -128,6 +128,16 @@ def test_a_short_lead_and_noise_of_the_pulse_itself_are_in_the_error(lead, loude
     assert 0.5 <= within / 30 <= 0.9
 
 
+def test_rounding_without_noise_is_in_the_error_of_the_peak():
+    """Forces in steps of 1/200 of the peak; without the error of the base a half is covered."""
+    rng, t, within = np.random.default_rng(4), np.arange(-4.5, 2.5, 0.02), 0
+    for _ in range(30):
+        f = np.round(200 * np.exp(-4 * np.log(2) * t**2) + rng.random()) / 200
+        peak = noisy_pulse(t, f).numbers["peak"]
+        within += abs(peak.value - 1) < peak.error
+    assert 0.7 <= within / 30 <= 0.95
+
+
 @pytest.mark.parametrize(("samples", "bound"), [(17, 1e-3), (70, 1e-6)])
 def test_a_record_without_noise_gives_the_pulse_of_the_signal(signals, samples, bound):
     """The error covers what the spline does not resolve."""

@@ -90,6 +90,14 @@ def test_the_error_of_exact_data_covers_rounding(chain):
     assert fit.k.error > 0
 
 
+def test_a_stiffness_beyond_the_numbers_of_a_computer_is_refused(chain):
+    """A ~ V³ at k = 3/2."""
+    V = speeds(chain, 1.5, 1.0)
+    assert fit_power(chain, FORCES, 1e100 * V).A.value == pytest.approx(1e300, rel=1e-6)
+    with pytest.raises(SceneError, match="no number of a computer"):
+        fit_power(chain, FORCES, 1e120 * V)
+
+
 @pytest.mark.parametrize("scale", [1e-8, 0.9055, 1e8])
 def test_rounding_of_the_speeds_is_no_second_power(chain, scale):
     """Without noise the scatter of the data is that of their last digits."""
