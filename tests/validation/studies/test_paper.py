@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from lwa import InputError
+from validation.lattice.simulate import simulate
+from validation.pulses.pulse import first_pulse
 from validation.scenes.chains import DIAMETER
-from validation.studies.paper import SOURCES, paper
+from validation.studies.paper import SENSORS, SOURCES, paper, recorded_chain
 
 
 @pytest.fixture(scope="module")
@@ -56,7 +58,12 @@ def test_the_chain_scales_exactly_with_the_blow(result):
 
 
 def test_means_and_units(result):
-    found = lattice(result)
+    """Numbers of contacts are means over the two contacts of both beads."""
+    found, run = lattice(result), simulate(recorded_chain(SENSORS))
+    contacts = [first_pulse(run.signal("contact", i)) for i in (13, 14, 32, 33)]
+    force, fwhm = np.mean([(pulse.peak, pulse.fwhm) for pulse in contacts], axis=0)
+    assert found["peak contact force"] == pytest.approx(force, rel=1e-8)
+    assert found["FWHM of contact force in time"] == pytest.approx(1e6 * fwhm, rel=1e-8)
     pair = found["peak bead force F_15"], found["peak bead force F_34"]
     assert found["peak bead force F_m"] == pytest.approx(np.mean(pair), rel=1e-14)
     pair = found["FWHM of F_15"], found["FWHM of F_34"]
