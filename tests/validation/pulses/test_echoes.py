@@ -9,6 +9,7 @@ import pytest
 
 from validation import simulate
 from validation.pulses.noisy import noisy_pulses
+from validation.pulses.pulse import Measured
 from validation.pulses.sensors import Reading, echoes, record
 from validation.scenes.chains import struck
 
@@ -32,6 +33,18 @@ def test_the_wall_reflects_and_the_two_sensors_tell(true):
     speed = 6 / (far["delay"].value - near["delay"].value) * 2  # both ways, 12 sites
     assert 0.6 < speed < 1.2
     assert far["delay"].value == pytest.approx(true["delay"].value, rel=1e-8)
+
+
+def test_errors_are_those_of_both_pulses():
+    """Errors of 3 and 4, of times and in percent of the peaks."""
+    pulses = [
+        {"arrival": Measured(t, t + e), "peak": Measured(F, F * (1 + e / 100))}
+        for t, F, e in ((100.0, 2.0, 3.0), (300.0, 1.0, 4.0))
+    ]
+    found = [Reading("contact", (9,), p, 0.0, pulse=i) for i, p in enumerate(pulses, 1)]
+    ((echo, _),) = echoes(found, math.hypot)
+    errors = echo.numbers["delay"].error, 100 * echo.numbers["ratio"].relative_error
+    assert errors == pytest.approx((5, 5))
 
 
 @pytest.mark.parametrize("rtol", [1e-7, 1e-9])

@@ -102,15 +102,23 @@ def test_the_end_of_the_chain_is_far_from_the_last_place():
     assert one[:, :4] == pytest.approx(other[:, :4], rel=1e-5)  # arrival, peak, both FWHM
 
 
-def test_a_number_that_nears_its_limit_slowly_is_within_its_error(monkeypatch):
-    """Widths 1 + n^{-1/2}: the error is what is left at the last place, 10 stretches of 8 sites."""
+@pytest.mark.parametrize(
+    ("width", "error"),
+    [
+        (lambda n, rtol: 1 + n**-0.5, 80**-0.5),  # what is left at the last place
+        (lambda n, rtol: 1 + 0.01 * (n // 8 % 2), 0.01),
+        (lambda n, rtol: 1 + 0.01 * ((rtol > 1e-6) & (n <= 80)), 0.01),
+    ],
+)
+def test_the_error_is_the_largest_difference(monkeypatch, width, error):
+    """To the limit, twice the way to a far place, to the stretch before, to a less accurate run."""
 
-    def passages(chain, places):
-        n = np.array(places, float)[:, np.newaxis].repeat(2, axis=1)
-        one = np.ones_like(n)
-        return np.stack([n, one, 1 + n**-0.5, 1 + n**-0.5, n, one], axis=2)
+    def passages(chain, run):
+        n = np.array(run[0], float)[:, np.newaxis].repeat(2, axis=1)
+        one, w = np.ones_like(n), width(n, run[1])
+        return np.stack([n, one, w, w, n, one], axis=2)
 
-    monkeypatch.setattr(steady.StruckDimer, "run", lambda chain, places, *_: places)
+    monkeypatch.setattr(steady.StruckDimer, "run", lambda chain, places, _, rtol: (places, rtol))
     monkeypatch.setattr(steady.StruckDimer, "passages", passages)
-    width = steady.point(R(3, 2), R(1, 2), STRETCH).numbers["width"]
-    assert width.value - 1 <= width.error * (1 + 1e-12) <= 1.1 * (width.value - 1)
+    found = steady.point(R(3, 2), R(1, 2), STRETCH).numbers["width"]
+    assert found.error == pytest.approx(error, rel=1e-12)
