@@ -169,6 +169,7 @@ BAD = [
     ("run", "Missing argument"),
     ("run missing.toml", "missing.toml: No such file"),
     ("paper --velocity __import__('os')", "velocity is "),
+    ("paper --velocity 0", "velocity is 0: it lies between 1e-06 and 1000"),
     ("paper --format xml", "Invalid value for '--format'"),
     ("exact --masses 1,0.2733", "no solitary wave"),
     ("pulses records.csv --column time", "column is 'time'"),

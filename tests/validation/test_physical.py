@@ -17,24 +17,14 @@ FROM, TO = 50, 60
 @pytest.fixture(scope="module")
 def chain():
     """The paper's steel beads, struck at 1 m/s, and their pulse at contact and bead `TO`."""
-    scene = Scene.of_beads(
-        [STEEL_BEAD] * 80,
-        velocities=(1.0,),
-        duration=6.7e-4,
-        contact_sensors=(FROM, TO),
-        bead_sensors=(TO,),
-        samples=6001,
-    )
+    watched = dict(contact_sensors=(FROM, TO), bead_sensors=(TO,), samples=6001)
+    scene = Scene.of_beads([STEEL_BEAD] * 80, velocities=(1.0,), duration=6.7e-4, **watched)
     run = simulate(scene, rtol=1e-11, atol=1e-11)
-    first, pulse = (measure(run.time, force) for force in run.contact_force)
-    found = {
-        "force": pulse.peak,
-        "speed": speed(first, pulse, math.fsum(scene.spacings[FROM:TO])),
-        "compression": measure(run.time, run.compression[1]).peak,
-        "bead_velocity": measure(run.time, run.bead_velocity[0]).peak,
-        "fwhm": pulse.fwhm,
-    }
-    return scene, found
+    rows = *run.contact_force, run.compression[1], *run.bead_velocity
+    first, pulse, strain, moved = (measure(run.time, row) for row in rows)
+    found = {"force": pulse.peak, "compression": strain.peak, "bead_velocity": moved.peak}
+    passed = speed(first, pulse, math.fsum(scene.spacings[FROM:TO]))
+    return scene, found | {"speed": passed, "fwhm": pulse.fwhm}
 
 
 def test_the_lattice_is_the_exact_wave_in_si(chain):

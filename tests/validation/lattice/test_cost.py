@@ -1,7 +1,6 @@
 """Limits of steps and memory are checked before a run; every run ends, with finite numbers."""
 
 import math
-from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
@@ -11,25 +10,9 @@ from hypothesis import strategies as st
 
 from tests.validation.lattice.test_random_scenes import drawn
 from validation.lattice import cost
-from validation.lattice.simulate import simulate
 from validation.pulses.sensors import record
-from validation.scenes.scene import Scene, SceneError
+from validation.scenes.scene import SceneError
 from validation.studies.run import RECORDS
-
-PRESSED = Scene(
-    masses=(1, 0.3, 2), stiffnesses=(1, 2), wall=1, k=1.5, precompression=1, duration=50,
-    velocities=(0, 0.8, -0.6),
-)  # fmt: skip
-
-
-@pytest.mark.parametrize("method", ["RKN86", "symplectic"])
-def test_a_run_can_be_interrupted(method):
-    def interrupt(share):
-        raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        simulate(PRESSED, method=method, progress=lambda: nullcontext(interrupt))
-
 
 sizes = st.builds(lambda m, e: m * 10.0**e, st.floats(1, 9.99), st.integers(-320, 307))
 fields = st.sampled_from(("masses", "stiffnesses", "velocities", "displacements"))

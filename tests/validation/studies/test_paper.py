@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from lwa import InputError
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import first_pulse
 from validation.scenes.chains import DIAMETER
@@ -70,8 +69,3 @@ def test_means_and_units(result):
     assert found["FWHM of bead force"] == pytest.approx(np.mean(pair), rel=1e-14)
     in_time = 1e-6 * found["FWHM of bead force in time"] * found["speed V_s"] / DIAMETER
     assert found["FWHM of bead force"] == pytest.approx(in_time, rel=1e-14)
-
-
-def test_a_velocity_out_of_range_is_refused():
-    with pytest.raises(InputError, match=r"^velocity is 0: it lies between 1e-06 and 1000"):
-        paper(velocity=0)
