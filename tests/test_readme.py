@@ -37,7 +37,7 @@ BLOCK = re.findall(r"^\$ (.*?)(?:\s{2,}#.*)?$", CATALOGUE.split("```")[1], re.MU
 @pytest.mark.parametrize(
     "programs",
     [
-        ("lwa ", "lwa-validate run", "lwa-validate pulses", "lwa-validate compare"),
+        ("lwa wave", "lwa-validate run", "lwa-validate pulses", "lwa-validate compare"),
         pytest.param(("lwa",), marks=pytest.mark.slow),
     ],
     ids=["some", "all"],

@@ -28,7 +28,7 @@ R = sp.Rational
 QUICK = {"stretch": 2, "jobs": 1}
 """The shortest chains, one after another."""
 
-KS, OMEGAS = (R(2), R(3)), (R(1, 2), R(1))
+KS, OMEGAS = (R(3),), (R(1, 4), R(1, 2), R(3, 4), R(1))
 
 
 @pytest.fixture(scope="module")
@@ -60,19 +60,25 @@ def file(reference, tmp_path):
     return path
 
 
-def test_an_interrupted_sweep_resumes_and_grows(file, reference):
-    """Finished points come back bit for bit; only new ones are computed."""
-    computed = []
+def test_an_interrupted_sweep_resumes_and_grows(capsys, file, reference):
+    """Finished points come back bit for bit; only new ones are computed.
+
+    A range is exact and equidistant, and a value that stands there twice counts once.
+    """
+    computed, wanted = [], numbers(report(KS, OMEGAS, reference, 2))
     with pytest.raises(KeyboardInterrupt):
         sweep(KS, OMEGAS, file=file, progress=stopped(KeyboardInterrupt), **QUICK)
     options = {"file": file, "progress": lambda todo: computed.extend(todo) or todo} | QUICK
-    whole = sweep(KS, OMEGAS, **options)
-    assert len(computed) == 1
-    assert numbers(whole) == numbers(report(KS, OMEGAS, reference, 2))
-    again = sweep([*KS, 4], [1], **options)
+    assert numbers(sweep(KS, OMEGAS, **options)) == wanted
     assert computed == [(3, 1)]
-    assert numbers(again)[-1]["missing"] == "it “broke”\n"
+    assert numbers(sweep([4], [1], **options))[0]["missing"] == "it “broke”\n"
     assert [path.name for path in file.parent.iterdir()] == ["s.sqlite"]
+    grid = ("--k", "3", "--omega", "0.25:1:4,1/4", "--stretch", "2", "--file", str(file))
+    picture = ("--plot", str(file.with_name("s.svg")))
+    status, out, err = ended(capsys, cli.main, "sweep", *grid, *picture, "--format", "json")
+    assert (status, err) == (0, "")
+    assert json.loads(out)["points"] == wanted
+    assert file.with_name("s.svg").read_text().startswith("<?xml")
 
 
 @pytest.mark.parametrize(
@@ -219,19 +225,6 @@ def test_the_theory_is_that_of_lwa():
             assert values == pytest.approx(expected, rel=1e-14)
     for name, values in found["linear"].items():
         assert np.isnan(values[1, 2]), name  # G + H + I < 0: no wave
-
-
-def test_the_command(capsys, file):
-    """A range is exact and equidistant, and a value that stands there twice counts once."""
-    picture = file.with_name("s.svg")
-    grid = ("--k", "2", "--omega", "0.5:1:3,1/2", "--stretch", "2", "--file", str(file))
-    options = ("--plot", str(picture), "--format", "json")
-    status, out, err = ended(capsys, cli.main, "sweep", *grid, *options)
-    assert (status, err) == (0, "")
-    assert [p["omega"] for p in json.loads(out)["points"]] == ["1/2", "3/4", "1"]
-    assert picture.read_text().startswith("<?xml")
-    with PointFile(file, 2).opened() as (points, _):
-        assert len(points) == 4
 
 
 def test_lost_workers_are_reported():
