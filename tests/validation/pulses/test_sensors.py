@@ -53,10 +53,8 @@ def test_sensors_without_a_pulse_say_why():
 
 
 def test_sensors_sit_between_the_beads_they_join():
-    scene = Scene(
-        masses=(1,) * 3, stiffnesses=(1, 1), wall=1, k=1.5, duration=1, spacings=(1, 3),
-        bead_sensors=(0, 1, 2), contact_sensors=(0, 1, 2),
-    )  # fmt: skip
+    every = dict(bead_sensors=(0, 1, 2), contact_sensors=(0, 1, 2))
+    scene = struck((1,), 3, wall=1, duration=1, spacings=(1, 3), **every)
     places = [track.place["speed"] for track in tracks(simulate(scene))]
     assert places == [0, 1, 4, 0.5, 2.5, 5.5]
 

@@ -10,12 +10,8 @@ from validation.pictures import Curve, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
 
-PART = Report(
-    "a part",
-    (Table((Column("n", "sites"),), ((8,),)),),
-    (Finding("drift", 0.5, 0.0, 1.0),),
-    (Panel("x", "y", (Curve("c", [1, 2], [3, 4]),)),),
-)
+TABLE, PANEL = Table((Column("n", "sites"),), ((8,),)), Panel("x", "y", (Curve("c", [1], [3]),))
+PART = Report("a part", (TABLE,), (Finding("drift", 0.5, 0.0, 1.0),), (PANEL,))
 
 
 @pytest.mark.parametrize("high", [1.0, 0.1])

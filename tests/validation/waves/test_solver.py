@@ -168,14 +168,11 @@ def test_a_ratio_in_seven_digits_is_the_special_ratio(specials):
     assert (one, two) == pytest.approx((2, 2 * specials[1].omega), rel=1e-13)
 
 
-@pytest.mark.parametrize(
-    ("omega", "k"),
-    [
-        (0.3428457811 * (1 + 2e-7), 1.5),
-        (1 / 0.6, 1.5),
-        pytest.param(0.3, 1.1, marks=pytest.mark.slow),
-    ],
-)
+OFF = 0.3428457811 * (1 + 2e-7)
+LOW = pytest.param(0.3, 1.1, marks=pytest.mark.slow)
+
+
+@pytest.mark.parametrize(("omega", "k"), [(OFF, 1.5), (1 / 0.6, 1.5), LOW])
 def test_a_ratio_without_a_solitary_wave_names_the_ways_on_and_no_tail(omega, k):
     masses = re.escape(f"k = {k:g}, masses 1, {omega:.10g}")
     with pytest.raises(NoWave, match=rf"{masses}: see resonances \(nearest .*\) and sweep$"):
