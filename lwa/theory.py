@@ -72,15 +72,15 @@ class Theory(OfClosure):
 
     @cached_property
     def defect(self) -> dict[int, Terms]:
-        """Mapping from n to the terms of D^{k+n} in the defect.
+        """Mapping from n to the terms of D^{k+n} (optical: D^n) in the defect.
 
         The defect is u_ττ from the first equation of motion minus u_ττ from the second. Orders at
         which the equations agree are left out: {} says that the ansatz satisfies both
         equations of motion to the order derived.
         """
-        return {
-            n: terms(self.closure, d) for n, d in enumerate(self.closure.defect) if not d.is_zero()
-        }
+        sign = 1 if self.pde.acoustic else -1  # u_ττ = -u^k E there
+        defect = enumerate(self.closure.defect)
+        return {n: terms(self.closure, sign * d) for n, d in defect if not d.is_zero()}
 
     def __str__(self) -> str:
         return str(self.pde)

@@ -89,7 +89,7 @@ def _optical(model: Model, order: int, progress: Progress[int]) -> Solution:
         second.append(force - b[n] * leading.dx(0, n - 1) - _applied(b, second, n))
     solution = _solution(b, first, second)
     E = (algebra.one, *(k * e for e in solution.acceleration[1:]))
-    return replace(solution, acceleration=E)
+    return replace(solution, acceleration=E, defect=tuple(k * d for d in solution.defect))
 
 
 def _solution(b: list[fmpq_mpoly], first: GradedSeries, second: GradedSeries) -> Solution:

@@ -9,16 +9,7 @@ import sympy as sp
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from lwa import (
-    Cell,
-    Dimer,
-    InputError,
-    LoadedChain,
-    Power,
-    envelope,
-    general,
-    loaded_wave,
-)
+from lwa import Cell, Dimer, InputError, LoadedChain, Power, envelope, general, loaded_wave
 from tests.identity import same
 
 K2, K3, K4 = sp.symbols("K2 K3 K4", positive=True)

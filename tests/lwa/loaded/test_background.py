@@ -10,16 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from book.studies.hard import true_wave
-from lwa import (
-    Cell,
-    Dimer,
-    KdV,
-    Material,
-    Power,
-    Sphere,
-    canonical_wave,
-    loaded_wave,
-)
+from lwa import Cell, Dimer, KdV, Material, Power, Sphere, canonical_wave, loaded_wave
 from lwa.law import named
 from lwa.loaded.background import Background
 from tests.identity import same

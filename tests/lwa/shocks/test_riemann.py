@@ -4,13 +4,7 @@ import pytest
 import scipy
 import sympy as sp
 
-from lwa import (
-    Cell,
-    Law,
-    Power,
-    piston,
-    shock,
-)
+from lwa import Cell, Law, Power, piston, shock
 from lwa.law import DELTA, named
 from tests.identity import same
 
