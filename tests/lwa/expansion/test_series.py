@@ -1,7 +1,5 @@
 """Series in ε: their k, equality and pickling, symbols of the caller, limits of size."""
 
-from __future__ import annotations
-
 import pytest
 import sympy as sp
 
@@ -10,13 +8,13 @@ from lwa.base.exact import signed
 from tests.identity import same
 
 
-def test_a_series_of_a_number_k_is_summed_there_only() -> None:
+def test_a_series_of_a_number_k_is_summed_there_only():
     """c² of one bead and one contact A scales as A^{1/k}."""
     stiff, unit = (expand(Cell([1], [A]), 12, k="6/5").c2.at() for A in (8, 1))
     assert stiff.value == pytest.approx(8 ** (5 / 6) * unit.value, rel=1e-14)
 
 
-def test_k_replaces_the_symbol_wherever_it_stands() -> None:
+def test_k_replaces_the_symbol_wherever_it_stands():
     """Prefactor, shares of unlike contacts, radiation."""
     k, cell = sp.Rational(101, 100), Cell([1, 3], [1, 2])
     symbolic, numeric = expand(cell, 6), expand(cell, 6, k=k)
@@ -27,13 +25,13 @@ def test_k_replaces_the_symbol_wherever_it_stands() -> None:
     assert symbolic.at(k=k) == numeric
 
 
-def test_an_unlike_contacts_radiation_counts_in_the_error() -> None:
+def test_an_unlike_contacts_radiation_counts_in_the_error():
     """Between rational shares the error is that of their neighbours."""
     errors = [expand(Cell([1, 2], [1, A]), 6, k="26/25").c2.at().error for A in ("2.99", 3, "3.01")]
     assert errors[1] == pytest.approx((errors[0] + errors[2]) / 2, rel=1e-3)
 
 
-def test_a_series_and_its_sum_show_in_a_notebook() -> None:
+def test_a_series_and_its_sum_show_in_a_notebook():
     widths = expand(Cell([1]), 12).fwhm("force")
     assert len(repr(widths)) < 120
     latex = widths._repr_latex_()
@@ -49,7 +47,7 @@ def test_a_series_and_its_sum_show_in_a_notebook() -> None:
     assert r"\mathrm{FWHM}_{\mathrm{force}} &= 1.411928" in strike
 
 
-def test_at_gives_symbols_their_values() -> None:
+def test_at_gives_symbols_their_values():
     wave = expand(Dimer("m1", "m2"), 2)
     assert wave.at(m1=2, omega="1/2", k="3/2") == expand(Cell([2, 1]), 2, k="3/2")
     for name, series in (("c2", wave.c2), ("force", wave.fwhm("force"))):
@@ -62,7 +60,7 @@ def test_at_gives_symbols_their_values() -> None:
         wave.at(m3=1)
 
 
-def test_a_place_is_real() -> None:
+def test_a_place_is_real():
     assert signed("xi", "xi") == sp.Symbol("xi", real=True)
     assert signed("3/2", "xi") == sp.Rational(3, 2)
     wave = expand(Cell([1, 2]), 1)

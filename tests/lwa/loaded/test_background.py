@@ -6,7 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from book.studies.hard import true_wave
@@ -69,7 +69,6 @@ def test_the_profile_obeys_the_canonical_equation(law, load, rise):
     assert wave.along(float(wave.fwhm("strain")) / 2, "strain") == pytest.approx(B / 2, rel=1e-12)
 
 
-@settings(deadline=None, max_examples=40)
 @given(
     st.floats(-12, 12),
     st.floats(0.1, 10),

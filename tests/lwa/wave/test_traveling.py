@@ -1,19 +1,17 @@
 """The traveling wave in closed form, substituted where its derivation does not go."""
 
 import mpmath
-import pytest
 import sympy as sp
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, NoSolitaryWave, canonical_wave, homogenize
-from tests.identity import same
+from lwa.base.frozen import QUANTITIES
 
 masses = st.fractions(min_value="1/50", max_value=50, max_denominator=50)
 exponents = st.fractions(min_value="21/20", max_value=6, max_denominator=20)
 
 WAVE = homogenize(Dimer("m1", "m2")).pde.traveling_wave()
-IN_UNITS = canonical_wave(Cell(["m"]), "3/2").at_force()
 
 
 def number(value):
@@ -67,38 +65,29 @@ def test_fwhm_is_where_the_profile_falls_to_half(k, m1, m2):
             assert abs(value - mpmath.mpf(1) / 2) < mpmath.mpf(10) ** -35
 
 
-@pytest.mark.parametrize(
-    ("k", "m1", "m2", "words"),
-    [
-        (1, 1, 1, "k > 1$"),
-        ("1/2", 1, 1, "k > 1$"),
-        (3, 1, 100, "G\\+H\\+I > 0$"),
-        # k = 8/5, ω → ∞: G+H+I > 0, yet V² < 0
-        ("8/5", 1, 1000, "V² > 0$"),
-    ],
-)
-def test_no_wave_is_an_error_that_says_why(k, m1, m2, words):
-    with pytest.raises(NoSolitaryWave, match=words):
-        WAVE.at(k=k, m1=m1, m2=m2)
-    with pytest.raises(NoSolitaryWave, match=words):
-        homogenize(Dimer(m1, m2), k=k).pde.traveling_wave()
+def rationals(low, high):
+    return st.fractions(low, high, max_denominator=100).map(sp.Rational)
 
 
-@pytest.mark.parametrize(
-    ("cell", "k"),
-    [
-        (Dimer("m1", "m2"), "k"),
-        (Cell(["m"]), "k"),
-        (Cell(["m1", "m1", "m2"]), "k"),
-        (Cell([1, 2, 3], [1, 8, 27]), 3),
-    ],
-    ids=str,
-)
-def test_the_canonical_wave_needs_the_dispersion_only(cell, k):
-    short = canonical_wave(cell, k)
-    long = homogenize(cell, 4, k=k, closure="full", field="center").pde.traveling_wave()
-    k = short.k
-    assert same(short.beta**2, (k - 1) ** 2 / (2 * long.I * k * (k + 1)))
-    assert same(short.beta, long.beta)
-    assert short.speed_factor == sp.factor(2 / (k * (k + 1)))
-    assert same(long.speed_factor, short.speed_factor)
+reals = rationals("1/100", 1000)
+beads = st.lists(st.tuples(reals, reals), min_size=1, max_size=3)
+
+
+def close(found, wanted):
+    return abs(sp.N(found, 40) / sp.N(wanted, 40) - 1) < 1e-34
+
+
+@settings(max_examples=4)
+@given(beads, reals, rationals("21/20", 4), reals)
+def test_compression_speed_and_times_are_those_of_the_force(beads, D, k, F):
+    """The strain is the mean of the contacts under F; widths in time are lengths over the speed."""
+    masses, stiffnesses = zip(*beads, strict=True)
+    wave = canonical_wave(Cell(masses, stiffnesses, D), k)
+    found = wave.at_force(F)
+    assert close(sum((F / A) ** (1 / k) for A in stiffnesses), len(masses) * D * found.strain)
+    assert close(found.compression, D * found.strain)
+    assert close(found.speed, wave.speed(found.strain) * wave.time_scale)
+    assert close(found.bead_velocity, found.speed * wave.profile(0, found.strain))
+    for quantity in QUANTITIES:
+        assert found.fwhm(quantity) == wave.fwhm(quantity)
+        assert close(found.fwhm(quantity, "time") * found.speed, found.fwhm(quantity))
