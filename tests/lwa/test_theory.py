@@ -1,18 +1,34 @@
-"""One call from a cell to its theory: decimals, progress, particles in any order."""
+"""From a cell to its theory: shares, mass ratios, decimals, progress, particles in any order."""
 
 import sympy as sp
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, homogenize
 from tests.commands import terminal
+from tests.identity import same
+
+
+def test_shares_make_all_contact_forces_equal():
+    A1, A2, A3, k = sp.symbols("A1 A2 A3 k", positive=True)
+    cell = Cell([1, 1, 1], stiffnesses=[A1, A2, A3])
+    shares = cell.shares(k)
+    assert same(sum(shares), 3)
+    for A, c in zip(cell.stiffnesses, shares, strict=True):
+        assert same(A * c**k, cell.stiffness(k))  # A_i c_i^k = A_eff
+
+
+def test_cells_of_two_masses():
+    m1, m2, omega = sp.symbols("m1 m2 omega", positive=True)
+    assert Dimer("a", "b", N=3) == Cell(["a", "a", "a", "b"])
+    assert Dimer(m1, m2, N=2).at(omega="w").masses[-1] == m1 * sp.Symbol("w", positive=True)
+    assert Dimer(m1, m2).at(m2=6, omega=3).masses == (2, 6)
+    assert Dimer(1, omega).at(omega=3).masses == (1, 3)  # a symbol of the caller's
 
 
 def test_floats_enter_as_their_decimals():
-    assert (
-        homogenize(Dimer(0.45, 0.123), k=1.5).pde.I
-        == homogenize(Dimer("9/20", "123/1000"), k="3/2").pde.I
-    )
+    own = homogenize(Dimer("9/20", "123/1000"), k="3/2").pde.I
+    assert own == homogenize(Dimer(0.45, 0.123), k=1.5).pde.I
     assert not homogenize(Dimer(0.1, 0.7), k=1.1).pde.G.has(sp.Float)
 
 
@@ -30,7 +46,6 @@ values = st.fractions(min_value="1/9", max_value=9, max_denominator=9)
 
 
 @given(st.lists(values, min_size=2, max_size=4), st.integers(1, 3))
-@settings(max_examples=10)
 def test_the_canonical_equation_is_the_same_from_every_particle(masses, n):
     """Particles named anew change the field that the wave equation is about, and no wave."""
     n %= len(masses)

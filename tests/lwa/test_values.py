@@ -106,12 +106,7 @@ def test_repr_is_one_short_line(order):
     assert repr(theory().pde.coefficients[2]) == "{}"
 
 
-def test_text_and_latex_are_the_papers_equation_at_any_order():
-    first, *letters = str(theory()).splitlines()[:4]
-    assert first.startswith(
-        "u_ττ = u_x^(k-1) u_xx + G u_x^(k-3) u_xx^3 + H u_x^(k-2) u_xx u_xxx + I"
-    )
-    assert letters == [f"  {name} = {getattr(theory().pde, name)}" for name in "GHI"]
+def test_latex_is_the_papers_equation_at_any_order():
     equation = (
         r"u_{\tau\tau} &= u_{x}^{k-1} u_{xx} + G u_{x}^{k-3} u_{xx}^{3} "
         r"+ H u_{x}^{k-2} u_{xx} u_{xxx} + I u_{x}^{k-1} u_{4x}"

@@ -91,3 +91,9 @@ def test_compression_speed_and_times_are_those_of_the_force(beads, D, k, F):
     for quantity in QUANTITIES:
         assert found.fwhm(quantity) == wave.fwhm(quantity)
         assert close(found.fwhm(quantity, "time") * found.speed, found.fwhm(quantity))
+
+
+def test_masses_over_the_whole_range_of_floats():
+    """β at ω → ∞; SymPy fails to take square roots of integers beyond 2^1024."""
+    wave = homogenize(Dimer("1e-300", "1e300", spacing=1), k="3/2").pde.traveling_wave()
+    assert close(wave.beta, sp.sqrt(sp.Rational(3, 8)))
