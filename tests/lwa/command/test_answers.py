@@ -140,6 +140,7 @@ def test_a_line_gives_the_values_of_python(capsys, line):
 
 TEXTS = {
     "derive --order 4": (
+        "u_ττ = u_x^(k-1) u_xx + G u_x^(k-3) u_xx^3 + H u_x^(k-2) u_xx u_xxx + I u_x^(k-1) u_4x\n",
         "  λ = 1\n", "  b2 = m1/(m1 + m2)\n", "  b3 = (2*m1 - m2)/(3*(m1 + m2))\n",
         "  b4 = m1*(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**3)\n",
         "  G = D**2*m1**2*(k - 2)*(k - 1)/(6*(m1 + m2)**2)\n",
