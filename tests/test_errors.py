@@ -14,7 +14,7 @@ import pytest
 import scipy
 import sympy as sp
 
-from lwa import Cell, Dimer, InputError, Power, expand, pulse_of_strike, shock
+from lwa import Cell, Dimer, InputError, Power, expand, loaded_wave, pulse_of_strike, shock
 from lwa.expansion.approximants import resum
 from lwa.law import named
 from lwa.shocks.riemann import RULES
@@ -56,19 +56,19 @@ def test_the_error_of_a_sum(exponents, orders):
     assert np.median(error / np.maximum(deviation, 1e-12)) < LOOSE
 
 
-def struck_dimer(k, mass):
-    """c² F^{-(k-1)/k} between like contacts, and their FWHM, of the pulse of a struck dimer."""
-    number, n = float(sp.Rational(k)), 160
+def struck_dimer(law, mass, load=0.0, velocity=1.0, duration=140.0):
+    """Speed between like contacts, peak of their force above the load, and FWHM of a pulse."""
+    n = 160
     scene = Scene(
-        masses=(1.0, float(sp.Rational(mass))) * (n // 2), stiffnesses=(1.0,) * (n - 1), k=number,
-        velocities=(1.0,), duration=140.0, contact_sensors=(60, 61, 100, 101), samples=8001,
+        masses=(1.0, float(sp.Rational(mass))) * (n // 2), stiffnesses=(1.0,) * (n - 1), law=law,
+        velocities=(velocity,), duration=duration, contact_sensors=(60, 61, 100, 101), samples=8001,
+        precompression=load, wall=1.0 if load else None,
     )  # fmt: skip
     run = simulate(scene)
-    pulses = [measure(run.time, force) for force in run.contact_force]
+    pulses = [measure(run.time, force - load) for force in run.contact_force]
     pace = np.mean([40 / (pulses[i + 2].arrival - pulses[i].arrival) for i in (0, 1)])
     force = np.exp(np.mean([np.log(pulse.peak) for pulse in pulses]))
-    width = pace * np.mean([pulse.fwhm for pulse in pulses[2:]])
-    return pace**2 / force ** ((number - 1) / number), width
+    return pace, force, pace * np.mean([pulse.fwhm for pulse in pulses[2:]])
 
 
 @pytest.mark.parametrize(
@@ -81,10 +81,22 @@ def struck_dimer(k, mass):
 )  # fmt: skip
 def test_the_errors_of_sums_of_unlike_beads(k, mass, which):
     """c² (0) and widths (1) of a pulse that radiates; a term small by chance ends no series."""
-    series, true = expand(Dimer(1, mass), 10, k=k), struck_dimer(k, mass)
+    series, (pace, force, width) = expand(Dimer(1, mass), 10, k=k), struck_dimer(Power(k), mass)
+    true = pace**2 / force ** float(1 - 1 / sp.Rational(k)), width
     for i in which:
         total = (series.fwhm("force") if i else series.c2).at()
         assert holds(total.error, abs(total.value - true[i]))
+
+
+@pytest.mark.parametrize(
+    ("law", "mass", "velocity"),
+    [(Power("3/2"), "1/2", 3.0), (named("hertz2", 1, "1/2"), "1/2", 1.3), (Power("5/2"), 2, 1.5)],
+)
+def test_the_errors_of_a_wave_among_unlike_beads_under_a_load(law, mass, velocity):
+    speed, force, width = struck_dimer(law, mass, 1.0, velocity, 80.0)
+    wave = loaded_wave(Dimer(1, mass, spacing=1), force=1 + force, precompression=1, law=law)
+    assert holds(wave.speed_error, abs(float(wave.speed) - speed))
+    assert holds(wave.fwhm_error(), abs(float(wave.fwhm()) - width))
 
 
 @pytest.mark.parametrize(

@@ -27,15 +27,6 @@ def test_equal_beads_at_any_wavenumber():
     assert same(found.nonlinearity.rewrite(sp.sin), chi.rewrite(sp.sin))
 
 
-def test_equal_beads_under_a_power_are_dark():
-    found = envelope(Cell(["m"], spacing=1), law=Power("k"), background="p0", wavenumber=q)
-    m = sp.Symbol("m", positive=True)
-    chi = -found.frequency * (k - 1) * (k - 1 + sp.sin(q / 2) ** 2) / (m * p0**2)
-    assert same(sp.powsimp(found.nonlinearity / chi), 1)
-    for kappa, exponent in ((1, "11/10"), (3, "3/2"), (2, 4)):
-        assert found.at(q=kappa, k=exponent, m=1, p0=1).kind == "dark"
-
-
 def test_the_optical_band_of_a_dimer_begins_with_the_light_bead():
     found = envelope(Dimer(m1, m2), law=general(), background=0)
     omega = sp.sqrt(2 * K2 / m2)

@@ -19,14 +19,8 @@ from lwa import Cell, Dispersion, homogenize
 K = 2
 """The exponent of the closures below: A_i = c_i^{-2} is rational where the share c_i is."""
 
-fractions = st.fractions("1/9", 9, max_denominator=9).map(
-    lambda x: sp.Rational(x.numerator, x.denominator)
-)
-cells = st.integers(1, 6).flatmap(
-    lambda P: st.tuples(
-        st.lists(fractions, min_size=P, max_size=P), st.lists(fractions, min_size=P, max_size=P)
-    )
-)
+fractions = st.fractions("1/9", 9, max_denominator=9).map(sp.Rational)
+beads = st.lists(st.tuples(fractions, fractions), min_size=1, max_size=6)
 
 
 def least(masses, shares):
@@ -45,10 +39,10 @@ def least(masses, shares):
 
 
 @settings(max_examples=4)
-@given(cells)
-def test_the_coefficient_is_the_minimum_and_the_linear_chains(cell):
+@given(beads)
+def test_the_coefficient_is_the_minimum_and_the_linear_chains(beads):
     """I/D² = -(2/P) min S, and that of the acoustic branch Ω² = κ² (1 - Iκ² + …)."""
-    masses, shares = cell
+    masses, shares = zip(*beads, strict=True)
     P, total = len(shares), sum(shares)
     shares = [P * c / total for c in shares]
     chain = Cell(masses, [c**-K for c in shares], 1)

@@ -39,12 +39,10 @@ def test_a_series_and_its_sum_show_in_a_notebook():
     assert r" + \dots\Bigr)" in latex
     chain = expand(Cell([1], spacing=1), 8, k="3/2")
     assert r"c^2 &= 1 - \frac{1}{2} \varepsilon" in chain._repr_latex_()
-    assert chain.c2.at()._repr_latex_().startswith(r"$0.81995")
-    wave = ExpandedWave(chain, 64)._repr_latex_()
-    assert r"\frac{dx}{dt} &= 1.811" in wave
-    strike = pulse_of_strike(Cell([1], spacing=1), 1, 1)._repr_latex_()
+    assert r"\frac{dx}{dt} &= 1.811" in ExpandedWave(chain, 64)._repr_latex_()
+    strike = pulse_of_strike(chain.cell, 1, 1)._repr_latex_()
+    assert strike.count("&=") == 3
     assert r"F &= 0.63526" in strike
-    assert r"\mathrm{FWHM}_{\mathrm{force}} &= 1.411928" in strike
 
 
 def test_at_gives_symbols_their_values():

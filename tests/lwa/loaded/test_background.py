@@ -1,7 +1,5 @@
 """Waves on a static strain: limits, an independent integration, exact waves of two lattices."""
 
-import math
-
 import mpmath
 import numpy as np
 import pytest
@@ -90,21 +88,15 @@ def test_float64_over_all_loads(exponent, rise, k, quantity):
 
 
 def test_nesterenkos_relation_for_equal_spheres():
-    """As Daraio, Nesterenko, Herbold and Jin print it, Phys. Rev. E 73, 026610 (2006), eqs. 3–5.
-
-    c0 with its constant 0.9314, and V_s in f_r = F_m/F_0.
-    """
-    E, nu, a, F0, fr = 193e9, 0.3, 4.76e-3, 2.38, 7.5
-    mass = 0.45e-3
-    rho = mass / (math.pi * a**3 / 6)
-    steel = Material(E=str(E), nu=str(nu))
-    chain = Cell.of_spheres([Sphere(mass=str(mass), radius=str(a / 2), material=steel)])
-    wave = canonical_wave(chain, "3/2").at_force(F0 * fr, precompression=F0)
-    sound = (4 * E**2 * F0 / (a**2 * rho**3 * (1 - nu**2) ** 2)) ** (1 / 6)
-    assert float(wave.sound_speed) / sound == pytest.approx(0.9314, abs=1e-4)  # printed, cut off
-    root = math.sqrt(4 / 15 * (3 + 2 * fr ** (5 / 3) - 5 * fr ** (2 / 3)))
-    printed = root / (fr ** (2 / 3) - 1)
-    assert float(wave.speed / wave.sound_speed) == pytest.approx(printed, rel=1e-13)
+    """As Daraio, Nesterenko, Herbold and Jin print it, Phys. Rev. E 73, 026610 (2006), eqs. 3–5."""
+    E, rho, a, F0, F = sp.symbols("E rho a F0 F", positive=True)
+    bead = Sphere.solid(a / 2, Material(E=E, nu="3/10", density=rho))
+    wave = canonical_wave(Cell.of_spheres([bead]), "3/2").at_force(F, precompression=F0)
+    sound = (4 * E**2 * F0 / (a**2 * rho**3 * (1 - sp.Rational(9, 100)) ** 2)) ** sp.Rational(1, 6)
+    assert float(wave.sound_speed / sound) == pytest.approx(0.9314, abs=1e-4)  # printed, cut off
+    ratio = (F / F0) ** sp.Rational(2, 3)
+    square = sp.Rational(4, 15) * (3 + 2 * ratio ** sp.Rational(5, 2) - 5 * ratio)
+    assert same((wave.speed / wave.sound_speed) ** 2, square / (ratio - 1) ** 2)
 
 
 @pytest.mark.parametrize("cell", [Cell([1]), CHAIN, Dimer(1, 3)])

@@ -126,7 +126,8 @@ def test_errors_are_nan_where_nothing_was_measured():
     three = Lattice([1, 2, 3], [Link(n, n + 1, HERTZ) for n in range(3)])
     hard = Lattice([1, 1], [Link(0, 1, HERTZ), Link(1, 2, Power(3))])
     heard = Lattice([1], [Link(0, 1, HERTZ)], [Resonator(0, 1, 1000)])
-    for lattice, F, load in ((three, 2, 1), (hard, 9, 1), (heard, 2, 1)):
+    radiating = Lattice([1, 2], [Link(n, n + 1, HERTZ) for n in range(2)])
+    for lattice, F, load in ((three, 2, 1), (hard, 9, 1), (heard, 2, 1), (radiating, 1, 0)):
         wave = loaded_wave(lattice, force=F, precompression=load)
         assert math.isnan(wave.speed_error)
         assert math.isnan(wave.fwhm_error())
