@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
+import lwa
 from lwa import Dimer, Material, Sphere, homogenize, pulse_of_strike
 from lwa.command.chain import read_chain
 from lwa.spheres import hertz
@@ -145,6 +146,11 @@ def test_bands_and_breathers_have_hertz_and_metres(capsys, file):
     found = result(capsys, *envelope, "--wavenumber", "0", "--branch", "1")
     assert found["frequency_value"] == pytest.approx(edges[3] / turn, rel=1e-12)
     assert found["units"]["frequency"] == "Hz"
+    place = {"wavenumber": sp.pi / 2, "branch": 1}
+    mode = lwa.envelope(read_chain(spheres).cell, k="3/2", precompression=20, **place)
+    found = result(capsys, *envelope, "--wavenumber", "pi/2", "--branch", "1")
+    for name in ("group_velocity", "dispersion", "nonlinearity"):
+        assert found[f"{name}_value"] == pytest.approx(float(getattr(mode, name)), rel=1e-13)
     found = result(capsys, *envelope, "--frequency", f"{0.995 * edges[2] / turn:.17g}")
     assert found["detuning_value"] == pytest.approx(0.005, rel=1e-9)
     amplitude = static * math.sqrt(32 * 0.005 / 0.75)  # U = δ0 √(32 ν/(k (k - 1)))
