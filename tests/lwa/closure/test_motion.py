@@ -1,5 +1,5 @@
 """Both closures, put into every equation of motion by code that shares nothing with them
-but the rational numbers of FLINT.
+but FLINT's rational polynomials.
 
 The field is a power series in (x, D, τ) with rational coefficients, truncated; the theory's wave
 equation gives its acceleration and the slaved fields the particles' motion; the lattice's equations
@@ -8,88 +8,50 @@ rational, so that zero means zero.
 """
 
 import pytest
-from flint import fmpq
+from flint import fmpq_mpoly_ctx
 
 from lwa import Cell, homogenize
 from tests.lwa.series import rational
 
-TAU = 2  # the second derivative in τ is wanted
+CONTEXT = fmpq_mpoly_ctx.get(("x", "D", "tau"), "lex")
+X, D, TAU = CONTEXT.gens()
+ONE = CONTEXT.constant(1)
+DEGREE = 13
+"""Degree in x and D to which products are known; each derivative costs one."""
 
 
-class Series:
-    """Σ c x^i D^j τ^l, truncated at i + j ≤ degree and l ≤ TAU."""
+def product(*factors):
+    """The product to x^i D^j, i + j ≤ DEGREE, and to τ², whose coefficient is wanted."""
+    total = ONE
+    for factor in factors:
+        terms = (total * factor).to_dict().items()
+        kept = {e: c for e, c in terms if e[0] + e[1] <= DEGREE and e[2] <= 2}
+        total = CONTEXT.from_dict(kept)
+    return total
 
-    def __init__(self, degree, terms=()):
-        self.degree = degree
-        self.terms = {e: c for e, c in dict(terms).items() if c and e[0] + e[1] <= degree}
 
-    def __add__(self, other):
-        terms = dict(self.terms)
-        for e, c in other.terms.items():
-            terms[e] = terms.get(e, 0) + c
-        return Series(min(self.degree, other.degree), terms)
+def inverse(f):
+    """1/f of a series whose constant term is not 0."""
+    constant = f.to_dict()[0, 0, 0]
+    total = ONE
+    for _ in range(DEGREE + 2):
+        total = ONE + product(ONE - f / constant, total)
+    return total / constant
 
-    def __sub__(self, other):
-        return self + other * fmpq(-1)
 
-    def __mul__(self, other):
-        if not isinstance(other, Series):
-            return Series(self.degree, {e: c * other for e, c in self.terms.items()})
-        degree = min(self.degree, other.degree)
-        terms = {}
-        for (i, j, m), a in self.terms.items():
-            for (p, q, n), b in other.terms.items():
-                if i + j + p + q <= degree and m + n <= TAU:
-                    e = (i + p, j + q, m + n)
-                    terms[e] = terms.get(e, 0) + a * b
-        return Series(degree, terms)
+def dx(f, times=1):
+    """∂_x^times f."""
+    return dx(f.derivative("x"), times - 1) if times else f
 
-    def __pow__(self, n):
-        result = Series(self.degree, {(0, 0, 0): fmpq(1)})
-        for _ in range(n):
-            result = result * self
-        return result
 
-    def dx(self, times=1):
-        """∂_x^times; each costs a degree."""
-        if times == 0:
-            return self
-        terms = {(i - 1, j, m): c * i for (i, j, m), c in self.terms.items() if i}
-        return Series(self.degree - 1, terms).dx(times - 1)
+def shifted(f, h):
+    """f(x + hD)."""
+    return f.compose(X + h * D, D, TAU)
 
-    def inverse(self):
-        constant = self.terms[0, 0, 0]
-        rest = Series(self.degree, {e: -c / constant for e, c in self.terms.items() if any(e)})
-        result = power = Series(self.degree, {(0, 0, 0): fmpq(1)})
-        for _ in range(self.degree + TAU):
-            power = power * rest
-            result = result + power
-        return result * (1 / constant)
 
-    def times_D(self, n):
-        return Series(self.degree + n, {(i, j + n, m): c for (i, j, m), c in self.terms.items()})
-
-    def over_D(self):
-        assert all(j for _, j, _ in self.terms)
-        return Series(self.degree - 1, {(i, j - 1, m): c for (i, j, m), c in self.terms.items()})
-
-    def shifted(self, h):
-        """f(x + hD)."""
-        result = term = self
-        for n in range(1, self.degree + 1):
-            term = term.dx() * fmpq(h, n)
-            result = result + term.times_D(n)
-        return result
-
-    def tau(self, m):
-        """The coefficient of τ^m."""
-        return Series(self.degree, {(i, j, 0): c for (i, j, n), c in self.terms.items() if n == m})
-
-    def at_tau(self, m):
-        """Times τ^m."""
-        return Series(
-            self.degree, {(i, j, n + m): c for (i, j, n), c in self.terms.items() if n + m <= TAU}
-        )
+def tau(f, m):
+    """The coefficient of τ^m."""
+    return CONTEXT.from_dict({(i, j, 0): c for (i, j, n), c in f.to_dict().items() if n == m})
 
 
 class Jets:
@@ -97,54 +59,45 @@ class Jets:
 
     def __init__(self, k, field, velocity, p):
         self.p, self.field, self.velocity = p, field, velocity
-        self.inverse = p.inverse()
-        self.scale = self.inverse ** ((k + 1) // 2)
+        self.inverse = inverse(p)
+        self.scale = product(*[self.inverse] * ((k + 1) // 2))
         self.known = {}
 
     def sum(self, terms):
         """Σ coefficient · Π jets of one order."""
-        total = Series(self.p.degree)
+        total = 0 * ONE
         for jet, coefficient in terms.items():
-            product = Series(self.p.degree, {(0, 0, 0): rational(coefficient)})
-            for i, e in jet.x:
-                product = product * self("x", i) ** e
-            for i, e in jet.t:
-                product = product * self("t", i) ** e
-            total = total + product
+            powers = [("x", *power) for power in jet.x] + [("t", *power) for power in jet.t]
+            factors = [self(kind, i) for kind, i, e in powers for _ in range(e)]
+            total += rational(coefficient) * product(*factors)
         return total
 
     def __call__(self, kind, i):
         if (kind, i) not in self.known:
             source = self.field if kind == "x" else self.velocity
             unit = self.inverse if kind == "x" else self.scale
-            self.known[kind, i] = source.dx(i) * unit
+            self.known[kind, i] = product(dx(source, i), unit)
         return self.known[kind, i]
 
 
 def acceleration(equation, k, field, velocity, optical):
     """φ_ττ by a wave equation, {n: terms of D^{k+n}, optical: of D^n}."""
-    jets = Jets(k, field, velocity, field if optical else field.dx())
-    total = Series(field.degree, {(0, 0, 0): fmpq(-1)}) if optical else jets("x", 2)
+    jets = Jets(k, field, velocity, field if optical else dx(field))
+    total = -ONE if optical else jets("x", 2)
     for n, terms in equation.items():
-        if terms:
-            total = total + jets.sum(terms).times_D(n if optical else n - 1)
-    return jets.p**k * total
+        total += product(D ** (n if optical else n - 1), jets.sum(terms))
+    return product(total, *[jets.p] * k)
 
 
 def slaved(theory, k, field, velocity):
     """The particles' fields: by the full closure, or the first and the linear ansatz."""
     if theory.closure.name == "linear":
-        w = field
-        for n, b in theory.ansatz.items():
-            w = w + (field.dx(n) * rational(b)).times_D(n)
-        return [field, w * rational(theory.amplitude_ratio)]
-    jets, w = Jets(k, field, velocity, field.dx()), []
+        ansatz = sum(rational(b) * D**n * dx(field, n) for n, b in theory.ansatz.items())
+        return [field, rational(theory.amplitude_ratio) * (field + ansatz)]
+    jets, w = Jets(k, field, velocity, dx(field)), []
     for i in range(theory.cell.size):
-        total = field
-        for n, terms in theory.slaved.get(i, {}).items():
-            if terms:
-                total = total + (jets.p * jets.sum(terms)).times_D(n)
-        w.append(total)
+        orders = theory.slaved.get(i, {}).items()
+        w.append(field + product(jets.p, sum(D**n * jets.sum(terms) for n, terms in orders) * ONE))
     return w
 
 
@@ -154,36 +107,26 @@ def residuals(theory, equation=None):
     cell, order, k, optical = theory.cell, theory.order, int(theory.k), not theory.pde.acoustic
     equation = theory.pde.coefficients if equation is None else equation
     P = cell.size
-    degree = order + 6
-    u = {(i, 0, 0): fmpq(c) for i, c in enumerate([3, 2, 1, -1, 2, 1, -2, 1, 3, -1, 2, 1, 1, -2])}
-    v = {(i, 0, 0): fmpq(c) for i, c in enumerate([1, -1, 2, 1, 1, -3, 2, 1, -1, 1, 2, -1, 1, 1])}
-    u, v = Series(degree, u), Series(degree, v)
+    u = sum(c * X**i for i, c in enumerate([3, 2, 1, -1, 2, 1, -2, 1, 3, -1, 2, 1, 1, -2]))
+    v = sum(c * X**i for i, c in enumerate([1, -1, 2, 1, 1, -3, 2, 1, -1, 1, 2, -1, 1, 1]))
     a = acceleration(equation, k, u, v, optical)
     # φ_τττ: the wave equation's own derivative along the motion (u + τv, v + τa)
-    da = acceleration(equation, k, u + v.at_tau(1), v + a.at_tau(1), optical).tau(1)
-    field = u + v.at_tau(1) + (a * fmpq(1, 2)).at_tau(2)
-    velocity = v + a.at_tau(1) + (da * fmpq(1, 2)).at_tau(2)
+    da = tau(acceleration(equation, k, u + v * TAU, v + a * TAU, optical), 1)
+    w = slaved(theory, k, u + v * TAU + a * TAU**2 / 2, v + a * TAU + da * TAU**2 / 2)
 
-    w = slaved(theory, k, field, velocity)
-    strains = [w[i + 1] - w[i] for i in range(P - 1)] + [w[0].shifted(P) - w[-1]]
-    if optical:
-        force = [
-            s.tau(0) ** k * rational(A) for s, A in zip(strains, cell.stiffnesses, strict=True)
-        ]
-    else:
-        shares = [rational(c) for c in cell.shares(theory.k)]
-        force = [s.over_D().tau(0) ** k * (1 / c**k) for s, c in zip(strains, shares, strict=True)]
+    strains = [w[i + 1] - w[i] for i in range(P - 1)] + [shifted(w[0], P) - w[-1]]
+    units = cell.stiffnesses if optical else [1 / c**k for c in cell.shares(theory.k)]
+    force = [
+        rational(unit) * product(*[tau(s, 0) / (1 if optical else D)] * k)
+        for s, unit in zip(strains, units, strict=True)
+    ]
     left = []
     for i in range(P):
-        inertia = w[i].tau(2) * 2
-        if optical:
-            inertia = inertia * rational(cell.masses[i] * theory.pde.time_scale**2)
-        else:
-            inertia = inertia.times_D(1) * (P * k * rational(cell.fractions[i]))
-        before = force[i - 1] if i else force[-1].shifted(-P)
+        mass = cell.masses[i] * theory.pde.time_scale**2 if optical else P * k * cell.fractions[i]
+        inertia = 2 * rational(mass) * tau(w[i], 2) * (1 if optical else D)
+        before = force[i - 1] if i else shifted(force[-1], -P)
         left.append(inertia - force[i] + before)
-    assert all(residual.degree >= order - 1 for residual in left)
-    return [[residual.terms.get((0, j, 0), 0) for j in range(order)] for residual in left]
+    return [[residual.to_dict().get((0, j, 0), 0) for j in range(order)] for residual in left]
 
 
 @pytest.mark.parametrize(

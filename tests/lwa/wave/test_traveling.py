@@ -26,26 +26,6 @@ def wave_at(k, m1, m2):
         return None
 
 
-@given(exponents, masses, masses, st.integers(0, 1))
-def test_z_obeys_its_equation_for_either_root_even_complex_ones(k, m1, m2, root):
-    """z = v^{1/p} put into z'' = μ z^η - σ z, at 50 digits."""
-    wave = wave_at(k, m1, m2)
-    assume(wave is not None)
-    with mpmath.workdps(50):
-        found = wave.reduction(root, V="4/3")
-        p, mu, eta, sigma = map(number, (found.p, found.mu, found.eta, found.sigma))
-        beta, m, B = map(number, (wave.beta, wave.m, wave.amplitude("4/3")))
-        t = mpmath.mpf(2) / 5
-        log_v = mpmath.log(B) + m * mpmath.log(mpmath.cos(t))
-        z = mpmath.exp(log_v / p)
-        # d²/dξ² of exp(log v / p), with (log v)' = -mβ tan, (log v)'' = -mβ²/cos²
-        slope = -m * beta * mpmath.tan(t) / p
-        second = z * (slope**2 - m * beta**2 / mpmath.cos(t) ** 2 / p)
-        terms = second, mu * z**eta, sigma * z
-        # 50 digits, less what the cancellation between the terms and the root p cost
-        assert abs(terms[0] - terms[1] + terms[2]) < mpmath.mpf(10) ** -38 * max(map(abs, terms))
-
-
 def test_complex_roots_do_occur_and_leave_beta_real():
     wave = WAVE.at(k=3, m1=1, m2=2)
     assert not any(sp.N(root).is_real for root in wave.roots)
