@@ -1,6 +1,12 @@
 """The wave equation and its energy at explicit fields, as SymPy expressions."""
 
 import sympy as sp
+from flint import fmpq
+
+
+def rational(value):
+    """A SymPy rational as FLINT's."""
+    return fmpq(int(value.p), int(value.q))
 
 
 def at_compression(law, value, delta):

@@ -11,7 +11,7 @@ import pytest
 from flint import fmpq_mpoly_ctx
 
 from lwa import Cell, homogenize
-from tests.lwa.series import rational
+from tests.lwa.fields import rational
 
 CONTEXT = fmpq_mpoly_ctx.get(("x", "D", "tau"), "lex")
 X, D, TAU = CONTEXT.gens()
