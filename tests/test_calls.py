@@ -12,21 +12,7 @@ import sympy as sp
 
 import lwa
 import validation
-from lwa import (
-    Cell,
-    Dimer,
-    Dispersion,
-    InputError,
-    Link,
-    Material,
-    NoSolitaryWave,
-    Power,
-    Sphere,
-    envelope,
-    expand,
-    homogenize,
-    shock,
-)
+from lwa import Cell, Dimer, Dispersion, Link, Material, Power, Sphere, expand, homogenize
 from lwa.law import general, named
 
 TEXT = "__import__('os').system('true')"
@@ -65,8 +51,8 @@ def samples():
     yield from (Cell(["m1", "m2"]), HERTZ, general(), named("hertz2"), named("polynomial"))
     yield from (theory, theory.pde, theory.closure, wave, numbers, numbers.at_force(1))
     yield from (Dispersion(Dimer("m1", "m2")), expand(Cell([1]), 3, k="3/2"), link)
-    yield from (STEEL, STEEL.material, shock(Cell([1]), law=HERTZ, behind=2, ahead=1))
-    yield from (envelope(Cell([1]), law=HERTZ, background=1, wavenumber=1),)
+    yield from (STEEL, STEEL.material, lwa.shock(Cell([1]), law=HERTZ, behind=2, ahead=1))
+    yield from (lwa.envelope(Cell([1]), law=HERTZ, background=1, wavenumber=1),)
 
 
 def calls():
@@ -114,7 +100,7 @@ def test_arguments_are_answered_or_refused_and_never_evaluated(monkeypatch, odds
                 with warnings.catch_warnings():
                     warnings.simplefilter("ignore" if own else "error")
                     found = call(*positional, **keywords)
-            except (InputError, NoSolitaryWave):
+            except (lwa.InputError, lwa.NoSolitaryWave):
                 continue
             except Exception as error:
                 if not own:

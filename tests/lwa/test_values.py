@@ -6,22 +6,8 @@ import pickle
 import pytest
 import sympy as sp
 
-from lwa import (
-    Cell,
-    Dimer,
-    Dispersion,
-    ExpandedWave,
-    Material,
-    Power,
-    Sphere,
-    canonical_wave,
-    envelope,
-    expand,
-    general,
-    homogenize,
-    loaded_wave,
-    shock,
-)
+import lwa
+from lwa import Cell, Dimer, Dispersion, Power, canonical_wave, expand, homogenize, loaded_wave
 from lwa.base.frozen import QUANTITIES
 from lwa.linear.dispersion import LoadedChain
 
@@ -46,22 +32,22 @@ MADE = {
     "reduction": lambda: theory().pde.traveling_wave().reduction(),
     "numeric": lambda: theory().pde.traveling_wave().numeric(),
     "dispersion": lambda: Dispersion(Dimer(m1, m2)),
-    "law": lambda: general(),
+    "law": lambda: lwa.general(),
     "power": lambda: Power("k"),
-    "of a law": lambda: theory(5, law=general(), closure="full"),
+    "of a law": lambda: theory(5, law=lwa.general(), closure="full"),
     "background": lambda: loaded_wave(Dimer(m1, m2), background="p0"),
     "kdv": lambda: loaded_wave(Dimer(m1, m2), background="p0").kdv,
     "precompressed": lambda: canonical_wave(Dimer(m1, m2)).at_force("F", precompression="F0"),
-    "envelope": lambda: envelope(Dimer(m1, m2), law=Power("k"), background="p0"),
-    "breather": lambda: envelope(Dimer(2, 1), law=Power(2), background=1).breather(
+    "envelope": lambda: lwa.envelope(Dimer(m1, m2), law=Power("k"), background="p0"),
+    "breather": lambda: lwa.envelope(Dimer(2, 1), law=Power(2), background=1).breather(
         detuning="1/100"
     ),
-    "shock": lambda: shock(Dimer(2, 1), 2, 1, law=Power(2)),
+    "shock": lambda: lwa.shock(Dimer(2, 1), 2, 1, law=Power(2)),
     "expansion": lambda: expand(Dimer(m1, m2), 2),
     "series": lambda: expand(Cell([1, 2], ["A", 3]), 1).fwhm("velocity"),
     "sum": lambda: expand(Cell([1, "1/3"]), 6, k="6/5").c2.at(),
-    "expanded": lambda: ExpandedWave(expand(Cell([1], spacing=1), 2, k="6/5"), 2),
-    "sphere": lambda: Sphere.solid("R", Material.named("PTFE")),
+    "expanded": lambda: lwa.ExpandedWave(expand(Cell([1], spacing=1), 2, k="6/5"), 2),
+    "sphere": lambda: lwa.Sphere.solid("R", lwa.Material.named("PTFE")),
     "loaded": lambda: LoadedChain(Dimer(m1, m2), Power("3/2"), "F0"),
 }
 

@@ -11,21 +11,12 @@ from hypothesis import strategies as st
 from lwa.base.exact import InputError, read_exact
 
 
-@given(st.floats(allow_nan=False, allow_infinity=False))
-def test_a_float_is_the_decimal_it_prints_as(x):
-    assert (
-        read_exact(x, "x")
-        == sp.Rational(repr(x))
-        == read_exact(np.float64(x), "x")
-        == read_exact(str(x), "x")
-    )
-
-
-@given(st.fractions())
-def test_fractions_are_read_from_numbers_and_from_text(x):
-    expected = sp.Rational(x.numerator, x.denominator)
-    assert read_exact(x, "x") == expected
-    assert read_exact(f"{x.numerator}/{x.denominator}", "x") == expected
+@given(st.floats(allow_nan=False, allow_infinity=False), st.fractions())
+def test_a_float_is_the_decimal_it_prints_as_and_fractions_are_read_exactly(x, y):
+    for value in (x, np.float64(x), str(x)):
+        assert read_exact(value, "x") == sp.Rational(repr(x))
+    for value in (y, f"{y.numerator}/{y.denominator}"):
+        assert read_exact(value, "x") == sp.Rational(y.numerator, y.denominator)
 
 
 def test_other_numbers():
