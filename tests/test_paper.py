@@ -92,6 +92,7 @@ def test_integrating_factor_and_the_equation_of_z(wave):
 def test_both_roots_give_the_short_beta(wave):
     for root in (0, 1):
         found = wave.reduction(root)
+        assert found.p == wave.roots[root]
         assert same(found.sigma * (1 - found.eta) ** 2 / 4, wave.beta**2)
 
 
