@@ -63,6 +63,7 @@ LINES = [
     ("shock --law magnetic:4,1 --behind 0.123", "spacing is D"),
     ("envelope --law magnetic:4,1 --masses 1,2,3 --precompression 2 --detuning nu", "f/f0 is nu"),
     ("envelope --background 1 --wavenumber pi*2", "wavenumber is 'pi*2'"),
+    ("envelope --masses 1 --k 2 --background 1 --wavenumber 1 --detuning 1/100", "where dω/dκ = 0"),
     ("envelope --background 1 --branch up", "branch is 'up'"),
     ("envelope --background 1 --detuning 1 --frequency 1", "both given"),
     ("envelope --precompression 1 --masses 1,1/2 --k 2 --detuning -1", "below"),
