@@ -35,10 +35,9 @@ def holds(error, deviation, doubt=0.0):
 @pytest.mark.parametrize(
     ("exponents", "orders"),
     [
-        (("1.1", "3/2", "2", "2.05", "2.3", "2.6", "2.75", "3.25"), (6, 10, 16)),
+        (("1.1", "3/2", "2", "2.3", "2.75", "3.25"), (6, 10, 14)),
         pytest.param([f"{k / 20}" for k in range(21, 71, 4)], range(6, 17), marks=pytest.mark.slow),
     ],
-    ids=["216", "1287"],
 )
 def test_the_error_of_a_sum(exponents, orders):
     """At most 1 % of the sums are outside, none by a factor of 2; the median is not loose."""
@@ -180,7 +179,12 @@ def deviations(front):
     return found
 
 
-@pytest.mark.parametrize("name", SHOCKS)
+SLOW = "k = 7/2", "k = 6", "lennard-jones"
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.slow) if n in SLOW else n for n in SHOCKS]
+)
 def test_the_errors_of_a_shock(name):
     law, *strains, tight = SHOCKS[name]
     found = deviations(shock(EQUAL, *strains, law=law))

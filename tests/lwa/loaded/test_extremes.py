@@ -23,7 +23,7 @@ CASES = [
     (named("magnetic", 4, 1), 0, 0.99),
     (LIMITED, 0, 0.6666),
 ]
-SHARP = [(Power(50), 0.5, 1.0), (named("lennard-jones", 1), 0, 0.99)]  # profiles are refused
+SHARP = [(named("lennard-jones", 1), 0, 0.99)]  # profiles are refused
 
 
 def wave_of(law, load, rise, cell=CHAIN):

@@ -42,7 +42,7 @@ def numeric_dispersion(masses, springs, q=0.02):
 springs = st.floats(0.2, 5)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=16)
 @given(st.data())
 def test_the_coefficient_is_that_of_the_bloch_branch(data):
     """Random cells of P = 1 … 4 particles, links of range 1 … 3 in any order, and eigenvalues."""
