@@ -44,7 +44,7 @@ MADE = {
     ),
     "shock": lambda: lwa.shock(Dimer(2, 1), 2, 1, law=Power(2)),
     "expansion": lambda: expand(Dimer(m1, m2), 2),
-    "series": lambda: expand(Cell([1, 2], ["A", 3]), 1).fwhm("velocity"),
+    "series": lambda: expand(Cell(["m", 2]), 1).fwhm("velocity"),
     "sum": lambda: expand(Cell([1, "1/3"]), 6, k="6/5").c2.at(),
     "expanded": lambda: lwa.ExpandedWave(expand(Cell([1], spacing=1), 2, k="6/5"), 2),
     "sphere": lambda: lwa.Sphere.solid("R", lwa.Material.named("PTFE")),

@@ -77,12 +77,10 @@ def test_virial_theorem(name):
     canonical momentum P = 2 T / c, and E ∝ F^{(k+1)/k}, c ∝ F^{(k-1)/2k}."""
     expansion = wave(name)
     T, E = expansion.kinetic.coefficients, expansion.energy.coefficients
-    ratio = expansion.kinetic.prefactor / expansion.energy.prefactor
-    assert same(ratio, 1)
+    assert same(expansion.kinetic.prefactor, expansion.energy.prefactor)
     for n in range(len(E)):  # (4 + ε) T = (2 + ε) E
-        left = 4 * T[n] + (T[n - 1] if n else 0)
-        right = 2 * E[n] + (E[n - 1] if n else 0)
-        assert same(left, right)
+        lower_T, lower_E = (T[n - 1], E[n - 1]) if n else (0, 0)
+        assert same(4 * T[n] + lower_T, 2 * E[n] + lower_E)
 
 
 @pytest.mark.parametrize("size", [2, 3])
@@ -95,12 +93,8 @@ def test_equal_beads_in_any_cell_are_the_uniform_chain(size):
 
 def test_first_correction_of_a_dimer_is_a_closed_form():
     w_1 = expand(Dimer(1, OMEGA), 1).fwhm("force").coefficients[1]
-    form = (
-        (6 - sp.log(2))
-        * (OMEGA**4 + 34 * OMEGA**3 - 69 * OMEGA**2 + 34 * OMEGA + 1)
-        / (60 * (OMEGA**2 - OMEGA + 1) ** 2)
-    )
-    assert same(w_1, form)
+    top = (6 - sp.log(2)) * (OMEGA**4 + 34 * OMEGA**3 - 69 * OMEGA**2 + 34 * OMEGA + 1)
+    assert same(w_1, top / (60 * (OMEGA**2 - OMEGA + 1) ** 2))
     uniform = wave("equal").fwhm("force").coefficients[1]
     assert same(w_1.subs(OMEGA, 1), uniform)
     assert same(w_1.subs(OMEGA, 1 / OMEGA), w_1)
