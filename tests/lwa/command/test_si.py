@@ -34,8 +34,8 @@ light = {mass = 9.75e-3, radius = 9.525e-3, material = "aluminium"}
 cell = ["heavy", "light"]
 """
 ONE_KIND = STEEL_AND_PTFE.replace('"heavy", "light"', '"heavy"')
-A, M, D = 193e9 / (1 - 0.3**2) / 3 * math.sqrt(2 * 2.38e-3), 0.45e-3, 2 * 2.38e-3
-"""Hertz's A, mass and diameter of its beads."""
+A, D = 193e9 / (1 - 0.3**2) / 3 * math.sqrt(2 * 2.38e-3), 2 * 2.38e-3
+"""Hertz's A and the diameter of its beads."""
 
 
 @pytest.fixture

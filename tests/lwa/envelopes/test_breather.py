@@ -8,8 +8,7 @@ from lwa import Cell, Dimer, InputError, Power, envelope
 from lwa.law import named
 from tests.identity import same
 
-m1, m2, F0, nu, X = sp.symbols("m1 m2 F0 nu X", positive=True)
-k = sp.Symbol("k", positive=True)
+k, m1, m2, F0, nu, X = sp.symbols("k m1 m2 F0 nu X", positive=True)
 HERTZ = Power("3/2")
 
 
