@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy
 import sympy as sp
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, InputError, LoadedChain, Power, envelope, general, loaded_wave
@@ -184,6 +184,7 @@ def test_a_harmonic_that_no_force_drives_is_left_out():
     assert float(found.numeric().nonlinearity) == pytest.approx(-0.0625, rel=1e-12)
 
 
+@settings(max_examples=4)
 @given(
     st.lists(st.integers(1, 9), min_size=2, max_size=5),
     st.lists(st.integers(1, 9), min_size=5, max_size=5),

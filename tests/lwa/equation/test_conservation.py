@@ -80,7 +80,7 @@ TODA = named("exponential", 1 / lwa.D)  # the compression D u_x of a contact is 
 @pytest.mark.parametrize(
     ("cell", "order", "law", "kind"),
     [
-        (Cell([1]), 6, Power("3/2"), {}),
+        (Cell([1]), 4, Power("3/2"), {}),
         (Dimer(3, 1), 4, Power("3/2"), FULL),
         (Dimer(3, 1), 6, Power(2), CANONICAL),
         (Cell([1, 2, 3], [1, 2, 3]), 5, Power(1), FULL),

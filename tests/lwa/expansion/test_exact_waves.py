@@ -17,7 +17,7 @@ from lwa import Cell, InputError, expand
 POINTS = 4096
 WIDTHS = ("strain", "force", "velocity")
 NAMES = ("c2", "c", "momentum", "kinetic", "energy", "effective_mass")
-EXPONENTS = ("1.1", "3/2", "2", "4", "8", "9.5", "12", "20")
+EXPONENTS = ("1.1", "3/2", "4", "8", "9.5", "20")
 
 
 @cache

@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from book.studies.hard import true_wave
@@ -67,6 +67,7 @@ def test_the_profile_obeys_the_canonical_equation(law, load, rise):
     assert wave.along(float(wave.fwhm("strain")) / 2, "strain") == pytest.approx(B / 2, rel=1e-12)
 
 
+@settings(max_examples=5)
 @given(
     st.floats(-12, 12),
     st.floats(0.1, 10),

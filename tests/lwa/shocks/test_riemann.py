@@ -106,9 +106,9 @@ def test_long_decimals_are_floats_of_thirty_digits(k, behind, ahead):
     ("law", "behind", "ahead", "kind"),
     [
         (named("magnetic", "1.963", "2.091"), "0.392", "0.834", "rarefaction"),
-        (named("magnetic", "1.963", "2.091"), "0.834", "0.392", "shock"),
+        (named("exponential", "0.731"), "1.127", "0.738", "shock"),
+        pytest.param(named("magnetic", "1.963", "2.091"), "0.834", "0.392", "shock", marks=SLOW),
         pytest.param(named("hertz2", "1.037", "0.519"), "1.127", "0.738", "shock", marks=SLOW),
-        pytest.param(named("hertz2", 1, 1), 2, 1, "shock", marks=SLOW),
     ],
 )
 def test_laws_without_closed_forms(law, behind, ahead, kind):

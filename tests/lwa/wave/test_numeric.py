@@ -22,7 +22,7 @@ WAVES = {
 def test_closed_forms_at_random_points_are_good_to_1e11(name):
     """Exponents from 1 + 1e-6 to 20, mass ratios over twelve decades, against 50 digits."""
     rng, checked, numeric = np.random.default_rng(1), 0, WAVES[name].numeric(missing="nan")
-    k, w = 1 + 10 ** rng.uniform(-6, 1.3, 24), 10 ** rng.uniform(-6, 6, 24)
+    k, w = 1 + 10 ** rng.uniform(-6, 1.3, 16), 10 ** rng.uniform(-6, 6, 16)
     found = {
         "beta": numeric.beta(k, w),
         "width": numeric.width(k, w),
@@ -44,7 +44,7 @@ def test_closed_forms_at_random_points_are_good_to_1e11(name):
             reference = sp.N(value, 50)
             assert abs(sp.Rational(float(values[i])) - reference) <= 1e-11 * abs(reference)
         checked += 1
-    assert checked > 8
+    assert checked > 5
 
 
 def test_mass_ratios_at_the_end_of_the_range_and_arrays():
