@@ -19,6 +19,7 @@ pressed = loaded_wave(Dimer(1, 3), rise=1, background="1/10", k=HERTZ)
 symbolic = loaded_wave(Dimer("m1", "m2"), background="p0").field
 forces = canonical_wave(Cell([2], [5], "1/100"), HERTZ).at_force(10, precompression=3)
 front = shock(EQUAL, 2, 1, k=HERTZ)
+peak = float(front.peak)
 mode = envelope(Cell([1, 2, 3]), k=HERTZ, precompression=1, wavenumber=2 * sp.pi / 3, branch=0)
 w = 0.2733
 
@@ -170,7 +171,9 @@ TEXTS = {
     "envelope --masses 1,1/2 --k 3/2 --spacing 1 --background 2 --detuning 1/1000": (
         "bright breather, |Ψ| = a sech(b n):",
     ),
-    "shock --masses 1 --spacing 1 --k 3/2 --behind 2 --ahead 1": (" ± ",),
+    "shock --masses 1 --spacing 1 --k 3/2 --behind 2 --ahead 1": (
+        f"peak strain, doubling = {peak:.4g} ± {front.errors['peak'] * peak:.1e}\n",
+    ),
     "shock --masses 1 --spacing 1 --k 3/2 --behind 1": (
         "no sound runs there", "go on oscillating",
     ),
