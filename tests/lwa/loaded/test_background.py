@@ -1,4 +1,4 @@
-"""Waves on a static strain: limits, an independent integration, exact waves of two lattices."""
+"""Waves on a static strain: limits, the canonical equation, the definitions at 120 digits."""
 
 import mpmath
 import numpy as np
