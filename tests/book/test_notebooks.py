@@ -20,7 +20,7 @@ def notebooks():
     return importlib.import_module("notebooks")
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def book(notebooks):
     return notebooks.Book(FOLDER, sources=notebooks.sources(FOLDER / "references.bib"))
 

@@ -278,6 +278,7 @@ def test_speeds_of_the_papers_column(column):
     assert told("column", "striker at # m/s", math.sqrt(2 * 9.81 * drop))
 
 
+@pytest.mark.slow
 def test_the_papers_errors_of_the_width():
     wide = widths().document()
     met = {(d["quantity"], d["unit"]): len(d["reproduced"]) for d in wide["definitions"]}

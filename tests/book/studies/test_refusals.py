@@ -25,18 +25,21 @@ BAD = [
     ("struck --case other", "case"),
     ("wall --beads 4", "beads is 4"),
     ("wall --sensor 19", "sensor is 19"),
-    ("wall --moduli 1e9,0", "E is 0"),
+    ("wall --moduli 0", "E is 0"),
     ("wall --velocity 0", "velocity is 0"),
     ("wall --nu 0.7", "nu is 0.7"),
     ("precompressed --masses m", "mass is m: a number is wanted"),
     ("precompressed --ratios 0", "ratio is 0: it lies between"),
     ("precompressed --k 1", "k is 1: it lies between"),
-    ("precompressed --masses 1,1,1,1/4 --ratios 30", "masses 1, 1, 1, 1/4, ratio 30: the pulse"),
     ("shock --k 3/2 --jumps 1", "there is no shock"),
     ("shock --k 3/2 --jumps 1/2", "a strain above the one ahead"),
     ("shock --k 3/2 --duration 5", "duration is 5: at least 100 is wanted"),
     ("shock --k 3/2 --ahead=-1", "contacts of a power law only push"),
-]
+    pytest.param(
+        "precompressed --masses 1,1,1,1/4 --ratios 30", "masses 1, 1, 1, 1/4, ratio 30: the pulse",
+        marks=pytest.mark.slow,
+    ),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("line", "named"), BAD)
