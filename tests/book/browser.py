@@ -6,14 +6,11 @@ page requests from elsewhere violates the policy that the server sends with it. 
 in a frame, as a window cannot be as narrow as a phone.
 """
 
-from __future__ import annotations
-
 import json
 import shutil
 import subprocess
 import tempfile
 import threading
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
@@ -172,37 +169,41 @@ window.addEventListener("load", async () => {
 class Visit:
     """Reports of the pages, by their paths, and paths that the server does not have."""
 
-    pages: dict[str, dict[str, object]] = field(default_factory=dict)
-    missing: list[str] = field(default_factory=list)
+    pages: dict = field(default_factory=dict)
+    missing: list = field(default_factory=list)
 
 
 class _Server(ThreadingHTTPServer):
     daemon_threads = True
 
-    def __init__(self, folder: Path, pages: Sequence[str], visit: Visit, mode: str) -> None:
-        self.left = list(pages)
-        self.mode = mode
-        self.visit = visit
+    def __init__(self, folder, left, visit, mode):
+        self.left, self.visit, self.mode = left, visit, mode
         self.progress = threading.Event()
         super().__init__(("127.0.0.1", 0), partial(_Handler, directory=str(folder)))
 
 
 class _Handler(SimpleHTTPRequestHandler):
-    server: _Server
-
-    def do_GET(self) -> None:
+    def do_GET(self):
         path = Path(self.translate_path(self.path))
         if self.path.startswith(FRAME):
             width, page = self.path.removeprefix(FRAME).split("/", 1)
             frame = f'<iframe src="/{page}" width="{width}" height="900"></iframe>'
-            return self._send(f'<link rel="icon" href="data:,">{frame}')
-        if path.suffix != ".html" or not path.is_file():
-            return super().do_GET()
-        modes = "".join(f'localStorage.{n} = "{self.server.mode}";' for n in ("mode", "theme"))
-        text = path.read_text().replace("<head>", f"<head><script>{EVENTS}{modes}</script>", 1)
-        self._send(text.replace("</body>", PROBE + "</body>"))
+            self._send(f'<link rel="icon" href="data:,">{frame}')
+        elif path.suffix == ".html" and path.is_file():
+            modes = "".join(f'localStorage.{n} = "{self.server.mode}";' for n in ("mode", "theme"))
+            head = f"<head><script>{EVENTS}{modes}</script>"
+            text = path.read_text().replace("<head>", head, 1)
+            self._send(text.replace("</body>", PROBE + "</body>"))
+        else:
+            super().do_GET()
 
-    def _send(self, text: str) -> None:
+    def do_POST(self):
+        report = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
+        self.server.visit.pages[urlsplit(self.headers["Referer"]).path.lstrip("/")] = report
+        self._send(self.server.left.pop(0) if self.server.left else "")
+        self.server.progress.set()
+
+    def _send(self, text):
         page = text.encode()
         self.send_response(200)
         self.send_header("Content-Type", "text/html; charset=utf-8")
@@ -211,24 +212,15 @@ class _Handler(SimpleHTTPRequestHandler):
         self.end_headers()
         self.wfile.write(page)
 
-    def do_POST(self) -> None:
-        report = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
-        self.server.visit.pages[urlsplit(self.headers["Referer"]).path.lstrip("/")] = report
-        following = self.server.left.pop(0) if self.server.left else ""
-        self.send_response(200)
-        self.end_headers()
-        self.wfile.write(following.encode())
-        self.server.progress.set()
-
-    def send_error(self, code: int, *rest: object, **more: object) -> None:
+    def send_error(self, code, *rest, **more):
         self.server.visit.missing.append(self.path)
         super().send_error(code)
 
-    def log_message(self, *rest: object) -> None:
+    def log_message(self, *rest):
         pass
 
 
-def visited(folder: Path, pages: Sequence[str], width: int, mode: str = "light") -> Visit:
+def visited(folder, pages, width, mode="light"):
     """Reports of the pages, opened one after another in a frame of this width in CSS pixels.
 
     mode : "light" or "dark".
@@ -243,11 +235,8 @@ def visited(folder: Path, pages: Sequence[str], width: int, mode: str = "light")
     with tempfile.TemporaryDirectory() as home, _Server(folder, rest, visit, mode) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         address = f"http://127.0.0.1:{server.server_address[1]}{FRAME}{width}{first}"
-        browser = subprocess.Popen(
-            [chromium, *FLAGS, f"--user-data-dir={home}", address],
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-        )
+        command, silent = [chromium, *FLAGS, f"--user-data-dir={home}", address], subprocess.DEVNULL
+        browser = subprocess.Popen(command, stdout=silent, stderr=silent)
         try:
             while len(visit.pages) < len(pages):
                 server.progress.clear()

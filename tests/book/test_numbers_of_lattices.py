@@ -49,7 +49,9 @@ def test_the_experiment_of_the_breather():
 @pytest.mark.slow
 def test_errors_of_exact_waves():
     """Errors fall with the wave; the stated bounds of a wave cover its error."""
-    rows = links().document()["rows"]
+    report = links()
+    assert report.ok
+    rows = report.document()["rows"]
     by_case = {case: [row for row in rows if row["case"] == case] for case in CASES}
     on = [row for row in by_case["neighbours"] if row["ratio_value"] is not None]
     (off,) = (row for row in by_case["neighbours"] if row["ratio_value"] is None)
@@ -69,7 +71,9 @@ def test_errors_of_struck_lattices():
     def errors(chosen, *names):
         return [[100 * row[f"{name}_error_value"] for row in chosen] for name in names]
 
-    rows = struck().document()["rows"]
+    report = struck()
+    assert report.ok
+    rows = report.document()["rows"]
     flat = [r for r in rows if r["case"] == "packings" and r["strain_value"] < 1.1e-3]
     across, along = ([r for r in flat if r["chain"] == name] for name in ("across", "along"))
     limited("links", "the speed is within # %. The width", *errors(flat, "speed"))
@@ -106,9 +110,12 @@ def test_edges_of_a_shock():
 
 @pytest.mark.slow
 def test_driven_chains():
-    """The page's table, with the sentences about it."""
+    """The page's table, with the sentences about it; all findings hold."""
     chains = {"jumps": (3,)}, {"k": "3/2", "jumps": (2, 8)}, {"k": "3/2", "jumps": (1,), "ahead": 0}
-    rows = [row for one in chains for row in shock(duration=300, **one).document()["rows"]]
+    reports = [shock(duration=300, **one) for one in chains]
+    assert all(report.ok for report in reports)
+    rows = [row for report in reports for row in report.document()["rows"]]
+    assert all(row["speed_error_value"] < 3e-4 * row["speed_value"] for row in rows)
     toda, powers = rows[0], rows[1:]
 
     def errors(rows, theory):
@@ -146,11 +153,10 @@ def test_lattice_beside_nesterenkos_relation(masses):
     rows = precompressed(masses=masses, ratios=(0.1, 0.3, 1, 3, 10)).document()["rows"]
     off = [100 * abs(row["error_value"]) for row in rows]
     words = "within # % of the line up to dynamic forces of # loads, and within # % up to # loads"
-    weak, end, strong, last = map(float, said("pressed", words))
+    numbers = said("pressed", words)
     assert off == sorted(off)
-    assert (end, last) == (0.3, 10)
-    assert off[1] < weak
-    assert off[-1] < strong
+    assert numbers[1::2] == ["0.3", "10"]
+    assert np.all(np.take(off, [1, -1]) < np.array(numbers[::2], float))
 
 
 def test_front_of_an_upright_chain():

@@ -153,10 +153,8 @@ def test_the_calculator_with_and_without_load(visit, n):
 def test_the_series_of_the_calculator_is_interpolated_well(visit):
     """Between the ratios of its table the width differs from the series by less than 0.5 %."""
     _, found = visit.pages["calculator.html"]["blows"][9]
-    theory, ratio = (
-        found["theories"]["series in k − 1"],
-        sp.Rational(round(1e6 * found["omega"]), 10**6),
-    )
+    theory = found["theories"]["series in k − 1"]
+    ratio = sp.Rational(round(1e6 * found["omega"]), 10**6)
     total = expand(Dimer(1, ratio), 8).fwhm("force").at("3/2")
     sites = theory["width"] * found["lattice"]["speed"] / 4.68e-3
     assert abs(sites / float(total.value) - 1) < 5e-3

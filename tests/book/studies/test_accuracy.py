@@ -11,7 +11,6 @@ import pytest
 import sympy as sp
 
 from book.studies import accuracy as study
-from tests.commands import ended
 from validation.lattice.simulate import COMPILED, simulate
 from validation.pulses.pulse import MeasureError
 from validation.studies.limits import theory_at
@@ -19,11 +18,8 @@ from validation.studies.limits import theory_at
 
 def test_a_record_without_a_pulse_is_infinitely_wrong():
     task = study.struck_chain(1.0, 30, 20, 5.0)  # too short a time
-    ((rtol, errors, seconds),) = study.timings(
-        task, study.solitary_wave(20).truth, COMPILED[0], (1e-6,)
-    )
+    ((_, errors, _),) = study.timings(task, study.solitary_wave(20).truth, COMPILED[0], (1e-6,))
     assert errors == dict.fromkeys(study.READINGS, math.inf)
-    assert (rtol, seconds > 0) == (1e-6, True)
 
 
 @pytest.mark.parametrize("method", study.METHODS)
@@ -36,16 +32,14 @@ def test_the_error_falls_with_the_tolerance(method):
 
 
 @pytest.mark.parametrize("name", study.TASKS)
-@pytest.mark.slow
 def test_rtol_is_the_error_of_the_peak_force(name):
-    """The error is at most 1.5 rtol, in the median 0.005 rtol at least where contacts open: errors
-    vary tenfold from one tolerance to the next, as steps meet the kinks elsewhere. On closed
-    contacts the higher order is better than the lower one's estimate."""
+    """Errors vary tenfold from one tolerance to the next, as steps meet the kinks elsewhere. On
+    closed contacts the higher order is better than the lower one's estimate."""
     task = study.TASKS[name]()
     exact = task.read(simulate(task.scene, rtol=study.FINEST))
     shares = [
         study.relative_errors(task.read(simulate(task.scene, rtol=rtol)), exact)["peak"] / rtol
-        for rtol in 10.0 ** np.arange(-11, -3, 0.4)
+        for rtol in 10.0 ** np.arange(-11, -3, 0.8)
     ]
     assert max(shares) < 1.5
     assert (0 if name == "precompressed" else 1 / 200) < np.median(shares) < 1
@@ -60,9 +54,10 @@ def test_a_cost_counts_only_if_all_longer_runs_are_as_accurate():
     assert study.cost(runs, 1e-10) == math.inf
 
 
-def test_the_document_holds_the_contract():
+def test_the_document_holds_the_contract(monkeypatch):
     tasks, names = ["exact", "experiment"], [COMPILED[0], "SciPy DOP853"]
-    report = study.accuracy(tasks, dict.fromkeys(names, (1e-6, 1e-8)))
+    monkeypatch.setattr(study, "CASES", study.CASES[:1])
+    report = study.accuracy([*tasks, study.THEORY], dict.fromkeys(names, (1e-6, 1e-8)))
     result = json.loads(json.dumps(report.document(), allow_nan=False))
     for row in result["rows"]:
         assert row["error"] == max(row[f"{name}_error"] for name in study.READINGS) < 0.1
@@ -70,25 +65,16 @@ def test_the_document_holds_the_contract():
     methods = {(row["task"], row["method"]) for row in result["rows"]}
     assert methods == set(product(tasks, names))
     assert {one["task"] for one in result["costs"]} == set(tasks)
+    assert [place["truth"] for place in result["theories"]] == [study.SOLITARY]
     exact, experiment = result["references"]
     assert (exact["task"], exact["peak"], experiment["task"]) == ("exact", 1.0, "experiment")
-
-
-@pytest.mark.slow
-def test_the_command_with_every_method(capsys):
-    options = "--task", "exact", "--task", "theory", "--format", "json"
-    status, out, _ = ended(capsys, study.accuracy.main, *options)
-    result = json.loads(out)
-    assert (status, {row["method"] for row in result["rows"]}) == (0, set(study.METHODS))
-    assert result["theories"]
 
 
 @pytest.fixture(scope="module")
 def places():
     """Equal beads at k = 1.1, where every theory has a wave, and the third special ratio."""
-    return study.place(sp.Rational(11, 10), sp.S.One), study.place(
-        study.HERTZ, sp.Rational("0.0901277691")
-    )
+    pairs = (sp.Rational(11, 10), sp.S.One), (study.HERTZ, sp.Rational("0.0901277691"))
+    return [study.place(*pair) for pair in pairs]
 
 
 def test_ladder_in_all_forms(places):
@@ -108,11 +94,8 @@ def test_ladder_in_all_forms(places):
     assert (document["k"], document["omega"], document["truth"]) == ("11/10", "1", "solitary wave")
     lines = csv.DictReader(io.StringIO(report.csv()))
     assert [line["quantity"] for line in lines] == list(study.COMPARED)
-    assert all(
-        document[f"truth{part}_value"][name] > 0
-        for part in ("", "_error")
-        for name in study.COMPARED
-    )
+    truths = document["truth_value"], document["truth_error_value"]
+    assert all(truth[name] > 0 for truth in truths for name in study.COMPARED)
     for theory, row in rows.items():
         assert row["seconds"] >= 0
         assert theory.startswith("ε") is (row["estimate_value"] is not None)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from book.studies.disorder import disorder, single_losses
+from book.studies.disorder import disorder
 
 
 def test_equal_beads_keep_their_pulse():
@@ -12,29 +12,10 @@ def test_equal_beads_keep_their_pulse():
     assert found.document()["decay_error_value"] == 0
 
 
-def test_the_loss_at_a_single_bead_is_quadratic_with_a_correction_of_opening_contacts():
-    """L = a e² + b |e|^{5/2} + …: one a for both signs, as linear reflection is even in e; two b.
-
-    The series goes on in steps of √e, so that four terms go through four losses."""
-    e = np.array([0.005, 0.01, 0.02, 0.04])
-    heavy, light = (np.array([x.value for x in single_losses(s * e)]) / e**2 for s in (1, -1))
-    powers = np.stack([np.ones(4), e**0.5, e, e**1.5], axis=1)
-    (a, b, *_), (a_light, *_) = (np.linalg.solve(powers, loss) for loss in (heavy, light))
-    assert a == pytest.approx(0.0135, abs=2e-3)
-    assert a_light == pytest.approx(a, abs=5e-3)
-    assert b == pytest.approx(0.19, abs=0.03)
-    assert np.polyfit(np.log(e), np.log(heavy * e**2), 1)[0] == pytest.approx(2.3, abs=0.05)
-
-
-@pytest.mark.parametrize(
-    ("spread", "chains", "share"),
-    [(0.1, 12, 0.3), pytest.param(0.2, 24, 0.15, marks=pytest.mark.slow)],
-)
-def test_the_decay_is_the_mean_loss_at_single_beads(spread, chains, share):
-    found = disorder(spread=spread, chains=chains).document()
-    off = found["decay_value"] - found["theory_value"]
-    assert abs(off) < 2 * found["decay_error_value"] + share * found["theory_value"]
-    assert found["decay_value"] > 5 * found["decay_error_value"]
+def test_the_theory_is_the_mean_loss_at_single_beads():
+    """That the decay is, too, is a table of `book/column.md`."""
+    spread = 0.2
+    found = disorder(spread=spread, chains=2).document()
     last, first = found["rows"][-1], found["rows"][0]
     line = found["theory_value"] * (first["site"] - last["site"])
     e, loss = (np.array([one[f"{n}_value"] for one in found["single"]]) for n in ("excess", "loss"))
@@ -44,7 +25,6 @@ def test_the_decay_is_the_mean_loss_at_single_beads(spread, chains, share):
     assert last["theory_value"] == pytest.approx(line, rel=1e-12)
 
 
-@pytest.mark.slow
 def test_a_decay_that_changes_along_the_chain_fails():
     """The pulse disintegrates at spread 0.5; its local decays: the check of `book/column.md`."""
     wide = disorder(spread=0.5, chains=20)
