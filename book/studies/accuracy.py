@@ -64,7 +64,7 @@ METHODS: Mapping[str, Sequence[float]] = {
 }
 """Tolerances of each method."""
 
-_ENOUGH, _REPEATS = 0.15, 7  # seconds and times after which a run is not repeated
+_ENOUGH, _REPEATS = 0.15, 7  # seconds, and times, after which a run is not repeated
 
 
 @dataclass(frozen=True)
@@ -140,6 +140,7 @@ def precompressed() -> Task:
     return Task(replace(loose, wall=1.0, precompression=1.0))
 
 
+# Durations: until the pulse has passed the sensor.
 TASKS: Mapping[str, Callable[[], Task]] = {
     "uniform": partial(struck_chain, 1.0, 560, 480, 582.0),
     "dimer": partial(struck_chain, 0.2733, 560, 480, 510.0),  # ω of steel and PTFE
@@ -185,7 +186,6 @@ THEORIES: Mapping[str, Callable[[sp.Rational, sp.Rational], Prediction]] = {
 SOLITARY, STRUCK_CHAIN = "solitary wave", "struck chain"
 HERTZ = sp.Rational(3, 2)
 
-
 Place = Mapping[str, Any]
 """Predictions of all theories at one k and ω, beside the lattice's values, as in JSON.
 
@@ -195,7 +195,6 @@ Place = Mapping[str, Any]
 ``estimate_value`` of |error| by the theory itself, where it has one; ``seconds``, CPU time of
 derivation and evaluation.
 """
-
 
 _LADDER = (
     Column("quantity", format=_HEADS.__getitem__),
@@ -300,7 +299,6 @@ CASES = tuple(
     for omega in ratios
 )
 """k, ω and the kind of truth of each place of the ladder of theories."""
-
 
 T = TypeVar("T")
 

@@ -9,7 +9,7 @@ middle bead. At free ends the envelope of a dark breather is 0 as well.
 
 The amplitude is that of the first harmonic: of the middle bead if bright, of the plateau if dark.
 The width is 1/b in cells, from the full width at half maximum (bright) or half plateau (dark).
-The theory's error falls as Δ.
+The theory's error is proportional to Δ.
 
 **The chain.** A constant force F0 presses the first bead, and the last one against it or against a
 wall, so that every contact has the static compression (F0/A_i)^{1/k}. With u the displacements
@@ -54,7 +54,7 @@ from validation.scenes.chains import numeric_cell
 from validation.scenes.checks import SceneError, between, integer
 from validation.waves import newton
 
-HARMONICS = 5  # H
+HARMONICS = 5  # H; 8 change amplitude and width by less than their errors
 MOST_STEPS = 30  # of Newton's method
 CLOSE = 1e-10  # largest force that a solution misses, over the load
 SMALL, LARGE = 1e-2, 1e3  # least motion over the start's, and largest over the static compression
@@ -317,7 +317,7 @@ class Standing:
     theory: Breather
     half: int
     load: float = 1.0
-    harmonics: int = 5
+    harmonics: int = HARMONICS
 
     @property
     def bright(self) -> bool:

@@ -5,9 +5,9 @@ lattice the lattice's own waves (`validation.waves.solver`), and in the equation
 
     (1 - I ∂_x²) u_ττ = ∂_x F(u_x)
 
-its own waves (`Evolution`, integrated by `Continuum`). They meet at x = 0. The strain
-is recorded there and at x = d, where the pulse of strain 1 arrives after the collision; it started
-at x = -d. Its shift is its distance ahead of a pulse that ran alone.
+its own waves (`Evolution`, integrated by `Continuum`). The waves meet at x = 0. The pulse of strain
+1 starts at x = -d. The strain is recorded at x = 0 and at x = d, where this pulse arrives after the
+collision. The shift of a pulse is its distance ahead of a pulse that ran alone.
 
 The equation is a long-wave equation: its speed is right to first order in k - 1, and its widths are
 its weak side. At k = 3/2 its pulses are too narrow by 19 %.
@@ -135,9 +135,9 @@ class Evolution:
 class Continuum:
     """The long-wave equation (1 - I ∂_x²) u_ττ = ∂_x F(u_x) of a chain on a periodic interval.
 
-    It is p_τ = v_x, (1 - I ∂_x²) v_τ = ∂_x F(p) in the strain p = u_x and the velocity v = u_τ, and
-    its energy ∫ [½ v² + ½ I v_x² + W(p)] dx. A power law has no tension:
-    F(p) = 0 at p < 0. The equation is one of numbers.
+    In the strain p = u_x and the velocity v = u_τ the equation is p_τ = v_x,
+    (1 - I ∂_x²) v_τ = ∂_x F(p), of the energy ∫ [½ v² + ½ I v_x² + W(p)] dx. A power law has no
+    tension: F(p) = 0 at p < 0. The cell and the law have numbers only.
     """
 
     equation: Evolution

@@ -81,7 +81,7 @@ def front_width(k: float) -> float:
         return float((wave @ ds).real) - less
 
     top, peak = summit(np.vectorize(front), np.linspace(-2.0, 0.0, 41))
-    before, behind = (
+    before, behind = (  # places beyond half of the top, on both sides of it
         scipy.optimize.brentq(front, top, other, (peak / 2,), xtol=1e-11)
         for other in (top - 1.6, top + 4)
     )

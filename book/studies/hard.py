@@ -196,10 +196,8 @@ def width_error(cell: Cell, p0: float, quantity: str) -> float:
     wave = loaded_wave(cell, rise=RISE, background=p0, k="3/2")
     with mp.workdps(REFERENCE_DIGITS):
         _, place, height = true_wave(wave.law, p0, RISE)
-        root = mp.sqrt(
-            12 * mp.mpf(sp.N(wave.field.I, REFERENCE_DIGITS))
-        )  # of I over that of equal beads
-        true = 2 * root * place(height if quantity == "force" else mp.mpf(RISE) / 2)
+        ratio = 12 * mp.mpf(sp.N(wave.field.I, REFERENCE_DIGITS))  # of I to that of equal beads
+        true = 2 * mp.sqrt(ratio) * place(height if quantity == "force" else mp.mpf(RISE) / 2)
         return abs(float(mp.mpf(float(wave.fwhm(quantity))) / true - 1))
 
 

@@ -12,9 +12,9 @@ behind the front has the strain p₋. Measured are, from the piston on:
 
 The error of a fit is the difference to the fit through the farther half of the contacts.
 
-Theory, for equal beads: El's leading edge, and the doubling rule: on the lattice's own wave (Toda's
-soliton; for powers Newton's wave) and on the
-canonical wave, in closed form.
+Theories, for equal beads: El's leading edge; the doubling rule (the leading pulse is the solitary
+wave whose beads move at 2 v_p) with the lattice's own wave, which is Toda's soliton or for powers
+the wave by Newton's method; and the doubling rule with the canonical wave, in closed form.
 """
 
 from __future__ import annotations

@@ -109,10 +109,8 @@ class Blow:
 
     def cells(self, case: str) -> dict[str, Any]:
         """Table row: the lattice's pulse beside the theory, which refuses slow resonators."""
-        size, theory = (
-            float(self.lattice.spacing),
-            loaded_wave(_stiff(self.lattice), force=self.force),
-        )
+        size = float(self.lattice.spacing)
+        theory = loaded_wave(_stiff(self.lattice), force=self.force)
         pace, velocity = float(theory.speed) / size, float(theory.strain * theory.speed) / STRIKE
         if self.direction:
             seen = packing(self.direction, velocity, pace)

@@ -72,8 +72,8 @@ class Definition:
     @property
     def cells(self) -> tuple[Any, ...]:
         """Table row: quantity, unit, average, errors, and the stated lines reproduced."""
-        unit, its = "s" if self.time else "sites", self.errors.values()
-        shown = (errors[line] for errors in its for line in STATED)
+        unit = "s" if self.time else "sites"
+        shown = (errors[line] for errors in self.errors.values() for line in STATED)
         return self.quantity, unit, self.average, self.errors, *shown, self.reproduced
 
 
@@ -124,10 +124,8 @@ def widths() -> Report:
                 for closure, lines in theory(quantity, force, in_time).items()
             }
             definitions.append(Definition(reading, in_time, average, errors))
-    times, lines = (
-        [numbers[f"bead {bead}"] for bead in beads],
-        theory("force", numbers["F_m"], True),
-    )
+    times = [numbers[f"bead {bead}"] for bead in beads]
+    lines = theory("force", numbers["F_m"], True)
     stated = ", ".join(f"{100 * e:.1f} % ({line})" for line, e in STATED.items())
     title = (
         f"theory over the average from bead {FIRST_BEAD} on, less 1, for equal contacts and "
@@ -165,11 +163,11 @@ def _panel(beads: Sequence[int], widths: Sequence[Measured], lines: Lines) -> Pa
         for ball, i, style in (("steel", 1, "ko"), ("PTFE", 0, "ks"))
     ]
     ends, first = (beads[0], beads[-1]), lines["linear"]
-    for closure, its in lines.items():
-        for i, (line, width) in enumerate(its.items()):
+    for closure, by_line in lines.items():
+        for i, (line, width) in enumerate(by_line.items()):
             # for m1 ≫ m2 and m1 = m2 the closures agree
-            if its is first or not math.isclose(width, first[line], rel_tol=1e-6):
-                style = f"C{i}{'-' if its is first else '--'}"
+            if by_line is first or not math.isclose(width, first[line], rel_tol=1e-6):
+                style = f"C{i}{'-' if by_line is first else '--'}"
                 label = f"{line}, {closure}" if closure != "linear" else line
                 curves.append(Curve(label, ends, (1e6 * width,) * 2, style))
     labels = "number of the bead", "FWHM of its force (µs)"
