@@ -3,7 +3,8 @@
 MyST-NB executes a page when Sphinx reads the page, one after another. It first looks for the page
 in the cache of Jupyter Cache. This extension empties the cache, so that every build executes every
 page, and fills it by Jupyter Cache's own executor. A page that fails is not in the cache: MyST-NB
-executes the page once more, and reports the error.
+executes the page once more, and reports the error. The lattice's engine is compiled before, as
+kernels that start together would each compile it.
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ from jupyter_cache import get_cache
 from jupyter_cache.executors import load_executor
 from sphinx.application import Sphinx
 
+from validation import Damping, Scene, simulate
+
 
 def execute(app: Sphinx) -> None:
     """Fill the cache with the pages of the table of contents that have code."""
@@ -25,6 +28,9 @@ def execute(app: Sphinx) -> None:
         excluded = page.name in app.config.exclude_patterns  # all that no table of contents has
         if not excluded and "{code-cell}" in page.read_text(encoding="utf-8"):
             cache.add_nb_to_project(str(page), read_data={"name": "myst_nb_md", "type": "plugin"})
+    pair = {"masses": (1, 1), "stiffnesses": (1,), "k": 1.5, "velocities": (1,), "duration": 1}
+    for damping in (None, Damping("contact", 0.1)):
+        simulate(Scene(**pair, damping=damping, bead_sensors=(0,)))
     executor = load_executor("local-parallel", cache=cache, logger=logging.getLogger("book"))
     executor.run_and_cache(timeout=config.execution_timeout)
 

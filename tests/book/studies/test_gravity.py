@@ -63,6 +63,8 @@ def test_a_strong_blow_is_the_solitary_wave_of_its_depth(found):
     last, end = [row for row in strong if row["blow_value"] == 10][-2:]
     growth = np.log(end["solitary_value"] / last["solitary_value"])
     assert growth > 0.45 * np.log(end["site_value"] / last["site_value"])  # the front's is 1/3
+    forces = [row["ratio_value"] * row["site_value"] for row in strong[-len(strong) // 3 :]]
+    assert 0.8 * forces[0] < forces[-1] < forces[0]  # the strongest blow nearly keeps its force
     for row in strong:
         least = min(row["solitary_value"], row["front_value"])
         assert 0.7 * least < row["width_value"] < 1.02 * least
