@@ -21,8 +21,9 @@ from book.studies.struck import struck
 from book.studies.widths import widths
 from lwa import Cell, LoadedChain, Material, Power, Sphere, canonical_wave, homogenize
 from tests.book.prose import bounds, limited, said, told
-from validation import Damping, Scene, measure, simulate
+from validation import Damping, Drive, Scene, measure, simulate
 from validation.scenes.chains import PTFE_BEAD, STEEL_BEAD
+from validation.scenes.chains import struck as struck_chain
 
 HERTZ = Power("3/2")
 PAIR = Cell.of_spheres([STEEL_BEAD, PTFE_BEAD])
@@ -135,6 +136,25 @@ def test_driven_chains():
     assert told("shocks", "the plateau's strain is # % below", -bare)
 
 
+@pytest.mark.slow
+def test_a_wall_that_recedes_makes_a_fan():
+    """c(p) = x/t between the edges c₋ and c₊; the lattice is about a site off at all times."""
+    found, errors = lwa.shock(Cell([1], spacing=1), 1, 2, law=HERTZ), []
+    for end in (200, 400):
+        fan = [round(share * end) for share in np.linspace(1.29, 1.41, 5)]
+        scene = struck_chain(
+            (1.0,), 2 * end, wall=1.0, precompression=2**1.5, velocities=(), duration=end,
+            drive=Drive(velocity=float(found.plateau)), contact_sensors=(5, *fan), samples=11,
+        )  # fmt: skip
+        plateau, *strains = simulate(scene, rtol=1e-7).compression[:, -1]
+        assert plateau == pytest.approx(1, rel=1e-3)
+        theory = (((np.array(fan) + 0.5) / end) ** 2 / 1.5) ** 2  # c² = F'(p) = 3/2 √p
+        assert 1.1 < theory[0] < theory[-1] < 1.95
+        errors.append(np.abs(strains / theory - 1).max())
+    assert errors[0] < 0.02
+    assert errors[1] < 0.6 * errors[0]
+
+
 # --- a chain under load, and under its own weight
 
 
@@ -238,9 +258,9 @@ def test_the_papers_errors_of_the_width():
 
 @pytest.mark.parametrize(("kind", "power"), [("contact", 1), ("kuwabara_kono", -1)])
 def test_speed_or_slowness_is_linear_in_damped_chains(kind, power):
-    scene = Scene(
-        masses=(1.0,) * 160, stiffnesses=(1.0,) * 159, k=1.5, velocities=(1.0,), duration=180.0,
-        samples=9001, contact_sensors=range(30, 131, 20), damping=Damping(kind, 0.002),
+    scene = struck_chain(
+        (1.0,), 160, duration=180.0, samples=9001, contact_sensors=range(30, 131, 20),
+        damping=Damping(kind, 0.002),
     )  # fmt: skip
     run = simulate(scene)
     times = [measure(run.time, force).arrival for force in run.contact_force]
