@@ -16,8 +16,8 @@ from book.studies.hard import three_beads
 from lwa import Cell, Dimer, Material, Sphere, canonical_wave, expand, homogenize, loaded_wave
 from lwa.law import NAMES, named
 from tests.book.prose import BOOK, bounds, limited, said, told
-from validation import Damping, Scene, exact_wave, measure, simulate
-from validation.scenes.chains import carrying
+from validation import Damping, exact_wave, measure, simulate
+from validation.scenes.chains import carrying, struck
 from validation.waves.solver import resonances
 
 sys.path.append(str(BOOK))  # the pages' own modules
@@ -64,10 +64,7 @@ def test_a_ball_that_falls():
 
 def test_struck_beads():
     words = "left and peaks of # and #, contact 30 has a heavy bead on its left and a peak of #"
-    scene = Scene.of_cell(
-        Dimer(1, PAPER, spacing=1), 40, "3/2", velocities=(1,), contact_sensors=(15, 45, 30),
-        duration=60, samples=2401,
-    )  # fmt: skip
+    scene = struck((1, float(PAPER)), 80, contact_sensors=(15, 45, 30), duration=60, samples=2401)
     assert told("play", words, *simulate(scene).contact_force.max(axis=1))
     words = "$#$ for weak pulses, where $k = #$ prevails, to $#$ for strong ones with $k = #$"
     weak, slow, strong, fast = (sp.Rational(x) for x in said("play", words))
@@ -75,10 +72,8 @@ def test_struck_beads():
     errors = []
     for mass in (1.0, 1.304, 2.0):
         strike = lwa.pulse_of_strike(UNIFORM, sp.Rational(str(mass)), velocity=1)
-        (peak,) = peaks(Scene(
-            masses=(mass,) + (1.0,) * 119, stiffnesses=(1.0,) * 119, k=1.5, velocities=(1.0,),
-            contact_sensors=(60,), duration=90.0, samples=4001,
-        ))  # fmt: skip
+        row = mass, *(1.0,) * 119
+        (peak,) = peaks(struck(row, 120, contact_sensors=(60,), duration=90.0, samples=4001))
         errors.append(100 * (float(strike.force.value) / peak - 1))
     limited("calculator", "the force is within # percent of the lattice", errors)
 
@@ -295,8 +290,8 @@ def test_decay_by_restitution():
     words = "falls by $#\\,(1 - e_r)$ per bead, at any strength (**rule**, within # %"
     slope, off = map(float, said("recipes", words))
     for share, blow in ((0.98, 1.0), (0.95, 1.0), (0.95, 0.1)):
-        near, far = peaks(Scene.of_cell(
-            UNIFORM, 100, "3/2", velocities=(blow,), contact_sensors=(30, 80), samples=8001,
+        near, far = peaks(struck(
+            (1.0,), 100, velocities=(blow,), contact_sensors=(30, 80), samples=8001,
             duration=125.0 * blow**-0.2, damping=Damping("restitution", share),
         ))  # fmt: skip
         assert abs(math.log(near / far) / 50 / (slope * (1 - share)) - 1) < off / 100
@@ -309,12 +304,8 @@ def test_what_integration_costs():
     pulse = trust("3/2", "1/1000").pulse
     below = 100 * (1 - pulse.speed / pulse.force ** (1 / 6) / limit)
     assert told("integration", "it is # % below at $\\omega = 10^{#}$", below, -3)
-    steps = [
-        simulate(Scene.of_cell(
-            Dimer(1, w, spacing=1), 20, "3/2", velocities=(1.0,), duration=20.0, samples=2
-        )).step
-        for w in ("1/100", "1/10000")
-    ]  # fmt: skip
+    chains = (struck((1.0, w), 40, duration=20.0, samples=2) for w in (1e-2, 1e-4))
+    steps = [simulate(chain).step for chain in chains]
     assert 5.5 < steps[0] / steps[1] < 6.5  # "a sixth"
     drift = abs(simulate(three_beads(False, 1500.0), rtol=1e-5).energy_drift) / 1500
     words = "at `rtol=1e-5` by $#\\cdot10^{-8}$ per unit of time"

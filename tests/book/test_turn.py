@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 from lwa import Cell, Dimer, Power, envelope, piston
-from validation import MeasureError, Scene, simulate
+from validation import MeasureError, simulate
 from validation.pulses.pulse import first_pulse
 from validation.pulses.sensors import tracks
+from validation.scenes.chains import struck
 
 pytestmark = [pytest.mark.slow, pytest.mark.optional("node", "sphinx")]
 
@@ -49,10 +50,8 @@ def in_node(program, **values):
 
 def by_lattice(duration, omega, k, p0):
     """Arrival, peak and width at the contacts, NaN where `lwa-validate` refuses the pulse."""
-    scene = Scene.of_cell(
-        Dimer(1, str(omega), spacing=1), 50, str(k), velocities=(1,), duration=duration,
-        contact_sensors=CONTACTS, precompression=p0**k, wall=1.0 if p0 else None,
-    )  # fmt: skip
+    pressed = dict(precompression=p0**k, wall=1.0) if p0 else {}
+    scene = struck((1.0, omega), 100, k, duration=duration, contact_sensors=CONTACTS, **pressed)
     for track in tracks(simulate(scene, rtol=1e-9)):
         try:
             pulse = first_pulse(track.force)
@@ -102,10 +101,7 @@ def test_the_line_of_the_theory_is_over_the_bars():
     """Contact i stands at i + 1/2; after 20 sites the line is there at its own speed."""
     seen = in_node(LINE)
     assert abs(seen["line"] - seen["bars"] - 0.5) < 1
-    sensors = Scene.of_cell(
-        Dimer(1, "0.2733", spacing=1), 20, "3/2", velocities=(1,), duration=44.0,
-        contact_sensors=(12, 32),
-    )  # fmt: skip
+    sensors = struck((1.0, 0.2733), 40, duration=44.0, contact_sensors=(12, 32))
     first, last = (first_pulse(track.force) for track in tracks(simulate(sensors)))
     assert abs(seen["speed"] * (last.arrival - first.arrival) / 20 - 1) < 1e-3
 
