@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from validation.lattice.kernel.arrays import BLOCK, MARGIN, SHORTEST, Beads, Chain, Knots, Plan
-from validation.lattice.kernel.compiled import SOURCES, ZERO, cached, once
+from validation.lattice.kernel.compiled import SOURCES, ZERO, cached, inlined
 from validation.lattice.kernel.force import contact_forces
 from validation.lattice.kernel.pair import (
     accept_step,
@@ -21,13 +21,13 @@ from validation.lattice.kernel.samples import store_knot
 _STILL = 1e-13  # in units of the greatest compression: beads that have moved less are still
 
 
-@once
+@inlined
 def moving(now: Any) -> int:
     """Return the number of beads to be moved, a multiple of `BLOCK`."""
     return int(max(SHORTEST, -(-now.front // BLOCK) * BLOCK))
 
 
-@once
+@inlined
 def advance_front(beads: Beads, plan: Plan, now: Any) -> None:
     """Move the front to the first bead that is still."""
     while now.front < plan.size and abs(beads.y[now.front - MARGIN]) > _STILL * plan.deepest:

@@ -44,7 +44,7 @@ _INNER: Any = _OUTER | {"no_cpython_wrapper": True}
 # Functions with one caller, which numba inlines before it compiles them: each function that is
 # compiled apart is optimised and translated twice, by itself and in its caller, which took a fifth
 # of the compilation.
-once: Callable[[Function], Function] = njit(inline="always", **_INNER)
+inlined: Callable[[Function], Function] = njit(inline="always", **_INNER)
 # Small functions with many callers, inlined by LLVM, as the calls would take a quarter of a run's
 # time. Inlining by numba gives the same code, but takes three times as long to compile.
 part: Callable[[Function], Function] = njit(forceinline=True, **_INNER)

@@ -18,7 +18,7 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Law
-from validation.lattice.kernel.compiled import call, inner, once, part, summed
+from validation.lattice.kernel.compiled import call, inlined, inner, part, summed
 
 Quintic = tuple[float, float, float, float, float, float]
 """Coefficients c0 … c5 of p."""
@@ -165,12 +165,15 @@ def _add_piece(
         pace = 1.0 if q == 1.0 else (2.0 * u if q == 2.0 else 4.0 * u * u * u)
         x[m], w[m] = zero + span * u * pace / q, scale * _W[m] * pace
     forces_along(law, r, c, h, x, f)
+    once = twice = third = work = 0.0
     for m in range(POINTS):
         force, left = w[m] * f[m], 1.0 - x[m]
-        sums[0] += force
-        sums[1] += left * force
-        sums[2] += 0.5 * left * left * force
-        sums[3] += value_and_slope(c, x[m])[1] * force
+        once += force
+        twice += left * force
+        third += 0.5 * left * left * force
+        work += value_and_slope(c, x[m])[1] * force
+    for m, total in enumerate((once, twice, third, work)):
+        sums[m] += total
 
 
 @inner
@@ -240,7 +243,7 @@ def integrals(
     return points[3, 0], points[3, 1], points[3, 2], points[3, 3], top
 
 
-@once
+@inlined
 def closing_place(law: Law, r: float, c: Quintic, h: float) -> float:
     """Return the place of a step at which a contact, open before, closes."""
     return _change(law, r, c, h, 0.0, 1.0, True)

@@ -20,7 +20,7 @@ from typing import Any
 from lwa.base.arrays import Array
 from validation.lattice.kernel import kinks
 from validation.lattice.kernel.arrays import WIDTH, Beads, Chain, Pair, Plan
-from validation.lattice.kernel.compiled import ONE, ZERO, index, inner, once, part, summed
+from validation.lattice.kernel.compiled import ONE, ZERO, index, inlined, inner, part, summed
 from validation.lattice.kernel.force import contact_forces, drive_motion, interval, stiffness
 
 _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the tolerance
@@ -108,7 +108,7 @@ def _sums(pair: Pair, force: Array) -> tuple[float, float, float, float, float]:
     return once, twice, third, error, error_once
 
 
-@once
+@inlined
 def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -> None:
     """Correct a step for the pair's error at contact i, which opens or closes."""
     pair, last, inverse = plan.scheme, len(plan.scheme.moments) - 1, chain.inverse
@@ -154,7 +154,7 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
             beads.sums[3, n + 1] += math.copysign(missed, beads.sums[3, n + 1])
 
 
-@once
+@inlined
 def place_of_jump(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> tuple[float, int]:
     """Return the share of a step up to just behind the first closing whose jump matters, or 1.
 
@@ -182,7 +182,7 @@ def place_of_jump(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> 
     return place, count
 
 
-@once
+@inlined
 def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int:
     """Estimate a step's errors, and mark contacts with kinks, with a force that matters.
 
@@ -218,7 +218,7 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
     return count
 
 
-@once
+@inlined
 def evaluate_stages(chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int) -> None:
     """Compute the forces at all stages of a step h of the beads 0 … hi-1 at time t."""
     pair, last = plan.scheme, len(plan.scheme.moments) - 1
@@ -239,7 +239,7 @@ def evaluate_stages(chain: Chain, beads: Beads, plan: Plan, t: float, h: float, 
         contact_forces(chain, beads, plan, next_y, next_v, index(s), hi)
 
 
-@once
+@inlined
 def step_error(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> float:
     """Return the error of a step in units of the tolerance."""
     error, errors = _squared_error(beads.sums, chain.inverse, hi), plan.scheme.errors[1]
@@ -268,7 +268,7 @@ def accept_step(beads: Beads, plan: Plan, now: Any, h: float, hi: int, error: fl
     now.h, now.planned = min(plan.longest, max(grow, now.planned)), 0.0
 
 
-@once
+@inlined
 def reject_step(beads: Beads, plan: Plan, now: Any, h: float, error: float) -> None:
     """Plan a shorter step after a step with an error above 1, or NaN."""
     now.planned = 0.0

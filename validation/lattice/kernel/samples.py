@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from lwa.base.arrays import Array
 from validation.lattice.kernel import kinks
 from validation.lattice.kernel.arrays import Beads, Chain, Knots, Law
-from validation.lattice.kernel.compiled import SOURCES, cached, inner, once, part
+from validation.lattice.kernel.compiled import SOURCES, cached, inlined, inner, part
 from validation.lattice.kernel.force import stiffness
 from validation.lattice.kernel.kinks import Quintic, fitted_quintic, value_and_slope
 
@@ -82,7 +82,7 @@ def _effect(
     return x2 * twice, x * once
 
 
-@once
+@inlined
 def _smooth_ends(
     chain: Chain, knots: Knots, n: int, rows: NDArray[np.int_], ends: Array, points: Array
 ) -> None:
