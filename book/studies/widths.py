@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from lwa import Dimer, TravelingWave, canonical_wave, homogenize
+from lwa import TravelingWave, canonical_wave, homogenize
 from validation.lattice.result import Run
 from validation.lattice.simulate import twice
 from validation.pictures import Curve, Panel
@@ -26,16 +26,16 @@ from validation.report.table import Column, Table, percent
 from validation.scenes.chains import DIAMETER
 from validation.studies.paper import (
     BEADS,
+    FIRST_BEAD,
     HERTZ,
     SENSORS,
+    STATED,
     TOLERANCES,
     bead_fwhm,
-    chain_cell,
+    cells_of_lines,
     recorded_chain,
 )
 
-FIRST_BEAD = 10  # from here on the width no longer changes on its way; the average starts here
-STATED = {"m1 ≫ m2": 0.092, "m2/m1 = 0.27": 0.025, "m1 = m2": 0.228}  # by the paper
 READINGS = {
     "contact force": ("contacts", "force"),
     "bead force": ("beads", "bead force"),
@@ -193,10 +193,7 @@ def _numbers(run: Run) -> dict[str, float]:
 
 def _waves() -> dict[str, list[TravelingWave]]:
     """Waves by closure, for the chain's contacts and the masses of `STATED`."""
-    cell = chain_cell()
-    heavy, light = cell.masses
-    masses = (heavy / 10**12, light, heavy)  # the first for m2 → 0, exact to 12 digits
-    cells = [Dimer(heavy, m2, stiffnesses=cell.stiffnesses, spacing=cell.spacing) for m2 in masses]
+    cells = cells_of_lines()
     return {
         "linear": [homogenize(dimer, k=HERTZ).pde.traveling_wave() for dimer in cells],
         "canonical": [canonical_wave(dimer, HERTZ) for dimer in cells],

@@ -79,3 +79,13 @@ def test_force_records(document):
         incoming = force[0, : fronts[-1]].max()
         assert 4 < incoming < 14  # N, as on the paper's scale of 2 N per division
     assert [found["N"] for found in document["forces"]] == list(RECORDED)
+
+
+def test_two_of_the_stated_errors_of_the_width_are_near_and_one_is_not(document):
+    """9.2 and 22.8 % to 1.5 points; the lines for m1 ≫ m2 and m1 = m2 stand as √2 to 1."""
+    limit, real, equal = (row["error_value"] for row in document["widths"])
+    assert [row["stated_error_value"] for row in document["widths"]] == [0.092, 0.025, 0.228]
+    assert (1 + limit) / (1 + equal) == pytest.approx(2**0.5, rel=1e-9)
+    assert abs(limit) == pytest.approx(0.092, abs=0.015)
+    assert abs(equal) == pytest.approx(0.228, abs=0.015)
+    assert abs(real) > 3 * 0.025
