@@ -223,10 +223,10 @@ RANDOM = [  # a law, the ranges of its parameters and of the strains behind and 
 
 
 @pytest.mark.slow
-def test_thirty_random_shocks():
+def test_fifteen_random_shocks():
     """Each number is right within its error, or refused; 300 of them once, by hand."""
     rng, tested = random.Random(33), 0
-    while tested < 30:
+    while tested < 15:
         name, *ranges = rng.choice(RANDOM)
         *numbers, behind, ahead = (sp.Rational(f"{rng.uniform(*span):.3g}") for span in ranges)
         try:

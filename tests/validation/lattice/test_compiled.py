@@ -1,5 +1,6 @@
 """The cache of machine code depends on all sources of the kernel, and is optional."""
 
+import inspect
 import os
 import shutil
 import subprocess
@@ -9,8 +10,10 @@ from pathlib import Path
 import pytest
 
 import validation
-from validation.lattice.simulate import simulate
-from validation.scenes.scene import Scene
+from validation.lattice.kernel.advance import advance
+from validation.lattice.kernel.compiled import SOURCES
+from validation.lattice.kernel.samples import interpolate
+from validation.lattice.kernel.symplectic import advance_split
 
 PACKAGES = Path(validation.__file__).parents[1]
 RUN = """
@@ -27,6 +30,17 @@ def double(x):
 
 print(double(3))
 """
+TIED = """
+from validation.lattice.kernel.compiled import SOURCES, cached
+
+def built(sources):
+    @cached
+    def double(x):
+        return 2 * x, sources
+    return double
+
+built(SOURCES)(3)
+"""
 
 
 def output(folder, program, **environment):
@@ -41,13 +55,17 @@ def output(folder, program, **environment):
 
 
 @pytest.mark.slow
-def test_an_edit_of_any_source_of_the_kernel_compiles_again(engine, tmp_path):
-    simulate(Scene(masses=(1,), stiffnesses=(), k=1.5, duration=1))
+def test_an_edit_of_any_source_of_the_kernel_compiles_again(tmp_path):
+    """The hash of the sources is in the closure of each cached function of the engine."""
+    for function in (advance, advance_split, interpolate):
+        assert inspect.getclosurevars(function.py_func).nonlocals == {"sources": SOURCES}
+    cached = {"NUMBA_DEBUG_CACHE": "1", "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
     shutil.copytree(PACKAGES / "validation", tmp_path / "validation")
-    assert "data saved" not in output(tmp_path, RUN, NUMBA_DEBUG_CACHE="1")
+    assert "data saved" in output(tmp_path, TIED, **cached)
+    assert "data saved" not in output(tmp_path, TIED, **cached)
     force = tmp_path / "validation" / "lattice" / "kernel" / "force.py"
     force.write_text(force.read_text() + "# edited\n")
-    assert "data saved" in output(tmp_path, RUN, NUMBA_DEBUG_CACHE="1")
+    assert "data saved" in output(tmp_path, TIED, **cached)
 
 
 @pytest.mark.slow

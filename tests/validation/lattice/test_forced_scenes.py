@@ -138,7 +138,7 @@ def test_a_few_forced_scenes(seed, rtol):
 @pytest.mark.parametrize("batch", range(4))
 def test_many_forced_scenes(batch):
     """95 % are within 10 times rtol × amplification, all within 100; the books within 10 rtol."""
-    found = np.array([errors(seed)[1] for seed in range(batch, 72, 4)])
+    found = np.array([errors(seed)[1] for seed in range(batch, 40, 4)])
     assert (found[..., 0] > 10).sum() <= 0.05 * found[..., 0].size
     assert found[..., 0].max() < MOST
     assert found[..., 2].max() < 10
