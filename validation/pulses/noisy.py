@@ -10,8 +10,10 @@ Schwarz's criterion (Ann. Statist. 6, 461, 1978), for as many samples as are ind
 Errors are one standard deviation: `_DRAWS` records of noise with the spectrum of the noise before
 the pulse are added, base and spline are fitted to each, and `_WITHIN` of the numbers lie within the
 error. So an arrival is uncertain by the distance of two humps if the noise hides which of them is
-the higher. If the record has too few samples for the wanted coefficients, the error also holds the
-difference to a coarser spline.
+the higher. Samples on one level of the recorder err alike if their noise is below half the distance
+of the levels: the drawn records are then rounded to the levels, with base and pulse at random
+between two of them. If the record has too few samples for the wanted coefficients, the error also
+holds the difference to a coarser spline.
 """
 
 from __future__ import annotations
@@ -103,16 +105,16 @@ def noisy_pulses(time: ArrayLike, values: ArrayLike) -> Iterator[NoisyPulse]:
         )
     line = np.polynomial.Polynomial.fit(t[lead], f[lead], 1)
     base, first = float(f[lead].mean()), 0.0
-    stuck = (
-        resolution / math.sqrt(12) if np.std(f[lead] - line(t[lead])) < resolution / 2 else 0.0
-    )  # error of a base
+    # Noise of half a level or more spreads the samples over the levels and tells their rounding.
+    quiet = np.std(f[lead] - line(t[lead])) < resolution / 2
+    step = resolution if quiet else 0.0
     block = max(1, int(np.count_nonzero((t > rise) & (t < fall))) // _MOST)
     while True:
         _check_top(t, f, (rise, fall), resolution, size)
         whole = len(t) // block * block
         rows = np.array((t, f, lead), float)[:, :whole]
         at, values, calm = rows.reshape(3, -1, block).mean(axis=2)
-        numbers = _measured(at, values - line(at), calm == 1, (rise, fall), stuck)
+        numbers = _measured(at, values - line(at), calm == 1, (rise, fall), step)
         first = first or numbers["peak"].value
         numbers["peak"] = derived(lambda peak: peak * size, numbers["peak"])
         yield NoisyPulse(numbers, base * size)
@@ -194,12 +196,12 @@ def _check_top(
 
 
 def _measured(
-    t: Array, f: Array, lead: Array, sides: tuple[float, float], stuck: float
+    t: Array, f: Array, lead: Array, sides: tuple[float, float], step: float
 ) -> dict[str, Measured]:
     """Return arrival, peak and FWHM of a pulse between two times, with their errors.
 
-    t, f : samples over their base. lead : which of them are before the first pulse. stuck : error
-    of all samples alike, from rounding to the resolution.
+    t, f : samples over their base. lead : which of them are before the first pulse. step : distance
+    of the levels to which the samples are rounded, if it is more than their noise, else 0.
     """
     width = sides[1] - sides[0]
     near = (t >= sides[0] - _BESIDE * width) & (t <= sides[1] + _BESIDE * width)
@@ -224,10 +226,13 @@ def _measured(
         if left <= _MISFIT * variance:
             break
         variance = left
-    draws = _noise(both, len(calm) + n)
-    draws[: len(calm)] *= calm.std()
-    draws[len(calm) :] *= math.sqrt(variance)
-    errors = _spread(spline, t, before, draws, stuck, ends)
+    scale = calm.std(), math.sqrt(max(0.0, variance - step**2 / 12))
+    draws = _noise(both, len(calm) + n) * np.repeat(scale, (len(calm), n))[:, np.newaxis]
+    if step:
+        phases = step * np.random.default_rng(1).uniform(-0.5, 0.5, (2, _DRAWS))
+        true = np.append(0 * calm, spline(t))[:, np.newaxis] + np.repeat(phases, (len(calm), n), 0)
+        draws = step * np.round((true + draws) / step) - true
+    errors = _spread(spline, t, before, draws, ends)
     numbers = _read(spline, ends)
     if numbers[1] and (share := math.sqrt(variance) / numbers[1]) > _LOUDEST:
         raise MeasureError(f"the noise is {share:.1%} of the peak: at most {_LOUDEST:.0%} is read")
@@ -263,19 +268,17 @@ def _spread(
     t: Array,
     before: Array,
     noise: Array,
-    stuck: float,
     ends: tuple[float, float],
 ) -> Array:
     """Return the errors of arrival, peak and FWHM of a spline through samples at times t.
 
     before : times of the samples that give the base. noise : (len(before) + len(t), `_DRAWS`), at
-    both. stuck : error of all samples alike.
+    both.
     """
     calm, near = noise[: len(before)], noise[len(before) :]
     x, ahead = before - before.mean(), t - before.mean()
     near = near - calm.mean(axis=0) - np.outer(ahead, x @ calm / (x @ x))  # the base is a line
     off = _fitted(t, near, len(spline.c)).c
-    off += stuck * np.random.default_rng(1).normal(size=_DRAWS)
     grid, draw = np.linspace(*ends, _GRID + 1), np.arange(_DRAWS + 1)
     f = BSpline(spline.t, np.column_stack((spline.c, spline.c[:, np.newaxis] + off)), _DEGREE)(grid)
     # The vertex of the parabola through the highest value and its neighbours, in grid steps.

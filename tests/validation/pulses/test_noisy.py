@@ -56,6 +56,9 @@ KINDS = {  # of a record, by times, forces, peak and generator
     "low-passed at 50 kHz": lambda t, f, P, rng: f + 0.005 * P * slow(len(t), rng),
     "drift and hum": drift_and_hum,
     "8 bits": lambda t, f, P, rng: P / 200 * np.round(200 * f / P + 0.5 * rng.normal(size=len(t))),
+    "8 bits, little noise": lambda t, f, P, rng: (
+        P / 200 * np.round(200 * f / P + 0.05 * rng.normal(size=len(t)))
+    ),
 }
 
 
