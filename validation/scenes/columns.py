@@ -15,8 +15,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Mapping
-from contextlib import suppress
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,20 +26,16 @@ from lwa.base.arrays import Array
 from lwa.base.exact import shorten
 from validation.scenes.checks import SceneError
 
-_TIME = {
-    **dict.fromkeys(("s", "sec", "second", "seconds"), 1.0),
-    **{"ms": 1e-3, "µs": 1e-6, "us": 1e-6, "ns": 1e-9},
-}
-_LENGTH = {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "um": 1e-6}
-_FORCE = {"N": 1.0, "mN": 1e-3, "kN": 1e3, "Newton": 1.0}
-_SPEED = {"m/s": 1.0, "km/s": 1e3, "mm/s": 1e-3}
-_UNITS: Mapping[str, Mapping[str, float]] = {
-    **{"time": _TIME, "displacement": _LENGTH, "force": _FORCE, "force_error": _FORCE},
-    **{"speed": _SPEED, "speed_error": _SPEED},
+_SECOND = dict.fromkeys(("s", "sec", "second", "seconds"), 1.0)
+_UNITS = {
+    "time": _SECOND | {"ms": 1e-3, "µs": 1e-6, "us": 1e-6, "ns": 1e-9},
+    "displacement": {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "um": 1e-6},
+    "force": {"N": 1.0, "mN": 1e-3, "kN": 1e3, "Newton": 1.0},
+    "speed": {"m/s": 1.0, "km/s": 1e3, "mm/s": 1e-3},
 }  # by the last word of a column's name
-LONGEST = 100  # times the simulated time that a record may last
-_NAME = re.compile(r"(?:(bead|contact) )?(?:([1-9]\d{0,8}) )?(?:dynamic )?(\w+)")  # of a column
-_HEADER = re.compile(r"(.*?) ?(?:[([] ?([^][()]*?) ?[])])?")  # name, (unit) or [unit]
+_UNITS |= {f"{name}_error": _UNITS[name] for name in ("force", "speed")}
+_SENSOR = re.compile(r"(?:(bead|contact) )?(?:([1-9]\d{0,8}) )?(?:dynamic )?force")
+_HEADER = re.compile(r"^(.*?) ?(?:[([] ?([^][()]*?) ?[])])?$")  # name, (unit) or [unit]
 _CALIBRATION = re.compile(r"([-+.\deE]+)\s*(\S+)/(\w+)")  # number, unit, unit of the file
 
 
@@ -53,9 +48,9 @@ class MeasuredFile:
     """
 
     path: Path
-    names: tuple[str, ...]
-    units: tuple[tuple[str, str], ...]
-    lines: tuple[tuple[int, list[str]], ...]  # number of the line in the file, and its entries
+    names: Sequence[str]
+    units: Sequence[tuple[str, str]]
+    lines: Sequence[tuple[int, list[str]]]  # number of the line in the file, and its entries
     decimal: str  # the decimal separator
 
     @classmethod
@@ -66,8 +61,8 @@ class MeasuredFile:
         renamed: Mapping[str, str] | None = None,
         units: Mapping[str, str] | None = None,
     ) -> MeasuredFile:
-        """Read a file. Its header is the first line with columns of the wanted quantities (the last
-        words of their names) and with all that are renamed.
+        """Read a file. Its header is the first line with all wanted columns (the force of any
+        sensor is "force") and with all that are renamed.
 
         renamed : headers as they stand in the file, with or without their unit, by the new names;
         upper and lower case of other names are alike. units : by names, new or old, units
@@ -77,31 +72,23 @@ class MeasuredFile:
         an unknown new name, and for a unit of a column that the file does not have.
         """
         for name in renamed or {}:
-            if not (match := _NAME.fullmatch(name.lower())) or match[3] not in _UNITS:
+            if name.lower() not in _UNITS and not _SENSOR.fullmatch(name.lower()):
                 known = "time, bead 8 force, contact 8 force, speed, displacement"
                 raise SceneError(f"column is {shorten(name)}: a name such as {known} is wanted")
         renamed = {name.lower(): header for name, header in (renamed or {}).items()}
+        given = {name.lower(): unit.replace("μ", "µ") for name, unit in (units or {}).items()}
         new = {header: name for name, header in renamed.items()}
-        given = {
-            name.lower(): unit.replace("μ", "µ").strip() for name, unit in (units or {}).items()
-        }
         try:
-            content = files.content(Path(path))
-            try:
-                text = content.decode("utf-8-sig")
-            except UnicodeDecodeError:
-                text = content.decode("latin-1")
-            lines = text.replace("μ", "µ").split("\n")
+            lines = _text(Path(path)).split("\n")
             for start, line in enumerate(lines, start=1):  # noqa: B007
                 mark = next((mark for mark in "\t;" if mark in line), ",")
-                cells = next(csv.reader([line], delimiter=mark))
-                header = [" ".join(cell.split()) for cell in cells]
-                parts = [_HEADER.fullmatch(cell).groups("") for cell in header]  # type: ignore[union-attr]
+                header = [" ".join(x.split()) for x in next(csv.reader([line], delimiter=mark))]
+                old = [_HEADER.sub(r"\1", cell) for cell in header]
                 names = []
-                for cell, (name, _) in zip(header, parts, strict=True):
+                for cell, name in zip(header, old, strict=True):
                     other = "" if name.lower() in renamed else name.lower()
                     names.append(new.get(cell, new.get(name, other)))
-                if {*wanted} <= {name.split(" ")[-1] for name in names} and {*renamed} <= {*names}:
+                if {*wanted} <= {_SENSOR.sub("force", n) for n in names} and {*renamed} <= {*names}:
                     break
             else:
                 columns = ", ".join((*wanted, *renamed.values()))
@@ -111,17 +98,16 @@ class MeasuredFile:
         except (OSError, csv.Error, SceneError) as error:
             raise SceneError(f"{path}: {files.reason(error)}") from None
         decimal = "." if mark == "," else ","
-        stated = [unit for _, unit in parts]
+        stated = [_HEADER.sub(r"\2", cell) for cell in header]
         if rows and np.isnan([_number(cell, decimal) for cell in rows[0][1]]).all():
             below = [cell.strip(" ()[]") for cell in rows.pop(0)[1]] + [""] * len(names)
             stated = [unit or under for unit, under in zip(stated, below, strict=False)]
-        old = [name.lower() for name, _ in parts]
-        if unknown := [name for name in units or {} if name.lower() not in (*names, *old)]:
+        low = [name.lower() for name in old]
+        if unknown := [name for name in units or {} if name.lower() not in (*names, *low)]:
             wrong = f"unit is of {shorten(unknown[0])}: the header has {shorten(header)}"
             raise SceneError(f"{path}: {wrong}")
-        added = [given.get(name) or given.get(o, "") for name, o in zip(names, old, strict=True)]
-        both = zip(stated, added, strict=True)
-        return cls(Path(path), tuple(names), tuple(both), tuple(rows), decimal)
+        added = [given.get(name) or given.get(n, "") for name, n in zip(names, low, strict=True)]
+        return cls(Path(path), names, [*zip(stated, added, strict=True)], rows, decimal)
 
     @property
     def has_units(self) -> bool:
@@ -135,28 +121,42 @@ class MeasuredFile:
         quantity's, and its entries are finite numbers.
         """
         if self.names.count(name) != 1:
-            found = shorten(list(self.names))
-            raise SceneError(
-                f"{self.path}: one column {name} is wanted (see --column), the header has {found}"
-            )
+            wanted = f"one column {name} is wanted (see --column)"
+            raise SceneError(f"{self.path}: {wanted}, the header has {shorten([*self.names])}")
         return self._values(self.names.index(name))
 
-    def record(self, sensor: SensorColumn) -> tuple[Array, Array]:
-        """Return the times and the forces of a sensor, each (N,), as `column` does.
+    def sensors(self, of: str = "contact") -> dict[tuple[str, int | None], tuple[int, int]]:
+        """Return the places of time and force in the header, by kind and number of the sensor.
 
-        The times of "bead 8 force" are those of the column "bead 8 time"; else those of the nearest
-        column "time" on the left, or of the only one.
+        The kind is "bead" (these come first) or "contact". Numbers count from 1; the only sensor of
+        a file may have none. One column "time" is that of all sensors; of several columns the first
+        is that of the first force, and so on.
+
+        of : kind of the sensors whose names do not say it.
+
+        Raises `SceneError` for two columns of one sensor, for several sensors of which one has no
+        number, and for several columns of time that are not as many as the forces.
         """
-        own = sensor.name.replace("dynamic ", "").replace("force", "time")
         times = [i for i, name in enumerate(self.names) if name == "time"]
-        places = [i for i, name in enumerate(self.names) if name == own != "time"]
-        places = places or [i for i in times if i < sensor.place or len(times) == 1]
-        if not places:
-            raise SceneError(f"{self.path}: {sensor.name} has no column {own} or time on its left")
-        time, force = self._values(places[-1]), self._values(sensor.place)
-        if len(time) < len(force):
-            raise SceneError(f"{self.path}: {sensor.name} has more samples than times")
-        return time[: len(force)], force
+        forces = {i: m for i, name in enumerate(self.names) if (m := _SENSOR.fullmatch(name))}
+        if len(times) not in (1, len(forces)):
+            found = f"{len(times)} columns time and {len(forces)} of forces"
+            raise SceneError(f"{self.path}: {found}: one time for all or one for each is wanted")
+        sensors = {
+            (m[1] or of, int(m[2]) if m[2] else None): (time, force)
+            for time, (force, m) in zip(times * len(forces), forces.items(), strict=False)
+        }
+        if len(sensors) < len(forces) or (len(sensors) > 1 and None in [n for _, n in sensors]):
+            names = shorten([self.names[force] for force in forces])
+            raise SceneError(f"{self.path}: {names}: each sensor is wanted once, with its number")
+        return dict(sorted(sensors.items(), key=lambda sensor: sensor[0][0]))
+
+    def record(self, time: int, force: int) -> tuple[Array, Array]:
+        """Return times and forces, each (N,), from their places in the header, as `column` does."""
+        t, f = self._values(time), self._values(force)
+        if len(t) < len(f):
+            raise SceneError(f"{self.path}: {self.names[force]} has more samples than times")
+        return t[: len(f)], f
 
     def _values(self, at: int) -> Array:
         """Return the values of the column at a place of the header."""
@@ -164,10 +164,10 @@ class MeasuredFile:
         while cells and not cells[-1][1]:
             del cells[-1]
         values = self._size(at) * np.array([_number(cell, self.decimal) for _, cell in cells])
-        for (line, cell), value in zip(cells, values, strict=True):
-            if not np.isfinite(value):
-                fault = f"column {self.names[at]}, line {line}: {shorten(cell)} is no finite number"
-                raise SceneError(f"{self.path}: {fault}")
+        for i in np.flatnonzero(~np.isfinite(values))[:1]:
+            line, cell = cells[i]
+            fault = f"column {self.names[at]}, line {line}: {shorten(cell)} is no finite number"
+            raise SceneError(f"{self.path}: {fault}")
         return values
 
     def _size(self, at: int) -> float:
@@ -176,16 +176,24 @@ class MeasuredFile:
             return 1.0
         name, (unit, given) = self.names[at], self.units[at]
         known, match = _UNITS[name.split()[-1]], _CALIBRATION.fullmatch(given)
-        number, to, of = match.groups() if match else ("1", *2 * (given or unit,))
-        if unit in ("", of):
-            with suppress(KeyError, ValueError):
-                return float(number) * known[to]
-        says = f"the unit {shorten(unit)}" if unit else "no unit"
-        says += f" and is given {shorten(given)}" if given else ""
-        raise SceneError(
-            f"{self.path}: column {name} has {says}: one of {', '.join(known)} is wanted, or a "
-            f"calibration such as --unit 'CH1=12.5 N/{unit or 'V'}'"
-        )
+        number, to, of = match.groups() if match else ("1", given or unit, given or unit)
+        size = _number(number, ".") * known.get(to, np.nan)
+        if unit not in ("", of) or not np.isfinite(size):
+            says = f"the unit {shorten(unit)}" if unit else "no unit"
+            says += f" and is given {shorten(given)}" if given else ""
+            wanted = f"one of {', '.join(known)} is wanted, or --unit 'CH1=12.5 N/{unit or 'V'}'"
+            raise SceneError(f"{self.path}: column {name} has {says}: {wanted}")
+        return size
+
+
+def _text(path: Path) -> str:
+    """Return the text of a file in UTF-8 or Latin-1, with one of Unicode's two signs for micro."""
+    content = files.content(path)
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = content.decode("latin-1")
+    return text.replace("μ", "µ")
 
 
 def _number(cell: str, decimal: str) -> float:
@@ -194,43 +202,3 @@ def _number(cell: str, decimal: str) -> float:
         return float(cell.replace(decimal, "."))
     except ValueError:
         return np.nan
-
-
-@dataclass(frozen=True)
-class SensorColumn:
-    """A column with the force of a sensor, such as "bead 15 force"."""
-
-    name: str
-    place: int  # in the header
-    kind: str  # "bead" or "contact"
-    number: int | None  # counted from 1; None for the only sensor of a file
-
-
-def sensor_columns(file: MeasuredFile, of: str = "contact") -> list[SensorColumn]:
-    """Return the columns of sensors, beads first.
-
-    of : kind of the sensors whose names do not say it.
-
-    Raises `SceneError` for two columns of one sensor, and for several of which one has no number.
-    """
-    sensors = [
-        SensorColumn(name, place, m[1] or of, int(m[2]) if m[2] else None)
-        for place, name in enumerate(file.names)
-        if (m := _NAME.fullmatch(name)) and m[3] == "force"
-    ]
-    if len(sensors) > 1 and (without := [s.name for s in sensors if s.number is None]):
-        raise SceneError(f"{file.path}: {shorten(without[0])} has no number: several are there")
-    if len({(sensor.kind, sensor.number) for sensor in sensors}) < len(sensors):
-        names = shorten([sensor.name for sensor in sensors])
-        raise SceneError(f"{file.path}: two columns of {names} are of one sensor")
-    return sorted(sensors, key=lambda sensor: sensor.kind)
-
-
-def check_span(path: str | Path, time: Array, duration: float) -> None:
-    """Refuse a record that lies outside of the simulated time or lasts `LONGEST` times as long."""
-    first, last = (float(time.min()), float(time.max())) if len(time) else (0.0, 0.0)
-    if last < 0 or first > duration or last - first >= LONGEST * duration:
-        raise SceneError(
-            f"{path}: the record lasts from {first:g} to {last:g}, the simulation from 0 to "
-            f"{duration:g}: are the units of time alike?"
-        )

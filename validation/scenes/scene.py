@@ -34,6 +34,7 @@ Number = float | str
 """A number of a scene: a float, or a text such as "3/2" for the exponent."""
 
 _MISSING = math.nan
+_LONGEST = 100  # times the duration that a drive's record may last: longer, its unit is another
 # SymPy integrates F for δ > 0. Where a contact that pulls has δ < 0, a Piecewise goes on with its
 # first case, as the energy does, and these functions do not.
 _OTHER_CASES = sp.Max, sp.Min, sp.Abs, sp.sign, sp.Heaviside, sp.floor, sp.ceiling
@@ -162,10 +163,10 @@ class Scene:
             return
         if any(row[:1] != (0,) * len(row[:1]) for row in (self.velocities, self.displacements)):
             raise SceneError("drive moves bead 1, which has a velocity or displacement of its own")
-        if self.drive.time and self.drive.time[-1] < self.duration:
-            raise SceneError(
-                f"drive.time ends at {self.drive.time[-1]:g}: the duration is {self.duration:g}"
-            )
+        end = self.drive.time[-1:] or (self.duration,)
+        if not self.duration <= end[0] < _LONGEST * self.duration:
+            wanted = f"one to {_LONGEST} times the duration, {self.duration:g}, is wanted"
+            raise SceneError(f"drive.time ends at {end[0]:g}: {wanted}")
 
     def _read_law(self) -> None:
         """Check the law; a power law is replaced by its exponent k."""

@@ -30,7 +30,7 @@ from lwa.spheres.beads import (
 )
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes.checks import SceneError, finite, positive
-from validation.scenes.columns import MeasuredFile, check_span
+from validation.scenes.columns import MeasuredFile
 from validation.scenes.forcing import DAMPINGS, Damping, Drive
 from validation.scenes.scene import Scene
 
@@ -84,7 +84,7 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     if "damping" in file:
         kind = tables["damping"].one(*DAMPINGS)
         damping = Damping(kind, tables["damping"].entries[kind])
-    duration = file.read("duration", positive)
+    units = file.read("units", among({"SI": "SI"}), "SI" if row else "")
     # A pulse that passes the chain once in the duration has 20 samples a bead: a half width of one
     # bead then holds more than the 16 that `validation.pulses.noisy` wants. 100,000 spare memory.
     samples = min(max(1001, 20 * n), 100_000)
@@ -92,13 +92,13 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
         **chain,
         **{key: file.entries[key] for key in ("gravity", "precompression") if key in file},
         wall=wall,
-        duration=duration,
+        duration=file.read("duration", positive),
         samples=file.entries.get("samples", samples),
-        units=file.read("units", among({"SI": "SI"}), "SI" if row else ""),
+        units=units,
         displacements=start.read("displacements", each(finite), ()),
         velocities=velocities,
         damping=damping,
-        drive=_drive(tables["drive"], duration, folder) if "drive" in file else None,
+        drive=_drive(tables["drive"], units, folder) if "drive" in file else None,
         bead_sensors=sensors.read("beads", _sensors(n), ()),
         contact_sensors=sensors.read("contacts", _sensors(n - (wall is None)), ()),
     )
@@ -170,13 +170,20 @@ def _wall(given: Table, row: Sequence[Sphere], materials: Mapping[str, Material]
     return float(stiffness(row[-1], given.read("material", among(materials))))
 
 
-def _drive(given: Table, duration: float, folder: Path) -> Drive:
+def _drive(given: Table, units: str, folder: Path) -> Drive:
     """Read the motion of bead 1; the key ``file`` names a CSV file of its time and displacement."""
     motion = dict(given.entries)
     if "file" in given:
         if not isinstance(name := motion.pop("file"), str):
             raise SceneError(f"drive.file is {shorten(name)}: the name of a CSV file is wanted")
         file = MeasuredFile.read(folder / name, "time", "displacement")
+        check_units(file, units)
         motion |= {name: file.column(name) for name in ("time", "displacement")}
-        check_span(folder / name, motion["time"], duration)
     return Drive(**motion)
+
+
+def check_units(file: MeasuredFile, units: str) -> None:
+    """Refuse a measured file that states its units beside a scene that does not."""
+    if file.has_units and not units:
+        wanted = "its units are stated, the scene's are not: units = 'SI' is wanted"
+        raise SceneError(f"{file.path}: {wanted}")

@@ -25,9 +25,9 @@ from validation.report.command import column_options, number, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError, one_of, positive
-from validation.scenes.columns import MeasuredFile, check_span, sensor_columns
+from validation.scenes.columns import MeasuredFile
 from validation.scenes.scene import Scene
-from validation.scenes.scenefile import read_scene
+from validation.scenes.scenefile import check_units, read_scene
 from validation.studies.run import reading_tables
 
 _KINDS = ("bead", "contact")
@@ -63,7 +63,7 @@ def pulses(
     and, for each sensor, such as "bead 15 force", "contact 15 force", "15 force" or, of a single
     sensor, "force". Beads and contacts are counted from 1. Units are stated in the header or by
     --unit: results are then in SI, as is a distance; without any they are in the file's own units.
-    "bead 15 time" is the time of one sensor, the nearest column time on its left that of others.
+    One column time is that of all sensors, or the first is that of the first force, and so on.
 
     ``sensors``, ``speeds`` and ``echoes`` as of `validation.studies.run`, the static force from the
     record. A sensor has the speeds from the sensor before as well, so that the CSV holds them all.
@@ -74,20 +74,17 @@ def pulses(
     apart = None if distance is None else positive(distance, "distance")
     file = MeasuredFile.read(records, "time", "force", renamed=renamed, units=units)
     si = file.has_units
-    sensors = sensor_columns(file, of)
-    if not sensors:
-        raise SceneError(f"{records}: no column is the force of a sensor, such as contact 15 force")
     found, curves = [], []
-    for i, sensor in enumerate(sensors):
-        time, force = file.record(sensor)
-        place = (sensor.number or 1,)  # the only sensor of a file is number 1
+    for i, ((kind, which), columns) in enumerate(file.sensors(of).items()):
+        time, force = file.record(*columns)
+        place = (which or 1,)  # the only sensor of a file is number 1
         number = 1
         try:
             for pulse in noisy_pulses(time, force):
-                found.append(Reading(sensor.kind, place, pulse.numbers, pulse.base, pulse=number))
+                found.append(Reading(kind, place, pulse.numbers, pulse.base, pulse=number))
                 number += 1
         except MeasureError as error:
-            found.append(Reading(sensor.kind, place, {}, math.nan, str(error), number))
+            found.append(Reading(kind, place, {}, math.nan, str(error), number))
         curves.append(Curve(found[-1].name, time, force, f"C{i}-"))
     firsts = [reading for reading in found if reading.pulse == 1]
     if all(first.missing for first in firsts):
@@ -189,21 +186,17 @@ def _read(
     if not names:
         raise SceneError("the scene names no sensors")
     measured = MeasuredFile.read(file, "time", "force", renamed=renamed, units=units)
-    if not chain.units and measured.has_units:
-        raise SceneError(
-            f"{file}: its units are stated, the scene's are not: units = 'SI' is wanted"
-        )
+    check_units(measured, chain.units)
     records, pulses = {}, {}
-    for sensor in sensor_columns(measured):
-        alone = sensor.number is None and len(names) == 1
-        name = names[0] if alone else f"{sensor.kind} {sensor.number}"
+    for (kind, which), columns in measured.sensors().items():
+        alone = which is None and len(names) == 1
+        name = names[0] if alone else f"{kind} {which}"
         if name in names:
-            time, force = measured.record(sensor)
-            check_span(file, time - time[:1], chain.duration)  # its clock may start anywhere
+            time, force = measured.record(*columns)
             try:
                 pulse = noisy_pulse(time, force)
             except MeasureError as error:
-                raise MeasureError(f"{file}: {sensor.name}: {error}") from None
+                raise MeasureError(f"{file}: {name}: {error}") from None
             records[name], pulses[name] = (time, force - pulse.base), dict(pulse.numbers)
     if not records:
         raise SceneError(f"{file}: no column is {' or '.join(f'{name} force' for name in names)}")

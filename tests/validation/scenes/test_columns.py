@@ -2,10 +2,9 @@
 
 import re
 
-import numpy as np
 import pytest
 
-from validation.scenes.columns import MeasuredFile, check_span, sensor_columns
+from validation.scenes.columns import MeasuredFile
 from validation.scenes.scene import SceneError
 
 
@@ -74,15 +73,19 @@ def test_names_are_compared_without_regard_to_case_but_for_renamed_ones(tmp_path
 @pytest.mark.parametrize(
     ("text", "times"),
     [
-        ("bead 2 time,1 time,bead 2 dynamic force,1 force\n2,1,6,5\n", [[2], [1]]),
-        ("time,1 force,time,2 force\n1,5,2,6\n", [[1], [2]]),
-        ("time,force,time\n1,5,2\n", [[1]]),
-        ("1 force,time,2 force\n5,1,6\n,2,7\n", [[1], [1, 2]]),
+        ("time,1 force,time,2 force\n1,5,2,6\n", {1: [1], 2: [2]}),
+        ("Time,Time,2 force,1 force\n1,2,5,6\n", {2: [1], 1: [2]}),
+        ("time,2 force,time,bead 1 force\n1,5,2,6\n", {1: [2], 2: [1]}),  # beads come first
+        ("force,time\n5,1\n,2\n", {None: [1]}),
+        ("1 force,time,2 force\n5,1,6\n,2,7\n", {1: [1], 2: [1, 2]}),
     ],
 )
-def test_a_sensor_has_the_times_of_its_name_or_the_only_ones(tmp_path, text, times):
+def test_one_time_is_that_of_all_sensors_or_the_first_that_of_the_first_force(
+    tmp_path, text, times
+):
     file = read(tmp_path, text)
-    assert [file.record(s)[0].tolist() for s in sensor_columns(file)] == times
+    found = {number: file.record(*at)[0].tolist() for (_, number), at in file.sensors().items()}
+    assert list(found.items()) == list(times.items())
 
 
 HEAD = "time (s),force (N)\n"
@@ -102,6 +105,7 @@ HEAD = "time (s),force (N)\n"
         (f"{HEAD}1,2\n", {"units": {"CH9": "N"}}, "unit is of 'CH9'"),
         ("time (s),force (N),force (N)\n1,2,3\n", {}, "one column force is wanted"),
         ("time,strain\n1,2\n", {}, "no line names time, force: --column"),
+        ("time,lateral force\nbead 8 time,force\n", {}, "no line names time, force: --column"),
         ("\x00\xff\n", {"encoding": "latin-1"}, "--column"),
         ("time;force\n1,5;2;3\n1.500,5;2\n", {}, "column time, line 3: '1.500,5'"),
         ("# a\ntime,force\n1,2\n3\n4,5\n", {}, "column force, line 4: ''"),
@@ -116,12 +120,17 @@ def test_bad_files_are_refused_in_one_line(tmp_path, text, options, named):
         values(read(tmp_path, text, **options), "time", "force")
 
 
-def test_records_of_another_time_or_without_times_are_refused(tmp_path):
-    for record in ((-1.0, 2.0), (1.9, 199.0)):
-        check_span("f", np.array(record), 2.0)
-    for record in ((2.1, 3.0), (-3.0, -0.1), (0.0, 200.0), (-100.0, 100.0)):
-        with pytest.raises(SceneError, match=f"from {record[0]:g} to {record[1]:g}, .* to 2"):
-            check_span("f", np.array(record), 2.0)
-    file = read(tmp_path, "time,force\n1,2\n,3\n")
-    with pytest.raises(SceneError, match="more samples than times"):
-        file.record(*sensor_columns(file))
+@pytest.mark.parametrize(
+    ("text", "named"),
+    [
+        ("time,1 force\n1,2\n,3\n", "1 force has more samples than times"),
+        ("time,1 force,time\n1,5,2\n", "2 columns time and 1 of forces"),
+        ("time,time,1 force,2 force,3 force\n", "2 columns time and 3 of forces"),
+        ("time,force,2 force\n", "'force', '2 force'.: each sensor is wanted once"),
+        ("time,2 force,contact 2 dynamic force\n", "each sensor is wanted once"),
+    ],
+)
+def test_sensors_without_a_time_or_a_number_of_their_own_are_refused(tmp_path, text, named):
+    file = read(tmp_path, text)
+    with pytest.raises(SceneError, match=named):
+        [file.record(*places) for places in file.sensors().values()]

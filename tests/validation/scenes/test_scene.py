@@ -55,7 +55,8 @@ REFUSED = [
     (dict(damping=0.1), "damping is 0.1"),
     (dict(damping=Damping("restitution", 1), k=math.nan, law=named("exponential", 1)), "damping"),
     (dict(drive=Drive(velocity=1), velocities=(1,)), "drive moves bead 1"),
-    (dict(drive=Drive(time=(0, 0.1, 0.2, 0.3), displacement=(0, 0, 0, 0))), "drive.time ends at"),
+    (dict(drive=Drive(time=(0, 0.1, 0.2, 0.3), displacement=(0,) * 4)), "drive.time ends at 0.3: "),
+    (dict(drive=Drive(time=(0, 1, 2, 100), displacement=(0,) * 4)), "drive.time ends at 100: one"),
 ]
 
 
