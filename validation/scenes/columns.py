@@ -181,7 +181,7 @@ class MeasuredFile:
         if unit not in ("", of) or not np.isfinite(size):
             says = f"the unit {shorten(unit)}" if unit else "no unit"
             says += f" and is given {shorten(given)}" if given else ""
-            wanted = f"one of {', '.join(known)} is wanted, or --unit 'CH1=12.5 N/{unit or 'V'}'"
+            wanted = f"--unit states one of {', '.join(known)}, or such as 12.5 N/{unit or 'V'}"
             raise SceneError(f"{self.path}: column {name} has {says}: {wanted}")
         return size
 

@@ -94,8 +94,8 @@ HEAD = "time (s),force (N)\n"
 @pytest.mark.parametrize(
     ("text", "options", "named"),
     [
-        ("time (s),force (lbf)\n1,2\n", {}, "column force has the unit 'lbf': one of N"),
-        ("time (s),force (V)\n1,2\n", {}, "--unit 'CH1=12.5 N/V'"),
+        ("time (s),force (lbf)\n1,2\n", {}, "force has the unit 'lbf': --unit states one of N"),
+        ("time (s),force (V)\n1,2\n", {}, "one of N, mN, kN, Newton, or such as 12.5 N/V"),
         ("time (s),force\n1,2\n", {}, "column force has no unit"),
         ("time,force\n1,2\n", {"units": {"force": "N"}}, "column time has no unit"),
         (f"{HEAD}1,2\n", {"units": {"force": "mN"}}, "'N' and is given 'mN'"),
