@@ -11,7 +11,7 @@ a cell with P equal contacts of stiffness A_eff, A_eff^{-1/k} = (1/P) Σ A_i^{-1
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -20,6 +20,7 @@ import sympy as sp
 
 from lwa.base import latex
 from lwa.base.exact import InputError, Quantity, integer, positive, power, read_exact, shorten
+from lwa.base.files import items
 from lwa.base.frozen import Value
 from lwa.spheres.hertz import Sphere, stiffness
 
@@ -81,7 +82,7 @@ class Cell(Value):
         The spacing is the mean distance of neighbours' centers, Σ 2 R_i / P. Then widths and speeds
         are those in space, and D u_x is the mean compression of the contacts.
         """
-        row = _sequence(spheres, "spheres")
+        row = items(spheres, "spheres")
         contacts = tuple(stiffness(a, b) for a, b in zip(row, row[1:] + row[:1], strict=True))
         spacing = sp.Add(*(2 * sphere.radius for sphere in row)) / len(row) if row else D
         return cls(tuple(sphere.mass for sphere in row), contacts, spacing)
@@ -223,15 +224,7 @@ def substitution(
     raise InputError("omega is m2/m1: one of the masses must be a symbol without another value")
 
 
-def _sequence(values: Any, name: str) -> tuple[Any, ...]:
-    if isinstance(values, str | bytes | Mapping | Set) or not isinstance(values, Iterable):
-        raise InputError(
-            f"{name}: a sequence of numbers or symbols is wanted, not {shorten(values)}"
-        )
-    return tuple(values)
-
-
 def _quantities(values: Any, name: str, singular: str) -> tuple[sp.Expr, ...]:
     """Read a sequence of positive numbers or symbols."""
-    numbered = enumerate(_sequence(values, name), start=1)
+    numbered = enumerate(items(values, name), start=1)
     return tuple(positive(x, f"{singular} {i}") for i, x in numbered)

@@ -11,7 +11,7 @@ import json
 import math
 import sys
 import tomllib
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence, Set
 from contextlib import suppress
 from difflib import get_close_matches
 from pathlib import Path
@@ -155,6 +155,14 @@ def named(reader: Reader) -> Reader:
     return lambda value, name: {
         key: reader(entry, f"{name}.{_plain(key)}") for key, entry in entries(value, name).items()
     }
+
+
+def items(values: Any, name: str) -> tuple[Any, ...]:
+    """Read a sequence of any kind but a text; its items are not checked."""
+    if not isinstance(values, str | bytes | Mapping | Set):
+        with suppress(TypeError):  # of a single value, also as an array without an axis
+            return tuple(values)
+    raise InputError(f"{name} is {shorten(values)}: a sequence is wanted")
 
 
 def array(value: Any, name: str) -> list[Any]:

@@ -33,6 +33,7 @@ from lwa.base.exact import (
     read_exact,
     shorten,
 )
+from lwa.base.files import items
 from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.law import ContactLaw, Power, for_cell
@@ -126,15 +127,13 @@ class Lattice(Value):
     ) -> None:
         parts = {"masses": masses, "links": links, "resonators": resonators}
         for name, values in parts.items():
-            if isinstance(values, str) or not isinstance(values, Iterable):
-                raise InputError(f"{name} are {shorten(values)}: a list is wanted")
-            items = tuple(values)
+            row = items(values, name)
             if name == "masses":
-                items = tuple(positive(m, f"mass {n}") for n, m in enumerate(items, 1))
+                row = tuple(positive(m, f"mass {n}") for n, m in enumerate(row, 1))
             kind = {"masses": sp.Expr, "links": Link, "resonators": Resonator}[name]
-            if wrong := [x for x in items if not isinstance(x, kind)]:
+            if wrong := [x for x in row if not isinstance(x, kind)]:
                 raise InputError(f"{name} hold {shorten(wrong[0])}: a {kind.__name__} is wanted")
-            object.__setattr__(self, name, items)
+            object.__setattr__(self, name, row)
         object.__setattr__(self, "spacing", positive(spacing, "spacing"))
         if not self.masses or not self.links:
             raise InputError("a lattice needs at least one mass and one link")

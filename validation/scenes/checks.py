@@ -12,7 +12,7 @@ from lwa.base.files import Reader
 SceneError = InputError
 """Invalid input of a scene, under the name that `validation` exports."""
 
-finite, integer, positive = files.finite, files.integer, files.positive
+finite, integer, items, positive = files.finite, files.integer, files.items, files.positive
 
 
 class Failure(RuntimeError):
@@ -34,13 +34,6 @@ def between(value: Any, name: str, low: float, high: float, wanted: str = "") ->
         digits = repr(number).removesuffix(".0")  # all of them: 1.0000001 is not 1
         raise SceneError(f"{name} is {digits}: {wanted}")
     return number
-
-
-def items(values: Any, name: str) -> tuple[Any, ...]:
-    """Return the items of a sequence as a tuple; `SceneError` for a text or a single value."""
-    if isinstance(values, str | bytes) or not hasattr(values, "__iter__"):
-        raise SceneError(f"{name} is {shorten(values)}: a sequence is wanted")
-    return tuple(values)
 
 
 def each(reader: Reader) -> Reader:

@@ -95,7 +95,7 @@ class MeasuredFile:
                 raise SceneError(f"no line names {columns}: --column NAME=HEADER names a column")
             reader = csv.reader(lines[start:], delimiter=mark)
             rows = [(start + reader.line_num, row) for row in reader if any(map(str.strip, row))]
-        except (OSError, csv.Error, SceneError) as error:
+        except (OSError, TypeError, ValueError, csv.Error) as error:
             raise SceneError(f"{path}: {files.reason(error)}") from None
         decimal = "." if mark == "," else ","
         stated = [_HEADER.sub(r"\2", cell) for cell in header]

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from lwa.base.arrays import Array
-from lwa.base.exact import shorten
 from validation.scenes.checks import SceneError, between, each, finite, one_of, positive
 
 DAMPINGS = ("contact", "kuwabara_kono", "restitution")
@@ -101,9 +100,10 @@ class Drive:
         if motions != 1:
             wanted = "velocity, amplitude and frequency, or time and displacement are wanted"
             raise SceneError(f"drive has not one motion: {wanted}")
-        if self.ramp != 0 and not harmonic:
+        ramp = between(self.ramp, "drive.ramp", 0, math.inf, "it must not be negative")
+        if ramp and not harmonic:
             wrong = "it belongs to amplitude and frequency"
-            raise SceneError(f"drive.ramp is {shorten(self.ramp)}: {wrong}")
+            raise SceneError(f"drive.ramp is {ramp:g}: {wrong}")
         if times != places or 0 < times < 4:
             wanted = "equally many, four or more, are wanted"
             raise SceneError(f"drive has {times} times and {places} displacements: {wanted}")
@@ -114,7 +114,6 @@ class Drive:
         elif harmonic:
             finite(self.amplitude, "drive.amplitude")
             positive(self.frequency, "drive.frequency")
-            between(self.ramp, "drive.ramp", 0, math.inf, "it must not be negative")
         amplitude, w = self.oscillation
         pace = 1 / self.ramp if self.ramp else 0.0
         acceleration = abs(amplitude) * (w * w + 60 * pace * pace)

@@ -19,12 +19,13 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
-from lwa.base.arrays import Array
+from lwa.base.arrays import Array, finite
 from lwa.base.frozen import QUANTITIES, strain_power
 from validation.pictures import Curve, Panel, Pictured
 from validation.pulses.pulse import highest_pulse
 from validation.pulses.signals import Piecewise
 from validation.scenes.chains import carrying
+from validation.scenes.checks import between, integer
 from validation.scenes.scene import Scene
 from validation.waves import newton
 
@@ -79,12 +80,13 @@ class ExactWave(Pictured):
 
     def times(self, s: float) -> ExactWave:
         """Return the wave with all strains, the background's too, multiplied by s; c² ~ s^{k-1}."""
+        s = between(s, "s", 1e-30, 1e30)
         c2, force, p0 = float(self.c2 * s ** (self.k - 1)), s**self.k, s * self.background
         return replace(self, c2=c2, even=self.even * force, odd=self.odd * force, background=p0)
 
     def strain(self, xi: ArrayLike, contact: int = 0) -> Array:
         """Strain a(ξ) of the contacts behind beads m1 (contact 0), or b(ξ) of the others (1)."""
-        at = np.asarray(xi, float) * (-1 if contact % 2 else 1)
+        at = finite(xi, "xi") * (-1 if integer(contact, "contact", 0) % 2 else 1)
         return np.where(self._ended(at), 0.0, self._sum(at, *self._strains))
 
     def force(self, xi: ArrayLike, contact: int = 0) -> Array:
@@ -93,9 +95,10 @@ class ExactWave(Pictured):
 
     def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
         """Velocity of beads m1 (bead 0) or m2 (bead 1) at ξ; a cell far away has no momentum."""
+        at, bead = finite(xi, "xi"), integer(bead, "bead", 0)
         one, two = (float(self._velocity(np.array(self.half_period), i)) for i in (0, 1))
         mean = (one + self.omega * two) / (1 + self.omega)
-        return np.where(self._ended(xi), 0.0, self._velocity(xi, bead) - mean)
+        return np.where(self._ended(at), 0.0, self._velocity(at, bead) - mean)
 
     def peak(self, name: str) -> tuple[float, float]:
         """Return place ξ and value of the maximum of "strain", "force" or "velocity".
@@ -119,6 +122,7 @@ class ExactWave(Pictured):
         sites : distance to travel, with contact sensors halfway and at the end unless ``rest``,
         further fields of the scene, has others.
         """
+        start, sites = integer(start, "start", 1), integer(sites, "sites", 1)
         bead = np.arange(2 * start + sites) - start
         at, even = bead[:-1] + 0.5, bead % 2 == 0
         sensors = {"contact_sensors": (start + sites // 2, start + sites)}
