@@ -80,7 +80,7 @@ class Definition:
 _COLUMNS = (
     Column("quantity", "FWHM of"),
     Column("unit", "in"),
-    Column("average", "average", format=".4g", error=True),
+    Column("average", "average", error=True),
     Column("error_value"),
     *(
         Column("", f"{line}, {closure}", format=percent)

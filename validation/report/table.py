@@ -14,8 +14,6 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from validation.pulses.pulse import Measured
-
 WIDTH = 100
 """Characters of a printed line, at most."""
 
@@ -49,14 +47,13 @@ class Column:
             return self.format(cell)
         if isinstance(cell, bool):
             return "ok" if cell else "FAILS"
-        if isinstance(cell, Measured) and self.format:
-            return f"{cell.value:{self.format}} ± {cell.error:.0e}"
         form = self.format or (".6g" if isinstance(cell, float) else "")
         return format(cell, form) if form else str(cell)
 
     def values(self, cell: Any) -> Iterator[tuple[str, Any]]:
         """Yield the JSON names and values of a cell.
 
+        >>> from validation.pulses.pulse import Measured
         >>> dict(Column("speed.m1", error=True).values(Measured(2.0, 1.75)))
         {'speed_value.m1': 2.0, 'speed_error_value.m1': 0.25}
         """

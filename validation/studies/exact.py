@@ -46,7 +46,7 @@ def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
     columns = tuple(Column(name.replace(" ", "."), error=True) for name in numbers)
     (values,) = Table(columns, (tuple(numbers.values()),)).document()
     return Report(
-        f"masses {wave.masses[0]:.10g}, {wave.masses[1]:.10g}; k = {wave.k:g}; A = D = 1\n"
+        f"masses {wave.masses[0]:.6g}, {wave.masses[1]:.6g}; k = {wave.k:g}; A = D = 1\n"
         f"c² = {numbers['c2']}, c = {numbers['c']}\n"
         f"solitary: tail {wave.tail:.0e} of the peak strain, residual {wave.residual:.0e}",
         (Table(_COLUMNS, rows, note=_NOTE),),

@@ -136,7 +136,7 @@ def compare(
     ``shift_value``.
     """
     chain = read_scene(scene)
-    records, pulses = _read(measured, chain, renamed, units)
+    records = _read(measured, chain, renamed, units)
     simulation = record(chain, progress=run_progress)
     label, t = simulation.run.label, simulation.run.time
     rows: list[tuple[Any, ...]] = []
@@ -147,7 +147,7 @@ def compare(
             continue
         if reading.missing:
             raise SceneError(f"{reading.name}: {reading.missing}")
-        pulse = pulses[reading.name]
+        time, force, pulse = records[reading.name]
         if not first:
             first, start = reading.name, pulse["arrival"]
             shift = reading.numbers["arrival"].value - start.value
@@ -162,7 +162,7 @@ def compare(
             rows.append((printed, track.kind, track.number, name, *numbers))
         curves += [
             Curve(f"{reading.name}, simulated", t, track.force(t), f"C{i}-"),
-            Curve("measured", records[reading.name][0] + shift, records[reading.name][1], f"C{i}."),
+            Curve("measured", time + shift, force, f"C{i}."),
         ]
     unit = f"{shift:.6g} s" if chain.units else f"{shift:.6g}"
     return Report(
@@ -176,18 +176,18 @@ def compare(
 
 def _read(
     file: str, chain: Scene, renamed: Mapping[str, str] | None, units: Mapping[str, str] | None
-) -> tuple[dict[str, tuple[Array, Array]], dict[str, dict[str, Measured]]]:
+) -> dict[str, tuple[Array, Array, dict[str, Measured]]]:
     """Read measured forces at sensors of a scene, at least one.
 
-    Returns, by the sensors' names, times and forces over their base, and the numbers of the first
-    pulses.
+    Returns, by the sensors' names, times, forces over their base, and the numbers of the first
+    pulse.
     """
     names = [*static_forces(chain)]
     if not names:
         raise SceneError("the scene names no sensors")
     measured = MeasuredFile.read(file, "time", "force", renamed=renamed, units=units)
     check_units(measured, chain.units)
-    records, pulses = {}, {}
+    records = {}
     for (kind, which), columns in measured.sensors().items():
         alone = which is None and len(names) == 1
         name = names[0] if alone else f"{kind} {which}"
@@ -197,7 +197,7 @@ def _read(
                 pulse = noisy_pulse(time, force)
             except MeasureError as error:
                 raise MeasureError(f"{file}: {name}: {error}") from None
-            records[name], pulses[name] = (time, force - pulse.base), dict(pulse.numbers)
+            records[name] = time, force - pulse.base, dict(pulse.numbers)
     if not records:
         raise SceneError(f"{file}: no column is {' or '.join(f'{name} force' for name in names)}")
-    return records, pulses
+    return records

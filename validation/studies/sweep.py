@@ -73,12 +73,12 @@ def report(ks: Axis, omegas: Axis, points: Sequence[Point], stretch: int = STRET
         (Column("omega", _OMEGA), [p.omega for p in points]),
     ]
     for name in ("width", "speed"):
-        cells.append((Column(name, name, format=str, error=True), numbers[name]))
+        cells.append((Column(name, name, error=True), numbers[name]))
         for closure, wave in waves.items():
             off = (wave[name] / value[name] - 1).ravel()
             cells.append((Column("", closure, format=percent), off))
     cells += [
-        (Column("decay", "decay per site", format=".2e", error=True), numbers["decay"]),
+        (Column("decay", "decay per site", error=True), numbers["decay"]),
         (Column("sites", "sites", format="{0[0]} … {0[1]}".format), [p.sites for p in points]),
         (Column("strain_width", error=True), numbers["strain_width"]),
         (Column("missing"), [p.missing for p in points]),
