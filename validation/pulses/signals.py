@@ -41,7 +41,7 @@ def checked(time: ArrayLike, values: ArrayLike) -> tuple[Array, Array]:
         t, f = np.array(time, float), np.array(values, float)
         if f.size < 4 or not f.shape == t.shape == (f.size,):
             raise ValueError(f"the shapes are {t.shape} and {f.shape}")
-    except (TypeError, ValueError) as reason:
+    except (TypeError, ValueError, OverflowError) as reason:
         wanted = "time and signal must be equally long rows of at least 4 numbers"
         raise MeasureError(f"{wanted}: {reason}") from None
     if not np.isfinite((t, f)).all() or np.any(np.diff(t) <= 0):

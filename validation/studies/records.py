@@ -63,7 +63,7 @@ def pulses(
     and, for each sensor, such as "bead 15 force", "contact 15 force", "15 force" or, of a single
     sensor, "force". Beads and contacts are counted from 1. Units are stated in the header or by
     --unit: results are then in SI, as is a distance; without any they are in the file's own units.
-    One column time is that of all sensors, or the first is that of the first force, and so on.
+    One column time serves all sensors; or the first serves the first force, the next the next.
 
     ``sensors``, ``speeds`` and ``echoes`` as of `validation.studies.run`, the static force from the
     record. A sensor has the speeds from the sensor before as well, so that the CSV holds them all.

@@ -76,6 +76,7 @@ T = np.linspace(-2, 2, 401)
         (T, arch(T)[:-1], r"time and signal must be .*: the shapes are \(401,\) and \(400,\)$"),
         (T[:3], arch(T[:3]), r"time and signal must be equally long rows of at least 4 numbers"),
         (T, ["tea"] * 401, r"time and signal must be equally long rows .*: .*'tea'"),
+        (T, [10**400] * 401, r"time and signal must be equally long rows .*: .*too large"),
     ],
 )
 def test_records_without_a_whole_pulse(time, signal, message):
