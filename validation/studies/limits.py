@@ -32,7 +32,7 @@ from validation.scenes.chains import carrying
 EXPONENTS = (sp.Rational(3, 2), sp.Rational(5, 4), sp.Rational(11, 10))
 EQUAL, LIGHT = sp.Integer(1), sp.Rational(1, 1000)  # ω = m2/m1; effects of LIGHT² do not show
 PLACES = (4, 6, 8)  # supports run
-TOLERANCE = 1e-9  # rtol and atol: the pulse sheds more than the integrator loses
+TOLERANCE = 1e-9  # rtol: the pulse sheds more than the integrator loses
 QUANTITIES = ("FWHM of force", "FWHM of strain", "support π/β", "speed V_s at B = 1")
 """Lengths in D; force and strain are a contact's; the support is by the impulse ∫F dx / F_m."""
 
