@@ -15,7 +15,7 @@ import sympy as sp
 from pulse import StruckPulse, struck_pulse
 
 from lwa import Cell, Dimer, InputError, canonical_wave, expand, homogenize
-from lwa.expansion.approximants import Resummed
+from lwa.expansion.sums import Resummed
 
 THEORIES = ("paper's closure", "canonical wave", "series, 8 orders")
 ORDERS = 8

@@ -15,7 +15,7 @@ import scipy
 import sympy as sp
 
 from lwa import Cell, Dimer, InputError, Power, expand, loaded_wave, pulse_of_strike, shock
-from lwa.expansion.approximants import resum
+from lwa.expansion.sums import resum
 from lwa.law import named
 from lwa.shocks.riemann import RULES
 from tests.lwa.expansion.test_exact_waves import lattice, series
@@ -35,12 +35,12 @@ def holds(error, deviation, doubt=0.0):
 @pytest.mark.parametrize(
     ("exponents", "orders"),
     [
-        (("1.1", "3/2", "2", "2.3", "2.75", "3.25"), (6, 10, 14)),
+        (("1.1", "3/2", "2", "2.3", "2.75", "3.25"), (6, 10, 24)),
         pytest.param([f"{k / 20}" for k in range(21, 71, 4)], range(6, 17), marks=pytest.mark.slow),
     ],
 )
 def test_the_error_of_a_sum(exponents, orders):
-    """At most 1 % of the sums are outside, none by a factor of 2; the median is not loose."""
+    """95 % of the errors are 1 to `LOOSE` times the deviation, and under 2 % are below it."""
     every, found = series(expand(EQUAL, max(orders))), []
     for k, order in product(map(sp.Rational, exponents), orders):
         true = lattice(float(k))[0]
@@ -49,10 +49,12 @@ def test_the_error_of_a_sum(exponents, orders):
             total = resum(row.coefficients[: order + 1], k - 1, unit=unit)
             found.append((total.error / true[name], abs(total.value / true[name] - 1)))
     error, deviation = np.array(found).T
-    outside = np.maximum(deviation - 1e-12, 0) / error  # the lattice's waves are good to 1e-12
-    assert outside.max() < 2
-    assert np.mean(outside > 1) < 0.01
-    assert np.median(error / np.maximum(deviation, 1e-12)) < LOOSE
+    seen = deviation > 1e-11  # the lattice's waves are good to 1e-12
+    ratio = error[seen] / deviation[seen]
+    assert ratio.min() > 0.8
+    assert np.mean(ratio < 1) < 0.02
+    assert np.mean((ratio >= 1) & (ratio <= LOOSE)) >= 0.95
+    assert np.all(deviation[~seen] <= error[~seen] + 1e-11)
 
 
 def struck_dimer(law, mass, load=0.0, velocity=1.0, duration=140.0):

@@ -169,7 +169,7 @@ def expand(
     Raises `lwa.InputError` for anything else, and for orders whose terms outgrow memory.
 
     >>> from lwa import Cell
-    >>> wave = expand(Cell([1]), 10)
+    >>> wave = expand(Cell([1]), 16)
     >>> wave.c2.coefficients[:3]
     (1, -1/2, 2/5)
     >>> wave.fwhm("force").at(1.5).value.__round__(6)  # the uniform Hertz chain, in D

@@ -23,9 +23,9 @@ from lwa.base import latex
 from lwa.base.exact import InputError, positive, shorten
 from lwa.base.frozen import Estimate, Value, known_extent
 from lwa.cell import Cell, exponent
-from lwa.expansion.approximants import Resummed
 from lwa.expansion.expand import Expansion, expand
 from lwa.expansion.series import EpsilonSeries
+from lwa.expansion.sums import Resummed
 
 GRAVITY = sp.Rational("9.81")
 """Gravity in m/s², of strikers that drop and of the scenes."""
@@ -42,7 +42,7 @@ class ExpandedWave(Value):
     series has no sum.
 
     >>> from lwa import Cell, expand
-    >>> wave = ExpandedWave(expand(Cell([1], spacing=2), 8, k="3/2"), 64)
+    >>> wave = ExpandedWave(expand(Cell([1], spacing=2), 16, k="3/2"), 64)
     >>> round(wave.speed.value, 6), round(wave.fwhm("force").value, 6)
     (3.622063, 2.823856)
     """

@@ -76,7 +76,7 @@ def radiated(cell: Cell, k: sp.Expr) -> float:
     """Relative error of c², widths, momentum and energy at k that no order removes; all numbers.
 
     A bound for c²; widths near a resonance are off by up to three times as much, which the error of
-    their asymptotic series covers (`lwa.expansion.approximants`). 0 for equal beads and contacts.
+    their asymptotic series covers (`lwa.expansion.sums`). 0 for equal beads and contacts.
     """
     # The difference to equal beads and contacts: (m1 - m2)²/(m1 + m2)² for a dimer, which has
     # I = (1 - 3b + 3b²)/3, b = m̂_1, hence (1 - 2b)².

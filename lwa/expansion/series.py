@@ -11,15 +11,15 @@ from lwa.base import latex
 from lwa.base.exact import InputError, demand_numbers, shorten
 from lwa.base.frozen import Value
 from lwa.cell import Cell, exponent
-from lwa.expansion.approximants import Resummed, resum
 from lwa.expansion.observables import equal_beads
+from lwa.expansion.sums import Resummed, resum
 
 SHOWN = 3
 """Terms of a series in LaTeX."""
 
 LOWEST = 6
-"""Lowest order that is summed: at order 4 errors are 6,400 times the deviation (equal beads, c² at
-k = 3/2), from order 8 on 30 times and less."""
+"""Lowest order that is summed: at order 4 three errors in ten are over 30 times the deviation
+(equal beads, k = 1.05 … 3.45), from order 6 on one in twenty."""
 
 UNLIKE = 0.1
 """Largest relative error of a sum of unlike beads: at the mass ratio of the long-wave paper's

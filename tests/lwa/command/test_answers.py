@@ -76,10 +76,10 @@ ANSWERS = {
     "dispersion --precompression F0": {"band_edges_value": None},
     "expansion --masses m1,m2 --order 2": {"c2_value": None},
     "expansion --k 3/2 --masses 1": {
-        "order": 8, "c2.1": "-1/2", "c2.2": "2/5", "c2_value": pytest.approx(0.819959, abs=1e-6),
-        "fwhm_value.force": pytest.approx(1.411928, abs=1e-6),
+        "order": 8, "c2.1": "-1/2", "c2.2": "2/5", "c2_value": pytest.approx(0.819959, abs=1e-5),
+        "fwhm_value.force": pytest.approx(1.411928, abs=2e-5),
     },
-    "expansion --k 10 --masses 1 --order 10": {"c2_value": None, "fwhm_value": dict.fromkeys(
+    "expansion --k 20 --masses 1 --order 10": {"c2_value": None, "fwhm_value": dict.fromkeys(
         QUANTITIES)},
     "envelope --masses 1,1/2 --k 3/2 --spacing 1 --background 2 --detuning 1/1000": {
         "kind": "bright", "branch": "1", "group_velocity_value": 0, "amplitude_value.0": 0,
@@ -163,7 +163,7 @@ TEXTS = {
     "expansion --k 2 --masses 1 --order 6": ("±", "c² = Σ a_n ε^n"),
     "wave --k 2 --masses 1 --force 123456789012/1234567891": ("F = 123456789012/1234567891\n",),
     "wave --k 2 --masses 1 --force 1234567890121/123456789017": ("F = 9.9999999996031\n",),
-    "expansion --k 10 --masses 1 --order 10": ("velocity: no sum at k = 10", "c²: no sum"),
+    "expansion --k 20 --masses 1 --order 10": ("velocity: no sum at k = 20", "c²: no sum"),
     "dispersion --format latex": (r"\kappa^{4}",),
     "dispersion": ("κ^4: -(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)",),
     "dispersion --masses 1 --precompression 2": ("band 1",),

@@ -32,6 +32,12 @@ def test_an_unlike_contacts_radiation_counts_in_the_error():
     assert near.error / near.value == pytest.approx(there.error / there.value, rel=1e-2)
 
 
+def test_a_sum_whose_terms_grow_too_soon_is_refused():
+    """The terms grow from the first on; without them the width is 2.68, in a struck chain 2.98."""
+    with pytest.raises(InputError, match="higher orders do not help"):
+        expand(Dimer(1, "13/20"), 12, k="23/20").fwhm("force").at()
+
+
 def test_a_series_and_its_sum_show_in_a_notebook():
     widths = expand(Cell([1]), 12).fwhm("force")
     assert len(repr(widths)) < 120
