@@ -88,9 +88,15 @@ class JetAlgebra:
     def _derivatives(self, jets: list[fmpq_mpoly]) -> dict[int, fmpq_mpoly]:
         """Mapping from the index of a generator, r_n or φ_n, to its derivative.
 
-        jets : r for ∂_x, s for ∂_τ over p^{(k-1)/2}; jets[1] is the derivative of p, over p.
+        From r_n = ∂_x^n p/p and φ_n(p) follow, with θ_n = p dφ_n/dp,
+
+            ∂_x r_n = r_{n+1} - r_1 r_n,    ∂_x φ_n = r_1 θ_n,
+
+        and with s in place of the first r of each product ∂_τ, over p^{(k-1)/2}.
+
+        jets : r for ∂_x, s for ∂_τ.
         """
-        rate, r = jets[1], self.r
+        rate, r = jets[1], self.r  # rate: the derivative of p, over p
         strain = {self._offset + n - 1: jets[n + 1] - rate * r[n] for n in range(1, self.weight)}
         return strain | {n - 2: rate * self._theta(n) for n in range(2, len(self.phi) - 1)}
 

@@ -64,11 +64,11 @@ class Force:
         return self._nonlinear
 
     def _term_of_power(self, m: int, n: int) -> fmpq_mpoly:
-        """The coefficient of D^n in X^m/m!, n ≥ m ≥ 1."""
+        """The coefficient of D^n in X^m/m! = (1/m) X · X^{m-1}/(m-1)!, n ≥ m ≥ 1."""
         if m == 1:
             return self.X[n]
         parts = (self.X[j] * self._power_term(m - 1, n - j) for j in range(1, n - m + 2))
-        return sum(parts, self.X[0]) / m
+        return sum(parts, self.X[0]) / m  # X_0 = 0
 
     def append(self, X_n: fmpq_mpoly) -> None:
         """Append the next term X_n to X, and Φ_n to Φ."""

@@ -66,6 +66,7 @@ def run(command: click.Command, name: str, arguments: Sequence[str] | None = Non
 
 
 def _status(command: click.Command, name: str, arguments: Sequence[str] | None) -> int:
+    """Run a command and return its exit status; what it refuses is one line on standard error."""
     output, status, fault = sys.stdout, 2, ""
     try:
         if output is None:

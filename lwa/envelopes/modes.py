@@ -144,11 +144,10 @@ class Sampled:
         slopes = first, -2 * first * (1 / self.gaps).sum()
         speed = contacts.masses.sum() * contacts.c.sum() * (z.imag / first) ** 2 / x  # (c_g/c_0)²
         if x < contacts.close or 1 - speed < SOUND:
+            exact = "; exact results stand" if len(contacts.masses) == 1 else ""
             raise InputError(
                 "the mode's group velocity is too close to that of sound, c_g = c_0, for floats: "
-                "its mean flow runs along with it"
-                + "; exact results stand"
-                * (len(contacts.masses) == 1)
+                f"its mean flow runs along with it{exact}"
             )
         projector = np.outer(self.shape, self.shape.conj())
         resolvent = self._resolvent(4 * x)

@@ -97,6 +97,7 @@ class Motion:
         return np.asarray((self.stiffnesses * self.contact.force(compression).T).T)
 
     def __call__(self, time: float, state: Array) -> Array:
+        """Return the time derivative of a state, which ``scipy.integrate`` takes as it is."""
         n, drive, given, work = self.size, self.scene.drive, 0.0, 0.0
         y, v = state[: 2 * n].reshape(2, n).copy()
         if drive is not None:

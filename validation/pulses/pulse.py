@@ -237,6 +237,7 @@ class Measured:
             return f"{short} ± {self.error:.0e}"
         if not self.error and float(short) == self.value:
             return f"{short} ± 0"
+        # Powers of ten of the first digit and of the last that is shown
         first = math.floor(math.log10(abs(self.value)))
         last = first - 5 if not self.error else math.floor(math.log10(self.error))
         last = min(max(last, first - 5), first)
