@@ -25,7 +25,7 @@ Quantity = int | float | str | Fraction | sp.Expr
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+/[0-9]+|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?)")
 _NAME = re.compile(r"[A-Za-zα-ωΑ-Ω][A-Za-zα-ωΑ-Ω0-9_]*")
 _NOT_A_NUMBER = {"nan", "inf", "infinity", "none", "null", "true", "false"}
-_LONGEST_TEXT = 200
+_LONGEST_TEXT = 200  # characters: no number and no name of a chain needs more
 
 DIGITS = 330
 """Digits of a numerator or denominator; the smallest floats are fractions over 10^324."""
