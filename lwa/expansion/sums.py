@@ -61,12 +61,10 @@ TERM_DIGITS = 60
 class Resummed(Estimate):
     """A series summed at one k, with an estimate of the absolute error.
 
-    order : the highest power of x in the part of the sum with the larger error.
     asymptotic : True if higher orders do not help: the larger part of the error is radiation, or
         that of a sum that ends before terms that grow.
     """
 
-    order: int
     asymptotic: bool
 
 
@@ -97,7 +95,7 @@ def resum(
         radiated = abs(value) * relative
         largest = max(sums, key=lambda s: s.error)
         asymptotic = largest.asymptotic or bool(radiated > error)
-        return Resummed(float(value), float(error + radiated + ulp), largest.order, asymptotic)
+        return Resummed(float(value), float(error + radiated + ulp), asymptotic)
 
 
 def _mp(value: sp.Expr) -> mpmath.mpf:
@@ -120,7 +118,7 @@ def _sum(b: Sequence[mpmath.mpf], x: mpmath.mpf) -> Resummed:
     largest = max(map(abs, b[-WINDOW:]))
     error = max(SAFETY, 2 / (1 - x)) * largest * x ** len(b)  # k = 1/(1 - x)
     value = mpmath.fsum(term * x**n for n, term in enumerate(b))
-    return Resummed(value, error, len(b) - 1, asymptotic=len(b) > LAST)
+    return Resummed(value, error, asymptotic=len(b) > LAST)
 
 
 def _truncated(b: Sequence[mpmath.mpf], x: mpmath.mpf) -> Resummed:
@@ -129,5 +127,5 @@ def _truncated(b: Sequence[mpmath.mpf], x: mpmath.mpf) -> Resummed:
     terms = [term * x**n for n, term in enumerate(b)]
     for n, (term, following) in enumerate(pairwise(map(abs, terms))):
         if 0 < term < following:
-            return Resummed(mpmath.fsum(terms[:n]), LEFT_OUT * term, n - 1, asymptotic=True)
+            return Resummed(mpmath.fsum(terms[:n]), LEFT_OUT * term, asymptotic=True)
     return _sum(b, x)
