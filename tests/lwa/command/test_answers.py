@@ -2,12 +2,15 @@
 
 import math
 import re
+from collections import Counter
 
 import pytest
 import sympy as sp
+from sympy.printing.str import StrPrinter
 
 from lwa import Cell, Dimer, canonical_wave, envelope, homogenize, loaded_wave, shock
 from lwa.base import latex
+from lwa.law import named
 from tests.identity import same
 from tests.lwa.command.answers import result, said
 
@@ -18,6 +21,9 @@ canonical = canonical_wave(Dimer(1, "0.2733", spacing=1), HERTZ)
 pressed = loaded_wave(Dimer(1, 3), rise=1, background="1/10", k=HERTZ)
 symbolic = loaded_wave(Dimer("m1", "m2"), background="p0").field
 forces = canonical_wave(Cell([2], [5], "1/100"), HERTZ).at_force(10, precompression=3)
+smooth, pressed_smooth = (
+    loaded_wave(EQUAL, law=named("hertz2", 1, 2), force=3, precompression=F0) for F0 in (0, 1)
+)
 front = shock(EQUAL, 2, 1, k=HERTZ)
 peak = float(front.peak)
 mode = envelope(Cell([1, 2, 3]), k=HERTZ, precompression=1, wavenumber=2 * sp.pi / 3, branch=0)
@@ -68,6 +74,12 @@ ANSWERS = {
         "speed_value": forces.speed, "sound_speed_value": forces.sound_speed,
         **{f"fwhm_value.{q}": forces.fwhm(q) for q in QUANTITIES},
         **{f"fwhm_time_value.{q}": forces.fwhm(q, "time") for q in QUANTITIES},
+    },
+    **{
+        f"wave --law hertz2:1,2 --masses 1 --spacing 1 {load} --force 3": {
+            "speed_value": wave.speed, **{f"fwhm_value.{q}": wave.fwhm(q) for q in QUANTITIES},
+        }
+        for load, wave in (("", smooth), ("--precompression 1", pressed_smooth))
     },
     "dispersion --masses 3,1 --order 6": {
         "acoustic": {"2": "1", "4": "-7/48", "6": "-59/5760"}, "optical.0": "16/3",
@@ -224,6 +236,19 @@ def test_latex_is_that_of_the_results(capsys, masses):
     out = said(capsys, "derive", "--masses", masses, "--format", "latex")
     assert out == latex.align(homogenize(Dimer(*masses.split(","))).latex_rows()) + "\n"
     assert "H &=" in said(capsys, "wave", "--masses", masses, "--format", "latex")
+
+
+def test_a_long_value_is_printed_once(capsys, monkeypatch):
+    printed, plain = Counter(), StrPrinter.doprint
+
+    def doprint(self, value):
+        text = plain(self, value)
+        printed[text] += 1
+        return text
+
+    monkeypatch.setattr(StrPrinter, "doprint", doprint)
+    said(capsys, "expansion", "--order", "2")
+    assert {n for text, n in printed.items() if len(text) > 90} == {1}
 
 
 @pytest.mark.parametrize("options", ["", "--k 1", "--k 3/2 --masses 1,2", "--k 1.000000001"])

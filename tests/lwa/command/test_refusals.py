@@ -70,6 +70,7 @@ LINES = [
     ("envelope --law hertz2:1,2 --background 0 --masses 1", "F′ is 0"),
     ("envelope --law general --precompression 1", "law is general"),
     ("envelope --law polynomial:1/2,-1/4 --masses 1 --background 3", "F′ is -2.75"),
+    ("wave --masses 1 --precompression 10 --force 5 --k 2", "force is 5, below precompression 10"),
     ("shock", "--behind or --piston"),
     ("shock --law general --behind 1", "law is general"),
     ("shock --behind 1 --piston 1", "--behind or --piston"),
@@ -140,8 +141,10 @@ def test_scenes_are_refused(capsys, tmp_path, chain, more, words):
 
 def test_unreadable_files_are_refused(capsys, tmp_path):
     os.mkfifo(tmp_path / "pipe.toml")
+    (tmp_path / "loop.toml").symlink_to(tmp_path / "loop.toml")
     for name, words in (
         ("pipe.toml", "only regular files are read"),
+        ("loop.toml", "Too many levels of symbolic links"),
         ("spheres.txt", "a list of spheres is a file ending in .toml or .json"),
         ("a" * 300 + ".toml", "File name too long"),
     ):
