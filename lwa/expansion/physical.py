@@ -44,7 +44,7 @@ class ExpandedWave(Value):
     >>> from lwa import Cell, expand
     >>> wave = ExpandedWave(expand(Cell([1], spacing=2), 16, k="3/2"), 64)
     >>> round(wave.speed.value, 6), round(wave.fwhm("force").value, 6)
-    (3.622063, 2.823856)
+    (3.622063, 2.823857)
     """
 
     expansion: Expansion
