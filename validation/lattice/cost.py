@@ -43,15 +43,6 @@ def step_limit(scene: Scene, method: str, steps: float) -> int:
     return _DENSEST * (1 + int(steps))
 
 
-def check_steps(method: str, steps: int, most: int, t: float, duration: float) -> None:
-    """Raise `IntegrationError` for more than ``most`` steps up to time t."""
-    if steps > most:
-        raise IntegrationError(
-            f"{steps} steps of {method} reach t = {t:g} of {duration:g}: rounding hides the "
-            "motion, or rtol is too small for it"
-        )
-
-
 def check_memory(scene: Scene, method: str, rows: int, more: float = 0) -> None:
     """Raise `SceneError` for a run that needs more than `MOST_BYTES` bytes.
 

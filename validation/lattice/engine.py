@@ -25,7 +25,7 @@ import sys
 
 import numpy as np
 
-from validation.lattice.cost import RunProgress, check_memory, check_steps, step_limit
+from validation.lattice.cost import IntegrationError, RunProgress, check_memory, step_limit
 from validation.lattice.equations import Motion
 from validation.lattice.kernel.advance import advance
 from validation.lattice.kernel.arrays import (
@@ -91,8 +91,11 @@ def _integrated(
         while t < end:
             display(t / end)
             t, _ = go(chain, beads, plan, recorder.knots, now, glance)
-            if t < end:
-                check_steps(method, int(now["tries"]), most, t, end)
+            if t < end and now["tries"] > most:
+                raise IntegrationError(
+                    f"{now['tries']} steps of {method} reach t = {t:g} of {end:g}: rounding hides "
+                    "the motion, or rtol is too small for it"
+                )
             if t == end or now["stored"] == len(recorder.knots.time):
                 now["stored"] = recorder.take(int(now["stored"]))
     accelerating = motion.masses[0] * (beads.v[0] ** 2 - motion.start[n] ** 2) / 2

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lwa.base.arrays import Array
 from validation.lattice.equations import Motion
-from validation.scenes.checks import SceneError
+from validation.scenes.checks import SceneError, one_of
 
 _REGULA_FALSI = 9  # iterations, which leave less than 1e-12 of a step of the integrator
 
@@ -149,9 +149,8 @@ def signal(motion: Motion, path: Path, kind: str, number: int, quantity: str) ->
     Raises `SceneError` where the scene has no such sensor, or the sensor no such quantity.
     """
     scene = motion.scene
-    if kind not in _QUANTITIES or quantity not in _QUANTITIES[kind]:
-        wanted = "; ".join(f"{name}: {', '.join(has)}" for name, has in _QUANTITIES.items())
-        raise SceneError(f"no {kind} has a {quantity}: {wanted}")
+    one_of(kind, tuple(_QUANTITIES), "kind")
+    one_of(quantity, _QUANTITIES[kind], "quantity")
     if number not in (scene.contact_sensors if kind == "contact" else scene.bead_sensors):
         raise SceneError(f"number is {number!r}: the scene has no sensor at this {kind}")
     contacts = [number] if kind == "contact" else [number - 1, number]

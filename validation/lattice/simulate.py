@@ -102,6 +102,8 @@ def simulate_many(
     ...  simulate_many(replace(chain, velocities=(v,)) for v in (1, 2))]
     [np.float64(1.0), np.float64(2.0)]
     """
+    if not isinstance(scenes, Iterable):
+        raise SceneError(f"scenes is {shorten(scenes)}: several scenes are wanted")
     ahead: deque[Future[Run]] = deque()
     waiting, count = iter(scenes), cores() if workers is None else workers
     with threads(count) as pool:

@@ -84,3 +84,5 @@ def test_the_error_of_a_scene_among_many_is_raised_in_its_place():
     assert np.array_equal(next(runs).velocities, simulate(CHAIN).velocities)
     with pytest.raises(SceneError, match="energy"):
         next(runs)
+    with pytest.raises(SceneError, match=r"^scenes is Scene"):
+        next(simulate_many(CHAIN))

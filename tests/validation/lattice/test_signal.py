@@ -93,7 +93,7 @@ def test_a_missing_sensor_or_quantity_is_refused(monkeypatch):
         long.signal("contact", 0)
     for arguments, message in (
         (("contact", 1), "number is 1: the scene has no sensor at this contact"),
-        (("bead", 0, "compression"), "no bead has a compression: contact: force, compression; .*"),
+        (("bead", 0, "compression"), "quantity is 'compression': .* velocity is wanted"),
     ):
         with pytest.raises(SceneError, match=f"^{message}$"):
             run.signal(*arguments)
