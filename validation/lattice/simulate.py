@@ -29,8 +29,6 @@ from validation.lattice.threads import cores, threads
 from validation.scenes.checks import SceneError, between, one_of, positive
 from validation.scenes.scene import Scene
 
-__all__ = ["COMPILED", "METHODS", "simulate", "simulate_many", "twice"]
-
 COMPILED = tuple(SCHEMES)
 """The engine's: an adaptive Runge–Kutta–Nyström pair, the default, and a symplectic splitting."""
 

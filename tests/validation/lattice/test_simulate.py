@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from scipy.interpolate import CubicSpline
 from scipy.linalg import expm
 
-from validation.lattice.simulate import COMPILED, METHODS, simulate
+from validation.lattice.simulate import COMPILED, simulate
+from validation.lattice.steppers import METHODS
 from validation.pulses.pulse import measure
 from validation.scenes.chains import struck
 from validation.scenes.forcing import Damping
