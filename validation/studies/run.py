@@ -19,7 +19,8 @@ import click
 import numpy as np
 
 from validation.lattice.cost import RunProgress
-from validation.lattice.simulate import COMPILED, METHODS
+from validation.lattice.simulate import COMPILED
+from validation.lattice.steppers import METHODS
 from validation.pulses.sensors import (
     LESS,
     READINGS,
