@@ -10,6 +10,7 @@ kernels that start together would each compile it.
 from __future__ import annotations
 
 import logging
+import os
 from pathlib import Path
 
 from jupyter_cache import get_cache
@@ -20,7 +21,12 @@ from validation import Damping, Scene, simulate
 
 
 def execute(app: Sphinx) -> None:
-    """Fill the cache with the pages of the table of contents that have code."""
+    """Fill the cache with the pages of the table of contents that have code.
+
+    Pages run beside each other: threads of linear algebra within a page would only wait, which
+    takes several times the CPU.
+    """
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     config = app.env.mystnb_config
     cache = get_cache(config.execution_cache_path)
     cache.clear_cache()

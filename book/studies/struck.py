@@ -18,6 +18,7 @@ Speed and FWHM are those between two sensors, and the mean over the links of a c
 from __future__ import annotations
 
 import math
+from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -53,9 +54,10 @@ Places = NDArray[np.intp]
 
 
 @study(option("--case", default="all", says="unlike, resonators, packings or all."))
-def struck(case: str = "all", progress: Progress[Any] = iter) -> Report:
+def struck(case: str = "all", least: float = 0.0, progress: Progress[Any] = iter) -> Report:
     """Struck chains of unlike links or resonators, and struck packings (half a minute).
 
+    least: resonators with a smaller ω0/(2πV) are left out; below `LEAST_TUNING` the theory refuses.
     ``rows``: ``case``, ``chain``, ``force_value`` and ``strain_value`` (at the peak),
     ``tuning_value`` (ω0/(2πV) of resonators), ``speed_value``, ``speed_theory_value``,
     ``speed_error_value`` (theory over lattice, less 1, as all errors), ``of`` (of which quantity
@@ -65,7 +67,7 @@ def struck(case: str = "all", progress: Progress[Any] = iter) -> Report:
     Raises `lwa.InputError` for another case.
     """
     chosen = CASES if one_of(case, ("all", *CASES), "case") == "all" else (case,)
-    blows = [(name, blow) for name in chosen for blow in CASES[name]()]
+    blows = [(name, blow) for name in chosen for blow in CASES[name](least)]
     return _report([(blow, blow.cells(name)) for name, blow in progress(blows)])
 
 
@@ -131,7 +133,7 @@ class Blow:
         return row
 
 
-def unlike() -> Iterator[Blow]:
+def unlike(_: float) -> Iterator[Blow]:
     """δ^{3/2} with δ³ and with δ in turn."""
     for power in (3, 1):
         lattice = Lattice((1, 1), (Link(0, 1, HERTZ), Link(1, 2, Power(power))))
@@ -139,14 +141,14 @@ def unlike() -> Iterator[Blow]:
             yield Blow(f"δ^3/2, δ^{power}", lattice, force, (0.04, math.inf))
 
 
-def resonators() -> Iterator[Blow]:
-    """δ^{3/2} with resonators of two masses."""
+def resonators(least: float) -> Iterator[Blow]:
+    """δ^{3/2} with resonators of two masses, tuned to ``least`` or more."""
     for mass in ("3/10", "1"):
-        for tuning in TUNINGS:
+        for tuning in TUNINGS[bisect_left(TUNINGS, least) :]:
             yield Blow(f"m_r = {mass}", resonant(mass, tuning), 1.0, (0.015, 0.06))
 
 
-def packings() -> Iterator[Blow]:
+def packings(_: float) -> Iterator[Blow]:
     """Hexagonal packing of δ^{3/2}, across its rows and along them."""
     for direction, bounds in (("across", (0.02, 0.06)), ("along", (0.02, 0.15))):
         lattice = hexagonal(HERTZ, direction)
@@ -157,7 +159,7 @@ def packings() -> Iterator[Blow]:
             yield blow if small else replace(blow, bounds=(math.inf, math.inf))
 
 
-CASES: dict[str, Callable[[], Iterator[Blow]]] = {
+CASES: dict[str, Callable[[float], Iterator[Blow]]] = {
     case.__name__: case for case in (unlike, resonators, packings)
 }
 
