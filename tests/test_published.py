@@ -111,6 +111,9 @@ def test_collisions_of_two_spheres():
     group = (m**2 / 4 / (5e-3 * (1e8 / 1.82) ** 2)) ** 0.2
     assert abs(closed[-1] / group - 2.87) < 0.005
     assert abs(closed[-1] / run.compression.max() - 2.943) < 0.001
+    overlap = (15 * m / 2 / (16 * 1e8 / 1.82 * math.sqrt(5e-3))) ** 0.4
+    against = r"largest overlap there, against $(15m_*v^2/16E_*\sqrt{R_*})^{2/5}$, %"
+    check(against, 100 * (run.compression.max() / overlap - 1))
     for v in ("0.1", "3"):
         viscous = Damping("kuwabara_kono", 1.5 * rate * A)
         blow = Scene(**pair, velocities=(float(v),), duration=5e-3, damping=viscous)
@@ -167,9 +170,9 @@ def test_slow_collisions():
                      duration=6 * v**-0.2, damping=Damping("kuwabara_kono", 0.05))  # fmt: skip
         run = simulate(pair, rtol=1e-11)
         lost.append(1 - (run.velocities[1] - run.velocities[0]) / v)
-    check("exponent of $1 - e$ against the speed of slow collisions",
+    check("exponent of $1 - e_r$ against the speed of slow collisions",
           np.diff(np.log(lost))[0] / np.log(10))  # fmt: skip
 
 
 def test_each_row_of_the_page_is_checked_here():
-    assert len(ROWS) == 21
+    assert len(ROWS) == 22

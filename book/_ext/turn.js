@@ -226,13 +226,13 @@
     const canvas = element("canvas", {role: "img", "aria-label": label});
     const output = element("output", {"aria-live": "polite"});
     const button = element("button", {type: "button"}, calm ? "Play" : "Pause");
-    const panel = element("div", {class: "lwa-panel"}, button);
+    const panel = element("div", {class: "lwa-panel"}, ...(thing.still ? [] : [button]));
     const shown = element("div", {}, canvas, panel, output);
     const values = {}, inputs = {};
     let scene, settled, playing = false, due = 0;
     const restart = old => {
       scene = home.scene = begin(values, old);
-      for (let i = 0; !playing && i < 240 && next(scene); i++);
+      for (let i = 0; !playing && i < 340 && next(scene); i++);
       draw(scene, canvas);
       output.textContent = tell(scene);
     };
@@ -281,13 +281,13 @@
         }
         settled = {...values};
         restart(scene);
-        play(!calm);
+        play(!calm && !thing.still);
       });
       shown.hidden = true;
       home.append(shown);
     }
     restart(null);
-    if ("plain" in home.dataset) play(!calm);
+    if ("plain" in home.dataset) play(!calm && !thing.still);
   }
 
   const things = {
@@ -321,7 +321,7 @@
       tell({chain, ghost}) {
         if (!chain.arch) return "The pulse is forming; the theory's line appears after thirteen contacts …";
         const [lattice, theory, other] = [chain.speed(), chain.arch.speed, ghost?.speed()];
-        const error = lattice ? `; theory ${percent(theory / lattice - 1)}` : "";
+        const error = lattice ? `; theory ${off(theory / lattice - 1)}` : "";
         const grey = other ? `; in grey, before the change: ${other.toFixed(3)}` : "";
         return `Peak of the dynamic force ${(chain.arch.force - chain.load).toFixed(3)}. Speed: theory ${theory.toFixed(3)}, lattice ${lattice ? lattice.toFixed(3) : "…"} sites per unit of time${error}${grey}`;
       },
@@ -354,7 +354,7 @@
         line(pen, [[x(edge * chain.time), 8], [x(edge * chain.time), base]], THEORY, 1);
       },
       tell: ({chain, edge, fastest}) => `Lines: dynamic force on the plateau by the Riemann invariant, leading edge at ${edge.toFixed(3)} sites per unit of time by the doubling rule, whose beads move at twice the wall's velocity. ` +
-        (fastest ? `Here the leading beads have reached ${(fastest / chain.v).toFixed(2)} times this velocity.` : "The train is forming …"),
+        (fastest ? `Here the leading beads have reached ${(fastest / chain.v).toFixed(2)} times this velocity${fastest < 1.9 * chain.v ? ", and the train still grows" : ""}.` : "The train is forming …"),
     },
 
     // A breather of a loaded dimer, started from its envelope; omega = 1/2, p0 = 1. A contact that
@@ -364,7 +364,7 @@
       answers: "it rises|it stays|it falls",
       then: {nu: 0.005},
       label: "Displacement of each bead of a loaded chain over its place, and the envelope of the theory",
-      sliders: [["nu", "detuning 1 - f/f₀", 0.001, 0.005, 0.0005, same, 0.0015]],
+      sliders: [["nu", "detuning 1 − f/f₀", 0.001, 0.005, 0.0005, same, 0.0015]],
       begin({nu}) {
         const [k, omega, n, middle] = [1.5, 0.5, 121, 61]; // a light bead in the middle
         const [U, b] = [Math.sqrt((32 * nu) / (k * (k - 1))), Math.sqrt((8 * nu * (1 - omega)) / omega)];
@@ -422,6 +422,7 @@
     arch: {
       ask: "The exponent of the contacts doubles from 3/2 to 3. What does the length of the pulse do?",
       answers: "it grows|it stays|it shrinks",
+      still: true,
       then: {k: 3},
       label: "One arch of a power of a cosine over a row of beads",
       sliders: [["k", "exponent k", 1.1, 4, 0.05, same, 1.5]],
@@ -454,18 +455,24 @@
   }
 
   const percent = x => `${(100 * x).toFixed(1).replace("-", "−")} %`;
+  const off = x => (x > 0 ? "+" : "") + percent(x);
   // The pulse behind a blow on spheres, m1 = A = D = v = 1, at contacts 80 and 81: dynamic force of
   // the contact, forces of the two beads there, duration, speed, decay per site, growth of the
-  // duration from contact 40 on. The force falls evenly in ln F, and the speed as its power 1/6.
+  // duration from contact 40 on. The force falls evenly in ln F, and the speed as its power 1/6, under
+  // a load as the theory's speed, where the pulse is steady enough for the theory.
+  const UNSTEADY = 0.1;
   function struck(omega, p0) {
     const chain = new Chain({omega, k: 1.5, p0, v: 1, n: 100});
     for (const end = 400 * (1 + omega); chain.arrivals.length < 82 && chain.time < end; ) chain.advance(1);
     if (chain.arrivals.length < 82) return null;
     const [a, b, c, d] = [40, 41, 80, 81].map(i => chain.arrivals[i]);
-    const decay = Math.log((a.force + b.force) / (c.force + d.force)) / 40;
-    const z = p0 > 0 ? 0 : (40 * decay) / 6;
+    const [force, growth] = [(c.force + d.force) / 2, (c.width + d.width) / (a.width + b.width) - 1];
+    const decay = Math.log((a.force + b.force) / (2 * force)) / 40;
+    const theory = part => f.loaded_speed(chain.load + part * force, chain.load, 1.5, 1, 1, omega, 1);
+    const power = p0 === 0 ? 1 / 6 : Math.abs(growth) > UNSTEADY ? 0 : Math.log(theory(1.01) / theory(1)) / Math.log(1.01);
+    const z = 40 * decay * power;
     const speed = (80 / (c.time + d.time - a.time - b.time)) * (z ? -Math.expm1(-z) / z : 1);
-    return {force: (c.force + d.force) / 2, beads: [79, 80].map(i => chain.trails[i].bead), width: (c.width + d.width) / 2, speed, decay, growth: (c.width + d.width) / (a.width + b.width) - 1};
+    return {force, beads: [79, 80].map(i => chain.trails[i].bead), width: (c.width + d.width) / 2, speed, decay, growth};
   }
 
   // Numbers of a blow on spheres in SI units, by the lattice and by each theory, at contact 80. A
@@ -557,10 +564,10 @@
       text("speed", `speed: ${lattice.speed.toPrecision(4)} m/s` + (sound ? ` (sound: ${sound.toPrecision(4)} m/s)` : ""));
       text("width", `FWHM of the dynamic force in time: ${(1e6 * lattice.width).toPrecision(4)} µs`);
       text("ratio", `mass ratio ω = ${omega.toPrecision(4)}, A = ${A.toPrecision(4)} N/m^1.5; the force falls by ${percent(-Math.expm1(-decay))} per bead`);
-      if (Math.abs(growth) > 0.1) text("unsteady", `The pulse changes its duration by ${percent(growth)} between contacts 40 and 80: it is no solitary wave, and the theories do not describe it.`);
+      if (Math.abs(growth) > UNSTEADY) text("unsteady", `The pulse changes its duration by ${percent(growth)} between contacts 40 and 80: it is no solitary wave, and the theories do not describe it.`);
       else for (const [name, {speed, width, error, refused}] of Object.entries(theories)) {
-        const fast = speed ? `speed ${speed.toPrecision(4)} m/s (${percent(speed / lattice.speed - 1)}), ` : "";
-        text("theory", refused ? `${name}: ${refused}` : `${name}: ${fast}FWHM ${(1e6 * width).toPrecision(4)} µs (${percent(width / lattice.width - 1)}${error ? `, by its own estimate ± ${percent(error)}` : ""})`);
+        const fast = speed ? `speed ${speed.toPrecision(4)} m/s (${off(speed / lattice.speed - 1)}), ` : "";
+        text("theory", refused ? `${name}: ${refused}` : `${name}: ${fast}FWHM ${(1e6 * width).toPrecision(4)} µs (${off(width / lattice.width - 1)}${error ? `, by its own estimate ± ${percent(error)}` : ""})`);
       }
       text("pressure", `Hertz's pressure reaches ${(1e-6 * pressure).toPrecision(3)} MPa: a material with a yield strength below ${(1e-6 * pressure / 1.6).toPrecision(3)} MPa begins to yield below its surface.`);
     }
