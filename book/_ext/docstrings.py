@@ -183,7 +183,8 @@ class StudyDocumenter(FunctionDocumenter):
 def _process(app: Sphinx, what: str, name: str, obj: object, options: object, lines: list) -> None:
     # a value without a text of its own comes with that of its type
     of_type = what == "data" and lines and lines[0] in (type(obj).__doc__ or "")
-    lines[:] = [] if of_type else converted(lines)
+    of_tuple = lines and lines[0].startswith("Alias for field number")  # a named one's fields
+    lines[:] = [] if of_type or of_tuple else converted(lines)
 
 
 _PROGRESS = re.compile(r"(?<=progress): [^=]*(?= = |\)$)")
