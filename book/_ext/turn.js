@@ -232,7 +232,7 @@
     let scene, settled, playing = false, due = 0;
     const restart = old => {
       scene = home.scene = begin(values, old);
-      for (let i = 0; !playing && i < 340 && next(scene); i++);
+      for (let i = 0; !playing && i < (calm ? 340 : 240) && next(scene); i++);
       draw(scene, canvas);
       output.textContent = tell(scene);
     };
