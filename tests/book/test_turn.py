@@ -147,3 +147,17 @@ def test_what_is_turned_shows_the_theory_beside_it():
     for values, rate in zip(light, seen["light"], strict=True):
         a, k = values["a"], values["k"]
         assert abs(rate - 1 + k * (k - 1) * a**2 / 16) < 1e-4 + 0.2 * a**4
+
+
+BLOWS = """
+const beads = {radiusA: 2.38e-3, radiusB: 2.38e-3, a: "steel 316", b: "PTFE"};
+const under = load => lwaTurn.calculate({...beads, kind: "velocity", blow: 1.37, load});
+console.log(JSON.stringify([0, 1e-9].map(load => under(load).lattice.speed)));
+"""
+
+
+@pytest.mark.optional("node", "sphinx")
+def test_a_load_that_vanishes_changes_no_speed(script):
+    """The speed at contact 80 from the mean over 40 contacts, with a load and without."""
+    without, loaded = in_node("const lwaSeries = [[0, 1, 1]];" + script, BLOWS)
+    assert loaded == pytest.approx(without, rel=1e-4)
