@@ -202,7 +202,7 @@ def chain(lattice: Lattice, velocity: float, pace: float) -> Seen:
         force = np.zeros(BEADS + 1)  # of the contact before each bead
         for i, law in zip(starts, laws, strict=True):
             force[i + 1] = law(gap[i])
-        total, parts = -np.diff(force), []
+        total, parts = force[:-1] - force[1:], []
         for m, k in inner:  # one in each bead
             pull = k * (u[BEADS:] - u[:BEADS])
             total, parts = total + pull, [-pull / m]
