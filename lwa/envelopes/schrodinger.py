@@ -39,6 +39,9 @@ from lwa.law import ContactLaw, for_cell, substituted
 from lwa.linear.bloch import BRANCHES
 
 LONG = 400  # operations in a result from which on it is not factored: that would take minutes
+# Greatest q of powers x^{p/q} that are factored, as polynomials in x^{1/q}: a decimal k such as
+# 3.1185 makes polynomials of thousands of terms.
+FINE = 100
 
 KINDS = ("bright", "dark")  # localised, ω″χ < 0, or a dip in a wave train
 
@@ -182,7 +185,10 @@ class Envelope(Value):
     def _tidy(self, value: sp.Expr) -> sp.Expr:
         if self.floats:
             return sp.N(value)
-        return sp.powsimp(sp.factor(value)) if sp.count_ops(value) < LONG else value
+        short = sp.count_ops(value) < LONG and all(
+            power.exp.q <= FINE for power in value.atoms(sp.Pow) if power.exp.is_Rational
+        )
+        return sp.powsimp(sp.factor(value)) if short else value
 
 
 @dataclass(frozen=True)

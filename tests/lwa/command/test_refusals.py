@@ -65,6 +65,8 @@ LINES = [
     ("envelope --background 1 --wavenumber pi*2", "wavenumber is 'pi*2'"),
     ("envelope --masses 1 --k 2 --background 1 --wavenumber 1 --detuning 1/100", "where dω/dκ = 0"),
     ("envelope --background 1 --branch up", "branch is 'up'"),
+    # of minutes, if powers of a decimal were factored
+    ("envelope --k 3.1185 --background 2.091 --stiffnesses 1,2 --detuning 1/9", "kind depends on"),
     ("envelope --background 1 --detuning 1 --frequency 1", "both given"),
     ("envelope --precompression 1 --masses 1,1/2 --k 2 --detuning -1", "below"),
     ("envelope --law hertz2:1,2 --background 0 --masses 1", "F′ is 0"),
