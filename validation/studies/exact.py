@@ -81,9 +81,9 @@ def resonances(k: float, count: int) -> Report:
     rows = tuple((wave.omega, wave.c2, wave.tail, wave.residual) for wave in waves)
     curves = (Curve(f"m2/m1 = {w.omega:.4f}", xi, w.force(xi), "-") for w in waves)
     return Report(
-        f"k = {k:g}: dimers with a solitary wave",
+        f"k = {waves[0].k:g}: dimers with a solitary wave",
         (Table(_RATIOS, rows),),
         panels=(Panel("ξ / D", "force of a contact", tuple(curves)),),
-        data={"k_value": k}
+        data={"k_value": waves[0].k}
         | {c.key: values for c, values in zip(_RATIOS, zip(*rows, strict=True), strict=True)},
     )

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import sympy as sp
 
 from validation import measure, simulate
 from validation.scenes.checks import SceneError
@@ -100,6 +101,7 @@ def test_the_special_ratios_are_the_published_ones(specials):
     """Jayaprakash et al. (2011); independent of the box."""
     ratios = special_ratios(1.5, 3).document()["mass_ratios"]
     assert ratios == pytest.approx([0.3428, 0.1548, 0.0901], abs=6e-5)
+    assert special_ratios(sp.sqrt(2), 1).data["k_value"] == pytest.approx(2**0.5)
     assert all(wave.solitary and wave.residual < 1e-12 for wave in specials)
     longer = [
         solve(w.masses, 1.5, start=w, half_period=1.2 * w.half_period, free=True).omega
