@@ -1,8 +1,6 @@
 """Signals: the motion at a sensor at any time, against exact motions and the run's own samples."""
 
 import pickle
-import subprocess
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -68,19 +66,6 @@ def test_the_law_of_a_pickled_run_is_at_its_new_address(monkeypatch):
     assert pickle.loads(stored).path.chain.law.force == 7
     monkeypatch.undo()
     assert pickle.loads(stored).signal("contact", 0)(0.5) == run.signal("contact", 0)(0.5) > 0
-
-
-@pytest.mark.slow
-def test_a_pickled_run_is_read_in_another_process(tmp_path):
-    """A call of the old address ends the process."""
-    run = simulate(TODA)
-    (tmp_path / "run").write_bytes(pickle.dumps(run))
-    program = "import pickle; run = pickle.load(open('run', 'rb'))"
-    other = subprocess.run(
-        [sys.executable, "-c", f"{program}; print(run.signal('contact', 0)(0.5))"],
-        cwd=tmp_path, timeout=120, text=True, capture_output=True, check=True,
-    )  # fmt: skip
-    assert float(other.stdout) == run.signal("contact", 0)(0.5) > 0
 
 
 def test_a_missing_sensor_or_quantity_is_refused(monkeypatch):
