@@ -103,6 +103,7 @@ def test_a_measured_number_carries_its_error():
     assert str(Measured(1.5, 1.5)) == "1.5 ± 0"
     assert str(Measured(4.350971956738e-4, 4.350971959e-4)) == "0.000435097 ± 1e-09"
     assert str(Measured(0.0, 1e-20)) == "0 ± 1e-20"
+    assert str(Measured(0.03, 0.53)) == "0.03 ± 5e-01"
 
 
 @pytest.mark.parametrize(
