@@ -1,4 +1,4 @@
-"""Calls of a command in the tests' own process, processes that end, terminals and small disks."""
+"""Calls of a command in the tests' own process, terminals and small disks."""
 
 import fcntl
 import io
@@ -7,9 +7,7 @@ import pty
 import resource
 import select
 import struct
-import subprocess
 import termios
-import threading
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 
 import pytest
@@ -21,20 +19,6 @@ def ended(capsys, main, *arguments):
         main(arguments)
     captured = capsys.readouterr()
     return end.value.code, captured.out, captured.err
-
-
-@contextmanager
-def started(*command, limit=120, **options):
-    """Start a process; it is killed at the end of the block, and after ``limit`` seconds."""
-    options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True} | options
-    with subprocess.Popen(command, **options) as process:
-        watch = threading.Timer(limit, process.kill)
-        watch.start()
-        try:
-            yield process
-        finally:
-            watch.cancel()
-            process.kill()
 
 
 def encoded(main, *arguments, encoding):

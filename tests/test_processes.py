@@ -19,7 +19,6 @@ import pytest
 
 from lwa import __version__
 from lwa.base import INTERRUPTED
-from tests.commands import started
 
 LWA = (sys.executable, "-m", "lwa")
 VERSION = (*LWA, "--version")  # takes a tenth of a second, as it does not load SymPy
@@ -103,14 +102,16 @@ def test_a_long_run_shows_its_progress_on_a_terminal_and_stops_at_ctrl_c(engine,
     mine, theirs = pty.openpty()
     termios.tcsetwinsize(theirs, (24, 80))
     outputs = ("--plot", "p.svg", "--out", "o.json")
-    with started(*command, *outputs, stderr=theirs, cwd=tmp_path) as running:
+    pipes = dict(stdout=subprocess.PIPE, stderr=theirs, text=True, cwd=tmp_path)
+    with subprocess.Popen((*command, *outputs), **pipes) as running, contextlib.ExitStack() as end:
+        end.callback(running.kill)
         os.close(theirs)
         shown = b""
         while b"lattice run:" not in shown:
             assert select.select([mine], [], [], 120)[0], "no progress"
             shown += os.read(mine, 1000)
         running.send_signal(signal.SIGINT)
-        out, _ = running.communicate()
+        out, _ = running.communicate(timeout=120)
     rest = b""
     with contextlib.suppress(OSError):  # the other end is closed
         while some := os.read(mine, 1000):

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from tests.validation.lattice.test_random_scenes import drawn
@@ -25,7 +25,6 @@ values = st.sampled_from(("k", "duration", "wall", "gravity", "precompression"))
     st.dictionaries(values, sizes, max_size=2),
     st.sampled_from(["RKN86", "DOP853", "LSODA", "symplectic"]),
 )
-@settings(max_examples=20)
 @example(16851, {"displacements": 6.6e302}, {"wall": 4.8e-194}, "symplectic")
 def test_any_scene_gives_finite_numbers_or_one_line(seed, factors, changed, method):
     """Random scenes in which some values are of any size that floats have."""

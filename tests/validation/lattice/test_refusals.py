@@ -17,7 +17,7 @@ from validation.scenes.forcing import Damping, Drive
 from validation.scenes.scene import Scene, SceneError
 
 CHAIN = struck((1,), 20, duration=25)
-FREE = replace(CHAIN, velocities=())
+FREE, DAMPED = replace(CHAIN, velocities=()), replace(CHAIN, damping=Damping("contact", 1))
 X = sp.Symbol("x", positive=True)
 
 
@@ -31,11 +31,7 @@ def pressed(law):
 
 REFUSED = [
     ("x", {}, "scene is 'x'"),
-    (
-        replace(CHAIN, damping=Damping("contact", 1)),
-        {"method": "symplectic"},
-        "method is symplectic",
-    ),
+    (DAMPED, {"method": "symplectic"}, "method is symplectic"),
     (CHAIN, {"method": "DOP853", "step": 0}, "step is 0"),
     (CHAIN, {"rtol": 0}, "rtol is 0: it lies between 1e-13"),
     (CHAIN, {"rtol": Fraction(1, 2)}, "rtol is 0.5"),
