@@ -1,7 +1,4 @@
-"""Numbers of the pages on other lattices, computed again.
-
-The numbers are read out of the pages: a number of the text that is changed turns a test red.
-"""
+"""Numbers of the pages on other lattices, read out of the text and computed again."""
 
 import math
 from fractions import Fraction

@@ -1,7 +1,4 @@
-"""Numbers of the pages on the pulse, its accuracy, other laws and the laboratory, computed again.
-
-The numbers are read out of the pages: a number of the text that is changed turns a test red.
-"""
+"""Numbers of the pages on pulses, accuracy, laws and the laboratory, read and computed again."""
 
 import math
 import sys

@@ -1,13 +1,17 @@
 """Pictures: every format, complete files or none, and the contents of panels."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from matplotlib import pyplot
 from matplotlib.figure import Figure
 
 from lwa import InputError
+from validation.lattice.simulate import simulate
 from validation.pictures import SUFFIXES, Curve, Map, Panel, figure
 from validation.report.result import Report
+from validation.scenes.chains import struck
 
 SIGNATURES = {".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml"}
 X = np.array([1.0, 2.0, 3.0])
@@ -65,3 +69,20 @@ def test_a_panel_is_drawn_into_axes_that_are_given(report):
     pyplot.close(own.figure)
     with pytest.raises(InputError, match="this result has no picture"):
         Report("none").plot()
+
+
+def test_a_run_is_drawn_into_given_axes():
+    three = struck((1,), 3, duration=3)
+    run = simulate(replace(three, contact_sensors=(1,), bead_sensors=(0, 2)))
+    ax = Figure().add_subplot()
+    assert run.plot(ax) is ax
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == [
+        "bead 1", "bead 3", "contact 2",
+    ]  # fmt: skip
+    for line, force in zip(ax.lines, (*run.bead_force, *run.contact_force), strict=True):
+        assert np.array_equal(line.get_xdata(), run.time)
+        assert np.array_equal(line.get_ydata(), force)
+    ax.figure.draw_without_rendering()
+    assert ax.get_legend().get_window_extent().y0 >= ax.bbox.y1  # on no curve
+    with pytest.raises(InputError, match="no picture"):
+        simulate(three).plot()

@@ -52,8 +52,7 @@ def test_the_strongest_waves_of_all_default_chains_are_measured():
 
 @pytest.mark.slow
 def test_masses_matter_to_widths_only():
-    """A weak wave of any cell: the same V/c0, and √(12 I) the width of equal beads; I = 1/12,
-    1/9 for masses 2, 1."""
+    """V/c0 of a weak wave is that of equal beads, the width √(12 I) times theirs, I = 1/9."""
     found = [rows(masses=masses, ratios=(0.03,))[0] for masses in ((3,), (2, 1))]
     one, two = found
     assert two["ratio_value"] == pytest.approx(0.03, rel=2e-3)
@@ -64,8 +63,7 @@ def test_masses_matter_to_widths_only():
 
 
 def test_why_dimers_are_worse():
-    """The tail of a wave as strong as the load has the frequency at which the wave's speed is the
-    optical branch's phase speed."""
+    """At the frequency of the tail the optical branch's phase speed is the speed of the wave."""
     wave = Wave(numeric_cell((1, "1/2")), Power("3/2"), 1.0)
     run = simulate(wave.scene, method="symplectic", rtol=1e-7)
     found = wave.read(run, 1)

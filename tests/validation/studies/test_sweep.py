@@ -61,10 +61,7 @@ def file(reference, tmp_path):
 
 
 def test_an_interrupted_sweep_resumes_and_grows(capsys, file, reference):
-    """Finished points come back bit for bit; only new ones are computed.
-
-    A range is exact and equidistant, and a value that stands there twice counts once.
-    """
+    """Finished points come back bit for bit; new ones alone are computed, each value once."""
     computed, wanted = [], numbers(report(KS, OMEGAS, reference, 2))
     with pytest.raises(KeyboardInterrupt):
         sweep(KS, OMEGAS, file=file, progress=stopped(KeyboardInterrupt), **QUICK)
