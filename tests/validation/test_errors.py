@@ -5,7 +5,6 @@ to the scatter of drawn noise. Studies of the book are held to their ± only. Th
 records, of `limits` and `figures`: `tests/validation/pulses`, `tests/validation/studies`.
 """
 
-import importlib
 import math
 import tomllib
 from dataclasses import replace
@@ -15,20 +14,16 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from book.studies import disorder, gravity, precompressed, widths
 from lwa import Cell, Power
 from validation.pulses import steady
 from validation.pulses.pulse import Measured, exponent
 from validation.pulses.sensors import record
 from validation.scenes import scenefile
+from validation.studies import paper
+from validation.studies import run as runs
 from validation.studies.law import Medium, fit_power
 from validation.waves.solver import exact_wave, measured, solve
-
-paper, runs = (importlib.import_module(f"validation.studies.{name}") for name in ("paper", "run"))
-disorder, gravity, precompressed, widths = (
-    importlib.import_module(f"book.studies.{name}")
-    for name in ("disorder", "gravity", "precompressed", "widths")
-)
-
 
 LARGEST = 30  # times that a ± may exceed the difference that it covers
 FINER = (1e-13, 1e-12)  # tolerances of the run that counts and of the run that gives its errors

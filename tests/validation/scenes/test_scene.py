@@ -18,7 +18,6 @@ from validation.scenes.scene import Scene, SceneError
 
 GOOD = dict(masses=(1, 2, 3), stiffnesses=(1, 1), k=1.5, duration=1.0)
 
-
 NAN, X = math.nan, sp.Symbol("x", positive=True)
 OPEN = Law(sp.Piecewise((X, X < 1)), X)
 PAIRED = {"k": math.nan}  # a scene without k, for a law

@@ -22,8 +22,6 @@ striker = {velocity = 1}
 sensors = {contacts = [12, 18]}
 """
 LATE, STRONGER = 2.5, 1.02
-
-
 HEADER = "time,contact 12 force,contact 18 dynamic force"
 
 
