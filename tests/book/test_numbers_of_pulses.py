@@ -13,7 +13,8 @@ from book.studies.hard import three_beads
 from lwa import Cell, Dimer, Material, Sphere, canonical_wave, expand, homogenize, loaded_wave
 from lwa.law import NAMES, named
 from tests.book.prose import BOOK, bounds, limited, said, told
-from validation import Damping, exact_wave, measure, simulate
+from validation import Damping, MeasureError, exact_wave, measure, simulate
+from validation.pulses.noisy import noisy_pulse
 from validation.scenes.chains import carrying, struck
 from validation.waves.solver import resonances
 
@@ -278,6 +279,24 @@ def test_the_lattice_carries_todas_soliton():
 
 
 # --- the laboratory and the reference
+
+
+def test_what_a_record_needs():
+    words = "at least # samples above half of its peak; noise above # % of the peak is refused"
+    samples, noise = map(int, said("experiment", words))
+
+    def read(samples, noise):
+        t = (np.arange(-8 * samples, 6 * samples) + 0.5) / samples  # in widths
+        random = noise / 100 * np.random.default_rng(0).normal(size=t.size)
+        return noisy_pulse(t, np.exp(-4 * math.log(2) * t**2) + random)
+
+    for enough in ((samples, 0.1), (50, noise - 0.5)):
+        width = read(*enough).numbers["fwhm"]
+        assert abs(width.value - 1) < 3 * width.error
+    with pytest.raises(MeasureError, match="samples lie above half"):
+        read(samples - 4, 0.1)
+    with pytest.raises(MeasureError, match="the noise is"):
+        read(50, noise + 1)
 
 
 def test_numbers_beside_the_calculator():
