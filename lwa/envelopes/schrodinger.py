@@ -38,7 +38,7 @@ from lwa.envelopes.response import Mode
 from lwa.law import ContactLaw, for_cell, substituted
 from lwa.linear.bloch import BRANCHES
 
-LONG = 400  # operations in a result from which on it is not factored: that would take minutes
+LONG = 400  # operations in a result that from there on would take minutes to factor
 # Greatest q of powers x^{p/q} that are factored, as polynomials in x^{1/q}: a decimal k such as
 # 3.1185 makes polynomials of thousands of terms.
 FINE = 100
@@ -132,8 +132,7 @@ class Envelope(Value):
         sign = self.dispersion * self.nonlinearity
         if sign.is_zero:
             raise InputError("the dispersion or the nonlinearity vanishes: no envelope has a shape")
-        short = sp.count_ops(sign) < LONG  # a longer one takes minutes to simplify
-        negative = (sp.simplify(sign) if short else sign).is_negative
+        negative = (sp.simplify(sign) if _short(sign) else sign).is_negative
         if negative is None:
             raise InputError("kind depends on symbols: give numbers")
         return KINDS[0] if negative else KINDS[1]
@@ -185,10 +184,13 @@ class Envelope(Value):
     def _tidy(self, value: sp.Expr) -> sp.Expr:
         if self.floats:
             return sp.N(value)
-        short = sp.count_ops(value) < LONG and all(
-            power.exp.q <= FINE for power in value.atoms(sp.Pow) if power.exp.is_Rational
-        )
-        return sp.powsimp(sp.factor(value)) if short else value
+        return sp.powsimp(sp.factor(value)) if _short(value) else value
+
+
+def _short(value: sp.Expr) -> bool:
+    """Return True for an expression that is factored within seconds."""
+    roots = (power.exp.q for power in value.atoms(sp.Pow) if power.exp.is_Rational)
+    return bool(sp.count_ops(value) < LONG and max(roots, default=1) <= FINE)
 
 
 @dataclass(frozen=True)
@@ -243,8 +245,8 @@ class Breather(Value):
         return sp.powsimp(self._factored(self._shift * self.detuning / self.envelope.nonlinearity))
 
     def _factored(self, value: sp.Expr) -> sp.Expr:
-        """The value with its factors, unless Δ is a surd, for which SymPy would take minutes."""
-        return value if self.detuning.is_irrational else sp.factor(value)
+        """The value with its factors, unless SymPy would take minutes, as where Δ is a surd."""
+        return sp.factor(value) if _short(value) and not self.detuning.is_irrational else value
 
     @cached_property
     def amplitude(self) -> tuple[sp.Expr, ...]:

@@ -75,3 +75,10 @@ def test_displacements_along_the_chain():
     assert np.all(u[:, 0] == 0)
     expected = float(found.amplitude[1]) * (-1.0) ** cells / np.cosh(cells / float(found.width))
     assert u[:, 1] == pytest.approx(expected)
+
+
+def test_powers_of_a_decimal_exponent_are_not_factored():
+    """As polynomials in p0^{1/1000} they have no end; 1/b = √(-ω″/(ωΔ)), ω″ = -ω/4 at κ = π."""
+    equation = envelope(Cell(["m"]), k="1.963", background="1.536", wavenumber=sp.pi)
+    found = equation.breather(detuning="1/9", kind="dark").width
+    assert float(found) == pytest.approx(3 / 2, rel=1e-12)
