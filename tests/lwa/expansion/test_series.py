@@ -14,6 +14,7 @@ def test_a_series_of_a_number_k_is_summed_there_only():
     assert stiff.value == pytest.approx(8 ** (5 / 6) * unit.value, rel=1e-14)
 
 
+@pytest.mark.slow
 def test_k_replaces_the_symbol_wherever_it_stands():
     """Prefactor, shares of unlike contacts, radiation."""
     k, cell = sp.Rational(101, 100), Cell([1, 3], [1, 2])

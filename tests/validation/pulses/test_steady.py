@@ -62,6 +62,7 @@ def agree(one, other, speed=1.0):
         assert abs(one[name].value - other[name].value / size) <= bound, name
 
 
+@pytest.mark.slow
 def test_relabelling_the_masses_changes_the_unit_of_mass_only():
     """Masses 1, 1/ω are 1/ω times the masses ω, 1: speeds go as 1/√mass."""
     agree(at("3/2", "0.75"), at("3/2", R(4, 3)), math.sqrt(0.75))

@@ -25,9 +25,7 @@ from validation.studies.limits import theory_at
 from validation.studies.sweep import AHEAD, measured, report, sweep, theory
 
 R = sp.Rational
-QUICK = {"stretch": 2, "jobs": 1}
-"""The shortest chains, one after another."""
-
+QUICK = {"stretch": 2, "jobs": 1}  # the shortest chains, one after another
 KS, OMEGAS = (R(3),), (R(1, 4), R(1, 2), R(3, 4), R(1))
 
 
