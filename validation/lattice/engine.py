@@ -113,10 +113,9 @@ def _integrated(
 
 def _plan(motion: Motion, method: str, rtol: float, longest: float) -> tuple[Plan, int]:
     """Return the integration plan, and the greatest number of steps."""
-    scheme, scales, end = SCHEMES[method], motion.scales, float(motion.scene.duration)
+    scales, end = motion.scales, float(motion.scene.duration)
     damped = motion.scene.damping is not None
-    if damped and method == "RKN86":
-        scheme = VERNER65
+    scheme = VERNER65 if damped and method == "RKN86" else SCHEMES[method]
     drive, stops = motion.scene.drive, [end]
     if drive is not None:
         # Beside a wall no motion has an error that would bound the step, and the work's estimate

@@ -134,8 +134,8 @@ def finished(
     fields : further fields of the `Run`. Raises `IntegrationError` if a number is not finite.
     """
     n, scale = motion.size, motion.scales.energy
-    displacements, velocities = end[:n].copy(), end[n : 2 * n].copy()
-    arrays: dict[str, Any] = records | {"displacements": displacements, "velocities": velocities}
+    final = {"displacements": end[:n].copy(), "velocities": end[n : 2 * n].copy()}
+    arrays: dict[str, Any] = records | final
     dissipated, work = map(float, end[2 * n :])
     drift = motion.energy(end) - motion.initial_energy + dissipated - work
     step = motion.scene.duration / steps
