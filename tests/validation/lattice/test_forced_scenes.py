@@ -101,8 +101,7 @@ def difference(y, v, found, unit, free):
 
 
 def errors(seed, tolerances=TOLERANCES):
-    """Errors over rtol and amplification: of the motion, of dissipated energy and work, and the
-    drift of the energy over rtol."""
+    """Errors of motion and of heat and work over rtol and amplification; energy drift over rtol."""
     scene = drawn(seed)
     exact, near = references(scene)
     unit, free = units(scene, exact), slice(scene.drive is not None, None)
