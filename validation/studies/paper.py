@@ -236,8 +236,6 @@ _WIDTHS = (
     Column("stated_error_value", "the paper's error", format=lambda e: f"{100 * e:.1f} %"),
     Column("error_value", "here", format=percent),
 )
-
-
 _WIDTH_NOTE = """\
 FWHM in time of the contacts' forces from bead 10 on, at an equal peak force: theory/lattice - 1.
 No definition of the FWHM meets 2.5 % together with the others (book/studies/widths.py)."""
@@ -268,7 +266,7 @@ def figures(progress: Progress[Any] = iter) -> Report:
         curves.append(Curve("theory, $F_m^{1/6}$", peaks, theory, f"C{i}-"))
     fitted = " and ".join(map(str, exponents))
     return Report(
-        "Figures 2 and 3a of Porter et al. (2008)",
+        "Figures 2 and 3 of Porter et al. (2008)",
         (
             Table(_DROPS, tuple(rows), "rows"),
             Table(_WIDTHS, tuple(stated_errors()), "widths", note=_WIDTH_NOTE),

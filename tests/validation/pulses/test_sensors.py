@@ -108,7 +108,7 @@ def test_small_pulses_travel_at_the_speed_of_sound():
 
 
 def test_errors_of_pulses_among_rattling_beads_cover_what_exceeds_the_tolerance():
-    """Differences of two runs cover nine of ten such errors; a few are small by chance."""
+    """Differences of two runs cover nine of ten such errors; one is 5 to 10 times too small."""
     scene = struck((1, 0.27), 60, contact_sensors=(20, 21, 40, 41), duration=110.0, samples=2)
     exact, found = (record(scene, rtol=rtol, every=True).sensors for rtol in (1e-13, TOLERANCE))
     known = {(r.kind, r.places, r.pulse): r.numbers for r in exact}
@@ -122,4 +122,4 @@ def test_errors_of_pulses_among_rattling_beads_cover_what_exceeds_the_tolerance(
     beyond = off > TOLERANCE * np.abs(floor)
     assert np.count_nonzero(beyond) > 30
     assert np.mean(off[beyond] <= error[beyond]) > 0.9
-    assert np.all(off <= 10 * error)
+    assert [np.count_nonzero(off > times * error) for times in (5, 10)] <= [1, 0]
