@@ -195,12 +195,12 @@ def _front(motion: Motion) -> int:
 def _start(motion: Motion, padded: int) -> Beads:
     """Build the kernel's initial state, arrays with room for ``padded`` + 1 beads."""
     n = motion.size
-    y, v, next_y, next_v = np.zeros((4, padded + 1))
+    y, v = np.zeros((2, padded + 1))
     y[:n], v[:n] = motion.start[:n], motion.start[n : 2 * n]
-    sums, force = np.zeros((5, padded + 1)), np.zeros((2 * WIDTH, padded + 1))
-    power, given = np.zeros((2, 2 * WIDTH)), np.zeros(2)
+    sums, force = np.zeros((5, padded + 1)), np.zeros((WIDTH, padded + 1))
+    power, given = np.zeros((2, WIDTH)), np.zeros(2)
     if motion.scene.drive is not None:
-        given[0] = motion.scene.drive.at(0.0)[2]
+        given[:] = motion.scene.drive.at(0.0)[2]
     return Beads(
-        y, v, next_y, next_v, force, sums, power, given, np.zeros(4), np.zeros((4, POINTS))
+        y, v, y.copy(), v.copy(), force, sums, power, given, np.zeros(4), np.zeros((8, POINTS))
     )

@@ -54,8 +54,8 @@ class KnotPath:
         near = _with_neighbours(beads)
         rows = np.searchsorted(self.knots.watched, near)
         step = np.searchsorted(self.time[1:-1], time, side="right")
-        ends, points = np.empty((2, len(rows), 4)), np.empty((4, POINTS))
-        y, v = np.empty((2, len(rows), len(time)))
+        ends, points = np.empty((2, len(rows), 4)), np.empty((8, POINTS))
+        y, v = np.zeros((2, len(rows), len(time)))
         interpolate(self.chain, self.knots, rows, time, step, y, v, ends, points)
         own = np.searchsorted(near, beads)
         y, v = y[own], v[own]

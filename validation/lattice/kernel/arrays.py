@@ -13,7 +13,8 @@ from lwa.base.arrays import Array
 MARGIN = 4  # still beads that are moved ahead of the front
 SHORTEST = 32  # beads below which the vector loops take no less time
 BLOCK = 8  # doubles in the widest vector register; the number of moved beads is a multiple of BLOCK
-WIDTH = 5  # stages that are added up at a time
+TILE = 256  # beads whose memory stays in the processor's cache throughout a step
+WIDTH = 9  # stages of both embedded pairs
 
 
 class Drive(NamedTuple):
@@ -79,7 +80,8 @@ class Beads(NamedTuple):
     power : (2, stages), power that all contacts dissipate, and power of the drive.
     given : (2,), accelerations of a driven bead at the step's ends.
     corrections : (4,), at kinks, of the heat and its error, and of the drive's work and its error.
-    points : (4, 10), places of a quadrature, their weights, the forces there, and sums.
+    points : (8, `POINTS`), places of a quadrature, their weights and the forces there, a free row,
+        and the intervals of a contact (`validation.lattice.kernel.kinks.find_intervals`).
     """
 
     y: Array

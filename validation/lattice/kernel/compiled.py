@@ -52,7 +52,7 @@ part: Callable[[Function], Function] = njit(forceinline=True, **_INNER)
 inner: Callable[[Function], Function] = njit(**_INNER)
 # Sums and maxima in the order of the machine's registers, the same in every run.
 summed: Callable[[Function], Function] = njit(
-    **_INNER | {"fastmath": {"nsz", "arcp", "contract", "reassoc"}}
+    forceinline=True, **_INNER | {"fastmath": {"nsz", "arcp", "contract", "reassoc"}}
 )
 # Unsigned indices: a signed one may count from the end, which keeps a loop from vectorising.
 index = np.uint64

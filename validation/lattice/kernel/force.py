@@ -18,9 +18,9 @@ def _loop(value: Any) -> Any:
     """Compile a loop over contacts with the force A value(d, k), d ≥ 0 the compression."""
 
     @part
-    def loop(chain: Chain, y: Array, f: Array, hi: int, least: float) -> None:
+    def loop(chain: Chain, y: Array, f: Array, lo: int, hi: int, least: float) -> None:
         A, rest, load, k = chain.A, chain.rest, chain.load, chain.law.k
-        for i in range(index(hi)):
+        for i in range(index(lo), index(hi)):
             d = rest[i] + y[i] - y[i + ONE]
             d = d if d > least else 0.0
             f[i + ONE] = A[i] * value(d, k) - load[i]
@@ -38,10 +38,10 @@ def _damped_loop(value: Any, resistance: Any) -> Any:
 
     @summed
     def loop(
-        chain: Chain, y: Array, v: Array, f: Array, hi: int, least: float, none: float
+        chain: Chain, y: Array, v: Array, f: Array, lo: int, hi: int, least: float, none: float
     ) -> float:
         A, rest, load, r, law, lost = chain.A, chain.rest, chain.load, chain.r, chain.law, 0.0
-        for i in range(index(hi)):
+        for i in range(index(lo), index(hi)):
             x, rate = rest[i] + y[i] - y[i + ONE], v[i] - v[i + ONE]
             d = x if x > least else 0.0
             elastic = value(law, d)
@@ -82,9 +82,9 @@ _damped = _damped_loop(
 
 @part
 def contact_forces(
-    chain: Chain, beads: Beads, plan: Plan, y: Array, v: Array, s: Any, hi: int
+    chain: Chain, beads: Beads, plan: Plan, y: Array, v: Array, s: Any, lo: int, hi: int
 ) -> None:
-    """Compute the forces of the contacts ahead of beads 0 … hi-1, less the static forces.
+    """Compute the forces of the contacts ahead of beads lo … hi-1, less the static forces.
 
     y, v : displacements and velocities. The forces go to row s (stage) of ``beads.force``, in
     column i + 1 for the contact ahead of bead i; the dissipated power and the power of the drive go
@@ -97,21 +97,22 @@ def contact_forces(
             least = none = -math.inf
         simple = (k == 1.5 and law.p in (0.0, 0.25, 0.5)) or (k == 1.0 and law.p == 0.0)
         if simple and not law.generated:
-            beads.power[0, s] = _damped_hertz(chain, y, v, f, hi, least, none)
+            lost = _damped_hertz(chain, y, v, f, lo, hi, least, none)
         else:
-            beads.power[0, s] = _damped(chain, y, v, f, hi, least, none)
+            lost = _damped(chain, y, v, f, lo, hi, least, none)
+        beads.power[0, s] = lost + (beads.power[0, s] if lo > 0 else 0.0)
     elif law.generated:
-        for i in range(index(hi)):
+        for i in range(index(lo), index(hi)):
             d = chain.rest[i] + y[i] - y[i + ONE]
             closed = chain.A[i] > 0.0 and (law.pulls or d > 0.0)
             f[i + ONE] = (chain.A[i] * call(law.force, d) if closed else 0.0) - chain.load[i]
     elif k == 1.5:
-        _hertz(chain, y, f, hi, least)
+        _hertz(chain, y, f, lo, hi, least)
     elif k < 5.0 and 4.0 * k == int(4.0 * k):
-        _quarters(chain, y, f, hi, least)
+        _quarters(chain, y, f, lo, hi, least)
     else:
-        _power(chain, y, f, hi, least)
-    if chain.drive.driven:
+        _power(chain, y, f, lo, hi, least)
+    if chain.drive.driven and lo == 0:
         beads.power[1, s] = v[0] * f[1]
 
 

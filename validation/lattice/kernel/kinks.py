@@ -18,12 +18,12 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Law
-from validation.lattice.kernel.compiled import call, inlined, inner, part, summed
+from validation.lattice.kernel.compiled import call, index, inlined, part, summed
 
 Quintic = tuple[float, float, float, float, float, float]
 """Coefficients c0 … c5 of p."""
 
-POINTS = 10  # of the rule, and places that are looked at together
+POINTS = 12  # of the rule: three of the machine's vectors
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(POINTS)
 _U, _W = (1 + _NODES) / 2, _WEIGHTS / 2
 _FAR = 1.0  # greatest distance of a root from an interval that it shapes, in steps
@@ -106,14 +106,14 @@ def _change(law: Law, r: float, c: Quintic, h: float, a: float, b: float, closin
     left, right = _margin(law, r, c, h, a, closing), _margin(law, r, c, h, b, closing)
     for _ in range(60):  # the Illinois variant of the rule of false position
         x = b - right * (b - a) / (right - left) if right != left else 0.5 * (a + b)
+        if abs(x - b) < 1e-10:  # x itself errs by the power 1.4 of it
+            return x
         middle = _margin(law, r, c, h, x, closing)
         if middle * right < 0.0:
             a, left = b, right
         else:
             left *= 0.5
-        moved, b, right = abs(x - b), x, middle
-        if moved < 1e-13 or middle == 0.0:  # the last step leaves the square of it, or less
-            break
+        b, right = x, middle
     return b
 
 
@@ -141,55 +141,14 @@ def _root(c: Quintic, x: float, side: float) -> float:
 def forces_along(law: Law, r: float, c: Quintic, h: float, x: Array, f: Array) -> None:
     """Compute the forces at `POINTS` places x of a contact with the compression p; they go to f."""
     if law.k == 1.5 and not r > 0.0 and not law.generated:
-        for m in range(POINTS):
-            d = max(value_and_slope(c, x[m])[0], 0.0)
+        for m in range(index(len(x))):
+            d, _ = value_and_slope(c, x[m])
+            d = d if d > 0.0 else 0.0
             f[m] = d * np.sqrt(d)
     else:
-        for m in range(POINTS):
+        for m in range(index(len(x))):
             p, slope = value_and_slope(c, x[m])
             f[m] = push(law, r, p, slope / h)
-
-
-@summed
-def _add_piece(
-    law: Law, r: float, c: Quintic, h: float, near: float, far: float, root: float, points: Array
-) -> None:
-    """Add the integrals between near and far; root : the root on the side of near, or NaN."""
-    x, w, f, sums = points[0], points[1], points[2], points[3]
-    q, zero = (1.0, near) if math.isnan(root) else (law.q, root)
-    span = far - zero
-    start = 0.0 if near == zero else ((near - zero) / span) ** (1.0 / q)
-    scale = abs(span) * (1.0 - start)
-    for m in range(POINTS):
-        u = start + (1.0 - start) * _U[m]
-        pace = 1.0 if q == 1.0 else (2.0 * u if q == 2.0 else 4.0 * u * u * u)
-        x[m], w[m] = zero + span * u * pace / q, scale * _W[m] * pace
-    forces_along(law, r, c, h, x, f)
-    once = twice = third = work = 0.0
-    for m in range(POINTS):
-        force, left = w[m] * f[m], 1.0 - x[m]
-        once += force
-        twice += left * force
-        third += 0.5 * left * left * force
-        work += value_and_slope(c, x[m])[1] * force
-    for m, total in enumerate((once, twice, third, work)):
-        sums[m] += total
-
-
-@inner
-def _add_closed(
-    law: Law, r: float, c: Quintic, h: float, a: float, b: float, points: Array
-) -> None:
-    """Add the integrals over an interval in which the contact pushes."""
-    low = a if a > 0.0 and not r > 0.0 else _root(c, a, -1.0)
-    high = b if b < 1.0 and not r > 0.0 else _root(c, b, 1.0)
-    if math.isnan(high):
-        _add_piece(law, r, c, h, a, b, low, points)
-    elif math.isnan(low):
-        _add_piece(law, r, c, h, b, a, high, points)
-    else:
-        _add_piece(law, r, c, h, a, 0.5 * (a + b), low, points)
-        _add_piece(law, r, c, h, b, 0.5 * (a + b), high, points)
 
 
 @part
@@ -201,46 +160,77 @@ def _summit(c: Quintic, a: float, b: float) -> float:
     return 0.5 * (a + b)
 
 
-@inner
-def integrals(
-    law: Law, r: float, c: Quintic, h: float, points: Array
-) -> tuple[float, float, float, float, float]:
-    """Return ∫ F, ∫ (1 - x) F, ∫ (1 - x)²/2 F and ∫ F p' over a step, and the greatest p.
+@inlined
+def find_intervals(law: Law, r: float, c: Quintic, h: float, points: Array) -> tuple[int, float]:
+    """Return the number of intervals of a step in which the contact pushes, and the greatest p.
 
     F(p, p'/h) is the force of a contact whose compression is the quintic with coefficients c.
+    Begins, ends, and the roots at both go to rows 4 … 7 of ``points``.
     """
-    start = 0.0
-    for m in range(4):
-        points[3, m] = 0.0
-    before, rise = c[0], c[1]
+    count, start, top, before, rise = 0, 0.0, c[0], c[0], c[1]
     pushed = pushes(law, r, before, rise / h)
-    top = before
     for m in range(1, _PLACES + 1):
         low, high = (m - 1) / _PLACES, m / _PLACES
         p, slope = value_and_slope(c, high)
-        a = b = 0.0  # an interval in which the contact pushes, and that ends by now
         now = pushes(law, r, p, slope / h)
-        if now and not pushed:
-            start = _change(law, r, c, h, low, high, True)
-        elif pushed and not now:
-            a, b = start, _change(law, r, c, h, low, high, False)
-        elif not now and before <= 0.0 and rise > 0.0 and p > 0.0:
-            # A damped contact closes, and no longer pushes where it is looked at.
-            a = _change(law, r, c, h, low, high, True)
-            b = _change(law, r, c, h, a, high, False)
-        elif not now and before <= 0.0 and rise > 0.0 and slope < 0.0:
+        # A contact can close, and open or cease to push, between two places.
+        within, peak = not now and before <= 0.0 and rise > 0.0 and (p > 0.0 or slope < 0.0), high
+        if within and not p > 0.0:
             peak = _summit(c, low, high)
             deepest, _ = value_and_slope(c, peak)
-            if deepest > 0.0:  # the contact closes and opens again between two places
-                top = max(top, deepest)
-                a = _change(law, r, c, h, low, peak, True)
-                b = _change(law, r, c, h, peak, high, False)
-        if now and m == _PLACES:
-            a, b = start, 1.0
-        if b > a:
-            _add_closed(law, r, c, h, a, b, points)
+            within, top = deepest > 0.0, max(top, deepest)
+        if within or (now and not pushed):
+            start = _change(law, r, c, h, low, peak, True)
+        opens = within or (pushed and not now)
+        if opens or (now and m == _PLACES):
+            end = 1.0
+            if opens:
+                first = low if pushed else (start if p > 0.0 else peak)
+                end = _change(law, r, c, h, first, high, False)
+            points[4, count], points[5, count] = start, end
+            points[6, count] = start if start > 0.0 and not r > 0.0 else _root(c, start, -1.0)
+            points[7, count] = end if end < 1.0 and not r > 0.0 else _root(c, end, 1.0)
+            count += 1
         pushed, before, rise, top = now, p, slope, max(top, p)
-    return points[3, 0], points[3, 1], points[3, 2], points[3, 3], top
+    return count, top
+
+
+@summed
+def integrals(
+    law: Law, r: float, c: Quintic, h: float, until: float, count: int, points: Array
+) -> tuple[float, float, float, float]:
+    """Return ∫ F, ∫ (1 - x) F, ∫ (1 - x)²/2 F and ∫ F p' over a step up to x = until.
+
+    The intervals in which the contact pushes are those of `find_intervals`, ``count`` of them.
+    """
+    x, w, f = points[0], points[1], points[2]
+    once = twice = third = work = 0.0
+    for n in range(count):
+        a, b, low, high = points[4, n], min(points[5, n], until), points[6, n], points[7, n]
+        if not a < b:
+            continue
+        middle = b if math.isnan(high) else (a if math.isnan(low) else 0.5 * (a + b))
+        for near, far, root in ((a, middle, low), (b, middle, high)):
+            if near == far:
+                continue
+            q, zero = (1.0, near) if math.isnan(root) else (law.q, root)
+            span = far - zero
+            start = (near - zero) / span
+            if q > 1.0:
+                start = np.sqrt(start) if q == 2.0 else np.sqrt(np.sqrt(start))
+            scale = abs(span) * (1.0 - start)
+            for m in range(index(len(x))):
+                u = start + (1.0 - start) * _U[m]
+                pace = 1.0 if q == 1.0 else (2.0 * u if q == 2.0 else 4.0 * u * u * u)
+                x[m], w[m] = zero + span * u * pace / q, scale * _W[m] * pace
+            forces_along(law, r, c, h, x, f)
+            for m in range(index(len(x))):
+                force, left = w[m] * f[m], 1.0 - x[m]
+                once += force
+                twice += left * force
+                third += 0.5 * left * left * force
+                work += value_and_slope(c, x[m])[1] * force
+    return once, twice, third, work
 
 
 @inlined

@@ -19,7 +19,7 @@ from typing import Any
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel import kinks
-from validation.lattice.kernel.arrays import WIDTH, Beads, Chain, Pair, Plan
+from validation.lattice.kernel.arrays import TILE, Beads, Chain, Pair, Plan
 from validation.lattice.kernel.compiled import ONE, ZERO, index, inlined, inner, part, summed
 from validation.lattice.kernel.force import contact_forces, drive_motion, interval, stiffness
 
@@ -39,18 +39,22 @@ _HOPELESS = 1e9  # in units of the tolerance: the power says nothing of such an 
 
 @inner
 def _add_up(
-    sums: Array, q: Any, force: Array, row: Array, scale: float, stages: int, hi: int
+    sums: Array, q: Any, force: Array, row: Array, scale: float, stages: int, lo: int, hi: int
 ) -> None:
     """Compute a weighted sum of forces, sums[q] = scale Σ_j row[j] force[j], 0 ≤ j < ``stages``."""
-    for first in range(0, stages, WIDTH):
-        a, b, c = scale * row[first], scale * row[first + 1], scale * row[first + 2]
-        d, e = scale * row[first + 3], scale * row[first + 4]
-        j = index(first)
-        j1, j2, j3, j4 = j + ONE, j + index(2), j + index(3), j + index(4)
-        for i in range(ONE, index(hi) + ONE):
-            four = a * force[j, i] + b * force[j1, i] + c * force[j2, i] + d * force[j3, i]
-            five = four + e * force[j4, i]
-            sums[q, i] = five if first == 0 else sums[q, i] + five
+    a, b, c, d = scale * row[0], scale * row[1], scale * row[2], scale * row[3]
+    if stages <= 4:
+        for i in range(index(lo) + ONE, index(hi) + ONE):
+            first = a * force[ZERO, i] + b * force[ONE, i]
+            sums[q, i] = first + (c * force[index(2), i] + d * force[index(3), i])
+        return
+    e, f, g = scale * row[4], scale * row[5], scale * row[6]
+    k, m = scale * row[7], scale * row[8]
+    for i in range(index(lo) + ONE, index(hi) + ONE):
+        first = a * force[ZERO, i] + b * force[ONE, i] + c * force[index(2), i]
+        second = d * force[index(3), i] + e * force[index(4), i] + f * force[index(5), i]
+        third = g * force[index(6), i] + k * force[index(7), i] + m * force[index(8), i]
+        sums[q, i] = first + second + third
 
 
 @summed
@@ -73,7 +77,7 @@ def _integral(row: Array, power: Array) -> float:
     return total
 
 
-@inner
+@part
 def _fitted(chain: Chain, beads: Beads, h: float, last: int, i: int, opened: bool) -> kinks.Quintic:
     """Return the quintic fit of contact i's compression over a step.
 
@@ -98,7 +102,7 @@ def _sums(pair: Pair, force: Array) -> tuple[float, float, float, float, float]:
     """Return the pair's ∫ F, ∫ (1 - x) F, ∫ (1 - x)²/2 F, and its errors of moment and impulse."""
     once = twice = third = error = error_once = 0.0
     impulses, moments = pair.impulses[-1], pair.moments[-1]
-    for s in range(kinks.POINTS):
+    for s in range(len(pair.nodes)):
         f = force[s]
         once += impulses[s] * f
         twice += moments[s] * f
@@ -113,7 +117,8 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
     """Correct a step for the pair's error at contact i, which opens or closes."""
     pair, last, inverse = plan.scheme, len(plan.scheme.moments) - 1, chain.inverse
     A, r, law, p = chain.A[i], chain.r[i], chain.law, _fitted(chain, beads, h, last, i, False)
-    once, twice, third, work, top = kinks.integrals(law, r, p, h, beads.points)
+    count, top = kinks.find_intervals(law, r, p, h, beads.points)
+    once, twice, third, work = kinks.integrals(law, r, p, h, 1.0, count, beads.points)
     force = beads.points[2]
     kinks.forces_along(law, r, p, h, pair.nodes, force)
     pair_once, pair_twice, pair_third, error, error_once = _sums(pair, force)
@@ -190,53 +195,71 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
     """
     pair, last = plan.scheme, len(plan.scheme.moments) - 1
     beads.corrections[:] = 0.0
-    _add_up(beads.sums, index(2), beads.force, pair.errors[0], h * h / plan.y, last + 1, hi)
-    _add_up(beads.sums, index(3), beads.force, pair.errors[1], h / plan.v, last + 1, hi)
-    if chain.law.pulls:
-        return 0
     y, v, next_y, next_v, rest = beads.y, beads.v, beads.next_y, beads.next_v, chain.rest
     marks, jumped, load = beads.sums[0], beads.sums[4], chain.load
     start, end = beads.force[0], beads.force[last]
     least = _SLIGHT * plan.v * plan.lightest / h  # a force F changes a velocity by h F/m
     count = 0
-    for i in range(index(hi)):
-        before, after = rest[i] + y[i] - y[i + ONE], rest[i] + next_y[i] - next_y[i + ONE]
-        rise, end_rise = h * (v[i] - v[i + ONE]), h * (next_v[i] - next_v[i + ONE])
-        first, then = start[i + ONE] + load[i], end[i + ONE] + load[i]
-        changed = chain.damped & ((first > 0.0) != (then > 0.0))
-        strong = (max(first, then) > least) | (chain.damped & ((before > 0.0) != (after > 0.0)))
-        most = max(before, after)
-        near = (most > 0.0) & (min(before, after) < _NEAR * most)
-        # A contact that is open at both ends can close in between where the tangents at the ends
-        # meet at δ > 0.
-        meeting = (after - end_rise) * rise - before * end_rise > 0.0
-        unseen = (most <= 0.0) & (rise > 0.0) & (end_rise < 0.0) & meeting
-        kink = (strong & (near | changed)) | unseen
-        mark = kink & (chain.A[i] > 0.0) & (jumped[i + ONE] == 0.0)
-        marks[i + ONE] = 1.0 if mark else 0.0
-        count += 1 if mark else 0
+    for lo in range(0, hi, TILE):
+        up = min(lo + TILE, hi)
+        for q in range(2):
+            scale = h * h / plan.y if q == 0 else h / plan.v
+            _add_up(beads.sums, index(q + 2), beads.force, pair.errors[q], scale, last + 1, lo, up)
+        if chain.law.pulls:
+            continue
+        for i in range(index(lo), index(up)):
+            before, after = rest[i] + y[i] - y[i + ONE], rest[i] + next_y[i] - next_y[i + ONE]
+            rise, end_rise = h * (v[i] - v[i + ONE]), h * (next_v[i] - next_v[i + ONE])
+            first, then = start[i + ONE] + load[i], end[i + ONE] + load[i]
+            changed = chain.damped & ((first > 0.0) != (then > 0.0))
+            strong = (max(first, then) > least) | (chain.damped & ((before > 0.0) != (after > 0.0)))
+            most = max(before, after)
+            near = (most > 0.0) & (min(before, after) < _NEAR * most)
+            # A contact that is open at both ends can close in between where the tangents at the
+            # ends meet at δ > 0.
+            meeting = (after - end_rise) * rise - before * end_rise > 0.0
+            unseen = (most <= 0.0) & (rise > 0.0) & (end_rise < 0.0) & meeting
+            kink = (strong & (near | changed)) | unseen
+            mark = kink & (chain.A[i] > 0.0) & (jumped[i + ONE] == 0.0)
+            marks[i + ONE] = 1.0 if mark else 0.0
+            count += 1 if mark else 0
     return count
 
 
 @inlined
-def evaluate_stages(chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int) -> None:
-    """Compute the forces at all stages of a step h of the beads 0 … hi-1 at time t."""
+def evaluate_stages(
+    chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int, again: bool
+) -> None:
+    """Compute the forces at all stages of a step h of the beads 0 … hi-1 at time t.
+
+    again : True for the forces at the step's end alone, after its motion was corrected. The tile of
+    a stage ends one bead behind the tile of the stage before it, whose forces are known that far.
+    """
     pair, last = plan.scheme, len(plan.scheme.moments) - 1
     y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
     inverse, force, sums = chain.inverse, beads.force, beads.sums
     drive, n = chain.drive, interval(chain.drive, t + h / 2)
-    for s in range(1, last + 1):
-        _add_up(sums, ZERO, force, pair.moments[s], h * h, s, hi)
-        ch = pair.nodes[s] * h
-        for i in range(index(hi)):
-            next_y[i] = y[i] + ch * v[i] + (sums[ZERO, i] - sums[ZERO, i + ONE]) * inverse[i]
-        if chain.damped or s == last:
-            _add_up(sums, ONE, force, pair.impulses[s], h, s, hi)
-            for i in range(index(hi)):
-                next_v[i] = v[i] + (sums[ONE, i] - sums[ONE, i + ONE]) * inverse[i]
-        if drive.driven:
-            next_y[0], next_v[0], beads.given[1] = drive_motion(drive, n, t + ch)
-        contact_forces(chain, beads, plan, next_y, next_v, index(s), hi)
+    for tile in range(0, hi + last, TILE):
+        for s in range(last if again else 1, last + 1):
+            lo, up = max(tile - s, 0), min(tile + TILE - s, hi)
+            if lo >= up:
+                continue
+            ch = pair.nodes[s] * h
+            for q in range(0 if again else (2 if chain.damped or s == last else 1)):
+                row, scale = (pair.moments[s], h * h) if q == 0 else (pair.impulses[s], h)
+                _add_up(sums, index(q), force, row, scale, s, lo, up)
+            if not again:
+                for i in range(index(lo), index(up)):
+                    net = (sums[ZERO, i] - sums[ZERO, i + ONE]) * inverse[i]
+                    next_y[i] = y[i] + ch * v[i] + net
+                if chain.damped or s == last:
+                    for i in range(index(lo), index(up)):
+                        next_v[i] = v[i] + (sums[ONE, i] - sums[ONE, i + ONE]) * inverse[i]
+                if drive.driven and lo == 0:
+                    next_y[0], next_v[0], beads.given[1] = drive_motion(drive, n, t + ch)
+            # The contact ahead of the tile waits for its second bead.
+            first, behind = max(lo - 1, 0), up if up == hi else up - 1
+            contact_forces(chain, beads, plan, next_y, next_v, index(s), first, behind)
 
 
 @inlined
@@ -249,23 +272,31 @@ def step_error(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> flo
     return math.sqrt(error)
 
 
-@part
-def accept_step(beads: Beads, plan: Plan, now: Any, h: float, hi: int, error: float) -> None:
-    """Move the beads to the end of a step with an error of at most 1, and plan the next step."""
-    last = len(plan.scheme.moments) - 1
-    impulses, power = plan.scheme.impulses[last], beads.power
-    now.lost += h * _integral(impulses, power[0]) + beads.corrections[0]
-    now.work += h * _integral(impulses, power[1]) + beads.corrections[2]
+@inlined
+def accept_step(beads: Beads, plan: Plan, now: Any, h: float, error: float) -> None:
+    """Add up a step with an error of at most 1, and plan the next step."""
+    impulses, stop = plan.scheme.impulses[len(plan.scheme.impulses) - 1], plan.stops[now.stop]
+    now.lost += h * _integral(impulses, beads.power[0]) + beads.corrections[0]
+    now.work += h * _integral(impulses, beads.power[1]) + beads.corrections[2]
     now.response = max(now.response, now.energy + now.work - now.lost)
+    now.steps += 1
+    stopping = now.t + h > stop - 1e-9 * h
+    now.t = stop if stopping else now.t + h
+    now.stop += 1 if stopping else 0
+    grow = h * min(_GROWTH, _SAFETY * max(error, 1e-9) ** (-1.0 / (plan.scheme.lower + 1)))
+    now.h, now.planned = min(plan.longest, max(grow, now.planned)), 0.0
+
+
+@inlined
+def begin_step(beads: Beads, plan: Plan, hi: int) -> None:
+    """Move the beads, and their forces, to the end of a step, which is the start of the next."""
+    last, power = len(plan.scheme.moments) - 1, beads.power
     for i in range(index(hi)):
         beads.y[i], beads.v[i] = beads.next_y[i], beads.next_v[i]
-    # What the next step begins with; it is computed again if this step was corrected.
     for i in range(index(hi) + ONE):
         beads.force[0, i] = beads.force[last, i]
     power[0, 0], power[1, 0] = power[0, last], power[1, last]
     beads.given[0] = beads.given[1]
-    grow = h * min(_GROWTH, _SAFETY * max(error, 1e-9) ** (-1.0 / (plan.scheme.lower + 1)))
-    now.h, now.planned = min(plan.longest, max(grow, now.planned)), 0.0
 
 
 @inlined

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from lwa.base.arrays import Array
 from validation.lattice.kernel import kinks
 from validation.lattice.kernel.arrays import Beads, Chain, Knots, Law
-from validation.lattice.kernel.compiled import SOURCES, cached, inlined, inner, part
+from validation.lattice.kernel.compiled import SOURCES, cached, part
 from validation.lattice.kernel.force import stiffness
 from validation.lattice.kernel.kinks import Quintic, fitted_quintic, value_and_slope
 
@@ -70,51 +70,6 @@ def _rate(law: Law, r: float, d: float, v: float, a: float) -> float:
     return float(rate)
 
 
-@inner
-def _effect(
-    law: Law, r: float, p: Quintic, h: float, x: float, points: Array
-) -> tuple[float, float]:
-    """Return the effect of a unit contact's force up to x on y and y' of a bead with h² = mass."""
-    # Over the part of the step up to x the quintic's coefficients are c_j x^j.
-    x2 = x * x
-    part_of = p[0], x * p[1], x2 * p[2], x2 * x * p[3], x2 * x2 * p[4], x2 * x2 * x * p[5]
-    once, twice, _, _, _ = kinks.integrals(law, r, part_of, h * x, points)
-    return x2 * twice, x * once
-
-
-@inlined
-def _smooth_ends(
-    chain: Chain, knots: Knots, n: int, rows: NDArray[np.int_], ends: Array, points: Array
-) -> None:
-    """Compute y, y', y'' and y''' at the ends of step n, less the effects of contacts with kinks.
-
-    They go to ``ends``, (2, R, 4).
-    """
-    h = knots.time[n + 1] - knots.time[n]
-    for end in range(2):
-        for r in range(len(rows)):
-            state, row = knots.state[n + end, rows[r]], ends[end, r]
-            row[0], row[1], row[2], row[3] = state[0], h * state[1], h * h * state[2], 0.0
-        for r in range(len(rows) - 1):
-            q = rows[r]
-            i = knots.watched[q]
-            scale, rest, ratio = h * h * chain.A[i], chain.rest[i], chain.r[i]
-            near, far = scale * chain.inverse[i], scale * chain.inverse[i + 1]
-            if knots.state[n + 1, q, 3] > 0.0:
-                p = _quintic(knots, n, q, rest)
-                moment, impulse = _effect(chain.law, ratio, p, h, float(end), points)
-                delta, slope = value_and_slope(p, float(end))
-                changes = moment, impulse, kinks.push(chain.law, ratio, delta, slope / h)
-                for m in range(3):
-                    ends[end, r, m] += near * changes[m]
-                    ends[end, r + 1, m] -= far * changes[m]
-            else:
-                d, v, a = _compression(knots, n + end, q, rest)
-                rate = h * _rate(chain.law, ratio, d, v, a)
-                ends[end, r, 3] -= near * rate
-                ends[end, r + 1, 3] += far * rate
-
-
 @part
 def _septic(a: Array, b: Array) -> tuple[Quintic, float, float]:
     """Return the coefficients c0 … c5, c6 and c7 of y from y … y''' at x = 0 (a) and at x = 1 (b).
@@ -145,7 +100,7 @@ def _built(sources: int) -> Any:
         ends: Array,
         points: Array,
     ) -> int:
-        """Compute displacements and velocities of watched beads; they go to y and v, both (R, S).
+        """Add displacements and velocities of watched beads to y and v, both (R, S).
 
         rows : (R,), rows q of the beads; only beads between two others of them come out right.
         time : (S,), increasing. step : (S,), number of the step that holds each time. ends :
@@ -157,27 +112,53 @@ def _built(sources: int) -> Any:
             while last < len(time) and step[last] == n:
                 last += 1
             start, h = knots.time[n], knots.time[n + 1] - knots.time[n]
-            _smooth_ends(chain, knots, n, rows, ends, points)
+            for end in range(2):
+                for r in range(len(rows)):
+                    state, row = knots.state[n + end, rows[r]], ends[end, r]
+                    row[0], row[1], row[2], row[3] = state[0], h * state[1], h * h * state[2], 0.0
+            for r in range(len(rows) - 1):
+                q, i = rows[r], knots.watched[rows[r]]
+                scale, rest, ratio = h * h * chain.A[i], chain.rest[i], chain.r[i]
+                near, far = scale * chain.inverse[i], scale * chain.inverse[i + 1]
+                if knots.state[n + 1, q, 3] > 0.0:
+                    p = _quintic(knots, n, q, rest)
+                    count, _ = kinks.find_intervals(chain.law, ratio, p, h, points)
+                    # Backwards: first the end of the step, then the samples, of which the last
+                    # may lie behind all intervals.
+                    for s in range(last, first - 1, -1):
+                        x = (time[s] - start) / h if s < last else 1.0
+                        if s == last or x < points[5, count - 1]:
+                            once, twice, _, _ = kinks.integrals(
+                                chain.law, ratio, p, h, x, count, points
+                            )
+                        moment = twice - (1.0 - x) * once  # ∫ (x - s) F(s) ds
+                        if s < last:
+                            y[r, s] -= near * moment
+                            y[r + 1, s] += far * moment
+                            v[r, s] -= near * once / h
+                            v[r + 1, s] += far * once / h
+                        else:
+                            for end in range(2):
+                                delta, slope = value_and_slope(p, float(end))
+                                push = kinks.push(chain.law, ratio, delta, slope / h)
+                                changes = end * moment, end * once, push
+                                for m in range(3):
+                                    ends[end, r, m] += near * changes[m]
+                                    ends[end, r + 1, m] -= far * changes[m]
+                else:
+                    for end in range(2):
+                        d, speed, a = _compression(knots, n + end, q, rest)
+                        rate = h * _rate(chain.law, ratio, d, speed, a)
+                        ends[end, r, 3] -= near * rate
+                        ends[end, r + 1, 3] += far * rate
             for r in range(len(rows)):
                 low, c6, c7 = _septic(ends[0, r], ends[1, r])
                 for s in range(first, last):
                     x = (time[s] - start) / h
                     smooth, slope = value_and_slope(low, x)
                     x5 = x * x * x * x * x
-                    y[r, s] = smooth + x5 * x * (c6 + x * c7)
-                    v[r, s] = (slope + x5 * (6 * c6 + x * 7 * c7)) / h
-            for r in range(len(rows) - 1):
-                q, i = rows[r], knots.watched[rows[r]]
-                if knots.state[n + 1, q, 3] > 0.0:
-                    p = _quintic(knots, n, q, chain.rest[i])
-                    scale = h * h * chain.A[i]
-                    near, far = scale * chain.inverse[i], scale * chain.inverse[i + 1]
-                    for s in range(first, last):
-                        x = (time[s] - start) / h
-                        moment, impulse = _effect(chain.law, chain.r[i], p, h, x, points)
-                        y[r, s], y[r + 1, s] = y[r, s] - near * moment, y[r + 1, s] + far * moment
-                        v[r, s] -= near * impulse / h
-                        v[r + 1, s] += far * impulse / h
+                    y[r, s] += smooth + x5 * x * (c6 + x * c7)
+                    v[r, s] += (slope + x5 * (6 * c6 + x * 7 * c7)) / h
         return sources
 
     return interpolate

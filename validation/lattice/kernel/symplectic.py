@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from validation.lattice.kernel.advance import advance_front, moving
-from validation.lattice.kernel.arrays import Beads, Chain, Knots, Plan
+from validation.lattice.kernel.arrays import TILE, Beads, Chain, Knots, Plan
 from validation.lattice.kernel.compiled import ONE, SOURCES, ZERO, cached, index
 from validation.lattice.kernel.force import contact_forces
 from validation.lattice.kernel.samples import store_knot
@@ -28,19 +28,25 @@ def _built(sources: int) -> Any:
         """
         kicks, drifts, h, until = plan.scheme.kicks, plan.scheme.drifts, plan.h, now.tries + tries
         y, v, force, inverse = beads.y, beads.v, beads.force, chain.inverse
-        contact_forces(chain, beads, plan, y, v, ZERO, plan.size)
+        last = len(drifts)
+        contact_forces(chain, beads, plan, y, v, ZERO, 0, plan.size)
         if now.tries == 0:
             store_knot(chain, beads, knots, now)
         while now.t < plan.end and now.tries < until and now.stored < len(knots.time):
             hi = moving(now)
-            for s in range(len(drifts)):
-                b, a = h * kicks[s], h * drifts[s]
-                for i in range(index(hi)):
-                    u = v[i] + b * (force[ZERO, i] - force[ZERO, i + ONE]) * inverse[i]
-                    v[i] = u
-                    y[i] = y[i] + a * u
-                contact_forces(chain, beads, plan, y, v, ZERO, hi)
-            b = h * kicks[len(drifts)]
+            for tile in range(0, hi + last, TILE):
+                for s in range(last):
+                    lo, up = max(tile - s, 0), min(tile + TILE - s, hi)
+                    if lo < up:
+                        b, a = h * kicks[s], h * drifts[s]
+                        for i in range(index(lo), index(up)):
+                            u = v[i] + b * (force[ZERO, i] - force[ZERO, i + ONE]) * inverse[i]
+                            v[i] = u
+                            y[i] = y[i] + a * u
+                        # The contact ahead of the tile waits for its second bead.
+                        first, behind = max(lo - 1, 0), up if up == hi else up - 1
+                        contact_forces(chain, beads, plan, y, v, ZERO, first, behind)
+            b = h * kicks[last]
             for i in range(index(hi)):
                 v[i] = v[i] + b * (force[ZERO, i] - force[ZERO, i + ONE]) * inverse[i]
             now.tries += 1
