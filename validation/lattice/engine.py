@@ -25,6 +25,7 @@ import sys
 
 import numpy as np
 
+from lwa.base.arrays import Array
 from validation.lattice.cost import IntegrationError, RunProgress, check_memory, step_limit
 from validation.lattice.equations import Motion
 from validation.lattice.kernel.advance import advance
@@ -150,9 +151,11 @@ def _plan(motion: Motion, method: str, rtol: float, longest: float) -> tuple[Pla
 
 def _chain(motion: Motion) -> Chain:
     """Build the kernel's chain, padded by beads of infinite mass; the first of them is the wall."""
-    rows = np.zeros((5, motion.size + 2 * SHORTEST))
-    with np.errstate(all="ignore"):
-        ratios = np.where(motion.damping > 0, motion.damping / motion.stiffnesses, 0.0)
+    rows = _lines(5, motion.size + 2 * SHORTEST, 0)
+    ratios = motion.damping
+    if motion.scene.damping is not None:
+        with np.errstate(all="ignore"):
+            ratios = np.where(ratios > 0, ratios / motion.stiffnesses, 0.0)
     given = 1 / motion.masses, motion.stiffnesses, ratios, motion.rest, motion.load
     for row, values in zip(rows, given, strict=True):
         row[: len(values)] = values
@@ -195,12 +198,23 @@ def _front(motion: Motion) -> int:
 def _start(motion: Motion, padded: int) -> Beads:
     """Build the kernel's initial state, arrays with room for ``padded`` + 1 beads."""
     n = motion.size
-    y, v = np.zeros((2, padded + 1))
-    y[:n], v[:n] = motion.start[:n], motion.start[n : 2 * n]
-    sums, force = np.zeros((5, padded + 1)), np.zeros((WIDTH, padded + 1))
+    rows = _lines(9 + WIDTH, padded + 1, 1)
+    y, v, next_y, next_v = rows[:4]
+    y[:n], v[:n] = next_y[:n], next_v[:n] = motion.start[:n], motion.start[n : 2 * n]
     power, given = np.zeros((2, WIDTH)), np.zeros(2)
     if motion.scene.drive is not None:
         given[:] = motion.scene.drive.at(0.0)[2]
     return Beads(
-        y, v, y.copy(), v.copy(), force, sums, power, given, np.zeros(4), np.zeros((8, POINTS))
+        y, v, next_y, next_v, rows[9:], rows[4:9], power, given, np.zeros(4), np.zeros((8, POINTS))
     )
+
+
+def _lines(rows: int, columns: int, first: int) -> Array:
+    """Return an array of zeros, with a column ``first`` at which lines of the cache begin.
+
+    A row has an odd number of lines, so that rows do not compete for the same places in the cache.
+    """
+    width = 8 * (-(-columns // 8) | 1)
+    memory = np.zeros(8 + rows * width)
+    start = (-memory.ctypes.data // 8 - first) % 8
+    return memory[start : start + rows * width].reshape(rows, width)

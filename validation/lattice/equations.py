@@ -117,8 +117,10 @@ class Motion:
     def energy(self, state: Array) -> float:
         """Return kinetic and elastic energy less the static forces' work; 0 in equilibrium."""
         compression, v = self.compression(state[: self.size]), state[self.size : 2 * self.size]
-        energies = self.contact.energy(compression) - self.contact.energy(self.rest)
-        stored = self.stiffnesses * energies - self.load * (compression - self.rest)
+        stored = self.stiffnesses * self.contact.energy(compression)
+        if self.loaded:
+            stored -= self.stiffnesses * self.contact.energy(self.rest)
+            stored -= self.load * (compression - self.rest)
         return float(np.sum(self.masses * v * v) / 2 + stored.sum())
 
     @cached_property

@@ -25,8 +25,10 @@ _MOST_BYTES = 2**28  # bytes of the motion that a run keeps
 
 def _with_neighbours(beads: Beads) -> NDArray[np.int_]:
     """Return the increasing numbers of beads and their neighbours."""
-    near = np.add.outer(np.asarray(beads, int), (-1, 0, 1))
-    return np.unique(near[near >= 0])
+    numbers = np.asarray(beads, int)
+    near = np.zeros(numbers.max(initial=-2) + 3, bool)  # of beads -1, 0, 1, …
+    near[numbers] = near[numbers + 1] = near[numbers + 2] = True
+    return np.flatnonzero(near[1:])
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +57,7 @@ class KnotPath:
         rows = np.searchsorted(self.knots.watched, near)
         step = np.searchsorted(self.time[1:-1], time, side="right")
         ends, points = np.empty((2, len(rows), 4)), np.empty((8, POINTS))
-        y, v = np.zeros((2, len(rows), len(time)))
+        y, v = np.empty((2, len(rows), len(time)))
         interpolate(self.chain, self.knots, rows, time, step, y, v, ends, points)
         own = np.searchsorted(near, beads)
         y, v = y[own], v[own]

@@ -22,7 +22,7 @@ from fractions import Fraction
 import numpy as np
 
 from lwa.base.arrays import Array
-from validation.lattice.kernel.arrays import WIDTH, Pair, Splitting
+from validation.lattice.kernel.arrays import Pair, Splitting
 
 
 def _rows(table: str) -> Array:
@@ -32,11 +32,6 @@ def _rows(table: str) -> Array:
     return np.array([row + [Fraction(0)] * (size - len(row)) for row in rows])
 
 
-def _padded(rows: Array) -> Array:
-    """Return floats, with zeros that fill the columns up to a multiple of `WIDTH`."""
-    return np.pad(rows.astype(float), [(0, 0)] * (rows.ndim - 1) + [(0, -rows.shape[-1] % WIDTH)])
-
-
 def _nystrom(table: str) -> Pair:
     """Read the rows of a, then b', b and b' of lower order; b is the last row of a."""
     rows = _rows(table)
@@ -44,19 +39,19 @@ def _nystrom(table: str) -> Pair:
     impulses = np.zeros_like(a)
     impulses[-1] = speeds
     errors = np.array((a[-1] - low, speeds - low_speeds))
-    nodes = np.sqrt(2 * _padded(a.sum(axis=1)))
-    return Pair(nodes, _padded(a), _padded(impulses), _padded(errors), _padded(speeds @ a), 6)
+    nodes = np.sqrt(2 * a.sum(axis=1).astype(float))
+    a, impulses, errors, thirds = (x.astype(float) for x in (a, impulses, errors, speeds @ a))
+    return Pair(nodes, a, impulses, errors, thirds, 6)
 
 
 def _explicit(table: str) -> Pair:
     """Read the rows of A, the last of them b, then b of lower order."""
     rows = _rows(table)
     a, low = rows[:-1], rows[-1]
-    moments = a @ a
     errors = np.array(((a[-1] - low) @ a, a[-1] - low))
-    nodes = _padded(a.sum(axis=1))
-    thirds = a[-1] @ moments
-    return Pair(nodes, _padded(moments), _padded(a), _padded(errors), _padded(thirds), 5)
+    exact = a.sum(axis=1), a @ a, a, errors, a[-1] @ a @ a
+    nodes, moments, a, errors, thirds = (x.astype(float) for x in exact)
+    return Pair(nodes, moments, a, errors, thirds, 5)
 
 
 RKN86 = _nystrom(

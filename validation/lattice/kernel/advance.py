@@ -7,13 +7,13 @@ from typing import Any
 from validation.lattice.kernel.arrays import BLOCK, MARGIN, SHORTEST, Beads, Chain, Knots, Plan
 from validation.lattice.kernel.compiled import SOURCES, cached, inlined
 from validation.lattice.kernel.pair import (
-    accept_step,
     begin_step,
     correct_contact,
+    end_step,
     evaluate_stages,
     mark_kinks,
+    next_mark,
     place_of_jump,
-    reject_step,
     step_error,
 )
 from validation.lattice.kernel.samples import store_knot
@@ -71,17 +71,14 @@ def _built(sources: int) -> Any:
                 moved = False
                 continue
             marks = mark_kinks(chain, beads, plan, h, hi)
-            if marks > 0:
-                for i in range(hi):
-                    if beads.sums[0, i + 1] > 0.0:
-                        correct_contact(chain, beads, plan, h, i)
+            i = next_mark(beads.sums[0], 0, hi if marks > 0 else 0)
+            while i < hi and marks > 0:
+                correct_contact(chain, beads, plan, h, i)
+                i = next_mark(beads.sums[0], i + 1, hi)
             error = step_error(chain, beads, plan, h, hi)
             moved = error <= 1.0
             stale = moved and jumps + marks > 0
-            if moved:
-                accept_step(beads, plan, now, h, error)
-            else:
-                reject_step(beads, plan, now, h, error)
+            end_step(beads, plan, now, h, error)
 
     return advance
 

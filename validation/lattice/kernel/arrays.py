@@ -115,10 +115,10 @@ class Pair(NamedTuple):
     Stage s moves a bead by h c_s v + h² Σ_j moments[s, j] f_j, and changes its velocity by
     h Σ_j impulses[s, j] f_j.
 
-    nodes : (S + 1,), c. moments, impulses : (S + 1, columns); of `impulses` only the last row
-    counts if forces do not depend on velocities. errors : (2, columns), differences of the two
-    solutions, in displacement and velocity. thirds : (columns,), weights of ∫ (1 - x)²/2 f(x) dx.
-    lower : order of the second solution. Columns are filled with zeros to a multiple of `WIDTH`.
+    nodes : (WIDTH,), c. moments, impulses : (WIDTH, WIDTH); of `impulses` only the last row counts
+    if forces do not depend on velocities. errors : (2, WIDTH), differences of the two solutions, in
+    displacement and velocity. thirds : (WIDTH,), weights of ∫ (1 - x)²/2 f(x) dx. lower : order of
+    the second solution.
     """
 
     nodes: Array

@@ -48,8 +48,6 @@ inlined: Callable[[Function], Function] = njit(inline="always", **_INNER)
 # Small functions with many callers, inlined by LLVM, as the calls would take a quarter of a run's
 # time. Inlining by numba gives the same code, but takes three times as long to compile.
 part: Callable[[Function], Function] = njit(forceinline=True, **_INNER)
-# Called once a stage: inlined, the loops over beads took twice as long to compile.
-inner: Callable[[Function], Function] = njit(**_INNER)
 # Sums and maxima in the order of the machine's registers, the same in every run.
 summed: Callable[[Function], Function] = njit(
     forceinline=True, **_INNER | {"fastmath": {"nsz", "arcp", "contract", "reassoc"}}

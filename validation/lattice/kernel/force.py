@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from lwa.base.arrays import Array
-from validation.lattice.kernel.arrays import Beads, Chain, Drive, Law, Plan
+from validation.lattice.kernel.arrays import TILE, Beads, Chain, Drive, Law, Plan
 from validation.lattice.kernel.compiled import ONE, call, index, part, summed
 
 NEGLIGIBLE = 1e-60  # in units of the greatest compression: less is 0, so that no denormals arise
@@ -81,6 +81,17 @@ _damped = _damped_loop(
 
 
 @part
+def tile_bounds(tile: int, s: int, hi: int) -> tuple[int, int, int, int]:
+    """Return the ranges of beads and of contacts that stage s computes in a tile, up to bead hi.
+
+    All stages of a step go through a tile before the next tile. The contact of a tile's last bead
+    waits for the bead ahead, so each stage ends one bead behind the stage before.
+    """
+    lo, up = max(tile - s, 0), min(tile + TILE - s, hi)
+    return lo, up, max(lo - 1, 0), up if up == hi else up - 1
+
+
+@part
 def contact_forces(
     chain: Chain, beads: Beads, plan: Plan, y: Array, v: Array, s: Any, lo: int, hi: int
 ) -> None:
@@ -127,19 +138,16 @@ def stiffness(law: Law, d: float) -> float:
 
 
 @part
-def interval(drive: Drive, t: float) -> int:
-    """Return the number of the interval of time that holds t, by bisection."""
+def drive_motion(drive: Drive, middle: float, t: float) -> tuple[float, float, float]:
+    """Return displacement, velocity and acceleration of the driven bead at t.
+
+    middle : a time inside of the interval of the drive's file that holds t, by bisection.
+    """
     low, high = 0, len(drive.times)
     while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (middle, high) if drive.times[middle] <= t else (low, middle)
-    return low
-
-
-@part
-def drive_motion(drive: Drive, n: int, t: float) -> tuple[float, float, float]:
-    """Return displacement, velocity and acceleration of the driven bead at t, in interval n."""
-    s, c = t - drive.times[n], drive.cubics[n]
+        n = (low + high) // 2
+        low, high = (n, high) if drive.times[n] <= middle else (low, n)
+    s, c = t - drive.times[low], drive.cubics[low]
     y = c[0] + s * (c[1] + s * (c[2] + s * c[3]))
     v, a = c[1] + s * (2.0 * c[2] + s * 3.0 * c[3]), 2.0 * c[2] + s * 6.0 * c[3]
     if drive.amplitude != 0.0:

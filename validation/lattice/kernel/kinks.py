@@ -18,7 +18,7 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Law
-from validation.lattice.kernel.compiled import call, index, inlined, part, summed
+from validation.lattice.kernel.compiled import call, index, part, summed
 
 Quintic = tuple[float, float, float, float, float, float]
 """Coefficients c0 … c5 of p."""
@@ -26,7 +26,6 @@ Quintic = tuple[float, float, float, float, float, float]
 POINTS = 12  # of the rule: three of the machine's vectors
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(POINTS)
 _U, _W = (1 + _NODES) / 2, _WEIGHTS / 2
-_FAR = 1.0  # greatest distance of a root from an interval that it shapes, in steps
 _PLACES = 8  # parts of a step at whose ends a contact is looked at
 
 
@@ -99,7 +98,7 @@ def _margin(law: Law, r: float, c: Quintic, h: float, x: float, closing: bool) -
 
 
 @part
-def _change(law: Law, r: float, c: Quintic, h: float, a: float, b: float, closing: bool) -> float:
+def change(law: Law, r: float, c: Quintic, h: float, a: float, b: float, closing: bool) -> float:
     """Return the place between a and b at which the contact begins or ends to push."""
     # A contact that pushes again before it has parted does so by its force.
     closing = closing and not value_and_slope(c, a)[0] > 0.0
@@ -124,15 +123,14 @@ def _root(c: Quintic, x: float, side: float) -> float:
     The root shapes the substitution alone: two steps of Newton's method are enough.
     """
     p, slope = value_and_slope(c, x)
-    if not abs(p) < 1.5 * _FAR * abs(slope) or (
-        side * p * slope > 0.0 and abs(p) > 1e-9 * abs(slope)
-    ):
+    # No root within a step of x, or on the inner side.
+    if not abs(p) < 1.5 * abs(slope) or (side * p * slope > 0.0 and abs(p) > 1e-9 * abs(slope)):
         return math.nan
     r = x - p / slope
     p, slope = value_and_slope(c, r)
     r = r - p / slope if slope != 0.0 else math.nan
     off = side * (r - x)
-    if off > -1e-9 and off < _FAR:
+    if off > -1e-9 and off < 1.0:
         return x if off < 0.0 else r
     return math.nan
 
@@ -140,11 +138,14 @@ def _root(c: Quintic, x: float, side: float) -> float:
 @summed
 def forces_along(law: Law, r: float, c: Quintic, h: float, x: Array, f: Array) -> None:
     """Compute the forces at `POINTS` places x of a contact with the compression p; they go to f."""
-    if law.k == 1.5 and not r > 0.0 and not law.generated:
+    if law.k == 1.5 and law.p in (0.0, 0.25, 0.5) and not law.generated:  # vectorises
         for m in range(index(len(x))):
-            d, _ = value_and_slope(c, x[m])
-            d = d if d > 0.0 else 0.0
-            f[m] = d * np.sqrt(d)
+            p, slope = value_and_slope(c, x[m])
+            d = p if p > 0.0 else 0.0
+            root = np.sqrt(d)
+            resistance = root if law.p == 0.5 else (1.0 if law.p == 0.0 else np.sqrt(root))
+            force = d * root + r * resistance * slope / h
+            f[m] = force if (force > 0.0) & (p > 0.0) else 0.0
     else:
         for m in range(index(len(x))):
             p, slope = value_and_slope(c, x[m])
@@ -160,7 +161,7 @@ def _summit(c: Quintic, a: float, b: float) -> float:
     return 0.5 * (a + b)
 
 
-@inlined
+@part
 def find_intervals(law: Law, r: float, c: Quintic, h: float, points: Array) -> tuple[int, float]:
     """Return the number of intervals of a step in which the contact pushes, and the greatest p.
 
@@ -180,13 +181,13 @@ def find_intervals(law: Law, r: float, c: Quintic, h: float, points: Array) -> t
             deepest, _ = value_and_slope(c, peak)
             within, top = deepest > 0.0, max(top, deepest)
         if within or (now and not pushed):
-            start = _change(law, r, c, h, low, peak, True)
+            start = change(law, r, c, h, low, peak, True)
         opens = within or (pushed and not now)
         if opens or (now and m == _PLACES):
             end = 1.0
             if opens:
                 first = low if pushed else (start if p > 0.0 else peak)
-                end = _change(law, r, c, h, first, high, False)
+                end = change(law, r, c, h, first, high, False)
             points[4, count], points[5, count] = start, end
             points[6, count] = start if start > 0.0 and not r > 0.0 else _root(c, start, -1.0)
             points[7, count] = end if end < 1.0 and not r > 0.0 else _root(c, end, 1.0)
@@ -231,9 +232,3 @@ def integrals(
                 third += 0.5 * left * left * force
                 work += value_and_slope(c, x[m])[1] * force
     return once, twice, third, work
-
-
-@inlined
-def closing_place(law: Law, r: float, c: Quintic, h: float) -> float:
-    """Return the place of a step at which a contact, open before, closes."""
-    return _change(law, r, c, h, 0.0, 1.0, True)

@@ -19,9 +19,9 @@ from typing import Any
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel import kinks
-from validation.lattice.kernel.arrays import TILE, Beads, Chain, Pair, Plan
-from validation.lattice.kernel.compiled import ONE, ZERO, index, inlined, inner, part, summed
-from validation.lattice.kernel.force import contact_forces, drive_motion, interval, stiffness
+from validation.lattice.kernel.arrays import TILE, Beads, Chain, Plan
+from validation.lattice.kernel.compiled import ONE, ZERO, index, inlined, part, summed
+from validation.lattice.kernel.force import contact_forces, drive_motion, stiffness, tile_bounds
 
 _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the tolerance
 # A contact is nearly open at a step's one end if δ there is less than _NEAR times δ at the other.
@@ -34,10 +34,10 @@ _JUMP = 0.25  # least effect of a jump at which a step ends, in units of the tol
 # nine scenes at 1e-6 … 1e-10: the work for the same error is the same to 4 % for a safety of 0.8 to
 # 0.95 and a growth of 1.5 to 10; a safety of 0.7 costs 8 % more, 0.98 costs 11 % more.
 _SAFETY, _GROWTH, _SHRINKAGE = 0.9, 5.0, 0.1
-_HOPELESS = 1e9  # in units of the tolerance: the power says nothing of such an error
+_HOPELESS = 1e9  # in units of the tolerance: the power says nothing of such an error, or of NaN
 
 
-@inner
+@part
 def _add_up(
     sums: Array, q: Any, force: Array, row: Array, scale: float, stages: int, lo: int, hi: int
 ) -> None:
@@ -58,21 +58,10 @@ def _add_up(
 
 
 @summed
-def _squared_error(sums: Array, inverse: Array, hi: int) -> float:
-    """Return the sum of squares of the beads' errors, in units of the tolerances."""
-    total = 0.0
-    for i in range(index(hi)):
-        y = (sums[index(2), i] - sums[index(2), i + ONE]) * inverse[i]
-        v = (sums[index(3), i] - sums[index(3), i + ONE]) * inverse[i]
-        total += y * y + v * v
-    return total
-
-
-@summed
 def _integral(row: Array, power: Array) -> float:
     """Return Σ row[s] power[s] over the stages s."""
     total = 0.0
-    for s in range(len(power)):
+    for s in range(index(len(row))):
         total += row[s] * power[s]
     return total
 
@@ -97,21 +86,6 @@ def _fitted(chain: Chain, beads: Beads, h: float, last: int, i: int, opened: boo
     return kinks.fitted_quintic(d, h * rate, h * h * a, end, h * end_rate, h * h * end_a)
 
 
-@summed
-def _sums(pair: Pair, force: Array) -> tuple[float, float, float, float, float]:
-    """Return the pair's ∫ F, ∫ (1 - x) F, ∫ (1 - x)²/2 F, and its errors of moment and impulse."""
-    once = twice = third = error = error_once = 0.0
-    impulses, moments = pair.impulses[-1], pair.moments[-1]
-    for s in range(len(pair.nodes)):
-        f = force[s]
-        once += impulses[s] * f
-        twice += moments[s] * f
-        third += pair.thirds[s] * f
-        error += pair.errors[0, s] * f
-        error_once += pair.errors[1, s] * f
-    return once, twice, third, error, error_once
-
-
 @inlined
 def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -> None:
     """Correct a step for the pair's error at contact i, which opens or closes."""
@@ -121,8 +95,10 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
     once, twice, third, work = kinks.integrals(law, r, p, h, 1.0, count, beads.points)
     force = beads.points[2]
     kinks.forces_along(law, r, p, h, pair.nodes, force)
-    pair_once, pair_twice, pair_third, error, error_once = _sums(pair, force)
-    once, twice, third = A * (once - pair_once), A * (twice - pair_twice), A * (third - pair_third)
+    once = A * (once - _integral(pair.impulses[last], force))
+    twice = A * (twice - _integral(pair.moments[last], force))
+    third = A * (third - _integral(pair.thirds, force))
+    error, error_once = _integral(pair.errors[0], force), _integral(pair.errors[1], force)
     if chain.damped:
         end, _ = kinks.value_and_slope(p, 1.0)
         heat = work - kinks.stored(law, end) + kinks.stored(law, p[0])
@@ -155,8 +131,8 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
             if n != i:
                 beads.next_v[n] -= more * inverse[n]
                 beads.next_v[n + 1] += more * inverse[n + 1]
-            missed = more / plan.v
-            beads.sums[3, n + 1] += math.copysign(missed, beads.sums[3, n + 1])
+            missed = abs(more) / plan.v
+            beads.sums[3, n + 1] += missed if beads.sums[3, n + 1] > 0.0 else -missed
 
 
 @inlined
@@ -173,7 +149,7 @@ def place_of_jump(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> 
         beads.sums[4, i + 1] = 0.0
         if before <= 0.0 and after > 0.0 and chain.A[i] > 0.0:
             p = _fitted(chain, beads, h, last, i, True)
-            x = kinks.closing_place(chain.law, chain.r[i], p, h)
+            x = kinks.change(chain.law, chain.r[i], p, h, 0.0, 1.0, True)
             _, slope = kinks.value_and_slope(p, x)
             jump = chain.A[i] * chain.r[i] * abs(slope)  # h times the jump of the force
             jump *= max(chain.inverse[i], chain.inverse[i + 1])
@@ -226,22 +202,28 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
     return count
 
 
+@part
+def next_mark(marks: Array, i: int, hi: int) -> int:
+    """Return the first of the contacts i … hi-1 that is marked; hi without one."""
+    while i < hi and not marks[index(i) + ONE] > 0.0:
+        i += 1
+    return i
+
+
 @inlined
 def evaluate_stages(
     chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int, again: bool
 ) -> None:
     """Compute the forces at all stages of a step h of the beads 0 … hi-1 at time t.
 
-    again : True for the forces at the step's end alone, after its motion was corrected. The tile of
-    a stage ends one bead behind the tile of the stage before it, whose forces are known that far.
+    again : True for the forces at the step's end alone, after its motion was corrected.
     """
     pair, last = plan.scheme, len(plan.scheme.moments) - 1
     y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
     inverse, force, sums = chain.inverse, beads.force, beads.sums
-    drive, n = chain.drive, interval(chain.drive, t + h / 2)
     for tile in range(0, hi + last, TILE):
         for s in range(last if again else 1, last + 1):
-            lo, up = max(tile - s, 0), min(tile + TILE - s, hi)
+            lo, up, first, behind = tile_bounds(tile, s, hi)
             if lo >= up:
                 continue
             ch = pair.nodes[s] * h
@@ -255,56 +237,54 @@ def evaluate_stages(
                 if chain.damped or s == last:
                     for i in range(index(lo), index(up)):
                         next_v[i] = v[i] + (sums[ONE, i] - sums[ONE, i + ONE]) * inverse[i]
-                if drive.driven and lo == 0:
-                    next_y[0], next_v[0], beads.given[1] = drive_motion(drive, n, t + ch)
-            # The contact ahead of the tile waits for its second bead.
-            first, behind = max(lo - 1, 0), up if up == hi else up - 1
+                if chain.drive.driven and lo == 0:
+                    given = drive_motion(chain.drive, t + h / 2, t + ch)
+                    next_y[0], next_v[0], beads.given[1] = given
             contact_forces(chain, beads, plan, next_y, next_v, index(s), first, behind)
 
 
-@inlined
+@summed
 def step_error(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> float:
-    """Return the error of a step in units of the tolerance."""
-    error, errors = _squared_error(beads.sums, chain.inverse, hi), plan.scheme.errors[1]
-    for n in range(2):  # of the heat and of the drive's work
-        missed = h * _integral(errors, beads.power[n]) - beads.corrections[2 * n + 1]
-        error += (missed / plan.energy) ** 2
-    return math.sqrt(error)
+    """Return the error of a step in units of the tolerance: of all beads, the heat and the work."""
+    total, sums, inverse = 0.0, beads.sums, chain.inverse
+    for i in range(index(hi)):
+        y = (sums[index(2), i] - sums[index(2), i + ONE]) * inverse[i]
+        v = (sums[index(3), i] - sums[index(3), i + ONE]) * inverse[i]
+        total += y * y + v * v
+    for n in range(2):
+        missed = h * _integral(plan.scheme.errors[1], beads.power[n])
+        total += ((missed - beads.corrections[2 * n + 1]) / plan.energy) ** 2
+    return math.sqrt(total)
 
 
 @inlined
-def accept_step(beads: Beads, plan: Plan, now: Any, h: float, error: float) -> None:
-    """Add up a step with an error of at most 1, and plan the next step."""
-    impulses, stop = plan.scheme.impulses[len(plan.scheme.impulses) - 1], plan.stops[now.stop]
-    now.lost += h * _integral(impulses, beads.power[0]) + beads.corrections[0]
-    now.work += h * _integral(impulses, beads.power[1]) + beads.corrections[2]
-    now.response = max(now.response, now.energy + now.work - now.lost)
-    now.steps += 1
-    stopping = now.t + h > stop - 1e-9 * h
-    now.t = stop if stopping else now.t + h
-    now.stop += 1 if stopping else 0
-    grow = h * min(_GROWTH, _SAFETY * max(error, 1e-9) ** (-1.0 / (plan.scheme.lower + 1)))
-    now.h, now.planned = min(plan.longest, max(grow, now.planned)), 0.0
+def end_step(beads: Beads, plan: Plan, now: Any, h: float, error: float) -> None:
+    """Add up a step with an error of at most 1, and plan the next step, a shorter one above 1."""
+    pair, stop, factor = plan.scheme, plan.stops[now.stop], 0.0
+    if error < _HOPELESS:
+        factor = _SAFETY * max(error, 1e-9) ** (-1.0 / (pair.lower + 1))
+    now.h = h * min(_GROWTH, max(_SHRINKAGE, factor))
+    if error <= 1.0:
+        impulses = pair.impulses[len(pair.impulses) - 1]
+        now.lost += h * _integral(impulses, beads.power[0]) + beads.corrections[0]
+        now.work += h * _integral(impulses, beads.power[1]) + beads.corrections[2]
+        now.response = max(now.response, now.energy + now.work - now.lost)
+        now.h = min(plan.longest, max(now.h, now.planned))
+        stopping = now.t + h > stop - 1e-9 * h
+        now.t = stop if stopping else now.t + h
+        now.stop += 1 if stopping else 0
+        now.steps += 1
+    elif factor == 0.0:
+        beads.force[1:] = 0.0  # overflows must not last
+    now.planned = 0.0
 
 
 @inlined
 def begin_step(beads: Beads, plan: Plan, hi: int) -> None:
     """Move the beads, and their forces, to the end of a step, which is the start of the next."""
-    last, power = len(plan.scheme.moments) - 1, beads.power
+    last, power = index(len(plan.scheme.moments) - 1), beads.power
     for i in range(index(hi)):
         beads.y[i], beads.v[i] = beads.next_y[i], beads.next_v[i]
-    for i in range(index(hi) + ONE):
-        beads.force[0, i] = beads.force[last, i]
+        beads.force[ZERO, i + ONE] = beads.force[last, i + ONE]
     power[0, 0], power[1, 0] = power[0, last], power[1, last]
     beads.given[0] = beads.given[1]
-
-
-@inlined
-def reject_step(beads: Beads, plan: Plan, now: Any, h: float, error: float) -> None:
-    """Plan a shorter step after a step with an error above 1, or NaN."""
-    now.planned = 0.0
-    if error < _HOPELESS:
-        now.h = h * max(_SHRINKAGE, _SAFETY * error ** (-1.0 / (plan.scheme.lower + 1)))
-    else:
-        now.h = h * _SHRINKAGE
-        beads.force[1:] = 0.0  # overflows must not last

@@ -100,7 +100,7 @@ def _built(sources: int) -> Any:
         ends: Array,
         points: Array,
     ) -> int:
-        """Add displacements and velocities of watched beads to y and v, both (R, S).
+        """Compute displacements and velocities of watched beads; they go to y and v, both (R, S).
 
         rows : (R,), rows q of the beads; only beads between two others of them come out right.
         time : (S,), increasing. step : (S,), number of the step that holds each time. ends :
@@ -112,10 +112,12 @@ def _built(sources: int) -> Any:
             while last < len(time) and step[last] == n:
                 last += 1
             start, h = knots.time[n], knots.time[n + 1] - knots.time[n]
-            for end in range(2):
-                for r in range(len(rows)):
+            for r in range(len(rows)):
+                for end in range(2):
                     state, row = knots.state[n + end, rows[r]], ends[end, r]
                     row[0], row[1], row[2], row[3] = state[0], h * state[1], h * h * state[2], 0.0
+                for s in range(first, last):
+                    y[r, s] = v[r, s] = 0.0
             for r in range(len(rows) - 1):
                 q, i = rows[r], knots.watched[rows[r]]
                 scale, rest, ratio = h * h * chain.A[i], chain.rest[i], chain.r[i]

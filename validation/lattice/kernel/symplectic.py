@@ -11,7 +11,7 @@ from typing import Any
 from validation.lattice.kernel.advance import advance_front, moving
 from validation.lattice.kernel.arrays import TILE, Beads, Chain, Knots, Plan
 from validation.lattice.kernel.compiled import ONE, SOURCES, ZERO, cached, index
-from validation.lattice.kernel.force import contact_forces
+from validation.lattice.kernel.force import contact_forces, tile_bounds
 from validation.lattice.kernel.samples import store_knot
 
 
@@ -36,15 +36,13 @@ def _built(sources: int) -> Any:
             hi = moving(now)
             for tile in range(0, hi + last, TILE):
                 for s in range(last):
-                    lo, up = max(tile - s, 0), min(tile + TILE - s, hi)
+                    lo, up, first, behind = tile_bounds(tile, s, hi)
                     if lo < up:
                         b, a = h * kicks[s], h * drifts[s]
                         for i in range(index(lo), index(up)):
                             u = v[i] + b * (force[ZERO, i] - force[ZERO, i + ONE]) * inverse[i]
                             v[i] = u
                             y[i] = y[i] + a * u
-                        # The contact ahead of the tile waits for its second bead.
-                        first, behind = max(lo - 1, 0), up if up == hi else up - 1
                         contact_forces(chain, beads, plan, y, v, ZERO, first, behind)
             b = h * kicks[last]
             for i in range(index(hi)):
