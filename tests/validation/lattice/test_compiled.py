@@ -21,6 +21,13 @@ from validation import Scene, simulate
 scene = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=9, velocities=(1,))
 print(*simulate(scene, rtol=1e-6).velocities)
 """
+GAS = """
+import numpy as np
+from validation import Scene, simulate
+start = np.random.default_rng(1).normal(size=300)
+scene = Scene(masses=(1,) * 300, stiffnesses=(1,) * 299, k=1.5, duration=30, velocities=start)
+print(*simulate(scene).velocities)
+"""
 SMALL = """
 from validation.lattice.kernel.compiled import SOURCES, cached
 
@@ -57,6 +64,13 @@ def test_an_edit_of_any_source_of_the_kernel_compiles_again(tmp_path):
     force = tmp_path / "validation" / "lattice" / "kernel" / "force.py"
     force.write_text(force.read_text() + "# edited\n")
     assert "data saved" in output(tmp_path, SMALL, **cached)
+
+
+@pytest.mark.slow
+def test_the_process_that_compiles_gives_the_same_digits_as_later_ones(tmp_path):
+    """Neighbours of 300 beads that collide for long: the last digits of a sum grow to the first."""
+    cache = {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    assert output(tmp_path, GAS, **cache) == output(tmp_path, GAS, **cache)
 
 
 @pytest.mark.slow

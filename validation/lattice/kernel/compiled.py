@@ -48,7 +48,9 @@ inlined: Callable[[Function], Function] = njit(inline="always", **_INNER)
 # Small functions with many callers, inlined by LLVM, as the calls would take a quarter of a run's
 # time. Inlining by numba gives the same code, but takes three times as long to compile.
 part: Callable[[Function], Function] = njit(forceinline=True, **_INNER)
-# Sums and maxima in the order of the machine's registers, the same in every run.
+# Sums and maxima in the order of the machine's registers, the same in every run: inlined, too. Of a
+# function that stays apart there are two translations, its own and its caller's. The process that
+# compiles the engine would take the first, later processes the second, which rounds differently.
 summed: Callable[[Function], Function] = njit(
     forceinline=True, **_INNER | {"fastmath": {"nsz", "arcp", "contract", "reassoc"}}
 )
