@@ -71,10 +71,10 @@ def _built(sources: int) -> Any:
                 moved = False
                 continue
             marks = mark_kinks(chain, beads, plan, h, hi)
-            i = next_mark(beads.sums[0], 0, hi if marks > 0 else 0)
-            while i < hi and marks > 0:
+            i = -1
+            for _ in range(marks):
+                i = next_mark(beads.sums[0], i + 1)
                 correct_contact(chain, beads, plan, h, i)
-                i = next_mark(beads.sums[0], i + 1, hi)
             error = step_error(chain, beads, plan, h, hi)
             moved = error <= 1.0
             stale = moved and jumps + marks > 0

@@ -203,9 +203,9 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
 
 
 @part
-def next_mark(marks: Array, i: int, hi: int) -> int:
-    """Return the first of the contacts i … hi-1 that is marked; hi without one."""
-    while i < hi and not marks[index(i) + ONE] > 0.0:
+def next_mark(marks: Array, i: int) -> int:
+    """Return the first marked contact from contact i on; there is one."""
+    while not marks[index(i) + ONE] > 0.0:
         i += 1
     return i
 
