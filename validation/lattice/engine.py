@@ -152,11 +152,8 @@ def _plan(motion: Motion, method: str, rtol: float, longest: float) -> tuple[Pla
 def _chain(motion: Motion) -> Chain:
     """Build the kernel's chain, padded by beads of infinite mass; the first of them is the wall."""
     rows = _lines(5, motion.size + 2 * SHORTEST, 0)
-    ratios = motion.damping
-    if motion.scene.damping is not None:
-        with np.errstate(all="ignore"):
-            ratios = np.where(ratios > 0, ratios / motion.stiffnesses, 0.0)
-    given = 1 / motion.masses, motion.stiffnesses, ratios, motion.rest, motion.load
+    c, A = motion.damping, motion.stiffnesses
+    given = 1 / motion.masses, A, np.divide(c, A, 0 * c, where=c > 0), motion.rest, motion.load
     for row, values in zip(rows, given, strict=True):
         row[: len(values)] = values
     drive, contact = motion.scene.drive, motion.contact

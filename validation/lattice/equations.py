@@ -58,7 +58,9 @@ class Motion:
         n, damping, self.response = scene.size, scene.damping, response
         wall = () if scene.wall is None else (scene.wall,)
         self.scene, self.size, self.k = scene, n, scene.k
-        self.masses, self.stiffnesses = np.array(scene.masses), np.array(scene.stiffnesses + wall)
+        rows = scene.masses, scene.stiffnesses + wall, scene.displacements, scene.velocities
+        # np.array takes twice as long, half of the set-up of long chains
+        self.masses, self.stiffnesses, y, v = (np.fromiter(row, float, len(row)) for row in rows)
         contacts = len(self.stiffnesses)
         damping_power = None if damping is None else damping.power(scene.k)
         self.contact = Contact(scene.k, scene.law, damping_power)
@@ -76,8 +78,7 @@ class Motion:
             for name, values in (("compression", self.rest), ("force", self.load)):
                 _check_range(f"static {name}", values.min(), values.max())
         self.start = np.zeros(2 * n + 2)
-        self.start[: len(scene.displacements)] = scene.displacements
-        self.start[n : n + len(scene.velocities)] = scene.velocities
+        self.start[: len(y)], self.start[n : n + len(v)] = y, v
         if scene.drive is not None:
             self.start[0], self.start[n], _ = scene.drive.at(0.0)
 
