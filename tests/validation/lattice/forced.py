@@ -128,8 +128,7 @@ def follow(scene, times, rtol, scale):
     stops = {*times.tolist(), *((drive.ramp, *drive.time) if drive is not None else ())}
     found = Motion(*np.zeros((2, len(times), n)), *np.zeros((3, len(times))))
     ref.settle(state)
-    first = 1e-6
-    longest = drive.longest_step if drive is not None else np.inf
+    first, longest = 1e-6, np.inf if drive is None else drive.longest_step
     options = dict(rtol=rtol, atol=atol, max_step=longest)
     least = 1e-2 * rtol * scale[1] * ref.m.min() if len(ref.A) else 0.0
     for stop in sorted(s for s in stops if 0 <= s <= times[-1]):

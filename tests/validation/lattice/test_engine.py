@@ -8,8 +8,10 @@ import pytest
 from book.studies.accuracy import FINEST, TASKS, struck_chain
 from tests.validation.lattice.forced import follow
 from validation.lattice.equations import Motion
+from validation.lattice.kernel.arrays import TILE
 from validation.lattice.simulate import COMPILED, simulate, simulate_many
 from validation.scenes.chains import struck
+from validation.scenes.forcing import Damping
 from validation.scenes.scene import Scene
 from validation.studies.run import RECORDS
 
@@ -26,8 +28,7 @@ def loaded(k, duration=8.0, **rest):
 
 
 @pytest.mark.parametrize(
-    ("method", "order", "steps"),
-    [("RKN86", 8, (80, 64, 50)), ("symplectic", 4, (240, 160, 120))],
+    ("method", "order", "steps"), [("RKN86", 8, (80, 64, 50)), ("symplectic", 4, (240, 160, 120))]
 )
 def test_the_order_on_a_smooth_problem(method, order, steps):
     """Slopes 8 and 4 of the error at the end; no tolerance shortens the steps of the pair."""
@@ -56,6 +57,19 @@ def test_every_law_and_every_sensor_agree_with_dop853(k):
             np.testing.assert_allclose(getattr(run, name), getattr(reference, name), atol=1e-6)
         np.testing.assert_allclose(run.bead_velocity[:, -1], run.velocities, atol=1e-14)
         np.testing.assert_allclose(run.bead_displacement[:, -1], run.displacements, atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("method", "damping"),
+    [("RKN86", None), ("RKN86", Damping("contact", 0.1)), ("symplectic", None)],
+)
+def test_a_chain_of_several_tiles_moves_as_its_mirror_image(method, damping):
+    """The tiles of the image end at other beads; 1e-6 is the error of both runs, not rounding."""
+    n, start = 2 * TILE + 90, np.random.default_rng(0).normal(size=2 * TILE + 90)
+    gas = dict(masses=(1,) * n, stiffnesses=(1,) * (n - 1), k=1.5, duration=3, damping=damping)
+    options = dict(method=method, rtol=1e-9)
+    run, image = (simulate(Scene(velocities=v, **gas), **options) for v in (start, -start[::-1]))
+    np.testing.assert_allclose(image.velocities, -run.velocities[::-1], atol=1e-6)
 
 
 def difference(task):

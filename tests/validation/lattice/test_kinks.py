@@ -106,4 +106,4 @@ def check(law, curve, bound):
     touching = contact(*law)
     found, _ = compiled(*touching, curve, 1.0, np.empty((8, POINTS)))
     wanted = expected(touching, curve, 1.0)
-    assert np.abs(np.array(found[:3]) - wanted).max() <= bound * wanted[0] + 1e-16
+    assert np.abs(found[:3] - wanted).max() <= bound * wanted[0] + 1e-16

@@ -62,9 +62,8 @@ def test_random_chains_agree_with_scipy(law, loaded):
 
 def test_a_wall_recedes_from_a_chain_that_softens():
     """δ - δ² reaches its greatest force at δ = ½, which no energy of the scene may pass."""
-    n = 80
     scene = Scene(
-        masses=[1] * n, stiffnesses=[1] * (n - 1), wall=1.0, law=named("polynomial", -1, 0),
+        masses=[1] * 80, stiffnesses=[1] * 79, wall=1.0, law=named("polynomial", -1, 0),
         precompression=0.24, drive=Drive(velocity=-0.2087), duration=55.0,
     )  # fmt: skip
     fast, other = simulate(scene), simulate(scene, method="DOP853")
