@@ -16,6 +16,9 @@ Drive: a first bead of infinite mass with a given motion. Steps end at the end o
 knots of a file.
 
 Front: beads ahead of the front have not moved yet and are left out.
+
+Tiles: all stages of a step are computed for some hundred beads before the next beads are looked at,
+so that what a stage reads is still in the processor's cache.
 """
 
 from __future__ import annotations
