@@ -3,7 +3,7 @@
 F has no derivative of order k + 1 where a contact opens or closes, and a quadrature that does not
 know the place errs by O(h^{k+1}). Over the step, x = 0 … 1, the compression is close to the quintic
 p(x) with the values of δ, δ' and δ'' at both ends. `integrals` integrates F(p, p') over the
-intervals in which the contact pushes, for unit stiffness, by Gauss's rule in u with
+intervals in which the contact pushes (`find_intervals`), for unit stiffness, by Gauss's rule in u,
 x = z + (e - z) u^q, z the root of p at one end of the interval and e the other end, so that F is
 smooth in u.
 

@@ -42,6 +42,7 @@ def _add_up(
     sums: Array, q: Any, force: Array, row: Array, scale: float, stages: int, lo: int, hi: int
 ) -> None:
     """Compute a weighted sum of forces, sums[q] = scale Σ_j row[j] force[j], 0 ≤ j < ``stages``."""
+    # One pass over four rows or over all nine: the weights of stages that are still to come are 0.
     a, b, c, d = scale * row[0], scale * row[1], scale * row[2], scale * row[3]
     if stages <= 4:
         for i in range(index(lo) + ONE, index(hi) + ONE):
@@ -202,7 +203,7 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
     return count
 
 
-@part
+@inlined
 def next_mark(marks: Array, i: int) -> int:
     """Return the first marked contact from contact i on; there is one."""
     while not marks[index(i) + ONE] > 0.0:
