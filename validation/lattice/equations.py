@@ -59,7 +59,7 @@ class Motion:
         wall = () if scene.wall is None else (scene.wall,)
         self.scene, self.size, self.k = scene, n, scene.k
         rows = scene.masses, scene.stiffnesses + wall, scene.displacements, scene.velocities
-        # np.array takes twice as long, half of the set-up of long chains
+        # np.array takes 1.7 times as long, which counts in chains of 200,000 beads.
         self.masses, self.stiffnesses, y, v = (np.fromiter(row, float, len(row)) for row in rows)
         contacts = len(self.stiffnesses)
         damping_power = None if damping is None else damping.power(scene.k)

@@ -46,7 +46,8 @@ def _built(sources: int) -> Any:
         Returns the time that is reached, and ``sources``.
         """
         until, hi, h = now.tries + tries, plan.size, 0.0
-        moved = stale = now.tries == 0  # the forces at the end of the step are to be computed
+        # The motion at a step's end is known, but not its forces: at first, or after a correction.
+        moved = stale = now.tries == 0
         while True:
             if moved and not stale:
                 begin_step(beads, plan, hi)

@@ -137,7 +137,7 @@ def _root(c: Quintic, x: float, side: float) -> float:
 
 @summed
 def forces_along(law: Law, r: float, c: Quintic, h: float, x: Array, f: Array) -> None:
-    """Compute the forces at `POINTS` places x of a contact with the compression p; they go to f."""
+    """Compute the forces of a contact with the compression p at places x; they go to f."""
     if law.k == 1.5 and law.p in (0.0, 0.25, 0.5) and not law.generated:  # vectorises
         for m in range(index(len(x))):
             p, slope = value_and_slope(c, x[m])
