@@ -139,8 +139,7 @@ def finished(
     dissipated, work = map(float, end[2 * n :])
     drift = motion.energy(end) - motion.initial_energy + dissipated - work
     step = motion.scene.duration / steps
-    # The drift is finite with the final state alone.
-    if not math.isfinite(drift + sum(float(row.sum()) for row in records.values() if row.size)):
+    if not math.isfinite(drift + sum(float(row.sum()) for row in arrays.values() if row.size)):
         raise IntegrationError(
             f"the motion overflows: choose other units, or a step of {step:g} is too long"
         )

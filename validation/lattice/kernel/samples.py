@@ -103,10 +103,10 @@ def _built(sources: int) -> Any:
         """Compute displacements and velocities of watched beads; they go to y and v, both (R, S).
 
         rows : (R,), rows q of the beads; only beads between two others of them come out right.
-        time : (S,), increasing. step : (S,), number of the step that holds each time. ends :
-        (2, R, 4), working memory. points : as in `Beads`. Returns ``sources``.
+        time : (S,). step : (S,), number of the step that holds each time. ends : (2, R, 4), working
+        memory. points : as in `Beads`. Returns ``sources``.
         """
-        last = 0
+        law, last = chain.law, 0
         while last < len(time):
             first, n = last, step[last]
             while last < len(time) and step[last] == n:
@@ -124,15 +124,15 @@ def _built(sources: int) -> Any:
                 near, far = scale * chain.inverse[i], scale * chain.inverse[i + 1]
                 if knots.state[n + 1, q, 3] > 0.0:
                     p = _quintic(knots, n, q, rest)
-                    count, _ = kinks.find_intervals(chain.law, ratio, p, h, points)
-                    # Backwards: first the end of the step, then the samples, of which the last
-                    # may lie behind all intervals.
+                    count, _ = kinks.find_intervals(law, ratio, p, h, points)
+                    whole = 0.0, 0.0
+                    # Backwards: first the end of the step, whose integrals are those of all
+                    # samples behind the last interval.
                     for s in range(last, first - 1, -1):
                         x = (time[s] - start) / h if s < last else 1.0
+                        once, twice = whole
                         if s == last or x < points[5, count - 1]:
-                            once, twice, _, _ = kinks.integrals(
-                                chain.law, ratio, p, h, x, count, points
-                            )
+                            once, twice, _, _ = kinks.integrals(law, ratio, p, h, x, count, points)
                         moment = twice - (1.0 - x) * once  # ∫ (x - s) F(s) ds
                         if s < last:
                             y[r, s] -= near * moment
@@ -140,9 +140,10 @@ def _built(sources: int) -> Any:
                             v[r, s] -= near * once / h
                             v[r + 1, s] += far * once / h
                         else:
+                            whole = once, twice
                             for end in range(2):
                                 delta, slope = value_and_slope(p, float(end))
-                                push = kinks.push(chain.law, ratio, delta, slope / h)
+                                push = kinks.push(law, ratio, delta, slope / h)
                                 changes = end * moment, end * once, push
                                 for m in range(3):
                                     ends[end, r, m] += near * changes[m]
@@ -150,7 +151,7 @@ def _built(sources: int) -> Any:
                 else:
                     for end in range(2):
                         d, speed, a = _compression(knots, n + end, q, rest)
-                        rate = h * _rate(chain.law, ratio, d, speed, a)
+                        rate = h * _rate(law, ratio, d, speed, a)
                         ends[end, r, 3] -= near * rate
                         ends[end, r + 1, 3] += far * rate
             for r in range(len(rows)):
