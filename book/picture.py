@@ -57,7 +57,9 @@ class Passage:
     def numbers(self) -> dict[str, list[float] | float]:
         """Numbers of the picture, to five digits."""
         values = {"time": self.times, "force": self.force, "place": self.places}
-        rounded = {name: [float(f"{x:.5g}") for x in v.ravel()] for name, v in values.items()}
+        rounded = {
+            name: [float(f"{x:.5g}") for x in v.ravel()] for name, v in values.items()
+        }
         return rounded | {"speed": float(f"{float(self.theory.speed):.5g}")}
 
 
@@ -71,7 +73,9 @@ def passage() -> Passage:
     )  # fmt: skip
     run = simulate(scene)
     arrivals = [  # at a bead: in the mean of its two contacts
-        np.mean([measure(run.time, run.contact_force[i]).arrival for i in (bead - 1, bead)])
+        np.mean(
+            [measure(run.time, run.contact_force[i]).arrival for i in (bead - 1, bead)]
+        )
         for bead in (FIRST, LAST)
     ]
     times = np.linspace(*arrivals, FRAMES)
@@ -102,10 +106,14 @@ def draw(axes: Axes, seen: Passage, moment: int) -> None:
     x = np.linspace(-1, len(force) + 1, 1201)
     D = float(seen.theory.wave.D)
     line = seen.theory.along(D * (x - seen.places[moment]), of="contact")
-    axes.plot(x, np.where(line > 1e-3 * top, line, np.nan), color="#D55E00", ls="-", lw=1.6)
+    axes.plot(
+        x, np.where(line > 1e-3 * top, line, np.nan), color="#D55E00", ls="-", lw=1.6
+    )
     beads = [Circle((i + x, 0), 0.5) for i, x in enumerate(moved)]
     row = axes.inset_axes((0, 0, 1, 0.29))
-    row.add_collection(PatchCollection(beads, fc=["#44546A", "#F2E6C9"] * PAIRS, ec="k", lw=0.5))
+    row.add_collection(
+        PatchCollection(beads, fc=["#44546A", "#F2E6C9"] * PAIRS, ec="k", lw=0.5)
+    )
     row.set(xlim=(-2, len(moved)), ylim=(-0.6, 0.6), aspect="equal")
     row.axis("off")
     axes.set(xlim=(-2, len(moved)), ylim=(-0.42 * top, top))
@@ -117,15 +125,21 @@ def still(seen: Passage) -> Figure:
     figure, rows = plt.subplots(3, 1, figsize=(9, 4.2), layout="constrained")
     for axes, moment in zip(rows, (0, len(seen.times) // 2, -1), strict=True):
         draw(axes, seen, moment)
-        axes.text(-1.5, 0.6 * seen.force.max(), f"{1e6 * seen.times[moment]:.0f} µs", size=11)
+        axes.text(
+            -1.5, 0.6 * seen.force.max(), f"{1e6 * seen.times[moment]:.0f} µs", size=11
+        )
     return figure
 
 
 def main() -> None:
     """Draw the README's picture."""
     seen = passage()
-    still(seen).savefig(HERE / "chain.png", dpi=100, metadata={"Comment": json.dumps(seen.numbers)})
-    print(f"lattice {seen.lattice_speed:.2f} m/s, theory {float(seen.theory.speed):.2f} m/s")
+    still(seen).savefig(
+        HERE / "chain.png", dpi=100, metadata={"Comment": json.dumps(seen.numbers)}
+    )
+    print(
+        f"lattice {seen.lattice_speed:.2f} m/s, theory {float(seen.theory.speed):.2f} m/s"
+    )
 
 
 if __name__ == "__main__":

@@ -62,7 +62,9 @@ def work_precision() -> dict[tuple[str, str], list[tuple[float, float]]]:
                 start = time.process_time()
                 run = simulate(scene, rtol=10.0**-n, **options)
                 spent = time.process_time() - start
-                rows.setdefault((name, label), []).append((spent, abs(_peak(run) / truth - 1)))
+                rows.setdefault((name, label), []).append(
+                    (spent, abs(_peak(run) / truth - 1))
+                )
     return rows
 
 

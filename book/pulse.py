@@ -39,4 +39,6 @@ def struck_pulse(k: float, omega: Any, near: int = 40, far: int = 80) -> StruckP
     width, _, unit_speed, decay = chain.numbers(passages)[:, 0]
     q = (chain.k - 1) / (2 * chain.k)  # the speed is proportional to F^q
     speed = float(np.mean(unit_speed * passages[1, :, 1] ** q))
-    return StruckPulse(speed, float(np.mean(passages[1, :, 1])), float(width), float(decay))
+    return StruckPulse(
+        speed, float(np.mean(passages[1, :, 1])), float(width), float(decay)
+    )

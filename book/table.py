@@ -22,7 +22,9 @@ def table(
         )
         for row in rows
     )
-    columns = tuple(Column("", name, format="" if callable(form) else form) for name, form in pairs)
+    columns = tuple(
+        Column("", name, format="" if callable(form) else form) for name, form in pairs
+    )
     return Report("", (Table(columns, tuple(shown)),))
 
 

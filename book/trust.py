@@ -65,5 +65,8 @@ def _series(omega: sp.Rational) -> Resummed:
 @cache
 def _compact() -> tuple[Any, Any]:
     """Compact waves of the paper's closure and of the full one, as functions of k and ω."""
-    theories = homogenize(Dimer(_M1, _M2)).pde.traveling_wave(), canonical_wave(Dimer(_M1, _M2))
+    theories = (
+        homogenize(Dimer(_M1, _M2)).pde.traveling_wave(),
+        canonical_wave(Dimer(_M1, _M2)),
+    )
     return theories[0].numeric(), theories[1].numeric()

@@ -19,7 +19,15 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, Quantity, integer, positive, power, read_exact, shorten
+from lwa.base.exact import (
+    InputError,
+    Quantity,
+    integer,
+    positive,
+    power,
+    read_exact,
+    shorten,
+)
 from lwa.base.files import items
 from lwa.base.frozen import Value
 from lwa.spheres.hertz import Sphere, stiffness
@@ -68,7 +76,9 @@ class Cell(Value):
                 "many contacts as particles"
             )
         object.__setattr__(self, "masses", masses)
-        object.__setattr__(self, "stiffnesses", stiffnesses or (sp.S.One,) * len(masses))
+        object.__setattr__(
+            self, "stiffnesses", stiffnesses or (sp.S.One,) * len(masses)
+        )
         object.__setattr__(self, "spacing", positive(spacing, "spacing"))
 
     def latex_rows(self) -> list[str]:
@@ -83,8 +93,12 @@ class Cell(Value):
         are those in space, and D u_x is the mean compression of the contacts.
         """
         row = items(spheres, "spheres")
-        contacts = tuple(stiffness(a, b) for a, b in zip(row, row[1:] + row[:1], strict=True))
-        spacing = sp.Add(*(2 * sphere.radius for sphere in row)) / len(row) if row else D
+        contacts = tuple(
+            stiffness(a, b) for a, b in zip(row, row[1:] + row[:1], strict=True)
+        )
+        spacing = (
+            sp.Add(*(2 * sphere.radius for sphere in row)) / len(row) if row else D
+        )
         return cls(tuple(sphere.mass for sphere in row), contacts, spacing)
 
     @cached_property
@@ -151,7 +165,9 @@ class Cell(Value):
         """The ratio τ/t = √(P k A_eff D^{k+1} / M) of the time in u_ττ = u_x^{k-1} u_xx + …."""
         # Force A_eff (D u_x)^k on the density M/(P D): M/(P D) u_tt = k A_eff D^k u_x^{k-1} u_xx
         k = exponent(k)
-        square = self.size * k * self.stiffness(k) * power(self.spacing, k + 1) / self.mass
+        square = (
+            self.size * k * self.stiffness(k) * power(self.spacing, k + 1) / self.mass
+        )
         return power(square, sp.S.Half)
 
 
@@ -170,7 +186,9 @@ def Dimer(
 def read_cell(value: Any) -> Cell:
     """Return a cell; raise `lwa.InputError` for anything else."""
     if not isinstance(value, Cell):
-        raise InputError(f"cell is {shorten(value)}: a Cell such as Dimer(m1, m2) is wanted")
+        raise InputError(
+            f"cell is {shorten(value)}: a Cell such as Dimer(m1, m2) is wanted"
+        )
     return value
 
 
@@ -182,12 +200,17 @@ def exponent(value: Any) -> sp.Expr:
     least, largest = EXPONENTS
     result = read_exact(value, "k")
     if result.is_number and not least <= result <= largest:
-        raise InputError(f"k is {shorten(result)}: exponents from {least} to {largest} are taken")
+        raise InputError(
+            f"k is {shorten(result)}: exponents from {least} to {largest} are taken"
+        )
     return result
 
 
 def substitution(
-    values: Mapping[str, Any], cell: Cell, k: sp.Expr = sp.S.One, more: Sequence[sp.Symbol] = ()
+    values: Mapping[str, Any],
+    cell: Cell,
+    k: sp.Expr = sp.S.One,
+    more: Sequence[sp.Symbol] = (),
 ) -> dict[sp.Symbol, sp.Expr]:
     """Map symbols of a cell, of its exponent and more to the values given for their names.
 
@@ -200,7 +223,9 @@ def substitution(
     known = {s.name: s for s in symbols}
     if len(known) < len(symbols):
         twice = min(s.name for s in symbols if known[s.name] != s)
-        raise InputError(f"{twice!r} names two symbols, with different assumptions: use one")
+        raise InputError(
+            f"{twice!r} names two symbols, with different assumptions: use one"
+        )
     given = dict(values)
     omega = given.pop("omega", None) if "omega" not in known else None
     for name in given:
@@ -215,13 +240,17 @@ def substitution(
         return new
     masses = tuple(dict.fromkeys(cell.masses))
     if len(masses) != 2:
-        raise InputError(f"omega is m2/m1 of a cell with two masses; this one has {len(masses)}")
+        raise InputError(
+            f"omega is m2/m1 of a cell with two masses; this one has {len(masses)}"
+        )
     ratio = positive(omega, "omega")
     # m2 becomes ω m1 or, where m2 is no free symbol, m1 becomes m2/ω.
     for mass, other, factor in ((masses[1], masses[0], ratio), (*masses, 1 / ratio)):
         if mass.is_Symbol and mass not in new and mass not in other.free_symbols:
             return new | {mass: factor * other.xreplace(new)}
-    raise InputError("omega is m2/m1: one of the masses must be a symbol without another value")
+    raise InputError(
+        "omega is m2/m1: one of the masses must be a symbol without another value"
+    )
 
 
 def _quantities(values: Any, name: str, singular: str) -> tuple[sp.Expr, ...]:

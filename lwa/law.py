@@ -87,7 +87,9 @@ class ContactLaw(Value):
 
     def phi(self, n: int) -> sp.Expr:
         """The parameter φ_n = δ^{n-1} F^{(n)}/F′ as an expression in δ."""
-        return ratio(self.delta ** (integer(n, "n", 1) - 1) * self.slope(n), self.slope())
+        return ratio(
+            self.delta ** (integer(n, "n", 1) - 1) * self.slope(n), self.slope()
+        )
 
     @property
     def pulls(self) -> bool:
@@ -149,7 +151,9 @@ class ContactLaw(Value):
         for factor in self.F.atoms(sp.Pow):
             start, end = (factor.base.subs(self.delta, x) for x in (0, delta))
             if factor.exp.is_negative and (start * end).is_nonpositive:
-                raise InputError(f"the strain is {shorten(p)}: the law has a pole before it")
+                raise InputError(
+                    f"the strain is {shorten(p)}: the law has a pole before it"
+                )
         slope = self.at(delta, 1)
         if not slope.free_symbols and not slope.is_positive:
             raise InputError(
@@ -162,14 +166,20 @@ class ContactLaw(Value):
         Raises `lwa.InputError` for a force beyond the law's reach, and for symbols.
         """
         if self.formless:
-            raise InputError(f"law is {self.text}: the strain under a force needs an expression")
-        needed = real(force, "force") / cell.stiffnesses[0]  # F(δ) of a contact of unit stiffness
+            raise InputError(
+                f"law is {self.text}: the strain under a force needs an expression"
+            )
+        needed = (
+            real(force, "force") / cell.stiffnesses[0]
+        )  # F(δ) of a contact of unit stiffness
         free = needed.free_symbols | self.F.free_symbols - {self.delta}
         demand_numbers(free, f"the load under the law {self.text} needs numbers")
         with mpmath.workdps(50):
             root = growing_root(self.F - needed, self.delta)
             if root is None:
-                raise InputError(f"force is {shorten(force)}: the law does not reach it")
+                raise InputError(
+                    f"force is {shorten(force)}: the law does not reach it"
+                )
             # 35 digits leave 15 of the rise of a wave that is 1e-20 of the load.
             return sp.Float(root, 35)
 
@@ -208,7 +218,9 @@ class Power(ContactLaw):
     def of_strain(self, p: sp.Expr, D: sp.Expr, n: int = 0) -> sp.Expr:
         p = real(p, "p")
         # p^k/k derived n times: (k-1) … (k-n+1) p^{k-n}; n = -1: p^{k+1}/(k (k+1))
-        up, down = (sp.Mul(*(self.k - j for j in r)) for r in (range(1, n), range(n, 1)))
+        up, down = (
+            sp.Mul(*(self.k - j for j in r)) for r in (range(1, n), range(n, 1))
+        )
         return up / down * p ** (self.k - n)
 
     def compression(self, cell: Cell, force: sp.Expr) -> sp.Expr:
@@ -241,13 +253,17 @@ class Law(ContactLaw):
 
     def __post_init__(self) -> None:
         if not isinstance(self.delta, sp.Symbol):
-            raise InputError(f"delta is {shorten(self.delta)}: the symbol of δ in F is wanted")
+            raise InputError(
+                f"delta is {shorten(self.delta)}: the symbol of δ in F is wanted"
+            )
         if not isinstance(self.F, sp.Expr) or self.delta not in self.F.free_symbols:
             fault = f"a SymPy expression in {self.delta} is wanted"
             raise InputError(f"F is {shorten(self.F)}: {fault}")
         object.__setattr__(self, "F", read_exact(self.F, "F"))
         if self.slope().is_zero:
-            raise InputError(f"F is {shorten(self.F)}: a force that depends on δ is wanted")
+            raise InputError(
+                f"F is {shorten(self.F)}: a force that depends on δ is wanted"
+            )
 
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> ContactLaw:
         if self.name:
@@ -301,13 +317,17 @@ def named(name: str, *parameters: Any) -> ContactLaw:
     letters = text.split()
     if len(parameters) > len(letters):
         wanted = f"at most {len(letters)} ({', '.join(letters)})" if letters else "none"
-        raise InputError(f"law {name} has {len(parameters)} parameters: {wanted} are wanted")
+        raise InputError(
+            f"law {name} has {len(parameters)} parameters: {wanted} are wanted"
+        )
     read = signed if name == "polynomial" else positive
     values = []
     for letter, value in zip_longest(letters, parameters):
         place = f"{name}'s {letter}"
         values.append(
-            _check_parameter(read(letter if value is None else value, place), place, DELTA)
+            _check_parameter(
+                read(letter if value is None else value, place), place, DELTA
+            )
         )
     force = build(*values)
     if isinstance(force, ContactLaw):
@@ -318,7 +338,9 @@ def named(name: str, *parameters: Any) -> ContactLaw:
 def read_law(value: Any, name: str) -> ContactLaw:
     """Read a law from its name and parameters, such as "hertz2:1,2"; ``name`` is for messages."""
     if not isinstance(value, str):
-        raise InputError(f"{name} is {shorten(value)}: a text such as 'hertz2:1,2' is wanted")
+        raise InputError(
+            f"{name} is {shorten(value)}: a text such as 'hertz2:1,2' is wanted"
+        )
     title, colon, parameters = value.partition(":")
     return named(title.strip(), *(parameters.split(",") if colon else ()))
 
@@ -326,7 +348,9 @@ def read_law(value: Any, name: str) -> ContactLaw:
 def _check_parameter(value: sp.Expr, name: str, delta: sp.Symbol) -> sp.Expr:
     """Return a law's parameter; raise `lwa.InputError` if it holds the compression's symbol."""
     if delta.name in {s.name for s in value.free_symbols}:
-        raise InputError(f"{name} {delta.name!r}: the name means the compression of a contact")
+        raise InputError(
+            f"{name} {delta.name!r}: the name means the compression of a contact"
+        )
     return value
 
 
@@ -341,11 +365,17 @@ def for_cell(law: Any, cell: Cell, k: Any = symbol_k) -> ContactLaw:
     Raises `lwa.InputError` for anything but a law or None, for a law besides an exponent, and for
     unlike contacts under a law that is no power.
     """
-    if law is not None and (not isinstance(k, sp.Symbol) or k != symbol_k):  # k may be an array
-        raise InputError(f"k is {shorten(k)} and law {shorten(law)}: one of them is wanted")
+    if law is not None and (
+        not isinstance(k, sp.Symbol) or k != symbol_k
+    ):  # k may be an array
+        raise InputError(
+            f"k is {shorten(k)} and law {shorten(law)}: one of them is wanted"
+        )
     law = Power(k) if law is None else law
     if not isinstance(law, ContactLaw):
-        raise InputError(f"law is {shorten(law)}: Power(k), Law(F, delta) or general() is wanted")
+        raise InputError(
+            f"law is {shorten(law)}: Power(k), Law(F, delta) or general() is wanted"
+        )
     if len(set(read_cell(cell).stiffnesses)) > 1 and not law.homogeneous:
         raise InputError(
             "the contacts differ in stiffness, and their shares of the strain would then depend on "
@@ -358,6 +388,13 @@ def substituted(
     values: Mapping[str, Any], cell: Cell, law: ContactLaw, *expressions: sp.Expr
 ) -> tuple[Any, ...]:
     """Substitute values in a cell, a law and expressions, as `lwa.cell.substitution`."""
-    others = set().union(*(x.free_symbols for x in expressions)) - {*cell.symbols, *law.symbols}
+    others = set().union(*(x.free_symbols for x in expressions)) - {
+        *cell.symbols,
+        *law.symbols,
+    }
     new = substitution(values, cell, more=(*law.symbols, *sorted(others, key=str)))
-    return cell.replaced(new), law.replaced(new), *(x.xreplace(new) for x in expressions)
+    return (
+        cell.replaced(new),
+        law.replaced(new),
+        *(x.xreplace(new) for x in expressions),
+    )

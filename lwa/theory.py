@@ -60,7 +60,9 @@ class Theory(OfClosure):
     def slaved(self) -> dict[int, dict[int, Terms]]:
         """Terms J_n of the particles' fields w_i = u + u_x Σ D^n J_n, by i and n (full closure)."""
         return {
-            i: {n: terms(self.closure, S, STRAIN) for n, S in enumerate(series, start=1)}
+            i: {
+                n: terms(self.closure, S, STRAIN) for n, S in enumerate(series, start=1)
+            }
             for i, series in enumerate(self.closure.slaved)
             if any(not S.is_zero() for S in series)
         }
@@ -104,7 +106,11 @@ class Theory(OfClosure):
         law.append(
             rf"\phi_{{n}} = {definition} \quad \text{{and}}\ F'({delta})\ \text{{at}}\ {place}"
         )
-        return [*law, *latex.rows({rf"\phi_{{{n}}}": x for n, x in self.phi.items()}), *rows]
+        return [
+            *law,
+            *latex.rows({rf"\phi_{{{n}}}": x for n, x in self.phi.items()}),
+            *rows,
+        ]
 
     def _repr_latex_(self) -> str:
         return latex.display(self.latex_rows(3))
@@ -169,7 +175,9 @@ def homogenize(
         )
     model = Model(cell, law, branch).replaced({}, order)
     ring = model.ring
-    parameters = len(ring.names) - max(len(ring.variables) - 1, 0)  # the φ_n grow as powers of k
+    parameters = len(ring.names) - max(
+        len(ring.variables) - 1, 0
+    )  # the φ_n grow as powers of k
     # The order D^{k+n} has at most one monomial per partition of n; its coefficient, of degree n in
     # P free parameters, has at most C(n + P, P) terms. The jets of the velocity multiply the total
     # by about n.
@@ -182,5 +190,7 @@ def homogenize(
             "numbers for the exponent and the cell, or a lower order"
         )
     return Theory(
-        solve(model, order, closure, field, progress=iter if order < SLOW_ORDER else shown)
+        solve(
+            model, order, closure, field, progress=iter if order < SLOW_ORDER else shown
+        )
     )

@@ -24,7 +24,11 @@ def ended(capsys, main, *arguments):
 def encoded(main, *arguments, encoding):
     """Exit status and bytes of both outputs of one call, where the terminal has this encoding."""
     outputs = [io.TextIOWrapper(io.BytesIO(), encoding=encoding) for _ in range(2)]
-    with redirect_stdout(outputs[0]), redirect_stderr(outputs[1]), pytest.raises(SystemExit) as end:
+    with (
+        redirect_stdout(outputs[0]),
+        redirect_stderr(outputs[1]),
+        pytest.raises(SystemExit) as end,
+    ):
         main(arguments)
     for output in outputs:
         output.flush()

@@ -20,7 +20,9 @@ from hypothesis import Phase, settings
 
 # The processes that a test starts run this tree, whose engine is compiled already.
 TREE = str(Path(__file__).parents[1])
-os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (TREE, os.environ.get("PYTHONPATH"))))
+os.environ["PYTHONPATH"] = os.pathsep.join(
+    filter(None, (TREE, os.environ.get("PYTHONPATH")))
+)
 
 settings.register_profile(
     "lwa",
@@ -46,7 +48,10 @@ def pytest_collection_modifyitems(items):
     for item in items:
         if item.nodeid.startswith(("tests/validation/", "tests/book/studies/")):
             item.fixturenames.insert(0, "engine")
-        if item.nodeid.startswith("tests/book/studies/") and "refusals" not in item.nodeid:
+        if (
+            item.nodeid.startswith("tests/book/studies/")
+            and "refusals" not in item.nodeid
+        ):
             item.add_marker("slow")
 
 
@@ -94,8 +99,17 @@ def engine(tmp_path_factory):
         from validation.scenes.forcing import Damping
         from validation.scenes.scene import Scene
 
-        pair = {"masses": (1, 1), "stiffnesses": (1,), "k": 1.5, "duration": 1, "velocities": (1,)}
-        scenes = Scene(**pair, bead_sensors=(0,)), Scene(**pair, damping=Damping("contact", 0.1))
+        pair = {
+            "masses": (1, 1),
+            "stiffnesses": (1,),
+            "k": 1.5,
+            "duration": 1,
+            "velocities": (1,),
+        }
+        scenes = (
+            Scene(**pair, bead_sensors=(0,)),
+            Scene(**pair, damping=Damping("contact", 0.1)),
+        )
         with (tmp_path_factory.getbasetemp().parent / "engine.lock").open("w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)  # until the file is closed
             assert [simulate(scene).bead_force.shape[0] for scene in scenes] == [1, 0]

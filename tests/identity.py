@@ -12,6 +12,8 @@ def same(left, right):
     pair = [sp.sympify(left), sp.sympify(right)]
     symbols = sorted(pair[0].free_symbols | pair[1].free_symbols, key=str)
     assert len({*map(str, symbols)}) == len(symbols), "two symbols of one name"
-    point = {symbol: sp.Rational(sp.prime(9 + i), 19) for i, symbol in enumerate(symbols)}
+    point = {
+        symbol: sp.Rational(sp.prime(9 + i), 19) for i, symbol in enumerate(symbols)
+    }
     first, second = (sp.N(value.xreplace(point), 40) for value in pair)
     return bool(abs(first - second) < 1e-30 * max(1, abs(second)))

@@ -12,7 +12,17 @@ import sympy as sp
 
 import lwa
 import validation
-from lwa import Cell, Dimer, Dispersion, Link, Material, Power, Sphere, expand, homogenize
+from lwa import (
+    Cell,
+    Dimer,
+    Dispersion,
+    Link,
+    Material,
+    Power,
+    Sphere,
+    expand,
+    homogenize,
+)
 from lwa.law import general, named
 
 TEXT = "__import__('os').system('true')"
@@ -49,10 +59,20 @@ def samples():
     wave = theory.pde.traveling_wave()
     numbers = homogenize(Dimer(1, 2), k="3/2").pde.traveling_wave()
     link = Link(0, 1, HERTZ)
-    yield from (Cell(["m1", "m2"]), HERTZ, general(), named("hertz2"), named("polynomial"))
+    yield from (
+        Cell(["m1", "m2"]),
+        HERTZ,
+        general(),
+        named("hertz2"),
+        named("polynomial"),
+    )
     yield from (theory, theory.pde, theory.closure, wave, numbers, numbers.at_force(1))
     yield from (Dispersion(Dimer("m1", "m2")), expand(Cell([1]), 3, k="3/2"), link)
-    yield from (STEEL, STEEL.material, lwa.shock(Cell([1]), law=HERTZ, behind=2, ahead=1))
+    yield from (
+        STEEL,
+        STEEL.material,
+        lwa.shock(Cell([1]), law=HERTZ, behind=2, ahead=1),
+    )
     yield from (lwa.envelope(Cell([1]), law=HERTZ, background=1, wavenumber=1),)
     yield validation.exact_wave([1], 1.5)
 
@@ -67,7 +87,9 @@ def calls():
     for sample in samples():
         for name in dir(type(sample)):
             found = inspect.getattr_static(type(sample), name)
-            if not name.startswith("_") and isinstance(found, FunctionType | classmethod):
+            if not name.startswith("_") and isinstance(
+                found, FunctionType | classmethod
+            ):
                 yield f"{type(sample).__name__}.{name}", getattr(sample, name)
 
 
@@ -77,7 +99,9 @@ def attempts(call, draw, odds):
         parameters = inspect.signature(call).parameters.values()
     except ValueError:
         return
-    known = [x for x in parameters if x.kind in (x.POSITIONAL_OR_KEYWORD, x.KEYWORD_ONLY)]
+    known = [
+        x for x in parameters if x.kind in (x.POSITIONAL_OR_KEYWORD, x.KEYWORD_ONLY)
+    ]
     needed = {x.name: VALUES.get(x.name, TEXT) for x in known if x.default is x.empty}
     kinds = {x.kind for x in parameters}
     names = [x.name for x in known] + ["m1", "k", "omega", "D"] * (

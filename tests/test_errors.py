@@ -14,7 +14,16 @@ import pytest
 import scipy
 import sympy as sp
 
-from lwa import Cell, Dimer, InputError, Power, expand, loaded_wave, pulse_of_strike, shock
+from lwa import (
+    Cell,
+    Dimer,
+    InputError,
+    Power,
+    expand,
+    loaded_wave,
+    pulse_of_strike,
+    shock,
+)
 from lwa.expansion.sums import resum
 from lwa.law import named
 from lwa.shocks.riemann import RULES
@@ -36,7 +45,11 @@ def holds(error, deviation, doubt=0.0):
     ("exponents", "orders"),
     [
         (("1.1", "3/2", "2", "2.3", "2.75", "3.25"), (6, 10, 24)),
-        pytest.param([f"{k / 20}" for k in range(21, 71, 4)], range(6, 17), marks=pytest.mark.slow),
+        pytest.param(
+            [f"{k / 20}" for k in range(21, 71, 4)],
+            range(6, 17),
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_the_error_of_a_sum(exponents, orders):
@@ -82,7 +95,10 @@ def struck_dimer(law, mass, load=0.0, velocity=1.0, duration=140.0):
 )  # fmt: skip
 def test_the_errors_of_sums_of_unlike_beads(k, mass, which):
     """c² (0) and widths (1) of a pulse that radiates; a term small by chance ends no series."""
-    series, (pace, force, width) = expand(Dimer(1, mass), 10, k=k), struck_dimer(Power(k), mass)
+    series, (pace, force, width) = (
+        expand(Dimer(1, mass), 10, k=k),
+        struck_dimer(Power(k), mass),
+    )
     true = pace**2 / force ** float(1 - 1 / sp.Rational(k)), width
     for i in which:
         total = (series.fwhm("force") if i else series.c2).at()
@@ -91,11 +107,17 @@ def test_the_errors_of_sums_of_unlike_beads(k, mass, which):
 
 @pytest.mark.parametrize(
     ("law", "mass", "velocity"),
-    [(Power("3/2"), "1/2", 3.0), (named("hertz2", 1, "1/2"), "1/2", 1.3), (Power("5/2"), 2, 1.5)],
+    [
+        (Power("3/2"), "1/2", 3.0),
+        (named("hertz2", 1, "1/2"), "1/2", 1.3),
+        (Power("5/2"), 2, 1.5),
+    ],
 )
 def test_the_errors_of_a_wave_among_unlike_beads_under_a_load(law, mass, velocity):
     speed, force, width = struck_dimer(law, mass, 1.0, velocity, 80.0)
-    wave = loaded_wave(Dimer(1, mass, spacing=1), force=1 + force, precompression=1, law=law)
+    wave = loaded_wave(
+        Dimer(1, mass, spacing=1), force=1 + force, precompression=1, law=law
+    )
     assert holds(wave.speed_error, abs(float(wave.speed) - speed))
     assert holds(wave.fwhm_error(), abs(float(wave.fwhm()) - width))
 
@@ -158,25 +180,38 @@ def first_peak(time, values):
 def limits(x, time, peak):
     """Speed and peak as x → ∞: arrivals x/s + a ln x + b, as KdV's, and peaks b + a/x."""
     columns = np.stack([x, np.log(x), np.ones_like(x)], axis=1)
-    return float(1 / np.linalg.lstsq(columns, time)[0][0]), float(np.polyfit(1 / x, peak, 1)[1])
+    return float(1 / np.linalg.lstsq(columns, time)[0][0]), float(
+        np.polyfit(1 / x, peak, 1)[1]
+    )
 
 
 def deviations(front):
     """Name → error, at most which the front is off a driven chain, and the deviation."""
     run, sign, found = driven(front), 1.0 if front.plateau > 0 else -1.0, {}
     x = np.array(run.scene.contact_sensors, float)
-    time, peak = np.array([first_peak(run.time, sign * row) for row in run.compression]).T
+    time, peak = np.array(
+        [first_peak(run.time, sign * row) for row in run.compression]
+    ).T
     # what the values may lack of those of the steady pulse: the half farther away tells
-    (speed, top), (later, last) = (limits(x[i:], time[i:], sign * peak[i:]) for i in (0, 6))
-    push, late = (float(front.law.at(sp.Float(top + n * abs(top - last)))) for n in (0, 3))
+    (speed, top), (later, last) = (
+        limits(x[i:], time[i:], sign * peak[i:]) for i in (0, 6)
+    )
+    push, late = (
+        float(front.law.at(sp.Float(top + n * abs(top - last)))) for n in (0, 3)
+    )
     for name, true, doubt in (
         *((rule, speed, 3 * abs(speed - later)) for rule in RULES),
         ("peak", top, 3 * abs(top - last)),
         ("peak_force", push, abs(late - push)),
     ):
         if name in front.errors:
-            value = float(front.leading_speed(name) if name in RULES else getattr(front, name))
-            found[name] = error, deviation = front.errors[name] * abs(value), abs(value - true)
+            value = float(
+                front.leading_speed(name) if name in RULES else getattr(front, name)
+            )
+            found[name] = error, deviation = (
+                front.errors[name] * abs(value),
+                abs(value - true),
+            )
             assert deviation <= error + doubt + 5e-5 * abs(true), (name, front)
     return found
 
@@ -185,7 +220,8 @@ SLOW = "k = 7/2", "k = 6", "lennard-jones"
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=pytest.mark.slow) if n in SLOW else n for n in SHOCKS]
+    "name",
+    [pytest.param(n, marks=pytest.mark.slow) if n in SLOW else n for n in SHOCKS],
 )
 def test_the_errors_of_a_shock(name):
     law, *strains, tight = SHOCKS[name]
@@ -205,7 +241,9 @@ def test_the_error_of_the_trailing_edge(k, behind):
     tops = scipy.signal.find_peaks(rise, height=0)[0]
     place, rise = (tops + 0.5) / run.scene.duration, rise[tops]
     part = np.digitize(place, np.linspace(place.min(), place.max(), 120))
-    envelope = np.array([(place[part == i].mean(), rise[part == i].max()) for i in np.unique(part)])
+    envelope = np.array(
+        [(place[part == i].mean(), rise[part == i].max()) for i in np.unique(part)]
+    )
     height = envelope[:, 1] / rise.max()
     slope, offset = np.polyfit(*envelope[(height > 0.15) & (height < 0.5)].T, 1)
     speed = float(front.trailing_speed)
@@ -230,7 +268,9 @@ def test_fifteen_random_shocks():
     rng, tested = random.Random(33), 0
     while tested < 15:
         name, *ranges = rng.choice(RANDOM)
-        *numbers, behind, ahead = (sp.Rational(f"{rng.uniform(*span):.3g}") for span in ranges)
+        *numbers, behind, ahead = (
+            sp.Rational(f"{rng.uniform(*span):.3g}") for span in ranges
+        )
         try:
             front = shock(EQUAL, behind, ahead, law=named(name, *numbers))
         except InputError:

@@ -15,9 +15,15 @@ ROOT = Path(__file__).parents[1]
 def with_examples(source):
     """The text of a module with the examples of its docstrings behind it, one function each."""
     kinds = ast.Module, ast.ClassDef, ast.FunctionDef
-    texts = [ast.get_docstring(node) for node in ast.walk(ast.parse(source)) if type(node) in kinds]
+    texts = [
+        ast.get_docstring(node)
+        for node in ast.walk(ast.parse(source))
+        if type(node) in kinds
+    ]
     for i, text in enumerate(filter(None, texts)):
-        lines = "".join(part.source for part in doctest.DocTestParser().get_examples(text))
+        lines = "".join(
+            part.source for part in doctest.DocTestParser().get_examples(text)
+        )
         if lines:
             source += f"\n\ndef _example_{i}() -> None:\n" + re.sub(
                 "^(?=.)", "    ", lines, flags=re.M
@@ -28,7 +34,9 @@ def with_examples(source):
 @pytest.mark.slow
 @pytest.mark.optional("mypy")
 def test_mypy_accepts_every_example(tmp_path):
-    (readme,) = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    (readme,) = re.findall(
+        r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL
+    )
     program = tmp_path / "readme.py"
     program.write_text(readme)
     shadows = []
@@ -40,7 +48,14 @@ def test_mypy_accepts_every_example(tmp_path):
                 shadow.write_text(changed)
                 shadows += ["--shadow-file", str(file.relative_to(ROOT)), str(shadow)]
     assert len(shadows) > 90
-    command = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(tmp_path / "cache")]
+    command = [
+        sys.executable,
+        "-m",
+        "mypy",
+        "--strict",
+        "--cache-dir",
+        str(tmp_path / "cache"),
+    ]
     found = subprocess.run(
         [*command, *shadows, "lwa", "validation", str(program)],
         cwd=ROOT, capture_output=True, text=True, timeout=300, check=False,

@@ -49,14 +49,20 @@ def test_at_equal_masses_the_ansatz_is_the_taylor_expansion_of_radius_D(theory):
 
 def test_coefficients_of_the_wave_equation(theory):
     assert same(theory.pde.G, D**2 * (2 - 3 * k + k**2) * m1**2 / (6 * M**2))
-    assert same(theory.pde.H, 2 * D**2 * (k - 1) * (2 * m1**2 + m1 * m2 - m2**2) / (6 * M**2))
+    assert same(
+        theory.pde.H, 2 * D**2 * (k - 1) * (2 * m1**2 + m1 * m2 - m2**2) / (6 * M**2)
+    )
     assert same(theory.pde.I, 2 * D**2 * (m1**2 - m1 * m2 + m2**2) / (6 * M**2))
 
 
 def test_the_wave_equation_has_no_other_terms_up_to_D_k_plus_3(theory):
     assert set(theory.pde.coefficients) == {2, 3}
     assert theory.pde.vanishing == (2,)
-    assert {jet.x for jet in theory.pde.coefficients[3]} == {((2, 3),), ((2, 1), (3, 1)), ((4, 1),)}
+    assert {jet.x for jet in theory.pde.coefficients[3]} == {
+        ((2, 3),),
+        ((2, 1), (3, 1)),
+        ((4, 1),),
+    }
 
 
 def test_rescaled_time(theory):
@@ -101,7 +107,11 @@ def test_the_page_wide_beta_of_hertz_contacts(wave):
     root = sp.Symbol("root")  # √Δ
 
     def printed(R):
-        front = sp.sqrt(3) * (8 - 5 * omega + 5 * omega**2 - R) / (30 - 8 * omega + 8 * omega**2)
+        front = (
+            sp.sqrt(3)
+            * (8 - 5 * omega + 5 * omega**2 - R)
+            / (30 - 8 * omega + 8 * omega**2)
+        )
         above = (1 + omega) ** 2 * (15 - 4 * omega + 4 * omega**2)
         below = 34 - 42 * omega + 59 * omega**2 - 34 * omega**3 + 17 * omega**4
         below += (-8 + 5 * omega - 5 * omega**2) * R
@@ -110,7 +120,9 @@ def test_the_page_wide_beta_of_hertz_contacts(wave):
     beta = wave.at(k="3/2", m1=1, m2=omega).beta
     front, inside = printed(root)
     numerator = sp.numer(sp.together(front**2 * inside - beta**2))
-    assert sp.rem(sp.expand(numerator), root**2 - Delta, root) == 0  # the squares are equal
+    assert (
+        sp.rem(sp.expand(numerator), root**2 - Delta, root) == 0
+    )  # the squares are equal
     front, inside = printed(sp.sqrt(Delta))
     for ratio in ("1/100", "1/2", 1, 3, 1000):  # and so are the signs
         value = (front * sp.sqrt(inside) / beta).subs({omega: sp.Rational(ratio), D: 1})
@@ -121,7 +133,9 @@ def test_the_page_wide_beta_of_hertz_contacts(wave):
     ("ratio", "beta", "sites"),
     [(1, sp.sqrt(10) / 5, 5), (0, sp.sqrt(10) / 10, 10), (sp.oo, sp.sqrt(6) / 4, 5)],
 )
-def test_equal_masses_extend_to_five_sites_and_a_light_mass_to_ten(wave, ratio, beta, sites):
+def test_equal_masses_extend_to_five_sites_and_a_light_mass_to_ten(
+    wave, ratio, beta, sites
+):
     """The same chain, its light beads called first, has another width in this closure."""
     assert sp.limit(wave.at(k="3/2", m1=1, m2=omega).beta, omega, ratio) == beta / D
     assert round(float(sp.pi / beta)) == sites
@@ -139,7 +153,9 @@ def test_amplitude_of_the_paper_agrees_with_direct_insertion(wave):
     at = wave.at(**numbers)
     for root in (0, 1):
         found = at.reduction(root, V=2)
-        printed = (found.mu / (at.beta**2 * found.s * (found.s - 1))) ** (1 / (at.k - 1))
+        printed = (found.mu / (at.beta**2 * found.s * (found.s - 1))) ** (
+            1 / (at.k - 1)
+        )
         assert abs(sp.N(printed / at.amplitude(2), 50) - 1) < 1e-40
 
 
@@ -156,7 +172,15 @@ def test_the_wave_solves_the_equation_at_fifty_digits(wave):
             V_s = mpmath.mpf(3) / 2
             B, beta, m, exponent, G, H, I = (
                 mpmath.mpf(sp.N(value, 60))
-                for value in (at.amplitude("3/2"), at.beta, at.m, at.k, at.G, at.H, at.I)
+                for value in (
+                    at.amplitude("3/2"),
+                    at.beta,
+                    at.m,
+                    at.k,
+                    at.G,
+                    at.H,
+                    at.I,
+                )
             )
             for phase in (mpmath.mpf(1) / 7, mpmath.mpf(-11) / 10, mpmath.mpf(3) / 2):
                 v, dv, d2v, d3v = _derivatives(B, beta, m, phase)

@@ -80,7 +80,9 @@ def test_without_any_output_the_status_is_left():
 
 
 def test_ctrl_c_while_a_command_is_loaded_is_one_line(tmp_path):
-    (tmp_path / "slow.py").write_text("import os, signal; os.kill(os.getpid(), signal.SIGINT)")
+    (tmp_path / "slow.py").write_text(
+        "import os, signal; os.kill(os.getpid(), signal.SIGINT)"
+    )
     code = "from lwa.__main__ import start; start('lwa', 'slow')"
     paths = os.pathsep.join((str(tmp_path), *filter(None, sys.path)))
     found = ended(sys.executable, "-c", code, env=os.environ | {"PYTHONPATH": paths})
@@ -96,14 +98,19 @@ sensors = {beads = [9], contacts = [4, 12]}
 """
 
 
-def test_a_long_run_shows_its_progress_on_a_terminal_and_stops_at_ctrl_c(engine, tmp_path):
+def test_a_long_run_shows_its_progress_on_a_terminal_and_stops_at_ctrl_c(
+    engine, tmp_path
+):
     (tmp_path / "scene.toml").write_text(CHAIN)
     command = (sys.executable, "-m", "validation", "run", "scene.toml")
     mine, theirs = pty.openpty()
     termios.tcsetwinsize(theirs, (24, 80))
     outputs = ("--plot", "p.svg", "--out", "o.json")
     pipes = dict(stdout=subprocess.PIPE, stderr=theirs, text=True, cwd=tmp_path)
-    with subprocess.Popen((*command, *outputs), **pipes) as running, contextlib.ExitStack() as end:
+    with (
+        subprocess.Popen((*command, *outputs), **pipes) as running,
+        contextlib.ExitStack() as end,
+    ):
         end.callback(running.kill)
         os.close(theirs)
         shown = b""

@@ -48,7 +48,9 @@ def test_the_paper():
     for blow in (1.4, 2.8, 4.8):
         chain = Scene.of_cell(cell, 19, "3/2", velocities=(blow,), duration=1.5e-3,
                               bead_sensors=(14, 33))  # fmt: skip
-        near, far = (first_pulse(track.force) for track in tracks(simulate(chain, rtol=1e-10)))
+        near, far = (
+            first_pulse(track.force) for track in tracks(simulate(chain, rtol=1e-10))
+        )
         points.append([1 / (far.arrival - near.arrival), (near.peak + far.peak) / 2])
     V, F = np.log(points).T
     check("exponent of speed against force, 38 beads", np.polyfit(F, V, 1)[0])
@@ -72,15 +74,23 @@ def test_struck_steel_beads():
     cell = Cell.of_spheres([Sphere.solid(R, Material(E=E, nu=nu, density=rho))])
     run = simulate(Scene.of_cell(cell, 60, "3/2", velocities=(1,), duration=8e-4, samples=16001,
                                  bead_sensors=(20, 30, 40)), rtol=1e-10)  # fmt: skip
-    first, middle, last = (measure(run.time, velocity) for velocity in run.bead_velocity)
+    first, middle, last = (
+        measure(run.time, velocity) for velocity in run.bead_velocity
+    )
     check("peak velocity of a bead, m/s", middle.peak)
     speed = 40 * R / (last.arrival - first.arrival)
     c0 = math.sqrt(6 / (5 * math.pi * rho * 3 * (1 - nu**2) / (4 * E)))
-    check("speed against $c_0^{4/5} V^{1/5}$, %", 100 * (speed / (c0**0.8 * middle.peak**0.2) - 1))
+    check(
+        "speed against $c_0^{4/5} V^{1/5}$, %",
+        100 * (speed / (c0**0.8 * middle.peak**0.2) - 1),
+    )
     above = run.time[run.bead_velocity[1] > 0.01 * middle.peak]
     # the first stretch above: oscillations behind the pulse stay below
     end = np.argmax(np.append(np.diff(above) > 2 * run.time[1], True))
-    check("length above 1 % of the peak, diameters", (above[end] - above[0]) * speed / (2 * R))
+    check(
+        "length above 1 % of the peak, diameters",
+        (above[end] - above[0]) * speed / (2 * R),
+    )
     fwhm = 2 * math.acos(2**-0.25) * math.sqrt(10) * R
     check(r"FWHM against $\cos^4$, %", 100 * (middle.fwhm * speed / fwhm - 1))
 
@@ -96,7 +106,9 @@ def rebound(m, A, v, rate):
         return state[0] if t else 1.0
 
     over.terminal, over.direction = True, -1
-    end = solve_ivp(motion, (0, 1), (0.0, v), "DOP853", events=over, rtol=1e-11, atol=1e-14)
+    end = solve_ivp(
+        motion, (0, 1), (0.0, v), "DOP853", events=over, rtol=1e-11, atol=1e-14
+    )
     return -end.y[1, -1] / v
 
 
@@ -120,7 +132,9 @@ def test_collisions_of_two_spheres():
         run = simulate(blow, rtol=1e-11)
         own = (run.velocities[1] - run.velocities[0]) / float(v)
         check(f"restitution at {v} m/s, contacts that never pull", own)
-        check(f"restitution at {v} m/s, contacts that pull", rebound(m, A, float(v), rate))
+        check(
+            f"restitution at {v} m/s, contacts that pull", rebound(m, A, float(v), rate)
+        )
 
 
 def powers(beads):
@@ -134,7 +148,11 @@ def powers(beads):
     run = simulate(column, rtol=1e-9)
     moved = (run.bead_displacement - run.bead_displacement[:, :1]).max(axis=1)
     speed = np.diff(at) / np.diff(run.time[np.argmax(run.bead_velocity, axis=1)])
-    rows = ((at[1:] + at[:-1]) / 2, speed), (at, run.bead_velocity.max(axis=1)), (at, moved)
+    rows = (
+        ((at[1:] + at[:-1]) / 2, speed),
+        (at, run.bead_velocity.max(axis=1)),
+        (at, moved),
+    )
     return [np.polyfit(np.log(x), np.log(y), 1)[0] for x, y in rows]
 
 
@@ -158,7 +176,9 @@ def test_pulses_that_decay(ratio):
         masses=(1.0, float(ratio)) * 50, stiffnesses=(1.0,) * 99, k=1.5, velocities=(1.0,),
         duration=60, contact_sensors=(20, 21, 40, 41),
     )  # fmt: skip
-    peaks = [first_pulse(track.force).peak for track in tracks(simulate(chain, rtol=1e-9))]
+    peaks = [
+        first_pulse(track.force).peak for track in tracks(simulate(chain, rtol=1e-9))
+    ]
     loss = 100 * (1 - sum(peaks[2:]) / sum(peaks[:2]))
     check(f"loss of force per 20 beads at the mass ratio {ratio}, %", loss)
 

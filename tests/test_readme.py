@@ -18,7 +18,8 @@ from validation.cli import main as validate_main
 
 ROOT = Path(__file__).parent.parent
 README, CHANGELOG, CATALOGUE = (
-    (ROOT / name).read_text() for name in ("README.md", "CHANGELOG.md", "book/reference.md")
+    (ROOT / name).read_text()
+    for name in ("README.md", "CHANGELOG.md", "book/reference.md")
 )
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 
@@ -59,7 +60,9 @@ def test_the_commands_run_one_after_the_other(capsys, folder, engine, programs):
 def test_every_command_and_demonstration_is_listed():
     studies = [file.stem for file in (ROOT / "book" / "studies").glob("[!_]*.py")]
     known = {"lwa": COMMANDS, "lwa-validate": STUDIES, "python": studies}
-    shown = re.findall(r"^\$ (lwa\S*|python) (?:book/studies/)?(\w+)", CATALOGUE, re.MULTILINE)
+    shown = re.findall(
+        r"^\$ (lwa\S*|python) (?:book/studies/)?(\w+)", CATALOGUE, re.MULTILINE
+    )
     for program, commands in known.items():
         assert {command for name, command in shown if name == program} == set(commands)
     for program, command in re.findall(r"`(lwa|lwa-validate) (\w+)", CHANGELOG):

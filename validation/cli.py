@@ -10,20 +10,40 @@ from lwa.command.cli import HELP, Commands, run, version
 
 STUDIES = {
     "compare": ("records", "Measured forces beside the simulation of their scene."),
-    "exact": ("exact", "Exact solitary wave of the lattice: speed, widths and amplitudes."),
-    "figures": ("paper", "The figures of Porter et al. (2008), computed (a few seconds)."),
+    "exact": (
+        "exact",
+        "Exact solitary wave of the lattice: speed, widths and amplitudes.",
+    ),
+    "figures": (
+        "paper",
+        "The figures of Porter et al. (2008), computed (a few seconds).",
+    ),
     "law": ("law", "Contact law from measured forces and speeds of pulses."),
-    "limits": ("limits", "The theory's limits: equal masses, m1 ≫ m2, k → 1 (a few seconds)."),
-    "paper": ("paper", "The steel:PTFE chain of the paper: speed, peak force and FWHM."),
-    "pulses": ("records", "Arrival, peak, FWHM and speeds of pulses in measured records."),
+    "limits": (
+        "limits",
+        "The theory's limits: equal masses, m1 ≫ m2, k → 1 (a few seconds).",
+    ),
+    "paper": (
+        "paper",
+        "The steel:PTFE chain of the paper: speed, peak force and FWHM.",
+    ),
+    "pulses": (
+        "records",
+        "Arrival, peak, FWHM and speeds of pulses in measured records.",
+    ),
     "resonances": ("exact", "Mass ratios of the dimers with a solitary wave."),
     "run": ("run", "Pulses at the sensors of any scene, read from a file."),
-    "sweep": ("sweep", "Width, speed and decay of a struck chain's pulse over k and m2/m1."),
+    "sweep": (
+        "sweep",
+        "Width, speed and decay of a struck chain's pulse over k and m2/m1.",
+    ),
 }
 """Module and summary of each study, by the name of its function and command."""
 
 
-@click.group(cls=Commands, package="validation.studies", table=STUDIES, context_settings=HELP)
+@click.group(
+    cls=Commands, package="validation.studies", table=STUDIES, context_settings=HELP
+)
 @version
 def validate() -> None:
     """Simulate chains with contacts F = A δ^k and compare them with the long-wave theory.

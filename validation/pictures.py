@@ -150,17 +150,29 @@ def draw(plot: Axes, panel: Panel) -> None:
         default = _STYLES[i % len(_STYLES)]
         style = curve.style or f"C{i}{default if len(x) <= _FEW else default[1:]}"
         # hollow marks show the curves below
-        plot.errorbar(x, y, error, fmt=style, ms=4, mfc="none", label=curve.label or None)
+        plot.errorbar(
+            x, y, error, fmt=style, ms=4, mfc="none", label=curve.label or None
+        )
     for axis in panel.scale:
         _label_plainly(getattr(plot, f"{axis}axis"))
     if any(curve.label for curve in panel.curves):
-        above = {"loc": "lower left", "bbox_to_anchor": (0, 1), "ncols": _ACROSS, "frameon": False}
-        plot.legend(fontsize="small", **(above if panel.legend_above else {"loc": "best"}))
+        above = {
+            "loc": "lower left",
+            "bbox_to_anchor": (0, 1),
+            "ncols": _ACROSS,
+            "frameon": False,
+        }
+        plot.legend(
+            fontsize="small", **(above if panel.legend_above else {"loc": "best"})
+        )
 
 
 def _label_plainly(axis: Axis) -> None:
     """Set plain tick labels on a logarithmic axis of few decades, where powers of ten overlap."""
-    from matplotlib.ticker import LogLocator, NullFormatter  # loaded as late as Matplotlib
+    from matplotlib.ticker import (
+        LogLocator,
+        NullFormatter,
+    )  # loaded as late as Matplotlib
 
     low, high = sorted(axis.get_view_interval())
     if low >= 1e-3 and high <= 1e5 and high < 1e3 * low:
@@ -174,6 +186,10 @@ def _draw_map(plot: Axes, colours: Map) -> None:
     """Draw a map into Matplotlib's axes."""
     # Pixels in a PDF, too: viewers are slow with one rectangle for each value.
     values = np.ma.masked_invalid(colours.values)
-    image = plot.pcolormesh(colours.x, colours.y, values, shading="nearest", rasterized=True)
+    image = plot.pcolormesh(
+        colours.x, colours.y, values, shading="nearest", rasterized=True
+    )
     plot.figure.colorbar(image, ax=plot, label=colours.label)
-    plot.patch.set(facecolor="w", edgecolor="0.4", hatch="xxx")  # unlike any colour of a map
+    plot.patch.set(
+        facecolor="w", edgecolor="0.4", hatch="xxx"
+    )  # unlike any colour of a map

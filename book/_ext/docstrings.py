@@ -53,7 +53,11 @@ def _blocks(lines: list[str]) -> Iterator[list[str]]:
 def _block(block: list[str]) -> list[str]:
     first = block[0]
     if len(block) > 1 and re.fullmatch(r"-{3,}", block[1].strip()):
-        return [f".. rubric:: {first.strip()}", "", *_block(block[2:])] if block[2:] else []
+        return (
+            [f".. rubric:: {first.strip()}", "", *_block(block[2:])]
+            if block[2:]
+            else []
+        )
     if first.startswith(">>>"):
         return block
     if all(line.startswith(" ") for line in block):
@@ -107,8 +111,12 @@ class Names(SphinxDirective):
     has_content = True
 
     def run(self) -> list[nodes.Node]:
-        names = [name for entry in " ".join(self.content).split() for name in _public(entry)]
-        return self.parse_text_to_nodes("\n".join(line for n in names for line in _directive(n)))
+        names = [
+            name for entry in " ".join(self.content).split() for name in _public(entry)
+        ]
+        return self.parse_text_to_nodes(
+            "\n".join(line for n in names for line in _directive(n))
+        )
 
 
 def _public(name: str) -> Iterator[str]:
@@ -138,7 +146,10 @@ class Studies(SphinxDirective):
     """Every study as a function."""
 
     def run(self) -> list[nodes.Node]:
-        found = (f"validation.studies.{module}.{name}" for name, (module, _) in STUDIES.items())
+        found = (
+            f"validation.studies.{module}.{name}"
+            for name, (module, _) in STUDIES.items()
+        )
         text = "\n".join(line for name in found for line in _directive(name))
         return self.parse_text_to_nodes(text)
 
@@ -149,7 +160,9 @@ class Methods(SphinxDirective):
     has_content = True
 
     def run(self) -> list[nodes.Node]:
-        found = (name for entry in " ".join(self.content).split() for name in _modules(entry))
+        found = (
+            name for entry in " ".join(self.content).split() for name in _modules(entry)
+        )
         text = "\n".join(
             f"{name}\n{'^' * len(name)}\n\n.. automodule:: {name}\n   :no-members:\n"
             for name in found
@@ -175,15 +188,21 @@ class StudyDocumenter(FunctionDocumenter):
     priority = FunctionDocumenter.priority + 10
 
     @classmethod
-    def can_document_member(cls, member: object, name: str, own: bool, parent: object) -> bool:
+    def can_document_member(
+        cls, member: object, name: str, own: bool, parent: object
+    ) -> bool:
         """Whether it is one."""
         return isinstance(member, Study)
 
 
-def _process(app: Sphinx, what: str, name: str, obj: object, options: object, lines: list) -> None:
+def _process(
+    app: Sphinx, what: str, name: str, obj: object, options: object, lines: list
+) -> None:
     # a value without a text of its own comes with that of its type
     of_type = what == "data" and lines and lines[0] in (type(obj).__doc__ or "")
-    of_tuple = lines and lines[0].startswith("Alias for field number")  # a named one's fields
+    of_tuple = lines and lines[0].startswith(
+        "Alias for field number"
+    )  # a named one's fields
     lines[:] = [] if of_type or of_tuple else converted(lines)
 
 
@@ -205,7 +224,11 @@ def _plain(
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Sphinx's hook."""
-    for name, directive in (("names", Names), ("studies", Studies), ("methods", Methods)):
+    for name, directive in (
+        ("names", Names),
+        ("studies", Studies),
+        ("methods", Methods),
+    ):
         app.add_directive(name, directive)
     app.add_autodocumenter(StudyDocumenter)
     app.connect("autodoc-process-docstring", _process)

@@ -31,16 +31,24 @@ def execute(app: Sphinx) -> None:
     cache = get_cache(config.execution_cache_path)
     cache.clear_cache()
     for page in Path(app.srcdir).glob("*.md"):
-        excluded = page.name in app.config.exclude_patterns  # all that no table of contents has
+        excluded = (
+            page.name in app.config.exclude_patterns
+        )  # all that no table of contents has
         if not excluded and "{code-cell}" in page.read_text(encoding="utf-8"):
-            cache.add_nb_to_project(str(page), read_data={"name": "myst_nb_md", "type": "plugin"})
+            cache.add_nb_to_project(
+                str(page), read_data={"name": "myst_nb_md", "type": "plugin"}
+            )
     beads = Scene(masses=(1, 1), stiffnesses=(1,), k=1.5, duration=1, bead_sensors=(0,))
     simulate(beads)  # one engine serves every scene
-    executor = load_executor("local-parallel", cache=cache, logger=logging.getLogger("book"))
+    executor = load_executor(
+        "local-parallel", cache=cache, logger=logging.getLogger("book")
+    )
     executor.run_and_cache(timeout=config.execution_timeout)
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Sphinx's hook."""
-    app.connect("builder-inited", execute, priority=900)  # after the table of contents is read
+    app.connect(
+        "builder-inited", execute, priority=900
+    )  # after the table of contents is read
     return {"parallel_read_safe": True, "parallel_write_safe": True}

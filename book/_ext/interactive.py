@@ -29,13 +29,17 @@ def formulas() -> str:
     wave = canonical_wave(Cell([m1, m2]), k)
     chain = canonical_wave(Cell([m1, m2], stiffnesses=[A, A], spacing=D), k)
     pulse, loaded = chain.at_force(F), chain.at_force(F, precompression=F_0)
-    paper = homogenize(Cell([m1, m2], stiffnesses=[A, A], spacing=D), k=k).pde.traveling_wave()
+    paper = homogenize(
+        Cell([m1, m2], stiffnesses=[A, A], spacing=D), k=k
+    ).pde.traveling_wave()
     theirs = paper.at_force(F)
     strain = canonical_wave(Cell([1]), k).on_background(p_0).field
     gap = strain.stiffness(B) - strain.stiffness(v)
     gradient = v * sp.sqrt(gap / (wave.I / wave.D**2 * strain.force(p_0 + v, 1)))
     solids = sp.symbols("E1 nu1 R1 E2 nu2 R2", positive=True)
-    one, two = (Sphere(1, R, Material(E=E, nu=nu)) for E, nu, R in (solids[:3], solids[3:]))
+    one, two = (
+        Sphere(1, R, Material(E=E, nu=nu)) for E, nu, R in (solids[:3], solids[3:])
+    )
     values = (k, A, m1, m2, D)
     more = (
         Function("hertz_A", "A of two spheres", solids, hertz.stiffness(one, two)),
@@ -72,7 +76,9 @@ def turn(app: Sphinx, page: str, template: str, context: dict, doctree: object) 
     body = context.get("body", "")
     if re.search('class="lwa-(chain|shock|breather|light|arch|calculator)"', body):
         root = context["pathto"]("_static/turn.js", resource=True)
-        context["body"] = f'{body}<script>{formulas()}</script><script src="{root}"></script>'
+        context["body"] = (
+            f'{body}<script>{formulas()}</script><script src="{root}"></script>'
+        )
 
 
 def publish(app: Sphinx, fault: Exception | None) -> None:

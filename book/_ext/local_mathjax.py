@@ -45,13 +45,19 @@ def unpack(app: Sphinx, error: Exception | None) -> None:
     with zipfile.ZipFile(fetched(out.parent / "mathjax-wheel")) as wheel:
         for name in wheel.namelist():
             relative = name.removeprefix(INSIDE)
-            if name.startswith(INSIDE) and relative.startswith(WANTED) and relative[-1] != "/":
+            if (
+                name.startswith(INSIDE)
+                and relative.startswith(WANTED)
+                and relative[-1] != "/"
+            ):
                 target = out / "mathjax" / relative
                 target.parent.mkdir(parents=True, exist_ok=True)
                 target.write_bytes(wheel.read(name))
 
 
-def without_thebe(app: Sphinx, page: str, template: str, context: dict, doctree: object) -> None:
+def without_thebe(
+    app: Sphinx, page: str, template: str, context: dict, doctree: object
+) -> None:
     """Leave out sphinx-thebe's scripts: they would run cells on a server, which is off."""
     files = context.get("script_files", [])
     context["script_files"] = [

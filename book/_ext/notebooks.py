@@ -29,7 +29,9 @@ _STYLE = "style.mplstyle"
 _IMPORT = re.compile(r"^\s*(?:from|import) +([\w.]+)", re.MULTILINE)
 _ROLE = re.compile(r"\{([\w:]+)\}`([^`]*)`")
 _LABELLED = re.compile(r"\$\$\n?(.*?)\n?\$\$ \(([\w-]+)\)", re.DOTALL)
-_FENCE = re.compile(r"^(`{3,}|:{3,})\{([\w:-]+)\} *([^\n]*)\n(.*?)^\1 *$", re.DOTALL | re.MULTILINE)
+_FENCE = re.compile(
+    r"^(`{3,}|:{3,})\{([\w:-]+)\} *([^\n]*)\n(.*?)^\1 *$", re.DOTALL | re.MULTILINE
+)
 _OPTION = re.compile(r"\A(?::[\w-]+:[^\n]*\n)+")
 _TARGET = re.compile(r"^\([\w-]+\)=\n", re.MULTILINE)
 _TAG = re.compile(r'<span class="tag">([^<]*)</span>')
@@ -57,7 +59,9 @@ def sources(bibliography: Path) -> dict[str, str]:
     """Authors and year of each entry, as in "Porter et al. 2008"."""
     found = {}
     for key, entry in parse_file(str(bibliography)).entries.items():
-        names = [" ".join(person.last_names) for person in entry.persons.get("author", [])]
+        names = [
+            " ".join(person.last_names) for person in entry.persons.get("author", [])
+        ]
         listed = " and ".join(names) if len(names) < 3 else f"{names[0]} et al."
         found[key] = f"{listed} {entry.fields['year']}"
     return found
@@ -70,9 +74,13 @@ def notebook(page: str, book: Book) -> nbformat.NotebookNode:
     cells = [nbformat.v4.new_markdown_cell(INSTALL)]
     code = "\n".join(cell.source for cell in found.cells if cell.cell_type == "code")
     for name in shared(code, book.folder):
-        shown = f"%%writefile {name}\n{Path(book.folder, name).read_text(encoding='utf-8')}"
+        shown = (
+            f"%%writefile {name}\n{Path(book.folder, name).read_text(encoding='utf-8')}"
+        )
         if "/" in name:
-            folder = f"import os\n\nos.makedirs({name.rpartition('/')[0]!r}, exist_ok=True)"
+            folder = (
+                f"import os\n\nos.makedirs({name.rpartition('/')[0]!r}, exist_ok=True)"
+            )
             cells.append(nbformat.v4.new_code_cell(folder))
         cells.append(nbformat.v4.new_code_cell(shown))
     for cell in found.cells:
@@ -143,15 +151,22 @@ def _role(name: str, text: str, book: Book) -> str:
 def _numbers(app: Sphinx, kind: str) -> dict[str, str]:
     """Label → number of all equations or figures of the book."""
     tables = app.env.toc_fignumbers.values()
-    found = {name: number for table in tables for name, number in table.get(kind, {}).items()}
+    found = {
+        name: number for table in tables for name, number in table.get(kind, {}).items()
+    }
     dotted = {
-        name.removeprefix("equation-"): ".".join(map(str, number)) for name, number in found.items()
+        name.removeprefix("equation-"): ".".join(map(str, number))
+        for name, number in found.items()
     }
     labels = app.env.get_domain("std").anonlabels
-    return dotted | {label: dotted[id_] for label, (_, id_) in labels.items() if id_ in dotted}
+    return dotted | {
+        label: dotted[id_] for label, (_, id_) in labels.items() if id_ in dotted
+    }
 
 
-def offer(app: Sphinx, page: str, template: str, context: dict, doctree: object) -> None:
+def offer(
+    app: Sphinx, page: str, template: str, context: dict, doctree: object
+) -> None:
     """Write the notebook beside the page's source, where the theme looks for it."""
     source = Path(app.srcdir, f"{page}.md")
     text = source.read_text(encoding="utf-8") if source.exists() else ""

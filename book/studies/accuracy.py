@@ -88,7 +88,9 @@ class Task:
 
 def relative_errors(pulse: Pulse, truth: Pulse) -> dict[str, float]:
     """Return relative errors |pulse/truth - 1| of arrival, peak force and FWHM (`READINGS`)."""
-    return {name: abs(getattr(pulse, name) / getattr(truth, name) - 1) for name in READINGS}
+    return {
+        name: abs(getattr(pulse, name) / getattr(truth, name) - 1) for name in READINGS
+    }
 
 
 def struck_chain(omega: float, beads: int, contact: int, duration: float) -> Task:
@@ -108,7 +110,11 @@ def solitary_wave(sites: int = 100) -> Task:
     start, wave = 16, exact_wave([1], 1.5)
     # a contact lies half a site behind its bead
     arrival, width = (sites + 0.5) / wave.c, wave.fwhm("force") / wave.c
-    recorded = {"contact_sensors": (start + sites,), "duration": arrival + 10, "samples": 2}
+    recorded = {
+        "contact_sensors": (start + sites,),
+        "duration": arrival + 10,
+        "samples": 2,
+    }
     truth = Pulse(arrival, 1.0, arrival - width / 2, arrival + width / 2)
     return Task(wave.launched(start, sites, **recorded), truth)
 
@@ -136,7 +142,9 @@ def experiment() -> Task:
 
 def precompressed() -> Task:
     """200 equal beads under a static force of 1 against a wall, measured at contact 150."""
-    loose = struck_chain(1.0, 200, 150, 132.1).scene  # the pulse takes 0.814 units of time a site
+    loose = struck_chain(
+        1.0, 200, 150, 132.1
+    ).scene  # the pulse takes 0.814 units of time a site
     return Task(replace(loose, wall=1.0, precompression=1.0))
 
 
@@ -166,18 +174,26 @@ Prediction = tuple[Sequence[float], Sequence[float] | None]
 def _closed(closure: str, k: sp.Rational, omega: sp.Rational) -> Prediction:
     """Return `COMPARED` by the closed form of a closure."""
     wave = theory_at(k, omega, closure).at_force(1)
-    return [float(x) for x in (wave.fwhm("force"), wave.fwhm("strain"), wave.speed)], None
+    return [
+        float(x) for x in (wave.fwhm("force"), wave.fwhm("strain"), wave.speed)
+    ], None
 
 
 def _summed(n: int, k: sp.Rational, omega: sp.Rational) -> Prediction:
     """Return the sums of the series in ε to order n, and their estimated errors."""
     expansion = expand(Cell((1,) if omega == 1 else (1, omega)), n, k=k)
-    sums = [row.at() for row in (expansion.fwhm("force"), expansion.fwhm("strain"), expansion.c)]
+    sums = [
+        row.at()
+        for row in (expansion.fwhm("force"), expansion.fwhm("strain"), expansion.c)
+    ]
     return [x.value for x in sums], [abs(x.error / x.value) for x in sums]
 
 
 THEORIES: Mapping[str, Callable[[sp.Rational, sp.Rational], Prediction]] = {
-    **{f"{closure} closure": partial(_closed, closure) for closure in ("linear", "full")},
+    **{
+        f"{closure} closure": partial(_closed, closure)
+        for closure in ("linear", "full")
+    },
     "canonical field": partial(_closed, "canonical"),
     **{f"ε^{n}": partial(_summed, n) for n in (6, 8, 12)},
 }
@@ -257,7 +273,9 @@ def place(k: sp.Rational, omega: sp.Rational, kind: str = SOLITARY) -> Place:
     Raises `MeasureError` where the struck chain's pulse is not steady.
     """
     if kind == SOLITARY:
-        wave = measured(exact_wave((1.0,) if omega == 1 else (1.0, float(omega)), float(k)))
+        wave = measured(
+            exact_wave((1.0,) if omega == 1 else (1.0, float(omega)), float(k))
+        )
         truth = [wave[name] for name in ("fwhm force", "fwhm strain", "c")]
     else:
         pulse = point(k, omega, STRETCH)
@@ -345,12 +363,21 @@ def timings(
         yield rtol, errors, seconds
 
 
-_RUNS = ("task", "method", "setting", "error", *(f"{name}_error" for name in READINGS), "seconds")
+_RUNS = (
+    "task",
+    "method",
+    "setting",
+    "error",
+    *(f"{name}_error" for name in READINGS),
+    "seconds",
+)
 _COSTS = (
     Column("task"),
     Column("method", "CPU time (ms) for the peak force to"),
     *(
-        Column(f"seconds_{error:.0e}", f"{error:.0e}", format=lambda s: f"{1e3 * s:.3g}")
+        Column(
+            f"seconds_{error:.0e}", f"{error:.0e}", format=lambda s: f"{1e3 * s:.3g}"
+        )
         for error in WANTED
     ),
 )
@@ -361,7 +388,15 @@ _AXES = "largest relative error of arrival, peak, FWHM", "CPU time (s)"
 _TASKS = click.Choice(NAMES)
 
 
-@study(option("--task", "names", multiple=True, type=_TASKS, says="Only this task; repeatable."))
+@study(
+    option(
+        "--task",
+        "names",
+        multiple=True,
+        type=_TASKS,
+        says="Only this task; repeatable.",
+    )
+)
 def accuracy(
     names: Collection[str] = (),
     methods: Mapping[str, Sequence[float]] = METHODS,
@@ -389,7 +424,9 @@ def accuracy(
         references.append((name, *readings(truth).values()))
         for method, tolerances in methods.items():
             found = [*timings(task, truth, method, tolerances)]
-            rows += [(name, method, r, max(e.values()), *e.values(), s) for r, e, s in found]
+            rows += [
+                (name, method, r, max(e.values()), *e.values(), s) for r, e, s in found
+            ]
             peaks = [(errors["peak"], seconds) for _, errors, seconds in found]
             spent.append((name, method, *(cost(peaks, error) for error in WANTED)))
             largest = [max(errors.values()) for _, errors, _ in found]
@@ -403,7 +440,9 @@ def accuracy(
             Table(tuple(map(Column, _RUNS)), tuple(rows), "rows"),
             Table(_COSTS, tuple(costs), "costs", note=_NOTE, by="task"),
             *theories.tables,
-            Table(tuple(map(Column, ("task", *READINGS))), tuple(references), "references"),
+            Table(
+                tuple(map(Column, ("task", *READINGS))), tuple(references), "references"
+            ),
         ),
         panels=(*panels, *theories.panels),
         data=theories.data,

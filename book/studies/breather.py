@@ -57,20 +57,31 @@ from validation.waves import newton
 HARMONICS = 5  # H; 8 change amplitude and width by less than their errors
 MOST_STEPS = 30  # of Newton's method
 CLOSE = 1e-10  # largest force that a solution misses, over the load
-SMALL, LARGE = 1e-2, 1e3  # least motion over the start's, and largest over the static compression
+SMALL, LARGE = (
+    1e-2,
+    1e3,
+)  # least motion over the start's, and largest over the static compression
 TOLERANCE = 1e-10  # rtol of the linearised motion
 
 DETUNINGS = "0.0005,0.001,0.002"
 # Widths 1/b in half a chain. Free ends change the amplitude by about 4e^{-2w} of bright, 4e^{-w} of
 # dark envelopes: 3e-6 and 1e-5. In a much longer chain a dark one is hardly held in its place.
 _WIDE = {"bright": 7.0, "dark": 13.0}
-_HALF, _DIP = 2 * np.arccosh(2), 2 * np.arctanh(0.5)  # full widths of sech, tanh at half, over 1/b
+_HALF, _DIP = (
+    2 * np.arccosh(2),
+    2 * np.arctanh(0.5),
+)  # full widths of sech, tanh at half, over 1/b
 _BOUND = 4.0  # error of the theory's amplitude over Δ, at most
 _FEWER = 0.75  # beads of the chain that gives the errors, over those of the chain that counts
 
 
 @study(
-    option("--masses", callback=quantities, default="1,1/2", says="Masses of a cell, one or two."),
+    option(
+        "--masses",
+        callback=quantities,
+        default="1,1/2",
+        says="Masses of a cell, one or two.",
+    ),
     EXPONENT,
     option(
         "--detunings",
@@ -78,7 +89,11 @@ _FEWER = 0.75  # beads of the chain that gives the errors, over those of the cha
         default=DETUNINGS,
         says="Detunings 1 - f/f0, f0 the frequency of the band's edge.",
     ),
-    option("--beads", default=601, says="Largest number of beads; short breathers take fewer."),
+    option(
+        "--beads",
+        default=601,
+        says="Largest number of beads; short breathers take fewer.",
+    ),
 )
 def breather(
     masses: Sequence[Any] = (1, "1/2"),
@@ -98,7 +113,9 @@ def breather(
     """
     cell, beads = numeric_cell(masses), integer(beads, "beads", 21, 2001)
     if cell.size > 2:
-        raise SceneError(f"masses are {cell.size}: breathers are found in cells of one or two")
+        raise SceneError(
+            f"masses are {cell.size}: breathers are found in cells of one or two"
+        )
     between(k, "k", 1.1, 5)
     if not detunings:
         raise SceneError("detunings is empty: at least one is wanted")
@@ -142,7 +159,9 @@ class PressedChain:
         """The sparse matrix B, which turns displacements into further compressions."""
         contacts, beads = len(self.stiffnesses), len(self.masses)
         ones = np.ones(contacts)
-        return scipy.sparse.diags_array((ones, -ones), offsets=(0, 1), shape=(contacts, beads))
+        return scipy.sparse.diags_array(
+            (ones, -ones), offsets=(0, 1), shape=(contacts, beads)
+        )
 
     def forces(self, u: Array) -> Array:
         """Return F - F0 of the contacts at displacements u, (N,) or (N, times)."""
@@ -202,7 +221,9 @@ class Orbit:
 
     def displacements(self, t: ArrayLike) -> Array:
         """Return the displacements of the beads at times t, (N, *shape of t)."""
-        return self.coefficients @ _cosines(self.coefficients, self.frequency * np.asarray(t))
+        return self.coefficients @ _cosines(
+            self.coefficients, self.frequency * np.asarray(t)
+        )
 
     @cached_property
     def multipliers(self) -> NDArray[np.complex128]:
@@ -218,10 +239,14 @@ class Orbit:
         # Velocities in units of displacement times ω: all entries have one scale.
         unit = np.append(np.ones(n), np.full(n, self.frequency))
         start, tolerance = np.diag(unit).ravel(), dict(rtol=TOLERANCE, atol=TOLERANCE)
-        end = scipy.integrate.solve_ivp(rate, (0, self.period), start, "DOP853", **tolerance)
+        end = scipy.integrate.solve_ivp(
+            rate, (0, self.period), start, "DOP853", **tolerance
+        )
         # The phase of the orbit and, without a wall, the motion of the whole chain give double
         # multipliers 1, which the integration's error ε splits by √ε.
-        multipliers = np.linalg.eigvals(end.y[:, -1].reshape(2 * n, 2 * n) / unit[:, None])
+        multipliers = np.linalg.eigvals(
+            end.y[:, -1].reshape(2 * n, 2 * n) / unit[:, None]
+        )
         return np.asarray(multipliers[np.argsort(-np.abs(multipliers))])
 
 
@@ -251,7 +276,9 @@ def orbit(
         a, before = a - step, fault
         if not least < np.abs(a).max() < LARGE * chain.rest.max():
             break
-    raise NoOrbit(f"frequency is {frequency:.8g}: Newton's method finds no orbit from this start")
+    raise NoOrbit(
+        f"frequency is {frequency:.8g}: Newton's method finds no orbit from this start"
+    )
 
 
 def continued(begin: Orbit, frequency: float) -> Orbit:
@@ -295,7 +322,10 @@ def _newton_step(chain: PressedChain, omega: float, a: Array) -> tuple[Array, fl
     blocks = np.einsum("ht,ct,gt->chg", project, chain.slopes(a @ cosines), cosines)
     wide = scipy.sparse.kron(chain.strains, scipy.sparse.eye_array(terms))
     inertia = omega**2 * np.outer(chain.masses, np.arange(terms) ** 2).ravel()
-    matrix = scipy.sparse.diags_array(inertia) - wide.T @ scipy.sparse.block_diag(blocks) @ wide
+    matrix = (
+        scipy.sparse.diags_array(inertia)
+        - wide.T @ scipy.sparse.block_diag(blocks) @ wide
+    )
     right = fault.ravel()
     if len(chain.stiffnesses) < n:  # no wall: the mean displacement is held
         mean = np.kron(chain.masses, np.eye(1, terms)[0])[None]
@@ -332,7 +362,9 @@ class Standing:
     @cached_property
     def beads(self) -> tuple[Array, Array]:
         """Number of the cell, and position within the cell, of each bead."""
-        return np.divmod(np.arange(-self.half, self.half + 1) + self.place, self.cell.size)
+        return np.divmod(
+            np.arange(-self.half, self.half + 1) + self.place, self.cell.size
+        )
 
     @cached_property
     def chain(self) -> PressedChain:
@@ -347,16 +379,22 @@ class Standing:
     def start(self) -> Array:
         """Displacements of the envelope at t = 0, falling to 0 at the free ends if dark."""
         (n, place), width = self.beads, float(self.theory.width)
-        envelope = self.theory.displacements(np.arange(n[0], n[-1] + 1))[n - n[0], place]
+        envelope = self.theory.displacements(np.arange(n[0], n[-1] + 1))[
+            n - n[0], place
+        ]
         if self.bright:
             return np.asarray(envelope)
-        ends = (self.half + 0.5 - np.abs(np.arange(-self.half, self.half + 1))) / self.cell.size
+        ends = (
+            self.half + 0.5 - np.abs(np.arange(-self.half, self.half + 1))
+        ) / self.cell.size
         return np.asarray(envelope * np.tanh(ends / width))
 
     @cached_property
     def orbit(self) -> Orbit:
         """The chain's exact periodic orbit with the envelope's frequency."""
-        return orbit(self.chain, float(self.theory.frequency), self.start, self.harmonics)
+        return orbit(
+            self.chain, float(self.theory.frequency), self.start, self.harmonics
+        )
 
     @cached_property
     def profile(self) -> tuple[Array, Array]:
@@ -376,7 +414,10 @@ class Standing:
             }
         near = np.abs(n) < len(n) / 4  # the plateaus on both sides of the dip
         shape = CubicSpline(n[near], np.where(n < 0, -size, size)[near])
-        ends = [float(shape.solve(side * peak / 2, extrapolate=False)[0]) for side in (-1, 1)]
+        ends = [
+            float(shape.solve(side * peak / 2, extrapolate=False)[0])
+            for side in (-1, 1)
+        ]
         return {"amplitude": peak, "width": (ends[1] - ends[0]) / _DIP}
 
     def row(self) -> dict[str, Any]:
@@ -385,7 +426,9 @@ class Standing:
             "amplitude": abs(float(self.theory.amplitude[self.place])),
             "width": float(self.theory.width),
         }
-        rough = replace(self, half=int(_FEWER * self.half), harmonics=self.harmonics - 1)
+        rough = replace(
+            self, half=int(_FEWER * self.half), harmonics=self.harmonics - 1
+        )
         check = rough.numbers()
         cells: dict[str, Any] = {
             "detuning_value": float(self.theory.detuning),
@@ -414,13 +457,21 @@ _COLUMNS = (
 )
 
 
-def _report(cell: Cell, k: float, breathers: Sequence[tuple[Standing, dict[str, Any]]]) -> Report:
+def _report(
+    cell: Cell, k: float, breathers: Sequence[tuple[Standing, dict[str, Any]]]
+) -> Report:
     rows = [row for _, row in breathers]
     kind = breathers[0][0].theory.kind
     return Report(
         f"{kind.capitalize()} breathers: masses {', '.join(map(str, cell.masses))}, k = {k:g}, "
         "F0 = A = D = 1",
-        (Table(_COLUMNS, tuple(tuple(row[c.key] for c in _COLUMNS) for row in rows), "rows"),),
+        (
+            Table(
+                _COLUMNS,
+                tuple(tuple(row[c.key] for c in _COLUMNS) for row in rows),
+                "rows",
+            ),
+        ),
         tuple(_findings(rows)),
         tuple(_panels(*breathers[-1])),
         (
@@ -433,7 +484,9 @@ def _report(cell: Cell, k: float, breathers: Sequence[tuple[Standing, dict[str, 
 
 def _findings(rows: Sequence[dict[str, Any]]) -> Iterator[Finding]:
     """The theory's error is of the order of the detuning."""
-    worst = max(abs(row["amplitude_off_value"]) / abs(row["detuning_value"]) for row in rows)
+    worst = max(
+        abs(row["amplitude_off_value"]) / abs(row["detuning_value"]) for row in rows
+    )
     yield Finding("amplitude: |theory/lattice - 1| over Δ, at most", worst, high=_BOUND)
 
 

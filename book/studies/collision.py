@@ -47,7 +47,10 @@ TOLERANCE = 1e-10  # rtol of the integrated equation by default
 APART = 5.0  # widths of the first pulse between its start and x = 0, at least
 _WIDE = 1.5  # half the interval over the distance of the farther pulse from x = 0, plus a run
 _DENSE = 8  # points of the equation per site
-_RUNS = ((1e-10, 1201), (1e-8, 601))  # rtol and samples: the runs that count, and for their errors
+_RUNS = (
+    (1e-10, 1201),
+    (1e-8, 601),
+)  # rtol and samples: the runs that count, and for their errors
 _ROUNDING = 1e-12  # relative error of the waves before the collision
 _CONSERVED = 1e-6  # relative change of the energy, at most
 _NAMES = {
@@ -57,7 +60,9 @@ _NAMES = {
     "after": "strain after the collision",
     "shift": "shift by the collision (sites)",
 }
-Records = tuple[Array, Array, dict[str, float]]  # times, strains at x = 0 and x = d, numbers
+Records = tuple[
+    Array, Array, dict[str, float]
+]  # times, strains at x = 0 and x = d, numbers
 
 
 @study(
@@ -68,7 +73,11 @@ Records = tuple[Array, Array, dict[str, float]]  # times, strains at x = 0 and x
         default="11/10,3/2",
         says="Exponents of F = δ^k.",
     ),
-    option("--second", default=0.5, says="Peak strain of the second pulse; the first has 1."),
+    option(
+        "--second",
+        default=0.5,
+        says="Peak strain of the second pulse; the first has 1.",
+    ),
 )
 def collision(
     exponents: Sequence[Any] = (sp.Rational(11, 10), sp.Rational(3, 2)),
@@ -155,7 +164,9 @@ class Continuum:
 
     def _of_strain(self, p: Array, n: int) -> Array:
         """The force F(p) for n = 0, its potential W(p) for n = -1."""
-        return np.asarray(self._laws[n](np.maximum(p, 0) if self.equation.law.homogeneous else p))
+        return np.asarray(
+            self._laws[n](np.maximum(p, 0) if self.equation.law.homogeneous else p)
+        )
 
     @cached_property
     def _laws(self) -> dict[int, Any]:
@@ -184,16 +195,22 @@ class Continuum:
 
         at, start = np.asarray(times, float), np.concatenate((p, v), dtype=float)
         tolerances = {"rtol": rtol, "atol": rtol * np.abs(start).max()}
-        path = scipy.integrate.solve_ivp(rate, (0.0, at[-1]), start, "DOP853", at, **tolerances)
+        path = scipy.integrate.solve_ivp(
+            rate, (0.0, at[-1]), start, "DOP853", at, **tolerances
+        )
         if not path.success:
-            raise SceneError(f"the integration ends at τ = {path.t[-1]:.6g}: {path.message}")
+            raise SceneError(
+                f"the integration ends at τ = {path.t[-1]:.6g}: {path.message}"
+            )
         strain, velocity = path.y.T.reshape(len(at), 2, n).swapaxes(0, 1)
         return strain, velocity
 
     def energy(self, p: Array, v: Array) -> Array:
         """Return the energy, (…), of strains and velocities, (…, points)."""
         slope = scipy.fft.irfft(1j * self._wavenumbers * scipy.fft.rfft(v), self.points)
-        density = (v**2 + float(self.equation.I) * slope**2) / 2 + self._of_strain(p, -1)
+        density = (v**2 + float(self.equation.I) * slope**2) / 2 + self._of_strain(
+            p, -1
+        )
         return np.asarray(density.sum(axis=-1) * self.length / self.points)
 
 
@@ -224,7 +241,8 @@ def in_equation(k: sp.Expr, second: float, rtol: float, samples: int) -> Records
     """The collision in the equation."""
     equation = Evolution(Cell((1,), spacing=1), Power(k))
     V, other, pace = (
-        float(part) for part in (equation.speed(1), equation.speed(second), equation.time_scale)
+        float(part)
+        for part in (equation.speed(1), equation.speed(second), equation.time_scale)
     )
     power, rate = float(k - 1) / 2, float(k - 1) / (2 * math.sqrt(equation.I))
     width = 2 * math.acosh(2**power) / rate
@@ -236,11 +254,17 @@ def in_equation(k: sp.Expr, second: float, rtol: float, samples: int) -> Records
 
     one, two = pulse(interval.x + d), second * pulse(interval.x - away)
     time = np.linspace(0, 2.5 * d / (V * pace), samples)
-    strain, velocity = interval.evolved(one + two, other * two - V * one, pace * time, rtol)
+    strain, velocity = interval.evolved(
+        one + two, other * two - V * one, pace * time, rtol
+    )
     energy = interval.energy(strain[[0, -1]], velocity[[0, -1]])
     strains = strain[:, [half * _DENSE, (half + d) * _DENSE]].T
     numbers = _numbers(time, strains, V * pace, d)
-    numbers |= {"speed": V * pace, "fwhm": width, "drift": float(energy[1] / energy[0] - 1)}
+    numbers |= {
+        "speed": V * pace,
+        "fwhm": width,
+        "drift": float(energy[1] / energy[0] - 1),
+    }
     return time, strains, numbers
 
 
@@ -272,7 +296,9 @@ _COLUMNS = (
 )
 
 
-def _report(second: float, records: Mapping[sp.Expr, Sequence[Sequence[Records]]]) -> Report:
+def _report(
+    second: float, records: Mapping[sp.Expr, Sequence[Sequence[Records]]]
+) -> Report:
     rows, panels = [], []
     for k, (equation, lattice) in records.items():
         for key, name in _NAMES.items():
@@ -287,7 +313,9 @@ def _report(second: float, records: Mapping[sp.Expr, Sequence[Sequence[Records]]
                 (lattice[0], "lattice", "-"),
                 (equation[0], "equation", "--"),
             )
-            for strain, place, style in zip(strains, "0d", (f"C0{line}", f"C1{line}"), strict=True)
+            for strain, place, style in zip(
+                strains, "0d", (f"C0{line}", f"C1{line}"), strict=True
+            )
         ]
         panels.append(Panel("time", "strain", tuple(curves), title=f"k = {k}"))
     return Report(
@@ -303,11 +331,15 @@ def _report(second: float, records: Mapping[sp.Expr, Sequence[Sequence[Records]]
     )
 
 
-def _findings(records: Mapping[sp.Expr, Sequence[Sequence[Records]]]) -> Iterator[Finding]:
+def _findings(
+    records: Mapping[sp.Expr, Sequence[Sequence[Records]]],
+) -> Iterator[Finding]:
     for k, sides in records.items():
         for name, runs in zip(("equation", "lattice"), sides, strict=True):
             drift = abs(runs[0][2]["drift"])
-            yield Finding(f"k = {k}, {name}: change of the energy", drift, high=_CONSERVED)
+            yield Finding(
+                f"k = {k}, {name}: change of the energy", drift, high=_CONSERVED
+            )
 
 
 if __name__ == "__main__":

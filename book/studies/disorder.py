@@ -43,18 +43,27 @@ from validation.studies.paper import of_momentum
 
 PLACES = 10  # contacts at which the pulse is measured, equally far from each other
 NODES = 5  # excesses of either sign at which the loss at a single bead is measured
-SIGMAS = 2.5  # standard errors by which the decay may differ between the halves of the chain
+SIGMAS = (
+    2.5  # standard errors by which the decay may differ between the halves of the chain
+)
 _BEYOND = 20  # beads behind the last place
-_BEFORE, _BEHIND = 40, 40  # sites from the blow to the single bead and on to the last sensor
+_BEFORE, _BEHIND = (
+    40,
+    40,
+)  # sites from the blow to the single bead and on to the last sensor
 _TOLERANCE = 1e-6  # of the random chains
 _CLOSE = 1e-4  # largest change of ln F at ten times the tolerance
 
 
 @study(
     EXPONENT,
-    option("--spread", default=0.1, says="Masses lie between 1 - spread and 1 + spread."),
+    option(
+        "--spread", default=0.1, says="Masses lie between 1 - spread and 1 + spread."
+    ),
     option("--chains", default=20, says="Number of random chains."),
-    option("--sites", default=200, says="Sites from the struck bead to the last place."),
+    option(
+        "--sites", default=200, says="Sites from the struck bead to the last place."
+    ),
     option("--seed", default=1, says="Seed of the random numbers."),
 )
 def disorder(
@@ -120,7 +129,12 @@ def single_losses(
     masses = [(1.0,) * _BEFORE + (1 + e,) + rest for e in (0.0, *excesses)]
     scenes = [_struck(row, k, sensors) for row in masses]
     fine, coarse = (
-        np.array([-np.diff(_log_forces(run))[0] for run in simulate_many(scenes, rtol=tolerance)])
+        np.array(
+            [
+                -np.diff(_log_forces(run))[0]
+                for run in simulate_many(scenes, rtol=tolerance)
+            ]
+        )
         for tolerance in (rtol, 10 * rtol)
     )
     falls = zip(fine[1:] - fine[0], coarse[1:] - coarse[0], strict=True)
@@ -132,7 +146,12 @@ def _struck(masses: Sequence[float], k: float, sensors: Sequence[int]) -> Scene:
     duration = 2 * len(masses) / float(of_momentum(theory_at(str(k), 1), 1.0).speed)
     samples = math.ceil(30 * duration * max(1.0, k / 1.5))
     return struck(
-        masses, len(masses), k, contact_sensors=sensors, duration=duration, samples=samples
+        masses,
+        len(masses),
+        k,
+        contact_sensors=sensors,
+        duration=duration,
+        samples=samples,
     )
 
 
@@ -161,7 +180,9 @@ def _report(
     """Build the report from ln F (chains, places) and the losses at single beads."""
     falls, half = logs - logs[:, :1], len(places) // 2
     decay = _slopes(places, logs)
-    change = _mean(_slopes(places[half:], logs[:, half:]) - _slopes(places[:half], logs[:, :half]))
+    change = _mean(
+        _slopes(places[half:], logs[:, half:]) - _slopes(places[:half], logs[:, :half])
+    )
     means, scatter = [_mean(fall) for fall in falls.T], falls.std(axis=0, ddof=1)
     local = [None, *map(_mean, (-np.diff(logs, axis=1) / np.diff(places)).T)]
     line = theory * (places[0] - places)
@@ -180,9 +201,16 @@ def _report(
         f"{title}; decay of ln F per site: {mean}, mean loss at a single bead: {theory:.3g}",
         (
             Table(
-                _ROWS, tuple(zip(places.tolist(), means, scatter, local, line, strict=True)), "rows"
+                _ROWS,
+                tuple(zip(places.tolist(), means, scatter, local, line, strict=True)),
+                "rows",
             ),
-            Table(_SINGLE, beads, "single", note="Loss at one bead of mass 1 + e in equal ones."),
+            Table(
+                _SINGLE,
+                beads,
+                "single",
+                note="Loss at one bead of mass 1 + e in equal ones.",
+            ),
         ),
         (numerical, constant),
         (
@@ -191,12 +219,18 @@ def _report(
                 "ln F, less that at the first place",
                 (
                     Curve("mean over chains", places, *bars),
-                    Curve(f"mean loss at a single bead {theory:.3g}", places, line, "C1-"),
+                    Curve(
+                        f"mean loss at a single bead {theory:.3g}", places, line, "C1-"
+                    ),
                 ),
             ),
         ),
         ("F: peak force of a contact. ±: standard error of the mean over chains.",),
-        {"decay_value": mean.value, "decay_error_value": mean.error, "theory_value": theory},
+        {
+            "decay_value": mean.value,
+            "decay_error_value": mean.error,
+            "theory_value": theory,
+        },
     )
 
 

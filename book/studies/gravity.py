@@ -105,7 +105,9 @@ class Upright:
     @cached_property
     def masses(self) -> tuple[float, ...]:
         """Masses as floats, in units of their mean."""
-        return tuple(float(mass * self.cell.size / self.cell.mass) for mass in self.cell.masses)
+        return tuple(
+            float(mass * self.cell.size / self.cell.mass) for mass in self.cell.masses
+        )
 
     @cached_property
     def theory(self) -> Background:
@@ -125,7 +127,9 @@ class Upright:
     def places(self, first: int, count: int) -> Array:
         """Depths in sites, at the first beads of some cells, equally spaced in ln x."""
         size = len(self.masses)
-        return np.unique(np.geomspace(first, 0.9 * self.beads, count).astype(int) // size * size)
+        return np.unique(
+            np.geomspace(first, 0.9 * self.beads, count).astype(int) // size * size
+        )
 
     def blown(self, velocity: float, **sensors: Any) -> Scene:
         """Scene of the chain struck at the top, until the sound wave is near the end."""
@@ -164,11 +168,16 @@ class Upright:
         rows = np.stack((np.log(x), np.ones_like(x), x**-power, x ** (-2 / 3)), axis=1)
         free, held = (
             np.linalg.lstsq(matrix, values)[0]
-            for matrix, values in ((rows, np.log(width)), (rows[:, 1:], width / np.cbrt(x)))
+            for matrix, values in (
+                (rows, np.log(width)),
+                (rows[:, 1:], width / np.cbrt(x)),
+            )
         )
         return np.array([free[0], held[0]])
 
-    def fitted(self, x: Array, width: Array, coarse: Array) -> tuple[Measured, Measured]:
+    def fitted(
+        self, x: Array, width: Array, coarse: Array
+    ) -> tuple[Measured, Measured]:
         """`fit` with errors: its largest change with the other correction, from the deeper half of
         the places, or in the less accurate run."""
         half, rest = len(x) // 2, (3 - self.k) / 3
@@ -197,8 +206,12 @@ class Upright:
         for cell in contacts:
             arrival, peak, fwhm = np.array([by_contact[contact] for contact in cell]).T
             load, force = float(cell[0] + (size + 1) / 2), peak[:size].mean()
-            width = fwhm[:size].mean() * np.mean(size / (arrival[size:] - arrival[:size]))
-            wave = loaded_wave(self.cell, force=float(load + force), precompression=load, k=self.k)
+            width = fwhm[:size].mean() * np.mean(
+                size / (arrival[size:] - arrival[:size])
+            )
+            wave = loaded_wave(
+                self.cell, force=float(load + force), precompression=load, k=self.k
+            )
             solitary = float(wave.fwhm("force") / self.cell.spacing)
             rows.append(
                 {
@@ -221,7 +234,10 @@ class Upright:
     option("--beads", default=3000, says="Number of beads."),
 )
 def gravity(
-    k: float = 1.5, masses: Sequence[Any] = (), beads: int = 3000, progress: Progress[Any] = iter
+    k: float = 1.5,
+    masses: Sequence[Any] = (),
+    beads: int = 3000,
+    progress: Progress[Any] = iter,
 ) -> Report:
     """Width of a pulse down a chain under its own weight, weak and strong (five seconds).
 
@@ -279,7 +295,9 @@ Strong blows: width of the dynamic contact force F on the load F0, of the solita
 the same F on F0, and of a weak blow's front."""
 
 
-def _report(chains: Sequence[Upright], measured: Mapping[tuple[Upright, float], Any]) -> Report:
+def _report(
+    chains: Sequence[Upright], measured: Mapping[tuple[Upright, float], Any]
+) -> Report:
     weak, strong, panels = [], [], []
     for chain in chains:
         names = [str(mass) for mass in chain.cell.masses]
@@ -294,13 +312,20 @@ def _report(chains: Sequence[Upright], measured: Mapping[tuple[Upright, float], 
         ]
         for blow, colour in zip(STRONG, ("C1", "C2", "C3"), strict=True):
             pulses = measured[chain, blow]
-            strong += [(names, blow, *p.values(), theory * math.cbrt(p["site"])) for p in pulses]
-            at, width, solitary = ([p[n] for p in pulses] for n in ("site", "width", "solitary"))
+            strong += [
+                (names, blow, *p.values(), theory * math.cbrt(p["site"]))
+                for p in pulses
+            ]
+            at, width, solitary = (
+                [p[n] for p in pulses] for n in ("site", "width", "solitary")
+            )
             curves += [
                 Curve(f"blow of {blow:g}", at, width, f"{colour}s"),
                 Curve("solitary wave", at, solitary, f"{colour}--"),
             ]
-        panels.append(Panel("site", "FWHM (sites)", tuple(curves), "xy", ", ".join(names)))
+        panels.append(
+            Panel("site", "FWHM (sites)", tuple(curves), "xy", ", ".join(names))
+        )
     return Report(
         f"Chains of {chains[0].beads} beads under their own weight, k = {chains[0].k:g}",
         (

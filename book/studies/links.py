@@ -48,13 +48,28 @@ Bounds = tuple[float, float]
 """Largest errors of V² - c0² and of the FWHM that the study promises."""
 
 NONE = math.inf, math.inf
-UNLIKE = {0.02: (0.002, 0.0025), 0.1: (0.008, 0.011), 0.5: (0.042, 0.07), 1.0: NONE, 2.0: NONE}
-NEIGHBOURS = {0.02: (2e-4, 0.002), 0.1: (1e-3, 0.01), 0.5: (3e-3, 0.03), 1.0: (5e-3, 0.05)}
+UNLIKE = {
+    0.02: (0.002, 0.0025),
+    0.1: (0.008, 0.011),
+    0.5: (0.042, 0.07),
+    1.0: NONE,
+    2.0: NONE,
+}
+NEIGHBOURS = {
+    0.02: (2e-4, 0.002),
+    0.1: (1e-3, 0.01),
+    0.5: (3e-3, 0.03),
+    1.0: (5e-3, 0.05),
+}
 """Dynamic over static force, or strain, and the bounds."""
 EPSILONS = {"1/20": 0.025, "1/40": 0.012, "1/80": 0.006}
 """ε and the bound of both errors."""
 BETA = sp.Rational(1, 4)
-POINTS, WIDTHS, SHORTEST = 240, 5.0, 25.0  # of half a ring; its length in FWHM, and at least
+POINTS, WIDTHS, SHORTEST = (
+    240,
+    5.0,
+    25.0,
+)  # of half a ring; its length in FWHM, and at least
 LONGER = np.arange(0, 2, 0.4)  # over a wavelength of the optical tail, about 2 sites
 
 
@@ -108,7 +123,9 @@ class Chain:
             "fwhm": wave.fwhm,
             "fwhm theory": fwhm,
             "fwhm error": fwhm / wave.fwhm - 1,
-            "constant error": None if self.constant is None else self.constant / wave.fwhm - 1,
+            "constant error": None
+            if self.constant is None
+            else self.constant / wave.fwhm - 1,
             "tail": wave.tail,
         }
 
@@ -134,7 +151,9 @@ def dispersion() -> Iterator[Chain]:
     """Waves from the force 0 to 1, of two compliances that vary oppositely."""
     for text, bound in EPSILONS.items():
         epsilon = sp.Rational(text)
-        constant = series_width(float(epsilon), lambda force: 1 / 12)  # I of equal springs
+        constant = series_width(
+            float(epsilon), lambda force: 1 / 12
+        )  # I of equal springs
         yield Chain(f"ε = {text}", varying(epsilon), 1.0, 0.0, (bound, bound), constant)
 
 
@@ -146,7 +165,9 @@ CASES: dict[str, Callable[[], Iterator[Chain]]] = {
 def varying(epsilon: sp.Rational) -> Lattice:
     """Two beads with links of the compliances F + βF² and F - (β + ε)F²."""
     # The roots of δ = F + bF² without cancellation at small δ
-    first, second = (2 * DELTA / (1 + sp.sqrt(1 + 4 * b * DELTA)) for b in (BETA, -BETA - epsilon))
+    first, second = (
+        2 * DELTA / (1 + sp.sqrt(1 + 4 * b * DELTA)) for b in (BETA, -BETA - epsilon)
+    )
     return Lattice((1, 1), (Link(0, 1, Law(first)), Link(1, 2, Law(second))))
 
 
@@ -191,10 +212,14 @@ def exact(lattice: Lattice, force: float, load: float) -> Exact:
     halves = max(SHORTEST, WIDTHS * width) + LONGER
     waves = []
     for half in halves if len(lattice.masses) > 1 else halves[:1]:
-        with suppress(Failure):  # no wave is on a ring of a length that resonates with the tail
+        with suppress(
+            Failure
+        ):  # no wave is on a ring of a length that resonates with the tail
             waves.append(periodic(lattice, force, load, half))
     if not waves:
-        raise Failure(f"force {force:g}, load {load:g}: Newton's method does not converge")
+        raise Failure(
+            f"force {force:g}, load {load:g}: Newton's method does not converge"
+        )
     return min(waves, key=lambda wave: wave.tail)
 
 
@@ -215,13 +240,21 @@ def periodic(lattice: Lattice, force: float, load: float, half: float) -> Exact:
     goal = _forces(lattice, top - rest, rest)[:own].sum()
     for _ in range(30):
         at = (spread @ d).reshape(len(rest), -1)
-        F, slope = _forces(lattice, at, rest[:, None]), _slopes(lattice, at + rest[:, None])
+        F, slope = (
+            _forces(lattice, at, rest[:, None]),
+            _slopes(lattice, at + rest[:, None]),
+        )
         matrix = np.zeros((len(d) + 1,) * 2)
-        matrix[:-1, :-1] = square * inertia - tension @ (slope.ravel()[:, None] * spread)
+        matrix[:-1, :-1] = square * inertia - tension @ (
+            slope.ravel()[:, None] * spread
+        )
         matrix[:-1, -1] = inertia @ d
         for i in range(own):
             matrix[-1, :-1] += slope[i, 0] * spread[i * len(x)]
-        residual = [*(square * inertia @ d - tension @ F.ravel()), F[:own, 0].sum() - goal]
+        residual = [
+            *(square * inertia @ d - tension @ F.ravel()),
+            F[:own, 0].sum() - goal,
+        ]
         step = np.linalg.solve(matrix, residual)
         d, square = d - step[:-1], square - step[-1]
         if np.abs(step).max() < 1e-11 * np.abs(d).max():
@@ -246,10 +279,15 @@ def _operators(lattice: Lattice, half: float) -> tuple[Array, Array, Array]:
     if len(lattice.masses) == 1:
         # sin(rq/2)/sin(q/2) is Chebyshev's U_{r-1}(cos(q/2)), which is regular everywhere.
         ranges = [link.j - link.i for link in lattice.links]
-        spread = [operator(scipy.special.eval_chebyu(r - 1, np.cos(q / 2))) for r in ranges]
+        spread = [
+            operator(scipy.special.eval_chebyu(r - 1, np.cos(q / 2))) for r in ranges
+        ]
         return one, np.hstack([S @ s for s in spread]), np.vstack(spread)
     # The second equation is divided by 1 + q², so that short waves do not dominate the residual.
-    inner, outer = operator(q**2 / (1 + q**2)), operator(2 * (1 + np.cos(q)) / (1 + q**2))
+    inner, outer = (
+        operator(q**2 / (1 + q**2)),
+        operator(2 * (1 + np.cos(q)) / (1 + q**2)),
+    )
     A, B = [[one, one], [inner, -inner]], [[S, S], [outer, -outer]]
     return np.block(A), np.block(B), np.eye(2 * len(q))
 
@@ -263,7 +301,9 @@ def contact(link: Link) -> Contact:
 def _forces(lattice: Lattice, rise: Array, rest: Array) -> Array:
     """Forces of the links above those at rest, (L, …)."""
     parts = zip(lattice.links, map(contact, lattice.links), rise, rest, strict=True)
-    return np.array([float(k.factor) * (c.force(r + d) - c.force(r)) for k, c, d, r in parts])
+    return np.array(
+        [float(k.factor) * (c.force(r + d) - c.force(r)) for k, c, d, r in parts]
+    )
 
 
 def _slopes(lattice: Lattice, compression: Array) -> Array:
@@ -279,10 +319,14 @@ def _compressions(lattice: Lattice, force: float) -> Array:
     if len(lattice.masses) == 2:
         shares = [np.array([force / float(link.factor)]) for link in lattice.links]
         pairs = zip(lattice.links, shares, strict=True)
-        return np.concatenate([contact(link).compressed_by(share) for link, share in pairs])
+        return np.concatenate(
+            [contact(link).compressed_by(share) for link, share in pairs]
+        )
     ranges: Array = np.array([link.j - link.i for link in lattice.links], float)
     at_one = float(ranges @ _forces(lattice, ranges, 0 * ranges))
-    strain = (force / at_one) ** (1 / contact(lattice.links[0]).k)  # all links are of one power
+    strain = (force / at_one) ** (
+        1 / contact(lattice.links[0]).k
+    )  # all links are of one power
     return np.asarray(strain * ranges)
 
 
@@ -324,14 +368,18 @@ def _report(rows: Sequence[tuple[Chain, dict[str, Any]]]) -> Report:
                 title = f"{chain.name}, force {chain.force:.3g}: error of {name}"
                 findings.append(Finding(title, row[key], -bound, bound))
         if (constant := row["constant error"]) is not None:
-            findings.append(Finding(f"{chain.name}: FWHM by I at rest", constant, high=-0.15))
+            findings.append(
+                Finding(f"{chain.name}: FWHM by I at rest", constant, high=-0.15)
+            )
     table = tuple(tuple(row[key] for key in _COLUMNS) for _, row in rows)
     return Report(
         "Exact waves of lattices, beside the relation that knows the static energy and I",
         (Table(tuple(_COLUMNS.values()), table, "rows", by="case"),),
         tuple(findings),
         tuple(_panels([row for _, row in rows])),
-        ("off: theory over lattice, less 1. Units: masses, spacing, static force or strain 1.",),
+        (
+            "off: theory over lattice, less 1. Units: masses, spacing, static force or strain 1.",
+        ),
     )
 
 

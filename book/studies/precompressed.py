@@ -35,7 +35,12 @@ from lwa.loaded.background import Background
 from validation.lattice.result import Run
 from validation.lattice.simulate import twice
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Measured, MeasureError, highest_pulse, leading_pulses
+from validation.pulses.pulse import (
+    Measured,
+    MeasureError,
+    highest_pulse,
+    leading_pulses,
+)
 from validation.pulses.sensors import tracks
 from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
@@ -51,7 +56,9 @@ RATIOS = 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30, 100  # dynamic over static force
 _SITES = 400  # run by a wave; places are half way, at three quarters and at the end
 _ENDED = 10.0  # widths from the middle of the initial wave to the end of the chain
 _SAMPLES = 40.0  # per site run by sound, and per width of the wave
-_LAUNCHED = 1e-6  # relative difference of the lattice's speed from the exact wave's, at most
+_LAUNCHED = (
+    1e-6  # relative difference of the lattice's speed from the exact wave's, at most
+)
 _WEAKEST, _STRONGEST = 1e-3, 1e4
 
 
@@ -135,7 +142,11 @@ class Wave:
 
     def unit(self, name: str) -> float:
         """Unit in which all chains fall on one curve: √(12 I) for a width."""
-        return math.sqrt(12 * Background(self.cell, self.law, 1).I) if name == "fwhm" else 1.0
+        return (
+            math.sqrt(12 * Background(self.cell, self.law, 1).I)
+            if name == "fwhm"
+            else 1.0
+        )
 
     @cached_property
     def exact(self) -> ExactWave | None:
@@ -143,31 +154,47 @@ class Wave:
         if len(self.masses) > 1 or not self.law.homogeneous:
             return None
         k = float(self.law.exponent)
-        wave = exact_wave(self.masses.tolist(), k, background=math.pow(1 + self.ratio, -1 / k))
+        wave = exact_wave(
+            self.masses.tolist(), k, background=math.pow(1 + self.ratio, -1 / k)
+        )
         return wave.times(math.pow(1 + self.ratio, 1 / k))
 
     def wave(self, force: float) -> LoadedWave:
         """The theory's wave on the strain 1, of a dynamic force over F0."""
-        return loaded_wave(self.cell, rise=self.strain(force), background=1, law=self.law)
+        return loaded_wave(
+            self.cell, rise=self.strain(force), background=1, law=self.law
+        )
 
     def theory(self, force: float) -> dict[str, float]:
         """Speed, FWHM of the contact force and bead velocity at a dynamic force over F0."""
         wave = self.wave(force)
         speed, width = float(wave.speed / wave.sound_speed), float(wave.fwhm("force"))
-        return {"speed": speed, "fwhm": width, "peak": self.strain(force) * speed * self.sound}
+        return {
+            "speed": speed,
+            "fwhm": width,
+            "peak": self.strain(force) * speed * self.sound,
+        }
 
     def strain(self, force: float) -> float:
         """Strain added by a dynamic force over F0."""
         if self.law.homogeneous:
             return math.expm1(math.log1p(force) / float(self.law.exponent))
-        return float(self.law.compression(self.cell, sp.Float(self.load * (1 + force)))) - 1
+        return (
+            float(self.law.compression(self.cell, sp.Float(self.load * (1 + force))))
+            - 1
+        )
 
     @cached_property
     def places(self) -> tuple[int, ...]:
         """Bead at the middle of the initial wave, and first contact of each place."""
-        size, ended = len(self.masses), max(20.0, _ENDED * self.theory(self.ratio)["fwhm"])
+        size, ended = (
+            len(self.masses),
+            max(20.0, _ENDED * self.theory(self.ratio)["fwhm"]),
+        )
         start = math.ceil(ended / size) * size
-        return tuple(start + round(_SITES * part / size) * size for part in (0, 0.5, 0.75, 1))
+        return tuple(
+            start + round(_SITES * part / size) * size for part in (0, 0.5, 0.75, 1)
+        )
 
     @cached_property
     def scene(self) -> Scene:
@@ -176,16 +203,23 @@ class Wave:
         size, predicted = len(self.masses), self.theory(self.ratio)
         sites = _SITES + start / 2  # run by sound
         beads = (
-            math.ceil((places[-1] + start + predicted["speed"] * (sites + start)) / 2 / size) * size
+            math.ceil(
+                (places[-1] + start + predicted["speed"] * (sites + start)) / 2 / size
+            )
+            * size
         )
         bead = np.arange(beads, dtype=float) - start
         if self.exact is None:
             strain, motion = (
-                self.wave(self.ratio).along(x, "strain") for x in (bead[:-1] + 0.5, bead)
+                self.wave(self.ratio).along(x, "strain")
+                for x in (bead[:-1] + 0.5, bead)
             )
             velocity = motion * predicted["speed"] * self.sound
         else:
-            strain, velocity = self.exact.strain(bead[:-1] + 0.5), self.exact.velocity(bead)
+            strain, velocity = (
+                self.exact.strain(bead[:-1] + 0.5),
+                self.exact.velocity(bead),
+            )
         sensors = tuple(place + i for place in places for i in range(size))
         return carrying(
             np.resize(self.masses, beads).tolist(),
@@ -197,7 +231,9 @@ class Wave:
             contact_sensors=sensors,
             bead_sensors=sensors,
             duration=sites / self.sound,
-            samples=math.ceil(_SAMPLES * sites * max(1.0, predicted["speed"] / predicted["fwhm"])),
+            samples=math.ceil(
+                _SAMPLES * sites * max(1.0, predicted["speed"] / predicted["fwhm"])
+            ),
         )
 
     def read(self, run: Run, stretch: int) -> dict[str, float]:
@@ -226,13 +262,22 @@ class Wave:
         """Table row: measured numbers, and the theory's at the measured force."""
         fine, rough = twice(self.scene, *self.tolerances)
         try:
-            measured, coarse, before = self.read(fine, 1), self.read(rough, 1), self.read(fine, 0)
+            measured, coarse, before = (
+                self.read(fine, 1),
+                self.read(rough, 1),
+                self.read(fine, 0),
+            )
         except MeasureError as error:
             masses = ", ".join(map(str, self.cell.masses))
-            raise MeasureError(f"masses {masses}, ratio {self.ratio:g}: {error}") from None
+            raise MeasureError(
+                f"masses {masses}, ratio {self.ratio:g}: {error}"
+            ) from None
         theory, earlier = (self.theory(read["force"]) for read in (measured, before))
         exact = None if self.exact is None else self.exact.c / self.sound
-        cells: dict[str, Any] = {"masses": [str(m) for m in self.cell.masses], "exact": exact}
+        cells: dict[str, Any] = {
+            "masses": [str(m) for m in self.cell.masses],
+            "exact": exact,
+        }
         cells |= {name: measured[name] for name in ("force", "decay")}
         for name, value in theory.items():
             settled = abs(measured[name] / value - before[name] / earlier[name]) * value
@@ -308,7 +353,10 @@ def _findings(law: ContactLaw, rows: Sequence[dict[str, Any]]) -> Iterator[Findi
         if offs and (law == Power("3/2") or ratio < 1):
             worst, error = max(offs)
             yield Finding(
-                f"{name}, V: |theory/lattice - 1|, at most", worst, high=bound, error=error
+                f"{name}, V: |theory/lattice - 1|, at most",
+                worst,
+                high=bound,
+                error=error,
             )
 
 
@@ -317,17 +365,26 @@ def _panels(waves: Sequence[tuple[Wave, dict[str, Any]]]) -> Iterator[Panel]:
     ratios = [wave.ratio for wave, _ in waves]
     first, forces = waves[0][0], np.geomspace(min(ratios), max(ratios), 100)
     theory = [first.theory(force) for force in forces]
-    for name, label, scale in (("speed", "V/c0", "x"), ("fwhm", "FWHM of force / √(12 I)", "xy")):
+    for name, label, scale in (
+        ("speed", "V/c0", "x"),
+        ("fwhm", "FWHM of force / √(12 I)", "xy"),
+    ):
         values = [each[name] / first.unit(name) for each in theory]
         curves = [Curve("theory, all chains", forces, values, "k-")]
         chains = groupby(waves, lambda part: part[0].cell)
         for (cell, those), mark in zip(chains, cycle("osv^Dx"), strict=False):
             points = [
-                (row["force"], row[name].value / wave.unit(name), row[name].error / wave.unit(name))
+                (
+                    row["force"],
+                    row[name].value / wave.unit(name),
+                    row[name].error / wave.unit(name),
+                )
                 for wave, row in those
             ]
             x, y, error = zip(*points, strict=True)
-            curves.append(Curve(f"masses {', '.join(map(str, cell.masses))}", x, y, mark, error))
+            curves.append(
+                Curve(f"masses {', '.join(map(str, cell.masses))}", x, y, mark, error)
+            )
         yield Panel("F/F0", label, tuple(curves), scale)
 
 

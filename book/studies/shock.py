@@ -60,14 +60,20 @@ Pair = tuple[float | None, float | None]  # speed and peak strain of the leading
 
 
 @study(
-    option("--k", callback=quantity, says="Exponent of F = δ^k; by default Toda, 3/2 and 2."),
+    option(
+        "--k",
+        callback=quantity,
+        says="Exponent of F = δ^k; by default Toda, 3/2 and 2.",
+    ),
     option(
         "--jumps",
         callback=quantities,
         default=",".join(map(str, JUMPS)),
         says="Strains behind the front over that ahead; if that is 0, strains behind.",
     ),
-    option("--ahead", callback=quantity, default="1", says="Strain ahead of the front."),
+    option(
+        "--ahead", callback=quantity, default="1", says="Strain ahead of the front."
+    ),
     option("--duration", default=2500.0, says="Time for which the piston moves."),
 )
 def shock(
@@ -88,7 +94,9 @@ def shock(
 
     Raises `lwa.InputError` for parameters out of range.
     """
-    end = between(duration, "duration", SHORTEST, math.inf, f"at least {SHORTEST:g} is wanted")
+    end = between(
+        duration, "duration", SHORTEST, math.inf, f"at least {SHORTEST:g} is wanted"
+    )
     start, cell = read_exact(ahead, "ahead"), Cell((1,), spacing=1)
     laws = LAWS if k is None else (Power(k),)
     steps = [read_exact(jump, "jump") for jump in jumps]
@@ -117,10 +125,14 @@ class Driven:
         # Not beyond the pulse: the canonical wave of a steep law is too fast.
         rule, _ = self.theories["doubling"]
         reach = self.duration * min(self._fastest, 1.03 * rule if rule else math.inf)
-        distances = {round(place) for place in np.linspace(*SPAN, CONTACTS) * reach} - {NEAR}
+        distances = {round(place) for place in np.linspace(*SPAN, CONTACTS) * reach} - {
+            NEAR
+        }
         return self._scene(self.duration, (NEAR, *sorted(distances)), SAMPLES)
 
-    def _scene(self, duration: float, contacts: tuple[int, ...], samples: float) -> Scene:
+    def _scene(
+        self, duration: float, contacts: tuple[int, ...], samples: float
+    ) -> Scene:
         """Build a scene of a given duration, with sensors at contacts counted from the piston."""
         chain = self.theory
         masses = (1.0,) * math.ceil(self._fastest * duration + 20)
@@ -142,11 +154,17 @@ class Driven:
     def theories(self) -> dict[str, Pair]:
         """Speed and peak strain of the leading pulse by theory; None where a theory gives none."""
         chain = self.theory
-        edge, speed = (attempt(chain.leading_speed, rule) for rule in ("dispersion", "doubling"))
+        edge, speed = (
+            attempt(chain.leading_speed, rule) for rule in ("dispersion", "doubling")
+        )
         closed = _number(speed), _number(attempt(lambda: chain.peak))
         own = attempt(own_wave, chain)
         own = (None, None) if isinstance(own, InputError) else own
-        return {"doubling": own, "canonical": closed, "dispersion": (_number(edge), None)}
+        return {
+            "doubling": own,
+            "canonical": closed,
+            "dispersion": (_number(edge), None),
+        }
 
     @property
     def trailing(self) -> float | None:
@@ -163,7 +181,14 @@ class Driven:
             cells += [s, _off(s, speed.value)]
             cells += [] if name == "dispersion" else [p, _off(p, peak.value)]
         ratio = float(chain.ratio) if chain.ahead else math.inf
-        head = _name(chain.law), strain, float(chain.ahead), ratio, plateau, plateau / strain - 1
+        head = (
+            _name(chain.law),
+            strain,
+            float(chain.ahead),
+            ratio,
+            plateau,
+            plateau / strain - 1,
+        )
         return (*head, speed, peak, *cells)
 
     def panels(self) -> tuple[Panel, Panel]:
@@ -177,7 +202,9 @@ class Driven:
             "s₊, dispersion": (self.theories["dispersion"][0], "C3:"),
             "s₋": (self.trailing, "C2-."),
         }
-        known = [(name, s, style) for name, (s, style) in speeds.items() if s is not None]
+        known = [
+            (name, s, style) for name, (s, style) in speeds.items() if s is not None
+        ]
         paths = [Curve(name, [0, s * end], [0, end], style) for name, s, style in known]
         ends = [strain[:, -1].min(), strain[:, -1].max()]
         edges = [Curve(name, [s * end] * 2, ends, style) for name, s, style in known]
@@ -201,23 +228,35 @@ def own_wave(chain: Shock) -> Pair:
     if _toda(chain.law):
         a, c = TODA, float(chain.sound(chain.ahead))
         angle = math.acosh(1 + a * float(chain.plateau) / c)
-        return c * math.sinh(angle) / angle, float(chain.ahead) + 2 * math.log(math.cosh(angle)) / a
-    k, ahead, fastest = float(chain.law.exponent), float(chain.ahead), 2 * float(chain.plateau)
+        return c * math.sinh(angle) / angle, float(chain.ahead) + 2 * math.log(
+            math.cosh(angle)
+        ) / a
+    k, ahead, fastest = (
+        float(chain.law.exponent),
+        float(chain.ahead),
+        2 * float(chain.plateau),
+    )
     if not ahead:  # the speed of the beads scales as the strain to the power (k + 1)/2
         wave = exact_wave([1], k)
         factor = (fastest / wave.peak("velocity")[1]) ** (2 / (k + 1))
-        return math.sqrt(wave.c2) * factor ** ((k - 1) / 2), wave.peak("strain")[1] * factor
+        return math.sqrt(wave.c2) * factor ** ((k - 1) / 2), wave.peak("strain")[
+            1
+        ] * factor
 
     def scaled(share: float) -> tuple[float, float, float]:
         """Speed, peak strain and bead velocity of the wave with background strain share · peak."""
         wave, factor = exact_wave([1], k, background=share), ahead / share
         pace = factor ** ((k - 1) / 2)
-        strain, velocity = (wave.peak(name)[1] * factor for name in ("strain", "velocity"))
+        strain, velocity = (
+            wave.peak(name)[1] * factor for name in ("strain", "velocity")
+        )
         return math.sqrt(wave.c2) * pace, ahead + strain, velocity * pace
 
     guess = ahead / float(chain.peak)
     low, high = guess / 1.2, min(guess * 1.2, (1 + guess) / 2)
-    share = scipy.optimize.brentq(lambda x: scaled(x)[2] - fastest, low, high, rtol=1e-10)
+    share = scipy.optimize.brentq(
+        lambda x: scaled(x)[2] - fastest, low, high, rtol=1e-10
+    )
     return scaled(share)[:2]
 
 
@@ -276,7 +315,12 @@ def _theory_columns(name: str, label: str, *quantities: str) -> list[Column]:
         for quantity in quantities
         for column in (
             Column(f"{name}_value.{quantity}"),
-            Column(f"{name}_error_value.{quantity}", f"{label} {_LETTERS[quantity]}", "", _PERCENT),
+            Column(
+                f"{name}_error_value.{quantity}",
+                f"{label} {_LETTERS[quantity]}",
+                "",
+                _PERCENT,
+            ),
         )
     ]
 
@@ -317,7 +361,9 @@ def _report(driven: Sequence[Driven], rows: Sequence[tuple[Any, ...]]) -> Report
         "Chains driven by a piston: lattice and theory",
         (Table(_COLUMNS, tuple(rows), "rows"),),
         tuple(findings),
-        max(driven, key=lambda chain: (chain.trailing is not None, chain.theory.ratio)).panels(),
+        max(
+            driven, key=lambda chain: (chain.trailing is not None, chain.theory.ratio)
+        ).panels(),
         (
             "Speeds in sites per unit of time; errors are theory over lattice, less 1. Rule: the "
             "lattice's own wave of beads at twice the piston's velocity. Canonical: the canonical "

@@ -40,10 +40,24 @@ from validation.scenes.checks import one_of
 
 HERTZ = Power("3/2")
 FORCES = 0.01, 0.1, 1.0, 10.0, 100.0  # wanted at the peak
-TUNINGS = 0.76, 0.91, 0.97, 1.0124, 1.07, 1.25, 1.5, 2.0, 4.0, 10.0  # ω0/(2πV), theory's V
+TUNINGS = (
+    0.76,
+    0.91,
+    0.97,
+    1.0124,
+    1.07,
+    1.25,
+    1.5,
+    2.0,
+    4.0,
+    10.0,
+)  # ω0/(2πV), theory's V
 LEAST_TUNING = 1.2  # from which on the theory of resonators is promised
 STRAINS = 1e-4, 1e-3, 1e-2  # peak strains wanted in packings
-COLUMNS, RANDOM = 2, 0.01  # of a packing's strip, and random share of the striker's velocity
+COLUMNS, RANDOM = (
+    2,
+    0.01,
+)  # of a packing's strip, and random share of the striker's velocity
 STRIKE = 0.616  # peak velocity of a bead in the pulse over that of the striker, Hertz
 SENSORS, BEADS = (60, 90), 112
 RTOL, SAMPLES = 1e-7, 6000  # of the integration, and samples of its result
@@ -54,7 +68,9 @@ Places = NDArray[np.intp]
 
 
 @study(option("--case", default="all", says="unlike, resonators, packings or all."))
-def struck(case: str = "all", least: float = 0.0, progress: Progress[Any] = iter) -> Report:
+def struck(
+    case: str = "all", least: float = 0.0, progress: Progress[Any] = iter
+) -> Report:
     """Struck chains of unlike links or resonators, and struck packings (half a minute).
 
     least: resonators with a smaller ω0/(2πV) are left out; below `LEAST_TUNING` the theory refuses.
@@ -113,7 +129,10 @@ class Blow:
         """Table row: the lattice's pulse beside the theory, which refuses slow resonators."""
         size = float(self.lattice.spacing)
         theory = loaded_wave(_stiff(self.lattice), force=self.force)
-        pace, velocity = float(theory.speed) / size, float(theory.strain * theory.speed) / STRIKE
+        pace, velocity = (
+            float(theory.speed) / size,
+            float(theory.strain * theory.speed) / STRIKE,
+        )
         if self.direction:
             seen = packing(self.direction, velocity, pace)
             force = seen.peak ** float(HERTZ.k) * _force_at_one(self.lattice)
@@ -121,7 +140,12 @@ class Blow:
             seen = chain(self.lattice, velocity, pace)
             force = seen.peak
         row = {"case": case, "chain": self.name, "force": force, "speed": seen.speed}
-        row |= {"of": seen.of, "fwhm": seen.fwhm, "decay": seen.decay, "ringing": seen.ringing}
+        row |= {
+            "of": seen.of,
+            "fwhm": seen.fwhm,
+            "decay": seen.decay,
+            "ringing": seen.ringing,
+        }
         row["strain"] = float(loaded_wave(_stiff(self.lattice), force=force).strain)
         for resonator in self.lattice.resonators:
             row["tuning"] = _resonance(resonator) / (2 * math.pi * seen.speed)
@@ -129,7 +153,10 @@ class Blow:
             theory = loaded_wave(self.lattice, force=force)
             speed, fwhm = float(theory.speed) / size, float(theory.fwhm(seen.of)) / size
             row |= {"speed theory": speed, "fwhm theory": fwhm}
-            row |= {"speed error": speed / seen.speed - 1, "fwhm error": fwhm / seen.fwhm - 1}
+            row |= {
+                "speed error": speed / seen.speed - 1,
+                "fwhm error": fwhm / seen.fwhm - 1,
+            }
         return row
 
 
@@ -153,7 +180,9 @@ def packings(_: float) -> Iterator[Blow]:
     for direction, bounds in (("across", (0.02, 0.06)), ("along", (0.02, 0.15))):
         lattice = hexagonal(HERTZ, direction)
         for strain in STRAINS:
-            force = (strain * float(lattice.spacing)) ** float(HERTZ.k) * _force_at_one(lattice)
+            force = (strain * float(lattice.spacing)) ** float(HERTZ.k) * _force_at_one(
+                lattice
+            )
             small = strain <= 1e-3
             blow = Blow(direction, lattice, force, bounds, direction)
             yield blow if small else replace(blow, bounds=(math.inf, math.inf))
@@ -168,14 +197,18 @@ def resonant(mass: Any, tuning: float) -> Lattice:
     """Hertz chain with resonators: ω0/(2πV) as given, V by the theory at the peak force 1."""
     resonator = Resonator(0, mass, 1)
     lattice = Lattice((1,), (Link(0, 1, HERTZ),), (resonator,))
-    frequency = 2 * math.pi * tuning * float(loaded_wave(_stiff(lattice), force=1).speed)
+    frequency = (
+        2 * math.pi * tuning * float(loaded_wave(_stiff(lattice), force=1).speed)
+    )
     stiffness = frequency**2 / (1 / float(resonator.mass) + 1)
     return replace(lattice, resonators=(replace(resonator, stiffness=stiffness),))
 
 
 def _stiff(lattice: Lattice) -> Lattice:
     """The lattice with stiff resonators; the theory's speed and strain know their mass only."""
-    stiff = tuple(replace(resonator, stiffness=10**6) for resonator in lattice.resonators)
+    stiff = tuple(
+        replace(resonator, stiffness=10**6) for resonator in lattice.resonators
+    )
     return replace(lattice, resonators=stiff)
 
 
@@ -239,11 +272,15 @@ def packing(direction: str, velocity: float, pace: float) -> Seen:
         # 1 - length without cancellation, as the gap at rest has the length 1
         compression = -((2 * gap + change) * change).sum(axis=0) / (1 + length)
         push = force(compression) * now / length
-        return np.concatenate([np.bincount(j, p, beads) - np.bincount(i, p, beads) for p in push])
+        return np.concatenate(
+            [np.bincount(j, p, beads) - np.bincount(i, p, beads) for p in push]
+        )
 
     start, first = np.zeros((2, beads)), layer == 0
     start[0, first] = velocity
-    start[:, first] += RANDOM * velocity * np.random.default_rng(1).standard_normal((2, COLUMNS))
+    start[:, first] += (
+        RANDOM * velocity * np.random.default_rng(1).standard_normal((2, COLUMNS))
+    )
     time, u = integrated(rates, start.ravel(), (SENSORS[1] + 16) / pace)
     mean = np.array([u[:beads][layer == at].mean(axis=0) for at in range(n)])
     pulses = [[measure(time, mean[at] - mean[at + 1])] for at in SENSORS]
@@ -257,7 +294,11 @@ def hexagons(direction: str) -> tuple[Places, Places, Places, Array]:
     places = np.array([layer * thin, (column + layer % 2 / 2) * wide])
     contacts = []
     for shift in (-COLUMNS * wide, 0.0, COLUMNS * wide):
-        gap = places[:, None, :] - places[:, :, None] + np.array([0, shift])[:, None, None]
+        gap = (
+            places[:, None, :]
+            - places[:, :, None]
+            + np.array([0, shift])[:, None, None]
+        )
         ahead = (gap[0] > 0.1) | ((gap[0] == 0) & (gap[1] > 0))  # each pair once
         near = np.argwhere(ahead & (np.abs(np.hypot(*gap) - 1) < 1e-9))
         contacts += [(a, b, *gap[:, a, b]) for a, b in near]
@@ -320,7 +361,9 @@ def _report(blows: Sequence[tuple[Blow, dict[str, Any]]]) -> Report:
         (Table(tuple(_COLUMNS.values()), table, "rows", by="case"),),
         tuple(findings),
         tuple(_panels(rows)),
-        ("off: theory over lattice, less 1. Speeds and widths in sites, or layers of a packing.",),
+        (
+            "off: theory over lattice, less 1. Speeds and widths in sites, or layers of a packing.",
+        ),
     )
 
 
@@ -334,7 +377,9 @@ def _panels(rows: Sequence[dict[str, Any]]) -> Iterator[Panel]:
             curves.append(Curve(chain_name, x, y, "o"))
         ends = [end([row[name] for row in known]) for end in (min, max)]
         curves.append(Curve("", ends, ends, "k:"))
-        yield Panel(f"{label} on the lattice", f"{label} by the theory", tuple(curves), "xy")
+        yield Panel(
+            f"{label} on the lattice", f"{label} by the theory", tuple(curves), "xy"
+        )
 
 
 if __name__ == "__main__":

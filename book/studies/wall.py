@@ -94,10 +94,14 @@ def modulus(delay: Measured, nu: float = 0.3, **chain: Any) -> Measured:
         if not shortest < time < longest:
             wanted = f"walls make delays from {shortest:.4g} to {longest:.4g} s"
             raise SceneError(f"delay is {delay}: {wanted}, and its error has to fit")
-        found = scipy.optimize.brentq(lambda x: late(x) - time, soft, stiff, xtol=_CLOSE)
+        found = scipy.optimize.brentq(
+            lambda x: late(x) - time, soft, stiff, xtol=_CLOSE
+        )
         return math.exp(found)
 
-    return Measured(at(delay.value), max(map(at, (delay.value - delay.error, delay.check))))
+    return Measured(
+        at(delay.value), max(map(at, (delay.value - delay.error, delay.check)))
+    )
 
 
 _ROWS = (
@@ -108,11 +112,18 @@ _ROWS = (
 
 
 @study(
-    option("--moduli", callback=quantities, default="1e9,3e9,10e9,30e9,70e9,200e9", says="In Pa."),
+    option(
+        "--moduli",
+        callback=quantities,
+        default="1e9,3e9,10e9,30e9,70e9,200e9",
+        says="In Pa.",
+    ),
     option("--nu", default=0.3, says="Poisson's ratio of the wall."),
     option("--velocity", default=0.5, says="Velocity of the struck bead in m/s."),
     option("--beads", default=20, says="Number of beads."),
-    option("--sensor", default=10, says="Contact at which the pulses are measured, from 1."),
+    option(
+        "--sensor", default=10, says="Contact at which the pulses are measured, from 1."
+    ),
 )
 def wall(
     moduli: Sequence[Any] = MODULI,
@@ -127,15 +138,30 @@ def wall(
     ``rows``: ``modulus_value`` in Pa, ``delay`` in s and ``ratio``, each with its error.
     """
     tried = [float(E) for E in items(moduli, "moduli")]
-    found = [echo(E, nu, velocity=velocity, beads=beads, sensor=sensor) for E in progress(tried)]
-    delays, ratios = ([number.value for number in numbers] for numbers in zip(*found, strict=True))
+    found = [
+        echo(E, nu, velocity=velocity, beads=beads, sensor=sensor)
+        for E in progress(tried)
+    ]
+    delays, ratios = (
+        [number.value for number in numbers] for numbers in zip(*found, strict=True)
+    )
     rows = tuple((E, *numbers) for E, numbers in zip(tried, found, strict=True))
     return Report(
         f"{beads} steel spheres struck at {velocity:g} m/s, a wall, contact {sensor}",
         (Table(_ROWS, rows, "rows", note="±: change in a less accurate run."),),
         panels=(
-            Panel("E of the wall (Pa)", "delay (s)", (Curve("", tried, delays, "C0o-"),), "x"),
-            Panel("E of the wall (Pa)", "peak/first", (Curve("", tried, ratios, "C1o-"),), "x"),
+            Panel(
+                "E of the wall (Pa)",
+                "delay (s)",
+                (Curve("", tried, delays, "C0o-"),),
+                "x",
+            ),
+            Panel(
+                "E of the wall (Pa)",
+                "peak/first",
+                (Curve("", tried, ratios, "C1o-"),),
+                "x",
+            ),
         ),
     )
 

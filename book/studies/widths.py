@@ -67,7 +67,9 @@ class Definition:
     def reproduced(self) -> tuple[str, ...]:
         """Lines of the paper's figure whose stated error the paper's closure meets within 0.5 %."""
         errors = self.errors["linear"]
-        return tuple(line for line, e in STATED.items() if abs(abs(errors[line]) - e) < 0.005)
+        return tuple(
+            line for line, e in STATED.items() if abs(abs(errors[line]) - e) < 0.005
+        )
 
     @property
     def cells(self) -> tuple[Any, ...]:
@@ -87,7 +89,9 @@ _COLUMNS = (
         for closure in ("linear", "canonical")
         for line in STATED
     ),
-    Column("reproduced", "stated errors met", format=lambda met: ", ".join(met) or "none"),
+    Column(
+        "reproduced", "stated errors met", format=lambda met: ", ".join(met) or "none"
+    ),
 )
 
 
@@ -116,11 +120,15 @@ def widths() -> Report:
     for reading, (pulses, quantity) in READINGS.items():
         force = numbers["contacts' force" if pulses == "contacts" else "F_m"]
         width, V = numbers[pulses], numbers["speed"]
-        length = width.value * V.value / DIAMETER  # both errors: they may cancel by chance
+        length = (
+            width.value * V.value / DIAMETER
+        )  # both errors: they may cancel by chance
         sites = Measured(length, length * (1 + width.relative_error + V.relative_error))
         for average, in_time in ((numbers[pulses], True), (sites, False)):
             errors = {
-                closure: {line: width / average.value - 1 for line, width in lines.items()}
+                closure: {
+                    line: width / average.value - 1 for line, width in lines.items()
+                }
                 for closure, lines in theory(quantity, force, in_time).items()
             }
             definitions.append(Definition(reading, in_time, average, errors))
@@ -176,7 +184,10 @@ def _panel(beads: Sequence[int], widths: Sequence[Measured], lines: Lines) -> Pa
 
 def _numbers(run: Run) -> dict[str, float]:
     """FWHM of each bead's force and their averages (s), mean peaks (N) and the speed (m/s)."""
-    beads, contacts = Train.of(run), Train.of(run, "contact").only(range(FIRST_BEAD, BEADS))
+    beads, contacts = (
+        Train.of(run),
+        Train.of(run, "contact").only(range(FIRST_BEAD, BEADS)),
+    )
     late = beads.only(range(FIRST_BEAD, BEADS))
     steel = late.only(range(1, BEADS, 2))
     return {

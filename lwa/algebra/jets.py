@@ -63,7 +63,10 @@ class JetAlgebra:
         self.parameters, self.weight = parameters, weight
         self._lowest = 0 if rest else 1
         velocities = range(self._lowest, weight + 1) if exponent else range(0)
-        jets = (*(f"r{n}" for n in range(1, weight + 1)), *(f"s{n}" for n in velocities))
+        jets = (
+            *(f"r{n}" for n in range(1, weight + 1)),
+            *(f"s{n}" for n in velocities),
+        )
         self.context = fmpq_mpoly_ctx.get([*parameters, *jets], Ordering.lex)
         self.one, self.zero = self.context.constant(1), self.context.constant(0)
         generators = self.context.gens()
@@ -71,16 +74,25 @@ class JetAlgebra:
         self._offset = len(parameters)
         self._velocity = self._offset + weight
         self.r = [self.one, *generators[self._offset : self._velocity]]
-        self.s = [self.zero] * self._lowest + list(generators[self._velocity :]) if exponent else []
+        self.s = (
+            [self.zero] * self._lowest + list(generators[self._velocity :])
+            if exponent
+            else []
+        )
         self.half = (exponent(self.context) + 1) / 2 if exponent else self.zero
         self.phi = [self.zero, self.one, *generators[: smooth - 1]] if smooth else []
-        self._moving = [*range(max(smooth - 1, 0)), *range(self._offset, self.context.nvars())]
+        self._moving = [
+            *range(max(smooth - 1, 0)),
+            *range(self._offset, self.context.nvars()),
+        ]
         r, s, half = self.r, self.s, self.half
         self._dx = self._derivatives(r)
         self._dt: dict[int, fmpq_mpoly] = {}
         if exponent:
             moving = range(self._lowest, weight + 1)
-            self._dx |= {self._index_of_s(n): s[n + 1] - half * r[1] * s[n] for n in moving[:-1]}
+            self._dx |= {
+                self._index_of_s(n): s[n + 1] - half * r[1] * s[n] for n in moving[:-1]
+            }
             # without u_ττ, which `dt` adds
             self._dt = self._derivatives(s)
             self._dt |= {self._index_of_s(n): -half * s[1] * s[n] for n in moving}
@@ -97,8 +109,13 @@ class JetAlgebra:
         jets : r for ∂_x, s for ∂_τ.
         """
         rate, r = jets[1], self.r  # rate: the derivative of p, over p
-        strain = {self._offset + n - 1: jets[n + 1] - rate * r[n] for n in range(1, self.weight)}
-        return strain | {n - 2: rate * self._theta(n) for n in range(2, len(self.phi) - 1)}
+        strain = {
+            self._offset + n - 1: jets[n + 1] - rate * r[n]
+            for n in range(1, self.weight)
+        }
+        return strain | {
+            n - 2: rate * self._theta(n) for n in range(2, len(self.phi) - 1)
+        }
 
     def _index_of_s(self, n: int) -> int:
         """Index of the velocity jet s_n among the generators."""
@@ -111,7 +128,9 @@ class JetAlgebra:
 
     def dp(self, f: fmpq_mpoly, exponent: fmpq_mpoly | int) -> fmpq_mpoly:
         """The derivative p^{1-e} ∂_p (p^e f) with respect to p at fixed jets, e the exponent."""
-        slopes = (f.derivative(n - 2) * self._theta(n) for n in range(2, len(self.phi) - 1))
+        slopes = (
+            f.derivative(n - 2) * self._theta(n) for n in range(2, len(self.phi) - 1)
+        )
         return sum(slopes, exponent * f)
 
     def dx(self, f: fmpq_mpoly, exponent: fmpq_mpoly | int) -> fmpq_mpoly:
@@ -137,7 +156,11 @@ class JetAlgebra:
     def velocity_slopes(self, f: fmpq_mpoly) -> list[tuple[int, fmpq_mpoly]]:
         """Derivatives by velocity jets: pairs (i, ∂f/∂s_i) for each s_i on which f depends."""
         start = self._velocity
-        return [(i - start + self._lowest, f.derivative(i)) for i in self._present(f) if i >= start]
+        return [
+            (i - start + self._lowest, f.derivative(i))
+            for i in self._present(f)
+            if i >= start
+        ]
 
     def _present(self, f: fmpq_mpoly) -> list[int]:
         """Indices of the jets and the φ_n on which f depends."""
@@ -151,7 +174,9 @@ class JetAlgebra:
         for index in self._present(f):
             if index not in images:
                 name = self.context.name(index)
-                raise ValueError(f"the derivative of {name} needs an algebra of more weight")
+                raise ValueError(
+                    f"the derivative of {name} needs an algebra of more weight"
+                )
             result = result + f.derivative(index) * images[index]
         return result
 
@@ -194,13 +219,18 @@ class JetAlgebra:
         in terms without s_i, an r_n beside lower r_i; r_1 alone is the derivative of p^e / e.
         """
         names = self.context.names()
-        indices = (*range(self._velocity + 1, len(names)), *range(self._offset + 1, self._velocity))
+        indices = (
+            *range(self._velocity + 1, len(names)),
+            *range(self._offset + 1, self._velocity),
+        )
         for index in sorted(indices, reverse=True):
             part = self._linear_part(f, index, names[index:]).integral(index - 1)
             f = f - self.dx(part, exponent)
         return f - self._linear_part(f, self._offset, names[self._offset :]) * self.r[1]
 
-    def _linear_part(self, f: fmpq_mpoly, index: int, others: Sequence[str]) -> fmpq_mpoly:
+    def _linear_part(
+        self, f: fmpq_mpoly, index: int, others: Sequence[str]
+    ) -> fmpq_mpoly:
         """Coefficient of the jet ``index`` in the terms of f without the other jets."""
         return f.derivative(index).subs(dict.fromkeys(others, 0))
 
@@ -219,7 +249,10 @@ class GradedSeries:
     """A series p^e Σ_n D^n f_n, f_n polynomials of weight n, with derivatives computed once."""
 
     def __init__(
-        self, algebra: JetAlgebra, exponent: fmpq_mpoly, terms: Sequence[fmpq_mpoly] = ()
+        self,
+        algebra: JetAlgebra,
+        exponent: fmpq_mpoly,
+        terms: Sequence[fmpq_mpoly] = (),
     ) -> None:
         self.algebra, self.exponent = algebra, exponent
         self._derivatives = [[f_n] for f_n in terms]
@@ -242,7 +275,11 @@ class GradedSeries:
     def increment(self, h: fmpq_mpoly | int, n: int) -> fmpq_mpoly:
         """Coefficient of D^n in f(x + hD) - f(x), which is Σ_{0<j≤n} h^j/j! ∂_x^j f_{n-j}."""
         derivatives = ((j, self.dx(n - j, j)) for j in range(1, n + 1))
-        parts = (f * (h**j * fmpq(1, factorial(j))) for j, f in derivatives if not f.is_zero())
+        parts = (
+            f * (h**j * fmpq(1, factorial(j)))
+            for j, f in derivatives
+            if not f.is_zero()
+        )
         return sum(parts, self.algebra.zero)
 
     def dx(self, n: int, j: int) -> fmpq_mpoly:

@@ -45,7 +45,9 @@ class Partition(Value):
     def values(self) -> tuple[sp.Expr, ...] | None:
         """The fraction f_i of each distinct weight if all are rational, else None."""
         first = self.distinct[0]
-        ratios = [w / first if w.is_number else factored(w / first) for w in self.weights]
+        ratios = [
+            w / first if w.is_number else factored(w / first) for w in self.weights
+        ]
         if not all(ratio.is_Rational for ratio in ratios):
             return None
         return tuple(self.total * w / first / sp.Add(*ratios) for w in self.distinct)
@@ -61,7 +63,9 @@ class Partition(Value):
         if self.values:
             fractions = [context.constant(to_flint(f)) for f in self.values]
         else:
-            fractions = [context.gen(context.variable_to_index(name)) for name in self.names]
+            fractions = [
+                context.gen(context.variable_to_index(name)) for name in self.names
+            ]
             rest = context.constant(self.total)
             for weight, f in zip(self.distinct, fractions, strict=False):
                 rest = rest - self.weights.count(weight) * f
@@ -91,7 +95,9 @@ class CoefficientRing(Value):
 
     @property
     def _parameters(self) -> tuple[str, ...]:
-        return ("k",) if self.variables == (self.k,) else tuple(map(str, self.variables))
+        return (
+            ("k",) if self.variables == (self.k,) else tuple(map(str, self.variables))
+        )
 
     def exponent(self, context: fmpq_mpoly_ctx) -> fmpq_mpoly:
         """The exponent k as an element of a ring that has `names` among its generators."""
@@ -113,10 +119,14 @@ class CoefficientRing(Value):
         k*m1*m2/(m1 + m2)**2
         """
         partitions = [part for part in (self.masses, self.contacts) if part.names]
-        values = [w for part in partitions for w in part.distinct] + list(self.variables)
+        values = [w for part in partitions for w in part.distinct] + list(
+            self.variables
+        )
         symbols = sorted(set().union(*(v.free_symbols for v in values)), key=str)
         polynomials = {v: _as_polynomial(v, symbols) for v in values}
-        opaque = [v for v, found in polynomials.items() if found is None and not v.is_Rational]
+        opaque = [
+            v for v, found in polynomials.items() if found is None and not v.is_Rational
+        ]
         generators = [*symbols, *opaque]
         ring = context(len(generators))
 
@@ -126,7 +136,9 @@ class CoefficientRing(Value):
             if (found := polynomials[value]) is None:
                 return ring.gen(generators.index(value))
             padding = (0,) * len(opaque)
-            return ring.from_dict({(*e, *padding): to_flint(c) for e, c in found.terms()})
+            return ring.from_dict(
+                {(*e, *padding): to_flint(c) for e, c in found.terms()}
+            )
 
         # The fractions total · w_i/Σw of a partition have the denominator Σw: each polynomial is
         # made homogeneous in the total · w_i and one more generator, whose image is Σw.
@@ -139,9 +151,17 @@ class CoefficientRing(Value):
         source = context(len(images) + len(sums))
 
         def convert(terms: Sequence[tuple[tuple[int, ...], fmpq]]) -> sp.Expr:
-            degrees = [max((sum(e[block]) for e, _ in terms), default=0) for block in blocks]
+            degrees = [
+                max((sum(e[block]) for e, _ in terms), default=0) for block in blocks
+            ]
             homogeneous = {
-                (*e, *(d - sum(e[block]) for d, block in zip(degrees, blocks, strict=True))): c
+                (
+                    *e,
+                    *(
+                        d - sum(e[block])
+                        for d, block in zip(degrees, blocks, strict=True)
+                    ),
+                ): c
                 for e, c in terms
             }
             numerator = source.from_dict(homogeneous).compose(*images, *sums, ctx=ring)
@@ -202,7 +222,9 @@ class Model(Value):
         masses = Partition(self.cell.masses, 1, "mu")
         return CoefficientRing(self.k, variables, masses, contacts)
 
-    def algebra(self, weight: int, velocity: bool = False, rest: bool = False) -> JetAlgebra:
+    def algebra(
+        self, weight: int, velocity: bool = False, rest: bool = False
+    ) -> JetAlgebra:
         """The algebra of the jets over the ring; with ``velocity`` also the jets of u_τ."""
         exponent = self.ring.exponent if velocity else None
         return JetAlgebra(self.ring.names, weight, exponent, rest, smooth=self.highest)
@@ -213,7 +235,11 @@ class Model(Value):
         """The exponent k, the mass fractions m̂_i and the shares C_i in an algebra of the model."""
         masses, contacts = self.ring.masses, self.ring.contacts
         context = algebra.context
-        return self.ring.exponent(context), masses.elements(context), contacts.elements(context)
+        return (
+            self.ring.exponent(context),
+            masses.elements(context),
+            contacts.elements(context),
+        )
 
     def substitution(self, values: Mapping[str, Any]) -> dict[sp.Symbol, sp.Expr]:
         """Map symbols of cell and law to values; see `lwa.cell.substitution`."""

@@ -52,7 +52,9 @@ def factored(value: sp.Expr) -> sp.Expr:
     return sp.Mul(to_sympy(numerator / denominator), *powers)
 
 
-def _fraction(value: sp.Expr, images: dict[sp.Expr, fmpq_mpoly], ring: fmpq_mpoly_ctx) -> Fraction:
+def _fraction(
+    value: sp.Expr, images: dict[sp.Expr, fmpq_mpoly], ring: fmpq_mpoly_ctx
+) -> Fraction:
     """Numerator and denominator of an expression in the generators of a ring."""
     one = ring.constant(1)
     if value.is_Rational:
@@ -61,7 +63,9 @@ def _fraction(value: sp.Expr, images: dict[sp.Expr, fmpq_mpoly], ring: fmpq_mpol
         numerator, denominator = ring.constant(0 if value.is_Add else 1), one
         for part in value.args:
             n, d = _fraction(part, images, ring)
-            numerator = numerator * d + n * denominator if value.is_Add else numerator * n
+            numerator = (
+                numerator * d + n * denominator if value.is_Add else numerator * n
+            )
             denominator = denominator * d
         return numerator, denominator
     if value.is_Pow and value.exp.is_Integer:
@@ -77,7 +81,10 @@ def _fraction(value: sp.Expr, images: dict[sp.Expr, fmpq_mpoly], ring: fmpq_mpol
 def to_sum(polynomial: fmpq_mpoly, generators: Sequence[sp.Expr]) -> sp.Expr:
     """Convert a polynomial to a sum of products of these expressions."""
     return sp.Add(
-        *(sp.Mul(to_sympy(c), *map(sp.Pow, generators, map(int, e))) for e, c in polynomial.terms())
+        *(
+            sp.Mul(to_sympy(c), *map(sp.Pow, generators, map(int, e)))
+            for e, c in polynomial.terms()
+        )
     )
 
 

@@ -22,9 +22,13 @@ def finite(values: ArrayLike, name: str) -> Array:
     """
     try:
         array = np.asarray(values)
-        array = array.astype(float, casting="unsafe" if array.dtype.kind == "O" else "safe")
+        array = array.astype(
+            float, casting="unsafe" if array.dtype.kind == "O" else "safe"
+        )
     except (TypeError, ValueError, OverflowError):
-        raise InputError(f"{name} is {shorten(values)}: real numbers are wanted") from None
+        raise InputError(
+            f"{name} is {shorten(values)}: real numbers are wanted"
+        ) from None
     if not np.all(np.isfinite(array)):
         raise InputError(
             f"{name} is {array[~np.isfinite(array)].flat[0]}: finite numbers are wanted"
@@ -40,7 +44,9 @@ def function_of(x: sp.Symbol, value: sp.Expr) -> Callable[[Array], Array]:
     if value.has(AppliedUndef):
         raise InputError(f"{shorten(value)} has no expression: floats need one")
     # NumPy has no integers of more than 63 bits.
-    long = {q: sp.Float(q, 17) for q in value.atoms(sp.Rational) if q.p.bit_length() > 53}
+    long = {
+        q: sp.Float(q, 17) for q in value.atoms(sp.Rational) if q.p.bit_length() > 53
+    }
     function = sp.lambdify(x, value.xreplace(long), "numpy")
 
     return lambda at: np.broadcast_to(np.asarray(function(at), np.float64), at.shape)

@@ -48,7 +48,9 @@ def growing_root(F: sp.Expr, x: sp.Symbol) -> Any:
             return None
     # F rises through 0 in this interval, and Anderson's method keeps a bracket
     ends, close = (low, low + step), mpmath.eps * (low + step)
-    return mpmath.findroot(value, ends, tol=close, maxsteps=200, solver="anderson", verify=False)
+    return mpmath.findroot(
+        value, ends, tol=close, maxsteps=200, solver="anderson", verify=False
+    )
 
 
 def real_function(function: Callable[[Any], Any]) -> Callable[[Any], Any]:

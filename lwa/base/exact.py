@@ -22,7 +22,9 @@ from lwa.base import InputError as InputError
 Quantity = int | float | str | Fraction | sp.Expr
 """Accepted types of an exponent, a mass, a stiffness or a length."""
 
-_NUMBER = re.compile(r"[+-]?(?:[0-9]+/[0-9]+|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?)")
+_NUMBER = re.compile(
+    r"[+-]?(?:[0-9]+/[0-9]+|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?)"
+)
 _NAME = re.compile(r"[A-Za-zα-ωΑ-Ω][A-Za-zα-ωΑ-Ω0-9_]*")
 _NOT_A_NUMBER = {"nan", "inf", "infinity", "none", "null", "true", "false"}
 _LONGEST_TEXT = 200  # characters: no number and no name of a chain needs more
@@ -63,12 +65,16 @@ def read_exact(value: Any, name: str) -> sp.Expr:
         expression = _from_text(value.strip(), name)
     elif isinstance(value, sp.Expr):
         real(value, name)
-        expression = value.xreplace({f: sp.Rational(str(f)) for f in value.atoms(sp.Float)})
+        expression = value.xreplace(
+            {f: sp.Rational(str(f)) for f in value.atoms(sp.Float)}
+        )
     else:
         expression = _from_number(value, name)
     for number in expression.atoms(sp.Rational):
         p, q = abs(int(number.p)), int(number.q)
-        if max(p, q) >= 10**DIGITS or p >= q * 2**1024:  # 2^1024: the first beyond a double
+        if (
+            max(p, q) >= 10**DIGITS or p >= q * 2**1024
+        ):  # 2^1024: the first beyond a double
             raise InputError(
                 f"{name} is a number beyond 1e±308 or of more than {DIGITS} digits: give a shorter "
                 "number"
@@ -92,18 +98,28 @@ def _from_text(text: str, name: str) -> sp.Expr:
         try:
             return sp.Rational(Fraction(text))
         except ZeroDivisionError:
-            raise InputError(f"{name} is {text}: the denominator must not be zero") from None
-    if len(text) > _LONGEST_TEXT or not _NAME.fullmatch(text) or text.lower() in _NOT_A_NUMBER:
+            raise InputError(
+                f"{name} is {text}: the denominator must not be zero"
+            ) from None
+    if (
+        len(text) > _LONGEST_TEXT
+        or not _NAME.fullmatch(text)
+        or text.lower() in _NOT_A_NUMBER
+    ):
         raise InputError(f"{name} is {shorten(text)}: {wanted}")
     if keyword.iskeyword(text) or hasattr(sp, text):
-        raise InputError(f"{name} is {text!r}, a word with a meaning of its own: choose another")
+        raise InputError(
+            f"{name} is {text!r}, a word with a meaning of its own: choose another"
+        )
     return sp.Symbol(text, positive=True)
 
 
 def real(value: Any, name: str) -> sp.Expr:
     """Return a real expression, whose floats keep their digits, or an exact number; never text."""
     if isinstance(value, str):
-        raise InputError(f"{name} is {shorten(value)}: a number or an expression is wanted")
+        raise InputError(
+            f"{name} is {shorten(value)}: a number or an expression is wanted"
+        )
     if not isinstance(value, sp.Expr):
         return read_exact(value, name)
     if value.is_real is False or value.has(sp.nan, sp.oo, -sp.oo, sp.zoo):
@@ -122,7 +138,9 @@ def signed(value: Any, name: str) -> sp.Expr:
 def positive(value: Any, name: str) -> sp.Expr:
     """Read an exact positive number, or an expression in symbols that may be positive."""
     expression = read_exact(value, name)
-    if expression.is_positive is False or (expression.is_number and not expression.is_positive):
+    if expression.is_positive is False or (
+        expression.is_number and not expression.is_positive
+    ):
         raise InputError(f"{name} is {expression}: it must be positive")
     return expression
 
@@ -158,7 +176,9 @@ def number(value: sp.Expr) -> float:
 
     Raises `lwa.InputError` for an expression with symbols.
     """
-    demand_numbers(value.free_symbols, "a curve needs numbers for all symbols; give them by at(…)")
+    demand_numbers(
+        value.free_symbols, "a curve needs numbers for all symbols; give them by at(…)"
+    )
     return float(evaluated(value, 20))
 
 

@@ -42,10 +42,14 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
         raise InputError(f"{what} is read from a file: {shorten(path)} is no file name")
     suffix = Path(path).suffix.lower()
     if suffix not in MOST_BYTES:
-        raise InputError(f"{path}: {what} is a file ending in {' or '.join(MOST_BYTES)}")
+        raise InputError(
+            f"{path}: {what} is a file ending in {' or '.join(MOST_BYTES)}"
+        )
     parse = tomllib.loads if suffix == ".toml" else json.loads
     try:
-        return reader(parse(content(Path(path), MOST_BYTES[suffix]).decode("utf-8-sig")))
+        return reader(
+            parse(content(Path(path), MOST_BYTES[suffix]).decode("utf-8-sig"))
+        )
     except (InputError, OSError) as error:
         fault = reason(error)
     except UnicodeDecodeError:
@@ -95,7 +99,9 @@ def positive(value: Any, name: str) -> float:
     if not number > 0:
         raise InputError(f"{name} is {number:g}: it must be positive")
     if number < LEAST:
-        raise InputError(f"{name} is {number}: floats below {LEAST:.1g} lose their digits")
+        raise InputError(
+            f"{name} is {number}: floats below {LEAST:.1g} lose their digits"
+        )
     return number
 
 
@@ -112,7 +118,9 @@ class Table:
         self.name, self.entries = name, entries(value, name or "the file")
         for key in self.entries:
             if key not in known:
-                raise InputError(f"{self.path(key)} is unknown: {_suggestion(key, known)}")
+                raise InputError(
+                    f"{self.path(key)} is unknown: {_suggestion(key, known)}"
+                )
 
     def __contains__(self, key: str) -> bool:
         return key in self.entries
@@ -133,7 +141,11 @@ class Table:
         """Return the key that is present; exactly one of the keys must be."""
         present = [key for key in keys if key in self]
         if len(present) != 1:
-            fault = f"both {' and '.join(present)}" if present else f"neither {' nor '.join(keys)}"
+            fault = (
+                f"both {' and '.join(present)}"
+                if present
+                else f"neither {' nor '.join(keys)}"
+            )
             raise InputError(f"{self.name} has {fault}: one is wanted")
         return present[0]
 
@@ -153,7 +165,8 @@ def entries(value: Any, name: str) -> dict[str, Any]:
 def named(reader: Reader) -> Reader:
     """Reader of a table with any names, each entry read by ``reader``."""
     return lambda value, name: {
-        key: reader(entry, f"{name}.{_plain(key)}") for key, entry in entries(value, name).items()
+        key: reader(entry, f"{name}.{_plain(key)}")
+        for key, entry in entries(value, name).items()
     }
 
 
@@ -175,7 +188,8 @@ def array(value: Any, name: str) -> list[Any]:
 def each(reader: Reader) -> Reader:
     """Reader of a list, each item read by ``reader``."""
     return lambda value, name: [
-        reader(item, f"{name} number {i}") for i, item in enumerate(array(value, name), start=1)
+        reader(item, f"{name} number {i}")
+        for i, item in enumerate(array(value, name), start=1)
     ]
 
 
@@ -184,7 +198,9 @@ def among(values: Mapping[str, Any]) -> Reader:
 
     def read(value: Any, name: str) -> Any:
         if not isinstance(value, str) or value not in values:
-            raise InputError(f"{name} is {shorten(value)}: {_suggestion(value, values)}")
+            raise InputError(
+                f"{name} is {shorten(value)}: {_suggestion(value, values)}"
+            )
         return values[value]
 
     return read
@@ -220,4 +236,8 @@ def _plain(key: str) -> str:
 def _suggestion(value: Any, known: Collection[str]) -> str:
     if close := get_close_matches(str(value)[:60], known, 1):
         return f"did you mean {close[0]}?"
-    return f"one of {', '.join(list(known)[:12])} is wanted" if known else "none is defined"
+    return (
+        f"one of {', '.join(list(known)[:12])} is wanted"
+        if known
+        else "none is defined"
+    )

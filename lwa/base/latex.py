@@ -78,7 +78,9 @@ def expression(value: sp.Expr) -> str:
     '\\\\frac{x}{2} + \\\\frac{y}{2}'
     """
     # A power such as a^{1/k} is printed first, as SymPy asks at length whether 1/k is constant.
-    symbolic = (p for p in value.atoms(sp.Pow) if p.base.is_Symbol and p.exp.free_symbols)
+    symbolic = (
+        p for p in value.atoms(sp.Pow) if p.base.is_Symbol and p.exp.free_symbols
+    )
     powers = {p: sp.Symbol(sp.latex(p)) for p in symbolic}
     plain = str(sp.latex(value.xreplace(powers)))
     if not value.free_symbols and width(plain) > NUMBER:
@@ -117,5 +119,7 @@ def total(terms: Iterable[tuple[sp.Expr, str]]) -> str:
         size = -coefficient if minus else coefficient
         value = rf"\left({expression(size)}\right)" if size.is_Add else expression(size)
         sign = "-" if minus else "+" if i else ""
-        written.append(f"{sign} {'' if value == '1' and factor else value} {factor}".strip())
+        written.append(
+            f"{sign} {'' if value == '1' and factor else value} {factor}".strip()
+        )
     return " ".join(" ".join(written).split()) or "0"

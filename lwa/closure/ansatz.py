@@ -27,7 +27,9 @@ def linear(model: Model, order: int, progress: Progress[int] = iter) -> Solution
     Raises `lwa.InputError` for cells of more than two particles, which the ansatz does not cover.
     """
     size = model.cell.size
-    if size == 1 and model.branch == "acoustic":  # the one equation is the wave equation
+    if (
+        size == 1 and model.branch == "acoustic"
+    ):  # the one equation is the wave equation
         return full(model, order, progress=progress)
     if size != 2:
         raise InputError(
@@ -40,16 +42,24 @@ def linear(model: Model, order: int, progress: Progress[int] = iter) -> Solution
 
 def _applied(b: list[fmpq_mpoly], f: GradedSeries, n: int) -> fmpq_mpoly:
     """Term n of the ansatz applied to a series f, Σ_{0<j<n} b_j ∂_x^j f_{n-j}, without b_n."""
-    return sum((b[j] * f.dx(n - j, j) for j in range(1, min(n, len(f)))), f.algebra.zero)
+    return sum(
+        (b[j] * f.dx(n - j, j) for j in range(1, min(n, len(f)))), f.algebra.zero
+    )
 
 
 def _acoustic(model: Model, order: int, progress: Progress[int]) -> Solution:
     algebra = model.algebra(max(order - 1, 1))
     k, mu, c = model.elements(algebra)
-    right, left = Force(algebra, k), Force(algebra, k)  # in the cell and to the next one
+    right, left = (
+        Force(algebra, k),
+        Force(algebra, k),
+    )  # in the cell and to the next one
     # E by equation 1 and by equation 2
     first, second = (GradedSeries(algebra, k, [algebra.zero]) for _ in range(2))
-    b = [algebra.one, c[0]]  # order D^k: equal forces, so the first contact takes its share
+    b = [
+        algebra.one,
+        c[0],
+    ]  # order D^k: equal forces, so the first contact takes its share
     for n in progress(range(1, order)):
         # The strains of both contacts sum to u(x + 2D) - u(x). Let the two differ by ξ r_n at D^n;
         # both equations are evaluated without ξ r_n, which enters with the factors ±1.
@@ -57,7 +67,11 @@ def _acoustic(model: Model, order: int, progress: Progress[int]) -> Solution:
         force_1, force_2 = difference - left.increment(-2, n), -difference
         # u_ττ is the same at r_n, m̂_0 + m̂_1 = 1, and b_n cancels:
         # m̂_1 (force_1 + ξ r_n) = m̂_0 (force_2 - ξ r_n - 2 m̂_1 applied).
-        condition = mu[1] * force_1 - mu[0] * force_2 + 2 * mu[0] * mu[1] * _applied(b, first, n)
+        condition = (
+            mu[1] * force_1
+            - mu[0] * force_2
+            + 2 * mu[0] * mu[1] * _applied(b, first, n)
+        )
         xi = -algebra.slope(condition, n)
         r_n = algebra.r[n]
         mean = algebra.one * fmpq(2**n, factorial(n + 1))
@@ -89,10 +103,14 @@ def _optical(model: Model, order: int, progress: Progress[int]) -> Solution:
         second.append(force - b[n] * leading.dx(0, n - 1) - _applied(b, second, n))
     solution = _solution(b, first, second)
     E = (algebra.one, *(k * e for e in solution.acceleration[1:]))
-    return replace(solution, acceleration=E, defect=tuple(k * d for d in solution.defect))
+    return replace(
+        solution, acceleration=E, defect=tuple(k * d for d in solution.defect)
+    )
 
 
-def _solution(b: list[fmpq_mpoly], first: GradedSeries, second: GradedSeries) -> Solution:
+def _solution(
+    b: list[fmpq_mpoly], first: GradedSeries, second: GradedSeries
+) -> Solution:
     """The solution with E_n of the first equation of motion and the defect first - second."""
     return Solution(
         algebra=first.algebra,

@@ -66,7 +66,10 @@ class Closure(Shown, Solution):
             return []
         last = min(len(self.ansatz) - 1, most or len(self.ansatz))
         D = self.model.cell.spacing
-        parts = [f"b_{{{n}}} {latex.power(D, n)} {latex.derivative(n)}" for n in range(1, last + 1)]
+        parts = [
+            f"b_{{{n}}} {latex.power(D, n)} {latex.derivative(n)}"
+            for n in range(1, last + 1)
+        ]
         if self.name == "full" or last < len(self.ansatz) - 1:
             parts.append(r"\cdots")
         first = rf"w = \lambda \left(u + {' + '.join(parts)}\right)"
@@ -143,4 +146,6 @@ def solve(
             "the optical branch oscillates at order D^0 and slaves no field algebraically unless "
             "k = 1: use the linear closure, or k = 1 with the field 'first'"
         )
-    return Closure(**vars(solution), model=model, order=order, name=closure, field=field)
+    return Closure(
+        **vars(solution), model=model, order=order, name=closure, field=field
+    )

@@ -47,7 +47,10 @@ class Force:
 
     def __init__(self, algebra: JetAlgebra, k: fmpq_mpoly) -> None:
         factors = (k - j for j in range(1, algebra.weight + 1))
-        self.phi = algebra.phi or [algebra.zero, *accumulate(factors, mul, initial=algebra.one)]
+        self.phi = algebra.phi or [
+            algebra.zero,
+            *accumulate(factors, mul, initial=algebra.one),
+        ]
         self.X: list[fmpq_mpoly] = [algebra.zero]
         self.Phi = GradedSeries(algebra, k, [algebra.zero])
         self._slope = GradedSeries(algebra, k, [algebra.r[1]])
@@ -67,7 +70,9 @@ class Force:
         """The coefficient of D^n in X^m/m! = (1/m) X · X^{m-1}/(m-1)!, n ≥ m ≥ 1."""
         if m == 1:
             return self.X[n]
-        parts = (self.X[j] * self._power_term(m - 1, n - j) for j in range(1, n - m + 2))
+        parts = (
+            self.X[j] * self._power_term(m - 1, n - j) for j in range(1, n - m + 2)
+        )
         return sum(parts, self.X[0]) / m  # X_0 = 0
 
     def append(self, X_n: fmpq_mpoly) -> None:
@@ -79,7 +84,9 @@ class Force:
     def increment(self, h: int, n: int) -> fmpq_mpoly:
         """Coefficient of D^n in [F(p) + p F' Φ](x + hD) - [F(p) + p F' Φ](x), divided by p F'."""
         # F(p) adds h^n/n! ∂_x^n F(p) = h^n/n! ∂_x^{n-1} (p F' r_1), r_1 = p_x/p.
-        return self.Phi.increment(h, n) + self._slope.dx(0, n - 1) * fmpq(h**n, factorial(n))
+        return self.Phi.increment(h, n) + self._slope.dx(0, n - 1) * fmpq(
+            h**n, factorial(n)
+        )
 
     def work(self, n: int) -> fmpq_mpoly:
         """Coefficient of D^n in ∫ Φ dX = [W(p (1 + X)) - W(p) - p F(p) X] / (p² F'), W' = F."""
@@ -113,7 +120,9 @@ class Solution:
         if self.slaved:
             return self.slaved
         first = tuple(self.algebra.zero for _ in self.acceleration)
-        second = tuple(b * r for b, r in zip(self.ansatz[1:], self.algebra.r, strict=False))
+        second = tuple(
+            b * r for b, r in zip(self.ansatz[1:], self.algebra.r, strict=False)
+        )
         return (first, second) if self.ansatz else (first,)
 
 
@@ -134,7 +143,10 @@ def full(
         slopes = (algebra.slope(S_n, n) for n, S_n in enumerate(fields[1]) if n)
         ansatz = (algebra.one, fields[1][0], *slopes)
     return Solution(
-        algebra=algebra, acceleration=tuple(chain.E)[:order], ansatz=ansatz, slaved=fields
+        algebra=algebra,
+        acceleration=tuple(chain.E)[:order],
+        ansatz=ansatz,
+        slaved=fields,
     )
 
 
@@ -157,7 +169,9 @@ class _Slaving:
         self.weights = self.mu if field == "center" else [algebra.one]
         self.E = GradedSeries(algebra, k, [algebra.zero])
         self.S = [GradedSeries(algebra, algebra.one, [x]) for x in self.x]
-        self.rates = [GradedSeries(algebra, algebra.half, [algebra.zero]) for _ in self.x]
+        self.rates = [
+            GradedSeries(algebra, algebra.half, [algebra.zero]) for _ in self.x
+        ]
         self.forces = [Force(algebra, k) for _ in self.x]
 
     def extend(self, n: int) -> None:
@@ -169,7 +183,9 @@ class _Slaving:
         # Momentum: in the sum of the equations of motion only the end forces remain.
         P = len(self.x)
         inertia = (mu * a for mu, a in zip(self.mu, accelerations, strict=True))
-        self.E.append(-self.forces[-1].increment(-P, n) / P - sum(inertia, self.algebra.zero))
+        self.E.append(
+            -self.forces[-1].increment(-P, n) / P - sum(inertia, self.algebra.zero)
+        )
         self._strains(n, accelerations)
         self._origin(n)
 
@@ -180,7 +196,10 @@ class _Slaving:
         """
         P, first = len(self.x), self.forces[0]
         total = self._shift(n) * P ** (n + 1) + self.S[0].increment(P, n)
-        push, differences = self.algebra.zero, []  # Φ_i - Φ_0, and X_i - X_0 of the strains
+        push, differences = (
+            self.algebra.zero,
+            [],
+        )  # Φ_i - Φ_0, and X_i - X_0 of the strains
         for i, force in enumerate(self.forces):
             if i:
                 push = push + P * self.mu[i] * (self.E[n] + accelerations[i])
@@ -192,7 +211,9 @@ class _Slaving:
 
     def _origin(self, n: int) -> None:
         """Append S_n of each particle, by the definition φ(x) = Σ g_i w_i(x - x_i D)."""
-        strains = (c * force.X[n] for c, force in zip(self.c[:-1], self.forces, strict=False))
+        strains = (
+            c * force.X[n] for c, force in zip(self.c[:-1], self.forces, strict=False)
+        )
         relative = list(accumulate(strains, initial=self.algebra.zero))
         origin = self.algebra.zero
         for g, x, S, d in zip(self.weights, self.x, self.S, relative, strict=False):

@@ -18,7 +18,14 @@ from lwa.cell import Cell, D
 from lwa.command.options import given
 from lwa.command.rows import approximate
 from lwa.law import ContactLaw, Power, for_cell, read_law
-from lwa.spheres.beads import FILE, STRIKER, period, read_beads, read_materials, read_row
+from lwa.spheres.beads import (
+    FILE,
+    STRIKER,
+    period,
+    read_beads,
+    read_materials,
+    read_row,
+)
 from lwa.spheres.hertz import EXPONENT
 
 
@@ -44,15 +51,21 @@ class ChainInput:
         force = f"A δ^k, k = {k}" if law.homogeneous else f"A F, F = {law.F}"
         write = approximate if self.si else str
         kg, of_A, m = (" kg", f" N/m^({k})", " m") if self.si else ("", "", "")
-        masses, A = (", ".join(map(write, row)) for row in (cell.masses, cell.stiffnesses))
+        masses, A = (
+            ", ".join(map(write, row)) for row in (cell.masses, cell.stiffnesses)
+        )
         chain = f"masses {masses}{kg}; contact force {force}, A = {A}{of_A}"
         return f"{chain}; spacing D = {write(cell.spacing)}{m}"
 
-    def load(self, background: sp.Expr | None, precompression: sp.Expr | None) -> sp.Expr | None:
+    def load(
+        self, background: sp.Expr | None, precompression: sp.Expr | None
+    ) -> sp.Expr | None:
         """Static force of the file or of the options; raises `lwa.InputError` for two loads."""
         static = self.precompression
         if static and (background is not None or precompression is not None):
-            raise InputError(f"the file has a precompression of {static}: give no other load")
+            raise InputError(
+                f"the file has a precompression of {static}: give no other load"
+            )
         return static or precompression
 
 
@@ -63,11 +76,15 @@ def take_chain(options: dict[str, Any]) -> ChainInput:
     file = options.pop("spheres", None)
     if file is not None:
         for name in filter(given, chosen):
-            raise InputError(f"--{name} and --spheres are both given: spheres have their own")
+            raise InputError(
+                f"--{name} and --spheres are both given: spheres have their own"
+            )
         return read_chain(file)
     cell = Cell(chosen["masses"], chosen["stiffnesses"], chosen.get("spacing", D))
     if cell.spacing.is_Symbol and chosen["k"] == cell.spacing:
-        raise InputError(f"k is {cell.spacing}: the name is that of the spacing, a unit of length")
+        raise InputError(
+            f"k is {cell.spacing}: the name is that of the spacing, a unit of length"
+        )
     return ChainInput(cell, for_cell(chosen.get("law"), cell, chosen["k"]))
 
 
@@ -101,6 +118,8 @@ def _chain(content: Any) -> ChainInput:
     spacing = sp.Rational(str(sum(spacings) / len(spacings))) if spacings else D
     cell = Cell(tuple(masses[:P]), tuple(stiffnesses), spacing)
     named = row.given.one("k", "law") == "law"
-    law = row.given.read("law", read_law) if named else Power(row.given.read("k", finite))
+    law = (
+        row.given.read("law", read_law) if named else Power(row.given.read("k", finite))
+    )
     si = file.read("units", among({"SI": True}), False)
     return ChainInput(cell, law, force, si, velocity, mass)

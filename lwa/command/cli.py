@@ -17,7 +17,9 @@ from lwa.base import INTERRUPTED, InputError, NoSolitaryWave
 HELP = {"help_option_names": ["-h", "--help"]}
 """Settings of a command: both ways to ask for help."""
 
-CLOSED = 128 + 13  # exit status as in shells: 128 and SIGPIPE's number, which Windows lacks
+CLOSED = (
+    128 + 13
+)  # exit status as in shells: 128 and SIGPIPE's number, which Windows lacks
 
 version = click.version_option(package_name="lwa", message="%(prog)s %(version)s")
 """The option ``--version`` of a command."""
@@ -30,9 +32,13 @@ class Commands(click.Group):
         command of that name, or an object whose ``command`` is one.
     """
 
-    def __init__(self, package: str, table: Mapping[str, tuple[str, str]], **settings: Any) -> None:
+    def __init__(
+        self, package: str, table: Mapping[str, tuple[str, str]], **settings: Any
+    ) -> None:
         # placeholders: Click lists their names, and suggests one for a mistyped name
-        super().__init__(commands={name: click.Command(name) for name in table}, **settings)
+        super().__init__(
+            commands={name: click.Command(name) for name in table}, **settings
+        )
         self.package, self.table = package, table
 
     def get_command(self, context: click.Context, name: str) -> click.Command | None:
@@ -43,13 +49,19 @@ class Commands(click.Group):
         command: click.Command = getattr(loaded, "command", loaded)
         return command
 
-    def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
+    def format_commands(
+        self, context: click.Context, formatter: click.HelpFormatter
+    ) -> None:
         """Write the list of commands without loading them."""
         with formatter.section("Commands"):
-            formatter.write_dl([(name, summary) for name, (_, summary) in self.table.items()])
+            formatter.write_dl(
+                [(name, summary) for name, (_, summary) in self.table.items()]
+            )
 
 
-def run(command: click.Command, name: str, arguments: Sequence[str] | None = None) -> None:
+def run(
+    command: click.Command, name: str, arguments: Sequence[str] | None = None
+) -> None:
     """Run a command and end the process with its status.
 
     The status is that of the command (0, or 1 for comparisons that failed), 2 after one line on bad
@@ -85,7 +97,9 @@ def _status(command: click.Command, name: str, arguments: Sequence[str] | None) 
     except (OSError, SystemExit) as error:
         if isinstance(error, SystemExit) and sys.stdout is output:
             raise
-        sys.stdout = output  # click replaces the output, and exits, where a pipe is closed
+        sys.stdout = (
+            output  # click replaces the output, and exits, where a pipe is closed
+        )
         if output is not None:  # discard what is not flushed yet
             os.dup2(os.open(os.devnull, os.O_WRONLY), output.fileno())
         if isinstance(error, SystemExit):

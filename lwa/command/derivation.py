@@ -24,7 +24,10 @@ def settings_json(theory: Theory) -> Values:
     """JSON of the chain, its law and the settings; the φ_n are functions of the compression."""
     law = {}
     if not theory.law.homogeneous:
-        law = {"law": str(theory.law.F), "phi": {str(n): str(x) for n, x in theory.phi.items()}}
+        law = {
+            "law": str(theory.law.F),
+            "phi": {str(n): str(x) for n, x in theory.phi.items()},
+        }
     return {
         "k": str(theory.k),
         **law,
@@ -77,17 +80,26 @@ def derive(style: str, **options: Any) -> None:
         rows += [
             "w = λ (u + Σ b_n D^n ∂_x^n u), the linear part of the second particle's field",
             f"  λ = {theory.amplitude_ratio}",
-            *(Row(f"ansatz.{n}", f"b{n}", b, digits=0) for n, b in theory.ansatz.items()),
+            *(
+                Row(f"ansatz.{n}", f"b{n}", b, digits=0)
+                for n, b in theory.ansatz.items()
+            ),
             "",
         ]
     for i, series in theory.slaved.items():
         # the linear part of the second particle's field w is the ansatz
         if lines := by_order(series, "D^{}", linear=i != 1):
-            name = "nonlinear terms of w" if i == 1 else f"field of particle {i + 1}, less u"
+            name = (
+                "nonlinear terms of w"
+                if i == 1
+                else f"field of particle {i + 1}, less u"
+            )
             rows += [f"{name}:", *lines, ""]
     rows += [str(pde), ""]
     if theory.defect:
-        rows.append("defect: u_ττ by the first equation of motion minus u_ττ by the second")
+        rows.append(
+            "defect: u_ττ by the first equation of motion minus u_ττ by the second"
+        )
         rows += by_order(theory.defect, pde.heading)
     else:
         rows.append("all equations of motion are satisfied at every order shown")

@@ -10,7 +10,13 @@ import sympy as sp
 
 from lwa.base import InputError
 from lwa.command.chain import take_chain
-from lwa.command.options import SPHERES, cell_options, spheres_option, style_option, value
+from lwa.command.options import (
+    SPHERES,
+    cell_options,
+    spheres_option,
+    style_option,
+    value,
+)
 from lwa.command.rows import Answer, Row, attempt
 from lwa.command.waves import hertz_note
 from lwa.expansion.physical import pulse_of_strike
@@ -19,9 +25,14 @@ from lwa.shocks import riemann
 
 @click.command()
 @spheres_option(required=True)
-@value("--velocity", "Velocity of the striker, in m/s in SI.  [default: that in the file]")
+@value(
+    "--velocity", "Velocity of the striker, in m/s in SI.  [default: that in the file]"
+)
 @value("--drop", "Height from which the striker falls, in m, in place of --velocity.")
-@value("--mass", "Mass of the striker, in kg in SI.  [default: that in the file, or of a bead]")
+@value(
+    "--mass",
+    "Mass of the striker, in kg in SI.  [default: that in the file, or of a bead]",
+)
 @style_option()
 def strike(
     spheres: str,
@@ -51,7 +62,13 @@ def strike(
         f"chain of equal beads; F = A δ^k, k = {law.exponent}",
         Row("", "mass of the beads", cell.masses[0], unit="kg"),
         Row("mass", "mass of the striker", pulse.mass, "kg", expression=False),
-        Row("velocity", "velocity of the striker", pulse.velocity, "m/s", expression=False),
+        Row(
+            "velocity",
+            "velocity of the striker",
+            pulse.velocity,
+            "m/s",
+            expression=False,
+        ),
         "",
         "leading pulse:",
         Row("force", "peak contact force", pulse.force, "N"),
@@ -61,7 +78,9 @@ def strike(
     ]
     notes = hertz_note(chain, pulse.wave.F)
     if pulse.train:
-        notes.append("a striker heavier than two beads sends further pulses behind this one")
+        notes.append(
+            "a striker heavier than two beads sends further pulses behind this one"
+        )
     Answer({}, rows, chain.si, shown=[pulse], notes=notes).print(style)
 
 
@@ -69,8 +88,13 @@ def strike(
 @cell_options()
 @SPHERES
 @value("--behind", "Strain behind the front, compression over D.")
-@value("--piston", "Velocity of the wall, in m/s if the chain is in SI, in place of --behind.")
-@value("--ahead", "Strain ahead of the front.  [default: 0, or that of the load in a file]")
+@value(
+    "--piston",
+    "Velocity of the wall, in m/s if the chain is in SI, in place of --behind.",
+)
+@value(
+    "--ahead", "Strain ahead of the front.  [default: 0, or that of the load in a file]"
+)
 def shock(
     style: str,
     behind: sp.Expr | None,
@@ -100,7 +124,11 @@ def shock(
 
     def row(key: str, label: str, unit: str = "m/s") -> Row:
         name, _, rule = key.partition(".")
-        value = attempt(front.leading_speed, rule) if rule else attempt(getattr, front, name)
+        value = (
+            attempt(front.leading_speed, rule)
+            if rule
+            else attempt(getattr, front, name)
+        )
         closed = isinstance(value, sp.Expr) and not value.has(sp.Float)
         bound = errors.get(rule or name, math.nan)
         return Row(key, label, value, unit, expression=closed, error=bound)
@@ -115,7 +143,10 @@ def shock(
         f"{head['kind'] or 'front'}, speeds dx/dt:",
         row("plateau", "velocity of the wall"),
         row("trailing_speed", "trailing edge"),
-        *(row(f"leading_speed.{rule}", f"leading edge, {rule}") for rule in riemann.RULES),
+        *(
+            row(f"leading_speed.{rule}", f"leading edge, {rule}")
+            for rule in riemann.RULES
+        ),
     ]
     if kind != "rarefaction":
         rows.append(row("peak", "peak strain, doubling", ""))

@@ -35,7 +35,9 @@ from lwa.spheres.hertz import EXPONENT
 @PRECOMPRESSION
 @SPACING
 @SPHERES
-def dispersion(order: int, style: str, precompression: sp.Expr | None, **options: Any) -> None:
+def dispersion(
+    order: int, style: str, precompression: sp.Expr | None, **options: Any
+) -> None:
     """Expand the squared frequency Ω² of linear waves in the wavenumber κ.
 
     Ω is the frequency in the time τ of `lwa derive`, and κ the wavenumber, both times D. The
@@ -60,7 +62,10 @@ def dispersion(order: int, style: str, precompression: sp.Expr | None, **options
     head: Values = {"acoustic": None, "optical": None}
     for name, series in linear.series(order).items():
         head[name] = {str(n): str(c) for n, c in series.items()}
-        rows += [f"{name}:", *(f"  {f'κ^{n}' if n else '1'}: {c}" for n, c in series.items())]
+        rows += [
+            f"{name}:",
+            *(f"  {f'κ^{n}' if n else '1'}: {c}" for n, c in series.items()),
+        ]
     if precompression is None:
         Answer(head, rows, shown=[linear]).print(style)
         return
@@ -79,7 +84,10 @@ def dispersion(order: int, style: str, precompression: sp.Expr | None, **options
         head["band_edges_frequency_value"] = (edges / (2 * math.pi)).tolist()
         unit = "s" if chain.si else "unit of time"
         for i, (low, high) in enumerate(edges, start=1):
-            hertz = f" ({low / (2 * math.pi):.6g} … {high / (2 * math.pi):.6g} Hz)" * chain.si
+            hertz = (
+                f" ({low / (2 * math.pi):.6g} … {high / (2 * math.pi):.6g} Hz)"
+                * chain.si
+            )
             band = f"{low:.{PRINTED_DIGITS}g} … {high:.{PRINTED_DIGITS}g}"
             rows.append(f"  band {i}: {band}, in rad per {unit}{hertz}")
     Answer(head, rows, chain.si, chain.cell.spacing, [linear, loaded]).print(style)
@@ -129,13 +137,20 @@ def envelope(
     frequencies are in Hz, displacements in m and forces in N. In JSON `amplitude` is the largest
     displacement of each bead, and `width` is 1/b of the envelope sech(bn) or tanh(bn).
     """
-    from lwa.envelopes import schrodinger  # here: it loads NumPy, which `lwa dispersion` may spare
+    from lwa.envelopes import (
+        schrodinger,
+    )  # here: it loads NumPy, which `lwa dispersion` may spare
 
     if frequency is not None and detuning is not None:
-        raise InputError("--frequency and --detuning are both given: one says the other")
+        raise InputError(
+            "--frequency and --detuning are both given: one says the other"
+        )
     chain = take_chain(options)
     cell, place = chain.cell, int(branch) if branch and branch.isdecimal() else branch
-    load = {"background": background, "precompression": chain.load(background, precompression)}
+    load = {
+        "background": background,
+        "precompression": chain.load(background, precompression),
+    }
     equation = schrodinger.envelope(
         cell, law=chain.law, **load, wavenumber=wavenumber, branch=place
     )
@@ -166,7 +181,12 @@ def envelope(
         rows += [
             "",
             f"{breather.kind} breather, |Ψ| = a {shape}(b n):",
-            Row("breather_frequency", f"frequency {name}", breather.frequency / turn, unit="Hz"),
+            Row(
+                "breather_frequency",
+                f"frequency {name}",
+                breather.frequency / turn,
+                unit="Hz",
+            ),
             Row("detuning", "detuning Δ = 1 - f/f0", breather.detuning),
             Row("amplitude", "largest displacement by bead", breather.amplitude, "m"),
             Row("width", "width 1/b in cells", breather.width),

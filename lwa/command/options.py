@@ -32,7 +32,9 @@ def called(option: click.Parameter) -> str:
 
 def reader(read: Callable[[str, str], Any]) -> Callable[..., Any]:
     """Make a callback of click that reads a text under the name of its option; None when absent."""
-    return lambda context, option, text: None if text is None else read(text, called(option))
+    return lambda context, option, text: (
+        None if text is None else read(text, called(option))
+    )
 
 
 quantity = reader(read_exact)
@@ -43,7 +45,11 @@ def quantities(
     context: click.Context, option: click.Parameter, text: str | None
 ) -> tuple[sp.Expr, ...]:
     """Read quantities separated by commas; () when absent."""
-    return tuple(read_exact(part, called(option)) for part in text.split(",")) if text else ()
+    return (
+        tuple(read_exact(part, called(option)) for part in text.split(","))
+        if text
+        else ()
+    )
 
 
 def angle(text: str, name: str) -> sp.Expr:
@@ -77,19 +83,25 @@ def value(
     **settings: Any,
 ) -> Option:
     """Make an option that a callback of click reads; a default is shown in the help."""
-    if default is not None:  # None itself would be a default, and no required option missing
+    if (
+        default is not None
+    ):  # None itself would be a default, and no required option missing
         settings |= {"default": default, "show_default": True}
     return click.option(name, callback=read, metavar=metavar, help=says, **settings)
 
 
 def together(*options: Option) -> Option:
     """Combine several options into one decorator, in their order in the help."""
-    return lambda command: reduce(lambda c, option: option(c), reversed(options), command)
+    return lambda command: reduce(
+        lambda c, option: option(c), reversed(options), command
+    )
 
 
 def _choice(name: str, values: Sequence[str], says: str, *names: str) -> Option:
     kind = click.Choice(values)
-    return click.option(name, *names, default=values[0], show_default=True, type=kind, help=says)
+    return click.option(
+        name, *names, default=values[0], show_default=True, type=kind, help=says
+    )
 
 
 def exponent_option(default: str) -> Option:
@@ -122,7 +134,11 @@ def spheres_option(**settings: Any) -> Option:
 
 
 MASSES = value(
-    "--masses", "Masses of the beads in one period of the chain.", "m1,m2", quantities, "M1,M2,…"
+    "--masses",
+    "Masses of the beads in one period of the chain.",
+    "m1,m2",
+    quantities,
+    "M1,M2,…",
 )
 STIFFNESSES = value(
     "--stiffnesses",
@@ -138,7 +154,9 @@ FORCE = value(
 )
 SPHERES = spheres_option()
 BACKGROUND = value("--background", "Static strain of the chain, compression over D.")
-PRECOMPRESSION = value("--precompression", "Static force on the chain; in N if the chain is in SI.")
+PRECOMPRESSION = value(
+    "--precompression", "Static force on the chain; in N if the chain is in SI."
+)
 
 
 def cell_options(languages: Sequence[str] = ()) -> Option:
@@ -171,11 +189,17 @@ def theory_options(languages: Sequence[str] = ()) -> Option:
             "Unknown u of the wave equation: displacement of the first bead, or the mass-weighted "
             "mean of all beads (center, which needs --closure full).",
         ),
-        _choice("--branch", BRANCHES, "Neighbours move together (acoustic) or against each other."),
+        _choice(
+            "--branch",
+            BRANCHES,
+            "Neighbours move together (acoustic) or against each other.",
+        ),
     )
 
 
 def series_options(exponent: str, order: str, default: str | None = "4") -> Option:
     """Make the options of a command on a series, with the defaults of ``--k`` and ``--order``."""
     highest = order_option(order, default)
-    return together(exponent_option(exponent), MASSES, STIFFNESSES, highest, style_option())
+    return together(
+        exponent_option(exponent), MASSES, STIFFNESSES, highest, style_option()
+    )

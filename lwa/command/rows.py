@@ -111,7 +111,12 @@ class Answer:
                     getattr(row.value, "error", math.nan),
                 )
                 _put(result, row.key, "_value", value)
-                _put(result, row.key, "_error_value", None if math.isnan(error) else error)
+                _put(
+                    result,
+                    row.key,
+                    "_error_value",
+                    None if math.isnan(error) else error,
+                )
                 continue
             if row.expression:
                 _put(result, row.key, "", row.value)
@@ -154,7 +159,9 @@ class Answer:
         if isinstance(row.value, Estimate):
             return f" = {summed(row.value, unit)}"
         digits = significant(row.error) if row.error > 0 else row.digits
-        values = dict.fromkeys(row.value if isinstance(row.value, tuple) else (row.value,))
+        values = dict.fromkeys(
+            row.value if isinstance(row.value, tuple) else (row.value,)
+        )
         text = ", ".join(self._number_text(x, digits) for x in values)
         if row.error > 0 and (number := as_float(self.plain(row.value))):
             text += f" ± {abs(number) * row.error:.1e}{self._length_unit(row.value)}"
@@ -170,7 +177,9 @@ class Answer:
         plain = self.plain(value)
         if plain.is_Rational and len(written) <= FRACTION:
             return written
-        number = sp.sstr(evaluated(plain, digits), full_prec=False) + self._length_unit(value)
+        number = sp.sstr(evaluated(plain, digits), full_prec=False) + self._length_unit(
+            value
+        )
         long = plain.has(sp.Float) or plain.is_Rational or len(written) > LONG
         return number if long else f"{written} ≈ {number}"
 
@@ -187,11 +196,16 @@ class Answer:
     def latex(self) -> str:
         """The display that ``--format latex`` prints, units and notes as comments behind it."""
         notes = [*["numbers are in SI: m, s, kg, N, rad"] * self.si, *self.notes]
-        return "\n".join([latex.align(self._equations()), *(f"% {note}" for note in notes)])
+        return "\n".join(
+            [latex.align(self._equations()), *(f"% {note}" for note in notes)]
+        )
 
     def _equations(self) -> list[str]:
         rows = [row for result in self.shown for row in result.latex_rows()]
-        return [*rows, *(row for part in self.parts.values() for row in part._equations())]
+        return [
+            *rows,
+            *(row for part in self.parts.values() for row in part._equations()),
+        ]
 
 
 def _put(result: Values, key: str, suffix: str, value: Any) -> None:

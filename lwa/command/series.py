@@ -15,7 +15,9 @@ from lwa.expansion.expand import expand
 
 
 @click.command()
-@series_options(k.name, "Highest power of ε = k - 1; by default 8, or 4 with symbols.", None)
+@series_options(
+    k.name, "Highest power of ε = k - 1; by default 8, or 4 with symbols.", None
+)
 def expansion(order: int | None, style: str, **options: Any) -> None:
     """Expand the lattice's own wave in ε = k - 1, and sum the series.
 
@@ -54,9 +56,13 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
         rows += [Row("", f"a{n}", a, digits=0) for n, a in enumerate(part.coefficients)]
     if expanded.numeric:
         rows += ["", f"at k = {expanded.k}, with estimates of the error:"]
-        rows += [Row(key, label, attempt(part.at)) for key, (label, part) in series.items()]
+        rows += [
+            Row(key, label, attempt(part.at)) for key, (label, part) in series.items()
+        ]
         mass = attempt(expanded.effective_mass.at)
         rows.append(Row("effective_mass", "effective mass P²/2E", mass))
         if cell.size == 2:
-            rows.append("  (of the mean of a dimer's two contacts, which differ behind a striker)")
+            rows.append(
+                "  (of the mean of a dimer's two contacts, which differ behind a striker)"
+            )
     Answer(head, rows, shown=[expanded]).print(style)

@@ -70,7 +70,9 @@ def wave(
     chain = take_chain(options)
     cell, law = chain.cell, chain.law
     if background is not None and precompression is not None:
-        raise InputError("--background and --precompression are both given: one says the other")
+        raise InputError(
+            "--background and --precompression are both given: one says the other"
+        )
     precompression = chain.load(background, precompression)
     load = precompression if background is None else background
     # no load is a load, too, under a law that is no power: the compact wave is that of a power
@@ -79,7 +81,11 @@ def wave(
     else:
         loaded = load is not None or force is not None
     if loaded:
-        for name, wanted in (("closure", "full"), ("field", "center"), ("branch", "acoustic")):
+        for name, wanted in (
+            ("closure", "full"),
+            ("field", "center"),
+            ("branch", "acoustic"),
+        ):
             if given(name) and options[name] != wanted:
                 raise InputError(
                     f"{name} is {options[name]!r}: under load the wave is that of the canonical "
@@ -87,7 +93,11 @@ def wave(
                 )
             options[name] = wanted
     if style in LANGUAGES and (loaded or force is not None):
-        fault = "of a chain without load" if loaded else "for any force: --force goes with text"
+        fault = (
+            "of a chain without load"
+            if loaded
+            else "for any force: --force goes with text"
+        )
         raise InputError(f"--format {style} is {fault}")
     peak = read_exact("F", "force") if force is None else force
     theory = homogenize(cell, law=law, **options)
@@ -106,7 +116,9 @@ def wave(
         pressed = loaded_wave(cell, force=peak, precompression=static, law=law)
         _at_force(chain, theory, pressed).print(style)
     elif force is not None:
-        raise InputError("--force goes with --precompression, a force; --background is a strain")
+        raise InputError(
+            "--force goes with --precompression, a force; --background is a strain"
+        )
     else:
         from lwa.loaded.background import Background
 
@@ -149,7 +161,9 @@ def _compact(chain: ChainInput, theory: Theory, wave: TravelingWave) -> Answer:
     return Answer(settings_json(theory), rows, spacing=wave.D, shown=shown, parts=parts)
 
 
-def _at_force(chain: ChainInput, theory: Theory, at: PhysicalWave | LoadedWave) -> Answer:
+def _at_force(
+    chain: ChainInput, theory: Theory, at: PhysicalWave | LoadedWave
+) -> Answer:
     """Rows of the wave of a peak contact force F, without or under a load, with speeds dx/dt."""
     compact = isinstance(at, PhysicalWave)
     load, peak = getattr(at, "precompression", 0), "peak" if compact else "rise of the"
@@ -171,10 +185,15 @@ def _at_force(chain: ChainInput, theory: Theory, at: PhysicalWave | LoadedWave) 
             if not isinstance(width, InputError):  # under a load widths are numbers
                 digits = PRINTED_DIGITS if compact else _WIDTH_DIGITS
                 label_q = f"FWHM of the {q}{label}"
-                rows.append(Row(f"{key}.{q}", label_q, width, unit, digits, expression=compact))
+                rows.append(
+                    Row(f"{key}.{q}", label_q, width, unit, digits, expression=compact)
+                )
     shown: list[Shown] = [at]
     if isinstance(at, PhysicalWave):
-        rows += [Row("beta", "", at.wave.beta, "1/m"), Row("width", "", at.wave.width, "m")]
+        rows += [
+            Row("beta", "", at.wave.beta, "1/m"),
+            Row("width", "", at.wave.width, "m"),
+        ]
         shown, parts = [at.wave, at], _canonical(chain, theory, at.force)
     else:
         parts = {}
@@ -188,7 +207,9 @@ def _at_force(chain: ChainInput, theory: Theory, at: PhysicalWave | LoadedWave) 
     return Answer(head, rows, chain.si, theory.cell.spacing, shown, notes, parts)
 
 
-def _canonical(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> dict[str, Answer]:
+def _canonical(
+    chain: ChainInput, theory: Theory, force: sp.Expr | None
+) -> dict[str, Answer]:
     """Speed and widths of the canonical wave, beside the linear closure's; {} where it has none.
 
     The numbers of the linear closure depend on the bead that is called first, those of the
@@ -201,13 +222,21 @@ def _canonical(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> dict
         return {}
     wave = canonical_wave(cell, k=k)
     at = wave if force is None else wave.at_force(force)
-    speed = Row("speed", "V_s at B = 1", wave.speed(sp.S.One), digits=6, expression=False)
+    speed = Row(
+        "speed", "V_s at B = 1", wave.speed(sp.S.One), digits=6, expression=False
+    )
     if force is not None:
         speed = replace(speed, label="speed dx/dt", value=at.speed, unit="m/s")
-    rows: list[Row | str] = ["", "consistent closure, whichever bead is the first:", speed]
+    rows: list[Row | str] = [
+        "",
+        "consistent closure, whichever bead is the first:",
+        speed,
+    ]
     for q in QUANTITIES:
         label = "FWHM of the force" if q == "force" else ""
-        rows.append(Row(f"fwhm.{q}", label, at.fwhm(q), "m", digits=6, expression=False))
+        rows.append(
+            Row(f"fwhm.{q}", label, at.fwhm(q), "m", digits=6, expression=False)
+        )
     return {"canonical": Answer({}, rows, chain.si, cell.spacing)}
 
 
@@ -235,7 +264,9 @@ def _on_background(chain: ChainInput, theory: Theory, field: Background) -> Answ
             rows.append(Row("speed", "V_s at B = 1", speed, expression=False))
             for q in QUANTITIES:
                 label, width = f"FWHM of the {q} at B = 1", wave.fwhm(q)
-                rows.append(Row(f"fwhm.{q}", label, width, "", _WIDTH_DIGITS, expression=False))
+                rows.append(
+                    Row(f"fwhm.{q}", label, width, "", _WIDTH_DIGITS, expression=False)
+                )
     shown: list[Shown] = [field]
     try:
         kdv = field.kdv

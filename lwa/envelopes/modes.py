@@ -54,10 +54,14 @@ def cell_mode(
     c = [sp.powsimp(part / compliances[0]) for part in compliances]
     numbers = (*masses, *c, s, t, wavenumber)
     if floats:
-        demand_numbers(set().union(*(x.free_symbols for x in numbers)), "floats need numbers")
+        demand_numbers(
+            set().union(*(x.free_symbols for x in numbers)), "floats need numbers"
+        )
     samples = [_sampled(cell, x) for x in numbers]
     m_float, c_float = np.array(samples[:-3]).reshape(2, -1)
-    sample = Sampled.of(Contacts(m_float, c_float, *samples[-3:-1]), samples[-1], branch)
+    sample = Sampled.of(
+        Contacts(m_float, c_float, *samples[-3:-1]), samples[-1], branch
+    )
     if floats:
         mode = sample.mode()
     elif cell.size == 1:
@@ -65,8 +69,13 @@ def cell_mode(
     else:
         if len(set().union(*(x.free_symbols for x in numbers))) > MOST_SYMBOLS:
             announced("the envelope's equation in these symbols")
-        contacts, edge = Contacts(np.array(masses), np.array(c), s, t), int(sp.cos(wavenumber))
-        mode = edge_mode(contacts, edge, branch, sample.bead, lambda x: _sampled(cell, x))
+        contacts, edge = (
+            Contacts(np.array(masses), np.array(c), s, t),
+            int(sp.cos(wavenumber)),
+        )
+        mode = edge_mode(
+            contacts, edge, branch, sample.bead, lambda x: _sampled(cell, x)
+        )
     rate = sp.powsimp(cell.stiffnesses[0] * first / mass)  # unit of ω²
     return Mode(
         sp.sympify(mode.square) * rate,
@@ -113,7 +122,9 @@ class Sampled:
         squares, vectors = np.linalg.eigh(contacts.secular(z, 0) / contacts.units)
         found = cls(contacts, z, squares, vectors, branch)
         if np.min(np.abs(found.gaps), initial=np.inf) < contacts.close:
-            raise InputError("two branches touch at this wavenumber: an envelope has one mode")
+            raise InputError(
+                "two branches touch at this wavenumber: an envelope has one mode"
+            )
         if kappa == 0 == branch:
             raise InputError(
                 "the frequency is zero at this wavenumber: sound, c_g = c_0, has no envelope; its "
@@ -124,7 +135,9 @@ class Sampled:
     @property
     def gaps(self) -> NDArray[Any]:
         """Differences x_j - x of the squared frequencies of the other branches."""
-        return np.asarray(np.delete(self.squares, self.branch) - self.squares[self.branch])
+        return np.asarray(
+            np.delete(self.squares, self.branch) - self.squares[self.branch]
+        )
 
     @property
     def shape(self) -> NDArray[Any]:
@@ -142,7 +155,9 @@ class Sampled:
         # T(x) - 2 cos κ = Π m Π c Π_j (x_j - x) over the modes j, differentiated at a root
         first = -np.prod(contacts.masses * contacts.c * np.append(self.gaps, 1))
         slopes = first, -2 * first * (1 / self.gaps).sum()
-        speed = contacts.masses.sum() * contacts.c.sum() * (z.imag / first) ** 2 / x  # (c_g/c_0)²
+        speed = (
+            contacts.masses.sum() * contacts.c.sum() * (z.imag / first) ** 2 / x
+        )  # (c_g/c_0)²
         if x < contacts.close or 1 - speed < SOUND:
             exact = "; exact results stand" if len(contacts.masses) == 1 else ""
             raise InputError(
@@ -162,7 +177,9 @@ class Sampled:
         d = contacts.strains(z) @ self.shape
         drive = contacts.strains(1 / (z * z)).T @ (d * d / contacts.c**2)
         near = np.abs(squares - square) < contacts.close
-        if np.any(np.abs(vectors.conj().T @ drive)[near] > ROUNDING * np.abs(drive).max()):
+        if np.any(
+            np.abs(vectors.conj().T @ drive)[near] > ROUNDING * np.abs(drive).max()
+        ):
             raise InputError(
                 "the second harmonic is a mode too, or too near one for floats: the envelope's "
                 "equation fails"
@@ -205,7 +222,9 @@ class Root:
             for part in (element.numer, element.denom)
         )
         quotient = (top * below.invert(self.polynomial)).rem(self.polynomial)
-        reduced = sp.Add(*(sp.factor(c) * self.value**n for (n,), c in quotient.terms()))
+        reduced = sp.Add(
+            *(sp.factor(c) * self.value**n for (n,), c in quotient.terms())
+        )
         return reduced.xreplace(self.values)
 
 
@@ -228,7 +247,10 @@ def edge_mode(
     Raises `lwa.InputError` where the second harmonic is a mode that the mode drives.
     """
     numbers = (*contacts.masses, *contacts.c, contacts.s, contacts.t)
-    letters = {a: a if a.is_Rational and not generic else sp.Dummy(positive=True) for a in numbers}
+    letters = {
+        a: a if a.is_Rational and not generic else sp.Dummy(positive=True)
+        for a in numbers
+    }
     field, (x, *elements) = sfield([X, *(letters[a] for a in numbers)])
     inner = Contacts(*np.array(elements[:-2], object).reshape(2, 2), *elements[-2:])
     z = field.one * edge
@@ -258,5 +280,7 @@ def edge_mode(
     exact = Arithmetic(inverse, square.number, square.number)
     mode = inner.mode(z, x, slopes, projector, bead, 0, exact)
     if mode.cubic.has(sp.zoo, sp.nan):
-        raise InputError("the second harmonic is a mode too: the envelope's equation fails")
+        raise InputError(
+            "the second harmonic is a mode too: the envelope's equation fails"
+        )
     return mode

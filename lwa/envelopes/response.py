@@ -123,7 +123,9 @@ class Contacts:
         """
         first, following = slopes
         square = -((z - 1 / z) ** 2) / first**2  # x′², as x′ = -2 sin κ/T′
-        bend = (-(z + 1 / z) - following * square) / first  # x″, as T″ x′² + T′ x″ = -2 cos κ
+        bend = (
+            -(z + 1 / z) - following * square
+        ) / first  # x″, as T″ x′² + T′ x″ = -2 cos κ
         speed = self.masses.sum() * self.c.sum() * square / (4 * x)  # (c_g/c_0)²
         c = self.c  # arrays stand first: elements of a field do not know arrays
         K3, K4 = 1 / c**2 * self.s, 1 / c**3 * self.t
@@ -134,8 +136,13 @@ class Contacts:
         G = self.strains(z * z) @ rest @ self.strains(1 / (z * z)).T
         force = (c * K3 * size).sum() * 2 / c.sum() * (speed / (speed - 1))
         mean = c * (-2 * K3 * size + force)
-        cubic = (3 * K4 * size**2 + 2 * K3 * size * mean).sum() - 2 * K3 @ (G * products.T**2) @ K3
-        real, unit = numbers.real, sp.sqrt(sp.sympify(numbers.real(projector[bead, bead])))
+        cubic = (3 * K4 * size**2 + 2 * K3 * size * mean).sum() - 2 * K3 @ (
+            G * products.T**2
+        ) @ K3
+        real, unit = (
+            numbers.real,
+            sp.sqrt(sp.sympify(numbers.real(projector[bead, bead]))),
+        )
         return Mode(
             real(x),
             -2 * sine * real(1 / first),

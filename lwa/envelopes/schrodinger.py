@@ -68,7 +68,9 @@ class Envelope(Value):
 
     def latex_rows(self) -> list[str]:
         names = {r"\omega": self.frequency, r"\omega''": self.dispersion}
-        equation = r"i \Psi_{T} + \tfrac{1}{2} \omega'' \Psi_{XX} = \chi |\Psi|^{2} \Psi"
+        equation = (
+            r"i \Psi_{T} + \tfrac{1}{2} \omega'' \Psi_{XX} = \chi |\Psi|^{2} \Psi"
+        )
         return [equation, *latex.rows(names | {r"\chi": self.nonlinearity})]
 
     def numeric(self) -> Envelope:
@@ -131,13 +133,17 @@ class Envelope(Value):
         """ "bright" or "dark"; raises `lwa.InputError` where symbols leave it open."""
         sign = self.dispersion * self.nonlinearity
         if sign.is_zero:
-            raise InputError("the dispersion or the nonlinearity vanishes: no envelope has a shape")
+            raise InputError(
+                "the dispersion or the nonlinearity vanishes: no envelope has a shape"
+            )
         negative = (sp.simplify(sign) if _short(sign) else sign).is_negative
         if negative is None:
             raise InputError("kind depends on symbols: give numbers")
         return KINDS[0] if negative else KINDS[1]
 
-    def breather(self, frequency: Any = None, *, detuning: Any = None, kind: str = "") -> Breather:
+    def breather(
+        self, frequency: Any = None, *, detuning: Any = None, kind: str = ""
+    ) -> Breather:
         """The standing envelope of a frequency, or of the detuning Δ = 1 - frequency/ω.
 
         frequency : in radians per unit of time.
@@ -148,7 +154,9 @@ class Envelope(Value):
         if detuning is None:
             detuning = 1 - positive(frequency, "frequency") / self.frequency
         if self.group_velocity.is_zero is not True:
-            raise InputError(f"wavenumber is {self.wavenumber}: a breather stands where dω/dκ = 0")
+            raise InputError(
+                f"wavenumber is {self.wavenumber}: a breather stands where dω/dκ = 0"
+            )
         return Breather(self, signed(detuning, "detuning"), kind or self.kind)
 
     @property
@@ -165,7 +173,9 @@ class Envelope(Value):
     def opening(self) -> sp.Expr:
         """The |Ψ|² at which a contact's compression 2|Ψ||d| reaches δ0; ∞ if contacts pull."""
         roots = (p for p in self.law.F.atoms(sp.Pow) if p.base == self.law.delta)
-        if not self.law.homogeneous and all(p.exp.is_integer for p in roots):  # real at δ < 0
+        if not self.law.homogeneous and all(
+            p.exp.is_integer for p in roots
+        ):  # real at δ < 0
             return sp.oo
         pairs = zip(self.static_compressions, self.strains, strict=True)
         smallest = sp.Min(*(delta**2 / (4 * d) for delta, d in pairs if d))
@@ -175,7 +185,12 @@ class Envelope(Value):
     def _mode(self) -> Mode:
         """The Bloch mode and its nonlinear response, exact or in floats."""
         return cell_mode(
-            self.cell, self.law, self.compression, self.wavenumber, self.branch, self.floats
+            self.cell,
+            self.law,
+            self.compression,
+            self.wavenumber,
+            self.branch,
+            self.floats,
         )
 
     def _each(self, values: Any) -> tuple[sp.Expr, ...]:
@@ -242,11 +257,17 @@ class Breather(Value):
     @cached_property
     def _square(self) -> sp.Expr:
         """Square a² of the envelope's amplitude."""
-        return sp.powsimp(self._factored(self._shift * self.detuning / self.envelope.nonlinearity))
+        return sp.powsimp(
+            self._factored(self._shift * self.detuning / self.envelope.nonlinearity)
+        )
 
     def _factored(self, value: sp.Expr) -> sp.Expr:
         """The value with its factors, unless SymPy would take minutes, as where Δ is a surd."""
-        return sp.factor(value) if _short(value) and not self.detuning.is_irrational else value
+        return (
+            sp.factor(value)
+            if _short(value) and not self.detuning.is_irrational
+            else value
+        )
 
     @cached_property
     def amplitude(self) -> tuple[sp.Expr, ...]:
@@ -266,7 +287,9 @@ class Breather(Value):
         Under a power law Δ_o is the same at every load. In the lattice contacts open earlier: for
         spheres of mass ratios 0.3 to 0.5 at 0.018 instead of 3/128 = 0.0234.
         """
-        return sp.simplify(self.envelope.opening * self.envelope.nonlinearity / self._shift)
+        return sp.simplify(
+            self.envelope.opening * self.envelope.nonlinearity / self._shift
+        )
 
     def displacements(self, cells: ArrayLike) -> Array:
         """Displacements of the beads at t = 0 to leading order, a row for each cell; in floats."""
@@ -274,7 +297,9 @@ class Breather(Value):
         shape = n / float(self.width)
         profile = 1 / np.cosh(shape) if self.kind == KINDS[0] else np.tanh(shape)
         phase = np.cos(float(self.envelope.wavenumber) * n)
-        return np.asarray(np.multiply.outer(profile * phase, np.array(self.amplitude, float)))
+        return np.asarray(
+            np.multiply.outer(profile * phase, np.array(self.amplitude, float))
+        )
 
 
 def envelope(
@@ -332,4 +357,6 @@ def envelope(
             "counted from 0"
         )
     edge = cell.size == 2 and kappa in (sp.S.Zero, sp.pi)
-    return Envelope(cell, law, static, kappa, number, floats=not (cell.size == 1 or edge))
+    return Envelope(
+        cell, law, static, kappa, number, floats=not (cell.size == 1 or edge)
+    )

@@ -45,7 +45,9 @@ def conservative(closure: Closure) -> bool:
     """True if every order n ≥ 2 has a flux F_n, u_x^k E_n = ∂_x (u_x^k F_n)."""
     algebra = closure.algebra
     k = closure.model.ring.exponent(algebra.context)
-    return all(algebra.antiderivative(E, k) is not None for E in closure.acceleration[2:])
+    return all(
+        algebra.antiderivative(E, k) is not None for E in closure.acceleration[2:]
+    )
 
 
 def energy(closure: Closure) -> tuple[JetAlgebra, list[fmpq_mpoly]]:
@@ -54,7 +56,9 @@ def energy(closure: Closure) -> tuple[JetAlgebra, list[fmpq_mpoly]]:
     Raises `lwa.InputError` on the optical branch, and for a closure that leaves a defect.
     """
     if closure.model.branch != "acoustic":
-        raise InputError("the energy in the slaved fields is that of the acoustic branch")
+        raise InputError(
+            "the energy in the slaved fields is that of the acoustic branch"
+        )
     if any(not d.is_zero() for d in closure.defect):
         raise InputError(
             "the linear closure does not satisfy both equations of motion (see the defect), so "
@@ -74,7 +78,9 @@ class _Fields:
         self.k, self.mu, self.c = model.elements(algebra)
 
         def series(terms: Iterable[fmpq_mpoly], exponent: fmpq_mpoly) -> GradedSeries:
-            return GradedSeries(algebra, exponent, [algebra.embed(term, old) for term in terms])
+            return GradedSeries(
+                algebra, exponent, [algebra.embed(term, old) for term in terms]
+            )
 
         E = series(closure.acceleration, self.k)
         self.S = [series(row, algebra.one) for row in closure.fields]
@@ -85,7 +91,9 @@ class _Fields:
         ]
         self.forces = [Force(algebra, self.k) for _ in self.S]
         for n in orders:
-            for force, share, strain in zip(self.forces, self.c, self._strains(n), strict=True):
+            for force, share, strain in zip(
+                self.forces, self.c, self._strains(n), strict=True
+            ):
                 force.append(strain / share)  # without a remainder
 
     def _strains(self, n: int) -> list[fmpq_mpoly]:

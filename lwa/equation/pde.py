@@ -28,7 +28,10 @@ from lwa.equation.energy import conservative, energy
 from lwa.equation.terms import ENERGY, Jet, Terms, by_order, terms
 from lwa.wave.traveling import TravelingWave
 
-_POWER_LAW = "u_x^(k-1) u_xx", "G u_x^(k-3) u_xx^3 + H u_x^(k-2) u_xx u_xxx + I u_x^(k-1) u_4x"
+_POWER_LAW = (
+    "u_x^(k-1) u_xx",
+    "G u_x^(k-3) u_xx^3 + H u_x^(k-2) u_xx u_xxx + I u_x^(k-1) u_4x",
+)
 _OTHER_LAW = "F' u_xx", "G F' u_x^-2 u_xx^3 + H F' u_x^-1 u_xx u_xxx + I F' u_4x"
 
 
@@ -73,7 +76,11 @@ class PDE(OfClosure):
     def third_order(self) -> dict[str, sp.Expr]:
         """Mapping from "G", "H", "I" to their values; {} below order 4 or on the optical branch."""
         known = self.acoustic and self.closure.order >= 4
-        return {letter: self._at_third_order(letter) for letter in self.LETTERS} if known else {}
+        return (
+            {letter: self._at_third_order(letter) for letter in self.LETTERS}
+            if known
+            else {}
+        )
 
     def _at_third_order(self, letter: str) -> sp.Expr:
         if not self.acoustic or self.closure.order < 4:
@@ -81,7 +88,10 @@ class PDE(OfClosure):
                 f"order is {self.closure.order}: G, H and I stand at D^(k+3), from order 4 on, on "
                 "the acoustic branch"
             )
-        return self.coefficients[3].get(self.LETTERS[letter], sp.Integer(0)) * self.cell.spacing**2
+        return (
+            self.coefficients[3].get(self.LETTERS[letter], sp.Integer(0))
+            * self.cell.spacing**2
+        )
 
     @cached_property
     def G(self) -> sp.Expr:
@@ -105,7 +115,10 @@ class PDE(OfClosure):
         parts = [f"{leading} u_{{xx}}" if self.acoustic else "-u^{k}"]
         for n, of_order in self.coefficients.items():
             if n == 3 and letters:
-                parts += [f"{name} {of_order.latex(jet)}" for name, jet in self.LETTERS.items()]
+                parts += [
+                    f"{name} {of_order.latex(jet)}"
+                    for name, jet in self.LETTERS.items()
+                ]
             elif of_order and most is not None and n > most:
                 parts.append(r"\cdots")
                 break
@@ -129,19 +142,30 @@ class PDE(OfClosure):
         """The equation as text, with G, H, I and the terms of the other orders below it."""
         third, order = self.third_order, self.closure.order
         if not self.acoustic:
-            lines = ["u_ττ = -u^k + …   (contacts that also pull: the odd law |δ|^(k-1) δ)"]
+            lines = [
+                "u_ττ = -u^k + …   (contacts that also pull: the odd law |δ|^(k-1) δ)"
+            ]
         elif order == 1:
-            lines = ["the wave equation starts at D^(k+1), that is at order 2 of the ansatz"]
+            lines = [
+                "the wave equation starts at D^(k+1), that is at order 2 of the ansatz"
+            ]
         else:
-            parts = list((_POWER_LAW if self.law.homogeneous else _OTHER_LAW)[: 2 if third else 1])
+            parts = list(
+                (_POWER_LAW if self.law.homogeneous else _OTHER_LAW)[
+                    : 2 if third else 1
+                ]
+            )
             parts += ["…"] * (order > (4 if third else 2))
             lines = [f"u_ττ = {' + '.join(parts)}"]
             lines += [f"  {letter} = {value}" for letter, value in third.items()]
         lines += by_order(
-            {n: c for n, c in self.coefficients.items() if not (third and n == 3)}, self.heading
+            {n: c for n, c in self.coefficients.items() if not (third and n == 3)},
+            self.heading,
         )
         vanishing = ", ".join(map(self.heading.format, self.vanishing))
-        return "\n".join([*lines, *[f"  vanishing identically: {vanishing}"] * bool(vanishing)])
+        return "\n".join(
+            [*lines, *[f"  vanishing identically: {vanishing}"] * bool(vanishing)]
+        )
 
     @property
     def vanishing(self) -> tuple[int, ...]:
@@ -153,7 +177,9 @@ class PDE(OfClosure):
         """True if all orders, D^{k+3} at least, are ∂_x of a flux: ∫ u_τ dx is conserved."""
         if not self.acoustic:
             return False
-        return conservative(self.closure if self.closure.order >= 4 else self.closure.anew(order=4))
+        return conservative(
+            self.closure if self.closure.order >= 4 else self.closure.anew(order=4)
+        )
 
     @cached_property
     def energy(self) -> Mapping[int, Terms]:
@@ -166,7 +192,10 @@ class PDE(OfClosure):
         Raises `lwa.InputError` on the optical branch, and for a closure that leaves a defect.
         """
         algebra, densities = energy(self.closure)
-        rows = {n: terms(self.closure, e, ENERGY, algebra=algebra) for n, e in enumerate(densities)}
+        rows = {
+            n: terms(self.closure, e, ENERGY, algebra=algebra)
+            for n, e in enumerate(densities)
+        }
         if densities and self.law.homogeneous:
             k = self.closure.model.ring.exponent(algebra.context)
             first = k * (k + 1) * densities[0] + 1
@@ -194,5 +223,7 @@ class PDE(OfClosure):
             )
         wave = TravelingWave(cell=self.cell, k=self.k, G=self.G, H=self.H, I=self.I)
         if 2 not in self.vanishing:
-            raise InputError("unequal stiffnesses leave a term at D^(k+2): no wave in closed form")
+            raise InputError(
+                "unequal stiffnesses leave a term at D^(k+2): no wave in closed form"
+            )
         return wave

@@ -63,7 +63,9 @@ class Terms(Shown, Mapping[Jet, sp.Expr]):
     def __getitem__(self, jet: Jet | Powers) -> sp.Expr:
         jet = jet if isinstance(jet, Jet) else Jet(jet)
         if jet not in self._converted:
-            self._converted[jet] = self._model.ring.expression(self._raw[jet]) / self._divisor
+            self._converted[jet] = (
+                self._model.ring.expression(self._raw[jet]) / self._divisor
+            )
         return self._converted[jet]
 
     def __iter__(self) -> Iterator[Jet]:
@@ -156,14 +158,18 @@ def terms(
     base = closure.model.base
     raw = {
         Jet(tuple((n + base, e) for n, e in monomial.x), monomial.t): coefficient
-        for monomial, coefficient in (algebra or closure.algebra).terms(polynomial).items()
+        for monomial, coefficient in (algebra or closure.algebra)
+        .terms(polynomial)
+        .items()
     }
     # The paper's order: u_xx³, u_xx u_xxx, u_xxxx; jets with u_τ last.
     ordered = sorted(raw, key=lambda jet: (bool(jet.t), -sum(e for _, e in jet.x), jet))
     return Terms(closure.model, {jet: raw[jet] for jet in ordered}, power, divisor)
 
 
-def by_order(coefficients: Mapping[int, Terms], form: str, linear: bool = True) -> list[str]:
+def by_order(
+    coefficients: Mapping[int, Terms], form: str, linear: bool = True
+) -> list[str]:
     """Lines of text with the terms of each order n, under the heading ``form.format(n)``.
 
     linear : False leaves out the terms that are linear in one jet.

@@ -86,13 +86,17 @@ class Expansion(Value):
         The series gives both contacts of a dimer the same width; see `Expansion`.
         """
         # The Gaussian F = e^{-Z²/4}, Z = √(ε/I) ξ, is 1/2 at Z = 2√log 2.
-        return self._series(known_quantity(quantity), 4 * sp.sqrt(self.I * sp.log(2)), -sp.S.Half)
+        return self._series(
+            known_quantity(quantity), 4 * sp.sqrt(self.I * sp.log(2)), -sp.S.Half
+        )
 
     @cached_property
     def momentum(self) -> EpsilonSeries:
         """Momentum Σ m v of the chain: mean mass times c times the displacement behind the wave."""
         # ∫ e^{-Z²/4} dξ = 2√(πI/ε), times ā (M/P) c = 1/c.
-        return self._series("momentum", 2 * sp.sqrt(sp.pi * self.I / self._sound), -sp.S.Half)
+        return self._series(
+            "momentum", 2 * sp.sqrt(sp.pi * self.I / self._sound), -sp.S.Half
+        )
 
     @cached_property
     def kinetic(self) -> EpsilonSeries:
@@ -134,7 +138,9 @@ class Expansion(Value):
         place = sp.Symbol("X") if X is None else signed(X, "X")
         names = {s.name for s in (*self.cell.symbols, *self.k.free_symbols)}
         if shared := names & {s.name for s in place.free_symbols}:
-            raise InputError(f"{min(shared)} names a property of the chain: give X another name")
+            raise InputError(
+                f"{min(shared)} names a property of the chain: give X another name"
+            )
         return {
             n: sp.Add(*(a * place**d for d, a in phi.items()))
             for n, phi in self._observables.log_force(i).items()
@@ -186,12 +192,19 @@ def expand(
     k = exponent(law.exponent)
     if not k.free_symbols and k <= 1:
         raise InputError(f"k is {k}: the expansion in k - 1 wants k > 1")
-    if shared := {s.name for s in (*cell.symbols, *k.free_symbols)} & {"ε", r"\varepsilon"}:
-        raise InputError(f"{min(shared)} is k - 1 in the expansion: choose another name")
+    if shared := {s.name for s in (*cell.symbols, *k.free_symbols)} & {
+        "ε",
+        r"\varepsilon",
+    }:
+        raise InputError(
+            f"{min(shared)} is k - 1 in the expansion: choose another name"
+        )
     model = shares_model(cell, k)
     terms, ratios = _terms(model, order), _ratios(model)
     if terms > LARGEST:
-        other = "give numbers for the cell, or a lower order" if ratios else "a lower order"
+        other = (
+            "give numbers for the cell, or a lower order" if ratios else "a lower order"
+        )
         raise InputError(
             f"order is {order}: with {ratios} symbolic ratios in a cell of {cell.size} this takes "
             f"more than {LARGEST:.0e} terms, beyond memory; {other}"

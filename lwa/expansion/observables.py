@@ -40,7 +40,9 @@ class Observables:
     order : highest power of ε.
     """
 
-    def __init__(self, model: Model, order: int, progress: Progress[int] = iter) -> None:
+    def __init__(
+        self, model: Model, order: int, progress: Progress[int] = iter
+    ) -> None:
         self.model, self.order = model, order
         self.wave = Recursion(model, 2 * order, progress)
 
@@ -78,24 +80,36 @@ class Observables:
         wave = self.wave
         # x/sinh x = Σ_m (2^{1-m} - 1) B_m (2x)^m/m!, m even
         weights = [
-            (fmpq(2) ** (1 - m) - 1) * fmpq(wave.P**m, factorial(m)) * to_flint(sp.bernoulli(m))
+            (fmpq(2) ** (1 - m) - 1)
+            * fmpq(wave.P**m, factorial(m))
+            * to_flint(sp.bernoulli(m))
             for m in range(0, 2 * self.order + 1, 2)
         ]
         return [
-            sum((w * term for w, term in zip(weights, terms[::2], strict=False)), wave.zero)
+            sum(
+                (w * term for w, term in zip(weights, terms[::2], strict=False)),
+                wave.zero,
+            )
             for terms in wave.fields.means
         ]
 
     @cached_property
     def momentum(self) -> Series:
         """Momentum, mean mass · c · displacement behind the wave, divided by its leading term."""
-        return product(self.c, [moment(terms[0], 2) for terms in self.wave.fields.means])
+        return product(
+            self.c, [moment(terms[0], 2) for terms in self.wave.fields.means]
+        )
 
     @cached_property
     def kinetic(self) -> Series:
         """Kinetic energy in units of ā √(2πI/ε)."""
         slopes = self.wave.fields.slope
-        return [a / 2 for a in product(self.c2, self._mean_square(self.wave.mu, slopes, slopes), 2)]
+        return [
+            a / 2
+            for a in product(
+                self.c2, self._mean_square(self.wave.mu, slopes, slopes), 2
+            )
+        ]
 
     @cached_property
     def energy(self) -> Series:
@@ -115,7 +129,9 @@ class Observables:
     @cached_property
     def effective_mass(self) -> Series:
         """Effective mass P²/(2E), P the momentum and E the energy, divided by its leading term."""
-        return product(product(self.momentum, self.momentum), power(self.energy, fmpq(-1)))
+        return product(
+            product(self.momentum, self.momentum), power(self.energy, fmpq(-1))
+        )
 
     def _mean_square(
         self, weights: Series, first: Iterable[Series], second: Iterable[Series]
@@ -125,7 +141,9 @@ class Observables:
             [weight * term for term in product(a, b, 2)]
             for weight, a, b in zip(weights, first, second, strict=True)
         ]
-        return [moment(sum(terms, self.wave.zero), 1) for terms in zip(*rows, strict=True)]
+        return [
+            moment(sum(terms, self.wave.zero), 1) for terms in zip(*rows, strict=True)
+        ]
 
     def coefficients(self, quantity: str) -> tuple[sp.Expr, ...]:
         """Coefficients of ε^0, ε^1, … of the named quantity, at Z² = log 2."""
@@ -147,7 +165,9 @@ class Observables:
         for n, q in enumerate(self.wave.fields.log_force[contact]):
             if q:
                 parts = by_degree(q).items()
-                phi[sp.Rational(n, 2)] = {d: self._over_I(c, (3 * n + d) // 2) for d, c in parts}
+                phi[sp.Rational(n, 2)] = {
+                    d: self._over_I(c, (3 * n + d) // 2) for d, c in parts
+                }
         return phi
 
     @cached_property
@@ -159,7 +179,9 @@ class Observables:
         """The quotient numerator / I^e, in the caller's symbols."""
         I = self.wave.I
         if not self.model.ring.names:
-            top, bottom = (p.leading_coefficient() if p else fmpq(0) for p in (numerator, I))
+            top, bottom = (
+                p.leading_coefficient() if p else fmpq(0) for p in (numerator, I)
+            )
             return to_sympy(top / bottom**e)
         while e:
             quotient, remainder = divmod(numerator, I)

@@ -52,7 +52,10 @@ class ExpandedWave(Value):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "F", positive(self.F, "force"))
-        for name, value in (("force", self.F), ("spacing", self.expansion.cell.spacing)):
+        for name, value in (
+            ("force", self.F),
+            ("spacing", self.expansion.cell.spacing),
+        ):
             if not value.is_number:
                 raise InputError(f"{name} is {shorten(value)}: a number is wanted")
 
@@ -93,7 +96,9 @@ def _rows(force: str, wave: ExpandedWave | Strike) -> list[str]:
     except InputError:
         speed = width = r"\text{no sum}"
     names = ("F", latex.SPEED, r"\mathrm{FWHM}_{\mathrm{force}}")
-    return [f"{name} = {x}" for name, x in zip(names, (force, speed, width), strict=True)]
+    return [
+        f"{name} = {x}" for name, x in zip(names, (force, speed, width), strict=True)
+    ]
 
 
 @dataclass(frozen=True)
@@ -132,11 +137,16 @@ class Strike(Value):
     @property
     def force(self) -> Estimate:
         """Peak force of a contact."""
-        value, log = float(self.wave.F), math.log(float(self.mass) / self._effective_mass)
+        value, log = (
+            float(self.wave.F),
+            math.log(float(self.mass) / self._effective_mass),
+        )
         # Measured: b ln²(m_s/m_eff), b = 3 % for strikers heavier than m_eff and 13 % for lighter
         # ones, and 0.7 % from m_eff to 2 beads.
         measured = sp.Rational(5, 4) <= self.chain.k <= sp.Rational(5, 2)
-        error = max(0.007, (0.03 if log > 0 else 0.13) * log**2) if measured else math.nan
+        error = (
+            max(0.007, (0.03 if log > 0 else 0.13) * log**2) if measured else math.nan
+        )
         return Estimate(value, value * error)
 
     @property
@@ -157,7 +167,9 @@ class Strike(Value):
     def _share(self) -> float:
         """Relative error of F^{±(k-1)/(2k)} by that of the force."""
         force = self.force
-        return float((self.chain.k - 1) / (2 * self.chain.k)) * force.error / force.value
+        return (
+            float((self.chain.k - 1) / (2 * self.chain.k)) * force.error / force.value
+        )
 
     @property
     def train(self) -> bool:
@@ -180,12 +192,18 @@ def pulse_of_strike(
     Raises `lwa.InputError` for other chains, and for values that are no positive numbers.
     """
     if not isinstance(chain, Cell) or not chain.uniform:
-        raise InputError(f"chain is {shorten(chain)}: a Cell of equal beads and contacts is wanted")
+        raise InputError(
+            f"chain is {shorten(chain)}: a Cell of equal beads and contacts is wanted"
+        )
     if (velocity is None) == (drop is None):
         raise InputError("velocity or drop: one of the two is wanted")
     if velocity is None:
         velocity = sp.sqrt(2 * GRAVITY * positive(drop, "drop"))
-    mass, velocity, k = positive(mass, "mass"), positive(velocity, "velocity"), exponent(k)
+    mass, velocity, k = (
+        positive(mass, "mass"),
+        positive(velocity, "velocity"),
+        exponent(k),
+    )
     for name, value in (("mass", mass), ("velocity", velocity), ("k", k)):
         if value.free_symbols:
             raise InputError(f"{name} is {shorten(value)}: a number is wanted")

@@ -34,7 +34,9 @@ def exp_term(log: Series, S: Series) -> fmpq_mpoly:
 
 def _weighted(log: Series, S: Series, last: int, n: int) -> fmpq_mpoly:
     """The sum Σ j log_j S_{n-j}, j = 1 … last, of the coefficients of ln S and of S."""
-    return sum((j * log[j] * S[n - j] for j in range(1, last + 1) if log[j]), 0 * log[0])
+    return sum(
+        (j * log[j] * S[n - j] for j in range(1, last + 1) if log[j]), 0 * log[0]
+    )
 
 
 def logarithm(S: Series) -> Series:
@@ -95,7 +97,9 @@ def _from_peak(log: Series) -> Series:
         # -Z²/4 + a Z t^n has its maximum at Z = 2a t^n, to this order.
         if place := 2 * by_degree(phi[n]).get(1, 0 * Z):
             moved, derivatives = list(phi), phi
-            for j in range(1, (len(phi) - 1) // n + 1):  # Taylor's series in place · t^n
+            for j in range(
+                1, (len(phi) - 1) // n + 1
+            ):  # Taylor's series in place · t^n
                 derivatives = [place * term.derivative(0) / j for term in derivatives]
                 for m in range(j * n, len(phi)):
                     moved[m] = moved[m] + derivatives[m - j * n]

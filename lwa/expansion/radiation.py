@@ -90,14 +90,20 @@ def amplitude(cell: Cell, k: sp.Expr) -> float:
     if math.isinf(chain.optical):
         return 0.0
     X = np.linspace(-SPAN, SPAN, POINTS) * np.sqrt(chain.I)
-    log = -(X**2) / (4 * chain.I) + epsilon * (chain.quadratic * X**2 + chain.quartic * X**4)
-    half = np.minimum.accumulate(log[POINTS // 2 :])  # φ_1 may turn log F up far outside
+    log = -(X**2) / (4 * chain.I) + epsilon * (
+        chain.quadratic * X**2 + chain.quartic * X**4
+    )
+    half = np.minimum.accumulate(
+        log[POINTS // 2 :]
+    )  # φ_1 may turn log F up far outside
     log = np.concatenate([half[:0:-1], half])
     step = float(X[1] - X[0]) / math.sqrt(epsilon)
     F, slope = np.exp(log), np.gradient(log, step)
     largest = max(
         _tail_integral(K_0 * np.exp(log * epsilon / (2 * float(k))), F * slope, step)
-        for K_0 in (math.sqrt(factor * max(chain.optical - 1, 0.0)) for factor in PHASES)
+        for K_0 in (
+            math.sqrt(factor * max(chain.optical - 1, 0.0)) for factor in PHASES
+        )
     )
     return cell.size * float(min(cell.fractions)) * largest
 

@@ -81,14 +81,18 @@ class Fields:
 class Recursion:
     """Solver of the recursion: a wave's `fields` as power series in t over Q[Z, m̂, C]."""
 
-    def __init__(self, model: Model, order: int, progress: Progress[int] = iter) -> None:
+    def __init__(
+        self, model: Model, order: int, progress: Progress[int] = iter
+    ) -> None:
         self.context = fmpq_mpoly_ctx.get(("Z", *model.ring.names), Ordering.lex)
         self.Z, self.zero = self.context.gen(0), self.context.constant(0)
         self.mu = model.ring.masses.elements(self.context)
         self.c = model.ring.contacts.elements(self.context)
         self.P = model.cell.size
         quartic = Bloch(model).acoustic(2)[2]
-        self.I = -self.context.from_dict({(0, *map(int, e)): c for e, c in quartic.terms()})
+        self.I = -self.context.from_dict(
+            {(0, *map(int, e)): c for e, c in quartic.terms()}
+        )
         self.epsilon = self.I**3  # ε = I³ t²
         self._half = self.Z / 2
         self.gamma: Series = [self.context.constant(1)]
@@ -130,7 +134,9 @@ class Recursion:
             q = q + a * self.Z**d
             left[d - 2] = left.get(d - 2, self.zero) - d * (d - 1) * self.epsilon * a
         if left.get(1, self.zero):
-            raise ArithmeticError("no wave at this order: the chain's equations are at odds")
+            raise ArithmeticError(
+                "no wave at this order: the chain's equations are at odds"
+            )
         return q, -left.get(0, self.zero)
 
     def _extend(self, n: int, q: fmpq_mpoly | None = None) -> fmpq_mpoly:
@@ -163,7 +169,11 @@ class Recursion:
             return _last(log, of_wave) if linear else exp_term(log, S)  # δ e^S = e^S δS
 
         def logarithm(S: Series, log: Series, of_wave: Series) -> fmpq_mpoly:
-            return S[-1] - _last([*log, self.zero], of_wave) if linear else log_term(S, log)
+            return (
+                S[-1] - _last([*log, self.zero], of_wave)
+                if linear
+                else log_term(S, log)
+            )
 
         for i in P:
             S, log = fields.force[i], fields.log_force[i]
@@ -178,17 +188,25 @@ class Recursion:
                 log.append(logarithm(S, log, wave.force[i]))
             # r = f^{1/(1+ε)}: log r = Σ (-ε)^m log f, whose Gaussian leaves -(-ε)^m Z²/4 for m ≥ 1
             gaussian = n and n % 2 == 0 and not linear
-            log_r = -((-self.epsilon) ** (n // 2)) * self.Z**2 / 4 if gaussian else self.zero
+            log_r = (
+                -((-self.epsilon) ** (n // 2)) * self.Z**2 / 4
+                if gaussian
+                else self.zero
+            )
             for m in range(n // 2 + 1):
                 log_r = log_r + (-self.epsilon) ** m * log[n - 2 * m]
             strain = fields.strain[i]
             fields.log_strain[i].append(log_r)
             strain.append(exponential(fields.log_strain[i], strain, wave.strain[i]))
-        mean = sum((c * r[n] for c, r in zip(self.c, fields.strain, strict=True)), self.zero)
+        mean = sum(
+            (c * r[n] for c, r in zip(self.c, fields.strain, strict=True)), self.zero
+        )
         fields.means.append(self._derivatives(mean / self.P, fields.means))
         fields.pushes.append(self._derivatives(fields.force[-1][n], fields.pushes))
         slope = self.zero
-        for m, term in enumerate(fields.means[n]):  # s_0 = P∂/(e^{P∂} - 1) of the mean strain
+        for m, term in enumerate(
+            fields.means[n]
+        ):  # s_0 = P∂/(e^{P∂} - 1) of the mean strain
             # Bernoulli's numbers, with B_1 = -1/2
             if factor := fmpq(-1, 2) if m == 1 else to_flint(bernoulli(m)):
                 slope = slope + fmpq(self.P**m, factorial(m)) * factor * term

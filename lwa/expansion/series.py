@@ -70,23 +70,38 @@ class EpsilonSeries(Value):
         positive quantities, or `UNLIKE` of it for unlike beads.
         """
         if self.order < LOWEST:
-            raise InputError(f"order is {self.order}: sums are stated from order {LOWEST} on")
+            raise InputError(
+                f"order is {self.order}: sums are stated from order {LOWEST} on"
+            )
         series = self if k is None else self._for(exponent(k))
         values = (series.k, series.prefactor, *series.coefficients)
         symbols = set().union(*(value.free_symbols for value in values))
         demand_numbers(symbols, "a sum needs numbers")
         if not series.k > 1:
-            raise InputError(f"k is {series.k}: the expansion in k - 1 is summed for k > 1")
+            raise InputError(
+                f"k is {series.k}: the expansion in k - 1 is summed for k > 1"
+            )
         from lwa.expansion.radiation import radiated  # start-up: it loads NumPy
 
         uniform, epsilon = self.cell.uniform, series.k - 1
         base = () if uniform else equal_beads(self.quantity, self.order)
-        unit, lost = series.prefactor * epsilon**series.power, radiated(self.cell, series.k)
+        unit, lost = (
+            series.prefactor * epsilon**series.power,
+            radiated(self.cell, series.k),
+        )
         total = resum(series.coefficients, epsilon, base, unit, lost)
         most = 1 if uniform else UNLIKE
         if not total.error < most * total.value:
-            size = "as large as itself" if uniform else f"over {UNLIKE:.0%} of it (unlike beads)"
-            more = "higher orders do not help" if total.asymptotic else "a higher order may help"
+            size = (
+                "as large as itself"
+                if uniform
+                else f"over {UNLIKE:.0%} of it (unlike beads)"
+            )
+            more = (
+                "higher orders do not help"
+                if total.asymptotic
+                else "a higher order may help"
+            )
             raise InputError(
                 f"no sum at k = {shorten(series.k)}: to ε^{self.order} its error is {size}; {more}"
             )
@@ -95,10 +110,14 @@ class EpsilonSeries(Value):
     def _for(self, k: sp.Expr) -> EpsilonSeries:
         """The series with a number or symbol in place of its symbol k."""
         if not self.k.is_Symbol:
-            raise InputError(f"k is {k}, but the series is that of k = {self.k}: leave k out")
+            raise InputError(
+                f"k is {k}, but the series is that of k = {self.k}: leave k out"
+            )
         at = {self.k: k}
         coefficients = tuple(a.xreplace(at) for a in self.coefficients)
-        return replace(self, prefactor=self.prefactor.xreplace(at), coefficients=coefficients, k=k)
+        return replace(
+            self, prefactor=self.prefactor.xreplace(at), coefficients=coefficients, k=k
+        )
 
     def __repr__(self) -> str:
         return f"EpsilonSeries({self.quantity} to ε^{self.order}, k={self.k}, {self.cell!r})"

@@ -108,7 +108,8 @@ def _transformed(coefficients: Sequence[sp.Expr]) -> list[mpmath.mpf]:
     """Coefficients b_n of x^n from those of ε^n."""
     a = [_mp(value) for value in coefficients]
     return a[:1] + [
-        mpmath.fsum(comb(n - 1, m - 1) * a[m] for m in range(1, n + 1)) for n in range(1, len(a))
+        mpmath.fsum(comb(n - 1, m - 1) * a[m] for m in range(1, n + 1))
+        for n in range(1, len(a))
     ]
 
 

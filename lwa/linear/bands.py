@@ -79,7 +79,9 @@ class Network(NamedTuple):
     @property
     def in_series(self) -> bool:
         """True if each particle has one link, to the next particle."""
-        return sorted((i, j) for i, j, _ in self.links) == [(n, n + 1) for n in range(self.size)]
+        return sorted((i, j) for i, j, _ in self.links) == [
+            (n, n + 1) for n in range(self.size)
+        ]
 
     @property
     def order(self) -> list[int]:
@@ -115,7 +117,9 @@ class Network(NamedTuple):
             if m % 2 == 0:  # inner forces have the sum 0
                 square[m] = -forces.sum(axis=-1) / total
                 forces += square[m][..., None] * masses
-            a.append(np.zeros_like(one))  # the first particle moves by the 1 of a_0 alone
+            a.append(
+                np.zeros_like(one)
+            )  # the first particle moves by the 1 of a_0 alone
             if self.size > 1 and m < 4:
                 a[m][..., 1:] = solved(k[0][..., 1:, 1:], -forces[..., 1:])
         shares = self.spans - a[1] @ self.incidence.T
@@ -142,7 +146,9 @@ def solved(matrix: Array, right: Array) -> Array:
     good = np.isfinite(scale) & (scale > 0)
     one, scale = np.eye(matrix.shape[-1]), np.where(good, scale, 1)
     matrix = np.where(good, matrix, one) / scale
-    sign, _ = np.linalg.slogdet(matrix)  # 0 where a pivot is: one such matrix refuses them all
+    sign, _ = np.linalg.slogdet(
+        matrix
+    )  # 0 where a pivot is: one such matrix refuses them all
     good &= (sign != 0)[..., None, None]
     found = np.linalg.solve(np.where(good, matrix, one), right[..., None] / scale)
     return np.asarray(np.where(good, found, np.nan)[..., 0])

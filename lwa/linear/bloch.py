@@ -72,10 +72,16 @@ class Bloch:
         P = self.P
         trace = self.trace(order)
         omega2 = [self.zero]
-        powers = [[], omega2, *([self.zero] for _ in trace[2:])]  # powers[m] is that of Ω^{2m}
+        powers = [
+            [],
+            omega2,
+            *([self.zero] for _ in trace[2:]),
+        ]  # powers[m] is that of Ω^{2m}
         for n in range(1, order + 1):
             # (2 - 2 cos Pκ)/P² = Σ -2 (-1)^n P^{2n-2} κ^{2n}/(2n)!
-            following = self.one * fmpq(-2 * (-1) ** n * P ** (2 * n - 2), factorial(2 * n))
+            following = self.one * fmpq(
+                -2 * (-1) ** n * P ** (2 * n - 2), factorial(2 * n)
+            )
             for m in range(2, len(trace)):
                 products = (omega2[j] * powers[m - 1][n - j] for j in range(1, n))
                 powers[m].append(sum(products, self.zero))

@@ -68,7 +68,9 @@ class Dispersion(Value):
         """LaTeX of Ω²(κ) to κ^order, of the acoustic and of a dimer's optical branch."""
         rows = []
         for branch, series in self.series(order).items():
-            terms = ((c, latex.power(_KAPPA, n) if n else "") for n, c in series.items())
+            terms = (
+                (c, latex.power(_KAPPA, n) if n else "") for n, c in series.items()
+            )
             letter = rf"\Omega_{{\mathrm{{{branch}}}}}^{{2}}"
             rows.append(rf"{letter} = {latex.total(terms)} + \cdots")
         return rows
@@ -76,12 +78,17 @@ class Dispersion(Value):
     def series(self, order: int = 4) -> dict[str, dict[int, sp.Expr]]:
         """Mapping from "acoustic", and for dimers "optical", to the coefficients of Ω²(κ)."""
         series = {"acoustic": self.acoustic(order)}
-        return series | ({"optical": self.optical(order)} if self.cell.size == 2 else {})
+        return series | (
+            {"optical": self.optical(order)} if self.cell.size == 2 else {}
+        )
 
     @cached_property
     def trace(self) -> dict[int, sp.Expr]:
         """Mapping m → t_m, m = 0 … P, in the dispersion relation 2 cos(Pκ) = Σ t_m Ω^{2m}."""
-        return {m: self._expression(t) for m, t in enumerate(self._bloch.trace(self.cell.size))}
+        return {
+            m: self._expression(t)
+            for m, t in enumerate(self._bloch.trace(self.cell.size))
+        }
 
     def acoustic(self, order: int = 4) -> dict[int, sp.Expr]:
         """Mapping from n = 2, 4, … ≤ ``order`` to the coefficient of κ^n in the acoustic Ω²."""
@@ -91,9 +98,13 @@ class Dispersion(Value):
     def optical(self, order: int = 4) -> dict[int, sp.Expr]:
         """Mapping n = 0, 2, … ≤ ``order`` → coefficient of κ^n in a dimer's optical Ω²."""
         if self.cell.size != 2:  # the roots of other cells are not rational
-            raise InputError(f"the optical series needs a cell of 2 masses, not {self.cell.size}")
+            raise InputError(
+                f"the optical series needs a cell of 2 masses, not {self.cell.size}"
+            )
         acoustic = self.acoustic(order)
-        return {0: 1 / self._expression(self._bloch.Pi)} | {n: -c for n, c in acoustic.items()}
+        return {0: 1 / self._expression(self._bloch.Pi)} | {
+            n: -c for n, c in acoustic.items()
+        }
 
     @cached_property
     def I(self) -> sp.Expr:
@@ -111,7 +122,9 @@ class Dispersion(Value):
     def _expression(self, polynomial: fmpq_mpoly) -> sp.Expr:
         count = len(self._model.ring.names)
         terms = [(tuple(map(int, e[:count])), c) for e, c in polynomial.terms()]
-        return sp.together(self._model.ring.expression(terms))  # compliances enter as 1/A
+        return sp.together(
+            self._model.ring.expression(terms)
+        )  # compliances enter as 1/A
 
     def _length(self, order: Any) -> int:
         """Return the number of powers of κ² up to κ^order; raise `lwa.InputError` for too many.
@@ -125,7 +138,9 @@ class Dispersion(Value):
         for part in (self._model.ring.masses, self._model.ring.contacts):
             terms *= comb(2 * max(n, 1) - 2 + len(part.names), len(part.names))
         if terms > MOST_TERMS:
-            raise InputError(f"order is {highest}: give numbers for the cell, or a lower order")
+            raise InputError(
+                f"order is {highest}: give numbers for the cell, or a lower order"
+            )
         return n
 
     @cached_property
@@ -136,10 +151,14 @@ class Dispersion(Value):
         from lwa.linear.bands import Bands
 
         weights = (*self.cell.fractions, *self.cell.shares(self.k))
-        demand_numbers(set().union(*(w.free_symbols for w in weights)), "bands want numbers")
+        demand_numbers(
+            set().union(*(w.free_symbols for w in weights)), "bands want numbers"
+        )
         fractions, shares = np.array([float(w) for w in weights]).reshape(2, -1)
         if not (np.all(fractions > 0) and np.all(shares > 0)):
-            raise InputError("masses or compliances differ by more than the range of a float")
+            raise InputError(
+                "masses or compliances differ by more than the range of a float"
+            )
         return Bands(fractions, shares)
 
 
@@ -165,8 +184,12 @@ class LoadedChain(Value):
         object.__setattr__(self, "precompression", load)
 
     def latex_rows(self) -> list[str]:
-        constants = {f"K_{{{i}}}": K for i, K in enumerate(self.spring_constants, start=1)}
-        return latex.rows({"F_{0}": self.precompression} | constants | {"c_{0}": self.sound_speed})
+        constants = {
+            f"K_{{{i}}}": K for i, K in enumerate(self.spring_constants, start=1)
+        }
+        return latex.rows(
+            {"F_{0}": self.precompression} | constants | {"c_{0}": self.sound_speed}
+        )
 
     @cached_property
     def spring_constants(self) -> tuple[sp.Expr, ...]:
@@ -182,7 +205,8 @@ class LoadedChain(Value):
     def springs(self) -> Dispersion:
         """The dispersion of the chain of these springs, Ω(κ) in the theory's units."""
         constants = (
-            sp.nsimplify(K, rational=True) if K.has(sp.Float) else K for K in self.spring_constants
+            sp.nsimplify(K, rational=True) if K.has(sp.Float) else K
+            for K in self.spring_constants
         )
         return Dispersion(Cell(self.cell.masses, tuple(constants), self.cell.spacing))
 
@@ -202,5 +226,7 @@ class LoadedChain(Value):
         """The bands in floats, in the units of the cell; raises `lwa.InputError` for symbols."""
         D = self.cell.spacing
         length = sp.S.One if D.is_Symbol else D
-        demand_numbers(self._rate.free_symbols | length.free_symbols, "bands want numbers")
+        demand_numbers(
+            self._rate.free_symbols | length.free_symbols, "bands want numbers"
+        )
         return self.springs.bands._replace(rate=float(self._rate), length=float(length))

@@ -103,7 +103,9 @@ class Background(Value):
     def speed(self, B: sp.Expr) -> sp.Expr:
         """Speed V = √Q(B) of the wave that rises by B, whether it exists or not."""
         square = self.stiffness(B)
-        if self.law.homogeneous and self.law.exponent.is_Integer:  # a polynomial in p0 and B
+        if (
+            self.law.homogeneous and self.law.exponent.is_Integer
+        ):  # a polynomial in p0 and B
             square = sp.expand(sp.cancel(square))
         return power(square, sp.S.Half)
 
@@ -116,9 +118,13 @@ class Background(Value):
         """
         c0, bend = self.sound_speed, self.force(self.p0, 2)
         if c0.is_zero or c0.is_finite is False:
-            raise NoSolitaryWave(f"p0 is {self.p0}: no sound runs there, so that no wave is small")
+            raise NoSolitaryWave(
+                f"p0 is {self.p0}: no sound runs there, so that no wave is small"
+            )
         if bend.is_zero:
-            raise NoSolitaryWave(f"F″ is 0 at p0 = {self.p0}: waves of small amplitude disperse")
+            raise NoSolitaryWave(
+                f"F″ is 0 at p0 = {self.p0}: waves of small amplitude disperse"
+            )
         # V² = Q(B) = c0² + F″ B/3 + …, hence V = c0 + α B/3; Ω² = κ² - I κ⁴ gives γ = I c0/2.
         return KdV(c0, sp.powsimp(bend / (2 * c0)), self.I * c0 / 2)
 
@@ -163,7 +169,9 @@ class KdV(Value):
 
     def width(self, B: Any = None) -> sp.Expr:
         """Width L = √(12 γ / (α B)) of v = B sech²(ξ/L); the FWHM is 2 arcosh(√2) L."""
-        return sp.sqrt(12 * sp.simplify(self.dispersion / self.nonlinearity) / self._rise(B))
+        return sp.sqrt(
+            12 * sp.simplify(self.dispersion / self.nonlinearity) / self._rise(B)
+        )
 
     def profile(self, xi: Any, B: Any = None) -> sp.Expr:
         """Strain v = B sech²(ξ/L) above the background."""

@@ -60,7 +60,11 @@ class Ends(Value):
         free: set[sp.Symbol] = self.ahead.free_symbols | self.peak.free_symbols
         if not self.by_force:  # forces alone determine compressions, not strains
             free |= self.chain.spacing.free_symbols
-        return free.union(self.chain.symbols) if self.law is None else free | {*self.law.symbols}
+        return (
+            free.union(self.chain.symbols)
+            if self.law is None
+            else free | {*self.law.symbols}
+        )
 
     @cached_property
     def _states(self) -> tuple[Static, Static]:
@@ -88,7 +92,9 @@ class Ends(Value):
 
     def _written(self, value: sp.Expr) -> sp.Expr:
         """A result in closed form, else its float: the exact ends of other laws have 35 digits."""
-        explicit = isinstance(self.chain, Lattice) or self.law.homogeneous or not self.by_force
+        explicit = (
+            isinstance(self.chain, Lattice) or self.law.homogeneous or not self.by_force
+        )
         return value if explicit else evaluated(value, _DIGITS)
 
     @property
@@ -104,7 +110,11 @@ class Ends(Value):
     @property
     def background(self) -> sp.Expr:
         """The static mean strain p0."""
-        return self.static_compression / self.chain.spacing if self.by_force else self.ahead
+        return (
+            self.static_compression / self.chain.spacing
+            if self.by_force
+            else self.ahead
+        )
 
     @property
     def strain(self) -> sp.Expr:
@@ -119,18 +129,24 @@ class Ends(Value):
     @property
     def force(self) -> sp.Expr:
         """The total force at the peak."""
-        return self.peak if self.by_force else self._force(self.background + self.strain)
+        return (
+            self.peak if self.by_force else self._force(self.background + self.strain)
+        )
 
     def _force(self, p: sp.Expr) -> sp.Expr:
         """The force of the contacts of a cell at a mean strain."""
-        return self.field.cell.stiffness(self.law.exponent) * self.law.at(self.chain.spacing * p)
+        return self.field.cell.stiffness(self.law.exponent) * self.law.at(
+            self.chain.spacing * p
+        )
 
     # --- in floats: mean compressions over a unit, lengths in spacings ---
 
     @cached_property
     def _quadrature(self) -> Quadrature:
         p0, B = self._ends
-        if self.law is not None and self.law.homogeneous:  # of no length: the unit is the larger
+        if (
+            self.law is not None and self.law.homogeneous
+        ):  # of no length: the unit is the larger
             unit = p0 + B if (self.law.exponent - 1).is_positive else p0
             p0, B = p0 / unit, B / unit
         return Quadrature(self._samples, number(p0), number(B))
@@ -156,7 +172,9 @@ class Ends(Value):
     @cached_property
     def _square(self) -> float:
         """The square V̂² in the quadrature's units."""
-        return Quadrature(self._static, self._quadrature.p0, self._quadrature.B).square()
+        return Quadrature(
+            self._static, self._quadrature.p0, self._quadrature.B
+        ).square()
 
     def _slope(self, part: float) -> float:
         """F′ where the wave has risen by a part of B."""

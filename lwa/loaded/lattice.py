@@ -40,7 +40,9 @@ from lwa.law import ContactLaw, Power, for_cell
 from lwa.linear.bands import Network
 from lwa.loaded.statics import Statics
 
-_NO_LOAD = 1e-9  # stiffness of a lattice of springs 1 that carries no load, but for rounding
+_NO_LOAD = (
+    1e-9  # stiffness of a lattice of springs 1 that carries no load, but for rounding
+)
 
 
 @dataclass(frozen=True)
@@ -63,11 +65,17 @@ class Link(Value):
     def __post_init__(self) -> None:
         i, j = (integer(x, "a link's particle", 0) for x in (self.i, self.j))
         if i >= j:
-            raise InputError(f"link ({i}, {j}): the second particle must come after the first")
+            raise InputError(
+                f"link ({i}, {j}): the second particle must come after the first"
+            )
         if not isinstance(self.law, ContactLaw):
-            raise InputError(f"link ({i}, {j}): its law is {shorten(self.law)}, no contact law")
+            raise InputError(
+                f"link ({i}, {j}): its law is {shorten(self.law)}, no contact law"
+            )
         for name in ("factor", "cosine"):
-            object.__setattr__(self, name, positive(getattr(self, name), f"link's {name}"))
+            object.__setattr__(
+                self, name, positive(getattr(self, name), f"link's {name}")
+            )
 
     def compression(self, force: sp.Expr) -> sp.Expr:
         """The compression δ at which the link pushes with this force along the lattice."""
@@ -87,7 +95,9 @@ class Resonator(Value):
     def __post_init__(self) -> None:
         integer(self.bead, "a resonator's bead", 0)
         for name in ("mass", "stiffness"):
-            object.__setattr__(self, name, positive(getattr(self, name), f"resonator's {name}"))
+            object.__setattr__(
+                self, name, positive(getattr(self, name), f"resonator's {name}")
+            )
 
 
 class Static(NamedTuple):
@@ -132,14 +142,18 @@ class Lattice(Value):
                 row = tuple(positive(m, f"mass {n}") for n, m in enumerate(row, 1))
             kind = {"masses": sp.Expr, "links": Link, "resonators": Resonator}[name]
             if wrong := [x for x in row if not isinstance(x, kind)]:
-                raise InputError(f"{name} hold {shorten(wrong[0])}: a {kind.__name__} is wanted")
+                raise InputError(
+                    f"{name} hold {shorten(wrong[0])}: a {kind.__name__} is wanted"
+                )
             object.__setattr__(self, name, row)
         object.__setattr__(self, "spacing", positive(spacing, "spacing"))
         if not self.masses or not self.links:
             raise InputError("a lattice needs at least one mass and one link")
         places = [link.i for link in self.links] + [x.bead for x in self.resonators]
         if max(places) >= self.size:
-            raise InputError(f"particle {max(places)}: the cell has particles 0 to {self.size - 1}")
+            raise InputError(
+                f"particle {max(places)}: the cell has particles 0 to {self.size - 1}"
+            )
         self._check_paths()
 
     @classmethod
@@ -163,7 +177,11 @@ class Lattice(Value):
     def symbols(self) -> tuple[sp.Symbol, ...]:
         """The symbols of masses, links and resonators, by name."""
         values = [*self.masses]
-        values += [x for link in self.links for x in (link.factor, link.cosine, *link.law.symbols)]
+        values += [
+            x
+            for link in self.links
+            for x in (link.factor, link.cosine, *link.law.symbols)
+        ]
         values += [x for r in self.resonators for x in (r.mass, r.stiffness)]
         return tuple(sorted(set().union(*(x.free_symbols for x in values)), key=str))
 
@@ -175,7 +193,9 @@ class Lattice(Value):
     @property
     def exact(self) -> bool:
         """True for links in series whose laws are powers: all results are closed forms."""
-        return self.in_series and all(isinstance(link.law, Power) for link in self.links)
+        return self.in_series and all(
+            isinstance(link.law, Power) for link in self.links
+        )
 
     @property
     def alike(self) -> bool:
@@ -200,7 +220,9 @@ class Lattice(Value):
     def energy(self, state: Static) -> sp.Expr:
         """The energy per particle in a static state."""
         pairs = zip(self.links, state.compressions, strict=True)
-        energies = (x.factor * x.law.energy.subs(x.law.delta, delta) for x, delta in pairs)
+        energies = (
+            x.factor * x.law.energy.subs(x.law.delta, delta) for x, delta in pairs
+        )
         return sp.Add(*energies) / self.size
 
     def stiffness(self, state: Static) -> sp.Expr:
@@ -227,10 +249,15 @@ class Lattice(Value):
         """Static states in floats; raises `lwa.InputError` for symbols."""
         demand_numbers(self.symbols, "numbers are wanted")
         x = sp.Symbol("delta", positive=True)
-        forces = (tuple(link.factor * link.law.at(x, n) for n in range(3)) for link in self.links)
+        forces = (
+            tuple(link.factor * link.law.at(x, n) for n in range(3))
+            for link in self.links
+        )
         compiled = (tuple(function_of(x, f) for f in triple) for triple in forces)
         masses = np.array([float(m) for m in self.masses])
-        network = Network(self.size, tuple((x.i, x.j, float(x.cosine)) for x in self.links))
+        network = Network(
+            self.size, tuple((x.i, x.j, float(x.cosine)) for x in self.links)
+        )
         return Statics(network, masses, tuple(compiled))
 
     @cached_property
@@ -248,7 +275,10 @@ class Lattice(Value):
 
 
 def hexagonal(
-    law: ContactLaw | Quantity, direction: str, mass: Quantity = 1, diameter: Quantity = 1
+    law: ContactLaw | Quantity,
+    direction: str,
+    mass: Quantity = 1,
+    diameter: Quantity = 1,
 ) -> Lattice:
     """The lattice of plane waves in a hexagonal packing of equal disks or spheres.
 

@@ -36,7 +36,10 @@ _STEPS = (20, 28, 56, 112)
 _CLOSE = 1e-8
 _END = 4.0  # the largest |t|: s or 1 - s is 6e-38 there
 _WINDOW = 20  # places of an end correction: the polynomial's error is below rounding at 20 nodes
-_NEAR, _FAR = -1.7, -3.0  # first t of widths, where v = 2e-4 B, and of profiles, 2e-14 B
+_NEAR, _FAR = (
+    -1.7,
+    -3.0,
+)  # first t of widths, where v = 2e-4 B, and of profiles, 2e-14 B
 _STEEPEST = 1.0  # largest d ln s between the nodes of an end correction at the foot
 _LEAST = 1e-3  # size below which profiles are right to the absolute error of this size
 _PLACES = 16  # nodes through which results are interpolated
@@ -90,7 +93,12 @@ def grid(steps: int, start: float = _NEAR) -> Grid:
     ds = s * y2 * rate
     below = _cumulated(len(t))
     rows = slice(int(np.argmax((rate < _STEEPEST) & (t >= start))), None)
-    above, below, u, w = below[::-1, ::-1][rows], below[rows], s[rows, None], y2[rows, None]
+    above, below, u, w = (
+        below[::-1, ::-1][rows],
+        below[rows],
+        s[rows, None],
+        y2[rows, None],
+    )
     # K/(1-u), u = v/B, is s (2 (1-s) - s (1-u)/u)/u below u, which does not cancel
     kernel = below * (2 * s * y2 * ds) / u - below * (s**2 * ds) * w / u**2
     kernel += above * (y2**2 * ds) / w
@@ -106,7 +114,10 @@ def _cumulated(count: int) -> Array:
     places = range(1 - _WINDOW // 2, _WINDOW // 2 + 1)
     x, w = np.polynomial.legendre.leggauss(_WINDOW)
     x = (x + 1) / 2
-    weights = [w @ np.prod([(x - i) / (j - i) for i in places if i != j], axis=0) for j in places]
+    weights = [
+        w @ np.prod([(x - i) / (j - i) for i in places if i != j], axis=0)
+        for j in places
+    ]
     cells = np.zeros((count - 1, count + _WINDOW))
     for i, row in enumerate(cells):
         row[i : i + _WINDOW] = np.array(weights) / 2
@@ -145,7 +156,10 @@ class Quadrature:
         """The square V² = Q(B): 2 ∫(1-s) F′ ds, or F′(p0) + B ∫(1-s)² F″ ds for small waves."""
 
         def compute(g: Grid, F1: Array, F2: Array, _: Array) -> Array:
-            first, second = g.ds * g.y2, g.ds * g.y2**2  # weights of 1/2 and 1/3, but for rounding
+            first, second = (
+                g.ds * g.y2,
+                g.ds * g.y2**2,
+            )  # weights of 1/2 and 1/3, but for rounding
             change = self.B / 3 * (F2 @ second) / second.sum()
             small = abs(change) < F1[0] / 4
             return np.asarray(F1[0] + change if small else (F1 @ first) / first.sum())
@@ -170,7 +184,9 @@ class Quadrature:
         def compute(g: Grid, _: Array, F2: Array, J: Array) -> Array:
             dxi = g.distances(self.B, F2, J)
             xi = g.from_peak(g.above[:, g.rows] @ dxi)
-            logs = g.from_peak(np.where(g.y2 < 0.5, np.log1p(-g.y2), np.log(g.s))[g.rows])
+            logs = g.from_peak(
+                np.where(g.y2 < 0.5, np.log1p(-g.y2), np.log(g.s))[g.rows]
+            )
             inside = _interpolated(xi, logs, np.minimum(places, xi[-1]))
             # v decays exponentially behind the last node under a load, and ends there without
             slope = g.from_peak((g.ds / g.s)[g.rows])[-1] / g.from_peak(dxi)[-1]
@@ -183,15 +199,22 @@ class Quadrature:
         g = grid(_STEPS[0], _FAR)
         with np.errstate(all="ignore"):
             F1, F2, _ = self.samples(g.strains(self.p0, self.B))
-            ends = F2 @ (2 * g.s * g.y2 * g.ds), F2 @ (g.y2**2 * g.ds)  # Q′(B), (Q(B) - Q(0))/B
+            ends = (
+                F2 @ (2 * g.s * g.y2 * g.ds),
+                F2 @ (g.y2**2 * g.ds),
+            )  # Q′(B), (Q(B) - Q(0))/B
             rises = self.B * np.append(g.kernel @ F2, ends)
         if not np.all(F1 >= 0) or not np.isfinite(F1[-1]):
             return "F′ is not positive and finite from p0 to p0 + B"
         if np.any(F1 == 0):
-            return "F′ is 0 between p0 and p0 + B, or so small that its terms cancel to 0"
+            return (
+                "F′ is 0 between p0 and p0 + B, or so small that its terms cancel to 0"
+            )
         if np.all(rises > 0):
             return ""
-        return "the law does not stiffen towards p0 + B: a smaller wave would be as fast"
+        return (
+            "the law does not stiffen towards p0 + B: a smaller wave would be as fast"
+        )
 
     def _converged(
         self,
@@ -206,8 +229,13 @@ class Quadrature:
             with np.errstate(all="ignore"):
                 F1, F2, I = self.samples(g.strains(self.p0, self.B))
                 nodes = F1, F2, F1 * I
-                found, other = compute(g, *nodes), compute(rough, *(x[::2] for x in nodes))
-                if np.all(np.abs(found - other) <= _CLOSE * np.maximum(np.abs(found), least)):
+                found, other = (
+                    compute(g, *nodes),
+                    compute(rough, *(x[::2] for x in nodes)),
+                )
+                if np.all(
+                    np.abs(found - other) <= _CLOSE * np.maximum(np.abs(found), least)
+                ):
                     return found
         raise InputError(
             f"p0 = {self.p0:.6g}, B = {self.B:.6g}: the law changes too much over the wave for "

@@ -21,10 +21,15 @@ _ROUNDING = 1e-14  # of the mean compression: the step after the last one is exa
 # Ratio of spring constants: a link that is so much stiffer is rigid for I, whose solution loses as
 # many digits.
 _RIGID = 1e8
-_REACH = -100, 40  # powers of 2 between which the mean compression under a force is sought
+_REACH = (
+    -100,
+    40,
+)  # powers of 2 between which the mean compression under a force is sought
 _PARTS = 65  # places between two bounds, of which the next bounds are neighbours
 _BOLDEST = 3.0  # largest step of ln δ
-_LARGEST = 1e6  # compression of a link in series over the least that it may have at first
+_LARGEST = (
+    1e6  # compression of a link in series over the least that it may have at first
+)
 _LEAST = 1e-14  # least mean compression over the largest of a wave
 _SMALL = 0.1  # rise over e from which on a difference of compressions has 15 digits
 _NODES = 10  # of Gauss's rule: laws with a singularity at δ = 0 err by 1e-20 over such a rise
@@ -69,7 +74,9 @@ class Statics:
                 step = (mean[..., None] - logs) * gain / delta
                 outside = ~((force > 0) & (springs > 0))
                 step = np.where(outside, np.log(before / delta) / 2, step)
-                step = np.where(np.isfinite(step), np.clip(step, -_BOLDEST, _BOLDEST), 0.0)
+                step = np.where(
+                    np.isfinite(step), np.clip(step, -_BOLDEST, _BOLDEST), 0.0
+                )
                 before, delta = np.where(outside, before, delta), delta * np.exp(step)
                 if not np.any(np.abs(step) > _ROUNDING):
                     break
@@ -83,7 +90,9 @@ class Statics:
             delta = e[..., None] * spans + inner @ incidence.T
             force, springs = self.values(delta, 0), self.values(delta, 1)
             with np.errstate(all="ignore"):  # far beyond the wave forces are infinite
-                step = -solved(incidence.T @ (springs[..., None] * incidence), force @ incidence)
+                step = -solved(
+                    incidence.T @ (springs[..., None] * incidence), force @ incidence
+                )
                 change = step @ incidence.T
                 reach = np.where(change * delta < 0, -delta / (2 * change), 1.0)
                 step *= np.minimum(1.0, reach.min(axis=-1))[..., None]
@@ -120,7 +129,9 @@ class Statics:
                 row = [compliances[..., n] * stiffness for n in network.order]
                 dispersion = dispersion_of_chain(self.masses / self.masses.sum(), row)
             else:
-                soft = np.minimum(springs, _RIGID * np.abs(springs).min(axis=-1, keepdims=True))
+                soft = np.minimum(
+                    springs, _RIGID * np.abs(springs).min(axis=-1, keepdims=True)
+                )
                 stiffness, dispersion, shares = network.acoustic(soft, self.masses)
         bend = (self.values(delta, 2) * shares**3).sum(axis=-1) / size
         return stiffness, bend, dispersion + 0 * e
@@ -129,7 +140,9 @@ class Statics:
         """The mean compression under a force > 0; raises `lwa.InputError` if it is not reached."""
         e: Array = np.exp2(np.arange(*_REACH))
         while e[-1] > e[0] * (1 + 4e-16):
-            above = np.flatnonzero(~(self.force(e) < force))  # or NaN, beyond the reach of a law
+            above = np.flatnonzero(
+                ~(self.force(e) < force)
+            )  # or NaN, beyond the reach of a law
             if not len(above) or not above[0]:
                 raise InputError(f"force is {force:g}: the links do not reach it")
             low, high = e[above[0] - 1 : above[0] + 1]
@@ -148,4 +161,6 @@ class Statics:
         if abs(rough) > _SMALL * e:
             return rough
         places, weights = np.polynomial.legendre.leggauss(_NODES)
-        return added / float(self.samples(e + rough * (1 + places) / 2)[0] @ weights / 2)
+        return added / float(
+            self.samples(e + rough * (1 + places) / 2)[0] @ weights / 2
+        )

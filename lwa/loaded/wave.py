@@ -66,7 +66,9 @@ from lwa.loaded.ends import Ends
 from lwa.loaded.lattice import Lattice
 
 _FASTEST = 1.2  # least ω0 D/(2πV) of a resonator at which the relation holds (`struck`)
-_BARE = 1 - 1e-6  # part of V² that the wave adds to the sound's from which there is no load
+_BARE = (
+    1 - 1e-6
+)  # part of V² that the wave adds to the sound's from which there is no load
 _FOOT = 1e-40  # part of the rise at which the sound ahead of the wave is computed
 
 # Errors of V² - c0² and of widths in parts of Δ, and Δ up to which they hold, measured by the
@@ -91,9 +93,14 @@ class LoadedWave(Ends):
             ahead = load if load.is_zero else positive(load, "precompression")
             peak = positive(self.peak, "force")
             if ahead == peak:
-                raise NoSolitaryWave(f"force and precompression are both {shorten(peak)}: no wave")
+                raise NoSolitaryWave(
+                    f"force and precompression are both {shorten(peak)}: no wave"
+                )
         else:
-            ahead, peak = read_exact(self.ahead, "background"), read_exact(self.peak, "rise")
+            ahead, peak = (
+                read_exact(self.ahead, "background"),
+                read_exact(self.peak, "rise"),
+            )
             if peak.is_zero:
                 raise InputError("rise is 0: `kdv` is the limit of small waves")
         object.__setattr__(self, "ahead", ahead)
@@ -105,15 +112,21 @@ class LoadedWave(Ends):
     def _check(self) -> None:
         """Raise an error for numbers without a wave."""
         if self.law is not None and self.law.homogeneous:
-            reason = _refusal_under_power(self.law.exponent - 1, self.background, self.strain)
+            reason = _refusal_under_power(
+                self.law.exponent - 1, self.background, self.strain
+            )
         elif self._free or (self.law is not None and self.law.formless):
             if self.by_force and (self.law or not self.lattice.exact):
-                demand_numbers(self._free, "forces under laws that are no powers are numbers")
+                demand_numbers(
+                    self._free, "forces under laws that are no powers are numbers"
+                )
             return
         else:
             p0, B = self._quadrature.p0, self._quadrature.B
             reason = self._quadrature.refusal()
-            if not reason and not np.all(self._samples(p0 + B * np.linspace(0.01, 1, 100))[2] > 0):
+            if not reason and not np.all(
+                self._samples(p0 + B * np.linspace(0.01, 1, 100))[2] > 0
+            ):
                 reason = "I is not positive from the load to the peak"
         ahead, peak = shorten(self.ahead), shorten(self.peak)
         place = f"p0 = {ahead}, B = {peak}"
@@ -142,7 +155,9 @@ class LoadedWave(Ends):
         """Substitute values for symbols of a chain, as `lwa.TravelingWave.at`."""
         if isinstance(self.chain, Lattice):
             raise InputError("the symbols of a lattice are given where it is made")
-        chain, law, ahead, peak = substituted(values, self.chain, self.law, self.ahead, self.peak)
+        chain, law, ahead, peak = substituted(
+            values, self.chain, self.law, self.ahead, self.peak
+        )
         return LoadedWave(chain, law, ahead, peak, self.by_force)
 
     @cached_property
@@ -156,11 +171,18 @@ class LoadedWave(Ends):
             A = self.chain.stiffness(self.law.exponent)
             work = A * (energy.subs(delta, ahead + rise) - energy.subs(delta, ahead))
         elif self.lattice.exact:
-            work = self.lattice.energy(self._states[1]) - self.lattice.energy(self._states[0])
+            work = self.lattice.energy(self._states[1]) - self.lattice.energy(
+                self._states[0]
+            )
         else:
-            return sp.Float(sqrt(self._square / number(self.lattice.mass))) * self.chain.spacing
+            return (
+                sp.Float(sqrt(self._square / number(self.lattice.mass)))
+                * self.chain.spacing
+            )
         square = 2 * (work - self.precompression * rise) / rise**2
-        return self.chain.spacing * self._written(power(square / self.lattice.mass, sp.S.Half))
+        return self.chain.spacing * self._written(
+            power(square / self.lattice.mass, sp.S.Half)
+        )
 
     @cached_property
     def sound_speed(self) -> sp.Expr:
@@ -168,12 +190,16 @@ class LoadedWave(Ends):
         if isinstance(self.chain, Cell):
             if not self.by_force:
                 return sp.powdenest(self.field.sound_speed * self.field.time_scale)
-            stiffness = self.chain.stiffness(self.law.exponent) * self.law.at(self._ends[0], 1)
+            stiffness = self.chain.stiffness(self.law.exponent) * self.law.at(
+                self._ends[0], 1
+            )
         elif self.lattice.in_series:
             stiffness = self.lattice.stiffness(self._states[0])
         else:
             stiffness = sp.Float(self._slope(_FOOT))
-        return self.chain.spacing * self._written(power(stiffness / self.lattice.mass, sp.S.Half))
+        return self.chain.spacing * self._written(
+            power(stiffness / self.lattice.mass, sp.S.Half)
+        )
 
     @property
     def bead_velocity(self) -> sp.Expr:
@@ -188,16 +214,22 @@ class LoadedWave(Ends):
         """
         c0, D = self.sound_speed, self.chain.spacing
         if c0.is_zero or c0.is_finite is False:
-            raise NoSolitaryWave("there is no load, and no sound runs, so that no wave is small")
+            raise NoSolitaryWave(
+                "there is no load, and no sound runs, so that no wave is small"
+            )
         if isinstance(self.chain, Cell):
             bend, slope = (self.law.at(self._ends[0], n) for n in (2, 1))
             I = self.field.I
         else:
             values = self.lattice.statics.samples(np.array(self._quadrature.p0))
             slope, bend, I = (sp.Float(float(x)) for x in values)
-            I = D**2 * (I + self.lattice.resonance_sum * slope / self.lattice.mass**2)  # V̂² = F′
+            I = D**2 * (
+                I + self.lattice.resonance_sum * slope / self.lattice.mass**2
+            )  # V̂² = F′
         if bend.is_zero:
-            raise NoSolitaryWave("F″ is 0 at the load: waves of small amplitude disperse")
+            raise NoSolitaryWave(
+                "F″ is 0 at the load: waves of small amplitude disperse"
+            )
         # V² = c0² (1 + F″ B/(3F′) + …), hence V = c0 + α B/3; Ω² = c0² (q² - I q⁴) gives γ = I c0/2
         return KdV(c0, c0 * D * self._written(sp.powsimp(bend / slope) / 2), I * c0 / 2)
 
@@ -221,7 +253,9 @@ class LoadedWave(Ends):
         wave = self._quadrature
         ratio = wave.profile(places.ravel()).reshape(places.shape)
         if known_quantity(quantity) != "force":
-            return ratio * number(self.strain if quantity == "strain" else self.bead_velocity)
+            return ratio * number(
+                self.strain if quantity == "strain" else self.bead_velocity
+            )
         law = self.law
         force = function_of(law.delta, law.F) if law else self.lattice.statics.force
         low = max(wave.p0, _FOOT * abs(wave.B))  # no force is computed at 0
@@ -241,7 +275,9 @@ class LoadedWave(Ends):
             rule = _LOADED_PAIR
         elif lattice.size == 2 and len({*lattice.masses}) == 1:
             rule = _BARE_PAIR
-        heard = lattice.resonators and not (bare and lattice.alike and lattice.size == 1)
+        heard = lattice.resonators and not (
+            bare and lattice.alike and lattice.size == 1
+        )
         if delta > rule[2] or heard or self._quadrature.B < 0:
             rule = _NONE
         # Measured in parts of the lattice's value: x of that is x/(1 - x) of the theory's.
@@ -266,9 +302,12 @@ def _refusal_under_power(excess: sp.Expr, p0: sp.Expr, B: sp.Expr) -> str:
     stiffens, softens = excess.is_positive, excess.is_negative
     cases = {
         "at k = 1 the chain is linear, and its waves disperse": excess.is_zero,
-        "k < 1 and there is no load: the speed falls with the strain": softens and p0.is_zero,
-        "k > 1: speeds grow with the strain, and only B > 0 has a wave": stiffens and B.is_negative,
-        "k < 1: speeds fall with the strain, and only B < 0 has a wave": softens and B.is_positive,
+        "k < 1 and there is no load: the speed falls with the strain": softens
+        and p0.is_zero,
+        "k > 1: speeds grow with the strain, and only B > 0 has a wave": stiffens
+        and B.is_negative,
+        "k < 1: speeds fall with the strain, and only B < 0 has a wave": softens
+        and B.is_positive,
         "the contacts would open": p0.is_negative or (p0 + B).is_nonpositive,
     }
     return next((reason for reason, holds in cases.items() if holds), "")
@@ -316,7 +355,9 @@ def loaded_wave(
         if law is not None or k != symbol_k:
             raise InputError("a law is given: the links of a lattice have their own")
         if not by_force:
-            raise InputError("a strain is given: the wave of a lattice is given by forces")
+            raise InputError(
+                "a strain is given: the wave of a lattice is given by forces"
+            )
         return LoadedWave(chain, None, precompression, force)
     law = for_cell(law, chain, k)
     if by_force:

@@ -39,7 +39,10 @@ from lwa.loaded.background import Background
 from lwa.shocks import waves
 from lwa.shocks.waves import Pulse, demand_one_sign, floats, strain, tidy, velocity
 
-RULES = ("dispersion", "doubling")  # El's leading edge; the solitary wave with beads at 2 v_p
+RULES = (
+    "dispersion",
+    "doubling",
+)  # El's leading edge; the solitary wave with beads at 2 v_p
 
 # r up to which the trailing edge is given; against the lattice it is 3 % too slow for Hertz
 # contacts at p₋/p₊ = 2, r = 1.19, and 9 % at p₋/p₊ = 3, r = 1.32
@@ -96,7 +99,9 @@ class Shock(Value):
     @cached_property
     def ratio(self) -> sp.Expr:
         """Ratio r = c₋/c₊ of the speeds of sound, infinite without load."""
-        behind, ahead = (self._sound(p) / self._field.time_scale for p in (self.behind, self.ahead))
+        behind, ahead = (
+            self._sound(p) / self._field.time_scale for p in (self.behind, self.ahead)
+        )
         return sp.oo if ahead.is_zero else sp.powsimp(behind / ahead)
 
     @cached_property
@@ -125,7 +130,9 @@ class Shock(Value):
             return self.sound(self.behind)
         r = self._edge_ratio()
         if r.is_number and r > STEEPEST:
-            raise InputError(f"c₋/c₊ is {sp.N(r, 5)}: the trailing edge holds up to 1.3")
+            raise InputError(
+                f"c₋/c₊ is {sp.N(r, 5)}: the trailing edge holds up to 1.3"
+            )
         return tidy(sp.expand(self._sound(self.behind) * (2 / r - 1)))
 
     def leading_speed(self, rule: str = "doubling") -> sp.Expr:
@@ -145,14 +152,20 @@ class Shock(Value):
         if rule == "doubling":
             return tidy(self._pulse.speed * self._field.time_scale)
         r = self._edge_ratio()
-        return tidy(self._sound(self.ahead) * sp.sqrt(r * (r - 1)) / sp.acosh(sp.sqrt(r)))
+        return tidy(
+            self._sound(self.ahead) * sp.sqrt(r * (r - 1)) / sp.acosh(sp.sqrt(r))
+        )
 
     def _edge_ratio(self) -> sp.Expr:
         """The ratio r for El's edges, of equal beads in a chain with sound ahead."""
         if not self.cell.uniform:
-            raise InputError("the beads or contacts differ: edges are known for equal beads only")
+            raise InputError(
+                "the beads or contacts differ: edges are known for equal beads only"
+            )
         if self.ratio.is_infinite:
-            raise InputError("ahead is 0: no sound runs there, and dispersion gives no edge")
+            raise InputError(
+                "ahead is 0: no sound runs there, and dispersion gives no edge"
+            )
         if not (self._free or self.law.homogeneous):
             _ = self._pulse  # refuses an inflection of F within the leading pulse
         return self.ratio
@@ -195,7 +208,9 @@ class Shock(Value):
     def _pulse(self) -> Pulse:
         """The leading pulse by the doubling rule; an error for rarefactions and unequal beads."""
         if self._gain.is_negative:
-            raise InputError("sound is slower behind the front: a rarefaction has no pulse")
+            raise InputError(
+                "sound is slower behind the front: a rarefaction has no pulse"
+            )
         pulse = Pulse(self._field, 2 * self._gained)
         if not self.law.homogeneous:
             demand_one_sign(self._field, self.ahead, self.ahead + pulse.rise)
@@ -249,12 +264,19 @@ def _read(law: Any, cell: Cell, k: Any) -> ContactLaw:
     """Read a law with an expression."""
     contact = for_cell(law, cell, k)
     if contact.formless:
-        raise InputError(f"law is {contact.text}: a front between two strains needs an expression")
+        raise InputError(
+            f"law is {contact.text}: a front between two strains needs an expression"
+        )
     return contact
 
 
 def shock(
-    cell: Cell, behind: Any, ahead: Any = 0, *, law: ContactLaw | None = None, k: Any = symbol_k
+    cell: Cell,
+    behind: Any,
+    ahead: Any = 0,
+    *,
+    law: ContactLaw | None = None,
+    k: Any = symbol_k,
 ) -> Shock:
     """The front of a chain whose strain is ``behind`` on its left and ``ahead`` on its right.
 
@@ -270,33 +292,56 @@ def shock(
     (0.8543, 1.7480)
     """
     contact = _read(law, cell, k)
-    return _front(cell, contact, read_exact(behind, "behind"), read_exact(ahead, "ahead"))
+    return _front(
+        cell, contact, read_exact(behind, "behind"), read_exact(ahead, "ahead")
+    )
 
 
 def _front(cell: Cell, law: ContactLaw, behind: sp.Expr, ahead: sp.Expr) -> Shock:
     for name, p in (("behind", behind), ("ahead", ahead)):
         if law.homogeneous and p.is_negative:
-            raise InputError(f"{name} is {shorten(p)}: contacts of a power law only push")
+            raise InputError(
+                f"{name} is {shorten(p)}: contacts of a power law only push"
+            )
         if law.homogeneous and p.is_zero and (law.exponent - 1).is_nonpositive:
-            raise InputError(f"{name} is 0 and k {law.exponent}: a front without load wants k > 1")
+            raise InputError(
+                f"{name} is 0 and k {law.exponent}: a front without load wants k > 1"
+            )
     jump = behind - ahead
-    if jump.is_number and not jump.is_zero and abs(jump) < SMALLEST * max(abs(behind), abs(ahead)):
+    if (
+        jump.is_number
+        and not jump.is_zero
+        and abs(jump) < SMALLEST * max(abs(behind), abs(ahead))
+    ):
         raise InputError(
             f"the jump of the strain is {sp.N(jump, 3)}: 1e-15 of it at least is wanted"
         )
     strains = floats(behind, ahead, constants=law.F.atoms(sp.Rational))
-    if not law.homogeneous and cell.spacing.is_Symbol and any(p.is_Float for p in strains):
-        raise InputError(f"spacing is {cell.spacing}: beside long decimals a number is wanted")
+    if (
+        not law.homogeneous
+        and cell.spacing.is_Symbol
+        and any(p.is_Float for p in strains)
+    ):
+        raise InputError(
+            f"spacing is {cell.spacing}: beside long decimals a number is wanted"
+        )
     front = Shock(cell, law, *strains)
     gain = front._gain
     demand_one_sign(front._field, front.behind, front.ahead)
     if gain.is_zero:
-        raise InputError("sound is as fast behind as ahead: there is no shock and no rarefaction")
+        raise InputError(
+            "sound is as fast behind as ahead: there is no shock and no rarefaction"
+        )
     return front
 
 
 def piston(
-    cell: Cell, velocity: Any, ahead: Any = 0, *, law: ContactLaw | None = None, k: Any = symbol_k
+    cell: Cell,
+    velocity: Any,
+    ahead: Any = 0,
+    *,
+    law: ContactLaw | None = None,
+    k: Any = symbol_k,
 ) -> Shock:
     """The front that a wall moving at this velocity drives into a chain of strain ``ahead``.
 

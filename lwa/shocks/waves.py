@@ -96,7 +96,9 @@ def demand_one_sign(field: Background, start: sp.Expr, end: sp.Expr) -> None:
             places = mpmath.linspace(*ends, _PLACES + 1)[1:-1]
             signs = [mpmath.sign(curve(place)) for place in places]
         found = [
-            b for b, (one, other) in zip(places[1:], pairwise(signs), strict=True) if one != other
+            b
+            for b, (one, other) in zip(places[1:], pairwise(signs), strict=True)
+            if one != other
         ]
     if found:
         raise InputError(
@@ -133,7 +135,9 @@ def strain(field: Background, gained: sp.Expr) -> sp.Expr:
     """
     if field.law.homogeneous:
         power = (field.law.exponent + 1) / 2
-        return sp.powdenest((field.p0**power + power * gained) ** (1 / power), force=True)
+        return sp.powdenest(
+            (field.p0**power + power * gained) ** (1 / power), force=True
+        )
     x = sp.Dummy("x", positive=True)
     return field.p0 + _rising_root(velocity(field, field.p0 + x) - gained, x, DIGITS)
 
@@ -144,7 +148,9 @@ def _rising_root(rising: sp.Expr, x: sp.Symbol, digits: int) -> sp.Expr:
     with mpmath.workdps(digits):
         root = growing_root(rising, x)
     if root is None:
-        raise InputError("the law does not reach the strain that belongs to this velocity")
+        raise InputError(
+            "the law does not reach the strain that belongs to this velocity"
+        )
     return sp.Float(root, digits)
 
 
@@ -169,7 +175,9 @@ class Pulse(Value):
 
     def __post_init__(self) -> None:
         if not self.field.cell.uniform:
-            raise InputError("the beads or contacts differ: the wave is known for equal beads only")
+            raise InputError(
+                "the beads or contacts differ: the wave is known for equal beads only"
+            )
 
     @cached_property
     def rise(self) -> sp.Expr:
@@ -177,12 +185,20 @@ class Pulse(Value):
         field, w = self.field, self.velocity
         if self._bare:  # W = B^{k+1}/(k(k+1))
             k = field.law.exponent
-            parts = sp.expand_power_base((k * (k + 1) * w**2 / 2) ** (1 / (k + 1)), force=True)
+            parts = sp.expand_power_base(
+                (k * (k + 1) * w**2 / 2) ** (1 / (k + 1)), force=True
+            )
             return sp.powsimp(sp.powdenest(parts, force=True), force=True)
         x, side, p0 = sp.Dummy("x", positive=True), sp.sign(w), field.p0
-        demand_numbers(w.free_symbols | field.force(p0).free_symbols, "numbers are wanted")
+        demand_numbers(
+            w.free_symbols | field.force(p0).free_symbols, "numbers are wanted"
+        )
         p0, w = sp.N(p0, WORKING), sp.N(w, WORKING)
-        work = field.force(p0 + side * x, -1) - field.force(p0, -1) - field.force(p0) * side * x
+        work = (
+            field.force(p0 + side * x, -1)
+            - field.force(p0, -1)
+            - field.force(p0) * side * x
+        )
         return side * _rising_root(work - w**2 / 2, x, WORKING)
 
     @property

@@ -32,11 +32,30 @@ from functools import partial
 from typing import Any
 
 from lwa.base.exact import InputError
-from lwa.base.files import Table, among, array, each, finite, integer, named, positive, table
+from lwa.base.files import (
+    Table,
+    among,
+    array,
+    each,
+    finite,
+    integer,
+    named,
+    positive,
+    table,
+)
 from lwa.spheres.hertz import MATERIALS, Material, Sphere
 
 FILE = (
-    *("duration", "units", "samples", "gravity", "precompression", "materials", "beads", "chain"),
+    *(
+        "duration",
+        "units",
+        "samples",
+        "gravity",
+        "precompression",
+        "materials",
+        "beads",
+        "chain",
+    ),
     *("defects", "wall", "damping", "drive", "striker", "start", "sensors"),
 )
 """Keys of a file."""
@@ -56,7 +75,9 @@ def read_materials(file: Table) -> dict[str, Material]:
 
 def read_beads(file: Table, materials: Mapping[str, Material]) -> dict[str, Sphere]:
     """Read the table ``beads`` of a parsed file: a mapping from names to spheres."""
-    beads: dict[str, Sphere] = file.read("beads", named(partial(_bead, materials=materials)), {})
+    beads: dict[str, Sphere] = file.read(
+        "beads", named(partial(_bead, materials=materials)), {}
+    )
     return beads
 
 
@@ -93,12 +114,16 @@ def read_row(file: Table, beads: Mapping[str, Sphere]) -> Row:
     given = file.read("chain", table(CHAIN))
     cell = given.read("cell", array)
     if not cell:
-        raise InputError("chain.cell is empty: names, or masses, of one bead or more are wanted")
+        raise InputError(
+            "chain.cell is empty: names, or masses, of one bead or more are wanted"
+        )
     repeat = given.read("repeat", partial(integer, low=1), 1)
     names = isinstance(cell[0], str)
     for key in ("k", "law", "stiffnesses", "spacings"):
         if names and key in given:
-            raise InputError(f"chain.{key} is given, but named beads are in Hertz contact")
+            raise InputError(
+                f"chain.{key} is given, but named beads are in Hertz contact"
+            )
     contacts = partial(_by_contact, period=len(cell), beads=len(cell) * repeat)
     return Row(
         given,
@@ -112,19 +137,25 @@ def read_row(file: Table, beads: Mapping[str, Sphere]) -> Row:
 
 def _by_contact(value: Any, name: str, period: int, beads: int) -> list[float]:
     """Read one number for all contacts, one for each of a cell, or one for each of the chain."""
-    numbers: list[float] = each(positive)(value if isinstance(value, list) else [value], name)
+    numbers: list[float] = each(positive)(
+        value if isinstance(value, list) else [value], name
+    )
     if not isinstance(value, list):
         return numbers * period
     if len(numbers) not in (period, beads - 1):
         wanted = " or ".join(map(str, sorted({period, beads - 1})))
-        raise InputError(f"{name} holds {len(numbers)}: {wanted} are wanted, or one number")
+        raise InputError(
+            f"{name} holds {len(numbers)}: {wanted} are wanted, or one number"
+        )
     return numbers
 
 
 def period(*rows: Sequence[Any]) -> int:
     """Size of the smallest cell whose repetition, the last one whole or cut, gives all rows."""
     sizes = range(1, len(rows[0]) + 1)
-    return next(P for P in sizes if all(row[P:] == row[: max(len(row) - P, 0)] for row in rows))
+    return next(
+        P for P in sizes if all(row[P:] == row[: max(len(row) - P, 0)] for row in rows)
+    )
 
 
 def spheres(content: Any) -> list[Sphere]:
@@ -146,7 +177,9 @@ def _material(value: Any, name: str) -> Material:
     entries = Table(value, name, ("like", "E", "nu", "density"))
     like = entries.read("like", among(MATERIALS)) if "like" in entries else None
     readers = {"E": positive, "nu": finite, "density": positive}
-    keys = [key for key in readers if key in entries or (like is None and key != "density")]
+    keys = [
+        key for key in readers if key in entries or (like is None and key != "density")
+    ]
     values = {key: entries.read(key, readers[key]) for key in keys}
     try:
         return replace(like, **values) if like else Material(**values)
@@ -163,5 +196,9 @@ def _bead(value: Any, name: str, materials: Mapping[str, Material]) -> Sphere:
     if "mass" in entries:
         return Sphere(entries.read("mass", positive), radius, material)
     if "density" not in entries and material.density is None:
-        raise InputError(f"{name}.mass is missing: it, or a density here or of the material")
-    return Sphere.solid(radius, material, entries.read("density", positive, material.density))
+        raise InputError(
+            f"{name}.mass is missing: it, or a density here or of the material"
+        )
+    return Sphere.solid(
+        radius, material, entries.read("density", positive, material.density)
+    )

@@ -39,7 +39,9 @@ class Material(Value):
         object.__setattr__(self, "E", positive(self.E, "E"))
         object.__setattr__(self, "nu", read_exact(self.nu, "nu"))
         if self.nu.is_number and not -1 < self.nu <= sp.S.Half:
-            raise InputError(f"nu is {shorten(given)}: Poisson's ratio lies between -1 and 1/2")
+            raise InputError(
+                f"nu is {shorten(given)}: Poisson's ratio lies between -1 and 1/2"
+            )
         if self.density is not None:
             object.__setattr__(self, "density", positive(self.density, "density"))
 
@@ -58,7 +60,9 @@ class Material(Value):
 MATERIALS = {
     # E, density: ASM/MatWeb, AISI Type 316, annealed bar; ν: Porter et al. 2008
     "steel 316": Material("193e9", "0.30", "8000"),
-    "steel 440C": Material("200e9", "0.28", "7700"),  # makeitfrom.com, AISI 440C, annealed
+    "steel 440C": Material(
+        "200e9", "0.28", "7700"
+    ),  # makeitfrom.com, AISI 440C, annealed
     "aluminium": Material("68.9e9", "0.33", "2700"),  # ASM/MatWeb, aluminium 6061-T6
     # Gere & Goodno, Mechanics of Materials, appendix: 96-110 GPa, 8400-8600 kg/m³
     "brass": Material("103e9", "0.34", "8500"),
@@ -91,7 +95,9 @@ class Sphere(Value):
         for name in ("mass", "radius"):
             object.__setattr__(self, name, positive(getattr(self, name), name))
         if not isinstance(self.material, Material):
-            raise InputError(f"material is {shorten(self.material)}: a Material is wanted")
+            raise InputError(
+                f"material is {shorten(self.material)}: a Material is wanted"
+            )
 
     @classmethod
     def solid(cls, radius: Any, material: Material, density: Any = None) -> Sphere:
@@ -115,7 +121,9 @@ def stiffness(sphere: Sphere, other: Sphere | Material) -> sp.Expr:
     if not isinstance(sphere, Sphere):
         raise InputError(f"sphere is {shorten(sphere)}: a Sphere is wanted")
     if not isinstance(other, Sphere | Material):
-        raise InputError(f"other is {shorten(other)}: a Sphere, or a wall's Material, is wanted")
+        raise InputError(
+            f"other is {shorten(other)}: a Sphere, or a wall's Material, is wanted"
+        )
     first, R = sphere.material, sphere.radius
     if isinstance(other, Sphere):
         second, R = other.material, R * other.radius / (R + other.radius)

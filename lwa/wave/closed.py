@@ -81,7 +81,9 @@ class CompactWave(Value):
                 f"(G+H+I)/D² is {self.coefficient_sum}: a compact wave needs G+H+I > 0"
             )
         if self.speed_factor.is_number and not self.speed_factor > 0:
-            raise NoSolitaryWave(f"V²/B^(k-1) is {self.speed_factor}: a compact wave needs V² > 0")
+            raise NoSolitaryWave(
+                f"V²/B^(k-1) is {self.speed_factor}: a compact wave needs V² > 0"
+            )
 
     @classmethod
     def canonical(cls, cell: Cell, k: Any) -> Self:
@@ -93,7 +95,9 @@ class CompactWave(Value):
         return cls(cell=cell, k=k, G=I * (k - 1) * (k - 2) / 2, H=2 * I * (k - 1), I=I)
 
     def __repr__(self) -> str:
-        return f"{type(self).__name__}({self.cell!r}, k={self.k}, β={shorten(self.beta)})"
+        return (
+            f"{type(self).__name__}({self.cell!r}, k={self.k}, β={shorten(self.beta)})"
+        )
 
     def latex_rows(self) -> list[str]:
         return [
@@ -147,7 +151,11 @@ class CompactWave(Value):
             raises `lwa.InputError` for others.
         """
         # cos^{mq}(βξ) = 1/2, where the quantity scales as strain^q
-        return 2 * sp.acos(2 ** (-1 / (strain_power(quantity, self.k) * self.m))) / self.beta
+        return (
+            2
+            * sp.acos(2 ** (-1 / (strain_power(quantity, self.k) * self.m)))
+            / self.beta
+        )
 
     @cached_property
     def speed_factor(self) -> sp.Expr:

@@ -51,8 +51,14 @@ class NumericWave(Value):
     def __post_init__(self) -> None:
         one_of(self.missing, ("raise", "nan"), "missing")
         free = self._symbols
-        given = set(self.wave.coefficient_sum.free_symbols | self.wave.speed_factor.free_symbols)
-        if len(set(free)) != 3 or not all(x.is_Symbol for x in free) or not given <= set(free):
+        given = set(
+            self.wave.coefficient_sum.free_symbols | self.wave.speed_factor.free_symbols
+        )
+        if (
+            len(set(free)) != 3
+            or not all(x.is_Symbol for x in free)
+            or not given <= set(free)
+        ):
             raise InputError(
                 "functions of (k, ω) need a symbol k and a cell of two masses that are symbols, "
                 "m1 and m2, with equal contacts"
@@ -72,11 +78,15 @@ class NumericWave(Value):
 
         def by_masses(part: sp.Expr) -> sp.Expr:
             terms = sp.Poly(part, *masses).terms()
-            return sp.Add(*(sp.factor(c) * sp.prod(map(sp.Pow, masses, e)) for e, c in terms))
+            return sp.Add(
+                *(sp.factor(c) * sp.prod(map(sp.Pow, masses, e)) for e, c in terms)
+            )
 
         forms = [
             by_masses(top) / by_masses(bottom)
-            for top, bottom in map(sp.fraction, (self.wave.coefficient_sum, factor, excess))
+            for top, bottom in map(
+                sp.fraction, (self.wave.coefficient_sum, factor, excess)
+            )
         ]
         return sp.lambdify(self._symbols, forms, "numpy", cse=True)  # type: ignore[no-any-return]
 
@@ -102,25 +112,39 @@ class NumericWave(Value):
         k, _, factor, _ = self._wave(k, omega)
         return np.asarray(np.sqrt(factor) * _positive(B, "B") ** ((k - 1) / 2))
 
-    def log_amplitude(self, k: ArrayLike, omega: ArrayLike, V: ArrayLike = 1.0) -> Array:
+    def log_amplitude(
+        self, k: ArrayLike, omega: ArrayLike, V: ArrayLike = 1.0
+    ) -> Array:
         """Logarithm of the peak strain B of the wave of speed V, finite where B is out of range."""
         k, _, factor, excess = self._wave(k, omega)
         less_one = (k - 1) * excess  # V²/B^{k-1} - 1
-        near = np.abs(less_one) < 0.5  # log1p keeps the digits that V²/B^{k-1} loses at k → 1
-        log_factor = np.where(near, np.log1p(np.where(near, less_one, 0.0)), np.log(factor))
+        near = (
+            np.abs(less_one) < 0.5
+        )  # log1p keeps the digits that V²/B^{k-1} loses at k → 1
+        log_factor = np.where(
+            near, np.log1p(np.where(near, less_one, 0.0)), np.log(factor)
+        )
         return np.asarray((2 * np.log(_positive(V, "V")) - log_factor) / (k - 1))
 
-    def _wave(self, k: ArrayLike, omega: ArrayLike) -> tuple[Array, Array, Array, Array]:
+    def _wave(
+        self, k: ArrayLike, omega: ArrayLike
+    ) -> tuple[Array, Array, Array, Array]:
         """Return k, (G+H+I)/D², V²/B^{k-1} and (V²/B^{k-1} - 1)/(k - 1), broadcast.
 
         At points without a wave all are NaN, or `lwa.NoSolitaryWave` is raised (``missing``).
         """
         k, omega = np.broadcast_arrays(finite(k, "k"), _positive(omega, "ω = m2/m1"))
         if not np.all((omega >= 1 / LARGEST) & (omega <= LARGEST)):
-            raise InputError(f"ω = m2/m1 is not between {1 / LARGEST:g} and {LARGEST:g}")
+            raise InputError(
+                f"ω = m2/m1 is not between {1 / LARGEST:g} and {LARGEST:g}"
+            )
         with np.errstate(all="ignore"):  # outside the domain of waves
             coefficient_sum, factor, excess = self._compiled(k, 1.0, omega)
-            conditions = {"k > 1": k > 1, "G+H+I > 0": coefficient_sum > 0, "V² > 0": factor > 0}
+            conditions = {
+                "k > 1": k > 1,
+                "G+H+I > 0": coefficient_sum > 0,
+                "V² > 0": factor > 0,
+            }
             exists = np.logical_and.reduce(np.broadcast_arrays(*conditions.values()))
         if self.missing == "raise" and not np.all(exists):
             first = np.argmin(exists)

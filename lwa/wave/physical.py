@@ -60,7 +60,9 @@ class PhysicalWave(Value):
             self._bead_share  # noqa: B018 - a share that does not exist is refused here
 
     def latex_rows(self) -> list[str]:
-        return latex.rows({"F": self.contact_force, "B": self.strain, latex.SPEED: self.speed})
+        return latex.rows(
+            {"F": self.contact_force, "B": self.strain, latex.SPEED: self.speed}
+        )
 
     @property
     def _law(self) -> Power:
@@ -73,7 +75,9 @@ class PhysicalWave(Value):
         angle = (k - 1) / (4 * sp.sqrt(wave.coefficient_sum))  # βD/2
         exponent = 2 * k / (k - 1)
         # At ξ = 0 the mean of cos^e(βξ ± angle) has its maximum only where it is concave.
-        if angle.is_number and not (angle < sp.pi / 2 and exponent * sp.sin(angle) ** 2 < 1):
+        if angle.is_number and not (
+            angle < sp.pi / 2 and exponent * sp.sin(angle) ** 2 < 1
+        ):
             raise InputError(
                 f"k is {shorten(k)}: the two contacts of a bead peak one after the other, so that "
                 "its force has no single peak; give that of a contact"
@@ -109,7 +113,11 @@ class PhysicalWave(Value):
         # V² = f B^{k-1} times (τ/t)² = P k A_eff D^{k+1} / M, powers of each quantity collected.
         wave, k = self.wave, self.wave.k
         factor = wave.speed_factor * self.wave.cell.size * k / self.wave.cell.mass
-        unit = wave.D * power(factor, sp.S.Half) * power(self.wave.cell.stiffness(k), 1 / (2 * k))
+        unit = (
+            wave.D
+            * power(factor, sp.S.Half)
+            * power(self.wave.cell.stiffness(k), 1 / (2 * k))
+        )
         return unit * power(self.contact_force, (k - 1) / (2 * k))
 
     @cached_property
@@ -123,7 +131,9 @@ class PhysicalWave(Value):
         wave, m = self.wave, self.wave.m
         density = self.wave.cell.mass / (self.wave.cell.size * wave.D)
         # ∫ cos^m y dy over |y| < π/2 = √π Γ((m+1)/2) / Γ(m/2 + 1)
-        arch = sp.sqrt(sp.pi) * sp.gamma((m + 1) / 2) / (wave.beta * sp.gamma(m / 2 + 1))
+        arch = (
+            sp.sqrt(sp.pi) * sp.gamma((m + 1) / 2) / (wave.beta * sp.gamma(m / 2 + 1))
+        )
         return density * arch * self.bead_velocity
 
     def fwhm(self, quantity: str = "force", extent: str = "length") -> sp.Expr:
@@ -157,14 +167,20 @@ class PhysicalWave(Value):
         from lwa.base.arrays import finite
 
         wave, k, xi = self.wave, number(self.wave.k), finite(x, "x")
-        peaks = {"strain": self.strain, "force": self.contact_force, "velocity": self.bead_velocity}
+        peaks = {
+            "strain": self.strain,
+            "force": self.contact_force,
+            "velocity": self.bead_velocity,
+        }
         peak = number(peaks[known_quantity(quantity)])
         # The strain is B cos^m(βξ), m = 2/(k-1); the force scales as strain^k.
         beta, exponent = number(wave.beta), 2 * strain_power(quantity, k) / (k - 1)
 
         def arch(x: Array) -> Array:
             y = beta * x
-            return np.asarray(np.where(np.abs(y) < np.pi / 2, np.cos(y), 0.0) ** exponent)
+            return np.asarray(
+                np.where(np.abs(y) < np.pi / 2, np.cos(y), 0.0) ** exponent
+            )
 
         if one_of(of or self.of, BEARERS, "of") == "bead" and quantity != "velocity":
             half = number(wave.D) / 2
@@ -174,6 +190,10 @@ class PhysicalWave(Value):
     def at(self, **values: Any) -> PhysicalWave:
         """Substitute values for symbols of the wave and the force, as `lwa.TravelingWave.at`."""
         symbols = {s.name: s for s in self.force.free_symbols}
-        new = {symbols[n]: positive(value, n) for n, value in values.items() if n in symbols}
+        new = {
+            symbols[n]: positive(value, n)
+            for n, value in values.items()
+            if n in symbols
+        }
         rest = {name: value for name, value in values.items() if name not in symbols}
         return PhysicalWave(self.wave.at(**rest), self.force.xreplace(new), self.of)

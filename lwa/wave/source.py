@@ -99,7 +99,9 @@ LANGUAGES: Mapping[str, Language] = {
         "    const {} = {};",
         "    return {};",
         reserved=frozenset({"Math"}),
-        settings={"user_functions": {name: f"Math.{name}" for name in ("sinh", "asinh")}},
+        settings={
+            "user_functions": {name: f"Math.{name}" for name in ("sinh", "asinh")}
+        },
     ),
 }
 """Language by the name that `lwa.TravelingWave.code` takes."""
@@ -123,7 +125,9 @@ def module(functions: Sequence[Function], language: str, title: Sequence[str]) -
     arguments = (s for f in functions for s in f.arguments)
     local = (s for f in functions for s, _ in f.local)
     # The name of a symbol of the chain yields to those of ξ, B, V_s and F.
-    ordered = sorted(dict.fromkeys(arguments), key=lambda symbol: symbol not in _ARGUMENTS)
+    ordered = sorted(
+        dict.fromkeys(arguments), key=lambda symbol: symbol not in _ARGUMENTS
+    )
     for symbol in ordered + list(dict.fromkeys(local)):
         name = symbol.name
         if not name.isidentifier():
@@ -139,16 +143,23 @@ def module(functions: Sequence[Function], language: str, title: Sequence[str]) -
             for q in value.atoms(sp.Rational, sp.NumberSymbol)
             if q.is_NumberSymbol or max(abs(q.p), q.q) > _EXACT
         }
-        return str(printer.doprint(value.xreplace({**numbers, **names}))).replace("numpy.", "np.")
+        return str(printer.doprint(value.xreplace({**numbers, **names}))).replace(
+            "numpy.", "np."
+        )
 
-    lines = [f"{words.comment} {line}" for line in title] + ["", *words.head] * bool(words.head)
+    lines = [f"{words.comment} {line}" for line in title] + ["", *words.head] * bool(
+        words.head
+    )
     for f in functions:
         listed = ", ".join(words.argument.format(names[s]) for s in f.arguments)
         fields = {"name": f.name, "doc": f.doc, "arguments": listed}
         entry = (words.entry,) * bool(listed and words.entry)
         lines += [line.format(**fields) for line in (*words.opening, *entry)]
         lines += [words.statement.format(names[s], text(value)) for s, value in f.local]
-        lines += [words.result.format(text(f.value)), *(x.format() for x in words.closing)]
+        lines += [
+            words.result.format(text(f.value)),
+            *(x.format() for x in words.closing),
+        ]
     return "\n".join(lines)
 
 
@@ -176,7 +187,9 @@ class Functions(dict[str, Function]):
         ordered = (s for part in parts for s in sorted(part.free_symbols, key=str))
         self.symbols = tuple(dict.fromkeys(ordered))
 
-    def define(self, name: str, doc: str, value: sp.Basic, local: Local = ()) -> sp.Expr:
+    def define(
+        self, name: str, doc: str, value: sp.Basic, local: Local = ()
+    ) -> sp.Expr:
         """Add a function and return a call of it; ``local`` has variables that it may use."""
         used = value.free_symbols
         for symbol, part in reversed(local):
@@ -193,7 +206,9 @@ def wave_functions(wave: CompactWave) -> Functions:
     Arguments: ξ, B, V_s, F, the symbols of k, of the masses, of the stiffnesses and of the spacing.
     """
     k, cell, factor = wave.k, wave.cell, wave.speed_factor
-    functions = Functions(k, *cell.masses, *cell.stiffnesses, wave.D, wave.coefficient_sum)
+    functions = Functions(
+        k, *cell.masses, *cell.stiffnesses, wave.D, wave.coefficient_sum
+    )
     define = functions.define
     local = {k - 2: _SHIFT}  # value → variable
     S, excess, f = (
@@ -208,11 +223,17 @@ def wave_functions(wave: CompactWave) -> Functions:
         # arccos(2^-x) = arctan √(4^x - 1), in a form that keeps its digits as x → 0
         x = (k - 1) / (2 * strain_power(quantity, k))
         width = 2 * sp.atan(sp.sqrt(2 ** (x + 1) * sp.sinh(x * sp.log(2)))) / beta
-        define(f"fwhm_{quantity}", f"Full width at half maximum of the {quantity}", width)
+        define(
+            f"fwhm_{quantity}", f"Full width at half maximum of the {quantity}", width
+        )
     value = sp.sqrt(f) * _B ** ((k - 1) / 2)
-    speed = define("speed", "V_s = dx/dtau of the wave whose strain peaks at B", value, variables)
+    speed = define(
+        "speed", "V_s = dx/dtau of the wave whose strain peaks at B", value, variables
+    )
     # ln f = 2 arsinh((f-1)/(2√f)) keeps its digits as f → 1, that is as k → 1
-    value = _V ** (2 / (k - 1)) * sp.exp(-2 * sp.asinh(excess / (2 * sp.sqrt(f))) / (k - 1))
+    value = _V ** (2 / (k - 1)) * sp.exp(
+        -2 * sp.asinh(excess / (2 * sp.sqrt(f))) / (k - 1)
+    )
     define("amplitude", "B, the peak strain of the wave of speed V_s", value, variables)
     # cos(βξ) on the support and 0 outside of it is sin((h + |h|)/2), h = π/2 - |βξ|
     value = _B * sp.sin((_INSIDE + sp.Abs(_INSIDE)) / 2) ** (2 / (k - 1))
@@ -244,4 +265,6 @@ def _stable(ratio: sp.Expr, k: sp.Expr, local: dict[sp.Expr, sp.Symbol]) -> sp.E
         return sp.Add(*(sp.factor(c) * _SHIFT**n for (n,), c in terms))
 
     ratio = ratio.replace(lambda e: e.is_Pow and e.exp.has(k), root)
-    return ratio.replace(lambda e: e.is_Add and e.has(k) and not (e - k).is_number, about_two)
+    return ratio.replace(
+        lambda e: e.is_Add and e.has(k) and not (e - k).is_number, about_two
+    )

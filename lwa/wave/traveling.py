@@ -50,7 +50,9 @@ class TravelingWave(CompactWave):
         if load.is_zero:
             return PhysicalWave(self, F, of)
         if one_of(of, BEARERS, "of") != "contact":
-            raise InputError(f"of is {shorten(of)}: under a load it is the force of a contact")
+            raise InputError(
+                f"of is {shorten(of)}: under a load it is the force of a contact"
+            )
         return self._loaded(force=F, precompression=load)
 
     def on_background(self, p0: Any = "p0", rise: Any = None) -> LoadedWave:

@@ -50,14 +50,18 @@ def test_converted(benchmark, closure, order):
         assert len(coefficients) == order - 2
         return len(theory.closure.acceleration[-1])
 
-    benchmark.extra_info["terms"] = benchmark.pedantic(convert, setup=clear_cache, rounds=5)
+    benchmark.extra_info["terms"] = benchmark.pedantic(
+        convert, setup=clear_cache, rounds=5
+    )
 
 
 @pytest.mark.parametrize("order", [4, 6])
 @pytest.mark.parametrize("system", ["sympy", "symengine"])
 def test_peer(benchmark, system, order):
     module = pytest.importorskip(system)
-    derived = benchmark.pedantic(peers.derive, (module, order), setup=clear_cache, rounds=5)
+    derived = benchmark.pedantic(
+        peers.derive, (module, order), setup=clear_cache, rounds=5
+    )
     benchmark.extra_info["terms"] = _checked(derived, order)
 
 
@@ -68,7 +72,9 @@ def _checked(derived, order):
     assert len(closure.algebra.context.names()) == len(generators)
     for own, found in zip((closure.acceleration, closure.ansatz), derived, strict=True):
         for polynomial, expression in zip(own, found, strict=True):
-            expected = {tuple(map(int, e)): sp.Rational(str(c)) for e, c in polynomial.terms()}
+            expected = {
+                tuple(map(int, e)): sp.Rational(str(c)) for e, c in polynomial.terms()
+            }
             poly = sp.Poly(sp.sympify(expression), *generators)
             assert dict(poly.terms() if poly else ()) == expected
     return len(closure.acceleration[-1])

@@ -72,7 +72,10 @@ def test_cost(name):
     times = pulse.arrival + pulse.fwhm * np.linspace(-4, 3, 300)
     times = times[times <= scene.duration]
     exact = finest.signal(*sensor)(times)
-    methods = {f"CyRK {method}": (peer(scene, method, times), end) for method, end in PEERS.items()}
+    methods = {
+        f"CyRK {method}": (peer(scene, method, times), end)
+        for method, end in PEERS.items()
+    }
     for method in COMPILED:
         methods[method] = partial(simulate, scene, method=method), 1e-12
     print(f"\n{name}, CPU time (ms) for the force to {WANTED}")

@@ -39,12 +39,21 @@ def splitting(start, kicks, drifts, h, steps):
 def test_a_maxwellian_start(n, duration):
     start = np.random.default_rng(0).normal(size=n)
     scene = Scene(
-        masses=(1,) * n, stiffnesses=(1,) * (n - 1), k=1.5, velocities=start, duration=duration
+        masses=(1,) * n,
+        stiffnesses=(1,) * (n - 1),
+        k=1.5,
+        velocities=start,
+        duration=duration,
     )
     exact = simulate(scene, rtol=1e-11).displacements
     runs = {
         ("bare loop", steps): partial(
-            splitting, start, BLANES_MOAN.kicks, BLANES_MOAN.drifts, duration / steps, steps
+            splitting,
+            start,
+            BLANES_MOAN.kicks,
+            BLANES_MOAN.drifts,
+            duration / steps,
+            steps,
         )
         for steps in (20, 50, 100, 200, 400)
     }
@@ -56,5 +65,7 @@ def test_a_maxwellian_start(n, duration):
         found, seconds = timed(run)
         y = found if name == "bare loop" else found.displacements
         error = np.sqrt(np.mean((y - exact) ** 2))
-        print(f"{n} beads, {name} {setting:g}: error {error:.1e}, {1e3 * seconds:.1f} ms")
+        print(
+            f"{n} beads, {name} {setting:g}: error {error:.1e}, {1e3 * seconds:.1f} ms"
+        )
         assert error < 1e-2

@@ -52,7 +52,9 @@ def derive(cas: ModuleType, order: int) -> Derived:
     for n in range(1, order):
         y, v = known(X, Y, n), known(Z, V, n)
         both = Rational(2 ** (n + 1), factorial(n + 1))
-        shifted = [Rational((-2) ** j, factorial(j)) * dx(V, n - j, j) for j in range(1, n + 1)]
+        shifted = [
+            Rational((-2) ** j, factorial(j)) * dx(V, n - j, j) for j in range(1, n + 1)
+        ]
         # the right sides of both equations without b_{n+1}
         second = expand(v - y) + k * both * r[n]
         first = expand(-second - Add(*shifted))

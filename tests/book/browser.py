@@ -190,7 +190,9 @@ class _Handler(SimpleHTTPRequestHandler):
             frame = f'<iframe src="/{page}" width="{width}" height="900"></iframe>'
             self._send(f'<link rel="icon" href="data:,">{frame}')
         elif path.suffix == ".html" and path.is_file():
-            modes = "".join(f'localStorage.{n} = "{self.server.mode}";' for n in ("mode", "theme"))
+            modes = "".join(
+                f'localStorage.{n} = "{self.server.mode}";' for n in ("mode", "theme")
+            )
             head = f"<head><script>{EVENTS}{modes}</script>"
             text = path.read_text().replace("<head>", head, 1)
             self._send(text.replace("</body>", PROBE + "</body>"))
@@ -199,7 +201,9 @@ class _Handler(SimpleHTTPRequestHandler):
 
     def do_POST(self):
         report = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
-        self.server.visit.pages[urlsplit(self.headers["Referer"]).path.lstrip("/")] = report
+        self.server.visit.pages[urlsplit(self.headers["Referer"]).path.lstrip("/")] = (
+            report
+        )
         self._send(self.server.left.pop(0) if self.server.left else "")
         self.server.progress.set()
 
@@ -232,17 +236,25 @@ def visited(folder, pages, width, mode="light"):
         raise FileNotFoundError("chromium is not installed: apt-get install chromium")
     visit = Visit()
     first, *rest = ("/" + page for page in pages)
-    with tempfile.TemporaryDirectory() as home, _Server(folder, rest, visit, mode) as server:
+    with (
+        tempfile.TemporaryDirectory() as home,
+        _Server(folder, rest, visit, mode) as server,
+    ):
         threading.Thread(target=server.serve_forever, daemon=True).start()
         address = f"http://127.0.0.1:{server.server_address[1]}{FRAME}{width}{first}"
-        command, silent = [chromium, *FLAGS, f"--user-data-dir={home}", address], subprocess.DEVNULL
+        command, silent = (
+            [chromium, *FLAGS, f"--user-data-dir={home}", address],
+            subprocess.DEVNULL,
+        )
         browser = subprocess.Popen(command, stdout=silent, stderr=silent)
         try:
             while len(visit.pages) < len(pages):
                 server.progress.clear()
                 if not server.progress.wait(SECONDS_PER_PAGE):
                     todo = [page for page in pages if page not in visit.pages]
-                    raise TimeoutError(f"{todo[0]} did not report in {SECONDS_PER_PAGE} s")
+                    raise TimeoutError(
+                        f"{todo[0]} did not report in {SECONDS_PER_PAGE} s"
+                    )
         finally:
             browser.terminate()
             browser.wait(30)

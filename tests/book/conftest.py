@@ -12,4 +12,6 @@ def pytest_ignore_collect(collection_path, config):
     if collection_path != PAGES:
         return None
     given = (Path(config.invocation_params.dir, a.split("::")[0]) for a in config.args)
-    return None if any(path.resolve() in (PAGES, PAGES.parent) for path in given) else True
+    return (
+        None if any(path.resolve() in (PAGES, PAGES.parent) for path in given) else True
+    )

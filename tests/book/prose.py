@@ -7,7 +7,9 @@ from pathlib import Path
 
 BOOK = Path(__file__).parents[2] / "book"
 OPTIONS = r"(---\n.*?^---\n|(?::[^\n]*\n)*)"
-CELL = re.compile(rf"^```\{{code-cell\}} python\n{OPTIONS}(.*?)^```$", re.DOTALL | re.MULTILINE)
+CELL = re.compile(
+    rf"^```\{{code-cell\}} python\n{OPTIONS}(.*?)^```$", re.DOTALL | re.MULTILINE
+)
 NUMBER = r"(-?\d(?:[\d./]*\d)?)"
 
 

@@ -38,7 +38,10 @@ def test_errors_of_pulses_and_speeds_are_one_standard_deviation(page):
             for name in ("arrival", "peak", "fwhm"):
                 value = getattr(pulse, name) - (250e-6 if name == "arrival" else 0)
                 off.append((row[f"{name}_value"] - value) / row[f"{name}_error_value"])
-        speed, row = 20 * 19.05e-3 / (true[1].arrival - true[0].arrival), one["speeds"][0]
+        speed, row = (
+            20 * 19.05e-3 / (true[1].arrival - true[0].arrival),
+            one["speeds"][0],
+        )
         speeds.append((row["speed_value"] - speed) / row["speed_error_value"])
     assert binom.interval(0.95, len(off), 0.6827) == (26, 39)
     assert 26 <= np.count_nonzero(np.abs(off) < 1) <= 39
@@ -82,5 +85,7 @@ def test_the_series_of_the_open_questions():
 
 
 def test_the_decay_near_a_mass_ratio_of_0_57():
-    early, late = (struck_pulse(1.5, "0.57", *ends).decay for ends in ((40, 80), (80, 160)))
+    early, late = (
+        struck_pulse(1.5, "0.57", *ends).decay for ends in ((40, 80), (80, 160))
+    )
     assert 6 < early / late < 7

@@ -10,7 +10,9 @@ import pytest
 pytestmark = pytest.mark.optional("nbclient", "jupyter_book")
 
 FOLDER = Path(__file__).parents[2] / "book"
-CHAPTERS = [file.stem for file in FOLDER.glob("*.md") if "{code-cell}" in file.read_text()]
+CHAPTERS = [
+    file.stem for file in FOLDER.glob("*.md") if "{code-cell}" in file.read_text()
+]
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +50,9 @@ def test_a_notebook_runs_in_an_empty_folder(notebooks, book, tmp_path, page):
 
 
 def test_roles_are_rendered(notebooks):
-    book = notebooks.Book(FOLDER, {"wave": "Wave"}, {"eq-1": "1.2"}, {"fig-x": "3.1"}, {"a": "A"})
+    book = notebooks.Book(
+        FOLDER, {"wave": "Wave"}, {"eq-1": "1.2"}, {"fig-x": "3.1"}, {"a": "A"}
+    )
     text = '<span class="tag">known</span> {doc}`wave` {eq}`eq-1` {numref}`fig-x` {cite}`a`'
     assert notebooks.plain(text, book) == "*[known]* *Wave* (1.2) Fig. 3.1 [A]"
     assert notebooks.plain("$$\nx = 1\n$$ (eq-1)", book) == "$$\nx = 1 \\tag{1.2}\n$$"

@@ -36,8 +36,12 @@ def test_the_experiment_of_the_breather():
     (shaken,) = said("modes", "is shaken at # kHz")
     assert low < float(shaken) < edge
     pair = lwa.envelope(cell, law=HERTZ, precompression=20).numeric()
-    mean = float(pair.mean_strain[0] / pair.strains[0] * pair.static_compressions[0] / 4)
-    swing = (1 - math.sqrt(1 - 4 * mean)) / (2 * mean)  # contacts open at 1 = s - mean s²
+    mean = float(
+        pair.mean_strain[0] / pair.strains[0] * pair.static_compressions[0] / 4
+    )
+    swing = (1 - math.sqrt(1 - 4 * mean)) / (
+        2 * mean
+    )  # contacts open at 1 = s - mean s²
     assert told("modes", "the estimate is #", swing**2 * 3 / 128)
 
 
@@ -53,15 +57,24 @@ def test_errors_of_exact_waves():
     by_case = {case: [row for row in rows if row["case"] == case] for case in CASES}
     on = [row for row in by_case["neighbours"] if row["ratio_value"] is not None]
     (off,) = (row for row in by_case["neighbours"] if row["ratio_value"] is None)
-    squares = [[100 * row["square_error_value"] for row in some] for some in (on, [off])]
+    squares = [
+        [100 * row["square_error_value"] for row in some] for some in (on, [off])
+    ]
     limited("links", "is within # % up to $B = p_0$, and # % without load", *squares)
     widths = (100 * row["fwhm_error_value"] for row in (on[-1], off))
     assert told("links", "without load; the width is # % and # % off", *widths)
     for case, chains in CASES.items():
         for one, row in zip(chains(), by_case[case], strict=True):
-            wave = lwa.loaded_wave(one.lattice, force=one.force, precompression=one.load)
-            assert abs(math.sqrt(row["square_value"]) - float(wave.speed)) < wave.speed_error
-            assert abs(row["fwhm_value"] - row["fwhm_theory_value"]) < wave.fwhm_error(row["of"])
+            wave = lwa.loaded_wave(
+                one.lattice, force=one.force, precompression=one.load
+            )
+            assert (
+                abs(math.sqrt(row["square_value"]) - float(wave.speed))
+                < wave.speed_error
+            )
+            assert abs(row["fwhm_value"] - row["fwhm_theory_value"]) < wave.fwhm_error(
+                row["of"]
+            )
 
 
 @pytest.mark.slow
@@ -73,10 +86,14 @@ def test_errors_of_struck_lattices():
     assert report.ok
     rows = report.document()["rows"]
     flat = [r for r in rows if r["case"] == "packings" and r["strain_value"] < 1.1e-3]
-    across, along = ([r for r in flat if r["chain"] == name] for name in ("across", "along"))
+    across, along = (
+        [r for r in flat if r["chain"] == name] for name in ("across", "along")
+    )
     limited("links", "the speed is within # %. The width", *errors(flat, "speed"))
     words = "The width is # % off across the rows, as in a chain, and # %"
-    assert told("links", words, errors(across, "fwhm")[0][0], errors(along, "fwhm")[0][0])
+    assert told(
+        "links", words, errors(across, "fwhm")[0][0], errors(along, "fwhm")[0][0]
+    )
     mixed = [r for r in rows if r["chain"] == "δ^3/2, δ^1"]
     words = "within # % over almost four decades of the force, while the width is off by up to # %"
     limited("links", words, *errors(mixed, "speed", "fwhm"))
@@ -89,7 +106,9 @@ def test_errors_of_struck_lattices():
     (least,) = said("links", r"is at least $# \cdot 2\pi V_s$")
     assert all((r in known) == (r["tuning_value"] >= float(least)) for r in rung)
     tuned, *beside = sorted(
-        (abs(r["tuning_value"] - 1), r["ringing_value"]) for r in rung if r["chain"] == "m_r = 3/10"
+        (abs(r["tuning_value"] - 1), r["ringing_value"])
+        for r in rung
+        if r["chain"] == "m_r = 3/10"
     )
     assert min(ring for _, ring in beside[:2]) > 4 * tuned[1]
 
@@ -100,8 +119,12 @@ def test_errors_of_struck_lattices():
 def test_edges_of_a_shock():
     """The strongest shock with a trailing edge, and the peak of a shock without load."""
     (most,) = said("shocks", r"trailing edge up to $c_- = #\,c_+$")
-    found = lwa.shock(Cell([1], spacing=1), sp.Rational(most) ** 4, 1, law=HERTZ)  # c ∝ p^(1/4)
-    assert float(found.trailing_speed) == pytest.approx(1.5**0.5 * (2 - float(most)), rel=1e-12)
+    found = lwa.shock(
+        Cell([1], spacing=1), sp.Rational(most) ** 4, 1, law=HERTZ
+    )  # c ∝ p^(1/4)
+    assert float(found.trailing_speed) == pytest.approx(
+        1.5**0.5 * (2 - float(most)), rel=1e-12
+    )
     bare = lwa.shock(Cell([1], spacing=1), 1, 0, law=HERTZ)
     assert told("shocks", "for spheres #. There", bare.peak / bare.rise)
 
@@ -109,7 +132,11 @@ def test_edges_of_a_shock():
 @pytest.mark.slow
 def test_driven_chains():
     """The page's table, with the sentences about it; all findings hold."""
-    chains = {"jumps": (3,)}, {"k": "3/2", "jumps": (2, 8)}, {"k": "3/2", "jumps": (1,), "ahead": 0}
+    chains = (
+        {"jumps": (3,)},
+        {"k": "3/2", "jumps": (2, 8)},
+        {"k": "3/2", "jumps": (1,), "ahead": 0},
+    )
     reports = [shock(duration=300, **one) for one in chains]
     assert all(report.ok for report in reports)
     rows = [row for report in reports for row in report.document()["rows"]]
@@ -117,11 +144,21 @@ def test_driven_chains():
     toda, powers = rows[0], rows[1:]
 
     def errors(rows, theory):
-        return [[100 * row[f"{theory}_error_value"][n] for row in rows] for n in ("speed", "peak")]
+        return [
+            [100 * row[f"{theory}_error_value"][n] for row in rows]
+            for n in ("speed", "peak")
+        ]
 
-    limited("shocks", "right within # % in speed and # % in strain", *errors(powers, "doubling"))
+    limited(
+        "shocks",
+        "right within # % in speed and # % in strain",
+        *errors(powers, "doubling"),
+    )
     (agreement,) = said("shocks", "rule, edge and lattice agree to # %")
-    exact = *chain(*errors([toda], "doubling")), 100 * toda["dispersion_error_value"]["speed"]
+    exact = (
+        *chain(*errors([toda], "doubling")),
+        100 * toda["dispersion_error_value"]["speed"],
+    )
     assert max(map(abs, exact)) < float(agreement)
     own = [[*chain(*errors(some, "canonical"))] for some in (powers, [toda])]
     limited("shocks", "up to # % for powers and # % for Toda's contacts", *own)
@@ -161,7 +198,9 @@ def test_gap_of_the_papers_chain():
     (power,) = said("pressed", "scales as $F_0^{#}$")
     scaled = 0.1 ** float(Fraction(power))
     assert edges[0][:, 1] / edges[1][:, 1] == pytest.approx(scaled, rel=1e-12)
-    assert edges[0][1, 0] / edges[0][0, 1] == pytest.approx(math.sqrt(450 / 123), rel=1e-12)
+    assert edges[0][1, 0] / edges[0][0, 1] == pytest.approx(
+        math.sqrt(450 / 123), rel=1e-12
+    )
 
 
 @pytest.mark.slow
@@ -213,7 +252,9 @@ def test_unequal_masses():
         assert abs(found["theory_value"] / found["decay_value"] - 1) < 0.2
     local = disorder(spread=0.5, chains=20, sites=200).tables[0].records()[1:]
     ends = (row["decay_value"] for row in (local[0], local[-1]))
-    assert told("column", r"$\varsigma = 0.5$ the decay per site falls from # to #", *ends)
+    assert told(
+        "column", r"$\varsigma = 0.5$ the decay per site falls from # to #", *ends
+    )
 
 
 def test_speeds_of_the_papers_column():
@@ -230,7 +271,11 @@ def test_speeds_of_the_papers_column():
     ):
         speed = float(wave.at_force(float(force), of="bead").speed)
         slow = [
-            100 - 100 * speed * (column[b].arrival - column[a].arrival) / ((b - a) * 4.76e-3)
+            100
+            - 100
+            * speed
+            * (column[b].arrival - column[a].arrival)
+            / ((b - a) * 4.76e-3)
             for a, b in ((15, 33), (16, 34))
         ]
         assert told("column", words, *sorted(slow))
@@ -241,12 +286,16 @@ def test_speeds_of_the_papers_column():
 @pytest.mark.slow
 def test_the_papers_errors_of_the_width():
     wide = widths().document()
-    met = {(d["quantity"], d["unit"]): len(d["reproduced"]) for d in wide["definitions"]}
+    met = {
+        (d["quantity"], d["unit"]): len(d["reproduced"]) for d in wide["definitions"]
+    }
     assert len(met) == 10  # "of ten definitions"
     assert [name.split()[0] for (name, _), n in met.items() if n > 1] == ["PTFE"]
     lines = wide["lines_value"]["linear"]
     assert lines["m1 ≫ m2"] / lines["m1 = m2"] == pytest.approx(math.sqrt(2), rel=1e-9)
-    over, under = (float(x) / 100 for x in said("column", "With $+#$ % and $#$ % their ratio"))
+    over, under = (
+        float(x) / 100 for x in said("column", "With $+#$ % and $#$ % their ratio")
+    )
     (middle,) = said("column", "the middle one is about $#$ %")
     for end, error in (("m1 ≫ m2", over), ("m1 = m2", under)):
         implied = (1 + error) * lines["m2/m1 = 0.27"] / lines[end] - 1

@@ -10,7 +10,16 @@ import sympy as sp
 
 import lwa
 from book.studies.hard import three_beads
-from lwa import Cell, Dimer, Material, Sphere, canonical_wave, expand, homogenize, loaded_wave
+from lwa import (
+    Cell,
+    Dimer,
+    Material,
+    Sphere,
+    canonical_wave,
+    expand,
+    homogenize,
+    loaded_wave,
+)
 from lwa.law import NAMES, named
 from tests.book.prose import BOOK, bounds, limited, said, told
 from validation import Damping, MeasureError, exact_wave, measure, simulate
@@ -35,7 +44,9 @@ def error(omega, theory):
 def off_in_speed(omega, wave):
     """Error in percent of a theory's speed at the peak force of the lattice."""
     pulse = trust("3/2", omega).pulse
-    return 100 * (float(wave.at_force(1).speed) * pulse.force ** (1 / 6) / pulse.speed - 1)
+    return 100 * (
+        float(wave.at_force(1).speed) * pulse.force ** (1 / 6) / pulse.speed - 1
+    )
 
 
 def peaks(scene):
@@ -54,7 +65,9 @@ def test_a_ball_that_falls():
     ball = Sphere("29.0e-3", "9.525e-3", Material(E="193e9", nu="0.3"))
     strike = lwa.pulse_of_strike(Cell.of_spheres([ball]), ball.mass, drop="0.1")
     duration, speed = 1e6 * strike.fwhm("force", "time").value, strike.speed.value
-    words = "peaks at # kN and stays above half of that for # µs; the pulse runs at # m/s"
+    words = (
+        "peaks at # kN and stays above half of that for # µs; the pulse runs at # m/s"
+    )
     assert told("intro", words, strike.force.value / 1000, duration, speed)
     in_a_rod = math.sqrt(193e9 / (29e-3 / (4 / 3 * math.pi * 9.525e-3**3)))
     assert abs(in_a_rod / speed - 7) < 0.1  # "a seventh"
@@ -62,7 +75,9 @@ def test_a_ball_that_falls():
 
 def test_struck_beads():
     words = "left and peaks of # and #, contact 30 has a heavy bead on its left and a peak of #"
-    scene = struck((1, float(PAPER)), 80, contact_sensors=(15, 45, 30), duration=60, samples=2401)
+    scene = struck(
+        (1, float(PAPER)), 80, contact_sensors=(15, 45, 30), duration=60, samples=2401
+    )
     assert told("play", words, *simulate(scene).contact_force.max(axis=1))
     words = "$#$ for weak pulses, where $k = #$ prevails, to $#$ for strong ones with $k = #$"
     weak, slow, strong, fast = (sp.Rational(x) for x in said("play", words))
@@ -71,7 +86,9 @@ def test_struck_beads():
     for mass in (1.0, 1.304, 2.0):
         strike = lwa.pulse_of_strike(UNIFORM, sp.Rational(str(mass)), velocity=1)
         row = mass, *(1.0,) * 119
-        (peak,) = peaks(struck(row, 120, contact_sensors=(60,), duration=90.0, samples=4001))
+        (peak,) = peaks(
+            struck(row, 120, contact_sensors=(60,), duration=90.0, samples=4001)
+        )
         errors.append(100 * (float(strike.force.value) / peak - 1))
     limited("calculator", "the force is within # percent of the lattice", errors)
 
@@ -88,23 +105,38 @@ def errors_of_the_arch(k):
 def test_the_arch_of_equal_beads():
     arch, lattice = canonical_wave(UNIFORM, "3/2"), exact_wave([1], 1.5)
     widths = arch.fwhm("force"), lattice.fwhm("force")
-    assert told("equal", "the force is $#D$ by the arch and $#D$ on the lattice", *widths)
-    *errors, wider, shift, faster = (e for k in (1.02, 1.04, 1.5) for e in errors_of_the_arch(k))
+    assert told(
+        "equal", "the force is $#D$ by the arch and $#D$ on the lattice", *widths
+    )
+    *errors, wider, shift, faster = (
+        e for k in (1.02, 1.04, 1.5) for e in errors_of_the_arch(k)
+    )
     words = "shift and speed are $#$, $#$ and $#$ percent, at $k = 1.04$ they are $#$, $#$ and $#$"
-    assert told("equal", f"{words}, for spheres $#$, $#$ and $#$", *errors, wider, shift, faster)
+    assert told(
+        "equal", f"{words}, for spheres $#$, $#$ and $#$", *errors, wider, shift, faster
+    )
     assert told("equal", "The arch is # % too wide at half height", wider)
-    assert told("calculator", "wave is # % slower than the lattice's and # % wider", -faster, wider)
+    assert told(
+        "calculator",
+        "wave is # % slower than the lattice's and # % wider",
+        -faster,
+        wider,
+    )
     (edge,) = said("equal", "The width is one percent off at $k = #$")
     assert abs(errors_of_the_arch(float(edge))[0] - 1) < 0.01
     assert told("equal", "the arch covers $\\pi/\\beta \\approx #$ beads", arch.sites)
-    root, spacings = map(int, said("equal", "$\\beta = \\sqrt{#}/(#D)$: the arch covers"))
+    root, spacings = map(
+        int, said("equal", "$\\beta = \\sqrt{#}/(#D)$: the arch covers")
+    )
     assert arch.beta == sp.sqrt(root) / spacings
 
 
 def test_the_papers_pulse():
     assert told("paper", "figure the arch is # percent narrower", -error(PAPER, 0))
     wave = wave_of(Dimer(m1, m2))
-    assert told("paper", "\\ge \\sqrt #$ grow instead", sp.limit(D**2 / wave.I, m1, 0))  # κ²
+    assert told(
+        "paper", "\\ge \\sqrt #$ grow instead", sp.limit(D**2 / wave.I, m1, 0)
+    )  # κ²
     root, parts = map(int, said("closure", "the paper's closure gives $\\sqrt#/#$"))
     assert sp.limit(wave.beta.subs(m2, 1), m1, 0) == sp.sqrt(root) / (parts * D)
     words = "$k = #$ it ends at $\\omega = #$, where $V_s^2 = 0$, and for $k = #$ at $\\omega = #"
@@ -116,7 +148,9 @@ def test_the_papers_pulse():
 
 def test_the_number_of_a_cell():
     """Contacts of two stiffnesses; mass below a stretched place, less the place, has variance I."""
-    square, part, n, most = map(int, said("cells", "by $\\sqrt{#}/#$ for $n = #$, and by $#$ for"))
+    square, part, n, most = map(
+        int, said("cells", "by $\\sqrt{#}/#$ for $n = #$, and by $#$ for")
+    )
     stiffer = sp.Symbol("n", positive=True)
     I = canonical_wave(Cell([1, 1], stiffnesses=[1, stiffer], spacing=1), "3/2").I * 12
     assert sp.nsimplify(I.subs(stiffer, n)) == sp.Rational(square, part**2)
@@ -126,7 +160,8 @@ def test_the_number_of_a_cell():
         above = cell.size * np.cumsum(cell.fractions) - np.cumsum([0, *shares[:-1]])
         parts = list(zip(above, shares, strict=True))
         mean, square = (
-            sum(sp.integrate((a - x) ** n, (x, 0, c)) for a, c in parts) / cell.size for n in (1, 2)
+            sum(sp.integrate((a - x) ** n, (x, 0, c)) for a, c in parts) / cell.size
+            for n in (1, 2)
         )
         assert square - mean**2 == canonical_wave(cell, "3/2").I / cell.spacing**2
 
@@ -148,13 +183,18 @@ def test_decay_and_width_between_the_special_ratios():
 def test_the_special_ratios():
     """Turning points of the light bead under the pulse, and its oscillations about the middle."""
     xi, counts, special = np.linspace(-9, 9, 9001), [], resonances(1.5, 4)
-    assert told("exact", "at the special ratio $\\omega = #$ the pulse has", special[0].omega)
+    assert told(
+        "exact", "at the special ratio $\\omega = #$ the pulse has", special[0].omega
+    )
     for n, wave in enumerate(special):
         left, right = wave.strain(xi - 0.5), wave.strain(xi + 0.5, 1)
         off = (left - right) / 2
         turns = (np.diff(off)[1:] * np.diff(off)[:-1] < 0) & (np.abs(off[1:-1]) > 1e-4)
         assert turns.sum() == 4 + 2 * n
-        rate = np.sqrt(3 * np.sqrt(np.clip(left + right, 0, None) / 2) / wave.omega) / wave.c
+        rate = (
+            np.sqrt(3 * np.sqrt(np.clip(left + right, 0, None) / 2) / wave.omega)
+            / wave.c
+        )
         counts.append(np.trapezoid(rate, xi) / (2 * np.pi))
     assert told("exact", "under the pulse: #, #, # and # at the four ratios", *counts)
     third, last = (wave.omega for wave in special[2:])
@@ -166,7 +206,9 @@ def test_the_special_ratios():
 @pytest.mark.slow
 def test_the_special_ratios_of_other_exponents():
     xi, found = np.linspace(-9, 9, 9001), [resonances(k, 2) for k in (1.5, 2, 2.5, 3)]
-    for n, words in enumerate(("the largest ratio is #, #, #, #,", "the second is #, #, #, #:")):
+    for n, words in enumerate(
+        ("the largest ratio is #, #, #, #,", "the second is #, #, #, #:")
+    ):
         assert told("open", words, *(waves[n].omega for waves in found))
         for waves in found:
             off = waves[n].strain(xi - 0.5) - waves[n].strain(xi + 0.5, 1)
@@ -174,27 +216,50 @@ def test_the_special_ratios_of_other_exponents():
             assert np.count_nonzero(turns & (np.abs(off[1:-1]) > 2e-4)) == 4 + 2 * n
 
 
-STRIP = ["1/100", "1/30", "1/10", "1/5", "3/10", "2/5", "1/2", "7/10", "4/5", "9/10", "1"]
+STRIP = [
+    "1/100",
+    "1/30",
+    "1/10",
+    "1/5",
+    "3/10",
+    "2/5",
+    "1/2",
+    "7/10",
+    "4/5",
+    "9/10",
+    "1",
+]
 
 
 @pytest.mark.slow
 def test_the_map_of_widths():
     words = "For $\\omega \\le #$ and $\\omega \\ge #$ the width by the series is within # percent"
     low, high, off = said("expansion", words)
-    summed = [w for w in (*STRIP, "0.08", low, high, "0.88") if not math.isnan(error(w, 2))]
-    assert sorted({float(sp.Rational(w)) for w in summed})[2:4] == [float(low), float(high)]
+    summed = [
+        w for w in (*STRIP, "0.08", low, high, "0.88") if not math.isnan(error(w, 2))
+    ]
+    assert sorted({float(sp.Rational(w)) for w in summed})[2:4] == [
+        float(low),
+        float(high),
+    ]
     assert bounds((error(w, 2) for w in summed), off)
     (own,) = said("expansion", "estimate of its error is larger, up to # percent")
     assert bounds((100 * trust("3/2", w).estimate for w in summed), own)
-    first, last = said("expansion", "From $\\omega = #$ to $#$ the paper's closure is within")
+    first, last = said(
+        "expansion", "From $\\omega = #$ to $#$ the paper's closure is within"
+    )
     assert error(first, 0) * error(last, 0) < 0
-    assert all(abs(error(w, 0)) < 2 for w in (first, "0.12", "0.14", "0.16", "0.18", last))
+    assert all(
+        abs(error(w, 0)) < 2 for w in (first, "0.12", "0.14", "0.16", "0.18", last)
+    )
     words = "and is $#$ percent at $\\omega = 0.25$ and $#$ percent"
     assert told("expansion", words, error("0.25", 0), error(PAPER, 0))
     between = (*STRIP[3:8], "0.55", "0.57", "0.62", "0.65")
     most = max(abs(error(w, n)) for w in between for n in (0, 1))
     assert told("expansion", "the closed forms err by up to # percent, both", most)
-    assert all(error(w, 1) < error(w, 0) < 0 for w in ("0.15", "0.2", "0.27", "0.35", "0.5"))
+    assert all(
+        error(w, 1) < error(w, 0) < 0 for w in ("0.15", "0.2", "0.27", "0.35", "0.5")
+    )
 
 
 @pytest.mark.slow
@@ -202,14 +267,27 @@ def test_the_map_of_speeds():
     words = "within # percent of the lattice and the canonical wave within # percent"
     cells = {w: Dimer(1, w, spacing=1) for w in STRIP}
     papers = [off_in_speed(w, wave_of(cell)) for w, cell in cells.items()]
-    canonical = [off_in_speed(w, canonical_wave(cell, "3/2")) for w, cell in cells.items()]
+    canonical = [
+        off_in_speed(w, canonical_wave(cell, "3/2")) for w, cell in cells.items()
+    ]
     limited("expansion", words, papers, canonical)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("exponent", ["5/4", "3/2", "7/4", "2"])
 def test_the_series_knows_its_error(exponent):
-    for w in ("1/100", "1/20", "1/10", "1/5", "7/20", "1/2", "13/20", "4/5", "9/10", "1"):
+    for w in (
+        "1/100",
+        "1/20",
+        "1/10",
+        "1/5",
+        "7/20",
+        "1/2",
+        "13/20",
+        "4/5",
+        "9/10",
+        "1",
+    ):
         found = trust(exponent, w)
         assert not abs(found.errors[2]) > found.estimate + 1e-4
 
@@ -222,18 +300,31 @@ def test_the_series_by_hand():
         return (a[0] + (a[1] - a[0] * a[2] / a[1]) * e) / (1 - a[2] / a[1] * e)
 
     a, b, c, d = map(int, said("expansion", "c_{[1/1]} = \\frac{#k + #}{#k + #}"))
-    assert sp.cancel(pade(series.c.coefficients, K - 1) - (a * K + b) / (c * K + d)) == 0
+    assert (
+        sp.cancel(pade(series.c.coefficients, K - 1) - (a * K + b) / (c * K + d)) == 0
+    )
     f1, f2 = series.fwhm("force").coefficients[1:3]
     assert said("expansion", "f_1 = \\frac{# - \\ln 2}{#}, \\qquad") == ["6", "60"]
     words = "f_2 = -\\frac{#}{#} + \\frac{#\\ln 2}{#} + \\frac{#\\ln^2 2}{#}"
     a, b, c, d, e, f = map(int, said("expansion", words))
-    assert sp.expand(f2 + sp.Rational(a, b) - sp.Rational(c, d) * L - sp.Rational(e, f) * L**2) == 0
-    edges = said("expansion", "off at $k = #$ (force, too wide) and $#$ (strain, too narrow)")
-    for quantity, written, sign in zip(("force", "strain"), edges, (1, -1), strict=True):
+    assert (
+        sp.expand(
+            f2 + sp.Rational(a, b) - sp.Rational(c, d) * L - sp.Rational(e, f) * L**2
+        )
+        == 0
+    )
+    edges = said(
+        "expansion", "off at $k = #$ (force, too wide) and $#$ (strain, too narrow)"
+    )
+    for quantity, written, sign in zip(
+        ("force", "strain"), edges, (1, -1), strict=True
+    ):
         width, k = series.fwhm(quantity), sp.Rational(written)
         a, b = map(int, said("expansion", f"$(#-\\ln2)/#$ for the {quantity}"))
         assert sp.expand(width.coefficients[1] - (a - L) / b) == 0
-        summed = float(width.prefactor * pade(width.coefficients, k - 1) / sp.sqrt(k - 1))
+        summed = float(
+            width.prefactor * pade(width.coefficients, k - 1) / sp.sqrt(k - 1)
+        )
         off = summed / exact_wave([1], float(k)).fwhm(quantity) - 1
         assert abs(100 * sign * off - 1) < 0.01
     least, ratio = said("expansion", "and above # at $\\omega = #$")
@@ -248,24 +339,36 @@ def test_the_series_by_hand():
 def test_other_laws():
     theta = sp.Symbol("theta", positive=True)
     B = 2 * sp.log(sp.cosh(theta))
-    ours, todas = 2 * (sp.cosh(theta) ** 2 - 1 - B) / B**2, (sp.sinh(theta) / theta) ** 2
+    ours, todas = (
+        2 * (sp.cosh(theta) ** 2 - 1 - B) / B**2,
+        (sp.sinh(theta) / theta) ** 2,
+    )
     power, parts = map(int, said("laws", "and differ by $\\theta^#/#$"))
     assert sp.series(todas - ours, theta, 0, 6).removeO() == theta**power / parts
-    wave = loaded_wave(UNIFORM, rise=B.subs(theta, 1.0), background=0, law=named("exponential", 1))
-    exact = np.sinh(1), *(2 * np.arccosh(np.sqrt([1 + np.cosh(1), 2])))  # speed and both widths
+    wave = loaded_wave(
+        UNIFORM, rise=B.subs(theta, 1.0), background=0, law=named("exponential", 1)
+    )
+    exact = (
+        np.sinh(1),
+        *(2 * np.arccosh(np.sqrt([1 + np.cosh(1), 2]))),
+    )  # speed and both widths
     found = float(wave.speed), float(wave.fwhm("strain")), float(wave.fwhm("force"))
     words = "speed is # percent too small, its widths of the strain and of the force are # and #"
     assert told("laws", words, *(100 * np.abs(np.divide(found, exact) - 1)))
     text = (BOOK / "laws.md").read_text()
     assert all(f"| `{name}` |" in text for name in NAMES if name != "general")
-    speed = loaded_wave(UNIFORM, rise="65/99", background=0, law=named("polynomial", 1, -1)).speed
+    speed = loaded_wave(
+        UNIFORM, rise="65/99", background=0, law=named("polynomial", 1, -1)
+    ).speed
     (front,) = said("laws", "a front with $V_s^2 = Q(\\frac23) = #$")
     assert 0 < float(sp.Rational(front)) - float(speed**2) < 1e-3
 
 
 @pytest.mark.slow
 def test_the_lattice_carries_todas_soliton():
-    words = "over $#$ sites, and the force differs from {eq}`eq-toda` by less than $10^{#}$"
+    words = (
+        "over $#$ sites, and the force differs from {eq}`eq-toda` by less than $10^{#}$"
+    )
     sites, power = map(int, said("laws", words))
     place, c = np.arange(120.0) - 30, np.sinh(1)
     before, after = ((c / np.cosh(place[:-1] - shift)) ** 2 for shift in (0, sites))
@@ -307,7 +410,9 @@ def test_numbers_beside_the_calculator():
     assert told("calculator", "where $\\mathcal E_1 = #$ is the energy", energy)
     pair, swapped = (Cell(masses, spacing=1) for masses in ([1, PAPER], [PAPER, 1]))
     slower = -off_in_speed(PAPER, canonical_wave(pair, "3/2"))
-    assert told("calculator", "steel:PTFE # % slower and # % narrower", slower, -error(PAPER, 1))
+    assert told(
+        "calculator", "steel:PTFE # % slower and # % narrower", slower, -error(PAPER, 1)
+    )
     turned = wave_of(swapped).at_force(1).speed / wave_of(pair).at_force(1).speed
     assert abs(float(turned) - 0.5) < 0.02  # "half of that with steel first"
 
@@ -326,8 +431,12 @@ def test_decay_by_restitution():
 
 def test_what_integration_costs():
     width = float(canonical_wave(UNIFORM, "1.001").fwhm("force"))
-    assert told("reference", "the pulse is # sites wide, and $B \\propto V_s^{#}$", width, 2000)
-    limit = 2 * exact_wave([1], 1.5).c * 2 ** (-1.5 / 3)  # two contacts in series: A_eff = A 2^-k
+    assert told(
+        "reference", "the pulse is # sites wide, and $B \\propto V_s^{#}$", width, 2000
+    )
+    limit = (
+        2 * exact_wave([1], 1.5).c * 2 ** (-1.5 / 3)
+    )  # two contacts in series: A_eff = A 2^-k
     pulse = trust("3/2", "1/1000").pulse
     below = 100 * (1 - pulse.speed / pulse.force ** (1 / 6) / limit)
     assert told("reference", "it is # % below at $\\omega = 10^{#}$", below, -3)

@@ -35,7 +35,9 @@ FAULTS = (
 @cache
 def opened(width, mode):
     for page in PAGES:
-        assert (HTML / page).is_file(), f"the book is not built: {page} is missing in {HTML}"
+        assert (HTML / page).is_file(), (
+            f"the book is not built: {page} is missing in {HTML}"
+        )
     return visited(HTML, PAGES, width, mode)
 
 
@@ -49,14 +51,20 @@ def visit():
 def test_no_page_has_a_fault(width, mode):
     pages = opened(width, mode).pages
     assert set(pages) == set(PAGES)
-    assert not {(f, page): seen[f] for page, seen in pages.items() for f in FAULTS if seen[f]}
+    assert not {
+        (f, page): seen[f] for page, seen in pages.items() for f in FAULTS if seen[f]
+    }
 
 
 def test_mathematics_pictures_and_addresses(visit):
     for page, report in visit.pages.items():
         assert report["mathjax"] or not report["math"], page
-    assert all(visit.pages[f"{chapter}.html"]["rendered"] > 4 for chapter in CHAPTERS[1:9])
-    assert sum(report["images"] for report in visit.pages.values()) > 2 * len(PAGES)  # logos
+    assert all(
+        visit.pages[f"{chapter}.html"]["rendered"] > 4 for chapter in CHAPTERS[1:9]
+    )
+    assert sum(report["images"] for report in visit.pages.values()) > 2 * len(
+        PAGES
+    )  # logos
     assert not visit.missing
 
 
@@ -85,12 +93,17 @@ def test_a_page_is_small_and_has_a_notebook_of_its_cells(page):
         assert sum(cell.cell_type == "code" for cell in notebook.cells) >= cells
 
 
-SPHERES = [Sphere.solid("2.38e-3", Material.named(name)) for name in ("steel 316", "PTFE")]
+SPHERES = [
+    Sphere.solid("2.38e-3", Material.named(name)) for name in ("steel 316", "PTFE")
+]
 
 
 def numbers(text):
     """The numbers of a printed line, with a minus as the page writes it."""
-    return [float(x) for x in re.findall(r"-?\d[\d.]*(?:e[+-]?\d+)?", text.replace("−", "-"))]
+    return [
+        float(x)
+        for x in re.findall(r"-?\d[\d.]*(?:e[+-]?\d+)?", text.replace("−", "-"))
+    ]
 
 
 def lattice_of(blow, found):
@@ -105,8 +118,13 @@ def lattice_of(blow, found):
     run = simulate(scene)
     pulses = [measure(run.time, force - force[0]) for force in run.contact_force]
     times = sum(p.arrival for p in pulses[2:]) - sum(p.arrival for p in pulses[:2])
-    beads = [measure(run.time, force - force[0]).peak + force[0] for force in run.bead_force]
-    peak, width = (sum(p.peak for p in pulses[2:]) / 2, sum(p.fwhm for p in pulses[2:]) / 2)
+    beads = [
+        measure(run.time, force - force[0]).peak + force[0] for force in run.bead_force
+    ]
+    peak, width = (
+        sum(p.peak for p in pulses[2:]) / 2,
+        sum(p.fwhm for p in pulses[2:]) / 2,
+    )
     return peak, width, 80 * 4.76e-3 / times, beads
 
 
@@ -138,15 +156,26 @@ def test_the_calculator_with_and_without_load(visit, n):
     if not load:
         closed["paper's closure"] = homogenize(cell, k="3/2").pde.traveling_wave()
     for name, wave in closed.items():
-        pulse, ours = wave.at_force(sp.Float(found["F"], 17), **loads), found["theories"][name]
+        pulse, ours = (
+            wave.at_force(sp.Float(found["F"], 17), **loads),
+            found["theories"][name],
+        )
         assert abs(ours["speed"] / float(pulse.speed) - 1) < 1e-12
-        assert abs(ours["width"] / float(pulse.fwhm("force", "time")) - 1) < 1e-4  # midpoint rule
-    given = math.sqrt(2 * 9.81e-3 * blow["blow"]) if blow["kind"] == "drop" else blow["blow"]
+        assert (
+            abs(ours["width"] / float(pulse.fwhm("force", "time")) - 1) < 1e-4
+        )  # midpoint rule
+    given = (
+        math.sqrt(2 * 9.81e-3 * blow["blow"])
+        if blow["kind"] == "drop"
+        else blow["blow"]
+    )
     assert abs(found["F" if blow["kind"] == "force" else "v"] / given - 1) < 1e-12
     peak, width, speed, beads = lattice_of(blow, found)
     assert abs((found["F"] - load) / peak - 1) < 3e-3  # steps of the page's Verlet
     assert abs(found["lattice"]["width"] / width - 1) < 1e-2
-    assert abs(found["lattice"]["speed"] / speed - 1) < 1e-2  # at contact 80, not the mean
+    assert (
+        abs(found["lattice"]["speed"] / speed - 1) < 1e-2
+    )  # at contact 80, not the mean
     assert found["beads"] == pytest.approx(beads, rel=1e-2)
 
 
@@ -174,7 +203,12 @@ def test_the_calculator_refuses_by_name(visit):
     assert "mass ratio" in light["refused"]
     assert "positive" in negative["refused"]
     comma, point, mixed, word = report["typed"]
-    assert comma == point == report["own"][0] == dict(map(tuple, report["calculator"]))["force"]
+    assert (
+        comma
+        == point
+        == report["own"][0]
+        == dict(map(tuple, report["calculator"]))["force"]
+    )
     assert mixed == word
     assert "positive numbers" in word
     assert "density must be positive" in report["own"][1]

@@ -14,12 +14,19 @@ D = sp.Symbol("D", positive=True)
 
 
 def test_the_sources_are_listed():
-    listed = set(re.findall(r"^@\w+\{(\w+),", (BOOK / "references.bib").read_text(), re.MULTILINE))
+    listed = set(
+        re.findall(
+            r"^@\w+\{(\w+),", (BOOK / "references.bib").read_text(), re.MULTILINE
+        )
+    )
     assert set(re.findall(r"@(\w+)", TEXT.partition("# Summary")[2])) <= listed
 
 
 def test_the_widths():
-    widths, wave = re.findall(r"\$(1\.\d+)\\,D\$", TEXT), canonical_wave(Cell([1]), "3/2")
+    widths, wave = (
+        re.findall(r"\$(1\.\d+)\\,D\$", TEXT),
+        canonical_wave(Cell([1]), "3/2"),
+    )
     computed = exact_wave([1], 1.5).fwhm("force"), wave.fwhm("force").subs(D, 1)
     assert widths == [f"{float(width):.4f}" for width in computed]
     assert r"$\sqrt{10}/(5D)$" in TEXT
@@ -37,11 +44,18 @@ def test_the_form_of_the_journal():
     assert 750 <= len(TEXT.partition("# Summary")[2].split()) <= 1750
     assert tuple(re.findall("^# (.*)$", TEXT, re.MULTILINE)) == SECTIONS
     (open_,) = re.findall("<!--(.*?)-->", TEXT, re.DOTALL)
-    assert {"authors", "affiliations", "date", "history"} <= set(re.findall(r"\w+", open_))
+    assert {"authors", "affiliations", "date", "history"} <= set(
+        re.findall(r"\w+", open_)
+    )
 
 
 def test_every_program_of_the_readme_is_named():
-    readme = (BOOK.parent / "README.md").read_text().partition("## What else")[2].partition("##")[0]
+    readme = (
+        (BOOK.parent / "README.md")
+        .read_text()
+        .partition("## What else")[2]
+        .partition("##")[0]
+    )
     programs = re.findall(r"^\| \[(\S+)\]", readme, re.MULTILINE)
     assert len(programs) > 4
     assert not [name for name in programs if name not in TEXT]

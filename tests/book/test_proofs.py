@@ -16,7 +16,9 @@ c = sp.exp(a * u_x)
 
 def euler(density):
     """The Euler-Lagrange expression of a density in first and second derivatives of u."""
-    parts = ((-1) ** len(by) * density.diff(u.diff(*by)).diff(*by) for by in DERIVATIVES)
+    parts = (
+        (-1) ** len(by) * density.diff(u.diff(*by)).diff(*by) for by in DERIVATIVES
+    )
     return sp.expand(sum(parts))
 
 
@@ -28,7 +30,12 @@ def test_one_derivative_more_leaves_a_term_that_is_no_divergence():
 
 def test_the_slope_of_a_density_in_the_velocity_has_the_slope_of_its_equation():
     """EL(∂L/∂u_t) = ∂EL(L)/∂u_t for densities without u."""
-    for density in (c * u_t**3, c * u_t**2 * u_xx, u_x**2 * u_t**2 * u_tt, c * u_t * u_xt * u_xx):
+    for density in (
+        c * u_t**3,
+        c * u_t**2 * u_xx,
+        u_x**2 * u_t**2 * u_tt,
+        c * u_t * u_xt * u_xx,
+    ):
         assert sp.expand(euler(density.diff(u_t)) - euler(density).diff(u_t)) == 0
         assert euler(density) != 0
 

@@ -20,7 +20,9 @@ COLUMN = 85
 
 def every(pattern, texts=PROSE):
     """Matches of a pattern on all pages."""
-    return [x for text in texts.values() for x in re.findall(pattern, text, re.MULTILINE)]
+    return [
+        x for text in texts.values() for x in re.findall(pattern, text, re.MULTILINE)
+    ]
 
 
 def test_a_tag_begins_its_section():
@@ -28,8 +30,12 @@ def test_a_tag_begins_its_section():
     for page in PROSE.keys() - {"symbols"}:  # which explains the tags
         for section in re.split(r"^##+ .*\n", PROSE[page], flags=re.MULTILINE)[1:]:
             found = tag.findall(section)
-            assert not found or tag.match(section.lstrip()), f"{page}: no tag at the head: {found}"
-            assert found != ["known"] or "{cite}" in section, f"{page}: known, without a source"
+            assert not found or tag.match(section.lstrip()), (
+                f"{page}: no tag at the head: {found}"
+            )
+            assert found != ["known"] or "{cite}" in section, (
+                f"{page}: known, without a source"
+            )
             tags.update(found)
     assert set(tags) == {"the paper's", "known", "new here"}
     assert tags["new here"] <= NEW
@@ -41,8 +47,13 @@ def test_a_chapter_has_its_frame(page):
     opening = re.search(r"^# .*?(?=^## )", TEXTS[page], re.DOTALL | re.MULTILINE)[0]
     marks = (r"^\*Needs: .*\. About \d+ minutes\.\*$", r"^\w", r"^    name: fig-|^<div class",
              r"^\*[^*]+\?\*$", r"^\*\*The answer\.\*\* \w")  # fmt: skip
-    places = [m and m.start() for m in (re.search(mark, opening, re.MULTILINE) for mark in marks)]
-    assert None not in places, f"of needs, scene, picture, question and answer: {places}"
+    places = [
+        m and m.start()
+        for m in (re.search(mark, opening, re.MULTILINE) for mark in marks)
+    ]
+    assert None not in places, (
+        f"of needs, scene, picture, question and answer: {places}"
+    )
     assert places == sorted(places)
 
 
@@ -76,8 +87,12 @@ def test_names_on_the_pages():
 def test_paragraphs_and_the_book_are_short():
     """At most 110 words, formulas counted as one; tables and lists apart."""
     for text in PROSE.values():
-        text = re.sub(r"^```.*?^```$|\$\$.*?\$\$", "", text, flags=re.DOTALL | re.MULTILINE)
+        text = re.sub(
+            r"^```.*?^```$|\$\$.*?\$\$", "", text, flags=re.DOTALL | re.MULTILINE
+        )
         for part in re.split(r"\n\s*\n|\n(?=\d\. )", text):
             words = re.sub(r"\$[^$]*\$", "x", part).split()
-            assert len(words) <= 110 or part.startswith(("|", "- ", "---", ":::")), part[:80]
+            assert len(words) <= 110 or part.startswith(("|", "- ", "---", ":::")), (
+                part[:80]
+            )
     assert sum(len(text.splitlines()) for text in TEXTS.values()) <= LINES

@@ -41,9 +41,13 @@ def script():
 
 def in_node(program, **values):
     """What a program prints, run after the script and the values."""
-    constants = "".join(f"const {name} = {json.dumps(value)};" for name, value in values.items())
+    constants = "".join(
+        f"const {name} = {json.dumps(value)};" for name, value in values.items()
+    )
     source = script() + constants + program
-    run = subprocess.run(["node", "-"], input=source, capture_output=True, text=True, timeout=250)
+    run = subprocess.run(
+        ["node", "-"], input=source, capture_output=True, text=True, timeout=250
+    )
     assert not run.returncode, run.stderr
     return json.loads(run.stdout)
 
@@ -51,7 +55,9 @@ def in_node(program, **values):
 def by_lattice(duration, omega, k, p0):
     """Arrival, peak and width at the contacts, NaN where `lwa-validate` refuses the pulse."""
     pressed = dict(precompression=p0**k, wall=1.0) if p0 else {}
-    scene = struck((1.0, omega), 100, k, duration=duration, contact_sensors=CONTACTS, **pressed)
+    scene = struck(
+        (1.0, omega), 100, k, duration=duration, contact_sensors=CONTACTS, **pressed
+    )
     for track in tracks(simulate(scene, rtol=1e-9)):
         try:
             pulse = first_pulse(track.force)

@@ -12,7 +12,9 @@ def rational(value):
 def at_compression(law, value, delta):
     """The value of an expression in φ_2, φ_3, … at a compression."""
     known = {s.name: s for s in value.free_symbols if s.name.startswith("phi")}
-    return value.xreplace({s: law.phi(int(n[3:])).subs(law.delta, delta) for n, s in known.items()})
+    return value.xreplace(
+        {s: law.phi(int(n[3:])).subs(law.delta, delta) for n, s in known.items()}
+    )
 
 
 def of_fields(pde, terms, u, x, velocity=sp.S.Zero):
@@ -35,9 +37,13 @@ def of_fields(pde, terms, u, x, velocity=sp.S.Zero):
 def right_side(pde, u, x, velocity=sp.S.Zero):
     """The right-hand side of u_ττ."""
     D, law, base = pde.cell.spacing, pde.law, int(pde.acoustic)
-    leading = law.of_strain(u.diff(x), D, 1) * u.diff(x, 2) if base else -(u**law.exponent)
+    leading = (
+        law.of_strain(u.diff(x), D, 1) * u.diff(x, 2) if base else -(u**law.exponent)
+    )
     orders = pde.coefficients.items()
-    return leading + sum(D ** (n - base) * of_fields(pde, e, u, x, velocity) for n, e in orders)
+    return leading + sum(
+        D ** (n - base) * of_fields(pde, e, u, x, velocity) for n, e in orders
+    )
 
 
 def energy_density(pde, u, x, velocity=sp.S.Zero):

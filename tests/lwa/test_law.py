@@ -20,8 +20,12 @@ y = sp.Symbol("y", positive=True)
 
 def of_power(value):
     """An expression with the φ_2, φ_3, … of F = δ^k."""
-    orders = {s: int(s.name[3:]) for s in value.free_symbols if s.name.startswith("phi")}
-    return value.xreplace({s: sp.prod(k - j for j in range(1, n)) for s, n in orders.items()})
+    orders = {
+        s: int(s.name[3:]) for s in value.free_symbols if s.name.startswith("phi")
+    }
+    return value.xreplace(
+        {s: sp.prod(k - j for j in range(1, n)) for s, n in orders.items()}
+    )
 
 
 @pytest.mark.parametrize(
@@ -35,7 +39,10 @@ def of_power(value):
 def test_the_power_law_comes_back_at_every_order(cell, order, kind):
     power = homogenize(cell, order, **kind)
     found = homogenize(cell, order, law=general(), **kind)
-    pairs = [(power.pde.coefficients, found.pde.coefficients), (power.defect, found.defect)]
+    pairs = [
+        (power.pde.coefficients, found.pde.coefficients),
+        (power.defect, found.defect),
+    ]
     pairs += [(power.slaved[i], found.slaved[i]) for i in power.slaved]
     if not power.defect:
         pairs.append((dict(power.pde.energy), dict(found.pde.energy)))
@@ -46,14 +53,18 @@ def test_the_power_law_comes_back_at_every_order(cell, order, kind):
         assert old.keys() == new.keys()
         for n in old:
             for jet in {*old[n], *new[n]}:
-                assert same(old[n].get(jet, 0), of_power(sp.sympify(new[n].get(jet, 0))))
+                assert same(
+                    old[n].get(jet, 0), of_power(sp.sympify(new[n].get(jet, 0)))
+                )
                 compared += 1
     assert compared > 10
 
 
 def test_the_linear_law_is_k_1():
     """φ_n = 0: a polynomial of degree one, next to the power 1."""
-    one, three = (homogenize(Dimer(2, 1), 8, law=law).pde for law in (Power(1), Law(3 * y, y)))
+    one, three = (
+        homogenize(Dimer(2, 1), 8, law=law).pde for law in (Power(1), Law(3 * y, y))
+    )
     assert right_side(one, x**9, x) != 0
     assert sp.expand(right_side(three, x**9, x) - 3 * right_side(one, x**9, x)) == 0
 
@@ -66,7 +77,9 @@ def force(law, strain):
     return fmpq_poly(terms)(strain - strain[0])
 
 
-@pytest.mark.parametrize("law", [named("hertz2", 2, "1/3"), Law(y**3 / (1 + y), y)], ids=str)
+@pytest.mark.parametrize(
+    "law", [named("hertz2", 2, "1/3"), Law(y**3 / (1 + y), y)], ids=str
+)
 def test_the_equal_chain_is_the_difference_of_shifted_fields(law):
     """[F((u(x+D) - u)/D) - F((u - u(x-D))/D)]/D at x = 0, D only in the shifts, to D^4."""
     order = 6
@@ -86,10 +99,14 @@ def test_the_equal_chain_is_the_difference_of_shifted_fields(law):
 def test_a_law_is_a_value():
     law = named("exponential", "a")
     theory = homogenize(Dimer("m1", "m2"), law=law)
-    assert theory.at(a=2, m1=1, m2=3) == homogenize(Dimer(1, 3), law=named("exponential", 2))
+    assert theory.at(a=2, m1=1, m2=3) == homogenize(
+        Dimer(1, 3), law=named("exponential", 2)
+    )
     assert theory != homogenize(Dimer("m1", "m2"), law=general())
     assert theory.law.phi(3) == (law.symbols[0] * law.delta) ** 2
-    assert homogenize(Dimer("m1", "m2"), law=Power("k")) == homogenize(Dimer("m1", "m2"))
+    assert homogenize(Dimer("m1", "m2"), law=Power("k")) == homogenize(
+        Dimer("m1", "m2")
+    )
     assert homogenize(Cell([1]), law=Power("3/2")) == homogenize(Cell([1]), k="3/2")
     assert theory.pde.at(a=1).law == named("exponential", 1)
     kept = pickle.loads(pickle.dumps(theory.at(a="1/2").law))
@@ -106,7 +123,9 @@ def test_every_name_has_its_derivatives_and_energy(name):
     if name != "general":
         at = {symbol: sp.Rational(i, 5) + 2 for i, symbol in enumerate(law.symbols)}
         values = (law.energy.diff(law.delta), law.F)
-        one, two = (v.xreplace(at).subs(law.delta, sp.Rational(1, 3)).n(30) for v in values)
+        one, two = (
+            v.xreplace(at).subs(law.delta, sp.Rational(1, 3)).n(30) for v in values
+        )
         assert abs(one - two) < 1e-25
 
 

@@ -16,7 +16,9 @@ def test_all_names_exist_and_type_checkers_see_the_same(package):
     with pytest.raises(AttributeError, match="nothing"):
         package.nothing  # noqa: B018
     tree = ast.parse(Path(package.__file__).read_text())
-    imports = (node.names for node in ast.walk(tree) if isinstance(node, ast.ImportFrom))
+    imports = (
+        node.names for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)
+    )
     typed = {name.asname for names in imports for name in names}
     assert typed - {"D", "k", None} == set(package.__all__)
     assert Path(package.__file__).with_name("py.typed").exists()

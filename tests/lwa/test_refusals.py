@@ -7,7 +7,17 @@ import pytest
 import sympy as sp
 
 import lwa
-from lwa import Cell, Dimer, Lattice, Law, Link, Power, canonical_wave, expand, homogenize
+from lwa import (
+    Cell,
+    Dimer,
+    Lattice,
+    Law,
+    Link,
+    Power,
+    canonical_wave,
+    expand,
+    homogenize,
+)
 from lwa.law import DELTA, named
 from lwa.spheres.hertz import stiffness
 
@@ -44,7 +54,10 @@ CALLS = [
     (lambda: Dimer(1, 2, N=0), "N is 0"),
     (lambda: Dimer(1, 2, N=1.5), "N is 1.5"),
     (lambda: homogenize(DIMER, 10**5000), "order is .*: an integer from 1 on"),
-    (lambda: lwa.Dispersion(Cell([1, 1], [1, 2]), "1e-9"), "exponents from 1/100 to 1000"),
+    (
+        lambda: lwa.Dispersion(Cell([1, 1], [1, 2]), "1e-9"),
+        "exponents from 1/100 to 1000",
+    ),
     (lambda: Cell(["m1"]).at(omega=1), "a cell with two masses"),
     (lambda: DIMER.at(m1=1, m2=2, omega=2), "omega is m2/m1: one of the masses"),
     (lambda: DIMER.at(omega=-1), "omega is -1"),
@@ -52,34 +65,64 @@ CALLS = [
     (lambda: TWO_A.at(a=1), "'a' names two symbols"),
     *(
         (lambda call=call: call([1, 2]), r"cell is \[1, 2\]")
-        for call in (homogenize, canonical_wave, expand, lwa.loaded_wave, lwa.Dispersion)
+        for call in (
+            homogenize,
+            canonical_wave,
+            expand,
+            lwa.loaded_wave,
+            lwa.Dispersion,
+        )
     ),
     (lambda: homogenize(CHAIN, law="hertz2"), "law is 'hertz2'"),
     (lambda: canonical_wave(CHAIN, k="3/2", law=3), "one of them"),
-    (lambda: homogenize(Cell([1, 2], [1, 2]), law=lwa.general()), "shares of the strain"),
+    (
+        lambda: homogenize(Cell([1, 2], [1, 2]), law=lwa.general()),
+        "shares of the strain",
+    ),
     (lambda: homogenize(Dimer(3, 1)).pde.energy, 'closure="full"'),
     (lambda: homogenize(DIMER, branch="optical").pde.energy, "acoustic"),
     (lambda: homogenize(DIMER, branch="optical").pde.traveling_wave(), "acoustic"),
-    (lambda: homogenize(DIMER, law=lwa.general(), branch="optical"), "its contacts also pull"),
+    (
+        lambda: homogenize(DIMER, law=lwa.general(), branch="optical"),
+        "its contacts also pull",
+    ),
     (lambda: homogenize(CHAIN, law=lwa.general()).pde.traveling_wave(), "power law"),
     (lambda: named("hertz2").at([1.0]), "an array of forces needs numbers"),
     (lambda: Law("x**2", y), "a SymPy expression"),
     (lambda: Law(y, "y"), "the symbol of δ"),
     (lambda: named("general", 1), "none are wanted"),
-    (lambda: homogenize(CHAIN, law=Law(y * sp.Symbol("a"), y)).at(a="y"), "a .y.: the name means"),
+    (
+        lambda: homogenize(CHAIN, law=Law(y * sp.Symbol("a"), y)).at(a="y"),
+        "a .y.: the name means",
+    ),
     *(
         (lambda delta=delta: Power("3/2").at(delta), "delta is")
         for delta in (None, "1", float("nan"), 1j, sp.I, sp.oo, ["x"])
     ),
     (lambda: lwa.Dispersion(TWO).bands.branches(float("nan")), "wavenumber is nan"),
     (lambda: lwa.Dispersion(TWO).bands.branches([[1], [2, 3]]), "wavenumber is"),
-    (lambda: lwa.Dispersion(Cell(["a", "b"], ["d", "e"])).acoustic(10000), "is 10000: .* lower"),
-    (lambda: lwa.Dispersion(Cell([1, 2, 3])).optical(4), "needs a cell of 2 masses, not 3"),
+    (
+        lambda: lwa.Dispersion(Cell(["a", "b"], ["d", "e"])).acoustic(10000),
+        "is 10000: .* lower",
+    ),
+    (
+        lambda: lwa.Dispersion(Cell([1, 2, 3])).optical(4),
+        "needs a cell of 2 masses, not 3",
+    ),
     (lambda: lwa.Dispersion(Cell([1, "m2"])).bands.branches(1), "'m2' has no value"),
-    (lambda: lwa.Dispersion(Cell([1, 2], [1, 2]), "k").bands.edges(), "'k' has no value"),
-    (lambda: lwa.Dispersion(Cell(["1e200", "1e-200"])).bands.branches(1), "the range of a float"),
+    (
+        lambda: lwa.Dispersion(Cell([1, 2], [1, 2]), "k").bands.edges(),
+        "'k' has no value",
+    ),
+    (
+        lambda: lwa.Dispersion(Cell(["1e200", "1e-200"])).bands.branches(1),
+        "the range of a float",
+    ),
     (lambda: ONE.at_force(1, of="wall"), "of is 'wall': contact or bead"),
-    (lambda: ONE.at_force([1, 2]), r"force is \[1, 2\]: a number or a symbol is wanted"),
+    (
+        lambda: ONE.at_force([1, 2]),
+        r"force is \[1, 2\]: a number or a symbol is wanted",
+    ),
     (lambda: ONE.at_force(1).curve([0], "pressure"), "quantity is 'pressure'"),
     (lambda: ONE.at_force(1).curve("now"), "t is 'now': real numbers"),
     (lambda: ONE.at_force(1).curve([np.inf]), "t is inf: finite numbers"),
@@ -89,8 +132,14 @@ CALLS = [
     (lambda: WAVE.numeric().beta(np.nan, 1.0), "k is nan"),
     (lambda: WAVE.numeric().beta(1.5, 1e151), "ω = m2/m1 is not between"),
     (lambda: WAVE.numeric().beta(1.5, 1e-300), "ω = m2/m1 is not between"),
-    (lambda: WAVE.numeric().beta(1.5, -1.0), r"ω = m2/m1 is -1\.0: it must be positive"),
-    (lambda: WAVE.numeric().speed(1.5, 1.0, B=-1.0), r"B is -1\.0: it must be positive"),
+    (
+        lambda: WAVE.numeric().beta(1.5, -1.0),
+        r"ω = m2/m1 is -1\.0: it must be positive",
+    ),
+    (
+        lambda: WAVE.numeric().speed(1.5, 1.0, B=-1.0),
+        r"B is -1\.0: it must be positive",
+    ),
     (lambda: WAVE.numeric(missing="zero"), "missing is 'zero'"),
     (lambda: canonical_wave(Cell(["m1", "m2"], ["A1", "A2"])).numeric(), "two masses"),
     (lambda: WAVE.code("rust"), "language is 'rust': one of numpy"),
@@ -105,7 +154,10 @@ CALLS = [
     (lambda: expand(Cell(["a", "b"]), 100), "takes more than .* terms"),
     (lambda: expand(Cell([1], [Fraction(1, 10**400 + 1)]), 4), "digits"),
     (lambda: expand(Cell(["ε", 1]), 1), "ε is k - 1"),
-    (lambda: expand(CHAIN, 2, law=Law(sp.exp(DELTA) - 1, DELTA)), "only a power law has a k"),
+    (
+        lambda: expand(CHAIN, 2, law=Law(sp.exp(DELTA) - 1, DELTA)),
+        "only a power law has a k",
+    ),
     (lambda: lwa.ExpandedWave(expand(CHAIN, 10, k="3/2"), -1), "force is -1"),
     (lambda: lwa.ExpandedWave(expand(CHAIN, 10, k="3/2"), "F"), "force is "),
     (lambda: lwa.Material(0, 0), "E is 0"),
@@ -133,7 +185,10 @@ CALLS = [
     (lambda: lwa.loaded_wave(BEADS, force=-1), "positive"),
     (lambda: lwa.loaded_wave(EQUAL, force=2, precompression=1, law=SOFT), "reach"),
     (lambda: SOFT.compression(EQUAL, sp.Rational(1, 3)), "does not reach"),
-    (lambda: homogenize(Dimer(1, 2)).pde.traveling_wave().on_background(1), "canonical"),
+    (
+        lambda: homogenize(Dimer(1, 2)).pde.traveling_wave().on_background(1),
+        "canonical",
+    ),
     (lambda: Link(1, 1, HERTZ), "second particle"),
     (lambda: Link(0, 1, "3/2"), "no contact law"),
     (lambda: Link(0, 1, HERTZ, -1), "must be positive"),
@@ -167,10 +222,15 @@ CALLS = [
     (lambda: front("1/2", 0, law=BENT).leading_speed("dispersion"), "changes its sign"),
     (lambda: front(5, 1, law=WAVY), "changes its sign at the strain 3.1"),
     (lambda: front(1 + sp.Rational(1, 10**16), 1), "1e-15 of it at least"),
-    (lambda: lwa.piston(Cell(["m"]), 1, law=named("exponential", 1)), "numbers are wanted"),
+    (
+        lambda: lwa.piston(Cell(["m"]), 1, law=named("exponential", 1)),
+        "numbers are wanted",
+    ),
 ]
 
-SOFTENING = Lattice([1, 1], [Link(0, 1, named("polynomial", "-1/2", 0)), Link(1, 2, Power(1))])
+SOFTENING = Lattice(
+    [1, 1], [Link(0, 1, named("polynomial", "-1/2", 0)), Link(1, 2, Power(1))]
+)
 ATTRACTED = Lattice([1], [LINK, Link(0, 3, Law(-DELTA / 50))])
 NO_WAVES = [
     (lambda: loaded(HERTZ, 1, "-1/2"), "only B > 0"),
@@ -193,7 +253,10 @@ NO_WAVES = [
     (lambda: lwa.loaded_wave(BEADS, force=1, precompression=1), "no wave"),
     (lambda: lwa.loaded_wave(BEADS, force="1/2", precompression=1), "stiffen"),
     (lambda: lwa.loaded_wave(SOFTENING, force="2/5", precompression="1/5"), "stiffen"),
-    (lambda: lwa.loaded_wave(ATTRACTED, force=2, precompression=1), "I is not positive"),
+    (
+        lambda: lwa.loaded_wave(ATTRACTED, force=2, precompression=1),
+        "I is not positive",
+    ),
     *(
         (lambda at=at: homogenize(DIMER).pde.traveling_wave().at(**at), words)
         for at, words in (
@@ -208,7 +271,8 @@ NO_WAVES = [
 
 @pytest.mark.parametrize(
     ("error", "call", "words"),
-    [(lwa.InputError, *row) for row in CALLS] + [(lwa.NoSolitaryWave, *row) for row in NO_WAVES],
+    [(lwa.InputError, *row) for row in CALLS]
+    + [(lwa.NoSolitaryWave, *row) for row in NO_WAVES],
     ids=[words for _, words in CALLS + NO_WAVES],
 )
 def test_bad_arguments_are_refused_in_one_line(error, call, words):

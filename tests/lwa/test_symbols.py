@@ -2,7 +2,16 @@
 
 import sympy as sp
 
-from lwa import Cell, Dimer, Dispersion, canonical_wave, envelope, expand, homogenize, loaded_wave
+from lwa import (
+    Cell,
+    Dimer,
+    Dispersion,
+    canonical_wave,
+    envelope,
+    expand,
+    homogenize,
+    loaded_wave,
+)
 from lwa.law import DELTA, named
 from tests.lwa.fields import at_compression
 
@@ -20,7 +29,13 @@ def results(m1, m2, k, D, a, b):
     yield from (theory.ansatz[4], *theory.pde.coefficients[3].values())
     yield from theory.defect.get(3, {}).values()
     wave = theory.pde.traveling_wave()
-    yield from (wave.beta, wave.amplitude(), wave.speed(), wave.roots[1], wave.time_scale)
+    yield from (
+        wave.beta,
+        wave.amplitude(),
+        wave.speed(),
+        wave.roots[1],
+        wave.time_scale,
+    )
     yield from (getattr(wave.reduction(1), name) for name in ("mu", "sigma", "s"))
     yield wave.profile(sp.Rational(1, 5), 2)
     physical = wave.at_force()
@@ -55,7 +70,11 @@ def numbers(symbols):
 def test_results_do_not_depend_on_names():
     ours = numbers(sp.symbols("role0:6", positive=True))
     theirs = numbers(
-        (*sp.symbols("x I"), *sp.symbols("xi q", real=True), *sp.symbols("mu c1", positive=True))
+        (
+            *sp.symbols("x I"),
+            *sp.symbols("xi q", real=True),
+            *sp.symbols("mu c1", positive=True),
+        )
     )
     for i, (one, two) in enumerate(zip(ours, theirs, strict=True)):
         # 30 digits, less those that the alternating coefficients lose

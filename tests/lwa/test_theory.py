@@ -21,7 +21,9 @@ def test_shares_make_all_contact_forces_equal():
 def test_cells_of_two_masses():
     m1, m2, omega = sp.symbols("m1 m2 omega", positive=True)
     assert Dimer("a", "b", N=3) == Cell(["a", "a", "a", "b"])
-    assert Dimer(m1, m2, N=2).at(omega="w").masses[-1] == m1 * sp.Symbol("w", positive=True)
+    assert Dimer(m1, m2, N=2).at(omega="w").masses[-1] == m1 * sp.Symbol(
+        "w", positive=True
+    )
     assert Dimer(m1, m2).at(m2=6, omega=3).masses == (2, 6)
     assert Dimer(1, omega).at(omega=3).masses == (1, 3)  # a symbol of the caller's
 
@@ -50,7 +52,9 @@ def test_the_canonical_equation_is_the_same_from_every_particle(masses, n):
     """Particles named anew change the field that the wave equation is about, and no wave."""
     n %= len(masses)
     found, again = (
-        homogenize(Cell(cell), 7, k="3/2", closure="full", field="center").pde.coefficients
+        homogenize(
+            Cell(cell), 7, k="3/2", closure="full", field="center"
+        ).pde.coefficients
         for cell in (masses, masses[n:] + masses[:n])
     )
     assert found.keys() == again.keys()

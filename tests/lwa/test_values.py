@@ -7,7 +7,16 @@ import pytest
 import sympy as sp
 
 import lwa
-from lwa import Cell, Dimer, Dispersion, Power, canonical_wave, expand, homogenize, loaded_wave
+from lwa import (
+    Cell,
+    Dimer,
+    Dispersion,
+    Power,
+    canonical_wave,
+    expand,
+    homogenize,
+    loaded_wave,
+)
 from lwa.base.frozen import QUANTITIES
 from lwa.linear.dispersion import LoadedChain
 
@@ -37,7 +46,9 @@ MADE = {
     "of a law": lambda: theory(5, law=lwa.general(), closure="full"),
     "background": lambda: loaded_wave(Dimer(m1, m2), background="p0"),
     "kdv": lambda: loaded_wave(Dimer(m1, m2), background="p0").kdv,
-    "precompressed": lambda: canonical_wave(Dimer(m1, m2)).at_force("F", precompression="F0"),
+    "precompressed": lambda: canonical_wave(Dimer(m1, m2)).at_force(
+        "F", precompression="F0"
+    ),
     "envelope": lambda: lwa.envelope(Dimer(m1, m2), law=Power("k"), background="p0"),
     "breather": lambda: lwa.envelope(Dimer(2, 1), law=Power(2), background=1).breather(
         detuning="1/100"
@@ -60,7 +71,9 @@ def test_equal_derivations_are_equal_pickle_and_show_in_a_notebook(name):
     assert one == two
     assert len({one, two}) == 1
     for attribute in ("pde", "coefficients", "beta", "c2"):
-        getattr(one, attribute, None)  # values computed by now do not count, and stay behind
+        getattr(
+            one, attribute, None
+        )  # values computed by now do not count, and stay behind
     assert len(pickle.dumps(one)) < 1.2 * len(pickle.dumps(two)) + 100
     for other in (pickle.loads(pickle.dumps(one)), copy.copy(one), copy.deepcopy(one)):
         assert other == one
@@ -74,11 +87,24 @@ def test_equal_derivations_are_equal_pickle_and_show_in_a_notebook(name):
 
 def test_other_derivations_differ():
     kinds = {}, {"k": "3/2"}, {"closure": "full"}, {"branch": "optical"}
-    found = [theory(**kind) for kind in (*kinds, {"closure": "full", "field": "center"})]
-    found += [theory(5), homogenize(Dimer(m2, m1)), homogenize(Dimer(m1, m2, stiffnesses=(1, 2)))]
+    found = [
+        theory(**kind) for kind in (*kinds, {"closure": "full", "field": "center"})
+    ]
+    found += [
+        theory(5),
+        homogenize(Dimer(m2, m1)),
+        homogenize(Dimer(m1, m2, stiffnesses=(1, 2))),
+    ]
     assert len(set(found)) == len({t.pde for t in found}) == len(found)
-    waves = [expand(Cell([1, 2]), 1), expand(Cell([1, 2]), 2), expand(Cell([1, 2]), 1, k=2)]
-    assert len({*waves, waves[0].c2, waves[0].momentum, *map(waves[0].fwhm, QUANTITIES)}) == 8
+    waves = [
+        expand(Cell([1, 2]), 1),
+        expand(Cell([1, 2]), 2),
+        expand(Cell([1, 2]), 1, k=2),
+    ]
+    assert (
+        len({*waves, waves[0].c2, waves[0].momentum, *map(waves[0].fwhm, QUANTITIES)})
+        == 8
+    )
 
 
 @pytest.mark.parametrize("order", [4, 9])
@@ -110,7 +136,11 @@ def test_at_substitutes_everywhere():
     values, cell = {"k": "3/2", "m1": 2, "m2": 3}, Dimer(2, 3)
     for kind in ({}, {"closure": "full", "field": "center"}, {"branch": "optical"}):
         own = homogenize(cell, k="3/2", **kind)
-        assert theory(**kind).at(**values) == theory(**kind).at(k="3/2", m1=2, omega="3/2") == own
+        assert (
+            theory(**kind).at(**values)
+            == theory(**kind).at(k="3/2", m1=2, omega="3/2")
+            == own
+        )
         assert theory(**kind).pde.at(**values) == own.pde
     wave = theory().pde.traveling_wave()
     assert sp.cancel(wave.at(**values).G - homogenize(cell, k="3/2").pde.G) == 0

@@ -67,7 +67,9 @@ def test_a_long_chains_record_holds_enough_samples_for_its_pulses(capsys, folder
 
 
 def test_a_stored_run_holds_the_result_and_the_records(capsys, folder):
-    (folder / "scene.toml").write_text(SCENE.replace("12]", "12, 19]").replace("= 30", "= 20"))
+    (folder / "scene.toml").write_text(
+        SCENE.replace("12]", "12, 19]").replace("= 30", "= 20")
+    )
     status, text, _ = run(capsys, "run", "scene.toml", "--out", "o.json")
     assert status == 0
     found = json.loads((folder / "o.json").read_text())
@@ -83,7 +85,9 @@ def test_force_is_total_in_every_output(capsys, folder):
     """Pulses alone are measured on the dynamic force, and say so."""
     load = 0.25
     loaded = f'units = "SI"\nprecompression = {load}\n{SCENE}wall = {{stiffness = 1}}'
-    (folder / "scene.toml").write_text(loaded.replace("= 30", "= 12"))  # before the echo
+    (folder / "scene.toml").write_text(
+        loaded.replace("= 30", "= 12")
+    )  # before the echo
     _, text, _ = run(capsys, "run", "scene.toml", "--out", "o.csv")
     assert "peak dynamic force (N)" in text
     options = ("--out", "o.json", "--plot", "o.svg", "--format", "json")
@@ -118,12 +122,20 @@ def test_the_scenes_own_file_is_not_overwritten(capsys, folder):
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_every_example_runs_and_names_its_units(capsys, folder, name):
     status, text, err = run(capsys, "run", "--example", name)
-    assert (status, err, text.isascii()) == (0, "", True)  # whatever a shell writes it in
+    assert (status, err, text.isascii()) == (
+        0,
+        "",
+        True,
+    )  # whatever a shell writes it in
     assert max(map(len, text.splitlines())) < 80
     Path("scene.toml").write_text(text)
-    status, out, err = run(capsys, "run", "scene.toml", "--rtol", "1e-7", "--plot", "p.png")
+    status, out, err = run(
+        capsys, "run", "scene.toml", "--rtol", "1e-7", "--plot", "p.png"
+    )
     assert (status, err) == (0, "")
-    header = re.compile(r"sensor +arrival \(s\) +peak (dynamic )?force \(N\) +FWHM \(s\)")
+    header = re.compile(
+        r"sensor +arrival \(s\) +peak (dynamic )?force \(N\) +FWHM \(s\)"
+    )
     assert header.search(out)
     assert re.search(r"speed +sites/s +m/s", out)
     assert "in SI units" in out
@@ -146,17 +158,37 @@ _SPLIT = ("--method", "symplectic")
 _LONG = SCENE.replace("= 30", "= 60").replace("1.5", "300").replace("10,", "100,")
 # a bad option, a bad file, and runs that are refused for what they cost or give
 BAD_RUNS = [
-    (("--out", "result.txt"), SCENE, "out is result.txt: a file ending in .json, .csv is wanted"),
+    (
+        ("--out", "result.txt"),
+        SCENE,
+        "out is result.txt: a file ending in .json, .csv is wanted",
+    ),
     (("--plot", "picture.txt"), SCENE, "plot is picture.txt: a file ending in"),
-    (("--out", "o.csv"), SCENE.replace("sensors", "#"), "out is o.csv, but the scene names no s"),
+    (
+        ("--out", "o.csv"),
+        SCENE.replace("sensors", "#"),
+        "out is o.csv, but the scene names no s",
+    ),
     (("--rtol", "1"), SCENE, "rtol is 1: it lies between 1e-13 and 1e-05"),
-    ((), SCENE + "gravity = 1e10\nwall = {stiffness = 1}", "rtol is 1e-10: rounding of the static"),
-    ((*_SPLIT, "--rtol", "1e-5"), _LONG, "the motion overflows: .* a step of .* is too long"),
+    (
+        (),
+        SCENE + "gravity = 1e10\nwall = {stiffness = 1}",
+        "rtol is 1e-10: rounding of the static",
+    ),
+    (
+        (*_SPLIT, "--rtol", "1e-5"),
+        _LONG,
+        "the motion overflows: .* a step of .* is too long",
+    ),
 ]
 
 
-@pytest.mark.parametrize(("options", "content", "message"), BAD_RUNS, ids=[r[2] for r in BAD_RUNS])
-def test_refused_runs_print_one_line_and_leave_no_file(capsys, folder, options, content, message):
+@pytest.mark.parametrize(
+    ("options", "content", "message"), BAD_RUNS, ids=[r[2] for r in BAD_RUNS]
+)
+def test_refused_runs_print_one_line_and_leave_no_file(
+    capsys, folder, options, content, message
+):
     Path("scene.toml").write_text(content)
     out = () if "--out" in options or "--plot" in options else ("--out", "o.json")
     status, shown, err = run(capsys, "run", "scene.toml", *out, *options)
@@ -185,7 +217,9 @@ BAD = [
 
 
 @pytest.mark.parametrize(("line", "message"), BAD)
-def test_bad_input_prints_one_line_with_status_2_and_leaves_no_file(capsys, folder, line, message):
+def test_bad_input_prints_one_line_with_status_2_and_leaves_no_file(
+    capsys, folder, line, message
+):
     status, out, err = run(capsys, *line.split())
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert err.startswith(f"lwa-validate: {message}")
@@ -197,7 +231,9 @@ def test_help_and_no_arguments(capsys):
     status, out, err = run(capsys)
     assert (status, out, "Commands:" in err) == (2, "", True)
     for study, flag in (([], "-h"), (["paper"], "--help")):
-        shown = CliRunner().invoke(cli.validate, [*study, flag], prog_name="lwa-validate")
+        shown = CliRunner().invoke(
+            cli.validate, [*study, flag], prog_name="lwa-validate"
+        )
         assert shown.exit_code == 0
         assert shown.output.startswith(" ".join(["Usage: lwa-validate", *study]))
 

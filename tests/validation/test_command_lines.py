@@ -11,13 +11,57 @@ from validation import cli
 from validation.studies.run import example
 
 NUMBERS = (
-    *("0", "1", "-1", "3/2", "2", "5/4", "1/2", "0.3428458", "1e-3", "1e300", "1e-300", "1e400"),
-    *("nan", "inf", "x", "D", "1/0", "2.5", "10", "-0", "1,2", "1,0.5", "٣", "1e99999999", "3:1"),
+    *(
+        "0",
+        "1",
+        "-1",
+        "3/2",
+        "2",
+        "5/4",
+        "1/2",
+        "0.3428458",
+        "1e-3",
+        "1e300",
+        "1e-300",
+        "1e400",
+    ),
+    *(
+        "nan",
+        "inf",
+        "x",
+        "D",
+        "1/0",
+        "2.5",
+        "10",
+        "-0",
+        "1,2",
+        "1,0.5",
+        "٣",
+        "1e99999999",
+        "3:1",
+    ),
     *("0x10", "1_000", "[1]", "__import__('os')", "", "9" * 400),
 )
-FILES = ("pulses.csv", "flat.csv", "nan.csv", "wild.csv", "run.csv", "paper.toml", "none.csv", ".")
+FILES = (
+    "pulses.csv",
+    "flat.csv",
+    "nan.csv",
+    "wild.csv",
+    "run.csv",
+    "paper.toml",
+    "none.csv",
+    ".",
+)
 RENAMED = ("time=x", "time", "a=b=c", "=", "")
-UNITS = ("time=ms", "force=2 N/V", "speed=m/s", "1 force=1e999 N/V", "x=s", "time=1..e N/V", "=")
+UNITS = (
+    "time=ms",
+    "force=2 N/V",
+    "speed=m/s",
+    "1 force=1e999 N/V",
+    "x=s",
+    "time=1..e N/V",
+    "=",
+)
 OPTIONS = {
     "exact": {"--k": NUMBERS, "--masses": NUMBERS},
     "resonances": {"--k": NUMBERS, "--count": ("1", "0", "7", "x")},
@@ -65,7 +109,9 @@ def line(draw):
 def pulses(draw, size):
     """A file of pulses of any size, with or without a law."""
     force = [size * draw.uniform(0.5, 3) for _ in range(9)]
-    speed = [draw.uniform(1, 2) * (F / size) ** draw.choice((0, 1 / 6, 0.3)) for F in force]
+    speed = [
+        draw.uniform(1, 2) * (F / size) ** draw.choice((0, 1 / 6, 0.3)) for F in force
+    ]
     rows = (f"{F!r},{V!r}\n" for F, V in zip(force, speed, strict=True))
     return "force,speed\n" + "".join(rows)
 
@@ -79,7 +125,10 @@ def test_a_random_line_gives_numbers_or_one_line_of_refusal(capsys, folder, coun
     (folder / "run.csv").write_text("time (s),bead 15 (N)\n" + "1,2\n2,3\n3,1\n")
     (folder / "paper.toml").write_text(example("paper"))
     for _ in range(count):
-        for name, size in (("pulses", 1.0), ("wild", draw.choice((1e300, 1e-300, 5e-324, 1e-9)))):
+        for name, size in (
+            ("pulses", 1.0),
+            ("wild", draw.choice((1e300, 1e-300, 5e-324, 1e-9))),
+        ):
             (folder / f"{name}.csv").write_text(pulses(draw, size))
         arguments = line(draw)
         status, out, err = ended(capsys, cli.main, *arguments)

@@ -26,7 +26,10 @@ from validation.studies.law import Medium, fit_power
 from validation.waves.solver import exact_wave, measured, solve
 
 LARGEST = 30  # times that a ± may exceed the difference that it covers
-FINER = (1e-13, 1e-12)  # tolerances of the run that counts and of the run that gives its errors
+FINER = (
+    1e-13,
+    1e-12,
+)  # tolerances of the run that counts and of the run that gives its errors
 
 
 def held(numbers, finer):
@@ -52,7 +55,9 @@ def of_run(name, **options):
 
 
 def test_run():
-    largest = max(held(of_run(name), of_run(name, rtol=1e-13)) for name in runs.EXAMPLES[::2])
+    largest = max(
+        held(of_run(name), of_run(name, rtol=1e-13)) for name in runs.EXAMPLES[::2]
+    )
     assert largest >= 1 / LARGEST
 
 
@@ -67,8 +72,14 @@ def test_the_error_of_a_speed_is_that_of_both_arrivals():
 
 def test_the_error_of_an_exponent_is_the_worst_of_all_signs():
     """The slope of ln y against ln x, as each of four pairs errs up or down within its ±."""
-    x = [Measured(v, v * (1 + e)) for v, e in ((1, 2e-6), (2, 1e-6), (4, 3e-6), (9, 1e-6))]
-    y = [Measured(v, v * (1 + e)) for v, e in ((1, 1e-6), (1.4, 4e-6), (2.1, 1e-6), (3, 2e-6))]
+    x = [
+        Measured(v, v * (1 + e))
+        for v, e in ((1, 2e-6), (2, 1e-6), (4, 3e-6), (9, 1e-6))
+    ]
+    y = [
+        Measured(v, v * (1 + e))
+        for v, e in ((1, 1e-6), (1.4, 4e-6), (2.1, 1e-6), (3, 2e-6))
+    ]
     found = exponent(x, y)
     signs = np.array(list(product((-1, 1), repeat=8)))
     off = np.log1p(signs * [number.relative_error for number in (*x, *y)])
@@ -82,7 +93,9 @@ def test_the_error_of_an_exponent_is_the_worst_of_all_signs():
 def test_paper():
     """± is rtol at least, and the chain of 38 beads loses a hundredth of that."""
     results = paper.paper(), paper.paper(tolerances=FINER)
-    found, finer = ({row[0]: row[2] for row in result.tables[0].rows} for result in results)
+    found, finer = (
+        {row[0]: row[2] for row in result.tables[0].rows} for result in results
+    )
     assert held(found, finer) >= 1e-3
 
 
@@ -108,7 +121,9 @@ def test_exact():
     for masses, k in (([1], 1.5), ([1, 0.3428457811], 1.5), ([1], 5)):
         wave = exact_wave(masses, k)
         points = int(2.7 * len(wave.even))
-        finer = solve(wave.masses, k, wave.half_period, points, wave, free=len(masses) == 2)
+        finer = solve(
+            wave.masses, k, wave.half_period, points, wave, free=len(masses) == 2
+        )
         largest.append(held(measured(wave), measured(finer)))
     assert max(largest) >= 1 / LARGEST
 
@@ -122,7 +137,9 @@ def test_intervals_of_the_law_are_those_of_their_scatter():
     for _ in range(100):
         fit = fit_power(medium, force, true * (1 + 0.01 * rng.normal(size=12)))
         logs = math.log(fit.A.value), fit.A.relative_error
-        rows.append((fit.k.value, fit.k.error, *logs, fit.curvature.value, fit.curvature.error))
+        rows.append(
+            (fit.k.value, fit.k.error, *logs, fit.curvature.value, fit.curvature.error)
+        )
     values, errors = np.array(rows)[:, ::2], np.array(rows)[:, 1::2]
     assert np.all(np.mean(errors, axis=0) > 1.9 * np.std(values, axis=0))
     assert np.all(np.mean(errors, axis=0) < 3 * np.std(values, axis=0))

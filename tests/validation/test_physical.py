@@ -18,11 +18,17 @@ FROM, TO = 50, 60
 def chain():
     """The paper's steel beads, struck at 1 m/s, and their pulse at contact and bead `TO`."""
     watched = dict(contact_sensors=(FROM, TO), bead_sensors=(TO,), samples=6001)
-    scene = Scene.of_beads([STEEL_BEAD] * 80, velocities=(1.0,), duration=6.7e-4, **watched)
+    scene = Scene.of_beads(
+        [STEEL_BEAD] * 80, velocities=(1.0,), duration=6.7e-4, **watched
+    )
     run = simulate(scene, rtol=1e-11)
     rows = *run.contact_force, run.compression[1], *run.bead_velocity
     first, pulse, strain, moved = (measure(run.time, row) for row in rows)
-    found = {"force": pulse.peak, "compression": strain.peak, "bead_velocity": moved.peak}
+    found = {
+        "force": pulse.peak,
+        "compression": strain.peak,
+        "bead_velocity": moved.peak,
+    }
     passed = speed(first, pulse, math.fsum(scene.spacings[FROM:TO]))
     return scene, found | {"speed": passed, "fwhm": pulse.fwhm}
 
@@ -40,7 +46,9 @@ def test_the_lattice_is_the_exact_wave_in_si(chain):
         "fwhm": wave.fwhm("force") / wave.c * time,
     }
     for name, value in scaled.items():
-        assert found[name] == pytest.approx(value, rel=2e-8), name  # the integrator's error
+        assert found[name] == pytest.approx(value, rel=2e-8), (
+            name
+        )  # the integrator's error
 
 
 def test_the_theorys_error_is_the_same_in_si_and_without_units(chain):
@@ -54,8 +62,14 @@ def test_the_theorys_error_is_the_same_in_si_and_without_units(chain):
         slow = math.sqrt(0.8 / 0.8199588213)
         wide = float(sp.sqrt(10) * sp.acos(2 ** sp.Rational(5, 6) / 2)) / 1.411928
         assert float(answer.speed) / found["speed"] == pytest.approx(slow, rel=2e-8)
-        assert float(answer.compression) == pytest.approx(found["compression"], rel=2e-9)
+        assert float(answer.compression) == pytest.approx(
+            found["compression"], rel=2e-9
+        )
         time = float(answer.fwhm("force", "time")) / found["fwhm"]
-        assert time == pytest.approx(wide / slow, rel=5e-7)  # seven digits are given above
+        assert time == pytest.approx(
+            wide / slow, rel=5e-7
+        )  # seven digits are given above
         # u_x is its mean over a site, the compression, and what the site's ends add: 10 % here
-        assert float(answer.bead_velocity) == pytest.approx(found["bead_velocity"], rel=0.1)
+        assert float(answer.bead_velocity) == pytest.approx(
+            found["bead_velocity"], rel=0.1
+        )

@@ -19,7 +19,9 @@ X = np.array([1.0, 2.0, 3.0])
 
 @pytest.fixture
 def report():
-    return Report("one", panels=(Panel("x", "y", (Curve("c", X, X**2),), "xy", "squares"),))
+    return Report(
+        "one", panels=(Panel("x", "y", (Curve("c", X, X**2),), "xy", "squares"),)
+    )
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
@@ -32,7 +34,10 @@ def test_every_format(report, tmp_path, suffix):
 
 @pytest.mark.parametrize(
     ("most", "labels"),
-    [(8.0, {"1", "1.5", "2", "3", "4", "6", "8"}), (200.0, {"1", "2", "5", "10", "50", "200"})],
+    [
+        (8.0, {"1", "1.5", "2", "3", "4", "6", "8"}),
+        (200.0, {"1", "2", "5", "10", "50", "200"}),
+    ],
 )
 def test_a_logarithmic_axis_of_few_decades_has_plain_numbers(most, labels):
     x = np.geomspace(1, most, 5)
@@ -41,7 +46,9 @@ def test_a_logarithmic_axis_of_few_decades_has_plain_numbers(most, labels):
     (axes,) = picture.axes
     assert {tick.get_text() for tick in axes.get_xticklabels()} >= labels
     assert not any(tick.get_text() for tick in axes.get_xticklabels(minor=True))
-    assert any("10^" in tick.get_text() for tick in axes.get_yticklabels())  # too large for that
+    assert any(
+        "10^" in tick.get_text() for tick in axes.get_yticklabels()
+    )  # too large for that
 
 
 def test_a_map_has_a_colour_for_each_place():
@@ -52,7 +59,9 @@ def test_a_map_has_a_colour_for_each_place():
     assert mesh.get_array().shape == (2, 3)
     assert mesh.get_array().mask.sum() == 1
     assert bar.get_ylabel() == "c"
-    assert axes.patch.get_hatch()  # where nothing is: grey stands in the middle of some colours
+    assert (
+        axes.patch.get_hatch()
+    )  # where nothing is: grey stands in the middle of some colours
     low, high = axes.get_xlim()
     assert low < X[0] < X[-1] < high
 
@@ -79,7 +88,9 @@ def test_a_run_is_drawn_into_given_axes():
     assert [text.get_text() for text in ax.get_legend().get_texts()] == [
         "bead 1", "bead 3", "contact 2",
     ]  # fmt: skip
-    for line, force in zip(ax.lines, (*run.bead_force, *run.contact_force), strict=True):
+    for line, force in zip(
+        ax.lines, (*run.bead_force, *run.contact_force), strict=True
+    ):
         assert np.array_equal(line.get_xdata(), run.time)
         assert np.array_equal(line.get_ydata(), force)
     ax.figure.draw_without_rendering()

@@ -29,7 +29,12 @@ import sys
 import numpy as np
 
 from lwa.base.arrays import Array
-from validation.lattice.cost import IntegrationError, RunProgress, check_memory, step_limit
+from validation.lattice.cost import (
+    IntegrationError,
+    RunProgress,
+    check_memory,
+    step_limit,
+)
 from validation.lattice.equations import Motion
 from validation.lattice.kernel.advance import advance
 from validation.lattice.kernel.arrays import (
@@ -52,13 +57,21 @@ from validation.lattice.result import Run, finished
 from validation.lattice.schemes import SCHEMES, VERNER65
 from validation.lattice.signal import recorded, sampled
 
-_WEAK = 0.1  # least energy of the response in units of the energy that sets the tolerance
-_NOISE = sys.float_info.epsilon  # in units of the greatest value: a bead that moves less is still
-_BETWEEN_REPORTS = 5e7  # bead evaluations between two reports of progress: some tenths of a second
+_WEAK = (
+    0.1  # least energy of the response in units of the energy that sets the tolerance
+)
+_NOISE = (
+    sys.float_info.epsilon
+)  # in units of the greatest value: a bead that moves less is still
+_BETWEEN_REPORTS = (
+    5e7  # bead evaluations between two reports of progress: some tenths of a second
+)
 # The splitting's step per stage is (rtol/0.01)^0.4 in units of the scene's shortest time, measured
 # on a Hertz dimer of 560 beads; at 0.2 it is still stable.
 _KINKS, _COARSEST = 0.01, 0.2
-_FIRST = 4.0  # first step of a pair over rtol^(1/7), in units of the scene's shortest time
+_FIRST = (
+    4.0  # first step of a pair over rtol^(1/7), in units of the scene's shortest time
+)
 
 
 def integrate(
@@ -88,7 +101,9 @@ def _integrated(
     time, needed = sampled(motion)
     recorder = Recorder(motion, chain, needed, time)
     now = initial_progress(plan, _front(motion), motion.free_energy)
-    glance = 1 + int(_BETWEEN_REPORTS / (10 * max(n, SHORTEST)))  # a step has some ten stages
+    glance = 1 + int(
+        _BETWEEN_REPORTS / (10 * max(n, SHORTEST))
+    )  # a step has some ten stages
     go = advance if isinstance(plan.scheme, Pair) else advance_split
     t = 0.0
     with progress() as display:
@@ -156,7 +171,13 @@ def _chain(motion: Motion) -> Chain:
     """Build the kernel's chain, padded by beads of infinite mass; the first of them is the wall."""
     rows = _lines(5, motion.size + 2 * SHORTEST, 0)
     c, A = motion.damping, motion.stiffnesses
-    given = 1 / motion.masses, A, np.divide(c, A, 0 * c, where=c > 0), motion.rest, motion.load
+    given = (
+        1 / motion.masses,
+        A,
+        np.divide(c, A, 0 * c, where=c > 0),
+        motion.rest,
+        motion.load,
+    )
     for row, values in zip(rows, given, strict=True):
         row[: len(values)] = values
     drive, contact = motion.scene.drive, motion.contact
@@ -175,7 +196,9 @@ def _chain(motion: Motion) -> Chain:
         **contact.addresses,
     )
     inverse, A, r, rest, load = rows
-    return Chain(inverse, A, r, rest, load, motion.scene.damping is not None, law, driven)
+    return Chain(
+        inverse, A, r, rest, load, motion.scene.damping is not None, law, driven
+    )
 
 
 def _exponent(law: Contact) -> float:
@@ -184,14 +207,19 @@ def _exponent(law: Contact) -> float:
     F is a series in powers of δ^k, δ^p and δ. For q = 4 weak singularities may be left.
     """
     powers = law.k if law.law is None else 0.25, law.damping_power or 0.0
-    return next((q for q in (1.0, 2.0) if all((q * power).is_integer() for power in powers)), 4.0)
+    return next(
+        (q for q in (1.0, 2.0) if all((q * power).is_integer() for power in powers)),
+        4.0,
+    )
 
 
 def _front(motion: Motion) -> int:
     """Return the number of the first bead at rest, plus a margin."""
     y, v = np.abs(motion.start[: 2 * motion.size].reshape(2, motion.size))
     moving = np.flatnonzero((y > _NOISE * y.max()) | (v > _NOISE * v.max()))
-    first = max([-1, *moving[-1:]] if motion.scene.drive is None else [0, *moving[-1:]]) + 1
+    first = (
+        max([-1, *moving[-1:]] if motion.scene.drive is None else [0, *moving[-1:]]) + 1
+    )
     return min(motion.size, MARGIN + int(first))
 
 
@@ -205,7 +233,16 @@ def _start(motion: Motion, padded: int) -> Beads:
     if motion.scene.drive is not None:
         given[:] = motion.scene.drive.at(0.0)[2]
     return Beads(
-        y, v, next_y, next_v, rows[9:], rows[4:9], power, given, np.zeros(4), np.zeros((8, POINTS))
+        y,
+        v,
+        next_y,
+        next_v,
+        rows[9:],
+        rows[4:9],
+        power,
+        given,
+        np.zeros(4),
+        np.zeros((8, POINTS)),
     )
 
 

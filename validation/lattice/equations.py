@@ -58,21 +58,32 @@ class Motion:
         n, damping, self.response = scene.size, scene.damping, response
         wall = () if scene.wall is None else (scene.wall,)
         self.scene, self.size, self.k = scene, n, scene.k
-        rows = scene.masses, scene.stiffnesses + wall, scene.displacements, scene.velocities
+        rows = (
+            scene.masses,
+            scene.stiffnesses + wall,
+            scene.displacements,
+            scene.velocities,
+        )
         # np.array takes 1.7 times as long, which counts in chains of 200,000 beads.
-        self.masses, self.stiffnesses, y, v = (np.fromiter(row, float, len(row)) for row in rows)
+        self.masses, self.stiffnesses, y, v = (
+            np.fromiter(row, float, len(row)) for row in rows
+        )
         contacts = len(self.stiffnesses)
         damping_power = None if damping is None else damping.power(scene.k)
         self.contact = Contact(scene.k, scene.law, damping_power)
         self.damping = self.rest = self.load = np.zeros(contacts)
         if damping is not None:
-            ahead = np.append(self.masses[1:], math.inf)[:contacts]  # a wall has infinite mass
+            ahead = np.append(self.masses[1:], math.inf)[
+                :contacts
+            ]  # a wall has infinite mass
             reduced = 1 / (1 / self.masses[:contacts] + 1 / ahead)
             self.damping = damping.coefficients(self.k, self.stiffnesses, reduced)
         self.loaded = bool(scene.gravity or scene.precompression)
         if self.loaded:
             with np.errstate(over="ignore", invalid="ignore"):
-                self.rest = self.contact.compressed_by(np.array(scene.load) / self.stiffnesses)
+                self.rest = self.contact.compressed_by(
+                    np.array(scene.load) / self.stiffnesses
+                )
                 # The load from the rest compressions, so that equilibrium is an exact zero.
                 self.load = self.force(self.rest)
             for name, values in (("compression", self.rest), ("force", self.load)):
@@ -113,11 +124,16 @@ class Motion:
         if drive is not None:
             acceleration[0] = given
             work = v[0] * (self.masses[0] * given - push[0])
-        return np.concatenate((v, acceleration, (((force - elastic) * rate).sum(), work)))
+        return np.concatenate(
+            (v, acceleration, (((force - elastic) * rate).sum(), work))
+        )
 
     def energy(self, state: Array) -> float:
         """Return kinetic and elastic energy less the static forces' work; 0 in equilibrium."""
-        compression, v = self.compression(state[: self.size]), state[self.size : 2 * self.size]
+        compression, v = (
+            self.compression(state[: self.size]),
+            state[self.size : 2 * self.size],
+        )
         stored = self.stiffnesses * self.contact.energy(compression)
         if self.loaded:
             stored -= self.stiffnesses * self.contact.energy(self.rest)
@@ -142,7 +158,9 @@ class Motion:
             return None
         moving = slice(self.size, 2 * self.size)
         before, after = self.start[moving], end[moving]
-        total = np.sum(self.masses * np.abs(after))  # no BLAS: its threads cost more than they gain
+        total = np.sum(
+            self.masses * np.abs(after)
+        )  # no BLAS: its threads cost more than they gain
         return float(np.sum(self.masses * (after - before)) / total) if total else 0.0
 
     @cached_property
@@ -156,13 +174,17 @@ class Motion:
         deepest = at_rest = self.rest.max(initial=0.0) if self.loaded else 0.0
         stiffest = A.max(initial=0.0)
         pressed = self.compression(self.start[:n]).max(initial=0.0) > deepest
-        if not math.isfinite(energy) or (energy == 0 and (pressed or self.start[n : 2 * n].any())):
+        if not math.isfinite(energy) or (
+            energy == 0 and (pressed or self.start[n : 2 * n].any())
+        ):
             _check_range("energy", energy)
         if energy > 0 and len(A):
             deepest = max(deepest, self.contact.reached_by(energy / stiffest, deepest))
         if not deepest:
             return Scales(energy, 0.0, 1.0, 1.0, math.inf)
-        stiffening = deepest ** (self.k - 1)  # F′ = k A δ^{k-1}; the factor k follows in ``time``
+        stiffening = deepest ** (
+            self.k - 1
+        )  # F′ = k A δ^{k-1}; the factor k follows in ``time``
         if self.contact.law is not None:  # k is 1
             stiffening = self.contact.stiffness(np.array([at_rest, deepest])).max()
         springs = np.zeros(n)  # of the two contacts of each bead
@@ -179,11 +201,15 @@ class Motion:
             _check_range("displacement", y)
             _check_range("velocity", v)
             rounding = np.finfo(float).eps * at_rest / y
-        return Scales(energy, float(deepest), float(y), float(v), float(time), float(rounding))
+        return Scales(
+            energy, float(deepest), float(y), float(v), float(time), float(rounding)
+        )
 
 
 def _check_range(name: str, *values: float) -> None:
     """Raise `SceneError` for values that overflow or are too small for a float's full accuracy."""
     for value in values:
         if not LEAST <= value < math.inf:
-            raise SceneError(f"the scene's {name} comes out as {value:g}: choose other units")
+            raise SceneError(
+                f"the scene's {name} comes out as {value:g}: choose other units"
+            )

@@ -73,10 +73,14 @@ class Recorder:
     that the engine fills. y, v : (B, S), samples of displacements and velocities.
     """
 
-    def __init__(self, motion: Motion, chain: Chain, needed: NDArray[np.int_], time: Array) -> None:
+    def __init__(
+        self, motion: Motion, chain: Chain, needed: NDArray[np.int_], time: Array
+    ) -> None:
         self.motion, self.chain, self.needed, self.time = motion, chain, needed, time
         watched = _with_neighbours(needed)
-        most = 2 + BUFFER // (4 * len(watched) + 1)  # a knot: four numbers a bead, and its time
+        most = 2 + BUFFER // (
+            4 * len(watched) + 1
+        )  # a knot: four numbers a bead, and its time
         self.knots = Knots(np.empty(most), np.empty((most, len(watched), 4)), watched)
         self.y, self.v = np.empty((2, len(needed), len(time)))
         self.parts: list[tuple[Array, Array]] = []
@@ -107,6 +111,12 @@ class Recorder:
         """Return the motion of the whole run; None if it takes more than `_MOST_BYTES` bytes."""
         if not self.parts:
             return None
-        times = np.concatenate([self.parts[0][0], *(time[1:] for time, _ in self.parts[1:])])
-        states = np.concatenate([self.parts[0][1], *(state[1:] for _, state in self.parts[1:])])
-        return KnotPath(self.motion, self.chain, Knots(times, states, self.knots.watched))
+        times = np.concatenate(
+            [self.parts[0][0], *(time[1:] for time, _ in self.parts[1:])]
+        )
+        states = np.concatenate(
+            [self.parts[0][1], *(state[1:] for _, state in self.parts[1:])]
+        )
+        return KnotPath(
+            self.motion, self.chain, Knots(times, states, self.knots.watched)
+        )

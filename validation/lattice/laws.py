@@ -44,7 +44,9 @@ class Contact:
         if self.law is not None:
             return self._evaluated(0, compression)
         pressed = np.maximum(compression, 0.0)
-        return np.asarray(pressed * np.sqrt(pressed) if self.k == 1.5 else pressed**self.k)
+        return np.asarray(
+            pressed * np.sqrt(pressed) if self.k == 1.5 else pressed**self.k
+        )
 
     def stiffness(self, compression: Array) -> Array:
         """Return the stiffness F′ = dF/dδ at a compression δ, of any shape."""
@@ -58,20 +60,30 @@ class Contact:
             return self._evaluated(2, compression)
         return np.asarray(self.force(compression) * compression / (self.k + 1))
 
-    def damped(self, elastic: Array, damping: Array, compression: Array, rate: Array) -> Array:
+    def damped(
+        self, elastic: Array, damping: Array, compression: Array, rate: Array
+    ) -> Array:
         """Return the total forces (contacts, …); damping : coefficients, rate : dδ/dt."""
         if self.damping_power is None:
             return elastic
         closed = compression if self.pulls else np.maximum(compression, 0.0)
-        force = np.asarray(elastic + (damping * (closed**self.damping_power * rate).T).T)
-        return force if self.pulls else np.where(compression > 0.0, np.maximum(force, 0.0), 0.0)
+        force = np.asarray(
+            elastic + (damping * (closed**self.damping_power * rate).T).T
+        )
+        return (
+            force
+            if self.pulls
+            else np.where(compression > 0.0, np.maximum(force, 0.0), 0.0)
+        )
 
     def _evaluated(self, order: int, compression: Array) -> Array:
         function = _functions(self.law)[order]
         closed = compression if self.pulls else np.maximum(compression, 0.0)
         with np.errstate(all="ignore"):  # beyond a singular law's reach: inf or NaN
             values = np.broadcast_to(function(closed), compression.shape)
-        return np.asarray(values if self.pulls else np.where(compression > 0, values, 0.0))
+        return np.asarray(
+            values if self.pulls else np.where(compression > 0, values, 0.0)
+        )
 
     def compressed_by(self, forces: Array) -> Array:
         """Return static compressions at given forces; `lwa.InputError` for unattainable forces."""
@@ -79,24 +91,34 @@ class Contact:
             return np.asarray(forces ** (1 / self.k))
         different, place = np.unique(forces, return_inverse=True)
         law, cell = self.law, Cell((1,))
-        return np.array([float(law.compression(cell, sp.Float(F, 40))) for F in different])[place]
+        return np.array(
+            [float(law.compression(cell, sp.Float(F, 40))) for F in different]
+        )[place]
 
     def reached_by(self, energy: float, start: float) -> float:
         """Return a scale of the compression that an energy reaches from ``start``."""
         if self.law is None:
-            return float(np.float64(energy) ** (1 / (self.k + 1)))  # of δ^{k+1}/(k+1) = energy
+            return float(
+                np.float64(energy) ** (1 / (self.k + 1))
+            )  # of δ^{k+1}/(k+1) = energy
 
         # The first of many places at which the energy is reached, or a pole; else a barrier.
         d = start + np.geomspace(1e-15, 1e15, 7000)
         at_start = np.array(start)
-        work = self.energy(d) - self.energy(at_start) - self.force(at_start) * (d - start)
+        work = (
+            self.energy(d) - self.energy(at_start) - self.force(at_start) * (d - start)
+        )
         reached = np.flatnonzero(~(work < energy))
         return float(d[reached[0] if len(reached) else np.argmax(work)])
 
     @property
     def addresses(self) -> dict[str, int]:
         """Addresses of the machine code of F, F′ and the energy by name; 0 for a power."""
-        code = [0, 0, 0] if self.law is None else [f.address for f in _machine_code(self.law)]
+        code = (
+            [0, 0, 0]
+            if self.law is None
+            else [f.address for f in _machine_code(self.law)]
+        )
         return dict(zip(("force", "slope", "energy"), code, strict=True))
 
 
@@ -113,7 +135,9 @@ def _functions(law: ContactLaw | None) -> tuple[Callable[[Array], Any], ...]:
     """Return F, F′ and the energy of a law as functions of arrays."""
     assert law is not None
     with _evaluated(law):
-        functions = tuple(sp.lambdify(law.delta, row, "numpy") for row in _expressions(law))
+        functions = tuple(
+            sp.lambdify(law.delta, row, "numpy") for row in _expressions(law)
+        )
         for function in functions:
             function(np.ones(2))
         return functions

@@ -74,7 +74,11 @@ class Run(Pictured):
 
     def label(self, quantity: str) -> str:
         """Return the name of a quantity, such as "bead 1 velocity", with its unit in a SI scene."""
-        return f"{quantity} ({_SI[quantity.split()[-1]]})" if self.scene.units else quantity
+        return (
+            f"{quantity} ({_SI[quantity.split()[-1]]})"
+            if self.scene.units
+            else quantity
+        )
 
     @cached_property
     def _motion(self) -> Motion:
@@ -87,7 +91,9 @@ class Run(Pictured):
         values = {"time": self.time}
         for row, i in enumerate(scene.bead_sensors):
             for quantity in ("force", "displacement", "velocity"):
-                values[f"bead {i + 1} {quantity}"] = getattr(self, f"bead_{quantity}")[row]
+                values[f"bead {i + 1} {quantity}"] = getattr(self, f"bead_{quantity}")[
+                    row
+                ]
         for row, i in enumerate(scene.contact_sensors):
             values[f"contact {i + 1} force"] = self.contact_force[row]
             values[f"contact {i + 1} compression"] = self.compression[row]
@@ -98,7 +104,10 @@ class Run(Pictured):
         time, force = self.label("time"), self.label("force")
         curves, maps = [], []
         for kind in ("bead", "contact"):
-            sensors, forces = getattr(self.scene, f"{kind}_sensors"), getattr(self, f"{kind}_force")
+            sensors, forces = (
+                getattr(self.scene, f"{kind}_sensors"),
+                getattr(self, f"{kind}_force"),
+            )
             if len(sensors) <= _MOST:
                 rows = zip(sensors, forces, strict=True)
                 curves += [Curve(f"{kind} {i + 1}", self.time, row) for i, row in rows]
@@ -108,7 +117,11 @@ class Run(Pictured):
                 places = np.array(sensors, float)[x] + 1
                 forces_map = Map(force, places, self.time[t], forces[x, t].T)
                 maps.append(Panel(kind, time, map=forces_map))
-        return [Panel(time, force, tuple(curves), legend_above=True), *maps] if curves else maps
+        return (
+            [Panel(time, force, tuple(curves), legend_above=True), *maps]
+            if curves
+            else maps
+        )
 
     def signal(self, kind: str, number: int, quantity: str = "force") -> SensorSignal:
         """Return a quantity at a sensor as a function of time; the records are its samples.
@@ -122,7 +135,9 @@ class Run(Pictured):
         Raises `SceneError` without such a sensor, and if the motion takes too much memory to store.
         """
         if self.path is None:
-            raise SceneError("the run has too many steps to keep the motion: read its samples")
+            raise SceneError(
+                "the run has too many steps to keep the motion: read its samples"
+            )
         return signal(self._motion, self.path, kind, number, quantity)
 
 
@@ -139,7 +154,9 @@ def finished(
     dissipated, work = map(float, end[2 * n :])
     drift = motion.energy(end) - motion.initial_energy + dissipated - work
     step = motion.scene.duration / steps
-    if not math.isfinite(drift + sum(float(row.sum()) for row in arrays.values() if row.size)):
+    if not math.isfinite(
+        drift + sum(float(row.sum()) for row in arrays.values() if row.size)
+    ):
         raise IntegrationError(
             f"the motion overflows: choose other units, or a step of {step:g} is too long"
         )

@@ -40,7 +40,9 @@ def _nystrom(table: str) -> Pair:
     impulses[-1] = speeds
     errors = np.array((a[-1] - low, speeds - low_speeds))
     nodes = np.sqrt(2 * a.sum(axis=1).astype(float))
-    a, impulses, errors, thirds = (x.astype(float) for x in (a, impulses, errors, speeds @ a))
+    a, impulses, errors, thirds = (
+        x.astype(float) for x in (a, impulses, errors, speeds @ a)
+    )
     return Pair(nodes, a, impulses, errors, thirds, 6)
 
 
@@ -86,7 +88,8 @@ _KICKS = 0.0829844064174052, 0.396309801498368, -0.0390563049223486
 _DRIFTS = 0.245298957184271, 0.604872665711080
 _HALF = [*_DRIFTS, 0.5 - sum(_DRIFTS)]
 BLANES_MOAN = Splitting(
-    np.array([*_KICKS, 1 - 2 * sum(_KICKS), *_KICKS[::-1]]), np.array([*_HALF, *_HALF[::-1]])
+    np.array([*_KICKS, 1 - 2 * sum(_KICKS), *_KICKS[::-1]]),
+    np.array([*_HALF, *_HALF[::-1]]),
 )
 
 SCHEMES: dict[str, Pair | Splitting] = {"RKN86": RKN86, "symplectic": BLANES_MOAN}

@@ -21,7 +21,10 @@ from validation.scenes.checks import SceneError, one_of
 
 _REGULA_FALSI = 9  # iterations, which leave less than 1e-12 of a step of the integrator
 
-_QUANTITIES = {"contact": ("force", "compression"), "bead": ("force", "displacement", "velocity")}
+_QUANTITIES = {
+    "contact": ("force", "compression"),
+    "bead": ("force", "displacement", "velocity"),
+}
 
 Beads = Sequence[int] | NDArray[np.int_]
 """Numbers of beads."""
@@ -42,7 +45,9 @@ class Path(Protocol):
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]: ...
 
 
-def beads_at(motion: Motion, contacts: Sequence[int], beads: Sequence[int]) -> NDArray[np.int_]:
+def beads_at(
+    motion: Motion, contacts: Sequence[int], beads: Sequence[int]
+) -> NDArray[np.int_]:
     """Return increasing numbers of the beads on which sensors depend; bead n is the wall."""
     around = {*contacts, *beads, *(j - 1 for j in beads)}
     between = {i for i in around if 0 <= i < len(motion.rest)}
@@ -76,7 +81,9 @@ def _forces(
     return forces, means
 
 
-def recorded(motion: Motion, beads: NDArray[np.int_], y: Array, v: Array) -> dict[str, Array]:
+def recorded(
+    motion: Motion, beads: NDArray[np.int_], y: Array, v: Array
+) -> dict[str, Array]:
     """Return the records of all sensors by name, from the motion y, v, (B, S), of `beads_at`.
 
     The forces of all contacts are computed at once: of 76 sensors, one after the other, they took
@@ -146,7 +153,9 @@ class SensorSignal:
         return values
 
 
-def signal(motion: Motion, path: Path, kind: str, number: int, quantity: str) -> SensorSignal:
+def signal(
+    motion: Motion, path: Path, kind: str, number: int, quantity: str
+) -> SensorSignal:
     """Return the signal of a quantity at a sensor of a run.
 
     Raises `SceneError` where the scene has no such sensor, or the sensor no such quantity.
@@ -154,8 +163,12 @@ def signal(motion: Motion, path: Path, kind: str, number: int, quantity: str) ->
     scene = motion.scene
     one_of(kind, tuple(_QUANTITIES), "kind")
     one_of(quantity, _QUANTITIES[kind], "quantity")
-    if number not in (scene.contact_sensors if kind == "contact" else scene.bead_sensors):
-        raise SceneError(f"number is {number!r}: the scene has no sensor at this {kind}")
+    if number not in (
+        scene.contact_sensors if kind == "contact" else scene.bead_sensors
+    ):
+        raise SceneError(
+            f"number is {number!r}: the scene has no sensor at this {kind}"
+        )
     contacts = [number] if kind == "contact" else [number - 1, number]
     kinks = [_kinks(motion, path, i) for i in contacts if 0 <= i < scene.contact_count]
     times = np.unique(np.concatenate((path.time, *kinks)))
@@ -170,7 +183,9 @@ def _kinks(motion: Motion, path: Path, contact: int) -> Array:
         return np.asarray(_compressions(motion, beads, path(beads, t)[0])[0])
 
     d = compression(time)
-    step = np.flatnonzero(np.sign(d[1:]) * np.sign(d[:-1]) < 0)  # d itself over- or underflows
+    step = np.flatnonzero(
+        np.sign(d[1:]) * np.sign(d[:-1]) < 0
+    )  # d itself over- or underflows
     a, b, f, g = time[step], time[step + 1], d[step], d[step + 1]
     for _ in range(_REGULA_FALSI if len(step) else 0):  # the Illinois variant
         c = b - g * (b - a) / np.where(g == f, 1.0, g - f)

@@ -55,11 +55,15 @@ def cluster(address: str, patience: float = 5.0) -> Iterator[Executor]:
             stack.callback(log.setLevel, log.level)
             log.setLevel(logging.CRITICAL)
         try:
-            with ThreadPoolExecutor(1) as thread:  # a notebook's thread runs a loop already
+            with ThreadPoolExecutor(
+                1
+            ) as thread:  # a notebook's thread runs a loop already
                 thread.submit(asyncio.run, call()).result()
             client = distributed.Client(address, timeout=patience, set_as_default=False)
             stack.enter_context(client).wait_for_workers(1, timeout=patience)
         except Exception:
             wanted = "no Dask scheduler with workers answers; one such as tcp://127.0.0.1:8786"
-            raise InputError(f"cluster is {shorten(address)}: {wanted} is wanted") from None
+            raise InputError(
+                f"cluster is {shorten(address)}: {wanted} is wanted"
+            ) from None
         yield client.get_executor()

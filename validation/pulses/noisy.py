@@ -39,17 +39,26 @@ _CALM = 16  # fewest samples of the base, over a width at least
 _FEWEST = 16  # samples above half the peak; with 12 the errors no longer cover
 _MOST = 400  # samples above half the peak; of more, neighbours are averaged
 _DEGREE = 5  # of the spline
-_LOWEST, _HIGHEST, _STEP = 8, 120, 1.2  # numbers of coefficients that are tried, and their ratio
+_LOWEST, _HIGHEST, _STEP = (
+    8,
+    120,
+    1.2,
+)  # numbers of coefficients that are tried, and their ratio
 _FINER, _MORE = 1.5, 8  # coefficients in the end: a multiple, and at least so many more
 _DENSEST = 0.8  # coefficients over samples, at most
 _COARSER = 1.3  # coefficients over those of the spline that shows what is not resolved
-_DRAWS, _WITHIN = 200, 0.7  # 0.68 and a little: the number of coefficients depends on the noise
+_DRAWS, _WITHIN = (
+    200,
+    0.7,
+)  # 0.68 and a little: the number of coefficients depends on the noise
 _GRID = 400  # intervals on which drawn splines are read
 _MISFIT = 2.0  # residuals over σ², from which on they are the noise
 _SMOOTH = 0.01  # noise of the moving mean over the peak
 _LOW = 0.45  # share of the peak below which a pulse has fallen, so that noise at half is no end
 _APART = 0.2  # share of the peak to which the signal falls between pulses that do not overlap
-_HUMP = 0.25  # depth, over the peak, of the dip between two pulses; less lies in a pulse
+_HUMP = (
+    0.25  # depth, over the peak, of the dip between two pulses; less lies in a pulse
+)
 _LATER = 0.1  # smallest peak of a later pulse over the first
 _LOUDEST = 0.05  # greatest noise over the peak, for which the pulse is located
 _EQUAL = 1e-6  # of the record's range: samples that differ less are equal
@@ -128,7 +137,11 @@ def noisy_pulses(time: ArrayLike, values: ArrayLike) -> Iterator[NoisyPulse]:
 def _place(t: Array, f: Array) -> tuple[float, float]:
     """Return about the times at which the first pulse rises and falls through half of its peak."""
     # Fourth differences of a smooth pulse are small; those of white noise have the variance 70 σ².
-    noise = np.median(np.abs(np.diff(f, 4))) / (0.6745 * math.sqrt(70)) if len(f) > 4 else 0.0
+    noise = (
+        np.median(np.abs(np.diff(f, 4))) / (0.6745 * math.sqrt(70))
+        if len(f) > 4
+        else 0.0
+    )
     highest = max(f.max(), np.finfo(float).tiny)
     count = math.ceil(min(max(1.0, (noise / (_SMOOTH * highest)) ** 2), len(f)))
     g = np.convolve(f, np.full(count, 1 / count), "same")
@@ -152,18 +165,24 @@ def _place(t: Array, f: Array) -> tuple[float, float]:
     foot = np.flatnonzero(g < _APART * g[top])
     sides = np.split(foot, [np.searchsorted(foot, top)])
     low, high = max(sides[0], default=-1) + 1, min(sides[1], default=len(g))
-    tilted = g[low:high] + np.linspace(0, _EQUAL * g[top], high - low)  # no two peaks are equal
+    tilted = g[low:high] + np.linspace(
+        0, _EQUAL * g[top], high - low
+    )  # no two peaks are equal
     humps, _ = find_peaks(np.pad(tilted, 1), prominence=_HUMP * g[top])
     if len(humps) > 1:
         times = " and ".join(f"{t[low + hump - 1]:.4g}" for hump in humps[:2])
-        raise MeasureError(f"pulses overlap: peaks at {times} without a fall to {_APART:.0%}")
+        raise MeasureError(
+            f"pulses overlap: peaks at {times} without a fall to {_APART:.0%}"
+        )
     return float(t[below[after - 1]]), float(t[below[after]])
 
 
 def _fitted(t: Array, f: Array, count: int) -> BSpline:
     """Fit a spline of so many coefficients to samples."""
     # Equally many samples lie between neighbouring knots, so that gaps in a record do no harm.
-    inner = np.interp(np.linspace(0, len(t) - 1, count - _DEGREE + 1), np.arange(len(t)), t)
+    inner = np.interp(
+        np.linspace(0, len(t) - 1, count - _DEGREE + 1), np.arange(len(t)), t
+    )
     knots = np.pad(inner, _DEGREE, mode="edge")
     return make_lsq_spline(t, f, knots, _DEGREE)
 
@@ -208,7 +227,9 @@ def _measured(
     ends = sides[0] - _READ * width, sides[1] + _READ * width
     before, t, f, calm = t[lead], t[near], f[near], f[lead]
     # Correlations of the noise, up to the first lag without.
-    both = np.fft.irfft(np.abs(np.fft.rfft(calm, 2 * len(calm))) ** 2)[: len(calm)] / len(calm)
+    both = np.fft.irfft(np.abs(np.fft.rfft(calm, 2 * len(calm))) ** 2)[
+        : len(calm)
+    ] / len(calm)
     both = both[: max(1, int(np.argmax(np.append(both, 0.0) <= 0)))]
     length = float(1 + 2 * np.sum(both[1:] / both[0])) if both[0] else 1.0
     n, rounding = len(t), (np.finfo(float).eps * np.abs(f).max()) ** 2
@@ -217,8 +238,12 @@ def _measured(
     counts = np.geomspace(_LOWEST, highest, tries + 1).round().astype(int)
     squares = np.array([np.sum((_fitted(t, f, count)(t) - f) ** 2) for count in counts])
     variance = rounding + float(np.var(calm, ddof=2))
-    for _ in range(2):  # once more with the noise of the residuals, where that is the larger one
-        criterion = squares / (variance * length) + counts * math.log(max(n / length, 2))
+    for _ in range(
+        2
+    ):  # once more with the noise of the residuals, where that is the larger one
+        criterion = squares / (variance * length) + counts * math.log(
+            max(n / length, 2)
+        )
         best = int(counts[np.argmin(criterion)])
         wanted = max(math.ceil(_FINER * best), best + _MORE)
         spline = _fitted(t, f, min(wanted, highest))
@@ -227,15 +252,21 @@ def _measured(
             break
         variance = left
     scale = calm.std(), math.sqrt(max(0.0, variance - step**2 / 12))
-    draws = _noise(both, len(calm) + n) * np.repeat(scale, (len(calm), n))[:, np.newaxis]
+    draws = (
+        _noise(both, len(calm) + n) * np.repeat(scale, (len(calm), n))[:, np.newaxis]
+    )
     if step:
         phases = step * np.random.default_rng(1).uniform(-0.5, 0.5, (2, _DRAWS))
-        true = np.append(0 * calm, spline(t))[:, np.newaxis] + np.repeat(phases, (len(calm), n), 0)
+        true = np.append(0 * calm, spline(t))[:, np.newaxis] + np.repeat(
+            phases, (len(calm), n), 0
+        )
         draws = step * np.round((true + draws) / step) - true
     errors = _spread(spline, t, before, draws, ends)
     numbers = _read(spline, ends)
     if numbers[1] and (share := math.sqrt(variance) / numbers[1]) > _LOUDEST:
-        raise MeasureError(f"the noise is {share:.1%} of the peak: at most {_LOUDEST:.0%} is read")
+        raise MeasureError(
+            f"the noise is {share:.1%} of the peak: at most {_LOUDEST:.0%} is read"
+        )
     if wanted > highest:
         coarse = _read(_fitted(t, f, max(_LOWEST, round(highest / _COARSER))), ends)
         errors = np.hypot(errors, np.subtract(numbers, coarse))
@@ -251,7 +282,9 @@ def _noise(both: Array, count: int) -> Array:
     white = np.random.default_rng(0).normal(size=(size, _DRAWS))
     if not spectrum.any():
         return white[:count]
-    shaped = np.fft.rfft(white, axis=0) * np.sqrt(spectrum / spectrum.mean())[:, np.newaxis]
+    shaped = (
+        np.fft.rfft(white, axis=0) * np.sqrt(spectrum / spectrum.mean())[:, np.newaxis]
+    )
     return np.asarray(np.fft.irfft(shaped, size, axis=0)[:count])
 
 
@@ -277,10 +310,14 @@ def _spread(
     """
     calm, near = noise[: len(before)], noise[len(before) :]
     x, ahead = before - before.mean(), t - before.mean()
-    near = near - calm.mean(axis=0) - np.outer(ahead, x @ calm / (x @ x))  # the base is a line
+    near = (
+        near - calm.mean(axis=0) - np.outer(ahead, x @ calm / (x @ x))
+    )  # the base is a line
     off = _fitted(t, near, len(spline.c)).c
     grid, draw = np.linspace(*ends, _GRID + 1), np.arange(_DRAWS + 1)
-    f = BSpline(spline.t, np.column_stack((spline.c, spline.c[:, np.newaxis] + off)), _DEGREE)(grid)
+    f = BSpline(
+        spline.t, np.column_stack((spline.c, spline.c[:, np.newaxis] + off)), _DEGREE
+    )(grid)
     # The vertex of the parabola through the highest value and its neighbours, in grid steps.
     top = np.clip(np.argmax(f, axis=0), 1, _GRID - 1)
     before, highest, after = (f[top + side, draw] for side in (-1, 0, 1))

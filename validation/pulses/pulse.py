@@ -27,7 +27,9 @@ Source = TypeVar("Source")
 
 FEWEST = 8  # samples above half the peak; a record with fewer is too coarse
 _POINTS = 4  # grid points in each smooth interval
-_DEGREE = 10  # of the interpolant about a peak, over half an interval: error about 1e-16
+_DEGREE = (
+    10  # of the interpolant about a peak, over half an interval: error about 1e-16
+)
 _NOISE = 1e-6  # of the largest |signal|: less may be rounding, or a spline's overshoot
 _LEAST = 0.01  # smallest prominence of a pulse over the highest peak
 _PARTLY = "the pulse is not wholly in the record:"
@@ -67,7 +69,9 @@ def measure(time: ArrayLike | Signal, values: ArrayLike | None = None) -> Pulse:
     elif callable(time):
         signal = time
     else:
-        raise MeasureError("values are missing: they are wanted beside the sample times")
+        raise MeasureError(
+            "values are missing: they are wanted beside the sample times"
+        )
     pulse = highest_pulse(signal)
     inside = np.count_nonzero((signal.times > pulse.rise) & (signal.times < pulse.fall))
     if values is not None and inside < FEWEST:
@@ -84,7 +88,9 @@ def all_pulses(signal: Signal) -> list[Pulse]:
     Raises `MeasureError` for a record without any pulse.
     """
     grid, whole = _Grid(signal), list[Pulse]()
-    tops, _ = scipy.signal.find_peaks(grid.f, height=0.0, prominence=_LEAST * grid.f.max())
+    tops, _ = scipy.signal.find_peaks(
+        grid.f, height=0.0, prominence=_LEAST * grid.f.max()
+    )
     for top in tops.tolist():
         higher = np.flatnonzero(grid.f > grid.f[top])
         place = int(np.searchsorted(higher, top))
@@ -124,7 +130,9 @@ def first_pulses(signal: Signal, shares: Sequence[float] = (0.5,)) -> list[Pulse
     return [*found.values()]
 
 
-def leading_pulses(signal: Signal, k: float, shares: Sequence[float] = (0.5,)) -> list[Pulse]:
+def leading_pulses(
+    signal: Signal, k: float, shares: Sequence[float] = (0.5,)
+) -> list[Pulse]:
     """Measure the leading pulse of a contact's force F = A δ^k, or (k = 1) of its compression δ.
 
     The pulse ends where the compression first falls to a quarter of its highest value so far.
@@ -144,11 +152,15 @@ class _Grid:
 
     def __init__(self, signal: Signal, end: float = math.inf) -> None:
         times = signal.times[: np.searchsorted(signal.times, end, side="right")]
-        between = times[:-1, None] + np.diff(times)[:, None] * (np.arange(_POINTS) / _POINTS)
+        between = times[:-1, None] + np.diff(times)[:, None] * (
+            np.arange(_POINTS) / _POINTS
+        )
         self.signal, self.t = signal, np.append(between.ravel(), times[-1])
         self.f = signal(self.t)
         if not self.f.max() > _NOISE * np.abs(self.f).max():
-            raise MeasureError("no pulse is in the record: its signal is nowhere positive")
+            raise MeasureError(
+                "no pulse is in the record: its signal is nowhere positive"
+            )
 
     def highest(
         self, start: int = 0, stop: int | None = None, shares: Sequence[float] = (0.5,)
@@ -180,13 +192,17 @@ class _Grid:
         def above(part: float) -> float:
             return float(self.signal(low + part * step)) / level - 1
 
-        if above(0.0) * above(1.0) > 0:  # the signal jumps there: a damped contact opens
+        if (
+            above(0.0) * above(1.0) > 0
+        ):  # the signal jumps there: a damped contact opens
             return float(self.t[i + 1])
         return float(low + scipy.optimize.brentq(above, 0.0, 1.0, xtol=1e-12) * step)
 
     def _crest(self, low: float, high: float) -> tuple[float, float]:
         """Return the time and value of the signal's maximum between two times."""
-        inside = self.signal.times[(self.signal.times > low) & (self.signal.times < high)]
+        inside = self.signal.times[
+            (self.signal.times > low) & (self.signal.times < high)
+        ]
         tops = []
         for a, b in pairwise((low, *inside.tolist(), high)):
             series = chebyshev.Chebyshev.interpolate(self.signal, _DEGREE, (a, b))
@@ -204,7 +220,9 @@ def speed(first: Pulse, second: Pulse, distance: float) -> float:
     Raises `MeasureError` unless the second pulse arrives later.
     """
     if not second.arrival > first.arrival:
-        arrivals = f"the pulse arrives at {first.arrival:g} and then at {second.arrival:g}"
+        arrivals = (
+            f"the pulse arrives at {first.arrival:g} and then at {second.arrival:g}"
+        )
         raise MeasureError(f"{arrivals}: a speed needs a later second arrival")
     return float(distance) / (second.arrival - first.arrival)
 
@@ -251,7 +269,9 @@ class Measured:
 
 def derived(function: Callable[..., float], *numbers: Measured) -> Measured:
     """Return a function of measured numbers, its ``check`` computed from their checks."""
-    return Measured(function(*(n.value for n in numbers)), function(*(n.check for n in numbers)))
+    return Measured(
+        function(*(n.value for n in numbers)), function(*(n.check for n in numbers))
+    )
 
 
 def exponent(x: Sequence[Measured], y: Sequence[Measured]) -> Measured:
@@ -261,12 +281,17 @@ def exponent(x: Sequence[Measured], y: Sequence[Measured]) -> Measured:
     weights = log_x / (log_x @ log_x)
     p = float(weights @ log_y)
     # Absolute errors are added: those of similar runs have a common sign and would cancel.
-    off = [b.relative_error + abs(p) * a.relative_error for a, b in zip(x, y, strict=True)]
+    off = [
+        b.relative_error + abs(p) * a.relative_error for a, b in zip(x, y, strict=True)
+    ]
     return Measured(p, p + float(np.abs(weights) @ off))
 
 
 def compared(
-    numbers: Callable[[Source], Mapping[str, float]], fine: Source, coarse: Source, rtol: float = 0
+    numbers: Callable[[Source], Mapping[str, float]],
+    fine: Source,
+    coarse: Source,
+    rtol: float = 0,
 ) -> dict[str, Measured]:
     """Return the numbers of the run ``fine``, with errors from the less accurate ``coarse``.
 

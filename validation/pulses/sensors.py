@@ -52,7 +52,9 @@ class Reading:
 
     kind: str  # "bead" or "contact"
     places: tuple[int, ...]  # number of the sensor, or of both, counted from 1
-    numbers: Mapping[str, Measured]  # `READINGS`, or `SPEEDS` (the second if there are spacings)
+    numbers: Mapping[
+        str, Measured
+    ]  # `READINGS`, or `SPEEDS` (the second if there are spacings)
     static: float  # static force at the (first) sensor
     missing: str | None = None  # reason why there are no numbers
     pulse: int = 1  # number of the pulse at the sensor, counted from 1
@@ -80,7 +82,9 @@ class Track:
     kind: str  # "bead" or "contact"
     number: int  # of the bead or contact, counted from 1
     force: Signal
-    place: Mapping[str, float]  # along the chain in sites and in lengths, by the names `SPEEDS`
+    place: Mapping[
+        str, float
+    ]  # along the chain in sites and in lengths, by the names `SPEEDS`
     static: float  # static force
 
 
@@ -130,9 +134,13 @@ def tracks(run: Run, every: int = 1) -> tuple[Track, ...]:
         length = [float(np.interp(site, range(len(x)), x))] if scene.spacings else []
         place = dict(zip(SPEEDS, (site, *length), strict=False))
         force: Signal = (
-            spline(run.time[::every], samples[::every]) if run.path is None else run.signal(kind, i)
+            spline(run.time[::every], samples[::every])
+            if run.path is None
+            else run.signal(kind, i)
         )
-        dynamic: Signal = Piecewise(force.times, lambda t: force(t) - static) if static else force
+        dynamic: Signal = (
+            Piecewise(force.times, lambda t: force(t) - static) if static else force
+        )
         return Track(kind, i + 1, dynamic, place, static)
 
     beads = zip(scene.bead_sensors, run.bead_force, strict=True)
@@ -145,10 +153,16 @@ def tracks(run: Run, every: int = 1) -> tuple[Track, ...]:
 
 def static_forces(scene: Scene) -> dict[str, float]:
     """Return the static forces at the sensors of a scene, by names such as "bead 15"."""
-    load = np.zeros(scene.size + 1)  # of the contacts on the left and right of the beads
+    load = np.zeros(
+        scene.size + 1
+    )  # of the contacts on the left and right of the beads
     load[1 : scene.contact_count + 1] = scene.load
-    beads = {f"bead {i + 1}": float(load[i] + load[i + 1]) / 2 for i in scene.bead_sensors}
-    return beads | {f"contact {i + 1}": float(load[i + 1]) for i in scene.contact_sensors}
+    beads = {
+        f"bead {i + 1}": float(load[i] + load[i + 1]) / 2 for i in scene.bead_sensors
+    }
+    return beads | {
+        f"contact {i + 1}": float(load[i + 1]) for i in scene.contact_sensors
+    }
 
 
 def _readings(pair: tuple[Track, Track], every: bool, rtol: float) -> Iterator[Reading]:
@@ -177,8 +191,12 @@ def first_numbers(fine: Signal, coarse: Signal, rtol: float) -> dict[str, Measur
     """
     first = first_pulse(fine)
     shares = [(1 + part) / 2 for part in (-_UNSURE, 0.0, _UNSURE)]
-    found = [compared(readings, first, check, rtol) for check in first_pulses(coarse, shares)]
-    return {name: max((f[name] for f in found), key=lambda n: n.error) for name in READINGS}
+    found = [
+        compared(readings, first, check, rtol) for check in first_pulses(coarse, shares)
+    ]
+    return {
+        name: max((f[name] for f in found), key=lambda n: n.error) for name in READINGS
+    }
 
 
 def readings(pulse: Pulse) -> dict[str, float]:
@@ -198,7 +216,9 @@ def speeds_between(
     """
 
     def leg(first: Reading, second: Reading, distances: Mapping[str, float]) -> Reading:
-        reading = partial(Reading, first.kind, (*first.places, *second.places), static=first.static)
+        reading = partial(
+            Reading, first.kind, (*first.places, *second.places), static=first.static
+        )
         if first.missing or second.missing:
             return reading({}, missing="one of the two has no pulse")
         start, end = first.numbers["arrival"], second.numbers["arrival"]
@@ -206,7 +226,9 @@ def speeds_between(
             return reading({}, missing="a speed needs a later second arrival")
         error = total(start.error, end.error) / time
         speeds = {name: distance / time for name, distance in distances.items()}
-        return reading({name: Measured(V, V * (1 + error)) for name, V in speeds.items()})
+        return reading(
+            {name: Measured(V, V * (1 + error)) for name, V in speeds.items()}
+        )
 
     return tuple(
         leg(one, other, {name: abs(there[name] - at[name]) for name in at})
@@ -244,8 +266,15 @@ def echoes(
         }
         reflected = True
         for other in sensors:
-            if (other.kind, other.pulse) == (r.kind, r.pulse) and other is not r and other.numbers:
-                ahead = found[other.kind, other.places, 1].numbers["arrival"].value - start.value
+            if (
+                (other.kind, other.pulse) == (r.kind, r.pulse)
+                and other is not r
+                and other.numbers
+            ):
+                ahead = (
+                    found[other.kind, other.places, 1].numbers["arrival"].value
+                    - start.value
+                )
                 reflected = ahead * (other.numbers["arrival"].value - at.value) < 0
         later.append((replace(r, numbers=delays), reflected))
     return later
@@ -277,14 +306,18 @@ class Train:
 
     def only(self, wanted: Container[int]) -> Train:
         """Return the train of the pulses with the wanted numbers."""
-        chosen = {number: pulse for number, pulse in self.pulses.items() if number in wanted}
+        chosen = {
+            number: pulse for number, pulse in self.pulses.items() if number in wanted
+        }
         return replace(self, pulses=chosen)
 
     @property
     def speed(self) -> float:
         """Speed of the pulse from the first sensor to the last, a length per time."""
         first, last = min(self.pulses), max(self.pulses)
-        return speed(self.pulses[first], self.pulses[last], (last - first) * self.spacing)
+        return speed(
+            self.pulses[first], self.pulses[last], (last - first) * self.spacing
+        )
 
     @property
     def peak(self) -> float:

@@ -59,7 +59,9 @@ class Point:
 
     k: sp.Rational
     omega: sp.Rational
-    sites: tuple[int, int] | None  # from the struck bead to both ends of the measured stretch
+    sites: (
+        tuple[int, int] | None
+    )  # from the struck bead to both ends of the measured stretch
     numbers: Mapping[str, Measured]  # by the names `LABELS`
     missing: str | None = None  # reason without numbers
 
@@ -73,7 +75,9 @@ def cells_apart(k: float, stretch: int) -> int:
     return math.ceil(stretch * max(1.0, math.pow(2 * (k - 1), -1.25)))
 
 
-def point(k: sp.Rational, omega: sp.Rational, stretch: int, farther: float = FARTHER) -> Point:
+def point(
+    k: sp.Rational, omega: sp.Rational, stretch: int, farther: float = FARTHER
+) -> Point:
     """Strike the chain and return the measured point; after a failure its ``missing`` says why.
 
     stretch : see `cells_apart`. farther : distance over which the pulse must lead, 1.2 or more, in
@@ -85,7 +89,9 @@ def point(k: sp.Rational, omega: sp.Rational, stretch: int, farther: float = FAR
         return Point(k, omega, None, {}, str(error) or type(error).__name__)
 
 
-def _measured(k: sp.Rational, omega: sp.Rational, stretch: int, farther: float) -> Point:
+def _measured(
+    k: sp.Rational, omega: sp.Rational, stretch: int, farther: float
+) -> Point:
     chain = StruckDimer(float(k), float(omega), 2 * cells_apart(float(k), stretch))
     near = [n * chain.sites for n in range(1, PLACES + 1)]
     far = int(farther * near[-1])
@@ -96,7 +102,11 @@ def _measured(k: sp.Rational, omega: sp.Rational, stretch: int, farther: float) 
     until = (1 + 1 / PLACES) * float(rough[:PLACES, :, 4].max())
     fine = chain.passages(chain.run(near, until, rtol))
     numbers, others = chain.numbers(fine), chain.numbers(rough)
-    values, less_accurate, far_away = numbers[:, 1:], others[:, 1 : PLACES - 1], others[:, -1:]
+    values, less_accurate, far_away = (
+        numbers[:, 1:],
+        others[:, 1 : PLACES - 1],
+        others[:, -1:],
+    )
     # A number that approaches its limit like n^{-1/2} has come half way to it at 4 n: twice.
     steps = values - numbers[:, :-1], values - less_accurate, 2 * (values - far_away)
     errors = np.abs(steps).max(axis=0)
@@ -136,7 +146,9 @@ class StruckDimer:
         """Strike the chain and record the two contacts of each place, up to the last one."""
         sensors = tuple(place + side for place in places for side in (0, 1))
         options = {"contact_sensors": sensors, "duration": duration, "samples": 2}
-        beads = places[-1] + max(12, self.sites)  # the end is a pulse's length away as k → 1, too
+        beads = places[-1] + max(
+            12, self.sites
+        )  # the end is a pulse's length away as k → 1, too
         return simulate(struck((1.0, self.omega), beads, self.k, **options), rtol=rtol)
 
     def passages(self, run: Run) -> Array:
@@ -156,13 +168,22 @@ class StruckDimer:
                 raise MeasureError(missing) from None
             highest = max(pulse.peak, float(force(force.times).max()))
             passages.append(
-                (pulse.arrival, pulse.peak, pulse.fwhm, strain.fwhm, pulse.fall, highest)
+                (
+                    pulse.arrival,
+                    pulse.peak,
+                    pulse.fwhm,
+                    strain.fwhm,
+                    pulse.fall,
+                    highest,
+                )
             )
         return np.array(passages).reshape(-1, 2, 6)
 
     def numbers(self, passages: Array) -> Array:
         """Return `LABELS` (rows) on each stretch; NaN where a pulse does not arrive later."""
-        arrival, peak, width, strain_width, *_ = np.moveaxis(passages, 2, 0)  # (places, contacts)
+        arrival, peak, width, strain_width, *_ = np.moveaxis(
+            passages, 2, 0
+        )  # (places, contacts)
         elapsed, fall = np.diff(arrival, axis=0), -np.diff(np.log(peak), axis=0)
         elapsed[elapsed <= 0] = np.nan
         # Over N sites and the time T the peak force falls from F_1 to F_2, the decay is
@@ -170,8 +191,15 @@ class StruckDimer:
         # q = (k-1)/(2k) and z = q d N: the integral of dn/(c F^q) with F = F_1 e^{-d n} is T.
         q = (self.k - 1) / (2 * self.k)
         speed = self.sites * scipy.special.exprel(q * fall) / (elapsed * peak[:-1] ** q)
-        at_end = speed * peak[1:] ** q  # a width is a duration at a contact times the speed there
-        numbers = (width[1:] * at_end, strain_width[1:] * at_end, speed, fall / self.sites)
+        at_end = (
+            speed * peak[1:] ** q
+        )  # a width is a duration at a contact times the speed there
+        numbers = (
+            width[1:] * at_end,
+            strain_width[1:] * at_end,
+            speed,
+            fall / self.sites,
+        )
         return np.asarray(np.mean(numbers, axis=2))
 
 
@@ -195,7 +223,9 @@ class PointFile:
         and one that another process has opened.
         """
         try:
-            with closing(sqlite3.connect(self.path, timeout=0, isolation_level=None)) as data:
+            with closing(
+                sqlite3.connect(self.path, timeout=0, isolation_level=None)
+            ) as data:
                 data.execute("pragma locking_mode = exclusive")
                 data.execute("begin exclusive")
                 (version,) = data.execute("pragma user_version").fetchone()
@@ -207,17 +237,28 @@ class PointFile:
                     )
                 if not version:
                     data.execute(f"pragma user_version = {own}")
-                    data.execute("create table points (k, omega, sites, missing, numbers)")
+                    data.execute(
+                        "create table points (k, omega, sites, missing, numbers)"
+                    )
                 data.execute("commit")
 
                 def keep(point: Point) -> None:
-                    numbers = {name: [n.value, n.check] for name, n in point.numbers.items()}
-                    texts = str(point.k), str(point.omega), json.dumps(point.sites), point.missing
+                    numbers = {
+                        name: [n.value, n.check] for name, n in point.numbers.items()
+                    }
+                    texts = (
+                        str(point.k),
+                        str(point.omega),
+                        json.dumps(point.sites),
+                        point.missing,
+                    )
                     row = *texts, json.dumps(numbers)
                     data.execute("insert into points values (?, ?, ?, ?, ?)", row)
 
                 points = {}
-                for k, omega, sites, missing, numbers in data.execute("select * from points"):
+                for k, omega, sites, missing, numbers in data.execute(
+                    "select * from points"
+                ):
                     pairs = json.loads(numbers).items()
                     found = {name: Measured(*map(float, pair)) for name, pair in pairs}
                     ends = json.loads(sites)

@@ -44,9 +44,13 @@ class Study(Generic[P]):
 
         def run(style: str, plot: Path | None, **values: Any) -> int:
             displays = {"progress": progress, "run_progress": run_progress}
-            values |= {name: show for name, show in displays.items() if name in parameters}
+            values |= {
+                name: show for name, show in displays.items() if name in parameters
+            }
             try:
-                with warnings.catch_warnings():  # NumPy's: what overflows is refused or NaN
+                with (
+                    warnings.catch_warnings()
+                ):  # NumPy's: what overflows is refused or NaN
                     warnings.simplefilter("ignore", RuntimeWarning)
                     report = function(**values)
             except Failure as error:
@@ -60,10 +64,15 @@ class Study(Generic[P]):
             click.echo(printed)
             return 0 if report.ok else 1
 
-        for option in (*_OUTPUT, *reversed(self.options)):  # help shows the last decoration first
+        for option in (
+            *_OUTPUT,
+            *reversed(self.options),
+        ):  # help shows the last decoration first
             run = option(run)
         summary, _, _ = (inspect.getdoc(function) or "").partition("\n\n")
-        return click.command(function.__name__, help=summary, context_settings=HELP)(run)
+        return click.command(function.__name__, help=summary, context_settings=HELP)(
+            run
+        )
 
     def main(self, arguments: Sequence[str] | None = None) -> None:
         """Run the command as a program, for a file that defines one study and is executed."""
@@ -96,7 +105,9 @@ def option(*names: str, default: Any = None, says: str = "", **more: Any) -> Any
 def output_option(name: str, suffixes: Sequence[str], says: str) -> Any:
     """Return an option of an output file, which is checked before the work (`output_file`)."""
 
-    def read(context: click.Context, given: click.Parameter, path: str | None) -> Path | None:
+    def read(
+        context: click.Context, given: click.Parameter, path: str | None
+    ) -> Path | None:
         return None if path is None else output_file(called(given), path, suffixes)
 
     return option(name, callback=read, metavar="FILE", type=click.Path(), says=says)
@@ -115,7 +126,9 @@ _COLUMN = (
 def column_options(function: Any) -> Any:
     """Give a study that reads a measured file its options --column and --unit."""
 
-    def read(context: click.Context, given: click.Parameter, pairs: Sequence[str]) -> Any:
+    def read(
+        context: click.Context, given: click.Parameter, pairs: Sequence[str]
+    ) -> Any:
         renamed = {}
         for pair in pairs:
             name, equals, header = (part.strip() for part in pair.partition("="))
@@ -131,7 +144,9 @@ def column_options(function: Any) -> Any:
     return column(unit(function))
 
 
-def number(context: click.Context, given: click.Parameter, value: str | None) -> float | None:
+def number(
+    context: click.Context, given: click.Parameter, value: str | None
+) -> float | None:
     """Read an option that is an integer, a decimal or a fraction."""
     exact = quantity(context, given, value)
     if exact is not None and not exact.is_number:
@@ -139,8 +154,14 @@ def number(context: click.Context, given: click.Parameter, value: str | None) ->
     return None if exact is None else float(exact)
 
 
-_METAVARS: dict[Any, str] = {number: "NUMBER", quantity: "NUMBER", quantities: "NUMBERS"}
-EXPONENT = option("--k", callback=number, default="3/2", says="Exponent k of the force F = A δ^k.")
+_METAVARS: dict[Any, str] = {
+    number: "NUMBER",
+    quantity: "NUMBER",
+    quantities: "NUMBERS",
+}
+EXPONENT = option(
+    "--k", callback=number, default="3/2", says="Exponent k of the force F = A δ^k."
+)
 
 
 def progress(cases: Iterable[T]) -> Iterable[T]:
@@ -158,6 +179,14 @@ def run_progress() -> Iterator[Callable[[float], None]]:
 
 _FORMATS = click.Choice(("text", "json", "csv"))
 _OUTPUT = (
-    output_option("--plot", SUFFIXES, f"Draw the result into a file ({', '.join(SUFFIXES)})."),
-    option("--format", "style", type=_FORMATS, default="text", says="How to print the result."),
+    output_option(
+        "--plot", SUFFIXES, f"Draw the result into a file ({', '.join(SUFFIXES)})."
+    ),
+    option(
+        "--format",
+        "style",
+        type=_FORMATS,
+        default="text",
+        says="How to print the result.",
+    ),
 )

@@ -92,14 +92,23 @@ class Report(Pictured):
         >>> Report("", findings=(Finding("order", 2.4, 2.0, 3.0),)).verdict
         '1 check: all hold'
         """
-        count, failed = len(self.findings), sum(not finding.ok for finding in self.findings)
+        count, failed = (
+            len(self.findings),
+            sum(not finding.ok for finding in self.findings),
+        )
         checks = f"{count} check{'s' * (count != 1)}: "
-        return checks + (f"{failed} of {count} fail" if failed else "all hold") if count else ""
+        return (
+            checks + (f"{failed} of {count} fail" if failed else "all hold")
+            if count
+            else ""
+        )
 
     def text(self) -> str:
         """The report as plain text: beside other printed tables only the findings that fail."""
         tables = [table.text() for table in self.tables]
-        printed = [finding for finding in self.findings if not (any(tables) and finding.ok)]
+        printed = [
+            finding for finding in self.findings if not (any(tables) and finding.ok)
+        ]
         title, *notes = (wrap(text) for text in (self.title, *self.notes))
         texts = title, *tables, findings_table(printed).text(), *notes, self.verdict
         return "\n\n".join(filter(None, texts))
@@ -117,7 +126,10 @@ class Report(Pictured):
         result |= {table.key: table.document() for table in self.tables if table.key}
         if self.findings:
             result |= {f"{f.key}_value": plain(f.value) for f in self.findings if f.key}
-            result |= {"findings": findings_table(self.findings).document(), "ok": self.ok}
+            result |= {
+                "findings": findings_table(self.findings).document(),
+                "ok": self.ok,
+            }
         return result
 
     def csv(self) -> str:
@@ -125,7 +137,11 @@ class Report(Pictured):
 
         Raises `lwa.InputError` if no table has keys.
         """
-        tables = [table for table in self.tables if any(column.key for column in table.columns)]
+        tables = [
+            table
+            for table in self.tables
+            if any(column.key for column in table.columns)
+        ]
         if not tables:
             raise InputError("format is csv: this result has no table")
         return next((table for table in tables if table.rows), tables[0]).csv()
@@ -136,7 +152,9 @@ class Report(Pictured):
 
     def save(self, file: Path) -> None:
         """Draw the picture into a file; an old file is replaced only by a complete picture."""
-        drawn = io.BytesIO()  # Matplotlib prints a traceback for a file that cannot be closed
+        drawn = (
+            io.BytesIO()
+        )  # Matplotlib prints a traceback for a file that cannot be closed
         self.figure().savefig(drawn, dpi=150, format=file.suffix[1:].lower())
         with replacing(file) as new:
             new.write_bytes(drawn.getvalue())

@@ -85,7 +85,8 @@ class Table:
         """Return JSON names (with their dots) and values of each row, in the order of columns."""
         keyed = [(i, column) for i, column in enumerate(self.columns) if column.key]
         return [
-            dict(pair for i, column in keyed for pair in column.values(row[i])) for row in self.rows
+            dict(pair for i, column in keyed for pair in column.values(row[i]))
+            for row in self.rows
         ]
 
     def document(self) -> list[dict[str, Any]]:
@@ -115,10 +116,14 @@ class Table:
         """
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(name for c in self.columns if c.key for name, _ in c.values(None))
+        writer.writerow(
+            name for c in self.columns if c.key for name, _ in c.values(None)
+        )
         for record in self.records():
             cells = record.values()
-            writer.writerow(json.dumps(x) if isinstance(x, list | dict) else x for x in cells)
+            writer.writerow(
+                json.dumps(x) if isinstance(x, list | dict) else x for x in cells
+            )
         return text.getvalue()
 
     def text(self) -> str:
@@ -129,9 +134,13 @@ class Table:
         parts: dict[str, list[Sequence[str]]] = {}
         for row in self.rows if printed else ():
             at = keys.index(self.by) if self.by else 0
-            lines = parts.setdefault(self.columns[at].text(row[at]) if self.by else "", [header])
+            lines = parts.setdefault(
+                self.columns[at].text(row[at]) if self.by else "", [header]
+            )
             lines.append([column.text(row[i]) for i, column in printed])
-        blocks = (f"{head}\n{aligned(lines)}".lstrip("\n") for head, lines in parts.items())
+        blocks = (
+            f"{head}\n{aligned(lines)}".lstrip("\n") for head, lines in parts.items()
+        )
         texts = wrap(self.title), "\n\n".join(blocks), wrap(self.note)
         return "\n".join(filter(None, texts)) if parts else ""
 
@@ -177,7 +186,16 @@ def findings_table(findings: Iterable[Finding]) -> Table:
     rows = []
     for f in findings:
         value = f"{f.value:.6g}" + ("" if f.error is None else f" ± {f.error:.0e}")
-        row = f.quantity, value, bounds(f.low, f.high), f.value, f.error, f.low, f.high, f.ok
+        row = (
+            f.quantity,
+            value,
+            bounds(f.low, f.high),
+            f.value,
+            f.error,
+            f.low,
+            f.high,
+            f.ok,
+        )
         rows.append(row)
     return Table(FINDING_COLUMNS, tuple(rows))
 
@@ -218,7 +236,10 @@ def aligned(lines: Lines, width: float = WIDTH) -> str:
     texts = []
     for first, *others in blocks:
         cells = (
-            (line[first].ljust(widths[first]), *(line[i].rjust(widths[i]) for i in others))
+            (
+                line[first].ljust(widths[first]),
+                *(line[i].rjust(widths[i]) for i in others),
+            )
             for line in lines
         )
         texts.append("\n".join("  ".join(row).rstrip() for row in cells))
@@ -227,7 +248,9 @@ def aligned(lines: Lines, width: float = WIDTH) -> str:
 
 def wrap(text: str) -> str:
     """Break the lines of a text that are longer than `WIDTH`."""
-    return "\n".join(fill(line, WIDTH, break_long_words=False) for line in text.splitlines())
+    return "\n".join(
+        fill(line, WIDTH, break_long_words=False) for line in text.splitlines()
+    )
 
 
 def bounds(low: float, high: float) -> str:

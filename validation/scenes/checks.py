@@ -12,7 +12,12 @@ from lwa.base.files import Reader
 SceneError = InputError
 """Invalid input of a scene, under the name that `validation` exports."""
 
-finite, integer, items, positive = files.finite, files.integer, files.items, files.positive
+finite, integer, items, positive = (
+    files.finite,
+    files.integer,
+    files.items,
+    files.positive,
+)
 
 
 class Failure(RuntimeError):
@@ -22,7 +27,9 @@ class Failure(RuntimeError):
 def one_of(value: Any, choices: Collection[str], name: str) -> str:
     """Return a text if it is one of the choices, else raise `SceneError`."""
     if not isinstance(value, str) or value not in choices:
-        raise SceneError(f"{name} is {shorten(value)}: one of {', '.join(choices)} is wanted")
+        raise SceneError(
+            f"{name} is {shorten(value)}: one of {', '.join(choices)} is wanted"
+        )
     return value
 
 

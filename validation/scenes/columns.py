@@ -36,7 +36,9 @@ _UNITS = {
 _UNITS |= {f"{name}_error": _UNITS[name] for name in ("force", "speed")}
 _SENSOR = re.compile(r"(?:(bead|contact) )?(?:([1-9]\d{0,8}) )?(?:dynamic )?force")
 _HEADER = re.compile(r"^(.*?) ?(?:[([] ?([^][()]*?) ?[])])?$")  # name, (unit) or [unit]
-_CALIBRATION = re.compile(r"([-+.\deE]+)\s*(\S+)/(\w+)")  # number, unit, unit of the file
+_CALIBRATION = re.compile(
+    r"([-+.\deE]+)\s*(\S+)/(\w+)"
+)  # number, unit, unit of the file
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +52,9 @@ class MeasuredFile:
     path: Path
     names: Sequence[str]
     units: Sequence[tuple[str, str]]
-    lines: Sequence[tuple[int, list[str]]]  # number of the line in the file, and its entries
+    lines: Sequence[
+        tuple[int, list[str]]
+    ]  # number of the line in the file, and its entries
     decimal: str  # the decimal separator
 
     @classmethod
@@ -74,27 +78,42 @@ class MeasuredFile:
         for name in renamed or {}:
             if name.lower() not in _UNITS and not _SENSOR.fullmatch(name.lower()):
                 known = "time, bead 8 force, contact 8 force, speed, displacement"
-                raise SceneError(f"column is {shorten(name)}: a name such as {known} is wanted")
+                raise SceneError(
+                    f"column is {shorten(name)}: a name such as {known} is wanted"
+                )
         renamed = {name.lower(): header for name, header in (renamed or {}).items()}
-        given = {name.lower(): unit.replace("μ", "µ") for name, unit in (units or {}).items()}
+        given = {
+            name.lower(): unit.replace("μ", "µ") for name, unit in (units or {}).items()
+        }
         new = {header: name for name, header in renamed.items()}
         try:
             lines = _text(Path(path)).split("\n")
             for start, line in enumerate(lines, start=1):  # noqa: B007
                 mark = next((mark for mark in "\t;" if mark in line), ",")
-                header = [" ".join(x.split()) for x in next(csv.reader([line], delimiter=mark))]
+                header = [
+                    " ".join(x.split())
+                    for x in next(csv.reader([line], delimiter=mark))
+                ]
                 old = [_HEADER.sub(r"\1", cell) for cell in header]
                 names = []
                 for cell, name in zip(header, old, strict=True):
                     other = "" if name.lower() in renamed else name.lower()
                     names.append(new.get(cell, new.get(name, other)))
-                if {*wanted} <= {_SENSOR.sub("force", n) for n in names} and {*renamed} <= {*names}:
+                if {*wanted} <= {_SENSOR.sub("force", n) for n in names} and {
+                    *renamed
+                } <= {*names}:
                     break
             else:
                 columns = ", ".join((*wanted, *renamed.values()))
-                raise SceneError(f"no line names {columns}: --column NAME=HEADER names a column")
+                raise SceneError(
+                    f"no line names {columns}: --column NAME=HEADER names a column"
+                )
             reader = csv.reader(lines[start:], delimiter=mark)
-            rows = [(start + reader.line_num, row) for row in reader if any(map(str.strip, row))]
+            rows = [
+                (start + reader.line_num, row)
+                for row in reader
+                if any(map(str.strip, row))
+            ]
         except (OSError, TypeError, ValueError, csv.Error) as error:
             raise SceneError(f"{path}: {files.reason(error)}") from None
         decimal = "." if mark == "," else ","
@@ -103,10 +122,17 @@ class MeasuredFile:
             below = [cell.strip(" ()[]") for cell in rows.pop(0)[1]] + [""] * len(names)
             stated = [unit or under for unit, under in zip(stated, below, strict=False)]
         low = [name.lower() for name in old]
-        if unknown := [name for name in units or {} if name.lower() not in (*names, *low)]:
-            wrong = f"unit is of {shorten(unknown[0])}: the header has {shorten(header)}"
+        if unknown := [
+            name for name in units or {} if name.lower() not in (*names, *low)
+        ]:
+            wrong = (
+                f"unit is of {shorten(unknown[0])}: the header has {shorten(header)}"
+            )
             raise SceneError(f"{path}: {wrong}")
-        added = [given.get(name) or given.get(n, "") for name, n in zip(names, low, strict=True)]
+        added = [
+            given.get(name) or given.get(n, "")
+            for name, n in zip(names, low, strict=True)
+        ]
         return cls(Path(path), names, [*zip(stated, added, strict=True)], rows, decimal)
 
     @property
@@ -122,10 +148,14 @@ class MeasuredFile:
         """
         if self.names.count(name) != 1:
             wanted = f"one column {name} is wanted (see --column)"
-            raise SceneError(f"{self.path}: {wanted}, the header has {shorten([*self.names])}")
+            raise SceneError(
+                f"{self.path}: {wanted}, the header has {shorten([*self.names])}"
+            )
         return self._values(self.names.index(name))
 
-    def sensors(self, of: str = "contact") -> dict[tuple[str, int | None], tuple[int, int]]:
+    def sensors(
+        self, of: str = "contact"
+    ) -> dict[tuple[str, int | None], tuple[int, int]]:
         """Return the places of time and force in the header, by kind and number of the sensor.
 
         The kind is "bead" (these come first) or "contact". Numbers count from 1; the only sensor of
@@ -138,32 +168,48 @@ class MeasuredFile:
         number, and for several columns of time that are not as many as the forces.
         """
         times = [i for i, name in enumerate(self.names) if name == "time"]
-        forces = {i: m for i, name in enumerate(self.names) if (m := _SENSOR.fullmatch(name))}
+        forces = {
+            i: m for i, name in enumerate(self.names) if (m := _SENSOR.fullmatch(name))
+        }
         if len(times) not in (1, len(forces)):
             found = f"{len(times)} columns time and {len(forces)} of forces"
-            raise SceneError(f"{self.path}: {found}: one time for all or one for each is wanted")
+            raise SceneError(
+                f"{self.path}: {found}: one time for all or one for each is wanted"
+            )
         sensors = {
             (m[1] or of, int(m[2]) if m[2] else None): (time, force)
-            for time, (force, m) in zip(times * len(forces), forces.items(), strict=False)
+            for time, (force, m) in zip(
+                times * len(forces), forces.items(), strict=False
+            )
         }
-        if len(sensors) < len(forces) or (len(sensors) > 1 and None in [n for _, n in sensors]):
+        if len(sensors) < len(forces) or (
+            len(sensors) > 1 and None in [n for _, n in sensors]
+        ):
             names = shorten([self.names[force] for force in forces])
-            raise SceneError(f"{self.path}: {names}: each sensor is wanted once, with its number")
+            raise SceneError(
+                f"{self.path}: {names}: each sensor is wanted once, with its number"
+            )
         return dict(sorted(sensors.items(), key=lambda sensor: sensor[0][0]))
 
     def record(self, time: int, force: int) -> tuple[Array, Array]:
         """Return times and forces, each (N,), from their places in the header, as `column` does."""
         t, f = self._values(time), self._values(force)
         if len(t) < len(f):
-            raise SceneError(f"{self.path}: {self.names[force]} has more samples than times")
+            raise SceneError(
+                f"{self.path}: {self.names[force]} has more samples than times"
+            )
         return t[: len(f)], f
 
     def _values(self, at: int) -> Array:
         """Return the values of the column at a place of the header."""
-        cells = [(line, row[at].strip() if at < len(row) else "") for line, row in self.lines]
+        cells = [
+            (line, row[at].strip() if at < len(row) else "") for line, row in self.lines
+        ]
         while cells and not cells[-1][1]:
             del cells[-1]
-        values = self._size(at) * np.array([_number(cell, self.decimal) for _, cell in cells])
+        values = self._size(at) * np.array(
+            [_number(cell, self.decimal) for _, cell in cells]
+        )
         for i in np.flatnonzero(~np.isfinite(values))[:1]:
             line, cell = cells[i]
             fault = f"column {self.names[at]}, line {line}: {shorten(cell)} is no finite number"
@@ -176,7 +222,9 @@ class MeasuredFile:
             return 1.0
         name, (unit, given) = self.names[at], self.units[at]
         known, match = _UNITS[name.split()[-1]], _CALIBRATION.fullmatch(given)
-        number, to, of = match.groups() if match else ("1", given or unit, given or unit)
+        number, to, of = (
+            match.groups() if match else ("1", given or unit, given or unit)
+        )
         size = _number(number, ".") * known.get(to, np.nan)
         if unit not in ("", of) or not np.isfinite(size):
             says = f"the unit {shorten(unit)}" if unit else "no unit"

@@ -37,14 +37,18 @@ class Damping:
 
     def power(self, k: float) -> float:
         """Exponent of δ in front of the rate dδ/dt."""
-        return {"contact": 0.0, "kuwabara_kono": k - 1, "restitution": (k - 1) / 2}[self.kind]
+        return {"contact": 0.0, "kuwabara_kono": k - 1, "restitution": (k - 1) / 2}[
+            self.kind
+        ]
 
     def coefficients(self, k: float, stiffnesses: Array, masses: Array) -> Array:
         """Return the factors of δ^power dδ/dt, (contacts,), at reduced masses ``masses``."""
         if self.kind != "restitution":
             return np.full(len(stiffnesses), self.value)
         # c of the damping ratio ζ = c/√(2(k+1) m A), see `restitution`
-        return 2 * damping_ratio(self.value) * np.sqrt((k + 1) / 2 * masses * stiffnesses)
+        return (
+            2 * damping_ratio(self.value) * np.sqrt((k + 1) / 2 * masses * stiffnesses)
+        )
 
 
 def restitution(ratio: float) -> float:
@@ -70,7 +74,9 @@ def damping_ratio(share: float) -> float:
     from scipy.optimize import brentq  # start-up
 
     # all digits of a small ratio as well: near ζ = 0 the share is 1 - πζ
-    return float(brentq(lambda ratio: restitution(ratio) - share, 0, 1e3, xtol=1e-20, rtol=1e-15))
+    return float(
+        brentq(lambda ratio: restitution(ratio) - share, 0, 1e3, xtol=1e-20, rtol=1e-15)
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,11 +100,17 @@ class Drive:
             row = each(finite)(getattr(self, name), f"drive.{name}")
             object.__setattr__(self, name, row)
         harmonic = self.amplitude is not None or self.frequency is not None
-        motions = (self.velocity is not None) + harmonic + bool(self.time or self.displacement)
+        motions = (
+            (self.velocity is not None)
+            + harmonic
+            + bool(self.time or self.displacement)
+        )
         times, places = len(self.time), len(self.displacement)
         increasing = self.time[:1] in ((), (0,)) and (np.diff(self.time) > 0).all()
         if motions != 1:
-            wanted = "velocity, amplitude and frequency, or time and displacement are wanted"
+            wanted = (
+                "velocity, amplitude and frequency, or time and displacement are wanted"
+            )
             raise SceneError(f"drive has not one motion: {wanted}")
         ramp = between(self.ramp, "drive.ramp", 0, math.inf, "it must not be negative")
         if ramp and not harmonic:
@@ -106,7 +118,9 @@ class Drive:
             raise SceneError(f"drive.ramp is {ramp:g}: {wrong}")
         if times != places or 0 < times < 4:
             wanted = "equally many, four or more, are wanted"
-            raise SceneError(f"drive has {times} times and {places} displacements: {wanted}")
+            raise SceneError(
+                f"drive has {times} times and {places} displacements: {wanted}"
+            )
         if not increasing:
             raise SceneError("drive.time must begin with 0 and increase")
         if self.velocity is not None:
@@ -124,7 +138,9 @@ class Drive:
             except ValueError:  # SciPy's, of slopes that overflow
                 acceleration = math.inf
         if not math.isfinite(acceleration):
-            raise SceneError("the drive's acceleration comes out as inf: choose other units")
+            raise SceneError(
+                "the drive's acceleration comes out as inf: choose other units"
+            )
 
     @cached_property
     def _spline(self) -> Any:

@@ -25,7 +25,15 @@ from lwa.base.files import Reader
 from lwa.cell import exponent
 from lwa.law import ContactLaw
 from lwa.spheres.hertz import Material, Sphere, stiffness
-from validation.scenes.checks import SceneError, each, finite, integer, items, one_of, positive
+from validation.scenes.checks import (
+    SceneError,
+    each,
+    finite,
+    integer,
+    items,
+    one_of,
+    positive,
+)
 from validation.scenes.forcing import Damping, Drive
 
 __all__ = ["Scene", "SceneError"]
@@ -134,7 +142,9 @@ class Scene:
         if n == 0:
             raise SceneError("masses is empty: a chain has at least one bead")
         for name in ("stiffnesses", "spacings"):
-            if (given := len(getattr(self, name))) != n - 1 and (given or name == "stiffnesses"):
+            if (given := len(getattr(self, name))) != n - 1 and (
+                given or name == "stiffnesses"
+            ):
                 raise SceneError(f"{given} {name} for {n} beads: {n - 1} are wanted")
         for name in ("displacements", "velocities"):
             if (given := len(getattr(self, name))) > n:
@@ -142,12 +152,20 @@ class Scene:
         if not math.isfinite(sum(self.spacings)):
             raise SceneError("the chain's length comes out as inf: choose other units")
         if self.k < 1:
-            raise SceneError(f"k is {self.k}: the contact law A δ^k is simulated for k ≥ 1")
-        for name, act in (("gravity", "pull towards"), ("precompression", "push against")):
+            raise SceneError(
+                f"k is {self.k}: the contact law A δ^k is simulated for k ≥ 1"
+            )
+        for name, act in (
+            ("gravity", "pull towards"),
+            ("precompression", "push against"),
+        ):
             if (value := getattr(self, name)) < 0 or (value > 0 and self.wall is None):
                 wanted = f"it must be positive and needs a wall to {act}"
                 raise SceneError(f"{name} is {value:g}: {wanted}")
-        for name, count in (("contact_sensors", self.contact_count), ("bead_sensors", n)):
+        for name, count in (
+            ("contact_sensors", self.contact_count),
+            ("bead_sensors", n),
+        ):
             object.__setattr__(self, name, _sensors(getattr(self, name), name, count))
         self._check_forcing()
 
@@ -156,16 +174,31 @@ class Scene:
         for name, kind in (("damping", Damping), ("drive", Drive)):
             value = getattr(self, name)
             if value is not None and not isinstance(value, kind):
-                raise SceneError(f"{name} is {shorten(value)}: a {kind.__name__} is wanted")
-        if self.damping is not None and self.damping.kind != "contact" and self.law is not None:
-            raise SceneError(f"damping is {self.damping.kind}: it is known for powers only")
+                raise SceneError(
+                    f"{name} is {shorten(value)}: a {kind.__name__} is wanted"
+                )
+        if (
+            self.damping is not None
+            and self.damping.kind != "contact"
+            and self.law is not None
+        ):
+            raise SceneError(
+                f"damping is {self.damping.kind}: it is known for powers only"
+            )
         if self.drive is None:
             return
-        if any(row[:1] != (0,) * len(row[:1]) for row in (self.velocities, self.displacements)):
-            raise SceneError("drive moves bead 1, which has a velocity or displacement of its own")
+        if any(
+            row[:1] != (0,) * len(row[:1])
+            for row in (self.velocities, self.displacements)
+        ):
+            raise SceneError(
+                "drive moves bead 1, which has a velocity or displacement of its own"
+            )
         end = self.drive.time[-1:] or (self.duration,)
         if not self.duration <= end[0] < _LONGEST * self.duration:
-            wanted = f"one to {_LONGEST} times the duration, {self.duration:g}, is wanted"
+            wanted = (
+                f"one to {_LONGEST} times the duration, {self.duration:g}, is wanted"
+            )
             raise SceneError(f"drive.time ends at {end[0]:g}: {wanted}")
 
     def _read_law(self) -> None:
@@ -178,10 +211,16 @@ class Scene:
         if not isinstance(law, ContactLaw):
             raise SceneError(f"law is {shorten(law)}: a law of lwa.law is wanted")
         if self.k is not _MISSING and self.k != 1:
-            raise SceneError(f"k is {shorten(self.k)} and law {law.text}: one of them is wanted")
+            raise SceneError(
+                f"k is {shorten(self.k)} and law {law.text}: one of them is wanted"
+            )
         if law.symbols or law.formless:
-            raise SceneError(f"law is {law.text}: the lattice needs numbers in place of symbols")
-        open_ends = (cases for cases in law.F.atoms(sp.Piecewise) if cases.args[-1][1] != sp.true)
+            raise SceneError(
+                f"law is {law.text}: the lattice needs numbers in place of symbols"
+            )
+        open_ends = (
+            cases for cases in law.F.atoms(sp.Piecewise) if cases.args[-1][1] != sp.true
+        )
         if law.F.has(*_OTHER_CASES) or any(open_ends):
             cases = "a force by cases is a Piecewise whose last condition is True"
             raise SceneError(f"law is {shorten(law.text)}: {cases}")
@@ -236,8 +275,12 @@ class Scene:
         repeats = integer(repeats, "repeats", 1)
         masses = tuple(_number(m, "mass") for m in cell.masses) * repeats
         stiffnesses = tuple(_number(A, "stiffness") for A in cell.stiffnesses) * repeats
-        spacings = (float(cell.spacing),) * (len(masses) - 1) if cell.spacing.is_number else ()
-        return cls(masses=masses, stiffnesses=stiffnesses[:-1], k=k, spacings=spacings, **rest)
+        spacings = (
+            (float(cell.spacing),) * (len(masses) - 1) if cell.spacing.is_number else ()
+        )
+        return cls(
+            masses=masses, stiffnesses=stiffnesses[:-1], k=k, spacings=spacings, **rest
+        )
 
     @classmethod
     def of_beads(
@@ -249,7 +292,9 @@ class Scene:
         """
         given = items(beads, "beads")
         if not given or not all(isinstance(bead, Sphere) for bead in given):
-            raise SceneError(f"beads is {shorten(given)}: a sequence of spheres is wanted")
+            raise SceneError(
+                f"beads is {shorten(given)}: a sequence of spheres is wanted"
+            )
 
         @cache  # exact numbers take their time, and a chain has few kinds of contacts
         def contact(a: Sphere, b: Sphere) -> tuple[float, float]:
@@ -294,7 +339,9 @@ def _sensors(values: Any, name: str, count: int) -> tuple[int, ...]:
     given = items(values, name)
     if given and not count:
         raise SceneError(f"{name} is {shorten(given)}: this chain has none")
-    sensors = tuple(integer(i, f"{name}[{j}]", 0, count - 1) for j, i in enumerate(given))
+    sensors = tuple(
+        integer(i, f"{name}[{j}]", 0, count - 1) for j, i in enumerate(given)
+    )
     if len(set(sensors)) < len(sensors):
         raise SceneError(f"{name} is {shorten(sensors)}: each may be named once")
     return sensors
@@ -302,5 +349,7 @@ def _sensors(values: Any, name: str, count: int) -> tuple[int, ...]:
 
 def _number(value: sp.Expr, name: str) -> float:
     if not value.is_number:
-        raise SceneError(f"{name} is {value}: the lattice needs numbers in place of symbols")
+        raise SceneError(
+            f"{name} is {value}: the lattice needs numbers in place of symbols"
+        )
     return float(value)

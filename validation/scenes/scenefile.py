@@ -17,7 +17,17 @@ from pathlib import Path
 from typing import Any
 
 from lwa.base.exact import shorten
-from lwa.base.files import Reader, Table, among, each, entries, load, place, places, table
+from lwa.base.files import (
+    Reader,
+    Table,
+    among,
+    each,
+    entries,
+    load,
+    place,
+    places,
+    table,
+)
 from lwa.law import read_law
 from lwa.spheres.beads import (
     CHAIN,
@@ -38,7 +48,15 @@ MOST_BEADS = 1_000_000
 _TABLES = {  # that a file may leave out
     "wall": ("material", "stiffness"),
     "damping": DAMPINGS,
-    "drive": ("velocity", "amplitude", "frequency", "ramp", "file", "time", "displacement"),
+    "drive": (
+        "velocity",
+        "amplitude",
+        "frequency",
+        "ramp",
+        "file",
+        "time",
+        "displacement",
+    ),
     "striker": STRIKER,
     "start": ("velocities", "displacements"),
     "sensors": ("beads", "contacts"),
@@ -62,14 +80,17 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     """
     file = Table(content, "", FILE)
     tables = {
-        name: file.read(name, table(keys), Table({}, name, keys)) for name, keys in _TABLES.items()
+        name: file.read(name, table(keys), Table({}, name, keys))
+        for name, keys in _TABLES.items()
     }
     materials = read_materials(file)
     beads = read_beads(file, materials)
     defects = [*file.read("defects", _defects, ())]
     if "like" in (striker := tables["striker"]):
         if any(defect.entries.get("bead") == 1 for defect in defects):
-            raise SceneError("striker.like and defects name bead 1: one of them is wanted")
+            raise SceneError(
+                "striker.like and defects name bead 1: one of them is wanted"
+            )
         other = {"bead": 1, "like": striker.entries["like"]}
         defects.append(Table(other, "striker", ("bead", "like")))
     row, chain = _chain(read_row(file, beads), beads, defects, folder)
@@ -78,7 +99,9 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     velocities = start.read("velocities", each(finite), ())
     if "striker" in file:
         if "start" in file:
-            raise SceneError("striker and start are both there: one says how the beads start")
+            raise SceneError(
+                "striker and start are both there: one says how the beads start"
+            )
         velocities = (tables["striker"].read("velocity", finite),)
     damping = None
     if "damping" in file:
@@ -90,7 +113,11 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     samples = min(max(1001, 20 * n), 100_000)
     return Scene(
         **chain,
-        **{key: file.entries[key] for key in ("gravity", "precompression") if key in file},
+        **{
+            key: file.entries[key]
+            for key in ("gravity", "precompression")
+            if key in file
+        },
         wall=wall,
         duration=file.read("duration", positive),
         samples=file.entries.get("samples", samples),
@@ -106,7 +133,9 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
 
 def _sensors(count: int) -> Reader:
     """Return a reader of sensors: a list of numbers from 1 to ``count``, or "all"."""
-    return lambda value, name: range(count) if value == "all" else places(count)(value, name)
+    return lambda value, name: (
+        range(count) if value == "all" else places(count)(value, name)
+    )
 
 
 def _defects(value: Any, name: str) -> list[Table]:
@@ -159,14 +188,22 @@ def _chain(
             masses[defect.read("bead", place(n))] = defect.read("mass", positive)
         elif not row:
             raise SceneError(f"{defect.path('like')} names a bead in a chain of masses")
-    return row, {"masses": masses, "stiffnesses": stiffnesses, "spacings": spacings} | law
+    return row, {
+        "masses": masses,
+        "stiffnesses": stiffnesses,
+        "spacings": spacings,
+    } | law
 
 
-def _wall(given: Table, row: Sequence[Sphere], materials: Mapping[str, Material]) -> float:
+def _wall(
+    given: Table, row: Sequence[Sphere], materials: Mapping[str, Material]
+) -> float:
     if given.one("material", "stiffness") == "stiffness":
         return float(given.read("stiffness", positive))
     if not row:
-        raise SceneError("wall.material is given, but a chain of masses needs wall.stiffness")
+        raise SceneError(
+            "wall.material is given, but a chain of masses needs wall.stiffness"
+        )
     return float(stiffness(row[-1], given.read("material", among(materials))))
 
 
@@ -175,7 +212,9 @@ def _drive(given: Table, units: str, folder: Path) -> Drive:
     motion = dict(given.entries)
     if "file" in given:
         if not isinstance(name := motion.pop("file"), str):
-            raise SceneError(f"drive.file is {shorten(name)}: the name of a CSV file is wanted")
+            raise SceneError(
+                f"drive.file is {shorten(name)}: the name of a CSV file is wanted"
+            )
         file = MeasuredFile.read(folder / name, "time", "displacement")
         check_units(file, units)
         motion |= {name: file.column(name) for name in ("time", "displacement")}

@@ -27,7 +27,12 @@ Errors: residual, tail and rounding."""
 
 @study(
     EXPONENT,
-    option("--masses", callback=quantities, default="1", says="Mass of all beads, or two in turn."),
+    option(
+        "--masses",
+        callback=quantities,
+        default="1",
+        says="Mass of all beads, or two in turn.",
+    ),
 )
 def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
     """Exact solitary wave of the lattice: speed, widths and amplitudes.
@@ -41,7 +46,9 @@ def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
     """
     wave = exact_wave(masses, k)
     numbers = measured(wave)
-    rows = tuple((q, numbers[f"amplitude {q}"], numbers[f"fwhm {q}"]) for q in QUANTITIES)
+    rows = tuple(
+        (q, numbers[f"amplitude {q}"], numbers[f"fwhm {q}"]) for q in QUANTITIES
+    )
     # One row of all numbers; "fwhm force" becomes an entry of fwhm_value.
     columns = tuple(Column(name.replace(" ", "."), error=True) for name in numbers)
     (values,) = Table(columns, (tuple(numbers.values()),)).document()
@@ -70,7 +77,10 @@ _RATIOS = (
 )
 
 
-@study(EXPONENT, option("--count", default=3, says="Number of mass ratios, from the largest down."))
+@study(
+    EXPONENT,
+    option("--count", default=3, says="Number of mass ratios, from the largest down."),
+)
 def resonances(k: float, count: int) -> Report:
     """Mass ratios m2/m1 < 1 of the dimers with a solitary wave.
 
@@ -85,5 +95,8 @@ def resonances(k: float, count: int) -> Report:
         (Table(_RATIOS, rows),),
         panels=(Panel("ξ / D", "force of a contact", tuple(curves)),),
         data={"k_value": waves[0].k}
-        | {c.key: values for c, values in zip(_RATIOS, zip(*rows, strict=True), strict=True)},
+        | {
+            c.key: values
+            for c, values in zip(_RATIOS, zip(*rows, strict=True), strict=True)
+        },
     )

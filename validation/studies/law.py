@@ -43,7 +43,10 @@ from validation.waves.solver import exact_wave
 
 _DRAWS = 1000  # of the coefficients of ln V, for the errors
 _HERTZ = 1.5
-LEAST, MOST = 1.01, 4.0  # k: below, speeds do not depend on force; beyond, R is not known
+LEAST, MOST = (
+    1.01,
+    4.0,
+)  # k: below, speeds do not depend on force; beyond, R is not known
 LARGEST = 700.0  # |ln A|, at most
 _POWER = (Column("", "F = A δ^k"), Column("", "value", error=True))
 _UNITS = "A bead's mass or the distance is 1 as none is given: see --masses, --spacing, --spheres."
@@ -54,14 +57,22 @@ _FEWEST = 6  # pulses: three more than the coefficients of the curvature's fit
 @study(
     click.argument("data", type=click.Path()),
     option("--masses", callback=quantities, says="Mass of a bead; by default 1."),
-    option("--spacing", callback=quantity, says="Distance between bead centers; by default 1."),
+    option(
+        "--spacing",
+        callback=quantity,
+        says="Distance between bead centers; by default 1.",
+    ),
     option(
         "--spheres",
         metavar="FILE",
         type=click.Path(),
         says="File of equal spheres, in place of --masses.",
     ),
-    option("--material", metavar="NAME", says="Material in this file whose modulus E is wanted."),
+    option(
+        "--material",
+        metavar="NAME",
+        says="Material in this file whose modulus E is wanted.",
+    ),
     column_options,
 )
 def law(
@@ -97,8 +108,13 @@ def law(
             raise SceneError("material is given: its E needs --spheres")
         numbers["E"] = _modulus(content, material, fit.hertz)
     # Speeds beside one power, for which ln V is linear in ln F.
-    line = np.exp(np.polyval(np.polyfit(np.log(force), np.log(speed), 1), np.log(force)))
-    curves = (Curve("measured", force, speed, "C0o"), Curve("one power", force, line, "C1-"))
+    line = np.exp(
+        np.polyval(np.polyfit(np.log(force), np.log(speed), 1), np.log(force))
+    )
+    curves = (
+        Curve("measured", force, speed, "C0o"),
+        Curve("one power", force, line, "C1-"),
+    )
     bend = f"curvature of ln V against ln F {fit.curvature.value:.2g} ± {fit.curvature.error:.1g}"
     return Report(
         f"{len(force)} pulses, forces {force[0]:.4g} … {force[-1]:.4g}",
@@ -127,7 +143,9 @@ def _pulses(
     errors = (name for name in ("force_error", "speed_error") if name in file.names)
     read = [file.column(name) for name in ("force", "speed", *errors)]
     if len({*map(len, read)}) > 1:
-        raise SceneError(f"{data}: columns of one length are wanted, not of {[*map(len, read)]}")
+        raise SceneError(
+            f"{data}: columns of one length are wanted, not of {[*map(len, read)]}"
+        )
     order = np.argsort(read[0])
     force, speed, *deviations = (values[order] for values in read)
     if len(force) < _FEWEST or not (force[0] > 0 and speed.min() > 0):
@@ -135,11 +153,15 @@ def _pulses(
             f"{data}: at least {_FEWEST} pulses of positive force and speed are wanted"
         )
     if (different := len(np.unique(force))) < _FEWEST - 2:
-        raise SceneError(f"{data}: {different} different forces: {_FEWEST - 2} or more are wanted")
+        raise SceneError(
+            f"{data}: {different} different forces: {_FEWEST - 2} or more are wanted"
+        )
     if not deviations:
         return force, speed, None
     if len(deviations) != 2 or not min(map(np.min, deviations)) > 0:
-        raise SceneError(f"{data}: force_error and speed_error are wanted together, and positive")
+        raise SceneError(
+            f"{data}: force_error and speed_error are wanted together, and positive"
+        )
     return force, speed, weights(force, speed, *deviations)
 
 
@@ -149,13 +171,17 @@ def _modulus(content: dict[str, Any], material: str, stiffness: Measured) -> Mea
     def contact(E: float) -> float:
         """Return A at a given E."""
         changed = copy.deepcopy(content)
-        given = changed.setdefault("materials", {}).setdefault(material, {"like": material})
+        given = changed.setdefault("materials", {}).setdefault(
+            material, {"like": material}
+        )
         given["E"] = E
         return float(Cell.of_spheres(read_spheres(changed)).stiffnesses[0])
 
     unit = contact(1.0)
     if not contact(2.0) > unit:
-        raise SceneError(f"material is {shorten(material)}: the spheres are not made of it")
+        raise SceneError(
+            f"material is {shorten(material)}: the spheres are not made of it"
+        )
     # Hertz: A = E √(2R)/(3 (1 - ν²)), proportional to E.
     return derived(lambda A: A / unit, stiffness)
 
@@ -212,7 +238,9 @@ class PowerFit:
     A: Measured
     correlation: float  # of k and ln A
     hertz: Measured  # A at k = 3/2
-    curvature: Measured  # coefficient of (ln F)² in a parabola for ln V; 0 for one power
+    curvature: (
+        Measured  # coefficient of (ln F)² in a parabola for ln V; 0 for one power
+    )
     residual: float  # standard deviation of ln V from the fit
 
     @property
@@ -221,7 +249,9 @@ class PowerFit:
         return abs(self.curvature.value) <= self.curvature.error
 
 
-def weights(force: Array, speed: Array, force_error: Array, speed_error: Array) -> Array:
+def weights(
+    force: Array, speed: Array, force_error: Array, speed_error: Array
+) -> Array:
     """Return the weights (N,) of pulses, from the standard deviations of their forces and speeds.
 
     A residual of ln V = slope · ln F + constant has the variance (σ_V/V)² + (slope σ_F/F)², with
@@ -231,7 +261,9 @@ def weights(force: Array, speed: Array, force_error: Array, speed_error: Array) 
     return np.asarray(1 / np.hypot(speed_error / speed, slope * force_error / force))
 
 
-def fit_power(medium: Medium, force: Array, speed: Array, weight: Array | None = None) -> PowerFit:
+def fit_power(
+    medium: Medium, force: Array, speed: Array, weight: Array | None = None
+) -> PowerFit:
     """Fit one power F = A δ^k to peak forces and speeds (N,), N ≥ 4, by least squares of ln V.
 
     weight : (N,), see `weights`; by default all pulses weigh the same.
@@ -250,7 +282,9 @@ def fit_power(medium: Medium, force: Array, speed: Array, weight: Array | None =
         log = _interval(log_A)
         error = log.error + k * medium.ratio_error  # A ~ R^{-k}
         if not abs(log.value) + error < LARGEST:
-            raise SceneError(f"A is e^({log}) by the best fit: this is no number of a computer")
+            raise SceneError(
+                f"A is e^({log}) by the best fit: this is no number of a computer"
+            )
         return Measured(math.exp(log.value), math.exp(log.value + error))
 
     return PowerFit(
@@ -266,7 +300,9 @@ def fit_power(medium: Medium, force: Array, speed: Array, weight: Array | None =
 def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, float]:
     """Fit a polynomial in x - middle; return coefficients (degree + 1, 1 + draws) and middle."""
     w = np.ones_like(x) if weight is None else weight
-    middle = float(np.average(x, weights=w**2))  # slope and constant are uncorrelated about it
+    middle = float(
+        np.average(x, weights=w**2)
+    )  # slope and constant are uncorrelated about it
     best, covariance = np.polyfit(x - middle, y, degree, w=w, cov="unscaled")
     freedom = len(x) - degree - 1
     scatter = np.sum((w * (y - np.polyval(best, x - middle))) ** 2) / freedom

@@ -30,7 +30,10 @@ from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import carrying
 
 EXPONENTS = (sp.Rational(3, 2), sp.Rational(5, 4), sp.Rational(11, 10))
-EQUAL, LIGHT = sp.Integer(1), sp.Rational(1, 1000)  # ω = m2/m1; effects of LIGHT² do not show
+EQUAL, LIGHT = (
+    sp.Integer(1),
+    sp.Rational(1, 1000),
+)  # ω = m2/m1; effects of LIGHT² do not show
 PLACES = (4, 6, 8)  # supports run
 TOLERANCE = 1e-9  # rtol: the pulse sheds more than the integrator loses
 QUANTITIES = ("FWHM of force", "FWHM of strain", "support π/β", "speed V_s at B = 1")
@@ -68,7 +71,11 @@ _COLUMNS = (
     Column("theory"),
     Column("theory_value", "theory", format=".5g"),
     Column("lattice", "lattice", error=True),
-    Column("error_value", "error", format=lambda error: percent(error if abs(error) > 1e-9 else 0)),
+    Column(
+        "error_value",
+        "error",
+        format=lambda error: percent(error if abs(error) > 1e-9 else 0),
+    ),
     Column("bound_value", "bound", format=lambda bound: percent(bound).lstrip("+")),
     Column("ok", "holds"),
 )
@@ -79,7 +86,9 @@ lattice's number over the last stretch, and the rounding of its seven digits, wh
 have."""
 
 Case = tuple[sp.Rational, sp.Rational]  # k and ω of one run
-Row = tuple[tuple[Any, ...], Finding]  # cells below `_COLUMNS`, and the error as a finding
+Row = tuple[
+    tuple[Any, ...], Finding
+]  # cells below `_COLUMNS`, and the error as a finding
 
 
 @study()
@@ -97,7 +106,8 @@ def limits(progress: Progress[Case] = iter) -> Report:
     for omega in (EQUAL, LIGHT):
         alike = [waves[k, omega] for k in EXPONENTS]
         theory = zip(
-            *((w.fwhm("force"), w.fwhm("strain"), w.width, w.speed(1)) for w in alike), strict=True
+            *((w.fwhm("force"), w.fwhm("strain"), w.width, w.speed(1)) for w in alike),
+            strict=True,
         )
         for quantity, values in zip(QUANTITIES, theory, strict=True):
             measured = [lattice[k, omega][quantity] for k in EXPONENTS]
@@ -144,7 +154,9 @@ def _panel(rows: Sequence[Row], omega: sp.Rational) -> Panel:
     return Panel("k - 1", "|theory/lattice - 1|", tuple(curves), "xy", title)
 
 
-def lattice_wave(wave: TravelingWave, places: Sequence[float] = PLACES) -> dict[str, Measured]:
+def lattice_wave(
+    wave: TravelingWave, places: Sequence[float] = PLACES
+) -> dict[str, Measured]:
     """Measure `QUANTITIES` of the pulse that the theory's wave of peak strain 1 becomes.
 
     places : distances, in supports, at which the pulse is measured: the last one gives the numbers,
@@ -162,7 +174,9 @@ def lattice_wave(wave: TravelingWave, places: Sequence[float] = PLACES) -> dict[
         compact.along(x[:-1] + 0.5, "strain"),
         compact.along(x, "velocity"),
         k=k,
-        contact_sensors=[sensor + side for sensor in sensors for side in range(2 * size)],
+        contact_sensors=[
+            sensor + side for sensor in sensors for side in range(2 * size)
+        ],
         duration=(beads - start - support / 4) / V,
     )
     run = simulate(scene, rtol=TOLERANCE)
@@ -173,7 +187,10 @@ def lattice_wave(wave: TravelingWave, places: Sequence[float] = PLACES) -> dict[
         contacts = []
         for last in range(sensor, sensor + size):
             force = run.signal("contact", last + size)
-            pulse, before = highest_pulse(force), highest_pulse(run.signal("contact", last))
+            pulse, before = (
+                highest_pulse(force),
+                highest_pulse(run.signal("contact", last)),
+            )
             strain = highest_pulse(run.signal("contact", last + size, "compression"))
             V = speed(before, pulse, size)
             reach = 0.6 * support / V
@@ -189,7 +206,10 @@ def lattice_wave(wave: TravelingWave, places: Sequence[float] = PLACES) -> dict[
 
 
 def quantity_rows(
-    quantity: str, omega: sp.Rational, theory: Sequence[sp.Expr], lattice: Sequence[Measured]
+    quantity: str,
+    omega: sp.Rational,
+    theory: Sequence[sp.Expr],
+    lattice: Sequence[Measured],
 ) -> list[Row]:
     """Compare a quantity at each k, and the order and coefficient of its error as ε → 0."""
     law = LEADING_POWERS[quantity]
@@ -199,26 +219,51 @@ def quantity_rows(
     slack = 0.0 if omega == 1 else 20 * float(omega)
 
     def order(*values: float) -> float:
-        return float(np.polyfit(np.log(epsilon), np.log(np.abs(numbers / values - 1)), 1)[0])
+        return float(
+            np.polyfit(np.log(epsilon), np.log(np.abs(numbers / values - 1)), 1)[0]
+        )
 
     def coefficient(*values: float) -> float:
-        return float(np.polyfit(epsilon, (numbers / values - 1) / epsilon**law.order, 2)[-1])
+        return float(
+            np.polyfit(epsilon, (numbers / values - 1) / epsilon**law.order, 2)[-1]
+        )
 
     compared_numbers: list[tuple[str, str, Any, sp.Expr, Measured, float]] = [
         (quantity, str(k), k, value, measured, law.constant * float(k - 1) ** law.order)
         for k, value, measured in zip(EXPONENTS, theory, lattice, strict=True)
     ]
     orders, coefficients = derived(order, *lattice), derived(coefficient, *lattice)
-    name, limit = f"{quantity}: order of its error", f"{quantity}: error/(k-1)^{law.order} at k → 1"
+    name, limit = (
+        f"{quantity}: order of its error",
+        f"{quantity}: error/(k-1)^{law.order} at k → 1",
+    )
     compared_numbers += [
         (name, "order", None, sp.Integer(law.order), orders, law.order_bound),
-        (limit, "→ 1", None, law.coefficient, coefficients, law.coefficient_bound + slack),
+        (
+            limit,
+            "→ 1",
+            None,
+            law.coefficient,
+            coefficients,
+            law.coefficient_bound + slack,
+        ),
     ]
     rows = []
     for name, kind, k, expected, number, bound in compared_numbers:
         value = float(sp.N(expected, 17))
         error = value / number.value - 1
         finding = Finding(name, error, -bound, bound, number.relative_error)
-        cells = quantity, kind, k, omega, expected, value, number, error, bound, finding.ok
+        cells = (
+            quantity,
+            kind,
+            k,
+            omega,
+            expected,
+            value,
+            number,
+            error,
+            bound,
+            finding.ok,
+        )
         rows.append(((name, *cells), finding))
     return rows

@@ -27,7 +27,15 @@ from typing import Any
 import scipy
 import sympy as sp
 
-from lwa import Cell, Dimer, PhysicalWave, Sphere, TravelingWave, canonical_wave, homogenize
+from lwa import (
+    Cell,
+    Dimer,
+    PhysicalWave,
+    Sphere,
+    TravelingWave,
+    canonical_wave,
+    homogenize,
+)
 from lwa.base.exact import number
 from lwa.base.progress import Progress
 from lwa.expansion.physical import GRAVITY
@@ -46,9 +54,16 @@ from validation.scenes.checks import between, positive
 from validation.scenes.scene import Scene
 
 HERTZ = sp.Rational(3, 2)
-BEADS, SENSORS, VELOCITY = 38, (15, 34), 1.37  # sensors are numbered from the striker, 1; in m/s
+BEADS, SENSORS, VELOCITY = (
+    38,
+    (15, 34),
+    1.37,
+)  # sensors are numbered from the striker, 1; in m/s
 LIKE = (15, 33), (16, 34)  # beads of one kind, both steel and both PTFE
-TOLERANCES = (1e-10, 1e-9)  # rtol of the run that counts and of the run that gives its errors
+TOLERANCES = (
+    1e-10,
+    1e-9,
+)  # rtol of the run that counts and of the run that gives its errors
 SOURCES = ("F_m", "striker")
 """Names of the quantities that set the theory's amplitude."""
 
@@ -58,8 +73,14 @@ MODULI = (1.46e9, 0.6e9)  # of PTFE, in Pa: dynamic, as in the paper, and nomina
 STATED = {"m1 ≫ m2": 0.092, "m2/m1 = 0.27": 0.025, "m1 = m2": 0.228}
 """Lines of figure 3b → errors of the FWHM that the paper states, without a sign."""
 
-FIRST_BEAD = 10  # from here on the width no longer changes on its way: the average starts here
-_UNITS = {"speed": "m/s", "peak": "N", "FWHM": "sites"}  # by the first word; µs "in time"
+FIRST_BEAD = (
+    10  # from here on the width no longer changes on its way: the average starts here
+)
+_UNITS = {
+    "speed": "m/s",
+    "peak": "N",
+    "FWHM": "sites",
+}  # by the first word; µs "in time"
 
 
 _COLUMNS = (
@@ -87,7 +108,10 @@ def chain_cell(N: int = 1, ptfe: Sphere = PTFE_BEAD) -> Cell:
 
 
 def recorded_chain(
-    sensors: Sequence[int], velocity: float = VELOCITY, N: int = 1, ptfe: Sphere = PTFE_BEAD
+    sensors: Sequence[int],
+    velocity: float = VELOCITY,
+    N: int = 1,
+    ptfe: Sphere = PTFE_BEAD,
 ) -> Scene:
     """Return the N:1 chain of steel and PTFE, struck by its first bead, until the pulse has run to
     the wall and back.
@@ -163,7 +187,9 @@ def theory_numbers(wave: PhysicalWave) -> dict[str, float]:
 
     def train(peak: float, fwhm: float) -> Train:
         half, times = fwhm / V / 2, {i: i * DIAMETER / V for i in range(1, BEADS + 1)}
-        return Train({i: Pulse(t, peak, t - half, t + half) for i, t in times.items()}, DIAMETER)
+        return Train(
+            {i: Pulse(t, peak, t - half, t + half) for i, t in times.items()}, DIAMETER
+        )
 
     beads = train(float(wave.bead_force), bead_fwhm(wave.wave))
     contacts = train(float(wave.contact_force), float(wave.fwhm("force")))
@@ -194,9 +220,13 @@ def numbers(beads: Train, contacts: Train) -> dict[str, float]:
 
 def of_momentum(wave: TravelingWave, momentum: float) -> PhysicalWave:
     """Return the theory's wave with a given momentum; `SceneError` unless it is positive."""
-    ratio = positive(momentum, "momentum") / number(PhysicalWave(wave, sp.S.One).momentum)
+    ratio = positive(momentum, "momentum") / number(
+        PhysicalWave(wave, sp.S.One).momentum
+    )
     # The momentum is proportional to F^{(k + 1)/(2k)}.
-    return PhysicalWave(wave, math.exp(math.log(ratio) * number(2 * wave.k / (wave.k + 1))))
+    return PhysicalWave(
+        wave, math.exp(math.log(ratio) * number(2 * wave.k / (wave.k + 1)))
+    )
 
 
 def bead_fwhm(wave: CompactWave) -> float:
@@ -207,10 +237,14 @@ def bead_fwhm(wave: CompactWave) -> float:
     def force(x: float) -> float:
         """Return a bead's force: cos^p(β(x ± D/2)) summed, p = 2k/(k-1), each 0 off its arch."""
         sides = (beta * (x + side) for side in (-D / 2, D / 2))
-        return math.fsum(math.cos(y) ** (2 * k / (k - 1)) for y in sides if abs(y) < math.pi / 2)
+        return math.fsum(
+            math.cos(y) ** (2 * k / (k - 1)) for y in sides if abs(y) < math.pi / 2
+        )
 
     half, end = force(0.0) / 2, (math.pi / beta + D) / 2
-    return 2 * float(scipy.optimize.brentq(lambda x: force(x) - half, 0, end, xtol=1e-14 * end))
+    return 2 * float(
+        scipy.optimize.brentq(lambda x: force(x) - half, 0, end, xtol=1e-14 * end)
+    )
 
 
 def _panel(run: Run, theory: PhysicalWave) -> Panel:
@@ -220,7 +254,9 @@ def _panel(run: Run, theory: PhysicalWave) -> Panel:
         (force,) = run.bead_force[[j == bead - 1 for j in run.scene.bead_sensors]]
         wave = theory.curve(run.time - pulse.arrival)
         curves.append(Curve(f"bead {bead}, lattice", 1e6 * run.time, force, f"C{i}-"))
-        curves.append(Curve(f"bead {bead}, theory by F_m", 1e6 * run.time, wave, f"C{i}--"))
+        curves.append(
+            Curve(f"bead {bead}, theory by F_m", 1e6 * run.time, wave, f"C{i}--")
+        )
     return Panel("time (µs)", "force, mean of the bead's contacts (N)", tuple(curves))
 
 
@@ -233,7 +269,9 @@ _DROPS = (
 )
 _WIDTHS = (
     Column("line", "FWHM for"),
-    Column("stated_error_value", "the paper's error", format=lambda e: f"{100 * e:.1f} %"),
+    Column(
+        "stated_error_value", "the paper's error", format=lambda e: f"{100 * e:.1f} %"
+    ),
     Column("error_value", "here", format=percent),
 )
 _WIDTH_NOTE = """\
@@ -257,7 +295,9 @@ def figures(progress: Progress[Any] = iter) -> Report:
     for N, run in records.items():
         beads = zip(RECORDED[N], run.bead_force, strict=True)
         force = tuple(Curve(f"bead {bead}", 1e6 * run.time, row) for bead, row in beads)
-        panels.append(Panel("time (µs)", "force of the bead (N)", force, title=f"{N}:1 chain"))
+        panels.append(
+            Panel("time (µs)", "force of the bead (N)", force, title=f"{N}:1 chain")
+        )
     for i, E in enumerate(MODULI):
         _, _, V, F, theory = zip(*(row for row in rows if row[0] == E), strict=True)
         exponents.append(exponent(F, V))
@@ -271,7 +311,10 @@ def figures(progress: Progress[Any] = iter) -> Report:
             Table(_DROPS, tuple(rows), "rows"),
             Table(_WIDTHS, tuple(stated_errors()), "widths", note=_WIDTH_NOTE),
         ),
-        panels=(*panels, Panel("peak force $F_m$ (N)", "speed $V_s$ (m/s)", tuple(curves), "xy")),
+        panels=(
+            *panels,
+            Panel("peak force $F_m$ (N)", "speed $V_s$ (m/s)", tuple(curves), "xy"),
+        ),
         notes=(f"V_s ~ F_m^e: e = {fitted}; the paper fits 0.1666.",),
         data={
             "scaling": {
@@ -279,7 +322,12 @@ def figures(progress: Progress[Any] = iter) -> Report:
                 "exponent_error_value": exponents[0].error,
             },
             "forces": [
-                {"N": N, "beads": RECORDED[N], "time_value": r.time, "force_value": r.bead_force}
+                {
+                    "N": N,
+                    "beads": RECORDED[N],
+                    "time_value": r.time,
+                    "force_value": r.bead_force,
+                }
                 for N, r in records.items()
             ],
         },
@@ -295,7 +343,10 @@ def cells_of_lines() -> tuple[Cell, ...]:
     """Return the unit cells of the lines `STATED`: the chain's contacts, and three masses m2."""
     cell = chain_cell()
     heavy, light = cell.masses
-    contacts: dict[str, Any] = {"stiffnesses": cell.stiffnesses, "spacing": cell.spacing}
+    contacts: dict[str, Any] = {
+        "stiffnesses": cell.stiffnesses,
+        "spacing": cell.spacing,
+    }
     # the first for m2 → 0, exact to 12 digits
     return tuple(Dimer(heavy, m2, **contacts) for m2 in (heavy / 10**12, light, heavy))
 
@@ -312,15 +363,24 @@ def stated_errors() -> Iterator[tuple[str, float, float]]:
         yield line, stated, float(wave.fwhm("force", "time")) / contacts.fwhm - 1
 
 
-def scaling(E: float, tolerances: tuple[float, float] = TOLERANCES) -> list[tuple[Any, ...]]:
+def scaling(
+    E: float, tolerances: tuple[float, float] = TOLERANCES
+) -> list[tuple[Any, ...]]:
     """Return the rows of figure 3a, below `_DROPS`, for a Young's modulus of PTFE."""
     ptfe = replace(PTFE_BEAD, material=replace(PTFE, E=E))
     # A striker dropped from the height h has the velocity √(2gh).
-    drops = [recorded_chain(SENSORS, math.sqrt(2 * float(GRAVITY) * h), ptfe=ptfe) for h in HEIGHTS]
-    fine, coarse = ([*map(Train.of, simulate_many(drops, rtol=rtol))] for rtol in tolerances)
+    drops = [
+        recorded_chain(SENSORS, math.sqrt(2 * float(GRAVITY) * h), ptfe=ptfe)
+        for h in HEIGHTS
+    ]
+    fine, coarse = (
+        [*map(Train.of, simulate_many(drops, rtol=rtol))] for rtol in tolerances
+    )
     wave, rows = canonical_wave(chain_cell(ptfe=ptfe), HERTZ), []
     for height, train, less in zip(HEIGHTS, fine, coarse, strict=True):
-        numbers = compared(lambda x: {"V": x.speed, "F": x.peak}, train, less, tolerances[0])
+        numbers = compared(
+            lambda x: {"V": x.speed, "F": x.peak}, train, less, tolerances[0]
+        )
         theory = float(wave.at_force(numbers["F"].value, of="bead").speed)
         rows.append((E, height, numbers["V"], numbers["F"], theory))
     return rows

@@ -81,17 +81,25 @@ def pulses(
         number = 1
         try:
             for pulse in noisy_pulses(time, force):
-                found.append(Reading(kind, place, pulse.numbers, pulse.base, pulse=number))
+                found.append(
+                    Reading(kind, place, pulse.numbers, pulse.base, pulse=number)
+                )
                 number += 1
         except MeasureError as error:
             found.append(Reading(kind, place, {}, math.nan, str(error), number))
         curves.append(Curve(found[-1].name, time, force, f"C{i}-"))
     firsts = [reading for reading in found if reading.pulse == 1]
     if all(first.missing for first in firsts):
-        raise MeasureError(f"{records}: no sensor has a pulse: {found[0].name}: {found[0].missing}")
-    labels = ("arrival (s)", "peak (N)", "FWHM (s)") if si else ("arrival", "peak", "FWHM")
+        raise MeasureError(
+            f"{records}: no sensor has a pulse: {found[0].name}: {found[0].missing}"
+        )
+    labels = (
+        ("arrival (s)", "peak (N)", "FWHM (s)") if si else ("arrival", "peak", "FWHM")
+    )
     lengths = dict(zip(SPEEDS, (1.0,) if apart is None else (1.0, apart), strict=False))
-    places = [{name: r.places[0] * size for name, size in lengths.items()} for r in firsts]
+    places = [
+        {name: r.places[0] * size for name, size in lengths.items()} for r in firsts
+    ]
     speeds = speeds_between(firsts, places, math.hypot)  # independent noise
     tables, missing = reading_tables(found, speeds, labels, si, math.hypot)
     axes = ("time (s)", "force (N)") if si else ("time", "force")
@@ -102,7 +110,10 @@ def pulses(
 
 _COLUMNS = (
     *(Column("", "first pulse"), Column("kind"), Column("number"), Column("quantity")),
-    *(Column(name, name, error=True) for name in ("simulated", "measured", "difference")),
+    *(
+        Column(name, name, error=True)
+        for name in ("simulated", "measured", "difference")
+    ),
 )
 _LABELS = dict(zip(READINGS, ("arrival", "peak dynamic force", "FWHM"), strict=True))
 _COMPARED = (
@@ -142,7 +153,9 @@ def compare(
     rows: list[tuple[Any, ...]] = []
     curves: list[Curve] = []
     shift, first, start = 0.0, "", Measured(0.0, 0.0)
-    for i, (reading, track) in enumerate(zip(simulation.sensors, simulation.tracks, strict=True)):
+    for i, (reading, track) in enumerate(
+        zip(simulation.sensors, simulation.tracks, strict=True)
+    ):
         if reading.name not in records:
             continue
         if reading.missing:
@@ -152,8 +165,14 @@ def compare(
             first, start = reading.name, pulse["arrival"]
             shift = reading.numbers["arrival"].value - start.value
         arrival = pulse["arrival"]
-        error = arrival.error if reading.name == first else math.hypot(arrival.error, start.error)
-        pulse["arrival"] = Measured(arrival.value + shift, arrival.value + shift + error)
+        error = (
+            arrival.error
+            if reading.name == first
+            else math.hypot(arrival.error, start.error)
+        )
+        pulse["arrival"] = Measured(
+            arrival.value + shift, arrival.value + shift + error
+        )
         for name, quantity in _LABELS.items():
             ours, theirs = reading.numbers[name], pulse[name]
             less = theirs.value - ours.value
@@ -168,14 +187,21 @@ def compare(
     return Report(
         str(chain),
         (Table(_COLUMNS, tuple(rows), "rows"),),
-        panels=(Panel(label("time"), label("dynamic force"), tuple(curves), legend_above=True),),
+        panels=(
+            Panel(
+                label("time"), label("dynamic force"), tuple(curves), legend_above=True
+            ),
+        ),
         notes=(_COMPARED.format(unit, first),),
         data={"shift_value": shift},
     )
 
 
 def _read(
-    file: str, chain: Scene, renamed: Mapping[str, str] | None, units: Mapping[str, str] | None
+    file: str,
+    chain: Scene,
+    renamed: Mapping[str, str] | None,
+    units: Mapping[str, str] | None,
 ) -> dict[str, tuple[Array, Array, dict[str, Measured]]]:
     """Read measured forces at sensors of a scene, at least one.
 
@@ -199,5 +225,7 @@ def _read(
                 raise MeasureError(f"{file}: {name}: {error}") from None
             records[name] = time, force - pulse.base, dict(pulse.numbers)
     if not records:
-        raise SceneError(f"{file}: no column is {' or '.join(f'{name} force' for name in names)}")
+        raise SceneError(
+            f"{file}: no column is {' or '.join(f'{name} force' for name in names)}"
+        )
     return records

@@ -65,7 +65,9 @@ def report(recording: Recording, every: bool = False) -> Report:
     with a wall; with damping the energy ``dissipated_value``, with a drive its ``work_value``.
     """
     run, scene = recording.run, recording.run.scene
-    momentum = "not conserved" if (p := run.momentum_drift) is None else f"drift {p:.0e}"
+    momentum = (
+        "not conserved" if (p := run.momentum_drift) is None else f"drift {p:.0e}"
+    )
     title = f"{scene}, energy drift {run.energy_drift:.0e}"
     data = {
         "energy_drift_value": run.energy_drift,
@@ -78,11 +80,18 @@ def report(recording: Recording, every: bool = False) -> Report:
         data["work_value"] = run.work
         title += f", work {run.work:.6g}"
     which = "All pulses" if every else _FIRST
-    note = _NOTE.format(which, scene.units or "the scene's own") + _DYNAMIC * any(scene.load)
+    note = _NOTE.format(which, scene.units or "the scene's own") + _DYNAMIC * any(
+        scene.load
+    )
     peak = "peak dynamic force" if any(scene.load) else "peak force"
     labels = [run.label(name) for name in ("arrival", peak, "FWHM")]
     tables, missing = reading_tables(
-        recording.sensors, recording.speeds, labels, bool(scene.units), operator.add, every
+        recording.sensors,
+        recording.speeds,
+        labels,
+        bool(scene.units),
+        operator.add,
+        every,
     )
     return Report(
         f"{title}, momentum {momentum}",
@@ -124,14 +133,22 @@ def reading_tables(
     for r in (r for r in sensors if every or r.pulse == 1):
         before = arriving.get(r.name, {}) if r.pulse == 1 else {}
         row = [r.name, r.kind, *r.places, *([r.pulse] if every else [])]
-        row += [*map(r.numbers.get, READINGS), r.static, r.missing, *map(before.get, SPEEDS)]
+        row += [
+            *map(r.numbers.get, READINGS),
+            r.static,
+            r.missing,
+            *map(before.get, SPEEDS),
+        ]
         pulses.append(tuple(row))
     speed_columns = [Column("", "speed"), Column("kind"), Column("from"), Column("to")]
     units = ("sites/s", "m/s") if si else ("sites/time", "length/time")
     for name, label in zip(SPEEDS, units, strict=True):
         speed_columns.append(Column(name, label, error=True))
     speed_columns.append(Column("missing"))
-    legs = ((r.name, r.kind, *r.places, *map(r.numbers.get, SPEEDS), r.missing) for r in speeds)
+    legs = (
+        (r.name, r.kind, *r.places, *map(r.numbers.get, SPEEDS), r.missing)
+        for r in speeds
+    )
     tables = [
         Table(tuple(columns), tuple(pulses), "sensors"),
         Table(tuple(speed_columns), tuple(legs), "speeds"),
@@ -148,7 +165,14 @@ def reading_tables(
             Column("ratio", "peak/first", error=True),
         )
         rows = [
-            (r.name, r.kind, *r.places, r.pulse, back, *map(r.numbers.get, ("delay", "ratio")))
+            (
+                r.name,
+                r.kind,
+                *r.places,
+                r.pulse,
+                back,
+                *map(r.numbers.get, ("delay", "ratio")),
+            )
             for r, back in later
             if not r.missing
         ]
@@ -163,7 +187,9 @@ def reading_tables(
 
 def keys() -> str:
     """Return the list of the keys of a scene file, with examples."""
-    return (resources.files("validation.scenes") / "keys.toml").read_text(encoding="utf-8")
+    return (resources.files("validation.scenes") / "keys.toml").read_text(
+        encoding="utf-8"
+    )
 
 
 def _print(context: click.Context, given: click.Parameter, name: Any) -> None:
@@ -227,11 +253,15 @@ def run(
     """A scene from a file, TOML or JSON: arrival, peak force, FWHM and speed at its sensors."""
     chain = scenefile.read_scene(scene)
     if out is not None and out.exists() and out.samefile(scene):
-        raise SceneError(f"out is {out}: it is the scene's own file, which would be lost")
+        raise SceneError(
+            f"out is {out}: it is the scene's own file, which would be lost"
+        )
     sensors = chain.bead_sensors or chain.contact_sensors
     if out is not None and out.suffix.lower() == ".csv" and not sensors:
         raise SceneError(f"out is {out}, but the scene names no sensors")
-    recording = record(chain, method=method, rtol=rtol, every=pulses, progress=run_progress)
+    recording = record(
+        chain, method=method, rtol=rtol, every=pulses, progress=run_progress
+    )
     result = report(recording, every=pulses)
     if out is None:
         return result

@@ -33,7 +33,10 @@ from validation.report.result import Report, output_file
 from validation.report.table import Column, Table, percent
 from validation.scenes.checks import Failure, SceneError, integer, items
 
-RANGES = {"k": (Rational(21, 20), Rational(6)), "omega": (Rational(1, 100), Rational(100))}
+RANGES = {
+    "k": (Rational(21, 20), Rational(6)),
+    "omega": (Rational(1, 100), Rational(100)),
+}
 """Exponents and mass ratios at which a run of some seconds is enough."""
 
 CLOSURES = {"linear": "paper's closure", "canonical": "full closure, canonical field"}
@@ -55,15 +58,22 @@ contact's force may have several humps, that of the theory has one: the width, o
 is no measure of the theory's error."""
 
 
-def report(ks: Axis, omegas: Axis, points: Sequence[Point], stretch: int = STRETCH) -> Report:
+def report(
+    ks: Axis, omegas: Axis, points: Sequence[Point], stretch: int = STRETCH
+) -> Report:
     """Return the report of points, in rising order of k, then of ω, beside the theories.
 
     Table ``points`` has the missing values' reasons.
     """
-    waves, numbers = theory(ks, omegas), {q: [p.numbers.get(q) for p in points] for q in LABELS}
+    waves, numbers = (
+        theory(ks, omegas),
+        {q: [p.numbers.get(q) for p in points] for q in LABELS},
+    )
     value, error = (
         {
-            name: np.reshape([getattr(x, part, np.nan) for x in row], (len(ks), len(omegas)))
+            name: np.reshape(
+                [getattr(x, part, np.nan) for x in row], (len(ks), len(omegas))
+            )
             for name, row in numbers.items()
         }
         for part in ("value", "error")
@@ -79,14 +89,23 @@ def report(ks: Axis, omegas: Axis, points: Sequence[Point], stretch: int = STRET
             cells.append((Column("", closure, format=percent), off))
     cells += [
         (Column("decay", "decay per site", error=True), numbers["decay"]),
-        (Column("sites", "sites", format="{0[0]} … {0[1]}".format), [p.sites for p in points]),
+        (
+            Column("sites", "sites", format="{0[0]} … {0[1]}".format),
+            [p.sites for p in points],
+        ),
         (Column("strain_width", error=True), numbers["strain_width"]),
         (Column("missing"), [p.missing for p in points]),
     ]
     for closure, wave in waves.items():
-        cells += [(Column(f"theory.{closure}.{q}_value"), x.ravel()) for q, x in wave.items()]
+        cells += [
+            (Column(f"theory.{closure}.{q}_value"), x.ravel()) for q, x in wave.items()
+        ]
     columns, values = zip(*cells, strict=True)
-    missing = [f"k = {p.k}, ω = {p.omega}: {p.missing}" for p in points if p.missing is not None]
+    missing = [
+        f"k = {p.k}, ω = {p.omega}: {p.missing}"
+        for p in points
+        if p.missing is not None
+    ]
     return Report(
         "The steady pulse of a struck dimer chain",
         (Table(columns, tuple(zip(*values, strict=True)), "points", by="k"),),
@@ -104,9 +123,13 @@ def _panels(
     A single curve has the theories beside it.
     """
     over_k = len(omegas) == 1
-    axis, others, x, name = (ks, omegas, "k", _OMEGA) if over_k else (omegas, ks, _OMEGA, "k")
+    axis, others, x, name = (
+        (ks, omegas, "k", _OMEGA) if over_k else (omegas, ks, _OMEGA, "k")
+    )
     for quantity, label in LABELS.items():
-        rows, bars = (grid[quantity].T if over_k else grid[quantity] for grid in (value, error))
+        rows, bars = (
+            grid[quantity].T if over_k else grid[quantity] for grid in (value, error)
+        )
         if log := quantity == "decay":  # a decay below its error is drawn as its error
             rows = np.fmax(rows, bars)
         curves = [
@@ -124,8 +147,13 @@ def theory(ks: Axis, omegas: Axis) -> dict[str, dict[str, Array]]:
     k, omega = np.meshgrid(np.array(ks, float), np.array(omegas, float), indexing="ij")
     scale = np.sqrt(2 * k / (1 + omega))  # τ/t, for A = D = m1 = 1
     cell = Dimer("m1", "m2", spacing=1)
-    waves = {"linear": homogenize(cell).pde.traveling_wave(), "canonical": canonical_wave(cell)}
-    functions = {closure: wave.numeric(missing="nan") for closure, wave in waves.items()}
+    waves = {
+        "linear": homogenize(cell).pde.traveling_wave(),
+        "canonical": canonical_wave(cell),
+    }
+    functions = {
+        closure: wave.numeric(missing="nan") for closure, wave in waves.items()
+    }
     return {
         closure: {
             "width": wave.fwhm(k, omega, "force"),
@@ -146,7 +174,9 @@ def _axis(text: str, name: str) -> Iterator[sp.Expr]:
         yield first
         if others:
             count = integer(others[1], f"the count of {name}", 2, _MOST)
-            yield from (first + (others[0] - first) * i / (count - 1) for i in range(1, count))
+            yield from (
+                first + (others[0] - first) * i / (count - 1) for i in range(1, count)
+            )
 
 
 def _values(given: str | Iterable[Any], name: str) -> tuple[Rational, ...]:
@@ -173,7 +203,10 @@ def measured(
 ) -> list[Point]:
     """Measure the points of a grid that are not yet in the file, by the executor of ``workers``."""
     unkept: tuple[dict[Key, Point], Callable[[Point], None]] = {}, lambda _: None
-    with workers as executor, file.opened() if file else nullcontext(unkept) as (points, keep):
+    with (
+        workers as executor,
+        file.opened() if file else nullcontext(unkept) as (points, keep),
+    ):
         missing = [key for key in product(ks, omegas) if key not in points]
         waiting, done = iter(missing), SimpleQueue[Future[Point]]()
         ahead: set[Future[Point]] = set()
@@ -200,8 +233,14 @@ _RANGES = "values and ranges start:stop:count, separated by commas."
 
 @study(
     option("--k", "ks", default="5/4:3:8", says=f"Exponents of F = δ^k: {_RANGES}"),
-    option("--omega", "omegas", default="1/20:1:20", says=f"Mass ratios m2/m1: {_RANGES}"),
-    option("--stretch", default=STRETCH, says="Cells between two measurements; more at k < 3/2."),
+    option(
+        "--omega", "omegas", default="1/20:1:20", says=f"Mass ratios m2/m1: {_RANGES}"
+    ),
+    option(
+        "--stretch",
+        default=STRETCH,
+        says="Cells between two measurements; more at k < 3/2.",
+    ),
     option(
         "--file",
         metavar="FILE",
@@ -209,7 +248,12 @@ _RANGES = "values and ranges start:stop:count, separated by commas."
         says="File of finished points (.sqlite), to be continued.",
     ),
     option("--jobs", type=int, says="Number of threads; by default one a processor."),
-    option("--cluster", "address", metavar="ADDRESS", says="Dask scheduler, in place of threads."),
+    option(
+        "--cluster",
+        "address",
+        metavar="ADDRESS",
+        says="Dask scheduler, in place of threads.",
+    ),
 )
 def sweep(
     ks: str | Iterable[Any],

@@ -52,7 +52,9 @@ def ample_half_period(masses: Pair, k: float) -> float:
     """Return a half period L: a pulse of equal masses ends within L, a dimer's within 0.6 L."""
     # The strain divided by its peak falls like exp(-3 (k-1) ξ²) near k = 1, like exp(-k^ξ) above.
     length = 1 + 3.7 / math.sqrt(k - 1 if k < 2 else math.log2(k))
-    return length if masses[0] == masses[1] else max(8.0, 1.15 * length * widening(masses))
+    return (
+        length if masses[0] == masses[1] else max(8.0, 1.15 * length * widening(masses))
+    )
 
 
 def points_needed(masses: Pair, k: float, half_period: float) -> int:
@@ -96,7 +98,9 @@ def coefficients(force: Array) -> tuple[Array, Array]:
 
 def periodic_grid(half_period: float, n: int) -> Array:
     """Return the 2n grid points ξ of a period: 0 … L, then from -L to 0."""
-    return np.asarray(half_period / n * np.append(np.arange(n + 1), np.arange(1 - n, 0)))
+    return np.asarray(
+        half_period / n * np.append(np.arange(n + 1), np.arange(1 - n, 0))
+    )
 
 
 class Problem:
@@ -141,11 +145,17 @@ class Problem:
     def responses(self, at: NDArray[np.int_], inverse: Pair) -> Array:
         """Return the rows and columns ``at`` (grid points) of the Jacobian of `strains`."""
         n = self.n
-        plus, minus = (respond(np.full(n + 1, f, complex), inverse, self.L) for f in (1, 1j))
+        plus, minus = (
+            respond(np.full(n + 1, f, complex), inverse, self.L) for f in (1, 1j)
+        )
         minus = 1j * minus
         # Strain due to a force at one place and due to a force at its mirror image, as functions
         # of the difference and of the sum of two places; two periods, as the sum exceeds one.
-        both = (plus, 0 * plus) if self.uniform else ((plus - minus) / 2, (plus + minus) / 2)
+        both = (
+            (plus, 0 * plus)
+            if self.uniform
+            else ((plus - minus) / 2, (plus + minus) / 2)
+        )
         near, mirrored = (np.tile(scipy.fft.irfft(row, 2 * n), 2) for row in both)
 
         def to(j: NDArray[np.int_]) -> Array:
@@ -156,7 +166,9 @@ class Problem:
             return to(at)
         return np.asarray((to(at) + to(-at)) * np.where(at % n == 0, 0.5, 1.0))
 
-    def wave(self, z: Array, c2: float, free: bool = False) -> tuple[Array, float, float]:
+    def wave(
+        self, z: Array, c2: float, free: bool = False
+    ) -> tuple[Array, float, float]:
         """Solve for the wave near the forces ``z`` and squared speed ``c2``.
 
         free : True to impose T = 0 with one more unknown, m2.
@@ -164,10 +176,16 @@ class Problem:
         Raises `numpy.linalg.LinAlgError` if Newton's method does not converge.
         """
         last = (self.inverse[1],) if free else ()
-        size = np.append(np.full(self.count, 2 * self.height), [abs(x) or 1.0 for x in (c2, *last)])
+        size = np.append(
+            np.full(self.count, 2 * self.height), [abs(x) or 1.0 for x in (c2, *last)]
+        )
         start = np.append(z[: self.count] * (self.height / z[0]), (c2, *last))
         x = newton(lambda x: self._step(x, free), start, size)
-        return x[: self.count], float(x[self.count]), float(x[-1]) if free else self.inverse[1]
+        return (
+            x[: self.count],
+            float(x[self.count]),
+            float(x[-1]) if free else self.inverse[1],
+        )
 
     def _step(self, x: Array, free: bool) -> Array:
         """Return the Newton step to be subtracted from the unknowns x."""

@@ -61,7 +61,9 @@ class ExactWave(Pictured):
     def __repr__(self) -> str:
         kind = "solitary" if self.solitary else f"tail {self.tail:.2g}"
         m1, m2 = self.masses
-        return f"ExactWave(masses=({m1:g}, {m2:g}), k={self.k:g}, c={self.c:.12g}, {kind})"
+        return (
+            f"ExactWave(masses=({m1:g}, {m2:g}), k={self.k:g}, c={self.c:.12g}, {kind})"
+        )
 
     @property
     def c(self) -> float:
@@ -81,8 +83,14 @@ class ExactWave(Pictured):
     def times(self, s: float) -> ExactWave:
         """Return the wave with all strains, the background's too, multiplied by s; c² ~ s^{k-1}."""
         s = between(s, "s", 1e-30, 1e30)
-        c2, force, p0 = float(self.c2 * s ** (self.k - 1)), s**self.k, s * self.background
-        return replace(self, c2=c2, even=self.even * force, odd=self.odd * force, background=p0)
+        c2, force, p0 = (
+            float(self.c2 * s ** (self.k - 1)),
+            s**self.k,
+            s * self.background,
+        )
+        return replace(
+            self, c2=c2, even=self.even * force, odd=self.odd * force, background=p0
+        )
 
     def strain(self, xi: ArrayLike, contact: int = 0) -> Array:
         """Strain a(ξ) of the contacts behind beads m1 (contact 0), or b(ξ) of the others (1)."""
@@ -96,7 +104,9 @@ class ExactWave(Pictured):
     def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
         """Velocity of beads m1 (bead 0) or m2 (bead 1) at ξ; a cell far away has no momentum."""
         at, bead = finite(xi, "xi"), integer(bead, "bead", 0)
-        one, two = (float(self._velocity(np.array(self.half_period), i)) for i in (0, 1))
+        one, two = (
+            float(self._velocity(np.array(self.half_period), i)) for i in (0, 1)
+        )
         mean = (one + self.omega * two) / (1 + self.omega)
         return np.where(self._ended(at), 0.0, self._velocity(at, bead) - mean)
 
@@ -134,7 +144,10 @@ class ExactWave(Pictured):
 
     def pictured(self) -> list[Panel]:
         """Panel of strain, force and velocity as functions of ξ, each divided by its peak."""
-        xi, styles = np.linspace(-self.half_period, self.half_period, 2001), ("-", "--", ":")
+        xi, styles = (
+            np.linspace(-self.half_period, self.half_period, 2001),
+            ("-", "--", ":"),
+        )
         curves = (
             Curve(name, xi, self._quantity(name)(xi) / self.peak(name)[1], style)
             for name, style in zip(QUANTITIES, styles, strict=True)
@@ -150,8 +163,13 @@ class ExactWave(Pictured):
     def _strains(self) -> tuple[Array, Array]:
         """Fourier coefficients of e and o."""
         m1, m2 = self.masses
-        odd = self.odd if m1 != m2 else 0 * self.odd  # it is rounding, which 1/q² would enlarge
-        strain = newton.respond(self.even - 1j * odd, (1 / m1, 1 / m2), self.half_period) / self.c2
+        odd = (
+            self.odd if m1 != m2 else 0 * self.odd
+        )  # it is rounding, which 1/q² would enlarge
+        strain = (
+            newton.respond(self.even - 1j * odd, (1 / m1, 1 / m2), self.half_period)
+            / self.c2
+        )
         e, o = strain.real, -strain.imag
         e[0] = e[1::2].sum() - e[2::2].sum()  # the strain is 0 at L
         o[-1] = 0
@@ -159,18 +177,27 @@ class ExactWave(Pictured):
 
     def _velocity(self, xi: ArrayLike, bead: int) -> Array:
         """Velocity up to a constant: the integral of v' = (force ahead - force behind)/(m c)."""
-        sign, q = (-1 if bead % 2 else 1), np.pi / self.half_period * np.arange(1, len(self.even))
-        push = -2 * np.sin(q / 2) * self.even[1:] + sign * 2 * np.cos(q / 2) * self.odd[1:]
+        sign, q = (
+            (-1 if bead % 2 else 1),
+            np.pi / self.half_period * np.arange(1, len(self.even)),
+        )
+        push = (
+            -2 * np.sin(q / 2) * self.even[1:] + sign * 2 * np.cos(q / 2) * self.odd[1:]
+        )
         row = np.append(0.0, -push / q) / (self.masses[bead % 2] * self.c)
         return self._sum(xi, row, 0 * row)
 
     def _sum(self, xi: ArrayLike, even: Array, odd: Array) -> Array:
         """Evaluate the Fourier sum Σ even_j cos(q_j ξ) + odd_j sin(q_j ξ) at any ξ."""
-        rows = np.append(even - 1j * odd, np.zeros(-len(self.even) % _ROW)).reshape(-1, _ROW)
+        rows = np.append(even - 1j * odd, np.zeros(-len(self.even) % _ROW)).reshape(
+            -1, _ROW
+        )
         q = np.pi / self.half_period * np.arange(rows.size)
         # e^{iqξ} of every q as a product of two, of the first 16 q and of every 16th q: special
         # ratios are found in a tenth less time than with a sine and a cosine for every q.
-        first, every = (np.exp(1j * np.multiply.outer(xi, part)) for part in (q[:_ROW], q[::_ROW]))
+        first, every = (
+            np.exp(1j * np.multiply.outer(xi, part)) for part in (q[:_ROW], q[::_ROW])
+        )
         return np.asarray(((first @ rows.T) * every).real.sum(axis=-1))
 
     def _ended(self, xi: ArrayLike) -> NDArray[np.bool_]:
@@ -188,7 +215,9 @@ def at_unit_force(
     tail = 0.0
     if not problem.uniform:
         outside = np.linspace(OUTSIDE * problem.L, problem.L, 2 * len(wave.even))
-        _, tail = summit(lambda x: np.abs(wave.strain(x) - wave.strain(-x)) / 2, outside)
+        _, tail = summit(
+            lambda x: np.abs(wave.strain(x) - wave.strain(-x)) / 2, outside
+        )
     xi = newton.periodic_grid(wave.half_period, 2 * problem.n)
     even, odd = newton.coefficients(wave.force(xi))
     again = replace(wave, even=even, odd=odd)

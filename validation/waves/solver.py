@@ -46,23 +46,33 @@ from validation.waves.newton import continued
 from validation.waves.profile import ExactWave, at_unit_force
 
 FALLEN = 38.0  # e-foldings of a wave on a background from its flanks to L
-LIGHTEST = 1e-12  # background over the peak strain, at least: a lighter one does not show
+LIGHTEST = (
+    1e-12  # background over the peak strain, at least: a lighter one does not show
+)
 SHALLOWEST = 1e-4  # rise of a wave on a background over the peak strain, at least
 LESS = 0.125  # step of the background from wave to wave, at k > 3 on small backgrounds
 STEEP = 3.0  # k above which the theory's wave is too wide to start from
 FARTHEST = 2.0  # step in k from wave to wave above
 NEAR = 1e-7  # relative difference from a special mass ratio: ratios are given in seven digits
-ROUNDING = 1e-13  # relative error of a solitary wave's numbers: a strain's, over its slope
+ROUNDING = (
+    1e-13  # relative error of a solitary wave's numbers: a strain's, over its slope
+)
 MOST = 6  # ratios at one k
 HERTZ, PUBLISHED = 1.5, (0.3428, 0.1548)  # the first ratios at k = 3/2, as published
-_CHANGE = 0.15  # change of √(m1/m2) in one step along k; neighbours differ by 0.2 or more
+_CHANGE = (
+    0.15  # change of √(m1/m2) in one step along k; neighbours differ by 0.2 or more
+)
 
 
 class NoWave(InputError):
     """Failure to find a wave; the message names the wave's parameters."""
 
-    def __init__(self, text: str, masses: newton.Pair, k: float, more: str = "") -> None:
-        super().__init__(f"{text} at k = {k:g}, masses {masses[0]:.10g}, {masses[1]:.10g}{more}")
+    def __init__(
+        self, text: str, masses: newton.Pair, k: float, more: str = ""
+    ) -> None:
+        super().__init__(
+            f"{text} at k = {k:g}, masses {masses[0]:.10g}, {masses[1]:.10g}{more}"
+        )
 
 
 def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWave:
@@ -83,7 +93,9 @@ def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWa
     """
     given = [between(m, "mass", 1e-100, 1e100) for m in items(masses, "masses")]
     if len(given) not in (1, 2):
-        raise SceneError(f"{len(given)} masses: exact waves are found for a cell of 1 or 2 beads")
+        raise SceneError(
+            f"{len(given)} masses: exact waves are found for a cell of 1 or 2 beads"
+        )
     k = between(k, "k", 1.01, 8, "exact waves are found for k from 1.01 to 8")
     wanted = f"0 or {LIGHTEST:g} … 1 - {SHALLOWEST:g} of the peak compression is wanted"
     p0 = between(background, "background", 0, 1 - SHALLOWEST, wanted)
@@ -93,7 +105,9 @@ def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWa
         wave = _uniform(k, p0)
         return replace(wave, masses=(given[0], given[0]), c2=wave.c2 / given[0])
     if p0:
-        raise SceneError(f"background is {p0:g}: under a load exact waves are for equal masses")
+        raise SceneError(
+            f"background is {p0:g}: under a load exact waves are for equal masses"
+        )
     light, heavy = sorted(given)
     between(light / heavy, "ratio of the masses", 0.01, 1)
     wave = _dimer((given[0], given[1]), k)
@@ -111,7 +125,9 @@ def measured(wave: ExactWave) -> dict[str, Measured]:
         values[f"amplitude {name}"] = wave.peak(name)[1]
         values[f"fwhm {name}"] = wave.fwhm(name)
     error = ROUNDING / (1 - wave.background) + wave.residual + wave.tail
-    numbers = {name: Measured(value, value * (1 + error)) for name, value in values.items()}
+    numbers = {
+        name: Measured(value, value * (1 + error)) for name, value in values.items()
+    }
     return numbers | {"tail": Measured(wave.tail, wave.tail + error)}
 
 
@@ -141,7 +157,9 @@ def _pressed(k: float, p0: float) -> ExactWave:
     narrower = float(bare.fwhm("strain") / theory.fwhm("strain"))
     n = max(80, math.ceil(newton.points_needed(pair, k, L) * min(1, 1.3 * narrower)))
     problem = newton.Problem(pair, k, L, n, p0)
-    if k > STEEP and p0 < 0.5:  # the theory's wave is too wide: from the wave on a lower background
+    if (
+        k > STEEP and p0 < 0.5
+    ):  # the theory's wave is too wide: from the wave on a lower background
         lower = _uniform(k, max(0.0, p0 - LESS))
         force, c2 = lower.force(problem.xi), lower.c2
     else:
@@ -195,7 +213,9 @@ def solve(
     return _converged(problem, force, c2 * float(force[0]) ** ((1 - k) / k), free)
 
 
-def _converged(problem: newton.Problem, force: Array, c2: float, free: bool = False) -> ExactWave:
+def _converged(
+    problem: newton.Problem, force: Array, c2: float, free: bool = False
+) -> ExactWave:
     """Return the wave that forces on the grid and c² converge to, see `solve`."""
     masses = problem.masses
     try:
@@ -251,12 +271,20 @@ def _followed(wave: ExactWave, k: float) -> ExactWave:
             expected = (_root(last) - _root(older)) / (e2 - e1) * (e - e2)
             bound = 0.02 + 0.2 * abs(expected)
         ratio = (_root(last) + expected) ** -2
-        exponent = k if e == end else 1 + math.exp(e)  # k itself at the end, without rounding
+        exponent = (
+            k if e == end else 1 + math.exp(e)
+        )  # k itself at the end, without rounding
         following = solve((1.0, ratio), exponent, start=last, free=True)
         change = _root(following) - _root(last)
-        if following.solitary and abs(change) < _CHANGE and abs(change - expected) < bound:
+        if (
+            following.solitary
+            and abs(change) < _CHANGE
+            and abs(change - expected) < bound
+        ):
             return following
-        raise NoWave(f"on the way to k = {k:g} the special ratio is lost", last.masses, last.k)
+        raise NoWave(
+            f"on the way to k = {k:g} the special ratio is lost", last.masses, last.k
+        )
 
     return continued(wave, math.log(wave.k - 1), end, 0.1, at)
 
@@ -273,4 +301,6 @@ def _next(before: ExactWave, last: ExactWave) -> ExactWave:
             if following.solitary and first < _root(following) < end:
                 return following
     limits = f"from {first**-2:.4g} down to {end**-2:.4g}"
-    raise NoWave(f"{limits} the next special mass ratio is not found", last.masses, last.k)
+    raise NoWave(
+        f"{limits} the next special mass ratio is not found", last.masses, last.k
+    )

@@ -15,7 +15,9 @@ def test_bright_breathers_of_a_dimer():
     assert report.data["kind"] == "bright"
     first, second = report.document()["rows"]
     for row in (first, second):
-        assert row["frequency_value"] == pytest.approx(math.sqrt(6) * (1 - row["detuning_value"]))
+        assert row["frequency_value"] == pytest.approx(
+            math.sqrt(6) * (1 - row["detuning_value"])
+        )
         # U = p0 √(32 ν/(k(k-1))), whatever the masses
         U = math.sqrt(32 * row["detuning_value"] / 0.75)
         assert row["amplitude_theory_value"] == pytest.approx(U, rel=1e-12)
@@ -34,7 +36,9 @@ def test_dark_breathers_of_equal_beads():
     errors = []
     for nu in (0.002, 0.001, 0.0005):
         theory = edge.breather(detuning=nu)
-        found = Standing(cell, 1.5, theory, math.ceil(13 * float(theory.width))).numbers()
+        found = Standing(
+            cell, 1.5, theory, math.ceil(13 * float(theory.width))
+        ).numbers()
         amplitude = abs(float(theory.amplitude[0])) / found["amplitude"] - 1
         errors.append([amplitude, float(theory.width) / found["width"] - 1])
         assert amplitude == pytest.approx(2.7 * nu, rel=0.01)
@@ -57,7 +61,9 @@ def test_aluminium_and_steel_at_20_newtons():
     aluminium = Sphere("9.75e-3", "9.525e-3", Material("73.5e9", "0.33"))
     cell = Cell.of_spheres([steel, aluminium])
     edge = LoadedChain(cell, Power("3/2"), 20).bands.edges()[1, 0]
-    theory = envelope(cell, law=Power("3/2"), precompression=20).breather(detuning="1/200")
+    theory = envelope(cell, law=Power("3/2"), precompression=20).breather(
+        detuning="1/200"
+    )
     row = Standing(cell, 1.5, theory, 40, load=20.0).row()
     assert row["frequency_value"] == pytest.approx(edge * 0.995, rel=1e-9)
     assert abs(row["amplitude_off_value"]) < 0.015

@@ -41,7 +41,9 @@ def test_nearer_to_k_1_the_equation_is_better(hertz):
     """A quarter of the width's error, a twentieth of the speed's, a third of the shift's."""
     near = rows(collision(exponents=(sp.Rational(11, 10),)).document())
     for (_, quantity), row in rows(hertz).items():
-        assert abs(near["11/10", quantity]["error_value"]) < abs(row["error_value"]), quantity
+        assert abs(near["11/10", quantity]["error_value"]) < abs(row["error_value"]), (
+            quantity
+        )
 
 
 # The equation by itself
@@ -59,12 +61,16 @@ def test_the_energy_is_conserved(kind):
     assert sp.simplify(density.diff(t) - flux.diff(x) - v * left) == 0
 
 
-@pytest.mark.parametrize(("cell", "k"), [(ONE, "3/2"), (Dimer(1, "1/4", spacing=1), "2")])
+@pytest.mark.parametrize(
+    ("cell", "k"), [(ONE, "3/2"), (Dimer(1, "1/4", spacing=1), "2")]
+)
 def test_a_solitary_wave_goes_round_and_comes_back(cell, k):
     equation = Evolution(cell, Power(k))
     interval = Continuum(equation, 24.0, 256)
     power = sp.Rational(k) - 1
-    pulse = np.cosh(float(power / (2 * sp.sqrt(equation.I))) * interval.x) ** float(-2 / power)
+    pulse = np.cosh(float(power / (2 * sp.sqrt(equation.I))) * interval.x) ** float(
+        -2 / power
+    )
     V = float(equation.speed(1))
     p, v = interval.evolved(pulse, -V * pulse, [0, 24 / V])
     assert p[-1] == pytest.approx(pulse, abs=1e-7)

@@ -8,7 +8,9 @@ from book.studies.disorder import disorder
 
 def test_equal_beads_keep_their_pulse():
     found = disorder(spread=0.0, chains=2, sites=200)
-    assert abs(found.document()["decay_value"]) < 1e-7  # the pulse is still shedding at site 20
+    assert (
+        abs(found.document()["decay_value"]) < 1e-7
+    )  # the pulse is still shedding at site 20
     assert found.document()["decay_error_value"] == 0
 
 
@@ -18,8 +20,13 @@ def test_the_theory_is_the_mean_loss_at_single_beads():
     found = disorder(spread=spread, chains=2).document()
     last, first = found["rows"][-1], found["rows"][0]
     line = found["theory_value"] * (first["site"] - last["site"])
-    e, loss = (np.array([one[f"{n}_value"] for one in found["single"]]) for n in ("excess", "loss"))
-    sides = [np.polynomial.Polynomial.fit(abs(e[s]), loss[s], 4) for s in (e < 0, e > 0)]
+    e, loss = (
+        np.array([one[f"{n}_value"] for one in found["single"]])
+        for n in ("excess", "loss")
+    )
+    sides = [
+        np.polynomial.Polynomial.fit(abs(e[s]), loss[s], 4) for s in (e < 0, e > 0)
+    ]
     mean = sum(side.integ(lbnd=0)(spread) for side in sides) / (2 * spread)
     assert found["theory_value"] == pytest.approx(mean, rel=1e-6)
     assert last["theory_value"] == pytest.approx(line, rel=1e-12)
@@ -38,4 +45,6 @@ def test_more_chains_go_on_with_the_same_ones():
     apart = few["scatter_value"] / np.sqrt(2)
     one, two = few["log_force_value"] - apart, few["log_force_value"] + apart
     third = 3 * more["log_force_value"] - one - two
-    assert more["scatter_value"] == pytest.approx(np.std([one, two, third], ddof=1), rel=1e-9)
+    assert more["scatter_value"] == pytest.approx(
+        np.std([one, two, third], ddof=1), rel=1e-9
+    )

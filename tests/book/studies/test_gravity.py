@@ -19,7 +19,15 @@ def test_the_top_takes_part_of_airys_front(k):
     omega = r * np.exp(1j * np.pi / 6)
     here = far**nu * scipy.special.hankel1e(nu, omega * far)
     flux = omega * top ** (1 - nu) * scipy.special.hankel1e(nu - 1, omega * top)
-    spectrum = -1j * omega * here / flux * np.exp(1j * omega**3 / 3) * np.exp(1j * np.pi / 6) * dr
+    spectrum = (
+        -1j
+        * omega
+        * here
+        / flux
+        * np.exp(1j * omega**3 / 3)
+        * np.exp(1j * np.pi / 6)
+        * dr
+    )
     z = np.linspace(-2.5, 4, 1301)
     front = (np.exp(1j * np.outer(z, omega)) @ spectrum).real
     front /= front[np.argmax(np.abs(front))]
@@ -38,17 +46,24 @@ def test_a_weak_blow(found):
     """The third root, and a prefactor that no other speed law would give."""
     assert found["ok"]
     (row,) = found["rows"]
-    for name, theory in (("exponent", 1 / 3), ("prefactor", row["prefactor_theory_value"])):
+    for name, theory in (
+        ("exponent", 1 / 3),
+        ("prefactor", row["prefactor_theory_value"]),
+    ):
         assert abs(row[f"{name}_value"] - theory) < 2 * row[f"{name}_error_value"]
     assert row["exponent_error_value"] < 3e-3
     assert row["error_value"] == pytest.approx(0, abs=5e-3)
-    constant = front_width(1.0) * (1 / 8) ** (1 / 3)  # Airy's at constant speed: (3 I x/2)^{1/3}
+    constant = front_width(1.0) * (1 / 8) ** (
+        1 / 3
+    )  # Airy's at constant speed: (3 I x/2)^{1/3}
     assert row["prefactor_value"] > 1.2 * constant
 
 
 def test_a_front_depends_neither_on_the_unit_of_mass_nor_on_a_weak_blows_strength():
     one = Upright(numeric_cell((1,)), 1.5, 1000).fronts()[1]
-    assert Upright(numeric_cell(("1e-9",)), 1.5, 1000).fronts()[1] == pytest.approx(one, rel=1e-12)
+    assert Upright(numeric_cell(("1e-9",)), 1.5, 1000).fronts()[1] == pytest.approx(
+        one, rel=1e-12
+    )
     harder = Upright(numeric_cell((1,)), 1.5, 1000, weak=1e-2)
     assert harder.fronts()[1] == pytest.approx(one, rel=5e-4)
 
@@ -57,14 +72,22 @@ def test_a_strong_blow_is_the_solitary_wave_of_its_depth(found):
     """Until that is wider than a weak blow's front, which the weakest of the three follows."""
     strong = found["strong"]
     deep = {row["blow_value"]: row for row in strong}  # the last place of each
-    assert deep[1000]["width_value"] == pytest.approx(deep[1000]["solitary_value"], rel=0.03)
+    assert deep[1000]["width_value"] == pytest.approx(
+        deep[1000]["solitary_value"], rel=0.03
+    )
     assert deep[10]["width_value"] == pytest.approx(deep[10]["front_value"], rel=0.08)
     assert deep[10]["solitary_value"] > 2 * deep[10]["width_value"]
     last, end = [row for row in strong if row["blow_value"] == 10][-2:]
     growth = np.log(end["solitary_value"] / last["solitary_value"])
-    assert growth > 0.45 * np.log(end["site_value"] / last["site_value"])  # the front's is 1/3
-    forces = [row["ratio_value"] * row["site_value"] for row in strong[-len(strong) // 3 :]]
-    assert 0.8 * forces[0] < forces[-1] < forces[0]  # the strongest blow nearly keeps its force
+    assert growth > 0.45 * np.log(
+        end["site_value"] / last["site_value"]
+    )  # the front's is 1/3
+    forces = [
+        row["ratio_value"] * row["site_value"] for row in strong[-len(strong) // 3 :]
+    ]
+    assert (
+        0.8 * forces[0] < forces[-1] < forces[0]
+    )  # the strongest blow nearly keeps its force
     for row in strong:
         least = min(row["solitary_value"], row["front_value"])
         assert 0.7 * least < row["width_value"] < 1.02 * least

@@ -13,8 +13,12 @@ from tests.commands import ended
 def test_a_contact_that_opens_leaves_k_plus_one_orders(k):
     """At k = 3/2 the case contact-loss says so."""
     steps = np.geomspace(0.15, 0.012, 4)
-    slope = np.polyfit(np.log(steps), np.log(study.splitting_errors(k, True, steps)), 1)[0]
-    assert abs(slope - k - 1) < 0.35  # the scatter of an opening's place within its step
+    slope = np.polyfit(
+        np.log(steps), np.log(study.splitting_errors(k, True, steps)), 1
+    )[0]
+    assert (
+        abs(slope - k - 1) < 0.35
+    )  # the scatter of an opening's place within its step
 
 
 def test_the_document_holds_the_case_that_is_asked_for(capsys):
@@ -22,9 +26,13 @@ def test_the_document_holds_the_case_that_is_asked_for(capsys):
     status, out, err = ended(capsys, study.hard.main, *options)
     (contacts,) = json.loads(out)["cases"]
     assert (status, err, contacts["ok"]) == (0, "", True)
-    for curve in contacts["panel"]["curves"]:  # the fitted orders are the slopes of the lines
+    for curve in contacts["panel"][
+        "curves"
+    ]:  # the fitted orders are the slopes of the lines
         slope = np.polyfit(np.log(curve["x_value"]), np.log(curve["y_value"]), 1)[0]
-        assert slope == pytest.approx(contacts[f"order_{curve['label']}_value"], rel=1e-12)
+        assert slope == pytest.approx(
+            contacts[f"order_{curve['label']}_value"], rel=1e-12
+        )
 
 
 def test_all_cases_hold_and_state_a_number():

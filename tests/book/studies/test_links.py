@@ -39,7 +39,9 @@ def test_second_neighbours_by_newton_and_in_a_packing():
 def test_the_theory_of_unlike_links_is_the_limit_of_weak_waves():
     """Both errors fall in proportion to the wave, which no error of an equation would do."""
     lattice = Lattice((1, 1), (Link(0, 1, HERTZ), Link(1, 2, Power(3))))
-    rows = [exactly.Chain("", lattice, 1 + rise, 1.0).cells("") for rise in (0.02, 0.04)]
+    rows = [
+        exactly.Chain("", lattice, 1 + rise, 1.0).cells("") for rise in (0.02, 0.04)
+    ]
     for key, most in (("excess error", 0.002), ("fwhm error", 0.0025)):
         near, far = (row[key] for row in rows)
         assert -most < near < 0
@@ -66,7 +68,9 @@ def test_the_width_of_the_theory_is_its_quadrature(epsilon):
 def test_a_struck_chain(lattice, mass, speeds, widths, rest):
     """Equal beads carry the exact wave; stiff resonators are masses, both up to (ω0/(2πV))^-2."""
     wave, known = loaded_wave(lattice, force=1), exact_wave([1], 1.5)
-    seen = blows.chain(lattice, float(wave.bead_velocity) / blows.STRIKE, float(wave.speed))
+    seen = blows.chain(
+        lattice, float(wave.bead_velocity) / blows.STRIKE, float(wave.speed)
+    )
     speed = known.c * seen.peak ** (1 / 6) / math.sqrt(mass)
     assert seen.speed == pytest.approx(speed, rel=speeds)
     assert seen.fwhm == pytest.approx(known.fwhm("force"), rel=widths)
@@ -79,5 +83,7 @@ def test_a_packing_across_its_rows_is_a_chain():
     A = 2 * math.sqrt(0.75) ** 2.5
     pace = known.c * math.sqrt(A) * (strain * math.sqrt(0.75)) ** 0.25
     seen = blows.packing("across", strain * math.sqrt(0.75) * pace / blows.STRIKE, pace)
-    assert seen.speed == pytest.approx(known.c * math.sqrt(A) * seen.peak**0.25, rel=1e-4)
+    assert seen.speed == pytest.approx(
+        known.c * math.sqrt(A) * seen.peak**0.25, rel=1e-4
+    )
     assert seen.fwhm == pytest.approx(known.fwhm("strain"), rel=1e-4)

@@ -87,7 +87,9 @@ def test_the_engine_returns_to_the_orbit():
         masses=masses, stiffnesses=chain.stiffnesses[:-1], wall=chain.stiffnesses[-1], k=HERTZ,
         precompression=chain.load, displacements=start, duration=100 * found.period, samples=2,
     )  # fmt: skip
-    assert simulate(scene, rtol=1e-12).displacements == pytest.approx(start, abs=1e-7 * size)
+    assert simulate(scene, rtol=1e-12).displacements == pytest.approx(
+        start, abs=1e-7 * size
+    )
     # five harmonics are as good as their residual
     rough = orbit(pinned, found.frequency, found.coefficients, harmonics=5)
     assert rough.amplitude[middle] == pytest.approx(found.amplitude[middle], rel=1e-5)
@@ -98,5 +100,7 @@ def test_without_an_orbit_newtons_method_says_so():
     chain, middle = dimer(21)
     start = np.zeros(21)
     start[middle] = 1e-4
-    with pytest.raises(NoOrbit, match=r"^frequency is 2\.3: Newton's method finds no orbit"):
+    with pytest.raises(
+        NoOrbit, match=r"^frequency is 2\.3: Newton's method finds no orbit"
+    ):
         orbit(chain, 2.3, start)

@@ -36,7 +36,12 @@ def test_equal_beads():
     assert -1e-4 < weak < 0
     assert -1e-3 < even < 10 * weak / 3
     assert -0.025 < strong < -0.005
-    assert -0.0348 < square["rows"][1]["error_value"] < square["rows"][0]["error_value"] < 0
+    assert (
+        -0.0348
+        < square["rows"][1]["error_value"]
+        < square["rows"][0]["error_value"]
+        < 0
+    )
     weak, even, _ = (abs(row["peak_off_value"]) for row in equal["rows"])
     assert weak < 0.01
     assert 2 < even / weak < 3.34
@@ -46,7 +51,9 @@ def test_equal_beads():
 def test_the_strongest_waves_of_all_default_chains_are_measured():
     """A wave in a fourth default chain, of four beads, fell apart: the command had no output."""
     found = rows(ratios=RATIOS[-1:])
-    assert [row["masses"] for row in found] == [[str(m) for m in masses] for masses in CHAINS]
+    assert [row["masses"] for row in found] == [
+        [str(m) for m in masses] for masses in CHAINS
+    ]
     assert all(abs(row["error_value"]) < 0.025 for row in found)
 
 
@@ -57,7 +64,9 @@ def test_masses_matter_to_widths_only():
     one, two = found
     assert two["ratio_value"] == pytest.approx(0.03, rel=2e-3)
     assert two["speed_value"] == pytest.approx(one["speed_value"], abs=2e-5)
-    assert two["fwhm_value"] / one["fwhm_value"] == pytest.approx(math.sqrt(12 / 9), rel=2e-3)
+    assert two["fwhm_value"] / one["fwhm_value"] == pytest.approx(
+        math.sqrt(12 / 9), rel=2e-3
+    )
     assert one["exact_value"] is not None
     assert two["exact_value"] is None
 
@@ -71,8 +80,12 @@ def test_why_dimers_are_worse():
     chain = LoadedChain(Cell([1, "1/2"], spacing=1), Power("3/2"), 1)
     speed = found["speed"] * wave.sound
 
-    q = scipy.optimize.brentq(lambda q: chain.bands.branches(q)[-1] - speed * q, 0.1, np.pi)
-    light = run.bead_velocity[1] - run.bead_velocity[0]  # a contact's rate: no long waves
+    q = scipy.optimize.brentq(
+        lambda q: chain.bands.branches(q)[-1] - speed * q, 0.1, np.pi
+    )
+    light = (
+        run.bead_velocity[1] - run.bead_velocity[0]
+    )  # a contact's rate: no long waves
     start = int(np.argmax(run.contact_force[0])) + 200
     tail = light[start : start + 3000] * np.hanning(3000)
     spectrum = np.abs(np.fft.rfft(tail, 2**17))
@@ -85,7 +98,16 @@ def test_why_dimers_are_worse():
 @pytest.mark.slow
 def test_another_law(capsys):
     """Weak waves of any law: V/c0 - 1 = F″(1)/(6 F′(1)) B, B = F0/F′(1) times the ratio."""
-    options = ("--law", "hertz2:1,2", "--masses", "1", "--ratios", "0.1", "--format", "json")
+    options = (
+        "--law",
+        "hertz2:1,2",
+        "--masses",
+        "1",
+        "--ratios",
+        "0.1",
+        "--format",
+        "json",
+    )
     status, out, _ = ended(capsys, precompressed.main, *options)
     (row,) = json.loads(out)["rows"]
     assert (status, row["exact_value"]) == (0, None)

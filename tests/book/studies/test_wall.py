@@ -61,7 +61,9 @@ def test_the_modulus_is_read_from_the_delay_with_its_error():
     read = modulus(Measured(delay.value, delay.value + 1e-6))
     assert read.value == pytest.approx(70e9, rel=1e-7)
     ends = [echo(read.value + side * read.error)[0].value for side in (1, -1)]
-    assert delay.value - ends[0] == pytest.approx(1e-6, rel=1e-3)  # the stiffer wall errs more
+    assert delay.value - ends[0] == pytest.approx(
+        1e-6, rel=1e-3
+    )  # the stiffer wall errs more
     assert 1e-6 < ends[1] - delay.value < 1.1e-6
     assert 1e-2 < read.relative_error < 5e-2
 

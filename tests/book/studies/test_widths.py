@@ -23,7 +23,9 @@ def test_widths_alternate_from_bead_to_bead(computed):
 
 
 def test_the_width_agrees_with_the_experiment_of_the_paper_command(computed):
-    found = {row["quantity"]: row["lattice_value"] for row in paper().document()["rows"]}
+    found = {
+        row["quantity"]: row["lattice_value"] for row in paper().document()["rows"]
+    }
     late = computed.data["fwhm_value"][computed.data["beads"].index(34)]
     width = late * found["speed V_s"] / DIAMETER
     assert width == pytest.approx(found["FWHM of F_34"], rel=1e-6)

@@ -12,7 +12,11 @@ m1, m2, A1, A2, k = sp.symbols("m1 m2 A1 A2 k", positive=True)
 
 def elements(ring):
     context = fmpq_mpoly_ctx.get(ring.names or ("unused",), "lex")
-    return ring.masses.elements(context), ring.contacts.elements(context), ring.exponent(context)
+    return (
+        ring.masses.elements(context),
+        ring.contacts.elements(context),
+        ring.exponent(context),
+    )
 
 
 def test_ring_elements_convert_back_to_their_expressions():
@@ -28,6 +32,8 @@ def test_ring_elements_convert_back_to_their_expressions():
             ring = Model(cell, Power(exponent)).ring
             fractions, shares, own = elements(ring)
             expected = [*cell.fractions, *cell.shares(exponent), exponent]
-            for element, value in zip([*fractions, *shares, own], expected, strict=True):
+            for element, value in zip(
+                [*fractions, *shares, own], expected, strict=True
+            ):
                 terms = [(tuple(e[: len(ring.names)]), c) for e, c in element.terms()]
                 assert same(ring.expression(terms), value)

@@ -25,4 +25,6 @@ def test_other_expressions_have_no_antiderivative():
     k, r = algebra.context.gens()[0], algebra.r
     assert algebra.antiderivative(r[2] ** 2, k) is None
     assert algebra.antiderivative(r[1] ** 3, k) is None
-    assert algebra.antiderivative(r[1] * r[2], k) is None  # exact only with k r_1^3/2 beside it
+    assert (
+        algebra.antiderivative(r[1] * r[2], k) is None
+    )  # exact only with k r_1^3/2 beside it

@@ -7,7 +7,9 @@ from hypothesis import strategies as st
 from lwa.algebra.rational import factored
 
 x, y = sp.symbols("x y", positive=True)
-leaves = st.sampled_from([x, y, sp.Rational(2, 3), sp.Integer(-3), sp.sqrt(2), x**y, sp.sin(x)])
+leaves = st.sampled_from(
+    [x, y, sp.Rational(2, 3), sp.Integer(-3), sp.sqrt(2), x**y, sp.sin(x)]
+)
 expressions = st.recursive(
     leaves,
     lambda parts: st.one_of(
@@ -27,7 +29,11 @@ def test_factored_expressions_are_equal_and_in_lowest_terms(value):
     # x^{-y} is a symbol of its own there, and 1/p here
     assume(not any((power.exp / y).is_negative for power in value.atoms(sp.Pow)))
     found = factored(value)
-    plain = {sp.sqrt(2): sp.Symbol("r"), x**y: sp.Symbol("p"), sp.sin(x): sp.Symbol("s")}
+    plain = {
+        sp.sqrt(2): sp.Symbol("r"),
+        x**y: sp.Symbol("p"),
+        sp.sin(x): sp.Symbol("s"),
+    }
     difference = sp.cancel((found - value).subs(plain))
     assert difference == 0
     numerator, denominator = sp.fraction(sp.cancel(value.subs(plain)))

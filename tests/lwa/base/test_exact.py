@@ -43,7 +43,9 @@ def test_other_values_are_refused_in_one_line(value):
 
 
 @settings(max_examples=30)
-@given(st.text("0189./-+eEnaimx_ ()'\"*²٣é\n\0"))  # all of Unicode would take seconds to list
+@given(
+    st.text("0189./-+eEnaimx_ ()'\"*²٣é\n\0")
+)  # all of Unicode would take seconds to list
 def test_text_is_read_or_refused_and_never_evaluated(text):
     try:
         result = read_exact(text, "x")

@@ -9,7 +9,11 @@ LONG = sp.Add(*(sp.Symbol(f"x{i}") * (a + b) ** (i + 2) for i in range(12)))
 
 
 def lines(row):
-    text = latex.align([row]).removeprefix("\\begin{align}\n").removesuffix("\n\\end{align}")
+    text = (
+        latex.align([row])
+        .removeprefix("\\begin{align}\n")
+        .removesuffix("\n\\end{align}")
+    )
     return text.split(" \\notag \\\\\n&\\quad ")
 
 

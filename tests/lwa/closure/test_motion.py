@@ -51,7 +51,9 @@ def shifted(f, h):
 
 def tau(f, m):
     """The coefficient of τ^m."""
-    return CONTEXT.from_dict({(i, j, 0): c for (i, j, n), c in f.to_dict().items() if n == m})
+    return CONTEXT.from_dict(
+        {(i, j, 0): c for (i, j, n), c in f.to_dict().items() if n == m}
+    )
 
 
 class Jets:
@@ -67,7 +69,9 @@ class Jets:
         """Σ coefficient · Π jets of one order."""
         total = 0 * ONE
         for jet, coefficient in terms.items():
-            powers = [("x", *power) for power in jet.x] + [("t", *power) for power in jet.t]
+            powers = [("x", *power) for power in jet.x] + [
+                ("t", *power) for power in jet.t
+            ]
             factors = [self(kind, i) for kind, i, e in powers for _ in range(e)]
             total += rational(coefficient) * product(*factors)
         return total
@@ -92,23 +96,37 @@ def acceleration(equation, k, field, velocity, optical):
 def slaved(theory, k, field, velocity):
     """The particles' fields: by the full closure, or the first and the linear ansatz."""
     if theory.closure.name == "linear":
-        ansatz = sum(rational(b) * D**n * dx(field, n) for n, b in theory.ansatz.items())
+        ansatz = sum(
+            rational(b) * D**n * dx(field, n) for n, b in theory.ansatz.items()
+        )
         return [field, rational(theory.amplitude_ratio) * (field + ansatz)]
     jets, w = Jets(k, field, velocity, dx(field)), []
     for i in range(theory.cell.size):
         orders = theory.slaved.get(i, {}).items()
-        w.append(field + product(jets.p, sum(D**n * jets.sum(terms) for n, terms in orders) * ONE))
+        w.append(
+            field
+            + product(jets.p, sum(D**n * jets.sum(terms) for n, terms in orders) * ONE)
+        )
     return w
 
 
 def residuals(theory, equation=None):
     """Residuals of the equations of motion at x = 0, by particle: at D^{k+1} … D^{k+order-1}, and
     on the optical branch, of the law δ^k without a bound, at D^0 … D^{order-1}."""
-    cell, order, k, optical = theory.cell, theory.order, int(theory.k), not theory.pde.acoustic
+    cell, order, k, optical = (
+        theory.cell,
+        theory.order,
+        int(theory.k),
+        not theory.pde.acoustic,
+    )
     equation = theory.pde.coefficients if equation is None else equation
     P = cell.size
-    u = sum(c * X**i for i, c in enumerate([3, 2, 1, -1, 2, 1, -2, 1, 3, -1, 2, 1, 1, -2]))
-    v = sum(c * X**i for i, c in enumerate([1, -1, 2, 1, 1, -3, 2, 1, -1, 1, 2, -1, 1, 1]))
+    u = sum(
+        c * X**i for i, c in enumerate([3, 2, 1, -1, 2, 1, -2, 1, 3, -1, 2, 1, 1, -2])
+    )
+    v = sum(
+        c * X**i for i, c in enumerate([1, -1, 2, 1, 1, -3, 2, 1, -1, 1, 2, -1, 1, 1])
+    )
     a = acceleration(equation, k, u, v, optical)
     # φ_τττ: the wave equation's own derivative along the motion (u + τv, v + τa)
     da = tau(acceleration(equation, k, u + v * TAU, v + a * TAU, optical), 1)
@@ -122,11 +140,18 @@ def residuals(theory, equation=None):
     ]
     left = []
     for i in range(P):
-        mass = cell.masses[i] * theory.pde.time_scale**2 if optical else P * k * cell.fractions[i]
+        mass = (
+            cell.masses[i] * theory.pde.time_scale**2
+            if optical
+            else P * k * cell.fractions[i]
+        )
         inertia = 2 * rational(mass) * tau(w[i], 2) * (1 if optical else D)
         before = force[i - 1] if i else shifted(force[-1], -P)
         left.append(inertia - force[i] + before)
-    return [[residual.to_dict().get((0, j, 0), 0) for j in range(order)] for residual in left]
+    return [
+        [residual.to_dict().get((0, j, 0), 0) for j in range(order)]
+        for residual in left
+    ]
 
 
 @pytest.mark.parametrize(
@@ -159,7 +184,9 @@ def test_every_equation_of_motion_is_satisfied(k, cell, field):
         (5, Cell([2, 3], [1, 3]), "optical"),
     ],
 )
-def test_the_linear_closure_satisfies_the_first_equation_and_leaves_its_defect(k, cell, branch):
+def test_the_linear_closure_satisfies_the_first_equation_and_leaves_its_defect(
+    k, cell, branch
+):
     """With the defect taken off, the wave equation satisfies the second equation of motion."""
     theory = homogenize(cell, 6, k=k, branch=branch)
     first, second = residuals(theory)

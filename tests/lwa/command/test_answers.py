@@ -22,11 +22,14 @@ pressed = loaded_wave(Dimer(1, 3), rise=1, background="1/10", k=HERTZ)
 symbolic = loaded_wave(Dimer("m1", "m2"), background="p0").field
 forces = canonical_wave(Cell([2], [5], "1/100"), HERTZ).at_force(10, precompression=3)
 smooth, pressed_smooth = (
-    loaded_wave(EQUAL, law=named("hertz2", 1, 2), force=3, precompression=F0) for F0 in (0, 1)
+    loaded_wave(EQUAL, law=named("hertz2", 1, 2), force=3, precompression=F0)
+    for F0 in (0, 1)
 )
 front = shock(EQUAL, 2, 1, k=HERTZ)
 peak = float(front.peak)
-mode = envelope(Cell([1, 2, 3]), k=HERTZ, precompression=1, wavenumber=2 * sp.pi / 3, branch=0)
+mode = envelope(
+    Cell([1, 2, 3]), k=HERTZ, precompression=1, wavenumber=2 * sp.pi / 3, branch=0
+)
 w = 0.2733
 
 ANSWERS = {
@@ -210,16 +213,28 @@ def test_the_canonical_numbers_stand_beside_the_linear_closures(capsys):
     options = ("wave", "--k", "3/2", "--spacing", "1", "--masses")
     for force in ((), ("--force", "1")):
         light, heavy = (
-            result(capsys, *options, masses, *force) for masses in ("0.123,0.45", "0.45,0.123")
+            result(capsys, *options, masses, *force)
+            for masses in ("0.123,0.45", "0.45,0.123")
         )
         assert light["speed_value"] < 0.6 * heavy["speed_value"]
         assert light["canonical"] == heavy["canonical"]
     assert heavy["canonical"]["speed_value"] == pytest.approx(1.705, rel=0.02)
     assert heavy["canonical"]["fwhm_value"]["force"] == pytest.approx(2.50, rel=0.17)
-    full = (*options, "0.123,0.45", "--closure", "full", "--field", "center", "--force", "1")
+    full = (
+        *options,
+        "0.123,0.45",
+        "--closure",
+        "full",
+        "--field",
+        "center",
+        "--force",
+        "1",
+    )
     own = result(capsys, *full)
     assert "canonical" not in own
-    assert own["speed_value"] == pytest.approx(heavy["canonical"]["speed_value"], rel=1e-14)
+    assert own["speed_value"] == pytest.approx(
+        heavy["canonical"]["speed_value"], rel=1e-14
+    )
 
 
 def test_closed_forms_of_a_shock_stand_in_json(capsys):
@@ -251,11 +266,20 @@ def test_a_long_value_is_printed_once(capsys, monkeypatch):
     assert {n for text, n in printed.items() if len(text) > 90} == {1}
 
 
-@pytest.mark.parametrize("options", ["", "--k 1", "--k 3/2 --masses 1,2", "--k 1.000000001"])
+@pytest.mark.parametrize(
+    "options", ["", "--k 1", "--k 3/2 --masses 1,2", "--k 1.000000001"]
+)
 def test_powers_of_the_full_closure_are_written_once(capsys, options):
     """u_x^(k-1), u_x^(-1), never a sum of numbers, nor a power 0 or 1."""
-    for style, power in (("text", r"\^\(([^)]*)\)"), ("latex", r"u_\{x\}\^\{([^}]*)\}")):
+    for style, power in (
+        ("text", r"\^\(([^)]*)\)"),
+        ("latex", r"u_\{x\}\^\{([^}]*)\}"),
+    ):
         line = f"derive --closure full --order 5 --format {style} {options}"
-        powers = [p for p in re.findall(power, said(capsys, *line.split())) if not {*p} & {*"/D"}]
+        powers = [
+            p
+            for p in re.findall(power, said(capsys, *line.split()))
+            if not {*p} & {*"/D"}
+        ]
         assert powers
         assert all(re.fullmatch(r"-?[2-9]|-1|-?k(/2)?([+-]\d+)?", p) for p in powers)

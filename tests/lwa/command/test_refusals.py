@@ -61,24 +61,39 @@ LINES = [
     ("envelope --background 1 --precompression 1", "background or precompression"),
     ("envelope --background 1 --wavenumber 4", "0 … pi"),
     ("shock --law magnetic:4,1 --behind 0.123", "spacing is D"),
-    ("envelope --law magnetic:4,1 --masses 1,2,3 --precompression 2 --detuning nu", "f/f0 is nu"),
+    (
+        "envelope --law magnetic:4,1 --masses 1,2,3 --precompression 2 --detuning nu",
+        "f/f0 is nu",
+    ),
     ("envelope --background 1 --wavenumber pi*2", "wavenumber is 'pi*2'"),
-    ("envelope --masses 1 --k 2 --background 1 --wavenumber 1 --detuning 1/100", "where dω/dκ = 0"),
+    (
+        "envelope --masses 1 --k 2 --background 1 --wavenumber 1 --detuning 1/100",
+        "where dω/dκ = 0",
+    ),
     ("envelope --background 1 --branch up", "branch is 'up'"),
     # of minutes, if powers of a decimal were factored
-    ("envelope --k 3.1185 --background 2.091 --stiffnesses 1,2 --detuning 1/9", "kind depends on"),
+    (
+        "envelope --k 3.1185 --background 2.091 --stiffnesses 1,2 --detuning 1/9",
+        "kind depends on",
+    ),
     ("envelope --background 1 --detuning 1 --frequency 1", "both given"),
     ("envelope --precompression 1 --masses 1,1/2 --k 2 --detuning -1", "below"),
     ("envelope --law hertz2:1,2 --background 0 --masses 1", "F′ is 0"),
     ("envelope --law general --precompression 1", "law is general"),
     ("envelope --law polynomial:1/2,-1/4 --masses 1 --background 3", "F′ is -2.75"),
-    ("wave --masses 1 --precompression 10 --force 5 --k 2", "force is 5, below precompression 10"),
+    (
+        "wave --masses 1 --precompression 10 --force 5 --k 2",
+        "force is 5, below precompression 10",
+    ),
     ("shock", "--behind or --piston"),
     ("shock --law general --behind 1", "law is general"),
     ("shock --behind 1 --piston 1", "--behind or --piston"),
     ("shock --behind 1 --ahead 1", "there is no shock"),
     ("shock --piston -1", "velocity is -1"),
-    ("shock --k 3.1085 --masses 3,1 --piston D", "'D' has no value: beside fractions above 64"),
+    (
+        "shock --k 3.1085 --masses 3,1 --piston D",
+        "'D' has no value: beside fractions above 64",
+    ),
 ]
 
 
@@ -94,17 +109,47 @@ def test_lines_are_refused(capsys, line, words):
         ("", "", ("--force", "1 N"), "force is '1 N': an integer, a decimal"),
         ("", "", ("--force", "1", "--format", "c"), "--format c is for any force"),
         ('"light"]', '"light", "heavy"]', (), "the cell has 3 masses"),
-        ('"light"]', '"ligth"]', (), "chain.cell number 2 is 'ligth': did you mean light"),
-        ("[chain]", "[chains]", (), "spheres.toml: chains is unknown: did you mean chain"),
-        ("cell =", "k = 1.5\ncell =", (), "chain.k is given, but named beads are in Hertz contact"),
+        (
+            '"light"]',
+            '"ligth"]',
+            (),
+            "chain.cell number 2 is 'ligth': did you mean light",
+        ),
+        (
+            "[chain]",
+            "[chains]",
+            (),
+            "spheres.toml: chains is unknown: did you mean chain",
+        ),
+        (
+            "cell =",
+            "k = 1.5\ncell =",
+            (),
+            "chain.k is given, but named beads are in Hertz contact",
+        ),
         ("[chain]", "[striker]\nlike = 'wood'\n[chain]", (), "striker.like is 'wood'"),
-        ("0.3", "0.6", (), "materials.steel.nu is 0.6: Poisson's ratio lies between -1 and 1/2"),
+        (
+            "0.3",
+            "0.6",
+            (),
+            "materials.steel.nu is 0.6: Poisson's ratio lies between -1 and 1/2",
+        ),
         ('"ptfe"', '"peek"', (), "beads.light.material is 'peek'"),
-        ("mass = 0.45e-3", "mass = 1, density = 1", (), "beads.heavy has both mass and density"),
+        (
+            "mass = 0.45e-3",
+            "mass = 1, density = 1",
+            (),
+            "beads.heavy has both mass and density",
+        ),
         ("mass = 0.45e-3, ", "", (), "beads.heavy.mass is missing: it, or a density"),
         (", nu = 0.46", "", (), "materials.ptfe.nu is missing"),
         ("193e9", "nan", (), "materials.steel.E is nan: a finite number is wanted"),
-        ("[chain]", "precompression = 1\n[chain]", (), "beads.precompression is 1: a table"),
+        (
+            "[chain]",
+            "precompression = 1\n[chain]",
+            (),
+            "beads.precompression is 1: a table",
+        ),
         ("[chain]", "[chain", (), "spheres.toml: not TOML"),
     ],
 )
@@ -153,8 +198,30 @@ def test_unreadable_files_are_refused(capsys, tmp_path):
         refused(capsys, words, "wave", "--spheres", str(tmp_path / name))
 
 
-NUMBERS = ("1", "2", "1/2", "3/2", "0.45", "1e-3", "7", "m", "0", "-1", "nan", "1e400", "x y", "é")
-LAWS = ("hertz2:1,2", "exponential", "magnetic:4,1", "polynomial:-1/2,0", "general", "toda")
+NUMBERS = (
+    "1",
+    "2",
+    "1/2",
+    "3/2",
+    "0.45",
+    "1e-3",
+    "7",
+    "m",
+    "0",
+    "-1",
+    "nan",
+    "1e400",
+    "x y",
+    "é",
+)
+LAWS = (
+    "hertz2:1,2",
+    "exponential",
+    "magnetic:4,1",
+    "polynomial:-1/2,0",
+    "general",
+    "toda",
+)
 OPTIONS = {
     "derive": ("law", "closure", "field", "order"),
     "wave": ("law", "spacing", "force", "background", "precompression"),
@@ -174,7 +241,9 @@ WORDS = {
 }
 
 
-@pytest.mark.parametrize("seed", [1, 3, *(pytest.param(n, marks=pytest.mark.slow) for n in (0, 2))])
+@pytest.mark.parametrize(
+    "seed", [1, 3, *(pytest.param(n, marks=pytest.mark.slow) for n in (0, 2))]
+)
 def test_random_lines_answer_or_are_refused(capsys, seed):
     """No traceback, no NaN and no complex number; JSON is JSON, text within 100 columns."""
     draw = random.Random(seed)

@@ -80,7 +80,12 @@ def test_a_wave_of_spheres_has_the_values_of_python(capsys, file):
         assert found[f"{name}_value"] == float(getattr(wave, name))
     out = said(capsys, *options, "--force", "10")
     speed = f"speed dx/dt = {found['speed_value']:.10f}"[:22]
-    for words in ("masses 0.00045, 0.000123 kg", f"A = {float(A):.15g}", "D = 0.00476 m", speed):
+    for words in (
+        "masses 0.00045, 0.000123 kg",
+        f"A = {float(A):.15g}",
+        "D = 0.00476 m",
+        speed,
+    ):
         assert words in out
     symbolic = result(capsys, *options)
     assert (symbolic["force"], symbolic["fwhm_value"]) == ("F", found["fwhm_value"])
@@ -115,9 +120,12 @@ def test_the_units_are_what_the_values_are_in(capsys, file, line):
         small = small.replace(f"{length}e-3", length)
     command, *options = line.split()
     ours, theirs = (
-        result(capsys, command, "--spheres", file(text), *options) for text in (content, small)
+        result(capsys, command, "--spheres", file(text), *options)
+        for text in (content, small)
     )
-    for name in (name.removesuffix("_value") for name in ours if name.endswith("_value")):
+    for name in (
+        name.removesuffix("_value") for name in ours if name.endswith("_value")
+    ):
         units = ours["units"].get(name.removesuffix("_error"), "")
         one, two = ours[f"{name}_value"], theirs[f"{name}_value"]
         if not isinstance(one, dict):
@@ -135,9 +143,14 @@ def test_bands_and_breathers_have_hertz_and_metres(capsys, file):
     A = 4 / 3 * math.sqrt(9.525e-3 / 2) / compliance
     K2, static = 1.5 * A ** (2 / 3) * 20 ** (1 / 3), (20 / A) ** (2 / 3)
     heavy, light, turn = 28.84e-3, 9.75e-3, 2 * math.pi
-    edges = [0, *(math.sqrt(2 * K2 * x) for x in (1 / heavy, 1 / light, 1 / heavy + 1 / light))]
+    edges = [
+        0,
+        *(math.sqrt(2 * K2 * x) for x in (1 / heavy, 1 / light, 1 / heavy + 1 / light)),
+    ]
     bands = result(capsys, "dispersion", "--spheres", spheres)
-    assert np.ravel(bands["band_edges_value"]) == pytest.approx(edges, rel=1e-12, abs=1e-9)
+    assert np.ravel(bands["band_edges_value"]) == pytest.approx(
+        edges, rel=1e-12, abs=1e-9
+    )
     found = [turn * f for band in bands["band_edges_frequency_value"] for f in band]
     assert found == pytest.approx(edges, rel=1e-12, abs=1e-9)
     sound = 2 * 9.525e-3 * math.sqrt(2 * K2 / (heavy + light))
@@ -150,7 +163,9 @@ def test_bands_and_breathers_have_hertz_and_metres(capsys, file):
     mode = lwa.envelope(read_chain(spheres).cell, k="3/2", precompression=20, **place)
     found = result(capsys, *envelope, "--wavenumber", "pi/2", "--branch", "1")
     for name in ("group_velocity", "dispersion", "nonlinearity"):
-        assert found[f"{name}_value"] == pytest.approx(float(getattr(mode, name)), rel=1e-13)
+        assert found[f"{name}_value"] == pytest.approx(
+            float(getattr(mode, name)), rel=1e-13
+        )
     found = result(capsys, *envelope, "--frequency", f"{0.995 * edges[2] / turn:.17g}")
     assert found["detuning_value"] == pytest.approx(0.005, rel=1e-9)
     amplitude = static * math.sqrt(32 * 0.005 / 0.75)  # U = δ0 √(32 ν/(k (k - 1)))
@@ -193,7 +208,9 @@ def test_a_blow_beyond_hertzs_contact_has_a_note(capsys, file):
     """a/R = √(δ/2R) is 1/10 where the compression is 1/100 of the spacing."""
     for share, noted in ((0.009, False), (0.011, True)):
         force = ("--force", f"{A * (share * D) ** 1.5:.10g}")
-        assert ("notes" in result(capsys, "wave", "--spheres", file(ONE_KIND), *force)) == noted
+        assert (
+            "notes" in result(capsys, "wave", "--spheres", file(ONE_KIND), *force)
+        ) == noted
     fast = result(capsys, "strike", "--spheres", file(ONE_KIND), "--velocity", "1e6")
     assert "Hertz's contact is that of elastic spheres" in fast["notes"][0]
 

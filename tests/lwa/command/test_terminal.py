@@ -16,7 +16,9 @@ MAINS = {"lwa": cli.main, "lwa-validate": main}
 
 @pytest.mark.parametrize("encoding", ["cp1252", "latin-1", "utf-8"])
 def test_output_and_refusals_are_in_utf_8_whatever_the_locale(encoding):
-    status, out, err = encoded(cli.main, "wave", "--k", "3/2", "--masses", "1,1", encoding=encoding)
+    status, out, err = encoded(
+        cli.main, "wave", "--k", "3/2", "--masses", "1,1", encoding=encoding
+    )
     assert (status, err) == (0, b"")
     assert "width π/β = sqrt(10)*pi*D/2 ≈ 4.96729413289805 D" in out.decode("utf-8")
     status, _, err = encoded(cli.main, "derive", "--masses", "κ κ", encoding=encoding)
@@ -25,8 +27,14 @@ def test_output_and_refusals_are_in_utf_8_whatever_the_locale(encoding):
 
 
 def test_a_file_name_that_is_not_utf_8_is_one_line():
-    status, out, err = encoded(cli.main, "wave", "--spheres", "\udcff.json", encoding="utf-8")
-    assert (status, out, err) == (2, b"", b"lwa: \\udcff.json: No such file or directory\n")
+    status, out, err = encoded(
+        cli.main, "wave", "--spheres", "\udcff.json", encoding="utf-8"
+    )
+    assert (status, out, err) == (
+        2,
+        b"",
+        b"lwa: \\udcff.json: No such file or directory\n",
+    )
 
 
 @pytest.mark.parametrize(

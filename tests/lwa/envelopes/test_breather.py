@@ -51,7 +51,10 @@ def test_where_contacts_open_a_breather_is_refused_with_the_number():
     edge = chain.breather(detuning="3/128")
     assert float(edge.amplitude[1]) == pytest.approx(4, rel=1e-12)  # δ0
     refusal = r"^detuning 1 - f/f0 is 0\.025: contacts open from 0\.023438 on"
-    for far in ({"detuning": "1/40"}, {"frequency": chain.frequency * sp.Rational(39, 40)}):
+    for far in (
+        {"detuning": "1/40"},
+        {"frequency": chain.frequency * sp.Rational(39, 40)},
+    ):
         with pytest.raises(InputError, match=refusal):
             chain.breather(**far)
 
@@ -60,7 +63,9 @@ def test_contacts_that_pull_do_not_open():
     """An exponential is a force at negative compressions, too; δ^{3/2} + δ^{5/2} is not."""
     chain = envelope(Cell([1], spacing=1), law=named("exponential", 1), background=0)
     assert chain.breather(detuning="1/2").opening_detuning == sp.oo
-    with pytest.raises(InputError, match="a frequency is positive, and the detuning below 1"):
+    with pytest.raises(
+        InputError, match="a frequency is positive, and the detuning below 1"
+    ):
         chain.breather(detuning="3/2")
     pushes = envelope(Cell([1], spacing=1), law=named("hertz2", 1, 1), background="1/2")
     found = pushes.breather(detuning="1/1000")
@@ -68,12 +73,18 @@ def test_contacts_that_pull_do_not_open():
 
 
 def test_displacements_along_the_chain():
-    found = envelope(Dimer(1, "1/2"), law=HERTZ, precompression=1).breather(detuning="1/500")
+    found = envelope(Dimer(1, "1/2"), law=HERTZ, precompression=1).breather(
+        detuning="1/500"
+    )
     cells = np.arange(-3, 4)
     u = found.displacements(cells)
     assert u.shape == (7, 2)
     assert np.all(u[:, 0] == 0)
-    expected = float(found.amplitude[1]) * (-1.0) ** cells / np.cosh(cells / float(found.width))
+    expected = (
+        float(found.amplitude[1])
+        * (-1.0) ** cells
+        / np.cosh(cells / float(found.width))
+    )
     assert u[:, 1] == pytest.approx(expected)
 
 

@@ -9,7 +9,16 @@ import sympy as sp
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from lwa import Cell, Dimer, InputError, LoadedChain, Power, envelope, general, loaded_wave
+from lwa import (
+    Cell,
+    Dimer,
+    InputError,
+    LoadedChain,
+    Power,
+    envelope,
+    general,
+    loaded_wave,
+)
 from tests.identity import same
 
 K2, K3, K4 = sp.symbols("K2 K3 K4", positive=True)
@@ -20,7 +29,9 @@ HERTZ = Power("3/2")
 def test_equal_beads_at_any_wavenumber():
     found = envelope(Cell([1]), law=general(), background=0, wavenumber=q)
     s, cot = sp.sin(q / 2), sp.cot(q / 2)
-    chi = sp.sqrt(K2) * (2 * s) ** 3 * (3 * K4 / (2 * K2) - (K3 / K2) ** 2 * (2 + cot**2))
+    chi = (
+        sp.sqrt(K2) * (2 * s) ** 3 * (3 * K4 / (2 * K2) - (K3 / K2) ** 2 * (2 + cot**2))
+    )
     assert same(found.frequency, 2 * sp.sqrt(K2) * s)
     assert same(found.group_velocity, found.frequency.diff(q))
     assert same(found.dispersion, found.frequency.diff(q, 2))
@@ -86,7 +97,9 @@ def lattice_shift(springs, kappa, frequency, phi, flow, A, harmonics=5):
 
     start = np.zeros((P, harmonics), complex)
     start[:, 0] = A * phi
-    v = np.concatenate([np.zeros(P), start.real.ravel(), start.imag.ravel(), [frequency]])
+    v = np.concatenate(
+        [np.zeros(P), start.real.ravel(), start.imag.ravel(), [frequency]]
+    )
     tight = {"xtol": 1e-15, "ftol": 1e-15, "gtol": 1e-15}
     found = scipy.optimize.least_squares(residual, v, x_scale="jac", **tight)
     assert np.abs(found.fun).max() < 1e-13
@@ -136,14 +149,19 @@ def test_plane_waves_of_random_cells_on_the_lattice(P):
     ids=str,
 )
 def test_exact_numbers_are_those_of_floats(cell, kappa):
-    chain = envelope(cell, law=HERTZ, background="1/2", wavenumber=kappa, branch=cell.size - 1)
+    chain = envelope(
+        cell, law=HERTZ, background="1/2", wavenumber=kappa, branch=cell.size - 1
+    )
     floats = chain.numeric()
     for name in ("frequency", "group_velocity", "dispersion", "nonlinearity"):
         ours, theirs = (complex(getattr(e, name)) for e in (chain, floats))
         assert ours == pytest.approx(theirs, rel=1e-9, abs=1e-12)
     for name in ("mean_strain", "strains"):
         pairs = zip(getattr(chain, name), getattr(floats, name), strict=True)
-        assert all(complex(a) == pytest.approx(complex(b), rel=1e-9, abs=1e-10) for a, b in pairs)
+        assert all(
+            complex(a) == pytest.approx(complex(b), rel=1e-9, abs=1e-10)
+            for a, b in pairs
+        )
     if kappa in (0, sp.pi):
         assert not chain.nonlinearity.has(sp.Float)
 
@@ -153,7 +171,9 @@ def test_resonances_are_refused_by_name():
     with pytest.raises(InputError, match="sound, c_g = c_0, has no envelope"):
         envelope(Dimer(1, 2), law=HERTZ, background=1, wavenumber=0, branch=0).kind  # noqa: B018
     long = envelope(Cell([1], spacing=1), law=HERTZ, background=1, wavenumber="1/1000")
-    with pytest.raises(InputError, match="too close to that of sound, c_g = c_0, for floats"):
+    with pytest.raises(
+        InputError, match="too close to that of sound, c_g = c_0, for floats"
+    ):
         long.numeric().nonlinearity  # noqa: B018
     limit = -long.frequency / 4  # χ = -ω (k-1) (k - cos² κ/2) → -ω (k-1)²
     assert float(long.nonlinearity / limit) == pytest.approx(1, abs=1e-6)
@@ -177,7 +197,9 @@ def test_resonances_are_refused_by_name():
 
 def test_a_harmonic_that_no_force_drives_is_left_out():
     """Masses 3 and 1 at κ = π: 4ω² = 8/3 is the optical mode, but both contacts push alike."""
-    near = envelope(Cell(["m", 1], spacing=1), law=HERTZ, background=1, branch=0).nonlinearity
+    near = envelope(
+        Cell(["m", 1], spacing=1), law=HERTZ, background=1, branch=0
+    ).nonlinearity
     limit = sp.limit(near, sp.Symbol("m", positive=True), 3)
     found = envelope(Cell([3, 1], spacing=1), law=HERTZ, background=1, branch=0)
     assert found.nonlinearity == limit == -sp.Rational(1, 16)
@@ -191,7 +213,9 @@ def test_a_harmonic_that_no_force_drives_is_left_out():
     st.floats(0.3, 2.8),
     st.integers(0, 4),
 )
-def test_frequencies_and_their_derivatives_are_those_of_the_bands(masses, stiffnesses, kappa, n):
+def test_frequencies_and_their_derivatives_are_those_of_the_bands(
+    masses, stiffnesses, kappa, n
+):
     """ω of `LoadedChain`, of κ per cell; c_g < c_0 and ω″ by its differences."""
     P = len(masses)
     cell, branch = Cell(masses, stiffnesses[:P], 1), n % P
@@ -208,6 +232,8 @@ def test_frequencies_and_their_derivatives_are_those_of_the_bands(masses, stiffn
     left, middle, right = (bands.branches((kappa + x) / P)[branch] for x in (-h, 0, h))
     slope = (right - left) / (2 * h)
     assert float(ours.group_velocity) == pytest.approx(slope, abs=1e-4 * omega[-1])
-    assert abs(slope) * P < LoadedChain(cell, HERTZ, 2).sound_speed  # in spacings per time
+    assert (
+        abs(slope) * P < LoadedChain(cell, HERTZ, 2).sound_speed
+    )  # in spacings per time
     bend = (right - 2 * middle + left) / h**2
     assert float(ours.dispersion) == pytest.approx(bend, abs=1e-4 * omega[-1])

@@ -50,7 +50,9 @@ def test_momentum_is_conserved_where_the_euler_operator_vanishes(masses, conserv
     (slope,) = euler_equations(right_side(pde, u, x), u, x)
     # at a polynomial with all jets alive: an expression that vanishes does so for any field
     field = 2 * x + sum(x**n / sp.prime(n) for n in range(2, 11))
-    value = sp.nsimplify(slope.lhs.subs(lwa.D, 1).subs(u, field).doit().subs(x, sp.Rational(1, 3)))
+    value = sp.nsimplify(
+        slope.lhs.subs(lwa.D, 1).subs(u, field).doit().subs(x, sp.Rational(1, 3))
+    )
     assert (value == 0) == conservative == pde.conservative
 
 
@@ -62,7 +64,9 @@ def order_of_the_drift(pde):
     """n of d/dτ ∫ e dx ∝ D^n, from two small D; infinite where the energy is constant."""
     force = right_side(pde, FIELD, x, VELOCITY)
     density = energy_density(pde, FIELD + s * VELOCITY, x, VELOCITY + s * force)
-    change = sp.lambdify((x, pde.cell.spacing), density.diff(s).subs(s, 0), "mpmath", cse=True)
+    change = sp.lambdify(
+        (x, pde.cell.spacing), density.diff(s).subs(s, 0), "mpmath", cse=True
+    )
     with mpmath.workdps(60):
         points = [2 * mpmath.pi * i / 96 for i in range(96)]
         left = [
@@ -74,7 +78,9 @@ def order_of_the_drift(pde):
         return float(mpmath.log10(left[0] / left[1]))
 
 
-TODA = named("exponential", 1 / lwa.D)  # the compression D u_x of a contact is of order 1 in 1/a
+TODA = named(
+    "exponential", 1 / lwa.D
+)  # the compression D u_x of a contact is of order 1 in 1/a
 
 
 @pytest.mark.parametrize(
@@ -97,5 +103,7 @@ def test_the_energy_is_conserved_to_the_order_of_its_closure(cell, order, law, k
 
 def test_the_energy_of_the_linear_closure_without_a_defect():
     """Below D^{k+3} it is that of the full closure."""
-    linear, full = (homogenize(Dimer(3, 1), 3, closure=name).pde for name in ("linear", "full"))
+    linear, full = (
+        homogenize(Dimer(3, 1), 3, closure=name).pde for name in ("linear", "full")
+    )
     assert linear.energy == full.energy

@@ -32,7 +32,10 @@ def least(masses, shares):
         -(c**3) / 24 - c * (a + b) / 2 + (b - a) ** 2 / (2 * c)
         for c, (a, b) in zip(shares, pairwise(around), strict=True)
     )
-    held, multiplier = sum(m / total * a for m, a in zip(masses, e, strict=True)), sp.Symbol("l")
+    held, multiplier = (
+        sum(m / total * a for m, a in zip(masses, e, strict=True)),
+        sp.Symbol("l"),
+    )
     equations = [sp.diff(S + multiplier * held, a) for a in e] + [held]
     (found,) = sp.linsolve(equations, [*e, multiplier])
     return S.subs(dict(zip(e, found, strict=False)))
@@ -48,7 +51,9 @@ def test_the_coefficient_is_the_minimum_and_the_linear_chains(beads):
     chain = Cell(masses, [c**-K for c in shares], 1)
     I = -sp.Rational(2, P) * least(masses, shares)
     assert Dispersion(chain, K).I == I
-    assert Dispersion(Cell(masses, [1 / c for c in shares], 1)).I == I  # springs of these shares
+    assert (
+        Dispersion(Cell(masses, [1 / c for c in shares], 1)).I == I
+    )  # springs of these shares
 
 
 @pytest.mark.parametrize("k", [K, "k"])

@@ -49,9 +49,16 @@ def lattice(k):
             below, above = (middle, above) if inside else (below, middle)
         return 2 * below
 
-    spectra, step, c = (np.fft.fft(strain), force, mean * force), xi[1] - xi[0], np.sqrt(c2)
+    spectra, step, c = (
+        (np.fft.fft(strain), force, mean * force),
+        xi[1] - xi[0],
+        np.sqrt(c2),
+    )
     velocity, push = np.fft.ifft(mean * force).real / c, np.maximum(strain, 0) ** k
-    kinetic, elastic = step * (velocity @ velocity) / 2, step * (strain @ push) / (k + 1)
+    kinetic, elastic = (
+        step * (velocity @ velocity) / 2,
+        step * (strain @ push) / (k + 1),
+    )
     momentum, energy = step * velocity.sum(), kinetic + elastic
     rest = momentum, kinetic, energy, momentum**2 / (2 * energy)
     values = dict(zip(NAMES, (c2, c, *rest), strict=True))

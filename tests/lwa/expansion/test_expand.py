@@ -56,7 +56,8 @@ def test_residual_of_newtons_equations_falls_as_the_order_promises(name):
             for at in (-1.5, -0.3, 0.4, 1.1):
                 xi = mpmath.mpf(at) / mpmath.sqrt(small)
                 force = {  # of contact i, next cells included
-                    i: strains[i % P](xi + i // P * P) ** (1 + small) for i in range(-1, P + 1)
+                    i: strains[i % P](xi + i // P * P) ** (1 + small)
+                    for i in range(-1, P + 1)
                 }
                 for i in range(P):
                     ahead = (force[i + 1] - force[i]) / (P * mu[(i + 1) % P])
@@ -105,7 +106,11 @@ def test_radiation_falls_exponentially_and_vanishes_for_equal_beads():
     assert radiated(Cell([1, 1]), sp.Rational(3, 2)) == 0
     cell = Dimer(1, sp.Rational(1, 20))
     # the lowest optical frequency; 1/Π of a dimer
-    for each, k in ((cell, symbol_k), (CELLS["three"], symbol_k), (CELLS["contacts"], sp.S(3))):
+    for each, k in (
+        (cell, symbol_k),
+        (CELLS["three"], symbol_k),
+        (CELLS["contacts"], sp.S(3)),
+    ):
         lowest = Dispersion(each, 1 if k == symbol_k else k).bands.branches(0.0)[1]
         assert parameters(each, k).optical == pytest.approx(lowest**2, rel=1e-13)
     inverse = np.array([8, 7, 6, 5])

@@ -49,11 +49,15 @@ def test_the_error_of_a_time_is_that_of_width_and_speed():
     assert time.error == pytest.approx(time.value * shares, rel=1e-12)
 
 
-@pytest.mark.parametrize("cell", [EQUAL, Dimer(2, 1, spacing=1)], ids=["equal", "dimer"])
+@pytest.mark.parametrize(
+    "cell", [EQUAL, Dimer(2, 1, spacing=1)], ids=["equal", "dimer"]
+)
 def test_the_long_wave_has_the_lattice_s_momentum_as_k_tends_to_1(cell):
     """The error of the canonical wave falls as k - 1."""
     far, near = (
-        float(canonical_wave(cell, k).at_force(8).momentum) / wave(k, 8, cell).momentum.value - 1
+        float(canonical_wave(cell, k).at_force(8).momentum)
+        / wave(k, 8, cell).momentum.value
+        - 1
         for k in ("1.004", "1.002")
     )
     assert abs(far) < 0.004

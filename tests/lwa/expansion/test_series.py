@@ -49,7 +49,10 @@ def test_a_series_and_its_sum_show_in_a_notebook():
     widths = expand(Cell([1]), 12).fwhm("force")
     assert len(repr(widths)) < 120
     latex = widths._repr_latex_()
-    assert r"\left(\frac{1}{10} - \frac{\log{\left(2 \right)}}{60}\right) \varepsilon" in latex
+    assert (
+        r"\left(\frac{1}{10} - \frac{\log{\left(2 \right)}}{60}\right) \varepsilon"
+        in latex
+    )
     assert r" + \dots\Bigr)" in latex
     chain = expand(Cell([1], spacing=1), 8, k="3/2")
     assert r"c^2 &= 1 - \frac{1}{2} \varepsilon" in chain._repr_latex_()

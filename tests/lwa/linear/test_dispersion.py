@@ -51,10 +51,14 @@ def test_acoustic_series_satisfies_the_chains_equations(cell, k):
     trace = sp.Poly(sp.cancel(determinant + z + 1 / z), omega2).all_coeffs()[::-1]
     order = 12
     series = Dispersion(cell, k).acoustic(order)
-    branch = fmpq_poly([rational(sp.sympify(series.get(n, 0))) for n in range(order + 1)])
+    branch = fmpq_poly(
+        [rational(sp.sympify(series.get(n, 0))) for n in range(order + 1)]
+    )
     found = fmpq_poly(list(map(rational, trace)))(branch)
     for n in range(order + 1):
-        assert found[n] == (n % 2 == 0) * 2 * (-1) ** (n // 2) * fmpq(P**n, factorial(n))
+        assert found[n] == (n % 2 == 0) * 2 * (-1) ** (n // 2) * fmpq(
+            P**n, factorial(n)
+        )
 
 
 @pytest.mark.parametrize("field", ["first", "center"])
@@ -83,7 +87,10 @@ def test_the_linear_wave_equation_is_the_series_to_order_12(cell, field):
 @pytest.mark.parametrize("branch", ["acoustic", "optical"])
 @pytest.mark.parametrize(
     ("cell", "order"),
-    [(Dimer("m1", "m2", stiffnesses=("A1", 2)), 6), (Dimer(2, 5, stiffnesses=(7, 2)), 12)],
+    [
+        (Dimer("m1", "m2", stiffnesses=("A1", 2)), 6),
+        (Dimer(2, 5, stiffnesses=(7, 2)), 12),
+    ],
     ids=str,
 )
 def test_the_linear_closure_of_a_dimer_is_exact_at_k_1(cell, order, branch):
@@ -92,7 +99,9 @@ def test_the_linear_closure_of_a_dimer_is_exact_at_k_1(cell, order, branch):
     chain, theory = Dispersion(cell), homogenize(cell, order, k=1, branch=branch)
     assert theory.defect == {}
     series = chain.optical(order) if optical else chain.acoustic(order)
-    unit = series[0] if optical else 1  # Ω² of the optical branch in units of its own at κ = 0
+    unit = (
+        series[0] if optical else 1
+    )  # Ω² of the optical branch in units of its own at κ = 0
     for n, terms in theory.pde.coefficients.items():
         i = n if optical else n + 1  # -Ω² = Σ coefficient (iκ)^i
         found = sum(terms.values()) * (-1) ** (i // 2 + 1)

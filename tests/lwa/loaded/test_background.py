@@ -30,7 +30,9 @@ def test_without_load_the_wave_is_the_compact_wave(cell):
     if not cell.masses[0].free_symbols:
         for quantity in ("strain", "force", "velocity"):
             known = float(compact.fwhm(quantity) / cell.spacing)
-            assert float(wave.fwhm(quantity) / cell.spacing) == pytest.approx(known, rel=1e-12)
+            assert float(wave.fwhm(quantity) / cell.spacing) == pytest.approx(
+                known, rel=1e-12
+            )
     assert compact.at_force(7, precompression=0) == compact.at_force(7)
 
 
@@ -51,20 +53,30 @@ def test_kdv_in_closed_form():
 
 @pytest.mark.parametrize(
     ("law", "load", "rise"),
-    [(HERTZ, 1, "1/2"), (Power("1/2"), 1, "-1/2"), (named("lennard-jones", 1), 0, "1/10")],
+    [
+        (HERTZ, 1, "1/2"),
+        (Power("1/2"), 1, "-1/2"),
+        (named("lennard-jones", 1), 0, "1/10"),
+    ],
     ids=str,
 )
 def test_the_profile_obeys_the_canonical_equation(law, load, rise):
     """V² v = F(p0+v) - F(p0) + I (F′ v″ + ½ F″ v′²), by a polynomial through 80 places."""
     wave, B = wave_of(law, load, rise), float(sp.Rational(rise))
-    v = np.polynomial.Chebyshev.interpolate(lambda x: wave.along(x, "strain"), 79, domain=[-2, 2])
+    v = np.polynomial.Chebyshev.interpolate(
+        lambda x: wave.along(x, "strain"), 79, domain=[-2, 2]
+    )
     x = np.linspace(-1, 1, 5)
     p, field = sp.Symbol("p", positive=True), wave.field
     F, F1, F2 = (sp.lambdify(p, field.force(p, n))(load + v(x)) for n in range(3))
-    left = float(field.speed(wave.strain)) ** 2 * v(x) - F + float(field.force(sp.S(load)))
+    left = (
+        float(field.speed(wave.strain)) ** 2 * v(x) - F + float(field.force(sp.S(load)))
+    )
     right = float(field.I) * (F1 * v.deriv(2)(x) + F2 * v.deriv()(x) ** 2 / 2)
     assert left == pytest.approx(right, rel=1e-7)  # v″ loses 80² of the digits of v
-    assert wave.along(float(wave.fwhm("strain")) / 2, "strain") == pytest.approx(B / 2, rel=1e-12)
+    assert wave.along(float(wave.fwhm("strain")) / 2, "strain") == pytest.approx(
+        B / 2, rel=1e-12
+    )
 
 
 @settings(max_examples=5)
@@ -80,11 +92,19 @@ def test_float64_over_all_loads(exponent, rise, k, quantity):
     wave = wave_of(Power(k), load, rise)
     with mpmath.workdps(120):
         speed, place, height = true_wave(Power(k), load, rise)
-        assert float(wave.field.speed(wave.strain)) == pytest.approx(float(speed), rel=1e-15)
+        assert float(wave.field.speed(wave.strain)) == pytest.approx(
+            float(speed), rel=1e-15
+        )
         unit = mpmath.mpf(load) + mpmath.mpf(rise)
-        square = float(speed**2 / unit ** (mpmath.mpf(sp.Rational(k).p) / sp.Rational(k).q - 1))
-        assert wave._square * float(sp.S(1) / sp.Rational(k)) == pytest.approx(square, rel=1e-14)
-        expected = 2 * float(place(height if quantity == "force" else mpmath.mpf(rise) / 2))
+        square = float(
+            speed**2 / unit ** (mpmath.mpf(sp.Rational(k).p) / sp.Rational(k).q - 1)
+        )
+        assert wave._square * float(sp.S(1) / sp.Rational(k)) == pytest.approx(
+            square, rel=1e-14
+        )
+        expected = 2 * float(
+            place(height if quantity == "force" else mpmath.mpf(rise) / 2)
+        )
     assert float(wave.fwhm(quantity)) == pytest.approx(expected, rel=1e-12)
 
 
@@ -93,8 +113,12 @@ def test_nesterenkos_relation_for_equal_spheres():
     E, rho, a, F0, F = sp.symbols("E rho a F0 F", positive=True)
     bead = Sphere.solid(a / 2, Material(E=E, nu="3/10", density=rho))
     wave = canonical_wave(Cell.of_spheres([bead]), "3/2").at_force(F, precompression=F0)
-    sound = (4 * E**2 * F0 / (a**2 * rho**3 * (1 - sp.Rational(9, 100)) ** 2)) ** sp.Rational(1, 6)
-    assert float(wave.sound_speed / sound) == pytest.approx(0.9314, abs=1e-4)  # printed, cut off
+    sound = (
+        4 * E**2 * F0 / (a**2 * rho**3 * (1 - sp.Rational(9, 100)) ** 2)
+    ) ** sp.Rational(1, 6)
+    assert float(wave.sound_speed / sound) == pytest.approx(
+        0.9314, abs=1e-4
+    )  # printed, cut off
     ratio = (F / F0) ** sp.Rational(2, 3)
     square = sp.Rational(4, 15) * (3 + 2 * ratio ** sp.Rational(5, 2) - 5 * ratio)
     assert same((wave.speed / wave.sound_speed) ** 2, square / (ratio - 1) ** 2)
@@ -106,11 +130,15 @@ def test_a_law_that_is_no_power_has_waves_without_a_load(cell):
     law = named("hertz2", 1, 1)
     for delta in map(sp.Rational, ("1/1000", "1")):
         force = delta ** sp.Rational(3, 2) * (1 + delta)
-        square = 2 * (delta ** sp.Rational(5, 2) / 5 + delta ** sp.Rational(7, 2) / 7) * 2
+        square = (
+            2 * (delta ** sp.Rational(5, 2) / 5 + delta ** sp.Rational(7, 2) / 7) * 2
+        )
         square *= cell.spacing**2 / delta**2 / (cell.mass / cell.size)
         wave = loaded_wave(cell, force=force, law=law)
         assert sp.N(wave.speed**2 / square, 30) == pytest.approx(1, rel=1e-14)
-        assert float(wave.strain * cell.spacing) == pytest.approx(float(delta), rel=1e-14)
+        assert float(wave.strain * cell.spacing) == pytest.approx(
+            float(delta), rel=1e-14
+        )
     light = loaded_wave(cell, force="1e-30", law=law)
     width = canonical_wave(cell, "3/2").fwhm()
     assert float(light.fwhm("strain") / width) == pytest.approx(1, rel=1e-12)
@@ -120,13 +148,19 @@ def test_a_law_that_is_no_power_has_waves_without_a_load(cell):
 def test_unlike_contacts_are_compressed_by_their_mean(k):
     cell, root = Dimer(1, 2, stiffnesses=[3, 5]), 1 / float(sp.Rational(k))
     peak, static = (sum((F / A) ** root for A in (3, 5)) / 2 for F in (7, 2))
-    assert float(Power(k).compression(cell, sp.Integer(7))) == pytest.approx(peak, rel=1e-14)
+    assert float(Power(k).compression(cell, sp.Integer(7))) == pytest.approx(
+        peak, rel=1e-14
+    )
     if k != 1:
         wave = loaded_wave(cell, force=7, precompression=2, k=k)
         assert float(wave.compression) == pytest.approx(peak - static, rel=1e-14)
 
 
 def test_symbols_take_their_numbers():
-    symbolic = canonical_wave(Cell(["m"], ["A"]), "3/2").at_force("F", precompression="F0")
+    symbolic = canonical_wave(Cell(["m"], ["A"]), "3/2").at_force(
+        "F", precompression="F0"
+    )
     numbers = symbolic.at(m=2, A=3, F=7, F0=2, D=1)
-    assert numbers == canonical_wave(Cell([2], [3], 1), "3/2").at_force(7, precompression=2)
+    assert numbers == canonical_wave(Cell([2], [3], 1), "3/2").at_force(
+        7, precompression=2
+    )

@@ -14,7 +14,9 @@ from lwa.law import DELTA, named
 
 CHAIN = Cell([1], spacing=1)
 HERTZ = Power("3/2")
-LIMITED = Law(DELTA + DELTA**2 - DELTA**3)  # Q(v) = 1 + 2v/3 - v²/2 about 0: waves up to 2/3
+LIMITED = Law(
+    DELTA + DELTA**2 - DELTA**3
+)  # Q(v) = 1 + 2v/3 - v²/2 about 0: waves up to 2/3
 
 CASES = [
     (Power("1/2"), 1, -0.999),
@@ -37,12 +39,16 @@ def test_speed_widths_and_profile_to_the_last_digits(law, p0, B):
     Next to a pole the rounding of p0 + B counts.
     """
     heights = B * np.array([0.99, 0.7, 0.5, 0.3, 0.01, 1e-6])
-    with mpmath.workdps(30 + 3 * max(0, int(-np.log10(abs(B))))):  # Q cancels at small B
+    with mpmath.workdps(
+        30 + 3 * max(0, int(-np.log10(abs(B))))
+    ):  # Q cancels at small B
         speed, place, height = true_wave(law, p0, B)
         widths = [2 * float(place(v)) for v in (mpmath.mpf(B) / 2, height)]
         places = [float(place(mpmath.mpf(v))) for v in heights]
     wave = wave_of(law, p0, B)
-    assert float(wave.field.speed(wave.strain)) == pytest.approx(float(speed), rel=2e-14)
+    assert float(wave.field.speed(wave.strain)) == pytest.approx(
+        float(speed), rel=2e-14
+    )
     for quantity, width in zip(("strain", "force"), widths, strict=True):
         assert float(wave.fwhm(quantity)) == pytest.approx(width, rel=1e-12)
     if (law, p0, B) in CASES:

@@ -55,13 +55,17 @@ def test_the_coefficient_is_that_of_the_bloch_branch(data):
     lattice = Lattice(masses, springs_of(*data.draw(st.permutations(ends))))
     I, c2 = numeric_dispersion(masses, ends)
     found = lattice.statics.samples(np.array(1.0))
-    assert found[2] == pytest.approx(I, rel=1e-5, abs=1e-5)  # differences of 1e-10 over q² = 1e-5
+    assert found[2] == pytest.approx(
+        I, rel=1e-5, abs=1e-5
+    )  # differences of 1e-10 over q² = 1e-5
     assert found[0] / float(lattice.mass) == pytest.approx(c2, rel=1e-9)
 
 
 def test_the_coefficient_of_a_pair_in_closed_form():
     m1, m2, K1, K2 = 1, 2, 3 / 4, 5  # a spring 3 counts by its cosine 1/2 squared
-    expected = (K1**2 + K2**2) * (m1 + m2) ** 2 + 2 * K1 * K2 * (m1**2 - 4 * m1 * m2 + m2**2)
+    expected = (K1**2 + K2**2) * (m1 + m2) ** 2 + 2 * K1 * K2 * (
+        m1**2 - 4 * m1 * m2 + m2**2
+    )
     expected /= 3 * (K1 + K2) ** 2 * (m1 + m2) ** 2
     pair = Lattice([m1, m2], [Link(0, 1, Power(1), 3, "1/2"), Link(1, 2, Power(1), K2)])
     assert pair.statics.samples(np.array(1.0))[2] == pytest.approx(expected, rel=1e-14)
@@ -81,7 +85,9 @@ def test_hertz_and_linear_contacts_in_turn():
         Lattice([1, 1], [Link(0, 1, HERTZ, 2), Link(1, 2, Power(1), 3)]), force="5/4"
     )
     assert float(number.speed) == pytest.approx(float(wave.speed.subs(at)), rel=1e-14)
-    assert number._square == pytest.approx(float(number.speed) ** 2, rel=2e-14)  # by quadrature
+    assert number._square == pytest.approx(
+        float(number.speed) ** 2, rel=2e-14
+    )  # by quadrature
 
 
 @pytest.mark.parametrize("force", ["1/1000", "1", "40"])
@@ -91,21 +97,26 @@ def test_static_states_balance(force):
     ends = [(0, 1, HERTZ), (1, 2, law), (2, 3, SQUARED), (0, 2, law), (1, 4, HERTZ)]
     lattice = Lattice([1, 2, 3], [Link(i, j, law, 2) for i, j, law in ends])
     state = lattice.static(force)
-    forces = [2 * law.at(x, 0) for (_, _, law), x in zip(ends, state.compressions, strict=True)]
+    forces = [
+        2 * law.at(x, 0)
+        for (_, _, law), x in zip(ends, state.compressions, strict=True)
+    ]
     net = np.zeros(3)
     for (i, j, _), f in zip(ends, forces, strict=True):
         net[i] -= f
         net[j % 3] += f
     F = float(sp.Rational(force))
     assert np.abs(net).max() < 1e-13 * F
-    assert sum((j - i) * f for (i, j, _), f in zip(ends, forces, strict=True)) / 3 == pytest.approx(
-        F, rel=1e-13
-    )
+    assert sum(
+        (j - i) * f for (i, j, _), f in zip(ends, forces, strict=True)
+    ) / 3 == pytest.approx(F, rel=1e-13)
 
 
 def test_slopes_are_those_of_the_force():
     """F′ and F″ of a lattice that is not in series, against differences of F."""
-    lattice = Lattice([1, 2], [Link(0, 1, HERTZ), Link(1, 2, SQUARED, 3), Link(0, 2, HERTZ, "1/2")])
+    lattice = Lattice(
+        [1, 2], [Link(0, 1, HERTZ), Link(1, 2, SQUARED, 3), Link(0, 2, HERTZ, "1/2")]
+    )
     statics, e, h = lattice.statics, 0.7, 1e-4
     below, here, above = statics.force(np.array([e - h, e, e + h]))
     F1, F2, *_ = statics.samples(np.array(e))

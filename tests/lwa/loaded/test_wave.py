@@ -33,7 +33,10 @@ def random_chain(seed):
     F = sp.Rational(str(round(draw.uniform(0.5, 3), 2)))
     if seed % 3:
         A = [round(x, 3) for x in np.exp(draw.uniform(-1.5, 1.5, P))]
-        law, loads = Power(str(round(draw.uniform(1.05, 5), 2))), ["0", "1/100", "1/2", "5/4"]
+        law, loads = (
+            Power(str(round(draw.uniform(1.05, 5), 2))),
+            ["0", "1/100", "1/2", "5/4"],
+        )
     else:
         A, law, loads = [2] * P, LAWS[seed // 3 % 3], ["1/10", "1/2"]
     load = F * sp.Rational(str(draw.choice(loads)))
@@ -42,7 +45,12 @@ def random_chain(seed):
 
 LONG = (2, 4, 5, *range(7, 20))
 SEEDS = [pytest.param(n, marks=pytest.mark.slow) if n in LONG else n for n in range(20)]
-FALLING = Cell([1, 2], spacing=1), Power("1/2"), sp.S.Half, sp.S.One  # laws that soften: B < 0
+FALLING = (
+    Cell([1, 2], spacing=1),
+    Power("1/2"),
+    sp.S.Half,
+    sp.S.One,
+)  # laws that soften: B < 0
 
 
 @pytest.mark.parametrize("seed", [*SEEDS, "falling"])
@@ -66,7 +74,11 @@ def test_a_chain_of_one_law_is_the_canonical_wave(seed):
 def test_a_profile_has_its_own_width():
     pair = Lattice([1, 2], [Link(0, 1, HERTZ), Link(1, 2, Power(3))], spacing="1/2")
     wave = loaded_wave(pair, force=2, precompression=1)
-    for quantity, peak in (("force", 1), ("strain", wave.strain), ("velocity", wave.bead_velocity)):
+    for quantity, peak in (
+        ("force", 1),
+        ("strain", wave.strain),
+        ("velocity", wave.bead_velocity),
+    ):
         half = float(wave.fwhm(quantity)) / 2
         found = wave.along([0.0, half, -half], quantity)
         assert found == pytest.approx(float(peak) * np.array([1, 0.5, 0.5]), rel=1e-12)
@@ -90,7 +102,9 @@ def test_the_width_with_resonators_obeys_its_integral():
 
 def test_slow_resonators_are_refused():
     def chain(stiffness):
-        return Lattice([1], [Link(0, 1, HERTZ)], [Resonator(0, 1, stiffness)], spacing=2)
+        return Lattice(
+            [1], [Link(0, 1, HERTZ)], [Resonator(0, 1, stiffness)], spacing=2
+        )
 
     rate = math.sqrt(4 / 5 / 2)  # V/D of spheres of the mass 2 with A = 1
     least = (1.2 * 2 * math.pi * rate) ** 2 / 2
@@ -122,16 +136,25 @@ def test_errors_are_nan_where_nothing_was_measured():
     hard = Lattice([1, 1], [Link(0, 1, HERTZ), Link(1, 2, Power(3))])
     heard = Lattice([1], [Link(0, 1, HERTZ)], [Resonator(0, 1, 1000)])
     radiating = Lattice([1, 2], [Link(n, n + 1, HERTZ) for n in range(2)])
-    for lattice, F, load in ((three, 2, 1), (hard, 9, 1), (heard, 2, 1), (radiating, 1, 0)):
+    for lattice, F, load in (
+        (three, 2, 1),
+        (hard, 9, 1),
+        (heard, 2, 1),
+        (radiating, 1, 0),
+    ):
         wave = loaded_wave(lattice, force=F, precompression=load)
         assert math.isnan(wave.speed_error)
         assert math.isnan(wave.fwhm_error())
-    falling = loaded_wave(Lattice([1], [Link(0, 1, Power("1/2"))]), force="1/2", precompression=1)
+    falling = loaded_wave(
+        Lattice([1], [Link(0, 1, Power("1/2"))]), force="1/2", precompression=1
+    )
     assert math.isnan(falling.speed_error)
     bare = loaded_wave(hard, force=1)
     assert bare.speed_error > 0
     assert math.isnan(bare.fwhm_error())
-    alike = loaded_wave(Lattice([1] * 3, [Link(n, n + 1, HERTZ) for n in range(3)]), force=1)
+    alike = loaded_wave(
+        Lattice([1] * 3, [Link(n, n + 1, HERTZ) for n in range(3)]), force=1
+    )
     # exact waves: 5.6 % in the force's width, 1.2 % in the speed
     assert 0.056 < alike.fwhm_error() / float(alike.fwhm()) < 30 * 0.056
     assert 0.0122 < alike.speed_error / float(alike.speed) < 30 * 0.0122

@@ -22,7 +22,10 @@ def test_edges_of_equal_beads_solve_els_equations():
         kappa, q = 4 * sp.acos(1 / sp.sqrt(r)), 4 * sp.acosh(sp.sqrt(r))
         for ours, known in (
             (front.trailing_speed / front.sound(r), sp.cos(kappa / 2)),
-            (front.leading_speed("dispersion") / front.sound(1), 2 * sp.sinh(q / 2) / q),
+            (
+                front.leading_speed("dispersion") / front.sound(1),
+                2 * sp.sinh(q / 2) / q,
+            ),
         ):
             assert abs((ours - known).n(30)) < 1e-25
 
@@ -34,7 +37,9 @@ def test_a_toda_soliton_on_els_edge_moves_its_beads_at_twice_the_wall():
     """
     kappa = 2 * sp.acosh(sp.sqrt(sp.Rational(5, 4)))
     for D in (1, sp.Rational(1, 2)):
-        found = shock(Cell([1], spacing=D), sp.log(sp.Rational(25, 16)) / D, 0, law=TODA)
+        found = shock(
+            Cell([1], spacing=D), sp.log(sp.Rational(25, 16)) / D, 0, law=TODA
+        )
         assert same(found.ratio, sp.Rational(5, 4))
         assert same(found.plateau, sp.S.Half)
         true = D * sp.sinh(kappa) / kappa
@@ -56,7 +61,10 @@ def test_plateau_and_rule_under_a_power_without_load():
     rise = (8 * k / (k + 1)) ** (1 / (k + 1))
     for value in (sp.Rational(3, 2), 2, 5):
         numbers = {k: value, p: sp.Rational(1, 3)}
-        speed, contact = found.leading_speed() / found.sound(p), 1 - (k - 1) / (2 * k * (k + 1))
+        speed, contact = (
+            found.leading_speed() / found.sound(p),
+            1 - (k - 1) / (2 * k * (k + 1)),
+        )
         for ratio in (
             found.rise / p / rise,
             speed * rise * (k + 1) / 4,
@@ -67,7 +75,12 @@ def test_plateau_and_rule_under_a_power_without_load():
 
 @pytest.mark.parametrize(
     ("law", "ahead"),
-    [(HERTZ, 1), (Power("1/2"), 1), (named("hertz2", 1, 1), 1), (named("magnetic", 3, 1), 0)],
+    [
+        (HERTZ, 1),
+        (Power("1/2"), 1),
+        (named("hertz2", 1, 1), 1),
+        (named("magnetic", 3, 1), 0),
+    ],
     ids=["hertz", "root", "hertz2", "magnets"],
 )
 def test_small_jumps_are_those_of_kdv(law, ahead):
@@ -90,7 +103,12 @@ def test_small_jumps_are_those_of_kdv(law, ahead):
 
 @pytest.mark.parametrize(
     ("k", "behind", "ahead"),
-    [("2.77", 1, 0), ("2.38", "36.3", 1), ("4.99", "0.785", "0.1"), ("3.1085", "1.501", "0.738")],
+    [
+        ("2.77", 1, 0),
+        ("2.38", "36.3", 1),
+        ("4.99", "0.785", "0.1"),
+        ("3.1085", "1.501", "0.738"),
+    ],
 )
 def test_long_decimals_are_floats_of_thirty_digits(k, behind, ahead):
     """Exact powers of 277/100 hold integers beyond a float, at which SymPy stopped or hung."""
@@ -107,8 +125,12 @@ def test_long_decimals_are_floats_of_thirty_digits(k, behind, ahead):
     [
         (named("magnetic", "1.963", "2.091"), "0.392", "0.834", "rarefaction"),
         (named("exponential", "0.731"), "1.127", "0.738", "shock"),
-        pytest.param(named("magnetic", "1.963", "2.091"), "0.834", "0.392", "shock", marks=SLOW),
-        pytest.param(named("hertz2", "1.037", "0.519"), "1.127", "0.738", "shock", marks=SLOW),
+        pytest.param(
+            named("magnetic", "1.963", "2.091"), "0.834", "0.392", "shock", marks=SLOW
+        ),
+        pytest.param(
+            named("hertz2", "1.037", "0.519"), "1.127", "0.738", "shock", marks=SLOW
+        ),
     ],
 )
 def test_laws_without_closed_forms(law, behind, ahead, kind):
@@ -132,5 +154,9 @@ def test_the_opposite_jump_is_a_rarefaction(cell):
     found = shock(cell, 1, 2, law=HERTZ)
     assert found.kind == "rarefaction"
     assert found.trailing_speed == found.sound(found.behind)
-    assert found.leading_speed() == found.leading_speed("dispersion") == found.sound(found.ahead)
+    assert (
+        found.leading_speed()
+        == found.leading_speed("dispersion")
+        == found.sound(found.ahead)
+    )
     assert found.plateau.subs({"m": 1, "D": 1}) < 0

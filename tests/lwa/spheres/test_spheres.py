@@ -22,7 +22,13 @@ spheres = st.builds(Sphere, sizes, sizes, st.builds(Material, sizes, ratios))
 
 
 def test_the_formula_as_the_paper_writes_it():
-    A = 4 * E1 * E2 * sp.sqrt(R1 * R2 / (R1 + R2)) / (3 * (E2 * (1 - n1**2) + E1 * (1 - n2**2)))
+    A = (
+        4
+        * E1
+        * E2
+        * sp.sqrt(R1 * R2 / (R1 + R2))
+        / (3 * (E2 * (1 - n1**2) + E1 * (1 - n2**2)))
+    )
     assert same(stiffness(FIRST, SECOND), A)
     assert stiffness(FIRST, SECOND) == stiffness(SECOND, FIRST)
 

@@ -34,7 +34,9 @@ def test_a_curve_is_the_profile_as_it_passes(wave):
     force = answer.curve(times)
     A, k, D = (float(x) for x in (wave.cell.stiffness(wave.k), wave.k, wave.D))
     assert np.allclose(force, A * (D * strain) ** k, rtol=1e-12, atol=0)  # F = A δ^k
-    assert np.allclose(answer.curve(times, "velocity"), float(answer.speed) * strain, rtol=1e-13)
+    assert np.allclose(
+        answer.curve(times, "velocity"), float(answer.speed) * strain, rtol=1e-13
+    )
 
 
 @pytest.mark.parametrize("wave", THEORIES)

@@ -19,7 +19,11 @@ WAVES = {
 @pytest.mark.parametrize("name", WAVES)
 def test_closed_forms_at_random_points_are_good_to_1e11(name):
     """Exponents from 1 + 1e-6 to 20, mass ratios over twelve decades, against 50 digits."""
-    rng, checked, numeric = np.random.default_rng(1), 0, WAVES[name].numeric(missing="nan")
+    rng, checked, numeric = (
+        np.random.default_rng(1),
+        0,
+        WAVES[name].numeric(missing="nan"),
+    )
     k, w = 1 + 10 ** rng.uniform(-6, 1.3, 16), 10 ** rng.uniform(-6, 6, 16)
     found = {
         "beta": numeric.beta(k, w),
@@ -40,7 +44,9 @@ def test_closed_forms_at_random_points_are_good_to_1e11(name):
         exact = (at.beta, at.width, at.fwhm("force"), at.speed(2), log_B)
         for values, value in zip(found.values(), exact, strict=True):
             reference = sp.N(value, 50)
-            assert abs(sp.Rational(float(values[i])) - reference) <= 1e-11 * abs(reference)
+            assert abs(sp.Rational(float(values[i])) - reference) <= 1e-11 * abs(
+                reference
+            )
         checked += 1
     assert checked > 5
 

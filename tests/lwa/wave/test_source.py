@@ -18,7 +18,16 @@ from tests.lwa.command.answers import run
 PROGRAMS = {"c": "cc", "javascript": "node"}
 """Programs that run or compile the generated languages."""
 
-STRICT = ("-std=c99", "-O2", "-Wall", "-Wextra", "-pedantic", "-Werror", "-shared", "-fPIC")
+STRICT = (
+    "-std=c99",
+    "-O2",
+    "-Wall",
+    "-Wextra",
+    "-pedantic",
+    "-Werror",
+    "-shared",
+    "-fPIC",
+)
 ANSWER = """
 const calls = JSON.parse(require("fs").readFileSync(0));
 console.log(JSON.stringify(calls.map(([name, ...values]) => eval(name)(...values))));
@@ -34,7 +43,12 @@ def answers(language, source, calls, folder):
     if language == "javascript":
         program, options = ["node", "--eval", source + ANSWER], {"capture_output": True}
         ended = subprocess.run(
-            program, input=json.dumps(calls), check=True, text=True, timeout=120, **options
+            program,
+            input=json.dumps(calls),
+            check=True,
+            text=True,
+            timeout=120,
+            **options,
         )
         return json.loads(ended.stdout)
     file, library = folder / "lwa_wave.c", folder / "lwa_wave.so"
@@ -43,13 +57,26 @@ def answers(language, source, calls, folder):
     loaded = ctypes.CDLL(str(library))
     for name, *_ in calls:
         getattr(loaded, name).restype = ctypes.c_double
-    return [getattr(loaded, name)(*map(ctypes.c_double, values)) for name, *values in calls]
+    return [
+        getattr(loaded, name)(*map(ctypes.c_double, values)) for name, *values in calls
+    ]
 
 
 RATIOS = (1e-3, 0.2733, 1.0, 3.0, 99.0)
-GRID = {"k": (1.01, 1.5, 1.6, 1.999, 2.0, 3.0, 7.875), "m1": (1.0,), "m2": RATIOS, "D": (1.0,)}
+GRID = {
+    "k": (1.01, 1.5, 1.6, 1.999, 2.0, 3.0, 7.875),
+    "m1": (1.0,),
+    "m2": RATIOS,
+    "D": (1.0,),
+}
 NEAR_1 = {"k": tuple(1 + 2.0**-n for n in (10, 20, 40))}
-STIFF = {"k": (1.01, 1.5, 8.0), "m1": (0.3, 7.0), "m3": (1.1,), "D": (0.7,), "A1": (0.02, 50.0)}
+STIFF = {
+    "k": (1.01, 1.5, 8.0),
+    "m1": (0.3, 7.0),
+    "m3": (1.1,),
+    "D": (0.7,),
+    "A1": (0.02, 50.0),
+}
 WAVES = {
     "paper": (homogenize(Dimer("m1", "m2")).pde.traveling_wave(), GRID),
     "canonical": (canonical_wave(Dimer("m1", "m2")), GRID),
@@ -77,7 +104,14 @@ def expected(name):
     """
     wave, grid = WAVES[name]
     letters = {s.name: s for x in (wave.k, wave.I) for s in x.free_symbols}
-    formulas = [wave.k, wave.G, wave.H, wave.I, wave.time_scale, wave.at_force(2).strain]
+    formulas = [
+        wave.k,
+        wave.G,
+        wave.H,
+        wave.I,
+        wave.time_scale,
+        wave.at_force(2).strain,
+    ]
     numbers = sp.lambdify([letters[name] for name in grid], formulas, "mpmath")
     rows, profiles = [], 0
     for values in product(*grid.values()):
@@ -88,12 +122,18 @@ def expected(name):
             continue
         given = dict(zip(grid, values, strict=True))
         beta = (k - 1) / (2 * mpmath.sqrt(S))
-        found = [("beta", {}, beta), ("width", {}, mpmath.pi / beta), ("time_scale", {}, scale)]
+        found = [
+            ("beta", {}, beta),
+            ("width", {}, mpmath.pi / beta),
+            ("time_scale", {}, scale),
+        ]
         for quantity, power in (("strain", 1), ("force", k), ("velocity", 1)):
             angle = mpmath.acos(mpmath.mpf(2) ** (-(k - 1) / (2 * power)))
             found.append((f"fwhm_{quantity}", {}, 2 * angle / beta))
         for at in (0.5, 1.0, 2.0):
-            found.append(("speed", {"B": at}, mpmath.sqrt(factor) * at ** ((k - 1) / 2)))
+            found.append(
+                ("speed", {"B": at}, mpmath.sqrt(factor) * at ** ((k - 1) / 2))
+            )
             found.append(("amplitude", {"V_s": at}, (at**2 / factor) ** (1 / (k - 1))))
         found.append(("strain", {"F": 2.0}, B))
         speed = scale * mpmath.sqrt(factor) * B ** ((k - 1) / 2)
@@ -107,8 +147,12 @@ def expected(name):
         profiles += name in ("paper", "numbers")
         for part in PARTS if profiles % 5 == 1 else ():
             xi = float(part * mpmath.pi / beta / 2)
-            phases = (min(beta * xi * (1 + sign * OFF), mpmath.pi / 2) for sign in (1, -1))
-            bounds = [3 * max(0, mpmath.cos(phase)) ** (2 / (k - 1)) for phase in phases]
+            phases = (
+                min(beta * xi * (1 + sign * OFF), mpmath.pi / 2) for sign in (1, -1)
+            )
+            bounds = [
+                3 * max(0, mpmath.cos(phase)) ** (2 / (k - 1)) for phase in phases
+            ]
             doubt = 3 * OFF if part < 1 else 0  # outside of the support v is 0
             for place in (xi, -xi):
                 at = given | {"xi": place, "B": 3.0}
@@ -120,7 +164,9 @@ def expected(name):
 @pytest.mark.parametrize(
     "language",
     [
-        pytest.param(name, marks=pytest.mark.optional(PROGRAMS[name])) if name in PROGRAMS else name
+        pytest.param(name, marks=pytest.mark.optional(PROGRAMS[name]))
+        if name in PROGRAMS
+        else name
         for name in LANGUAGES
     ],
 )
@@ -149,15 +195,21 @@ def test_numpy_broadcasts_and_takes_integers():
     outside = np.abs(xi) > found["width"](k=1.5, m1=1, m2=1, D=1) / 2
     assert outside.sum() > 10
     assert np.all((v == 0) == outside)
-    large = found["beta"](k=2, m1=10**12, m2=np.array([10**12, 10**13]), D=3)  # 10^26: no int64
-    assert large == pytest.approx(found["beta"](k=2, m1=1, m2=np.array([1, 10]), D=3), rel=1e-15)
+    large = found["beta"](
+        k=2, m1=10**12, m2=np.array([10**12, 10**13]), D=3
+    )  # 10^26: no int64
+    assert large == pytest.approx(
+        found["beta"](k=2, m1=1, m2=np.array([1, 10]), D=3), rel=1e-15
+    )
 
 
 def test_arguments_have_one_order_in_all_languages():
     functions = wave_functions(canonical_wave(Cell(["z", "a"], ["y", "b"], "L"), "q"))
     names = {name: [s.name for s in f.arguments] for name, f in functions.items()}
     assert names["profile"] == ["xi", "B", "q", "z", "a", "y", "b", "L"]
-    assert names["beta"] == names["width"] == names["fwhm_force"] == names["profile"][2:]
+    assert (
+        names["beta"] == names["width"] == names["fwhm_force"] == names["profile"][2:]
+    )
     assert names["speed"] == ["B", "q"]
     assert names["amplitude"] == ["V_s", "q"]
     assert "def speed(B, k):" in canonical_wave(Cell(["B", 1])).code("numpy")

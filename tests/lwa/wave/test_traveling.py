@@ -64,7 +64,9 @@ def test_compression_speed_and_times_are_those_of_the_force(beads, D, k, F):
     masses, stiffnesses = zip(*beads, strict=True)
     wave = canonical_wave(Cell(masses, stiffnesses, D), k)
     found = wave.at_force(F)
-    assert close(sum((F / A) ** (1 / k) for A in stiffnesses), len(masses) * D * found.strain)
+    assert close(
+        sum((F / A) ** (1 / k) for A in stiffnesses), len(masses) * D * found.strain
+    )
     assert close(found.compression, D * found.strain)
     assert close(found.speed, wave.speed(found.strain) * wave.time_scale)
     assert close(found.bead_velocity, found.speed * wave.profile(0, found.strain))

@@ -39,12 +39,20 @@ class Reference:
         self.load = np.array(scene.load)
         k, law, forces = scene.k, scene.law, self.load / self.A
         if law is None:
-            self.F, self.U, self.pulls = lambda d: d**k, lambda d: d ** (k + 1) / (k + 1), False
+            self.F, self.U, self.pulls = (
+                lambda d: d**k,
+                lambda d: d ** (k + 1) / (k + 1),
+                False,
+            )
             self.rest = forces ** (1 / k)
         else:
-            self.F, self.U = (sp.lambdify(law.delta, sp.N(e, 17)) for e in (law.F, law.energy))
+            self.F, self.U = (
+                sp.lambdify(law.delta, sp.N(e, 17)) for e in (law.F, law.energy)
+            )
             self.pulls = bool(law.slope().subs(law.delta, 0).is_positive)
-            self.rest = np.array([brentq(lambda d, f=f: self.F(d) - f, 0, 50) for f in forces])
+            self.rest = np.array(
+                [brentq(lambda d, f=f: self.F(d) - f, 0, 50) for f in forces]
+            )
         if self.load.any():
             self.load = self.A * self.F(self.rest)
         self.c, self.p = np.zeros(len(self.A)), 0.0
@@ -69,7 +77,11 @@ class Reference:
     def push(self, d, rate):
         """Forces over δ^p, which have no power less than 1."""
         pressed = np.maximum(d, 0)
-        power = pressed ** (self.scene.k - self.p) if self.scene.law is None else self.F(pressed)
+        power = (
+            pressed ** (self.scene.k - self.p)
+            if self.scene.law is None
+            else self.F(pressed)
+        )
         return self.A * power + self.c * rate
 
     def active(self, d, rate):
@@ -93,7 +105,9 @@ class Reference:
         if drive is not None:
             acceleration[0] = a
             work = v[0] * (self.m[0] * a + excess[1])
-        return np.concatenate((v, acceleration, (((total - elastic) * rate).sum(), work)))
+        return np.concatenate(
+            (v, acceleration, (((total - elastic) * rate).sum(), work))
+        )
 
     def energy(self, state):
         """Energy above equilibrium of the contacts and the free beads."""
@@ -101,7 +115,9 @@ class Reference:
         d, _ = self.gaps(state[:n], state[n : 2 * n])
         kinetic = self.m * state[n : 2 * n] ** 2 / 2
         pressed = d if self.pulls else np.maximum(d, 0)
-        stored = self.A * (self.U(pressed) - self.U(self.rest)) - self.load * (d - self.rest)
+        stored = self.A * (self.U(pressed) - self.U(self.rest)) - self.load * (
+            d - self.rest
+        )
         return kinetic[self.scene.drive is not None :].sum() + stored.sum()
 
     def start(self):
@@ -124,7 +140,9 @@ def follow(scene, times, rtol, scale):
     ref = Reference(scene)
     n, drive = ref.n, scene.drive
     state, t = ref.start(), 0.0
-    atol = rtol * np.concatenate((np.full(n, scale[0]), np.full(n, scale[1]), (scale[2],) * 2))
+    atol = rtol * np.concatenate(
+        (np.full(n, scale[0]), np.full(n, scale[1]), (scale[2],) * 2)
+    )
     stops = {*times.tolist(), *((drive.ramp, *drive.time) if drive is not None else ())}
     found = Motion(*np.zeros((2, len(times), n)), *np.zeros((3, len(times))))
     ref.settle(state)
@@ -133,7 +151,9 @@ def follow(scene, times, rtol, scale):
     least = 1e-2 * rtol * scale[1] * ref.m.min() if len(ref.A) else 0.0
     for stop in sorted(s for s in stops if 0 <= s <= times[-1]):
         while t < stop:
-            stepper = DOP853(ref, t, state, stop, first_step=min(first, stop - t), **options)
+            stepper = DOP853(
+                ref, t, state, stop, first_step=min(first, stop - t), **options
+            )
             before = t, state
             while stepper.status == "running":
                 before = stepper.t, stepper.y

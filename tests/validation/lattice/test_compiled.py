@@ -51,7 +51,9 @@ def output(folder, program, **environment):
 def test_an_edit_of_any_source_of_the_kernel_compiles_again(tmp_path):
     """The hash of the sources is in the closure of each cached function of the engine."""
     for function in (advance, advance_split, interpolate):
-        assert inspect.getclosurevars(function.py_func).nonlocals == {"sources": SOURCES}
+        assert inspect.getclosurevars(function.py_func).nonlocals == {
+            "sources": SOURCES
+        }
     cached = {"NUMBA_DEBUG_CACHE": "1", "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
     shutil.copytree(PACKAGES / "validation", tmp_path / "validation")
     assert "data saved" in output(tmp_path, SMALL, **cached)
@@ -82,7 +84,12 @@ def test_a_damaged_cache_is_written_again(tmp_path):
 @pytest.mark.parametrize(
     ("head", "places"),
     [
-        ("", dict.fromkeys(("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR"), "/dev/null/home")),
+        (
+            "",
+            dict.fromkeys(
+                ("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR"), "/dev/null/home"
+            ),
+        ),
         ("import resource\nresource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))\n", {}),
     ],
     ids=("no directory", "full disk"),

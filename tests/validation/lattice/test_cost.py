@@ -32,7 +32,9 @@ def test_any_scene_gives_finite_numbers_or_one_line(seed, factors, changed, meth
         patch.setattr(cost, "MOST_STEPS", 1e4)
         try:
             what = drawn(seed)
-            rows = {name: np.multiply(getattr(what, name), x) for name, x in factors.items()}
+            rows = {
+                name: np.multiply(getattr(what, name), x) for name, x in factors.items()
+            }
             made = record(replace(what, **rows, **changed), method=method, rtol=1e-6)
         except (SceneError, cost.IntegrationError) as error:
             made, message = None, str(error)

@@ -28,7 +28,8 @@ def loaded(k, duration=8.0, **rest):
 
 
 @pytest.mark.parametrize(
-    ("method", "order", "steps"), [("RKN86", 8, (80, 64, 50)), ("symplectic", 4, (240, 160, 120))]
+    ("method", "order", "steps"),
+    [("RKN86", 8, (80, 64, 50)), ("symplectic", 4, (240, 160, 120))],
 )
 def test_the_order_on_a_smooth_problem(method, order, steps):
     """Slopes 8 and 4 of the error at the end; no tolerance shortens the steps of the pair."""
@@ -38,7 +39,9 @@ def test_the_order_on_a_smooth_problem(method, order, steps):
     assert reference.compression.min() > 0.1
     steps = 8.0 / np.array(steps)
     errors = [
-        np.abs(simulate(scene, method=method, step=h, rtol=1e-2).displacements - exact).max()
+        np.abs(
+            simulate(scene, method=method, step=h, rtol=1e-2).displacements - exact
+        ).max()
         for h in steps
     ]
     assert errors[0] > 1e-12  # above rounding
@@ -54,9 +57,13 @@ def test_every_law_and_every_sensor_agree_with_dop853(k):
     for method in COMPILED:
         run = simulate(scene, method=method, step=0.02)
         for name in (*RECORDS, "velocities"):
-            np.testing.assert_allclose(getattr(run, name), getattr(reference, name), atol=1e-6)
+            np.testing.assert_allclose(
+                getattr(run, name), getattr(reference, name), atol=1e-6
+            )
         np.testing.assert_allclose(run.bead_velocity[:, -1], run.velocities, atol=1e-14)
-        np.testing.assert_allclose(run.bead_displacement[:, -1], run.displacements, atol=1e-14)
+        np.testing.assert_allclose(
+            run.bead_displacement[:, -1], run.displacements, atol=1e-14
+        )
 
 
 @pytest.mark.parametrize(
@@ -66,20 +73,30 @@ def test_every_law_and_every_sensor_agree_with_dop853(k):
 def test_a_chain_of_several_tiles_moves_as_its_mirror_image(method, damping):
     """The tiles of the image end at other beads; 1e-6 is the error of both runs, not rounding."""
     n, start = 2 * TILE + 90, np.random.default_rng(0).normal(size=2 * TILE + 90)
-    gas = dict(masses=(1,) * n, stiffnesses=(1,) * (n - 1), k=1.5, duration=3, damping=damping)
+    gas = dict(
+        masses=(1,) * n, stiffnesses=(1,) * (n - 1), k=1.5, duration=3, damping=damping
+    )
     options = dict(method=method, rtol=1e-9)
-    run, image = (simulate(Scene(velocities=v, **gas), **options) for v in (start, -start[::-1]))
+    run, image = (
+        simulate(Scene(velocities=v, **gas), **options) for v in (start, -start[::-1])
+    )
     np.testing.assert_allclose(image.velocities, -run.velocities[::-1], atol=1e-6)
 
 
 def difference(task):
     """Greatest difference to the reference in the force of the pulse, in units of its peak."""
-    scene, motion, run = task.scene, Motion(task.scene), simulate(task.scene, rtol=FINEST)
+    scene, motion, run = (
+        task.scene,
+        Motion(task.scene),
+        simulate(task.scene, rtol=FINEST),
+    )
     pulse, (contact,) = task.read(run), scene.contact_sensors
     times = pulse.arrival + pulse.fwhm * np.linspace(-2, 2, 20)
     times = times[times < scene.duration]
     size = motion.scales.displacement, motion.scales.velocity, motion.scales.energy
-    found = follow(scene, times, 2.5e-14, size)  # about the least tolerance that SciPy takes
+    found = follow(
+        scene, times, 2.5e-14, size
+    )  # about the least tolerance that SciPy takes
     expected = motion.force(motion.compression(found.y.T))[contact]
     return np.abs(run.signal("contact", contact)(times) - expected).max() / pulse.peak
 
@@ -97,9 +114,14 @@ def test_forces_agree_with_located_kinks(task):
 
 
 def test_many_scenes_run_as_single_ones_and_are_taken_lazily():
-    scenes = [struck((1,), 40, duration=d, contact_sensors=(20,)) for d in np.linspace(10, 40, 30)]
+    scenes = [
+        struck((1,), 40, duration=d, contact_sensors=(20,))
+        for d in np.linspace(10, 40, 30)
+    ]
     taken = []
-    runs = simulate_many((taken.append(scene) or scene for scene in scenes), rtol=1e-7, workers=2)
+    runs = simulate_many(
+        (taken.append(scene) or scene for scene in scenes), rtol=1e-7, workers=2
+    )
     first = next(runs)
     assert len(taken) < 20
     for scene, run in zip(scenes, (first, *runs), strict=True):

@@ -50,20 +50,32 @@ def test_the_energy_lost_is_the_energy_dissipated(kind):
     np.testing.assert_allclose(force(run.time), run.contact_force[1], atol=1e-14)
 
 
-@pytest.mark.parametrize("drive", [None, Drive(amplitude=0.0, frequency=1.0), Drive(velocity=0.0)])
+@pytest.mark.parametrize(
+    "drive", [None, Drive(amplitude=0.0, frequency=1.0), Drive(velocity=0.0)]
+)
 def test_a_scene_at_rest_stays_at_rest(drive):
     scene = Scene(
         masses=(1, 1), stiffnesses=(1,), k=1.5, duration=3, bead_sensors=(0, 1), drive=drive,
         damping=Damping("kuwabara_kono", 0.1),
     )  # fmt: skip
     run = simulate(scene)
-    for name in ("bead_displacement", "velocities", "energy_drift", "dissipated", "work"):
+    for name in (
+        "bead_displacement",
+        "velocities",
+        "energy_drift",
+        "dissipated",
+        "work",
+    ):
         assert not np.any(getattr(run, name)), name
 
 
 @pytest.mark.parametrize(
     ("masses", "k", "frequency", "rtol"),
-    [((1, 1), 1.5, 0.3, 1e-6), ((1, 0.2, 0.2, 0.2), 1.5, 0.3, 1e-10), ((1,), 1, 1.0, 1e-10)],
+    [
+        ((1, 1), 1.5, 0.3, 1e-6),
+        ((1, 0.2, 0.2, 0.2), 1.5, 0.3, 1e-10),
+        ((1,), 1, 1.0, 1e-10),
+    ],
 )
 def test_the_work_of_a_shaken_bead_whose_contact_opens(masses, k, frequency, rtol):
     """The drive's speed changes within the steps in which its contact opens and closes."""
@@ -76,8 +88,12 @@ def test_the_work_of_a_shaken_bead_whose_contact_opens(masses, k, frequency, rto
 
 def test_a_drive_that_leaves_its_contact_is_on_its_books():
     """Nothing but the drive moves: rounding is no response that sets scales."""
-    away = Drive(time=(0, 0.3, 0.6, 0.9, 1.2), displacement=(-0.7, -1.2, -1.3, -1.8, -1.9))
-    scene = Scene(masses=(0.64, 0.3), stiffnesses=(1,), wall=0.1, k=1.5, duration=1, drive=away)
+    away = Drive(
+        time=(0, 0.3, 0.6, 0.9, 1.2), displacement=(-0.7, -1.2, -1.3, -1.8, -1.9)
+    )
+    scene = Scene(
+        masses=(0.64, 0.3), stiffnesses=(1,), wall=0.1, k=1.5, duration=1, drive=away
+    )
     run = simulate(scene)
     assert abs(run.work) > 0.1
     assert abs(run.energy_drift) < 1e-14
@@ -89,7 +105,10 @@ def test_the_error_is_that_of_the_response():
     alone = Scene(masses=(1, 1), stiffnesses=(1,), velocities=(0.01,), **damped)
     away = dict(velocities=(0, 0.01), drive=Drive(velocity=-50))
     pulled = Scene(masses=(1, 1, 1), stiffnesses=(1, 1), **away, **damped)
-    exact, run = simulate(alone, rtol=1e-11).velocities, simulate(pulled, rtol=1e-6).velocities[1:]
+    exact, run = (
+        simulate(alone, rtol=1e-11).velocities,
+        simulate(pulled, rtol=1e-6).velocities[1:],
+    )
     assert np.abs(run - exact).max() < 1e-6 * 0.01
 
 
@@ -127,7 +146,9 @@ def test_a_shaken_linear_bead_oscillates_with_the_exact_amplitude():
 def test_a_drive_from_rows_is_the_motion_that_they_sample():
     t = np.linspace(0, 20, 400)
     driven = dict(drive=Drive(time=t, displacement=0.1 * t**3 / 400), bead_sensors=(0,))
-    run = simulate(Scene(masses=(1, 1, 1), stiffnesses=(1, 1), k=1.5, duration=20, **driven))
+    run = simulate(
+        Scene(masses=(1, 1, 1), stiffnesses=(1, 1), k=1.5, duration=20, **driven)
+    )
     assert run.bead_displacement[0] == pytest.approx(0.1 * run.time**3 / 400, abs=1e-13)
     assert run.momentum_drift is None
 
@@ -140,12 +161,16 @@ def test_scipys_methods_are_references_of_forced_scenes():
     )  # fmt: skip
     ours, theirs = (simulate(scene, method=m, rtol=1e-10) for m in ("RKN86", "DOP853"))
     for name in ("displacements", "velocities", "dissipated", "work"):
-        np.testing.assert_allclose(getattr(theirs, name), getattr(ours, name), atol=3e-9)
+        np.testing.assert_allclose(
+            getattr(theirs, name), getattr(ours, name), atol=3e-9
+        )
     assert min(ours.dissipated, ours.work) > 1e-3
 
 
 @pytest.mark.parametrize("short", [2e-3, 5e-4, 1e-5])
-@pytest.mark.parametrize("damping", [None, Damping("contact", 0.3), Damping("restitution", 0.7)])
+@pytest.mark.parametrize(
+    "damping", [None, Damping("contact", 0.3), Damping("restitution", 0.7)]
+)
 def test_a_driven_bead_that_touches_between_two_steps_is_seen(short, damping):
     """The drive goes ``short`` beyond the second bead; steps of 1e-4 are too short to miss it."""
     scene = Scene(
@@ -168,7 +193,9 @@ def test_a_thrown_bead_meets_a_plate_near_the_apex_of_its_flight(short):
         velocities=(0, -10), drive=plate,
     )  # fmt: skip
     exact = simulate(scene, rtol=1e-13, step=1e-3).velocities[1]
-    assert exact > 5 + np.sqrt(2 * short)  # 5 without a collision, 5 + 2 √(2 short) at a hard plate
+    assert exact > 5 + np.sqrt(
+        2 * short
+    )  # 5 without a collision, 5 + 2 √(2 short) at a hard plate
     for rtol in 10.0 ** np.arange(-12, -4):
         velocity = simulate(scene, rtol=rtol).velocities[1]
         assert velocity == pytest.approx(exact, abs=100 * rtol * 10), rtol

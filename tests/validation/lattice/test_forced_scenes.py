@@ -31,12 +31,16 @@ def drawn(seed):
         if random.random() < 0.7:
             kind = random.choice(["contact", "kuwabara_kono", "restitution"])
             share = random.uniform(0.05, 0.99)
-            damping = Damping(kind, share if kind == "restitution" else 10 ** random.uniform(-3, 0))
+            damping = Damping(
+                kind, share if kind == "restitution" else 10 ** random.uniform(-3, 0)
+            )
         drive = random.choice(["none", "piston", "harmonic", "ramp", "file"])
         drive = None if drive == "none" else drive
     law = {}
     if random.random() < 0.15 and (damping is None or damping.kind == "contact"):
-        law["law"] = [named("exponential", 1), named("hertz2", 1, 2)][random.integers(2)]
+        law["law"] = [named("exponential", 1), named("hertz2", 1, 2)][
+            random.integers(2)
+        ]
     else:
         law["k"] = random.choice([1, 1.1, 1.25, 1.5, 1.5, 2, 3, random.uniform(1, 3)])
     masses = 10.0 ** (-random.choice([0, 1, 2]) * random.random(n))
@@ -86,7 +90,11 @@ def units(scene, found):
     scales = Motion(scene, energy if energy > 0 else None).scales
     free = slice(scene.drive is not None, None)
     speed = max(scales.velocity, np.abs(found.v[:, free]).max(initial=0))
-    return max(scales.displacement, scales.compression), speed, energy if energy > 0 else 1.0
+    return (
+        max(scales.displacement, scales.compression),
+        speed,
+        energy if energy > 0 else 1.0,
+    )
 
 
 def references(scene):
@@ -109,9 +117,16 @@ def errors(seed, tolerances=TOLERANCES):
     found = []
     for rtol in tolerances:
         run = simulate(scene, rtol=rtol)
-        error = difference(run.bead_displacement.T, run.bead_velocity.T, exact, unit, free)
-        paid = max(abs(run.dissipated - exact.lost[-1]), abs(run.work - exact.work[-1])) / unit[2]
-        found.append([error / amplification, paid / amplification, abs(run.energy_drift)])
+        error = difference(
+            run.bead_displacement.T, run.bead_velocity.T, exact, unit, free
+        )
+        paid = (
+            max(abs(run.dissipated - exact.lost[-1]), abs(run.work - exact.work[-1]))
+            / unit[2]
+        )
+        found.append(
+            [error / amplification, paid / amplification, abs(run.energy_drift)]
+        )
     return amplification, np.array(found) / np.array(tolerances)[:, None]
 
 

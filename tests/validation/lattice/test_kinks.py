@@ -54,11 +54,20 @@ def expected(contact, quintic, h):
     places = [0.0, *kinks(contact, quintic, h), 1.0]
     total = np.zeros(3)
     for a, b in itertools.pairwise(places):
-        for n, weight in enumerate((lambda x: 1.0, lambda x: 1 - x, lambda x: (1 - x) ** 2 / 2)):
+        for n, weight in enumerate(
+            (lambda x: 1.0, lambda x: 1 - x, lambda x: (1 - x) ** 2 / 2)
+        ):
 
             def integrand(u, a=a, b=b, weight=weight):
                 x = a + (b - a) * (3 * u * u - 2 * u**3)
-                return 6 * u * (1 - u) * (b - a) * weight(x) * force(contact, quintic, h, x)
+                return (
+                    6
+                    * u
+                    * (1 - u)
+                    * (b - a)
+                    * weight(x)
+                    * force(contact, quintic, h, x)
+                )
 
             total[n] += quad(integrand, 0, 1, epsabs=1e-14, epsrel=1e-12, limit=200)[0]
     return total
@@ -66,7 +75,9 @@ def expected(contact, quintic, h):
 
 def contact(k, r, p):
     """With the least q = 1, 2 or 4 for which q k and q p are whole, as `_exponent` has it."""
-    q = next((q for q in (1.0, 2.0) if (q * k).is_integer() and (q * p).is_integer()), 4.0)
+    q = next(
+        (q for q in (1.0, 2.0) if (q * k).is_integer() and (q * p).is_integer()), 4.0
+    )
     return Law(k, p, q, False, 0, 0, 0, False), r
 
 
@@ -90,7 +101,14 @@ def test_a_contact_that_closes_or_opens(law, ends, rises, opening):
     start, end = ends[::-1] if opening else ends
     jump = end - start
     rise, end_rise = jump * rises[0], jump * rises[1]
-    curve = start, rise, 3 * jump - 2 * rise - end_rise, rise + end_rise - 2 * jump, 0.0, 0.0
+    curve = (
+        start,
+        rise,
+        3 * jump - 2 * rise - end_rise,
+        rise + end_rise - 2 * jump,
+        0.0,
+        0.0,
+    )
     check(law, curve, LAWS[law])
 
 
@@ -99,7 +117,11 @@ def test_a_contact_that_closes_or_opens(law, ends, rises, opening):
 @given(depth=st.floats(1e-5, 0.3), place=st.floats(0.1, 0.9), bend=st.floats(0.1, 3))
 def test_a_contact_that_closes_and_opens(law, depth, place, bend):
     """Parabolas of a greatest compression ``depth``, at a place of the step."""
-    check(law, (depth - bend * place**2, 2 * bend * place, -bend, 0.0, 0.0, 0.0), LAWS[law])
+    check(
+        law,
+        (depth - bend * place**2, 2 * bend * place, -bend, 0.0, 0.0, 0.0),
+        LAWS[law],
+    )
 
 
 def check(law, curve, bound):

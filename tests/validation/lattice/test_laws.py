@@ -54,7 +54,9 @@ def test_random_chains_agree_with_scipy(law, loaded):
     run = simulate(scene)
     for record in NAMES:
         difference = np.abs(getattr(run, record) - getattr(exact, record)).max()
-        assert difference < 1e-7, record  # chaotic rattling amplifies 1e-9 where contacts open
+        assert difference < 1e-7, (
+            record
+        )  # chaotic rattling amplifies 1e-9 where contacts open
     assert abs(run.energy_drift) < 1e-7
     # contacts of a law with F'(0) > 0 pull
     assert loaded or (exact.contact_force.min() < 0) == (law.name != "hertz2")

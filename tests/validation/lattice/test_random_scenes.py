@@ -19,7 +19,9 @@ def drawn(seed):
     ratios to 1e4, stiffness ratios to 1e3."""
     random = np.random.default_rng((22, seed))
     n = int(np.exp(random.uniform(0, np.log(261))))
-    k = random.choice([1, 1.1, 1.25, 1.5, 2, 3, 4, random.uniform(1, 1.6), random.uniform(1, 4)])
+    k = random.choice(
+        [1, 1.1, 1.25, 1.5, 2, 3, 4, random.uniform(1, 1.6), random.uniform(1, 4)]
+    )
     period = n if random.random() < 0.5 else random.integers(1, 4)
     spread, stiffer = random.choice([0, 1, 4]), random.choice([0, 1, 3])
     masses = np.resize(10.0 ** (-spread * random.random(period)), n)
@@ -89,7 +91,9 @@ def difference(run, exact, unit):
 def check(seed):
     scene = drawn(seed)
     try:
-        exact, near = (simulate(scene, method="DOP853", rtol=rtol) for rtol in (1e-13, 1e-11))
+        exact, near = (
+            simulate(scene, method="DOP853", rtol=rtol) for rtol in (1e-13, 1e-11)
+        )
     except IntegrationError:  # rounding hides the motion at 1e-13: nothing is known
         return
     unit = units(scene, exact)

@@ -17,7 +17,10 @@ from validation.scenes.forcing import Damping, Drive
 from validation.scenes.scene import Scene, SceneError
 
 CHAIN = struck((1,), 20, duration=25)
-FREE, DAMPED = replace(CHAIN, velocities=()), replace(CHAIN, damping=Damping("contact", 1))
+FREE, DAMPED = (
+    replace(CHAIN, velocities=()),
+    replace(CHAIN, damping=Damping("contact", 1)),
+)
 X = sp.Symbol("x", positive=True)
 
 
@@ -26,7 +29,9 @@ def tiny(mass):
 
 
 def pressed(law):
-    return Scene(masses=(1,), stiffnesses=(), wall=1, law=law, precompression=2, duration=1)
+    return Scene(
+        masses=(1,), stiffnesses=(), wall=1, law=law, precompression=2, duration=1
+    )
 
 
 REFUSED = [
@@ -42,19 +47,39 @@ REFUSED = [
     # values beyond floats
     (replace(CHAIN, velocities=(1e200,)), {}, "the scene's energy comes out as inf"),
     (replace(CHAIN, velocities=(1e-200,)), {}, "the scene's energy comes out as 0"),
-    (replace(FREE, drive=Drive(velocity=1e300)), {}, "the scene's energy comes out as inf"),
-    (replace(FREE, drive=Drive(amplitude=1e300, frequency=1)), {}, "the scene's energy comes out"),
+    (
+        replace(FREE, drive=Drive(velocity=1e300)),
+        {},
+        "the scene's energy comes out as inf",
+    ),
+    (
+        replace(FREE, drive=Drive(amplitude=1e300, frequency=1)),
+        {},
+        "the scene's energy comes out",
+    ),
     # laws that have no number in floats, or none at the load
     (pressed(named("polynomial", 0, -1)), {}, "force is 2.0"),
     (pressed(Law(sp.besseli(1, X), X)), {}, r"law is 'besseli\(1, x\)'"),
     # more steps or memory than a run may take
-    (tiny(1e-32), {"method": "DOP853"}, "duration is 25: .* steps of DOP853; 1e.09 are"),
+    (
+        tiny(1e-32),
+        {"method": "DOP853"},
+        "duration is 25: .* steps of DOP853; 1e.09 are",
+    ),
     (tiny(1e-300), {}, "duration is 25"),
     (replace(CHAIN, duration=1e300), {}, r"duration is 1e\+300"),
     (CHAIN, {"step": 1e-12}, "duration is 25: .* 2e.13 steps"),
     (CHAIN, {"method": "symplectic", "step": 1e-12}, "duration is 25: .* 2e.13 steps"),
-    (replace(CHAIN, bead_sensors=range(20), samples=3 * 10**6), {}, r"samples is 3e\+06"),
-    (struck((1,), 20_000, duration=25), {"method": "LSODA"}, "samples is 1001: .* 13 GB"),
+    (
+        replace(CHAIN, bead_sensors=range(20), samples=3 * 10**6),
+        {},
+        r"samples is 3e\+06",
+    ),
+    (
+        struck((1,), 20_000, duration=25),
+        {"method": "LSODA"},
+        "samples is 1001: .* 13 GB",
+    ),
 ]
 
 

@@ -50,7 +50,9 @@ def test_samples_are_values_of_the_signals(method):
             signal = run.signal(kind, number, quantity)
             np.testing.assert_allclose(signal(run.time), row, atol=1e-14)
             table = run.time[::-1][:500].reshape(5, 100)  # in any order
-            np.testing.assert_allclose(signal(table), row[::-1][:500].reshape(5, 100), atol=1e-14)
+            np.testing.assert_allclose(
+                signal(table), row[::-1][:500].reshape(5, 100), atol=1e-14
+            )
             assert np.isnan(signal([-1e-9, 9.0001])).all()
             assert (np.diff(signal.times) > 0).all()
 
@@ -61,11 +63,18 @@ TODA = replace(LINEAR, law=named("exponential", 1), samples=3)
 def test_the_law_of_a_pickled_run_is_at_its_new_address(monkeypatch):
     """A law's machine code lies elsewhere in another process."""
     run = simulate(TODA)
-    stored, elsewhere = pickle.dumps(run), {**run.path.motion.contact.addresses, "force": 7}
+    stored, elsewhere = (
+        pickle.dumps(run),
+        {**run.path.motion.contact.addresses, "force": 7},
+    )
     monkeypatch.setattr(Contact, "addresses", elsewhere)
     assert pickle.loads(stored).path.chain.law.force == 7
     monkeypatch.undo()
-    assert pickle.loads(stored).signal("contact", 0)(0.5) == run.signal("contact", 0)(0.5) > 0
+    assert (
+        pickle.loads(stored).signal("contact", 0)(0.5)
+        == run.signal("contact", 0)(0.5)
+        > 0
+    )
 
 
 def test_a_missing_sensor_or_quantity_is_refused(monkeypatch):
@@ -78,7 +87,10 @@ def test_a_missing_sensor_or_quantity_is_refused(monkeypatch):
         long.signal("contact", 0)
     for arguments, message in (
         (("contact", 1), "number is 1: the scene has no sensor at this contact"),
-        (("bead", 0, "compression"), "quantity is 'compression': .* velocity is wanted"),
+        (
+            ("bead", 0, "compression"),
+            "quantity is 'compression': .* velocity is wanted",
+        ),
     ):
         with pytest.raises(SceneError, match=f"^{message}$"):
             run.signal(*arguments)

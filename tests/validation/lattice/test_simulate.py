@@ -34,8 +34,12 @@ def test_two_beads_collide(k, m1, m2, A, v):
     mu = m1 * m2 / (m1 + m2)
     deepest = ((k + 1) * mu * v**2 / (2 * A)) ** (1 / (k + 1))
     q = 1 / (k + 1)
-    lasting = 2 * deepest / v * math.sqrt(math.pi) * math.gamma(1 + q) / math.gamma(0.5 + q)
-    pair = struck((m1, m2), 2, k, duration=1.2 * lasting, contact_sensors=(0,), samples=2001)
+    lasting = (
+        2 * deepest / v * math.sqrt(math.pi) * math.gamma(1 + q) / math.gamma(0.5 + q)
+    )
+    pair = struck(
+        (m1, m2), 2, k, duration=1.2 * lasting, contact_sensors=(0,), samples=2001
+    )
     run = simulate(replace(pair, stiffnesses=(A,), velocities=(v,)), **TIGHT)
     common = m1 * v / (m1 + m2)
     # The step in which the contact opens holds a kink that the error estimate can miss.
@@ -55,7 +59,9 @@ def hanging(k, masses, stiffnesses, **rest):
 
 
 LINEAR = dict(masses=(1.0, 0.3, 2.0, 0.7, 1.1), stiffnesses=(1.0, 2.0, 0.5, 1.5, 3.0))
-START = dict(displacements=(0.01, -0.02, 0.0, 0.015), velocities=(0.0, 0.01, -0.02, 0.0, 0.03))
+START = dict(
+    displacements=(0.01, -0.02, 0.0, 0.015), velocities=(0.0, 0.01, -0.02, 0.0, 0.03)
+)
 
 
 @pytest.mark.parametrize(
@@ -71,10 +77,17 @@ def test_the_linear_chain_moves_by_the_exponential_of_its_matrix(method, rtol):
     rates = np.block([[np.zeros((5, 5)), np.eye(5)], [pull, np.zeros((5, 5))]])
     start = np.concatenate((START["displacements"], [0.0], START["velocities"]))
     exact = np.split(expm(20.0 * rates) @ start, 2)
-    np.testing.assert_allclose((run.displacements, run.velocities), exact, atol=10 * rtol)
+    np.testing.assert_allclose(
+        (run.displacements, run.velocities), exact, atol=10 * rtol
+    )
 
 
-@given(exponents, st.lists(positive, min_size=1, max_size=6), positive, st.sampled_from((0.0, 2.0)))
+@given(
+    exponents,
+    st.lists(positive, min_size=1, max_size=6),
+    positive,
+    st.sampled_from((0.0, 2.0)),
+)
 @settings(max_examples=10)
 def test_equilibrium_stays_and_carries_the_weight_and_the_load(k, masses, A, load):
     n = len(masses)
@@ -89,7 +102,9 @@ def test_equilibrium_stays_and_carries_the_weight_and_the_load(k, masses, A, loa
         assert np.abs(moved).max() < 1e-9 * (load + sum(masses))
     weight = load + np.cumsum(masses)
     # A ((F/A)^{1/k})^k = F up to some ulp, k ≤ 3
-    np.testing.assert_allclose(run.contact_force, np.outer(weight, [1, 1, 1]), rtol=1e-14)
+    np.testing.assert_allclose(
+        run.contact_force, np.outer(weight, [1, 1, 1]), rtol=1e-14
+    )
     above = np.concatenate(([0.0], weight[:-1]))  # bead 1 has no contact behind it
     np.testing.assert_allclose(run.bead_force[:, 0], (above + weight) / 2, rtol=1e-14)
 
@@ -117,7 +132,9 @@ def test_what_the_equations_of_motion_keep(chain, drift, unit):
     # Contacts that open are kinks of F''; with k near 1 they cost the step control digits.
     assert abs(run.energy_drift) < 1e-7
     assert abs(run.momentum_drift) < 1e-12  # linear: kept by every Runge–Kutta step
-    assert np.dot(chain["masses"], run.velocities - before) == pytest.approx(0, abs=1e-11)
+    assert np.dot(chain["masses"], run.velocities - before) == pytest.approx(
+        0, abs=1e-11
+    )
 
     def final(**changed):
         return simulate(Scene(**chain | changed), **TIGHT)
@@ -136,12 +153,17 @@ def test_what_the_equations_of_motion_keep(chain, drift, unit):
     # Units of mass and length so many times as large; that of time leaves the stiffnesses as is.
     time = math.sqrt(unit ** (2 - chain["k"]))
     speed, masses = unit / time, unit * np.array(chain["masses"])
-    other = final(masses=masses, velocities=before * speed, duration=chain["duration"] * time)
-    np.testing.assert_allclose(other.velocities, run.velocities * speed, atol=1e-6 * speed)
+    other = final(
+        masses=masses, velocities=before * speed, duration=chain["duration"] * time
+    )
+    np.testing.assert_allclose(
+        other.velocities, run.velocities * speed, atol=1e-6 * speed
+    )
 
 
 @pytest.mark.parametrize(
-    ("method", "damping"), [("RKN86", 0), ("RKN86", 0.03), ("symplectic", 0), ("DOP853", 0)]
+    ("method", "damping"),
+    [("RKN86", 0), ("RKN86", 0.03), ("symplectic", 0), ("DOP853", 0)],
 )
 def test_sensors_change_nothing(method, damping):
     """Forces and motion, with damped contacts, too."""
@@ -149,7 +171,9 @@ def test_sensors_change_nothing(method, damping):
     chain = struck((1, 0.5), 12, duration=9, damping=damped)
     plain = simulate(chain, method=method)
     beads, contacts = [0, 3, 11], [7, 2, 3]
-    seen = simulate(replace(chain, contact_sensors=contacts, bead_sensors=beads), method=method)
+    seen = simulate(
+        replace(chain, contact_sensors=contacts, bead_sensors=beads), method=method
+    )
     assert np.array_equal(seen.displacements, plain.displacements)
     assert seen.dissipated == plain.dissipated
     assert plain.contact_force.shape == plain.bead_velocity.shape == (0, 1001)
@@ -158,11 +182,17 @@ def test_sensors_change_nothing(method, damping):
     around = np.pad(every.contact_force, ((1, 1), (0, 0)))  # no contact beyond the ends
     means = (around[1:] + around[:-1]) / 2
     np.testing.assert_allclose(seen.bead_force, means[beads], atol=1e-14)
-    np.testing.assert_allclose(seen.contact_force, every.contact_force[contacts], atol=1e-14)
+    np.testing.assert_allclose(
+        seen.contact_force, every.contact_force[contacts], atol=1e-14
+    )
     assert seen.time[[0, -1]].tolist() == [0, 9]
     # the record ends with the final state, up to the interpolant's last digits
-    np.testing.assert_allclose(seen.bead_velocity[:, -1], seen.velocities[beads], atol=1e-12)
-    np.testing.assert_allclose(seen.bead_displacement[:, -1], seen.displacements[beads], atol=1e-12)
+    np.testing.assert_allclose(
+        seen.bead_velocity[:, -1], seen.velocities[beads], atol=1e-12
+    )
+    np.testing.assert_allclose(
+        seen.bead_displacement[:, -1], seen.displacements[beads], atol=1e-12
+    )
     with pytest.raises(ValueError, match="read-only"):
         seen.time[0] = 1
 
@@ -170,7 +200,9 @@ def test_sensors_change_nothing(method, damping):
 @pytest.mark.parametrize("method", METHODS)
 def test_the_first_sample_is_the_initial_state(method):
     """Beads that touch at the start press nothing: rounding would turn on a contact's damping."""
-    damped = struck((1,), 2, duration=3, contact_sensors=(0,), damping=Damping("contact", 1.0))
+    damped = struck(
+        (1,), 2, duration=3, contact_sensors=(0,), damping=Damping("contact", 1.0)
+    )
     run = simulate(damped, method=method)
     assert run.contact_force[0, 0] == run.compression[0, 0] == 0.0
 
@@ -182,4 +214,8 @@ def test_a_single_bead_flies_or_bounces_off_a_wall(method):
     walled = simulate(replace(free, wall=1.0), method=method)
     assert walled.velocities == pytest.approx([-1], abs=1e-6)
     still = simulate(replace(free, velocities=()), method=method)
-    assert (still.displacements[0], still.energy_drift, still.momentum_drift) == (0, 0, 0)
+    assert (still.displacements[0], still.energy_drift, still.momentum_drift) == (
+        0,
+        0,
+        0,
+    )

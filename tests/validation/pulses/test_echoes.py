@@ -19,8 +19,12 @@ SCENE = struck((1,), 24, wall=0.3, contact_sensors=(8, 14), duration=55.0, sampl
 @pytest.fixture(scope="module")
 def true():
     """Echo at contact 9 of an accurate run, as (delay, ratio)."""
-    found = echoes(record(replace(SCENE, samples=2), rtol=1e-12, every=True).sensors, operator.add)
-    (echo,) = [r.numbers for r, back in found if back and r.places == (9,) and r.pulse == 2]
+    found = echoes(
+        record(replace(SCENE, samples=2), rtol=1e-12, every=True).sensors, operator.add
+    )
+    (echo,) = [
+        r.numbers for r, back in found if back and r.places == (9,) and r.pulse == 2
+    ]
     return echo
 
 
@@ -52,7 +56,11 @@ def test_the_errors_cover_an_accurate_run(true, rtol):
     found = echoes(record(SCENE, rtol=rtol, every=True).sensors, operator.add)
     (echo,) = [r.numbers for r, _ in found if r.places == (9,) and r.pulse == 2]
     for name, number in echo.items():
-        assert abs(number.value - true[name].value) <= number.error < 100 * rtol * number.value
+        assert (
+            abs(number.value - true[name].value)
+            <= number.error
+            < 100 * rtol * number.value
+        )
 
 
 def test_errors_of_a_noisy_record_are_one_standard_deviation(true):
@@ -63,11 +71,15 @@ def test_errors_of_a_noisy_record_are_one_standard_deviation(true):
         noisy = force + 0.005 * force.max() * rng.normal(size=force.shape)
         pulses = noisy_pulses(run.time, noisy)
         readings = [
-            Reading("contact", (9,), p.numbers, p.base, pulse=i) for i, p in enumerate(pulses, 1)
+            Reading("contact", (9,), p.numbers, p.base, pulse=i)
+            for i, p in enumerate(pulses, 1)
         ]
         echo = max(
-            (r.numbers for r, _ in echoes(readings, math.hypot)), key=lambda n: n["ratio"].value
+            (r.numbers for r, _ in echoes(readings, math.hypot)),
+            key=lambda n: n["ratio"].value,
         )
-        within.append([abs(echo[n].value - true[n].value) < echo[n].error for n in true])
+        within.append(
+            [abs(echo[n].value - true[n].value) < echo[n].error for n in true]
+        )
     share = np.mean(within, axis=0)
     assert np.all((share > 0.5) & (share < 0.92)), share

@@ -41,7 +41,10 @@ def chain():
 
 
 def lines(*columns, mark=",", form="{:.6e}", end="\n"):
-    return end.join(mark.join(map(form.format, row)) for row in zip(*columns, strict=True)) + end
+    return (
+        end.join(mark.join(map(form.format, row)) for row in zip(*columns, strict=True))
+        + end
+    )
 
 
 VOLTS = "12.5 N/V"
@@ -61,7 +64,9 @@ def lecroy(t, F, V):
 
 
 def keysight(t, F, V):
-    text = "x-axis,1,2\r\nsecond,Volt,Volt\r\n" + lines(t, *V, form="{:+.5E}", end="\r\n")
+    text = "x-axis,1,2\r\nsecond,Volt,Volt\r\n" + lines(
+        t, *V, form="{:+.5E}", end="\r\n"
+    )
     return text, ("1", "2", "x-axis"), dict.fromkeys("12", "12.5 N/Volt")
 
 
@@ -86,7 +91,11 @@ def picoscope(t, F, V):
 
 def rohde_schwarz(t, F, V):
     units = {"in s": "s", "C1 in V": VOLTS, "C2 in V": VOLTS}
-    return f"in s,C1 in V,C2 in V\n{lines(t, *V)}", ("C1 in V", "C2 in V", "in s"), units
+    return (
+        f"in s,C1 in V,C2 in V\n{lines(t, *V)}",
+        ("C1 in V", "C2 in V", "in s"),
+        units,
+    )
 
 
 def logger_in_german(t, F, V):
@@ -96,7 +105,9 @@ def logger_in_german(t, F, V):
 
 
 def a_time_for_each_channel(t, F, V):
-    text = "Time (s)\tDev1/ai0 (V)\tTime (s)\tDev1/ai1 (V)\n" + lines(t, V[0], t, V[1], mark="\t")
+    text = "Time (s)\tDev1/ai0 (V)\tTime (s)\tDev1/ai1 (V)\n" + lines(
+        t, V[0], t, V[1], mark="\t"
+    )
     return text, ("Dev1/ai0", "Dev1/ai1"), {"Dev1/ai0": VOLTS, "Dev1/ai1": VOLTS}
 
 
@@ -116,7 +127,12 @@ def a_data_frame(t, F, V):
     "style",
     [
         *(tektronix, lecroy, keysight, labview, rigol, picoscope, rohde_schwarz),
-        *(logger_in_german, a_time_for_each_channel, with_a_byte_order_mark, a_data_frame),
+        *(
+            logger_in_german,
+            a_time_for_each_channel,
+            with_a_byte_order_mark,
+            a_data_frame,
+        ),
     ],
 )
 def test_pulses_are_read_within_three_errors(chain, tmp_path, style):
@@ -139,4 +155,8 @@ def test_pulses_are_read_within_three_errors(chain, tmp_path, style):
             assert abs(off) < 3 * error < 0.03 * size, name
     for row in found["speeds"]:
         speed = 6 * SPACING / (true[1][0] - true[0][0])
-        assert abs(row["speed_value"] - speed) < 3 * row["speed_error_value"] < 0.02 * speed
+        assert (
+            abs(row["speed_value"] - speed)
+            < 3 * row["speed_error_value"]
+            < 0.02 * speed
+        )

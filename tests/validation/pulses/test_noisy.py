@@ -55,7 +55,9 @@ KINDS = {  # of a record, by times, forces, peak and generator
     "white, 2 %": white(0.02),
     "low-passed at 50 kHz": lambda t, f, P, rng: f + 0.005 * P * slow(len(t), rng),
     "drift and hum": drift_and_hum,
-    "8 bits": lambda t, f, P, rng: P / 200 * np.round(200 * f / P + 0.5 * rng.normal(size=len(t))),
+    "8 bits": lambda t, f, P, rng: (
+        P / 200 * np.round(200 * f / P + 0.5 * rng.normal(size=len(t)))
+    ),
     "8 bits, little noise": lambda t, f, P, rng: (
         P / 200 * np.round(200 * f / P + 0.05 * rng.normal(size=len(t)))
     ),
@@ -68,17 +70,31 @@ def quality(signal, kind, copies, samples=None):
     rng, step, rows = np.random.default_rng(3), t[1] - t[0], []
     for _ in range(copies):
         at = t + rng.random() * step
-        clean = STATIC + rng.random() + np.where(at > 0, signal(np.clip(at, 0, 1.2e-3)), 0.0)
+        clean = (
+            STATIC
+            + rng.random()
+            + np.where(at > 0, signal(np.clip(at, 0, 1.2e-3)), 0.0)
+        )
         noisy = noisy_pulse(at, KINDS[kind](at, clean, pulse.peak, rng)).numbers
         rows.append([(noisy[name].value, noisy[name].error) for name in NUMBERS])
     values, errors = np.moveaxis(np.array(rows), 2, 0)
-    off, scatter = values - [getattr(pulse, name) for name in NUMBERS], values.std(axis=0)
+    off, scatter = (
+        values - [getattr(pulse, name) for name in NUMBERS],
+        values.std(axis=0),
+    )
     within = np.mean(np.abs(off) < errors, axis=0)
-    return np.abs(off.mean(axis=0)) / scatter, np.median(errors, axis=0) / scatter, within
+    return (
+        np.abs(off.mean(axis=0)) / scatter,
+        np.median(errors, axis=0) / scatter,
+        within,
+    )
 
 
 FEW = [((1, 16), kind, 50) for kind in ("low-passed at 50 kHz", "8 bits, little noise")]
-MANY = [*(((1, 24), kind, 200) for kind in KINDS), *(((2, 16), kind, 200) for kind in [*KINDS][:2])]
+MANY = [
+    *(((1, 24), kind, 200) for kind in KINDS),
+    *(((2, 16), kind, 200) for kind in [*KINDS][:2]),
+]
 FEW += [pytest.param(*case, marks=pytest.mark.slow) for case in MANY]
 
 
@@ -86,7 +102,9 @@ FEW += [pytest.param(*case, marks=pytest.mark.slow) for case in MANY]
 def test_errors_are_one_standard_deviation(signals, place, kind, copies):
     """Bias: a third of the scatter; share: 60 … 80 %, one spread of 200 copies more, two of 50."""
     bias, _, within = quality(signals[place], kind, copies)
-    more, least, most = {50: (2 / np.sqrt(50), 0.47, 0.93), 200: (0, 0.57, 0.83)}[copies]
+    more, least, most = {50: (2 / np.sqrt(50), 0.47, 0.93), 200: (0, 0.57, 0.83)}[
+        copies
+    ]
     assert np.all(bias < 1 / 3 + more), bias
     assert np.all((within > least) & (within < most)), within
 
@@ -106,7 +124,9 @@ def test_the_arrival_of_two_equal_humps_is_uncertain_by_their_distance():
     for _ in range(20):
         noisy = noisy_pulse(t, f + 0.02 * rng.normal(size=len(t))).numbers["arrival"]
         covered += abs(noisy.value - later) < noisy.error
-    assert covered > 0.45 * 20  # half of the copies have the other hump as the higher one
+    assert (
+        covered > 0.45 * 20
+    )  # half of the copies have the other hump as the higher one
 
 
 @pytest.mark.parametrize(("lead", "louder"), [(3.5, 1), (12, 10)])
@@ -135,17 +155,25 @@ def test_rounding_without_noise_is_in_the_error_of_the_peak():
 def test_a_record_without_noise_gives_the_pulse_of_the_signal(signals, samples, bound):
     """The error covers what the spline does not resolve."""
     t, pulse = record(signals[1, 24], samples)
-    found = noisy_pulse(t, STATIC + np.where(t > 0, signals[1, 24](np.maximum(t, 0)), 0))
+    found = noisy_pulse(
+        t, STATIC + np.where(t > 0, signals[1, 24](np.maximum(t, 0)), 0)
+    )
     assert found.base == pytest.approx(STATIC, rel=1e-12)
     for name, size in zip(NUMBERS, (pulse.fwhm, pulse.peak, pulse.fwhm), strict=True):
         number = found.numbers[name]
-        assert abs(number.value - getattr(pulse, name)) < min(number.error, bound * size)
+        assert abs(number.value - getattr(pulse, name)) < min(
+            number.error, bound * size
+        )
         assert number.error < 300 * bound * size
 
 
 def test_pulses_come_one_after_the_other():
     t = np.arange(0, 25, 0.01)
-    f = np.exp(-((t - 8) ** 2)) + 0.5 * np.exp(-((t - 14) ** 2)) + np.exp(-((t - 20) ** 2))
+    f = (
+        np.exp(-((t - 8) ** 2))
+        + 0.5 * np.exp(-((t - 14) ** 2))
+        + np.exp(-((t - 20) ** 2))
+    )
     noise = 0.005 * np.random.default_rng(0).normal(size=len(t))
     found = [pulse.numbers for pulse in noisy_pulses(t, f + noise + 0.7 - 0.01 * t)]
     assert len(found) == 3
@@ -164,16 +192,25 @@ NOISE = np.random.default_rng(2).normal(size=400)
     ("f", "named"),
     [
         (np.exp(-(((N - 300) / 8.0) ** 2)), "1[0-5] samples"),
-        (np.exp(-(((N - 30) / 12.0) ** 2)), "no part of the record is before the pulse: 0"),
+        (
+            np.exp(-(((N - 30) / 12.0) ** 2)),
+            "no part of the record is before the pulse: 0",
+        ),
         (np.exp(-(((N - 399) / 12.0) ** 2)), "back"),
         (0 * N, "no pulse"),
         (np.nan * N, "must be finite"),
         (PULSE + 0.07 * NOISE, "the noise is "),
         (39.1 * np.minimum(PULSE, 0.97) / 0.97, r"saturates at 39.1 from 297 to 303"),
         (np.minimum(PULSE + 0.003 * NOISE, 0.9), "saturates at 0.9 from 29"),
-        (np.round(120 * np.minimum(PULSE + 0.003 * NOISE, 0.9)) / 120, "saturates at 0.9 from 29"),
+        (
+            np.round(120 * np.minimum(PULSE + 0.003 * NOISE, 0.9)) / 120,
+            "saturates at 0.9 from 29",
+        ),
         (2 - PULSE + 0.01 * NOISE, "inverted"),
-        (PULSE + np.exp(-(((N - 345) / 20) ** 2)), "pulses overlap: peaks at 30[01] and 34[45]"),
+        (
+            PULSE + np.exp(-(((N - 345) / 20) ** 2)),
+            "pulses overlap: peaks at 30[01] and 34[45]",
+        ),
         (0.6 * PULSE + np.exp(-(((N - 345) / 20) ** 2)), "pulses overlap"),
     ],
 )
@@ -185,7 +222,9 @@ def test_records_without_a_measurable_pulse_are_refused(f, named):
 def test_many_samples_are_averaged():
     """Thirty thousand samples a width: the errors are those of the samples themselves."""
     t = np.linspace(-6, 3, 270_001)
-    f = np.exp(-((2 * t) ** 2 * np.log(2))) + 0.02 * np.random.default_rng(3).normal(size=len(t))
+    f = np.exp(-((2 * t) ** 2 * np.log(2))) + 0.02 * np.random.default_rng(3).normal(
+        size=len(t)
+    )
     numbers = noisy_pulse(t, f).numbers
     for name, value in (("arrival", 0), ("peak", 1), ("fwhm", 1)):
         assert abs(numbers[name].value - value) < 3 * numbers[name].error < 6e-3

@@ -45,8 +45,12 @@ def test_the_error_falls_with_the_fourth_power_of_the_step():
     counts, errors = np.array([40, 80, 160, 320]), []
     for n in counts:
         t = np.linspace(-2, 2, n)
-        pulses = [measure(t, arch(t, shift * 4 / (n - 1))) for shift in np.linspace(0, 1, 9)]
-        errors.append(np.abs([(p.peak - 1, p.fwhm - WIDTH) for p in pulses]).max(axis=0))
+        pulses = [
+            measure(t, arch(t, shift * 4 / (n - 1))) for shift in np.linspace(0, 1, 9)
+        ]
+        errors.append(
+            np.abs([(p.peak - 1, p.fwhm - WIDTH) for p in pulses]).max(axis=0)
+        )
     slopes, _ = np.polyfit(np.log(counts), np.log(errors), 1)
     assert slopes == pytest.approx([-4, -4], abs=0.2)
 
@@ -55,7 +59,9 @@ def test_a_pulse_may_end_in_a_jump():
     """As the force of a damped contact that opens; rounding may move the jump off the grid."""
     for jump in np.random.default_rng(0).uniform(0.1, 0.2, 50):
         times = np.array([-1, -0.5, jump, 0.5, 1])
-        signal = Piecewise(times, lambda t, end=jump: np.where(np.less(t, end), 1 - t * t, 0.0))
+        signal = Piecewise(
+            times, lambda t, end=jump: np.where(np.less(t, end), 1 - t * t, 0.0)
+        )
         assert measure(signal).fall == pytest.approx(jump, rel=1e-12)
 
 
@@ -65,18 +71,46 @@ T = np.linspace(-2, 2, 401)
 @pytest.mark.parametrize(
     ("time", "signal", "message"),
     [
-        (T[:200], arch(T[:200]), r"the pulse is not wholly in the record: it peaks at the end"),
-        (T[201:], arch(T[201:]), r"the pulse is not wholly in the record: it peaks at the start"),
-        (T[:220], arch(T[:220]), r"the pulse is not wholly .*: its back does not pass half"),
-        (T[180:], arch(T[180:]), r"the pulse is not wholly .*: its front does not pass half"),
+        (
+            T[:200],
+            arch(T[:200]),
+            r"the pulse is not wholly in the record: it peaks at the end",
+        ),
+        (
+            T[201:],
+            arch(T[201:]),
+            r"the pulse is not wholly in the record: it peaks at the start",
+        ),
+        (
+            T[:220],
+            arch(T[:220]),
+            r"the pulse is not wholly .*: its back does not pass half",
+        ),
+        (
+            T[180:],
+            arch(T[180:]),
+            r"the pulse is not wholly .*: its front does not pass half",
+        ),
         (T, 0 * T, r"no pulse is in the record"),
         (T, T * np.nan, r"time and signal must be finite"),
         (-T, arch(T), r"time and signal must be finite, and time must increase"),
         (T[::40], arch(T[::40]), rf"\d samples lie above half .*: at least {FEWEST}"),
-        (T, arch(T)[:-1], r"time and signal must be .*: the shapes are \(401,\) and \(400,\)$"),
-        (T[:3], arch(T[:3]), r"time and signal must be equally long rows of at least 4 numbers"),
+        (
+            T,
+            arch(T)[:-1],
+            r"time and signal must be .*: the shapes are \(401,\) and \(400,\)$",
+        ),
+        (
+            T[:3],
+            arch(T[:3]),
+            r"time and signal must be equally long rows of at least 4 numbers",
+        ),
         (T, ["tea"] * 401, r"time and signal must be equally long rows .*: .*'tea'"),
-        (T, [10**400] * 401, r"time and signal must be equally long rows .*: .*too large"),
+        (
+            T,
+            [10**400] * 401,
+            r"time and signal must be equally long rows .*: .*too large",
+        ),
     ],
 )
 def test_records_without_a_whole_pulse(time, signal, message):

@@ -79,7 +79,9 @@ def test_the_first_pulse_is_not_the_highest_one():
 def test_a_hump_of_about_half_the_maximum_is_in_the_error(off):
     """Another run may see the hump on the other side of half: the arrivals are 3 apart."""
     t = np.linspace(0, 10, 2001)
-    force = spline(t, (0.5 + off) * np.exp(-4 * (t - 3) ** 2) + np.exp(-4 * (t - 6) ** 2))
+    force = spline(
+        t, (0.5 + off) * np.exp(-4 * (t - 3) ** 2) + np.exp(-4 * (t - 6) ** 2)
+    )
     arrival = first_numbers(force, force, 1e-10)["arrival"]
     assert arrival.value == pytest.approx(3 if off > 0 else 6, abs=1e-6)
     assert arrival.error == pytest.approx(3 if abs(off) < 1e-4 else 0, abs=1e-6)
@@ -109,12 +111,20 @@ def test_small_pulses_travel_at_the_speed_of_sound():
 
 def test_errors_of_pulses_among_rattling_beads_cover_what_exceeds_the_tolerance():
     """Differences of two runs cover nine of ten such errors; one is 5 to 10 times too small."""
-    scene = struck((1, 0.27), 60, contact_sensors=(20, 21, 40, 41), duration=110.0, samples=2)
-    exact, found = (record(scene, rtol=rtol, every=True).sensors for rtol in (1e-13, TOLERANCE))
+    scene = struck(
+        (1, 0.27), 60, contact_sensors=(20, 21, 40, 41), duration=110.0, samples=2
+    )
+    exact, found = (
+        record(scene, rtol=rtol, every=True).sensors for rtol in (1e-13, TOLERANCE)
+    )
     known = {(r.kind, r.places, r.pulse): r.numbers for r in exact}
     off, error, floor = np.array(
         [
-            (abs(reading.numbers[name].value - true.value), reading.numbers[name].error, true.value)
+            (
+                abs(reading.numbers[name].value - true.value),
+                reading.numbers[name].error,
+                true.value,
+            )
             for reading in found
             for name, true in known[reading.kind, reading.places, reading.pulse].items()
         ]

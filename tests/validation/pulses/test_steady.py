@@ -32,7 +32,11 @@ LARGE = pytest.param(6, 1, marks=pytest.mark.slow)
 
 @pytest.mark.parametrize(("k", "omega"), [("5/4", 1), LARGE, ("3/2", SPECIAL)])
 def test_a_solitary_wave_agrees_with_newtons_method(k, omega):
-    wave = exact_wave([1], float(R(k))) if omega == 1 else solve((1, float(omega)), 1.5, free=True)
+    wave = (
+        exact_wave([1], float(R(k)))
+        if omega == 1
+        else solve((1, float(omega)), 1.5, free=True)
+    )
     numbers = at(k, omega)
     exact = wave.fwhm("force"), wave.fwhm("strain"), wave.c, 0.0
     for name, value in zip(LABELS, exact, strict=True):
@@ -49,7 +53,9 @@ def test_the_decay_is_per_site():
         contact_sensors=sites, duration=100.0, samples=4001,
     )  # fmt: skip
     run = simulate(scene, rtol=1e-7, method="symplectic")
-    slope = -np.polyfit(sites, np.log([force.max() for force in run.contact_force]), 1)[0]
+    slope = -np.polyfit(sites, np.log([force.max() for force in run.contact_force]), 1)[
+        0
+    ]
     # The pulse is steady to some percent there.
     assert at(HERTZ, "0.75")["decay"].value == pytest.approx(slope, rel=0.05)
 
@@ -73,7 +79,8 @@ def test_the_errors_cover_other_distances():
 
 
 @pytest.mark.parametrize(
-    ("omega", "reason"), [("0.5", "not steady: at 320 sites"), (R(1, 10**40), "duration is ")]
+    ("omega", "reason"),
+    [("0.5", "not steady: at 320 sites"), (R(1, 10**40), "duration is ")],
 )
 def test_a_pulse_without_numbers_states_the_reason(omega, reason):
     """Overtaken by a higher one at ω = 0.5; longer than any run at 1e-40."""
@@ -100,7 +107,9 @@ def test_the_end_of_the_chain_is_far_from_the_last_place():
         chain.passages(chain.run(places, chain.crossing(160), 1e-6))[1]
         for places in ((40, 80), (40, 80, 160))
     )
-    assert one[:, :4] == pytest.approx(other[:, :4], rel=1e-5)  # arrival, peak, both FWHM
+    assert one[:, :4] == pytest.approx(
+        other[:, :4], rel=1e-5
+    )  # arrival, peak, both FWHM
 
 
 @pytest.mark.parametrize(
@@ -119,7 +128,9 @@ def test_the_error_is_the_largest_difference(monkeypatch, width, error):
         one, w = np.ones_like(n), width(n, run[1])
         return np.stack([n, one, w, w, n, one], axis=2)
 
-    monkeypatch.setattr(steady.StruckDimer, "run", lambda chain, places, _, rtol: (places, rtol))
+    monkeypatch.setattr(
+        steady.StruckDimer, "run", lambda chain, places, _, rtol: (places, rtol)
+    )
     monkeypatch.setattr(steady.StruckDimer, "passages", passages)
     found = steady.point(R(3, 2), R(1, 2), STRETCH).numbers["width"]
     assert found.error == pytest.approx(error, rel=1e-12)

@@ -45,7 +45,9 @@ def test_a_failure_while_writing_leaves_the_old_file(tmp_path, fault, name):
     with pytest.raises(wanted) as caught:
         fail()
     assert (file.read_text(), list(tmp_path.iterdir())) == ("old", [file])
-    assert wanted is not InputError or str(caught.value).endswith("is not written: full")
+    assert wanted is not InputError or str(caught.value).endswith(
+        "is not written: full"
+    )
 
 
 def test_a_link_keeps_its_target_and_a_file_its_mode(tmp_path):

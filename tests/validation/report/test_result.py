@@ -10,14 +10,19 @@ from validation.pictures import Curve, Panel
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
 
-TABLE, PANEL = Table((Column("n", "sites"),), ((8,),)), Panel("x", "y", (Curve("c", [1], [3]),))
+TABLE, PANEL = (
+    Table((Column("n", "sites"),), ((8,),)),
+    Panel("x", "y", (Curve("c", [1], [3]),)),
+)
 PART = Report("a part", (TABLE,), (Finding("drift", 0.5, 0.0, 1.0),), (PANEL,))
 
 
 @pytest.mark.parametrize("high", [1.0, 0.1])
 def test_findings_of_a_document(high):
     """Beside a table, text shows only those that fail."""
-    report = dataclasses.replace(PART, findings=(*PART.findings, Finding("loss", 0.5, high=high)))
+    report = dataclasses.replace(
+        PART, findings=(*PART.findings, Finding("loss", 0.5, high=high))
+    )
     ok = high > 0.5
     document = json.loads(json.dumps(report.document(), allow_nan=False))
     assert document["ok"] is report.ok is ok
@@ -47,5 +52,7 @@ def test_a_missing_table_or_picture_is_refused():
     assert (empty.ok, empty.document(), empty.text()) == (True, {}, "nothing")
     with pytest.raises(InputError, match="format is csv: this result has no table"):
         empty.csv()
-    with pytest.raises(InputError, match="plot is asked for: this result has no picture"):
+    with pytest.raises(
+        InputError, match="plot is asked for: this result has no picture"
+    ):
         empty.figure()

@@ -34,10 +34,16 @@ TABLE = Table(
 
 def test_the_rows_of_a_document_and_of_a_csv():
     names = "k", "chain", "speed_value", "speed_error_value", "error_value.F_m"
-    cells = ("3/2", "a", 2.0, 0.25, 0.25), ("2", "b", *[None] * 2, -0.5), ("3", "a", 4.0, 0.5, None)
+    cells = (
+        ("3/2", "a", 2.0, 0.25, 0.25),
+        ("2", "b", *[None] * 2, -0.5),
+        ("3", "a", 4.0, 0.5, None),
+    )
     rows = [dict(zip(names, row, strict=True)) for row in cells]
     found = csv.DictReader(io.StringIO(TABLE.csv()))
-    assert [*found] == [{name: "" if x is None else str(x) for name, x in r.items()} for r in rows]
+    assert [*found] == [
+        {name: "" if x is None else str(x) for name, x in r.items()} for r in rows
+    ]
     for row in rows:
         row["error_value"] = {"F_m": row.pop("error_value.F_m")}
     assert json.loads(json.dumps(TABLE.document(), allow_nan=False)) == rows
@@ -90,7 +96,12 @@ def test_a_printed_number_covers_what_it_leaves_out(value, error):
 
 
 def test_numbers_of_numpy_and_sympy_become_plain():
-    held = {"a": np.arange(3), "b": np.float64(0.5), "c": (sp.sqrt(2), np.inf), "d": np.bool_(True)}
+    held = {
+        "a": np.arange(3),
+        "b": np.float64(0.5),
+        "c": (sp.sqrt(2), np.inf),
+        "d": np.bool_(True),
+    }
     assert plain(held) == {"a": [0, 1, 2], "b": 0.5, "c": ["sqrt(2)", None], "d": True}
 
 

@@ -66,7 +66,9 @@ def test_names_are_compared_without_regard_to_case_but_for_renamed_ones(tmp_path
     text = "Time (s),FORCE (N),T (s),t (s)\n1,2,3,4\n"
     assert values(read(tmp_path, text), "time", "force") == [[1], [2]]
     for header, value in (("t", 4.0), ("T", 3.0), ("FORCE", 2.0), ("T (s)", 3.0)):
-        file = read(tmp_path, text.replace("(N)", "(s)"), "time", renamed={"time": header})
+        file = read(
+            tmp_path, text.replace("(N)", "(s)"), "time", renamed={"time": header}
+        )
         assert values(file, "time") == [[value]]
 
 
@@ -75,7 +77,10 @@ def test_names_are_compared_without_regard_to_case_but_for_renamed_ones(tmp_path
     [
         ("time,1 force,time,2 force\n1,5,2,6\n", {1: [1], 2: [2]}),
         ("Time,Time,2 force,1 force\n1,2,5,6\n", {2: [1], 1: [2]}),
-        ("time,2 force,time,bead 1 force\n1,5,2,6\n", {1: [2], 2: [1]}),  # beads come first
+        (
+            "time,2 force,time,bead 1 force\n1,5,2,6\n",
+            {1: [2], 2: [1]},
+        ),  # beads come first
         ("force,time\n5,1\n,2\n", {None: [1]}),
         ("1 force,time,2 force\n5,1,6\n,2,7\n", {1: [1], 2: [1, 2]}),
     ],
@@ -84,7 +89,10 @@ def test_one_time_is_that_of_all_sensors_or_the_first_that_of_the_first_force(
     tmp_path, text, times
 ):
     file = read(tmp_path, text)
-    found = {number: file.record(*at)[0].tolist() for (_, number), at in file.sensors().items()}
+    found = {
+        number: file.record(*at)[0].tolist()
+        for (_, number), at in file.sensors().items()
+    }
     assert list(found.items()) == list(times.items())
 
 
@@ -94,25 +102,53 @@ HEAD = "time (s),force (N)\n"
 @pytest.mark.parametrize(
     ("text", "options", "named"),
     [
-        ("time (s),force (lbf)\n1,2\n", {}, "force has the unit 'lbf': --unit states one of N"),
-        ("time (s),force (V)\n1,2\n", {}, "one of N, mN, kN, Newton, or such as 12.5 N/V"),
+        (
+            "time (s),force (lbf)\n1,2\n",
+            {},
+            "force has the unit 'lbf': --unit states one of N",
+        ),
+        (
+            "time (s),force (V)\n1,2\n",
+            {},
+            "one of N, mN, kN, Newton, or such as 12.5 N/V",
+        ),
         ("time (s),force\n1,2\n", {}, "column force has no unit"),
         ("time,force\n1,2\n", {"units": {"force": "N"}}, "column time has no unit"),
         (f"{HEAD}1,2\n", {"units": {"force": "mN"}}, "'N' and is given 'mN'"),
-        (f"{HEAD}1,2\n", {"units": {"force": "12.5 N/V"}}, "'N' and is given '12.5 N/V'"),
+        (
+            f"{HEAD}1,2\n",
+            {"units": {"force": "12.5 N/V"}},
+            "'N' and is given '12.5 N/V'",
+        ),
         ("time (s),force (mV)\n1,2\n", {"units": {"force": "12.5 N/V"}}, "12.5 N/mV"),
         (f"{HEAD}1,2\n", {"units": {"force": "x N/V"}}, "is given 'x N/V'"),
         (f"{HEAD}1,2\n", {"units": {"CH9": "N"}}, "unit is of 'CH9'"),
         ("time (s),force (N),force (N)\n1,2,3\n", {}, "one column force is wanted"),
         ("time,strain\n1,2\n", {}, "no line names time, force: --column"),
-        ("time,lateral force\nbead 8 time,force\n", {}, "no line names time, force: --column"),
+        (
+            "time,lateral force\nbead 8 time,force\n",
+            {},
+            "no line names time, force: --column",
+        ),
         ("\x00\xff\n", {"encoding": "latin-1"}, "--column"),
         ("time;force\n1,5;2;3\n1.500,5;2\n", {}, "column time, line 3: '1.500,5'"),
         ("# a\ntime,force\n1,2\n3\n4,5\n", {}, "column force, line 4: ''"),
         ("time,force\n1,inf\n", {}, "column force, line 2: 'inf'"),
-        ("time,force\n1,2\n", {"renamed": {"time": "CH1"}}, "no line names time, force, CH1"),
-        ("time,force\n1,2\n", {"renamed": {"8 force": "CH1"}}, "no line names time, force, CH1"),
-        ("time,force\n1,2\n", {"renamed": {"bead x force": "force"}}, "column is 'bead x force'"),
+        (
+            "time,force\n1,2\n",
+            {"renamed": {"time": "CH1"}},
+            "no line names time, force, CH1",
+        ),
+        (
+            "time,force\n1,2\n",
+            {"renamed": {"8 force": "CH1"}},
+            "no line names time, force, CH1",
+        ),
+        (
+            "time,force\n1,2\n",
+            {"renamed": {"bead x force": "force"}},
+            "column is 'bead x force'",
+        ),
     ],
 )
 def test_bad_files_are_refused_in_one_line(tmp_path, text, options, named):
@@ -130,7 +166,9 @@ def test_bad_files_are_refused_in_one_line(tmp_path, text, options, named):
         ("time,2 force,contact 2 dynamic force\n", "each sensor is wanted once"),
     ],
 )
-def test_sensors_without_a_time_or_a_number_of_their_own_are_refused(tmp_path, text, named):
+def test_sensors_without_a_time_or_a_number_of_their_own_are_refused(
+    tmp_path, text, named
+):
     file = read(tmp_path, text)
     with pytest.raises(SceneError, match=named):
         [file.record(*places) for places in file.sensors().values()]

@@ -39,7 +39,10 @@ REFUSED = [
     (dict(contact_sensors=(2,)), r"contact_sensors\[0\] is 2"),
     (dict(contact_sensors=(0, 0)), r"contact_sensors is \(0, 0\)"),
     (dict(bead_sensors=(1.0,)), r"bead_sensors\[0\] is 1.0"),
-    (dict(masses=(1,), stiffnesses=(), contact_sensors=(0,)), r"contact_sensors is \(0,\)"),
+    (
+        dict(masses=(1,), stiffnesses=(), contact_sensors=(0,)),
+        r"contact_sensors is \(0,\)",
+    ),
     (dict(spacings=(1,)), "1 spacings for 3 beads"),
     (dict(spacings=(1, 0)), r"spacings\[1\] is 0"),
     (dict(spacings=(1e308, 1e308)), "the chain's length comes out as inf"),
@@ -52,10 +55,21 @@ REFUSED = [
     (PAIRED | {"law": OPEN}, "law is 'Piecewise"),
     (PAIRED | {"law": Law(sp.Max(X, X**2), X)}, r"law is 'Max\("),
     (dict(damping=0.1), "damping is 0.1"),
-    (dict(damping=Damping("restitution", 1), k=math.nan, law=named("exponential", 1)), "damping"),
+    (
+        dict(
+            damping=Damping("restitution", 1), k=math.nan, law=named("exponential", 1)
+        ),
+        "damping",
+    ),
     (dict(drive=Drive(velocity=1), velocities=(1,)), "drive moves bead 1"),
-    (dict(drive=Drive(time=(0, 0.1, 0.2, 0.3), displacement=(0,) * 4)), "drive.time ends at 0.3: "),
-    (dict(drive=Drive(time=(0, 1, 2, 100), displacement=(0,) * 4)), "drive.time ends at 100: one"),
+    (
+        dict(drive=Drive(time=(0, 0.1, 0.2, 0.3), displacement=(0,) * 4)),
+        "drive.time ends at 0.3: ",
+    ),
+    (
+        dict(drive=Drive(time=(0, 1, 2, 100), displacement=(0,) * 4)),
+        "drive.time ends at 100: one",
+    ),
 ]
 
 
@@ -73,14 +87,26 @@ def test_a_bad_value_is_refused_by_name(change, named):
         (Damping, ("restitution", 2), "restitution is 2"),
         (Damping, ("contact", -1), "contact is -1"),
         (Drive, {}, "drive has not one motion"),
-        (Drive, {"velocity": 1, "amplitude": 1, "frequency": 1}, "drive has not one motion"),
+        (
+            Drive,
+            {"velocity": 1, "amplitude": 1, "frequency": 1},
+            "drive has not one motion",
+        ),
         (Drive, {"amplitude": 1, "frequency": 0}, "drive.frequency is 0"),
-        (Drive, {"amplitude": 1e300, "frequency": 1e10}, "the drive's acceleration comes out as"),
+        (
+            Drive,
+            {"amplitude": 1e300, "frequency": 1e10},
+            "the drive's acceleration comes out as",
+        ),
         (Drive, {"amplitude": 1, "frequency": 1, "ramp": 1e-200}, "the drive's accel"),
         (Drive, {"velocity": 1, "ramp": "x"}, "drive.ramp is 'x'"),
         (Drive, {"time": (0, 1), "displacement": (0, 1)}, "drive has 2 times"),
         (Drive, {"time": (0, 1, 2, 2), "displacement": (0,) * 4}, "drive.time must"),
-        (Drive, {"time": range(4), "displacement": (0, 1e308, -1e308, 0)}, "the drive's accel"),
+        (
+            Drive,
+            {"time": range(4), "displacement": (0, 1e308, -1e308, 0)},
+            "the drive's accel",
+        ),
     ],
 )
 def test_a_bad_damping_or_drive_is_refused_by_name(kind, given, named):
@@ -106,7 +132,9 @@ def test_any_value_is_stored_or_refused(field, value):
 
 
 def test_of_cell_repeats_the_theorys_cell():
-    scene = Scene.of_cell(Cell((1, "1/2", 3), stiffnesses=(4, 5, 6)), 2, "5/4", duration=1)
+    scene = Scene.of_cell(
+        Cell((1, "1/2", 3), stiffnesses=(4, 5, 6)), 2, "5/4", duration=1
+    )
     assert scene.masses == (1, 0.5, 3, 1, 0.5, 3)
     assert scene.stiffnesses == (4, 5, 6, 4, 5)
     assert scene.k == 1.25
@@ -124,7 +152,9 @@ def test_of_beads():
     scene = Scene.of_beads([STEEL_BEAD, PTFE_BEAD, PTFE_BEAD], wall=STEEL, duration=1)
     assert (scene.masses, scene.k) == ((0.45e-3, 0.123e-3, 0.123e-3), 1.5)
     pairs = (STEEL_BEAD, PTFE_BEAD), (PTFE_BEAD, PTFE_BEAD), (PTFE_BEAD, STEEL)
-    assert (*scene.stiffnesses, scene.wall) == tuple(float(stiffness(*pair)) for pair in pairs)
+    assert (*scene.stiffnesses, scene.wall) == tuple(
+        float(stiffness(*pair)) for pair in pairs
+    )
     for bad in ([], [STEEL_BEAD, "bead"], STEEL_BEAD):
         with pytest.raises(SceneError, match=r"^bead"):
             Scene.of_beads(bad, duration=1)

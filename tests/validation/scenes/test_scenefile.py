@@ -41,14 +41,27 @@ sensors = {beads = [9, 1]}
 
 def test_the_experiment_of_the_paper():
     own = {"duration": 1.2e-3, "contact_sensors": (), "samples": 1001}
-    assert scene(tomllib.loads(PAPER)) == dataclasses.replace(recorded_chain((15, 34)), **own)
+    assert scene(tomllib.loads(PAPER)) == dataclasses.replace(
+        recorded_chain((15, 34)), **own
+    )
 
 
 def test_every_other_key():
-    wanted = {"k": 1.25, "duration": 20, "precompression": 0.5, "wall": 4, "spacings": (1,) * 8}
+    wanted = {
+        "k": 1.25,
+        "duration": 20,
+        "precompression": 0.5,
+        "wall": 4,
+        "spacings": (1,) * 8,
+    }
     wanted |= {"velocities": (1, 1), "displacements": (0.1,), "bead_sensors": (8, 0)}
-    masses, stiffnesses = (1, 1, 0.25, 1, 7, 0.25, 1, 1, 0.25), (0.5, 2, 3, 1, 2, 3, 1, 2)
-    assert scene(tomllib.loads(TRIMER)) == Scene(masses=masses, stiffnesses=stiffnesses, **wanted)
+    masses, stiffnesses = (
+        (1, 1, 0.25, 1, 7, 0.25, 1, 1, 0.25),
+        (0.5, 2, 3, 1, 2, 3, 1, 2),
+    )
+    assert scene(tomllib.loads(TRIMER)) == Scene(
+        masses=masses, stiffnesses=stiffnesses, **wanted
+    )
 
 
 def test_the_list_of_keys_holds_every_key():
@@ -93,7 +106,9 @@ def test_the_cell_of_a_scene_is_read_by_the_theory():
     content = tomllib.loads(PAPER)
     cell, chain = Cell.of_spheres(beads.spheres(content)), scene(content)
     assert chain.masses[:2] == tuple(map(float, cell.masses))
-    assert chain.stiffnesses[:2] == pytest.approx([float(A) for A in cell.stiffnesses], rel=1e-15)
+    assert chain.stiffnesses[:2] == pytest.approx(
+        [float(A) for A in cell.stiffnesses], rel=1e-15
+    )
     assert chain.spacings[:2] == (float(cell.spacing),) * 2
 
 
@@ -118,29 +133,53 @@ REFUSED = [
     ({"durations": 1}, "durations is unknown: did you mean duration"),
     ({"__import__('os')": 1}, r"\"__import__\('os'\)\" is unknown"),
     ({"chain": {"cell": []}}, "chain.cell is empty"),
-    ({"chain": {"cell": [1], "repeat": 10**6 + 1}}, "chain.cell and repeat make 1000001 beads"),
+    (
+        {"chain": {"cell": [1], "repeat": 10**6 + 1}},
+        "chain.cell and repeat make 1000001 beads",
+    ),
     ({"chain": {"cell": "ball"}}, "chain.cell is 'ball'"),
     ({"chain": {"cell": ["ball", 1]}}, "chain.cell number 2 is 1"),
     ({"chain": {"cell": ["bal"]}}, "chain.cell number 1 is 'bal': did you mean ball"),
     ({"chain": {"cell": [1]}}, "chain has neither k nor law"),
     ({"chain": {"cell": ["ball"], "k": 1.5}}, "chain.k is given"),
-    ({"chain": {"cell": [1, 2, 3], "k": 2, "stiffnesses": [1]}}, "chain.stiffnesses holds 1"),
+    (
+        {"chain": {"cell": [1, 2, 3], "k": 2, "stiffnesses": [1]}},
+        "chain.stiffnesses holds 1",
+    ),
     ({"materials": {"x": {"E": 1}}}, "materials.x.nu is missing"),
-    ({"beads": {"b": BALL | {"material": "stel"}}}, "beads.b.material is 'stel': did you mean"),
+    (
+        {"beads": {"b": BALL | {"material": "stel"}}},
+        "beads.b.material is 'stel': did you mean",
+    ),
     ({"defects": {"bead": 1}}, "defects is {'bead': 1}"),
     ({"defects": [{"bead": 1}]}, "defects number 1 has neither like nor mass"),
-    ({"defects": [{"bead": 1, "mass": 1, "like": "ball"}]}, "defects number 1 has both like and m"),
+    (
+        {"defects": [{"bead": 1, "mass": 1, "like": "ball"}]},
+        "defects number 1 has both like and m",
+    ),
     ({"defects": [{"bead": 4, "mass": 1}]}, "defects number 1.bead is 4"),
     ({"defects": [{"bead": 1, "like": "ball"}]}, "defects number 1.like names a bead"),
     ({"defects": [{"contact": 3, "stiffness": 1}]}, "defects number 1.contact is 3"),
-    ({"defects": [{"bead": 3, "mass": m} for m in (1, 2)]}, "defects has two tables of bead 3"),
+    (
+        {"defects": [{"bead": 3, "mass": m} for m in (1, 2)]},
+        "defects has two tables of bead 3",
+    ),
     ({"wall": {"material": "steel"}}, "wall.material is given"),
-    ({"wall": {"material": "wood"}} | BALLS, "wall.material is 'wood': one of steel, steel 316, "),
+    (
+        {"wall": {"material": "wood"}} | BALLS,
+        "wall.material is 'wood': one of steel, steel 316, ",
+    ),
     ({"striker": {"velocity": 1}, "start": {}}, "striker and start are both there"),
     ({"striker": {"velocity": 1, "like": "wood"}} | BALLS, "striker.like is 'wood'"),
     ({"striker": {"like": "ball"}} | BALLS, "striker.velocity is missing"),
-    ({"striker": {"like": "ball"}, "defects": [{"bead": 1, "mass": 1.0}]}, "striker.like and def"),
-    ({"striker": {"velocity": 1, "like": "ball"}}, "striker.like names a bead in a chain of"),
+    (
+        {"striker": {"like": "ball"}, "defects": [{"bead": 1, "mass": 1.0}]},
+        "striker.like and def",
+    ),
+    (
+        {"striker": {"velocity": 1, "like": "ball"}},
+        "striker.like names a bead in a chain of",
+    ),
     ({"sensors": {"beads": "some"}}, "sensors.beads is 'some'"),
     ({"units": "cgs"}, "units is 'cgs'"),
 ]
@@ -180,13 +219,18 @@ def test_a_bad_file_is_refused_by_its_name(tmp_path, name, content, named):
         file.write_bytes(content)
     with pytest.raises(SceneError) as caught:
         read_scene(file)
-    assert re.fullmatch(f"{re.escape(str(file))}: ({named})[^\n]{{,160}}", str(caught.value))
+    assert re.fullmatch(
+        f"{re.escape(str(file))}: ({named})[^\n]{{,160}}", str(caught.value)
+    )
     with pytest.raises(SceneError, match="1 is no file name"):
         read_scene(1)
 
 
 words = st.sampled_from(["ball", "steel", "bead", "mass", "stiffness", "material", "x"])
-FULL = tomllib.loads(PAPER) | {"defects": [{"bead": 1, "mass": 1.0}], "precompression": 1.0}
+FULL = tomllib.loads(PAPER) | {
+    "defects": [{"bead": 1, "mass": 1.0}],
+    "precompression": 1.0,
+}
 
 
 @given(st.data())
@@ -196,7 +240,11 @@ def test_any_file_is_read_or_refused_in_one_line(data):
     while True:
         keys = sorted(at) if isinstance(at, dict) else list(range(len(at)))
         key = data.draw(st.sampled_from(keys))
-        if not isinstance(at[key], dict | list) or not at[key] or data.draw(st.booleans()):
+        if (
+            not isinstance(at[key], dict | list)
+            or not at[key]
+            or data.draw(st.booleans())
+        ):
             break
         at = at[key]
     at[key] = data.draw(anything | words | st.dictionaries(words, anything))
@@ -224,7 +272,10 @@ def four(**keys):
         (four(law="hertz2:1,1/2"), {"law": named("hertz2", 1, "1/2")}),
         ({"drive": {"velocity": 2.0}}, {"drive": Drive(velocity=2)}),
         ({"drive": MOTION}, {"drive": Drive(**MOTION)}),
-        *(({"damping": {kind: 0.9}}, {"damping": Damping(kind, 0.9)}) for kind in DAMPINGS),
+        *(
+            ({"damping": {kind: 0.9}}, {"damping": Damping(kind, 0.9)})
+            for kind in DAMPINGS
+        ),
     ],
 )
 def test_keys_and_the_fields_that_they_set(keys, fields):
@@ -234,10 +285,16 @@ def test_keys_and_the_fields_that_they_set(keys, fields):
 
 def test_a_drive_is_read_from_a_file_beside_the_scene(tmp_path):
     path, file = tmp_path / "shaker.csv", tmp_path / "scene.json"
-    chain = {"duration": 1, "chain": {"cell": [1, 2], "k": 1.5}, "drive": {"file": str(path)}}
+    chain = {
+        "duration": 1,
+        "chain": {"cell": [1, 2], "k": 1.5},
+        "drive": {"file": str(path)},
+    }
     path.write_text("time (s),displacement (mm)\n0,0\n0.5,1\n1,2\n2,0\n")
     assert scene(chain | {"units": "SI"}).drive.displacement == (0, 1e-3, 2e-3, 0)
-    with pytest.raises(SceneError, match=r"shaker.csv: its units are stated, the scene's are not"):
+    with pytest.raises(
+        SceneError, match=r"shaker.csv: its units are stated, the scene's are not"
+    ):
         scene(chain)
     path.write_text("time,displacement\n0,0\n0.5,1\n1,2\n2,0\n")
     file.write_text(json.dumps(chain | {"drive": {"file": path.name}}))

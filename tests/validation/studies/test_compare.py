@@ -49,12 +49,16 @@ def test_a_shift_and_a_scale_come_back(capsys, files):
     found = json.loads(out)
     assert found["shift_value"] == pytest.approx(LATE, abs=1e-6)
     rows = {(row["number"], row["quantity"]): row for row in found["rows"]}
-    assert list(rows) == [(i, name) for i in (12, 18) for name in ("arrival", "peak", "fwhm")]
+    assert list(rows) == [
+        (i, name) for i in (12, 18) for name in ("arrival", "peak", "fwhm")
+    ]
     for (number, name), row in rows.items():
         scale = STRONGER if (number, name) == (18, "peak") else 1.0
         # Behind the dip after the pulse the fit's residuals hide a part of its error.
         bound = 10 * row["difference_error_value"] + 1e-9
-        assert abs(row["measured_value"] - scale * row["simulated_value"]) <= bound < 1e-3
+        assert (
+            abs(row["measured_value"] - scale * row["simulated_value"]) <= bound < 1e-3
+        )
     assert "contact 12, simulated" in Path("p.svg").read_text()
 
 
@@ -64,17 +68,24 @@ def test_a_single_sensor_needs_no_name_and_the_clock_starts_anywhere(files):
     save(rows[:, :2], "time,force")
     assert compare(*files).document() == named
     save(np.add(rows, (5000, 0, 0)))
-    assert compare(*files).document()["shift_value"] == pytest.approx(LATE - 5000, abs=1e-6)
+    assert compare(*files).document()["shift_value"] == pytest.approx(
+        LATE - 5000, abs=1e-6
+    )
 
 
 def test_the_error_of_a_later_arrival_holds_that_of_the_shift(files):
     """Without the first sensor's column the second is the one by which records are shifted."""
     rows, errors = saved(), []
     rows[:, 1:] += 0.005 * np.random.default_rng(7).normal(size=rows[:, 1:].shape)
-    for columns, header in ([0, 1, 2], HEADER), ([0, 2], HEADER.replace("contact 12 force,", "")):
+    for columns, header in (
+        ([0, 1, 2], HEADER),
+        ([0, 2], HEADER.replace("contact 12 force,", "")),
+    ):
         save(rows[:, columns], header)
         found = compare(*files).document()["rows"]
-        errors += [row["measured_error_value"] for row in found if row["quantity"] == "arrival"]
+        errors += [
+            row["measured_error_value"] for row in found if row["quantity"] == "arrival"
+        ]
     first, second, alone = errors
     assert second == pytest.approx(np.hypot(first, alone), rel=1e-6)
     assert second > 1.05 * alone
@@ -86,10 +97,18 @@ RECORD = "".join(f"{t},1\n" for t in range(9))
 @pytest.mark.parametrize(
     ("text", "options", "named"),
     [
-        (None, {"renamed": {"contact 5 fore": "contact 12 force"}}, "column is 'contact 5 fore'"),
+        (
+            None,
+            {"renamed": {"contact 5 fore": "contact 12 force"}},
+            "column is 'contact 5 fore'",
+        ),
         (None, {"units": {"time": "s"}}, "units = 'SI'"),
         (SCENE, {}, "no line names time, force"),
-        (f"time,force\n{RECORD}", {}, "no column is contact 12 force or contact 18 force$"),
+        (
+            f"time,force\n{RECORD}",
+            {},
+            "no column is contact 12 force or contact 18 force$",
+        ),
     ],
 )
 def test_bad_records_and_options_are_refused(files, text, options, named):

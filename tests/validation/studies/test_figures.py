@@ -9,7 +9,15 @@ import pytest
 from lwa import canonical_wave
 from validation.pulses.pulse import Measured, exponent
 from validation.scenes.chains import PTFE_BEAD
-from validation.studies.paper import HEIGHTS, HERTZ, MODULI, RECORDED, chain_cell, figures, scaling
+from validation.studies.paper import (
+    HEIGHTS,
+    HERTZ,
+    MODULI,
+    RECORDED,
+    chain_cell,
+    figures,
+    scaling,
+)
 
 QUANTITIES = ("speed", "force")
 
@@ -36,10 +44,18 @@ def document(whole):
 def test_the_fitted_exponent_is_the_published_one(document):
     """The lattice scales exactly but for the integrator: V ~ F^{1/6}, published as 0.1666."""
     found = document["scaling"]
-    assert abs(found["exponent_value"] - 1 / 6) <= 2 * found["exponent_error_value"] + 1e-12
+    assert (
+        abs(found["exponent_value"] - 1 / 6)
+        <= 2 * found["exponent_error_value"] + 1e-12
+    )
     rows = [row for row in document["rows"] if row["modulus_value"] == MODULI[0]]
-    pairs = ([[row[f"{q}{e}_value"] for e in ("", "_error")] for row in rows] for q in QUANTITIES)
-    speed, force = ([Measured(value, value + error) for value, error in pair] for pair in pairs)
+    pairs = (
+        [[row[f"{q}{e}_value"] for e in ("", "_error")] for row in rows]
+        for q in QUANTITIES
+    )
+    speed, force = (
+        [Measured(value, value + error) for value, error in pair] for pair in pairs
+    )
     assert 1e-6 > found["exponent_error_value"] > exponent(force, speed).error / 2
     assert f"{found['exponent_value']:.5f}"[:6] == "0.1666"
 
@@ -49,7 +65,10 @@ def test_the_errors_of_the_scaling_cover_a_finer_run(document):
     fine = document["rows"][: len(HEIGHTS)]
     for i, name in ((2, "speed"), (3, "force")):
         rough = [row[i] for row in scaling(MODULI[0], (1e-7, 1e-6))]
-        off = [abs(n.value - row[f"{name}_value"]) for n, row in zip(rough, fine, strict=True)]
+        off = [
+            abs(n.value - row[f"{name}_value"])
+            for n, row in zip(rough, fine, strict=True)
+        ]
         share = np.array(off) / [number.error for number in rough]
         assert 1e-3 < share.max() <= 1, name
 
@@ -74,7 +93,9 @@ def test_force_records(document):
         assert found["beads"] == list(RECORDED[found["N"]])
         force = np.array(found["force_value"])
         assert force.shape == (3, len(found["time_value"]))
-        fronts = (force > 1).argmax(axis=1)  # 1 N; the wall's answer comes later, and higher
+        fronts = (force > 1).argmax(
+            axis=1
+        )  # 1 N; the wall's answer comes later, and higher
         assert np.all(np.diff(fronts) > 0)
         incoming = force[0, : fronts[-1]].max()
         assert 4 < incoming < 14  # N, as on the paper's scale of 2 N per division
@@ -84,7 +105,11 @@ def test_force_records(document):
 def test_two_of_the_stated_errors_of_the_width_are_near_and_one_is_not(document):
     """9.2 and 22.8 % to 1.5 points; the lines for m1 ≫ m2 and m1 = m2 stand as √2 to 1."""
     limit, real, equal = (row["error_value"] for row in document["widths"])
-    assert [row["stated_error_value"] for row in document["widths"]] == [0.092, 0.025, 0.228]
+    assert [row["stated_error_value"] for row in document["widths"]] == [
+        0.092,
+        0.025,
+        0.228,
+    ]
     assert (1 + limit) / (1 + equal) == pytest.approx(2**0.5, rel=1e-9)
     assert abs(limit) == pytest.approx(0.092, abs=0.015)
     assert abs(equal) == pytest.approx(0.228, abs=0.015)

@@ -31,7 +31,13 @@ def saved(rows, header="force,speed"):
 
 def speeds(chain, k, A, force=FORCES):
     """V of the lattice's wave of F = A δ^k."""
-    c2 = float(chain.ratio(k)) * 2 / ((k + 1) * chain.mass) * A ** (1 / k) * force ** ((k - 1) / k)
+    c2 = (
+        float(chain.ratio(k))
+        * 2
+        / ((k + 1) * chain.mass)
+        * A ** (1 / k)
+        * force ** ((k - 1) / k)
+    )
     return chain.spacing * np.sqrt(c2)
 
 
@@ -61,16 +67,24 @@ def test_known_errors_weight_the_pulses(chain):
     for _ in range(40):
         force, speed = (1 + noise * rng.normal(size=(2, len(FORCES)))) * (FORCES, exact)
         weight = weights(force, speed, noise * force, noise * speed)
-        off.append([fit_power(chain, force, speed, w).k.value - 1.5 for w in (weight, None)])
+        off.append(
+            [fit_power(chain, force, speed, w).k.value - 1.5 for w in (weight, None)]
+        )
     weighted, plain = np.std(off, axis=0)
     assert weighted < plain / 3
     weight = weights(FORCES, exact, noise * FORCES, noise * exact)
-    error = fit_power(chain, FORCES, exact, weight).k.error  # residuals of 0 do not hide the noise
+    error = fit_power(
+        chain, FORCES, exact, weight
+    ).k.error  # residuals of 0 do not hide the noise
     assert 1.8 * weighted < error < 2.5 * weighted
 
 
 def test_errors_in_a_file_come_in_two_positive_columns(folder, chain):
-    force, speed, names = FORCES, speeds(chain, 1.5, 1.0), "force,speed,force_error,speed_error"
+    force, speed, names = (
+        FORCES,
+        speeds(chain, 1.5, 1.0),
+        "force,speed,force_error,speed_error",
+    )
     for rows, header in (
         (np.c_[force, speed, force], "force,speed,force_error"),
         (np.c_[force, speed, 0 * force, speed], names),
@@ -78,7 +92,9 @@ def test_errors_in_a_file_come_in_two_positive_columns(folder, chain):
         with pytest.raises(SceneError, match="together, and positive"):
             law(saved(rows, header))
     file = saved(np.c_[force, speed, force / 100, speed / 100], names)
-    assert law(file, masses=(2,), spacing=3).data["k_value"] == pytest.approx(1.5, rel=1e-9)
+    assert law(file, masses=(2,), spacing=3).data["k_value"] == pytest.approx(
+        1.5, rel=1e-9
+    )
 
 
 def test_the_error_of_exact_data_covers_rounding(chain):
@@ -130,10 +146,17 @@ def test_the_modulus_comes_back_from_the_speeds_of_its_spheres(folder):
 
 def test_the_command(capsys, folder, chain):
     """Without masses and a distance the law is in their units, and a note says so."""
-    V = speeds(chain, 1.5, 1.0) * (1 + 1e-6 * np.random.default_rng(3).normal(size=len(FORCES)))
-    data, command = saved(np.c_[FORCES, V], "force (N),speed (m/s)"), (capsys, cli.main, "law")
+    V = speeds(chain, 1.5, 1.0) * (
+        1 + 1e-6 * np.random.default_rng(3).normal(size=len(FORCES))
+    )
+    data, command = (
+        saved(np.c_[FORCES, V], "force (N),speed (m/s)"),
+        (capsys, cli.main, "law"),
+    )
     options = ("--masses", "2", "--spacing", "3")
-    status, out, err = ended(*command, data, *options, "--format", "json", "--plot", "law.svg")
+    status, out, err = ended(
+        *command, data, *options, "--format", "json", "--plot", "law.svg"
+    )
     assert (status, err) == (0, "")
     found = json.loads(out)
     assert found["k_value"] == pytest.approx(1.5, abs=found["k_error_value"])

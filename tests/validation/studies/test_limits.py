@@ -36,7 +36,9 @@ def law(quantity):
     """Order and coefficient in ε of theory/lattice - 1, by the series of `lwa.expand`."""
     k, series = 1 + eps, expand(Cell([1]), 2)
     if quantity.startswith("speed"):
-        c2 = sum(c * eps**n for n, c in enumerate(series.c2.coefficients))  # at strain 1
+        c2 = sum(
+            c * eps**n for n, c in enumerate(series.c2.coefficients)
+        )  # at strain 1
         error = sp.series(sp.sqrt(2 / (k + 1) / c2), eps, 0, 3).removeO() - 1
         (coefficient, power) = sp.expand(error).as_coeff_exponent(eps)
         return power, coefficient
@@ -88,15 +90,20 @@ def test_the_errors_cover_the_exact_waves_of_equal_beads(found):
 
 @pytest.mark.parametrize("quantity", QUANTITIES)
 @pytest.mark.parametrize(
-    ("omega", "wrong"), [(EQUAL, 0.9995), (EQUAL, 1.0005), (LIGHT, 0.998), (LIGHT, 1.002)]
+    ("omega", "wrong"),
+    [(EQUAL, 0.9995), (EQUAL, 1.0005), (LIGHT, 0.998), (LIGHT, 1.002)],
 )
 def test_a_theory_off_by_half_a_permille_is_refused(found, quantity, omega, wrong):
     """At ω = 1/1000 by 2 ‰: the law there holds to O(ω). An error of a tenth fails every row."""
 
     def hold(theory, lattice):
-        return [finding.ok for _, finding in quantity_rows(quantity, omega, theory, lattice)]
+        return [
+            finding.ok for _, finding in quantity_rows(quantity, omega, theory, lattice)
+        ]
 
-    theory, lattice = map(list, zip(*(found[quantity, k, omega] for k in EXPONENTS), strict=True))
+    theory, lattice = map(
+        list, zip(*(found[quantity, k, omega] for k in EXPONENTS), strict=True)
+    )
     assert all(hold(theory, lattice))
     assert not all(hold([value * sp.Rational(str(wrong)) for value in theory], lattice))
     rough = [Measured(number.value, 1.1 * number.value) for number in lattice]

@@ -27,7 +27,9 @@ def test_every_number_has_its_error_and_its_theory(result):
         # two runs, at local errors of 1e-7 and 1e-10 a step over some thousand steps
         assert 0 < row["lattice_error_value"] < 1e-5 * row["lattice_value"]
         assert set(row["theory_value"]) == set(SOURCES)
-    assert rows(result)["peak bead force F_m"]["error_value"]["F_m"] == pytest.approx(0, abs=1e-12)
+    assert rows(result)["peak bead force F_m"]["error_value"]["F_m"] == pytest.approx(
+        0, abs=1e-12
+    )
 
 
 def test_the_theory_within_the_papers_reach(result):
@@ -44,14 +46,22 @@ def test_unlike_beads_do_not_time_the_pulse(result):
     like = [by_name[f"speed from bead {pair}"] for pair in ("15 to 33", "16 to 34")]
     assert by_name["speed V_s"]["lattice_value"] == pytest.approx(163.32, abs=0.005)
     assert all(164.05 < row["lattice_value"] < 164.2 for row in like)
-    assert all(row["error_value"]["F_m"] == pytest.approx(-0.0087, abs=3e-4) for row in like)
+    assert all(
+        row["error_value"]["F_m"] == pytest.approx(-0.0087, abs=3e-4) for row in like
+    )
 
 
 def test_the_chain_scales_exactly_with_the_blow(result):
     """Without gravity F ∝ v^{6/5} and V ∝ v^{1/5}, in two runs with the errors tested above."""
     slow, fast = lattice(result), lattice(paper(velocity=13.7))
-    powers = {"speed V_s": 1 / 5, "peak bead force F_m": 6 / 5, "peak contact force": 6 / 5}
-    for name, power in (powers | {"FWHM of F_34": 0, "FWHM of contact force": 0}).items():
+    powers = {
+        "speed V_s": 1 / 5,
+        "peak bead force F_m": 6 / 5,
+        "peak contact force": 6 / 5,
+    }
+    for name, power in (
+        powers | {"FWHM of F_34": 0, "FWHM of contact force": 0}
+    ).items():
         assert np.log10(fast[name] / slow[name]) == pytest.approx(power, abs=1e-6), name
 
 

@@ -26,18 +26,30 @@ def test_the_records_of_a_run_have_the_pulses_of_the_run(capsys, folder):
     (folder / "scene.toml").write_text(SCENE)
     wanted, found = (
         json.loads(ended(capsys, cli.main, *line.split(), "--format", "json")[1])
-        for line in ("run scene.toml --out records.csv", "pulses records.csv --distance 2")
+        for line in (
+            "run scene.toml --out records.csv",
+            "pulses records.csv --distance 2",
+        )
     )
     for table, names in (
-        ("sensors", ("arrival_value", "peak_value", "fwhm_value", "static_force_value")),
+        (
+            "sensors",
+            ("arrival_value", "peak_value", "fwhm_value", "static_force_value"),
+        ),
         ("speeds", ("speed_sites_value", "speed_value")),
     ):
         assert len(found[table]) == len(wanted[table]) > 0
         for ours, theirs in zip(found[table], wanted[table], strict=True):
             assert list(ours) == list(theirs)
-            assert all(ours[n] == theirs[n] for n in ("kind", "number", "from", "to") if n in ours)
+            assert all(
+                ours[n] == theirs[n]
+                for n in ("kind", "number", "from", "to")
+                if n in ours
+            )
             # the static force is the mean of what comes before: waves of 1e-6 run ahead
-            assert [ours[n] for n in names] == pytest.approx([theirs[n] for n in names], rel=2e-5)
+            assert [ours[n] for n in names] == pytest.approx(
+                [theirs[n] for n in names], rel=2e-5
+            )
     rows = {(row["kind"], row["number"]): row for row in found["sensors"]}
     for leg in found["speeds"]:  # stands in the row of its second sensor, too
         assert rows[leg["kind"], leg["to"]]["speed_value"] == leg["speed_value"]
@@ -54,7 +66,9 @@ def noisy(header):
 
 def saved(columns, header):
     """Save columns to a file of the current folder; return its name."""
-    np.savetxt("records.csv", np.transpose(columns), delimiter=",", header=header, comments="")
+    np.savetxt(
+        "records.csv", np.transpose(columns), delimiter=",", header=header, comments=""
+    )
     return "records.csv"
 
 
@@ -72,7 +86,9 @@ def test_a_sensor_without_a_pulse_has_no_numbers(folder):
     """The reason stands in its row; a file in which no sensor has a pulse is refused."""
     t = np.arange(400.0)
     late, early = (np.exp(-(((t - at) / 30) ** 2)) for at in (260, 60))
-    row = pulses(saved((t, late, early), "time,1 force,2 force")).document()["sensors"][1]
+    row = pulses(saved((t, late, early), "time,1 force,2 force")).document()["sensors"][
+        1
+    ]
     assert row["peak_value"] is None
     assert "noise" in row["missing"]
     with pytest.raises(MeasureError, match=r"no sensor has a pulse: .* noise"):

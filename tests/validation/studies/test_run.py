@@ -22,7 +22,9 @@ def test_many_sensors_are_drawn_as_a_map():
     assert 500 < len(time) <= 1000
     assert many.map.values.shape == (len(time), 19)
     force = run.contact_force[list(run.scene.contact_sensors).index(6)]
-    np.testing.assert_array_equal(many.map.values[:, 6], np.interp(time, run.time, force))
+    np.testing.assert_array_equal(
+        many.map.values[:, 6], np.interp(time, run.time, force)
+    )
 
 
 def test_every_pulse_of_a_train_is_listed():
@@ -33,7 +35,9 @@ def test_every_pulse_of_a_train_is_listed():
     rows = report(found, every=True).document()["sensors"]
     assert [row["pulse"] for row in rows] == list(range(1, len(rows) + 1))
     assert len(rows) >= 4
-    arrivals, peaks = ([row[name] for row in rows] for name in ("arrival_value", "peak_value"))
+    arrivals, peaks = (
+        [row[name] for row in rows] for name in ("arrival_value", "peak_value")
+    )
     assert arrivals == sorted(arrivals)
     assert peaks == sorted(peaks, reverse=True)
     (first,) = record(scene).sensors
@@ -45,7 +49,9 @@ def test_a_report_states_what_is_conserved_and_what_is_lost():
     free = struck((1.0, 0.5), 20, duration=20, contact_sensors=(8, 12))
     shown = report(record(free, rtol=1e-9)).document()
     assert abs(shown["energy_drift_value"]) < 1e-8
-    assert abs(shown["momentum_drift_value"]) < 1e-13  # by Newton's third law, to rounding
+    assert (
+        abs(shown["momentum_drift_value"]) < 1e-13
+    )  # by Newton's third law, to rounding
     damped = replace(free, wall=1.0, gravity=0.01, damping=Damping("contact", 0.05))
     shown = report(found := record(damped, rtol=1e-8))
     assert shown.document()["momentum_drift_value"] is None

@@ -63,14 +63,28 @@ def test_an_interrupted_sweep_resumes_and_grows(capsys, file, reference):
     computed, wanted = [], numbers(report(KS, OMEGAS, reference, 2))
     with pytest.raises(KeyboardInterrupt):
         sweep(KS, OMEGAS, file=file, progress=stopped(KeyboardInterrupt), **QUICK)
-    options = {"file": file, "progress": lambda todo: computed.extend(todo) or todo} | QUICK
+    options = {
+        "file": file,
+        "progress": lambda todo: computed.extend(todo) or todo,
+    } | QUICK
     assert numbers(sweep(KS, OMEGAS, **options)) == wanted
     assert computed == [(3, 1)]
     assert numbers(sweep([4], [1], **options))[0]["missing"] == "it “broke”\n"
     assert [path.name for path in file.parent.iterdir()] == ["s.sqlite"]
-    grid = ("--k", "3", "--omega", "0.25:1:4,1/4", "--stretch", "2", "--file", str(file))
+    grid = (
+        "--k",
+        "3",
+        "--omega",
+        "0.25:1:4,1/4",
+        "--stretch",
+        "2",
+        "--file",
+        str(file),
+    )
     picture = ("--plot", str(file.with_name("s.svg")))
-    status, out, err = ended(capsys, cli.main, "sweep", *grid, *picture, "--format", "json")
+    status, out, err = ended(
+        capsys, cli.main, "sweep", *grid, *picture, "--format", "json"
+    )
     assert (status, err) == (0, "")
     assert json.loads(out)["points"] == wanted
     assert file.with_name("s.svg").read_text().startswith("<?xml")
@@ -111,7 +125,9 @@ def test_few_points_wait_for_a_worker():
         def submit(self, function, k, omega, stretch):
             nonlocal most
             most = max(most, len(todo) - len(finished))
-            return super().submit(lambda: finished.append(k) or Point(k, omega, None, {}, "no"))
+            return super().submit(
+                lambda: finished.append(k) or Point(k, omega, None, {}, "no")
+            )
 
     most, todo, finished = 0, [], []
     grid = tuple(map(R, range(2, 42))), tuple(R(n, 10) for n in range(1, 51))
@@ -135,7 +151,9 @@ def test_a_cluster_that_loses_a_worker_loses_no_point(reference):
     """The numbers are those of threads, bit for bit."""
     from distributed import LocalCluster
 
-    with LocalCluster(dashboard_address=None, n_workers=2, threads_per_worker=1) as local:
+    with LocalCluster(
+        dashboard_address=None, n_workers=2, threads_per_worker=1
+    ) as local:
         pids = [worker.pid for worker in local.workers.values()]
 
         def progress(todo):
@@ -144,7 +162,9 @@ def test_a_cluster_that_loses_a_worker_loses_no_point(reference):
                     os.kill(pids[0], signal.SIGKILL)
                 yield key
 
-        found = sweep(KS, OMEGAS, stretch=2, address=local.scheduler_address, progress=progress)
+        found = sweep(
+            KS, OMEGAS, stretch=2, address=local.scheduler_address, progress=progress
+        )
     assert numbers(found) == numbers(report(KS, OMEGAS, reference, 2))
 
 
@@ -153,7 +173,9 @@ def test_an_address_without_a_scheduler_is_refused():
     """A server that accepts a call and does not answer."""
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
-        with pytest.raises(InputError, match=rf"^cluster is 'tcp://127\.0\.0\.1:{port}'"):
+        with pytest.raises(
+            InputError, match=rf"^cluster is 'tcp://127\.0\.0\.1:{port}'"
+        ):
             cluster(f"tcp://127.0.0.1:{port}", 0.4).__enter__()
 
 
@@ -181,12 +203,17 @@ def points():
 def test_the_document_is_json_and_complete(points):
     found = json.loads(json.dumps(report(*AXES, points).document(), allow_nan=False))
     assert (found["stretch"], found["missing"]) == (4, 1)
-    assert [(p["k"], p["omega"]) for p in found["points"][2:4]] == [("3/2", "50"), ("2", "1/2")]
+    assert [(p["k"], p["omega"]) for p in found["points"][2:4]] == [
+        ("3/2", "50"),
+        ("2", "1/2"),
+    ]
     for p, point in zip(found["points"], points, strict=True):
         for name in LABELS:
             number = point.numbers.get(name)
             assert p[f"{name}_value"] == (None if number is None else number.value)
-            assert p[f"{name}_error_value"] == (None if number is None else number.error)
+            assert p[f"{name}_error_value"] == (
+                None if number is None else number.error
+            )
         assert (p["missing"] is None) == (p["sites"] == [24, 32])
     last = found["points"][-1]["theory"]
     assert last["linear"]["width_value"] is None
@@ -199,7 +226,9 @@ def test_the_picture_has_a_curve_for_each_exponent(points):
     assert [len(panel.curves) for panel in panels] == [3, 3, 3, 3]
     for k, curve in zip(ks, panels[0].curves, strict=True):
         values = [float(k + omega) for omega in omegas]
-        np.testing.assert_array_equal(curve.y, [np.nan if x == 3 else x for x in values])
+        np.testing.assert_array_equal(
+            curve.y, [np.nan if x == 3 else x for x in values]
+        )
     assert all((curve.y[1:] > 0).all() for curve in panels[3].curves[::2])
     for axes, step in (((ks[:1], omegas), 1), ((ks, omegas[:1]), 3)):
         some = points[: 3 * step : step]

@@ -12,7 +12,9 @@ from validation.scenes.checks import SceneError
 from validation.studies.paper import bead_fwhm, of_momentum
 
 WAVES = {
-    k: homogenize(Dimer("1", "1/4", stiffnesses=(3, 3), spacing="1/2"), k=k).pde.traveling_wave()
+    k: homogenize(
+        Dimer("1", "1/4", stiffnesses=(3, 3), spacing="1/2"), k=k
+    ).pde.traveling_wave()
     for k in ("3/2", "5/4", "11/10", "2")
 }
 waves = st.sampled_from(list(WAVES.values()))
@@ -22,7 +24,9 @@ amounts = st.floats(1e-3, 1e3)
 @given(waves, amounts)
 def test_the_wave_has_the_momentum_it_was_made_of(wave, amount):
     found = float(of_momentum(wave, amount).momentum)
-    assert found == pytest.approx(amount, rel=1e-11)  # powers up to 2k/(k-1) = 22 of some ulp
+    assert found == pytest.approx(
+        amount, rel=1e-11
+    )  # powers up to 2k/(k-1) = 22 of some ulp
 
 
 @pytest.mark.parametrize("wave", WAVES.values(), ids=WAVES)
@@ -30,7 +34,9 @@ def test_momentum_is_the_integral_of_mass_and_velocity(wave):
     physical = wave.at_force(2)
     V, end = float(physical.speed), float(wave.width) / 2
     integral, _ = quad(lambda x: float(physical.curve(-x / V, "velocity")), -end, end)
-    assert float(physical.momentum) == pytest.approx(1.25 / (2 * 0.5) * integral, rel=1e-8)
+    assert float(physical.momentum) == pytest.approx(
+        1.25 / (2 * 0.5) * integral, rel=1e-8
+    )
 
 
 @pytest.mark.parametrize("wave", WAVES.values(), ids=WAVES)
@@ -40,7 +46,11 @@ def test_the_width_inside_a_bead_is_where_its_force_is_half(wave):
     V, width = float(physical.speed), bead_fwhm(wave)
     half = physical.curve(np.array([-width, width]) / 2 / V, of="bead")
     assert half == pytest.approx(float(physical.bead_force) / 2, rel=1e-11)
-    assert float(wave.fwhm("force")) < width < float(wave.fwhm("force") + sp.Rational(1, 2))
+    assert (
+        float(wave.fwhm("force"))
+        < width
+        < float(wave.fwhm("force") + sp.Rational(1, 2))
+    )
 
 
 def test_bad_amounts():

@@ -29,7 +29,9 @@ def specials():
 
 def test_the_widths_of_the_hertz_chain(hertz):
     """The widths of a simulated struck chain; further digits by another grid."""
-    assert (hertz.fwhm("force"), hertz.fwhm()) == pytest.approx((1.411928, 1.725713), abs=5e-7)
+    assert (hertz.fwhm("force"), hertz.fwhm()) == pytest.approx(
+        (1.411928, 1.725713), abs=5e-7
+    )
     finer = solve((1.0, 1.0), 1.5, 9, 200)
     for name in QUANTITIES:  # rounding, divided by the slope at half maximum
         assert finer.fwhm(name) == pytest.approx(hertz.fwhm(name), abs=1e-11)
@@ -40,7 +42,16 @@ def test_the_widths_of_the_hertz_chain(hertz):
 
 @pytest.mark.parametrize(
     ("k", "p0"),
-    [(1.01, 0.5), (1.02, 0), (1.5, 1e-9), (1.5, 0.3), (1.5, 0.9999), (3, 1e-3), (5, 0), (6, 0.23)],
+    [
+        (1.01, 0.5),
+        (1.02, 0),
+        (1.5, 1e-9),
+        (1.5, 0.3),
+        (1.5, 0.9999),
+        (3, 1e-3),
+        (5, 0),
+        (6, 0.23),
+    ],
 )
 def test_the_equations_of_motion_hold_at_any_point(k, p0):
     """c² r'' = F(ξ+1) - 2F(ξ) + F(ξ-1) and c v' = F(ξ+½) - F(ξ-½), F = (p0 + r)_+^k, derivatives
@@ -57,9 +68,13 @@ def test_the_equations_of_motion_hold_at_any_point(k, p0):
         return np.maximum(2.5 * p0 + more.strain(xi), 0) ** k
 
     def derivative(f, weights):
-        return sum(w * f(xi + j * h) for w, j in zip(weights, range(-3, 4), strict=True))
+        return sum(
+            w * f(xi + j * h) for w, j in zip(weights, range(-3, 4), strict=True)
+        )
 
-    second = derivative(more.strain, np.array([2, -27, 270, -490, 270, -27, 2]) / (180 * h * h))
+    second = derivative(
+        more.strain, np.array([2, -27, 270, -490, 270, -27, 2]) / (180 * h * h)
+    )
     push = force(xi + 1) - 2 * force(xi) + force(xi - 1)
     assert more.c2 * second == pytest.approx(push, abs=1e-6 * np.abs(push).max())
     slope = derivative(more.velocity, np.array([-1, 9, -45, 0, 45, -9, 1]) / (60 * h))
@@ -72,7 +87,9 @@ def test_the_equations_of_motion_hold_at_any_point(k, p0):
 
 def came_back(wave, sites=100):
     """The largest change of strain and velocity when a chain's wave is ``sites`` on; the run."""
-    scene = wave.launched(20, sites, duration=sites / wave.c, contact_sensors=(60,), samples=4001)
+    scene = wave.launched(
+        20, sites, duration=sites / wave.c, contact_sensors=(60,), samples=4001
+    )
     run = simulate(scene, method="symplectic", rtol=1e-11)
     compression, velocity = -np.diff(scene.displacements), np.array(scene.velocities)
     strain = np.abs(-np.diff(run.displacements)[sites:] - compression[:-sites]).max()
@@ -138,11 +155,15 @@ def test_special_ratios_for_other_exponents(specials, k, count):
         assert np.diff(roots) == pytest.approx(roots[1] - roots[0], rel=0.25)
         assert roots[0] - 1 < 2 * (roots[1] - roots[0])
     wave = waves[-1]  # a longer period changes nothing
-    longer = solve(wave.masses, k, start=wave, half_period=1.1 * wave.half_period, free=True)
+    longer = solve(
+        wave.masses, k, start=wave, half_period=1.1 * wave.half_period, free=True
+    )
     assert longer.omega == pytest.approx(wave.omega, rel=1e-8)
     if k == 2:  # Hertz's ratio leads there by steps of 0.1
         for step in (1.6, 1.7, 1.8, 1.9, 2.0):
-            wave = solve(wave.masses, step, start=specials[1] if step == 1.6 else wave, free=True)
+            wave = solve(
+                wave.masses, step, start=specials[1] if step == 1.6 else wave, free=True
+            )
         assert wave.omega == pytest.approx(waves[-1].omega, rel=1e-10)
 
 
@@ -166,7 +187,9 @@ def test_units_of_mass_and_relabelling(k, unit):
 
 def test_a_ratio_in_seven_digits_is_the_special_ratio(specials):
     """The wave has the special ratio's masses, and the report says so."""
-    one, two = exact(1.5, (2, 2 * specials[1].omega * (1 - 5e-8))).document()["masses_value"]
+    one, two = exact(1.5, (2, 2 * specials[1].omega * (1 - 5e-8))).document()[
+        "masses_value"
+    ]
     assert (one, two) == pytest.approx((2, 2 * specials[1].omega), rel=1e-13)
 
 
@@ -177,7 +200,9 @@ LOW = pytest.param(0.3, 1.1, marks=pytest.mark.slow)
 @pytest.mark.parametrize(("omega", "k"), [(OFF, 1.5), (1 / 0.6, 1.5), LOW])
 def test_a_ratio_without_a_solitary_wave_names_the_ways_on_and_no_tail(omega, k):
     masses = re.escape(f"k = {k:g}, masses 1, {omega:.10g}")
-    with pytest.raises(NoWave, match=rf"{masses}: see resonances \(nearest .*\) and sweep$"):
+    with pytest.raises(
+        NoWave, match=rf"{masses}: see resonances \(nearest .*\) and sweep$"
+    ):
         exact_wave([1, omega], k)
 
 
@@ -185,7 +210,9 @@ def test_the_report_holds_every_number_of_a_wave(hertz):
     found = json.loads(json.dumps(exact(1.5, (1,)).document(), allow_nan=False))
     assert found["c_value"] ** 2 == pytest.approx(found["c2_value"], rel=1e-14)
     assert found["fwhm_value"] == {name: hertz.fwhm(name) for name in QUANTITIES}
-    assert found["amplitude_value"] == {name: hertz.peak(name)[1] for name in QUANTITIES}
+    assert found["amplitude_value"] == {
+        name: hertz.peak(name)[1] for name in QUANTITIES
+    }
     assert all(0 < error < 1e-11 for error in found["fwhm_error_value"].values())
     numbers = found["solitary"], found["tail_value"], found["residual_value"]
     assert numbers == (True, 0, hertz.residual)

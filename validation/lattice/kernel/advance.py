@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from validation.lattice.kernel.arrays import BLOCK, MARGIN, SHORTEST, Beads, Chain, Knots, Plan
+from validation.lattice.kernel.arrays import (
+    BLOCK,
+    MARGIN,
+    SHORTEST,
+    Beads,
+    Chain,
+    Knots,
+    Plan,
+)
 from validation.lattice.kernel.compiled import SOURCES, cached, inlined
 from validation.lattice.kernel.pair import (
     begin_step,
@@ -18,7 +26,9 @@ from validation.lattice.kernel.pair import (
 )
 from validation.lattice.kernel.samples import store_knot
 
-_STILL = 1e-13  # in units of the greatest compression: beads that have moved less are still
+_STILL = (
+    1e-13  # in units of the greatest compression: beads that have moved less are still
+)
 
 
 @inlined
@@ -30,7 +40,10 @@ def moving(now: Any) -> int:
 @inlined
 def advance_front(beads: Beads, plan: Plan, now: Any) -> None:
     """Move the front to the first bead that is still."""
-    while now.front < plan.size and abs(beads.y[now.front - MARGIN]) > _STILL * plan.deepest:
+    while (
+        now.front < plan.size
+        and abs(beads.y[now.front - MARGIN]) > _STILL * plan.deepest
+    ):
         now.front += 1
 
 
@@ -54,7 +67,11 @@ def _built(sources: int) -> Any:
                 advance_front(beads, plan, now)
                 store_knot(chain, beads, knots, now)
             if not stale:
-                if not (now.t < plan.end and now.tries < until and now.stored < len(knots.time)):
+                if not (
+                    now.t < plan.end
+                    and now.tries < until
+                    and now.stored < len(knots.time)
+                ):
                     return now.t, sources
                 hi = moving(now)
                 now.tries += 1
@@ -66,7 +83,9 @@ def _built(sources: int) -> Any:
             if stale:
                 stale = False
                 continue
-            place, jumps = place_of_jump(chain, beads, plan, h, hi) if plan.jumps else (1.0, 0)
+            place, jumps = (
+                place_of_jump(chain, beads, plan, h, hi) if plan.jumps else (1.0, 0)
+            )
             if place < 1.0:
                 now.planned, now.h = max(now.planned, h), h * place
                 moved = False

@@ -164,7 +164,9 @@ class Plan(NamedTuple):
 
 _COUNTS = ("steps", "tries", "front", "stored", "stop")
 _REALS = ("t", "h", "planned", "energy", "work", "lost", "response")
-_PROGRESS = np.dtype([(name, int) for name in _COUNTS] + [(name, float) for name in _REALS])
+_PROGRESS = np.dtype(
+    [(name, int) for name in _COUNTS] + [(name, float) for name in _REALS]
+)
 
 
 def initial_progress(plan: Plan, front: int, energy: float) -> Any:

@@ -22,7 +22,9 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 SOURCES = int.from_bytes(
     hashlib.blake2b(
-        b"".join(file.read_bytes() for file in sorted(Path(__file__).parent.glob("*.py"))),
+        b"".join(
+            file.read_bytes() for file in sorted(Path(__file__).parent.glob("*.py"))
+        ),
         digest_size=7,
     ).digest()
 )
@@ -64,7 +66,9 @@ def _call(typing: Any, address: Any, x: Any) -> Any:
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         kind = ir.FunctionType(ir.DoubleType(), [ir.DoubleType()])
-        return builder.call(builder.inttoptr(arguments[0], kind.as_pointer()), [arguments[1]])
+        return builder.call(
+            builder.inttoptr(arguments[0], kind.as_pointer()), [arguments[1]]
+        )
 
     return types.float64(types.int64, types.float64), generate
 
@@ -94,7 +98,10 @@ def cached(function: Function) -> Function:
         try:
             keep(signature, code)
         except OSError as error:
-            print(f"the engine's machine code is not kept: {error.strerror}", file=sys.stderr)
+            print(
+                f"the engine's machine code is not kept: {error.strerror}",
+                file=sys.stderr,
+            )
 
     cache.load_overload, cache.save_overload = load_if_possible, keep_if_possible
     return compiled  # type: ignore[no-any-return]
@@ -105,8 +112,15 @@ class _Announcement(Listener):
 
     def on_start(self, event: Event) -> None:
         """Print the message; numba calls this method before it compiles a function."""
-        if event.data["dispatcher"].__name__.startswith("advance") and sys.stderr.isatty():
-            print("the engine is compiled for this machine, once", file=sys.stderr, flush=True)
+        if (
+            event.data["dispatcher"].__name__.startswith("advance")
+            and sys.stderr.isatty()
+        ):
+            print(
+                "the engine is compiled for this machine, once",
+                file=sys.stderr,
+                flush=True,
+            )
 
     def on_end(self, event: Event) -> None:
         """Do nothing after a compilation; numba requires this method."""

@@ -11,7 +11,9 @@ from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import TILE, Beads, Chain, Drive, Law, Plan
 from validation.lattice.kernel.compiled import ONE, call, index, part, summed
 
-NEGLIGIBLE = 1e-60  # in units of the greatest compression: less is 0, so that no denormals arise
+NEGLIGIBLE = (
+    1e-60  # in units of the greatest compression: less is 0, so that no denormals arise
+)
 
 
 def _loop(value: Any) -> Any:
@@ -38,9 +40,23 @@ def _damped_loop(value: Any, resistance: Any) -> Any:
 
     @summed
     def loop(
-        chain: Chain, y: Array, v: Array, f: Array, lo: int, hi: int, least: float, none: float
+        chain: Chain,
+        y: Array,
+        v: Array,
+        f: Array,
+        lo: int,
+        hi: int,
+        least: float,
+        none: float,
     ) -> float:
-        A, rest, load, r, law, lost = chain.A, chain.rest, chain.load, chain.r, chain.law, 0.0
+        A, rest, load, r, law, lost = (
+            chain.A,
+            chain.rest,
+            chain.load,
+            chain.r,
+            chain.law,
+            0.0,
+        )
         for i in range(index(lo), index(hi)):
             x, rate = rest[i] + y[i] - y[i + ONE], v[i] - v[i + ONE]
             d = x if x > least else 0.0
@@ -72,7 +88,11 @@ _quarters = _loop(_of_quarters)
 _power = _loop(part(lambda d, k: d**k))
 _damped_hertz = _damped_loop(
     part(lambda law, d: d * (np.sqrt(d) if law.k == 1.5 else 1.0)),
-    part(lambda d, p: np.sqrt(d) if p == 0.5 else (1.0 if p == 0.0 else np.sqrt(np.sqrt(d)))),
+    part(
+        lambda d, p: (
+            np.sqrt(d) if p == 0.5 else (1.0 if p == 0.0 else np.sqrt(np.sqrt(d)))
+        )
+    ),
 )
 _damped = _damped_loop(
     part(lambda law, d: call(law.force, d) if law.generated else d**law.k),
@@ -116,7 +136,9 @@ def contact_forces(
         for i in range(index(lo), index(hi)):
             d = chain.rest[i] + y[i] - y[i + ONE]
             closed = chain.A[i] > 0.0 and (law.pulls or d > 0.0)
-            f[i + ONE] = (chain.A[i] * call(law.force, d) if closed else 0.0) - chain.load[i]
+            f[i + ONE] = (
+                chain.A[i] * call(law.force, d) if closed else 0.0
+            ) - chain.load[i]
     elif k == 1.5:
         _hertz(chain, y, f, lo, hi, least)
     elif k < 5.0 and 4.0 * k == int(4.0 * k):
@@ -152,9 +174,14 @@ def drive_motion(drive: Drive, middle: float, t: float) -> tuple[float, float, f
     v, a = c[1] + s * (2.0 * c[2] + s * 3.0 * c[3]), 2.0 * c[2] + s * 6.0 * c[3]
     if drive.amplitude != 0.0:
         r, dr, ddr = 1.0, 0.0, 0.0
-        if t < drive.ramp:  # x³ (10 - 15 x + 6 x²) has two derivatives that vanish at both ends
+        if (
+            t < drive.ramp
+        ):  # x³ (10 - 15 x + 6 x²) has two derivatives that vanish at both ends
             x, pace = t / drive.ramp, 1.0 / drive.ramp
-            r, dr = x * x * x * (10 - 15 * x + 6 * x * x), 30 * x * x * (1 - x) * (1 - x) * pace
+            r, dr = (
+                x * x * x * (10 - 15 * x + 6 * x * x),
+                30 * x * x * (1 - x) * (1 - x) * pace,
+            )
             ddr = 60 * x * (1 - x) * (1 - 2 * x) * pace * pace
         w, sin, cos = drive.w, math.sin(drive.w * t), math.cos(drive.w * t)
         y += drive.amplitude * r * sin

@@ -52,7 +52,11 @@ def push(law: Law, r: float, d: float, rate: float) -> float:
     """Return the force at a compression d and a rate dδ/dt; contacts do not pull."""
     if not d > 0.0:
         return 0.0
-    return max(elastic(law, d) + r * drag(law, d) * rate, 0.0) if r > 0.0 else elastic(law, d)
+    return (
+        max(elastic(law, d) + r * drag(law, d) * rate, 0.0)
+        if r > 0.0
+        else elastic(law, d)
+    )
 
 
 @part
@@ -66,7 +70,11 @@ def stored(law: Law, d: float) -> float:
     """Return the elastic energy; 0 for d ≤ 0."""
     if not d > 0.0:
         return 0.0
-    return float(call(law.energy, d)) if law.generated else elastic(law, d) * d / (law.k + 1.0)
+    return (
+        float(call(law.energy, d))
+        if law.generated
+        else elastic(law, d) * d / (law.k + 1.0)
+    )
 
 
 @part
@@ -77,12 +85,21 @@ def value_and_slope(c: Quintic, x: float) -> tuple[float, float]:
 
 
 @part
-def fitted_quintic(d: float, v: float, a: float, end: float, end_v: float, end_a: float) -> Quintic:
+def fitted_quintic(
+    d: float, v: float, a: float, end: float, end_v: float, end_a: float
+) -> Quintic:
     """Return the quintic of value d, slope v, second derivative a at 0; end, end_v, end_a at 1."""
     c2 = a / 2
     # c3, c4 and c5 solve the conditions at x = 1, of which d, v and c2 leave r0, r1 and r2.
     r0, r1, r2 = end - d - v - c2, end_v - v - 2 * c2, end_a - 2 * c2
-    return (d, v, c2, 10 * r0 - 4 * r1 + r2 / 2, -15 * r0 + 7 * r1 - r2, 6 * r0 - 3 * r1 + r2 / 2)
+    return (
+        d,
+        v,
+        c2,
+        10 * r0 - 4 * r1 + r2 / 2,
+        -15 * r0 + 7 * r1 - r2,
+        6 * r0 - 3 * r1 + r2 / 2,
+    )
 
 
 @part
@@ -98,14 +115,18 @@ def _margin(law: Law, r: float, c: Quintic, h: float, x: float, closing: bool) -
 
 
 @part
-def change(law: Law, r: float, c: Quintic, h: float, a: float, b: float, closing: bool) -> float:
+def change(
+    law: Law, r: float, c: Quintic, h: float, a: float, b: float, closing: bool
+) -> float:
     """Return the place between a and b at which the contact begins or ends to push."""
     # A contact that pushes again before it has parted does so by its force.
     closing = closing and not value_and_slope(c, a)[0] > 0.0
     left, right = _margin(law, r, c, h, a, closing), _margin(law, r, c, h, b, closing)
     for _ in range(60):  # the Illinois variant of the rule of false position
         x = b - right * (b - a) / (right - left) if right != left else 0.5 * (a + b)
-        if abs(x - b) < 1e-13:  # at 1e-10 the energy lost errs by 15 times an rtol of 1e-11
+        if (
+            abs(x - b) < 1e-13
+        ):  # at 1e-10 the energy lost errs by 15 times an rtol of 1e-11
             return x
         middle = _margin(law, r, c, h, x, closing)
         if middle * right < 0.0:
@@ -124,7 +145,9 @@ def _root(c: Quintic, x: float, side: float) -> float:
     """
     p, slope = value_and_slope(c, x)
     # No root within a step of x, or on the inner side.
-    if not abs(p) < 1.5 * abs(slope) or (side * p * slope > 0.0 and abs(p) > 1e-9 * abs(slope)):
+    if not abs(p) < 1.5 * abs(slope) or (
+        side * p * slope > 0.0 and abs(p) > 1e-9 * abs(slope)
+    ):
         return math.nan
     r = x - p / slope
     p, slope = value_and_slope(c, r)
@@ -143,7 +166,9 @@ def forces_along(law: Law, r: float, c: Quintic, h: float, x: Array, f: Array) -
             p, slope = value_and_slope(c, x[m])
             d = p if p > 0.0 else 0.0
             root = np.sqrt(d)
-            resistance = root if law.p == 0.5 else (1.0 if law.p == 0.0 else np.sqrt(root))
+            resistance = (
+                root if law.p == 0.5 else (1.0 if law.p == 0.0 else np.sqrt(root))
+            )
             force = d * root + r * resistance * slope / h
             f[m] = force if (force > 0.0) & (p > 0.0) else 0.0
     else:
@@ -162,7 +187,9 @@ def _summit(c: Quintic, a: float, b: float) -> float:
 
 
 @part
-def find_intervals(law: Law, r: float, c: Quintic, h: float, points: Array) -> tuple[int, float]:
+def find_intervals(
+    law: Law, r: float, c: Quintic, h: float, points: Array
+) -> tuple[int, float]:
     """Return the number of intervals of a step in which the contact pushes, and the greatest p.
 
     F(p, p'/h) is the force of a contact whose compression is the quintic with coefficients c.
@@ -175,7 +202,10 @@ def find_intervals(law: Law, r: float, c: Quintic, h: float, points: Array) -> t
         p, slope = value_and_slope(c, high)
         now = pushes(law, r, p, slope / h)
         # A contact can close, and open or cease to push, between two places.
-        within, peak = not now and before <= 0.0 and rise > 0.0 and (p > 0.0 or slope < 0.0), high
+        within, peak = (
+            not now and before <= 0.0 and rise > 0.0 and (p > 0.0 or slope < 0.0),
+            high,
+        )
         if within and not p > 0.0:
             peak = _summit(c, low, high)
             deepest, _ = value_and_slope(c, peak)
@@ -189,7 +219,9 @@ def find_intervals(law: Law, r: float, c: Quintic, h: float, points: Array) -> t
                 first = low if pushed else (start if p > 0.0 else peak)
                 end = change(law, r, c, h, first, high, False)
             points[4, count], points[5, count] = start, end
-            points[6, count] = start if start > 0.0 and not r > 0.0 else _root(c, start, -1.0)
+            points[6, count] = (
+                start if start > 0.0 and not r > 0.0 else _root(c, start, -1.0)
+            )
             points[7, count] = end if end < 1.0 and not r > 0.0 else _root(c, end, 1.0)
             count += 1
         pushed, before, rise, top = now, p, slope, max(top, p)
@@ -207,7 +239,12 @@ def integrals(
     x, w, f = points[0], points[1], points[2]
     once = twice = third = work = 0.0
     for n in range(count):
-        a, b, low, high = points[4, n], min(points[5, n], until), points[6, n], points[7, n]
+        a, b, low, high = (
+            points[4, n],
+            min(points[5, n], until),
+            points[6, n],
+            points[7, n],
+        )
         if not a < b:
             continue
         middle = b if math.isnan(high) else (a if math.isnan(low) else 0.5 * (a + b))

@@ -21,7 +21,12 @@ from lwa.base.arrays import Array
 from validation.lattice.kernel import kinks
 from validation.lattice.kernel.arrays import TILE, Beads, Chain, Plan
 from validation.lattice.kernel.compiled import ONE, ZERO, index, inlined, part, summed
-from validation.lattice.kernel.force import contact_forces, drive_motion, stiffness, tile_bounds
+from validation.lattice.kernel.force import (
+    contact_forces,
+    drive_motion,
+    stiffness,
+    tile_bounds,
+)
 
 _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the tolerance
 # A contact is nearly open at a step's one end if δ there is less than _NEAR times δ at the other. A
@@ -37,12 +42,21 @@ _JUMP = 0.25  # least effect of a jump at which a step ends, in units of the tol
 # nine scenes at 1e-6 … 1e-10: the work for the same error is the same to 4 % for a safety of 0.8 to
 # 0.95 and a growth of 1.5 to 10; a safety of 0.7 costs 8 % more, 0.98 costs 11 % more.
 _SAFETY, _GROWTH, _SHRINKAGE = 0.9, 5.0, 0.1
-_HOPELESS = 1e9  # in units of the tolerance: the power says nothing of such an error, or of NaN
+_HOPELESS = (
+    1e9  # in units of the tolerance: the power says nothing of such an error, or of NaN
+)
 
 
 @part
 def _add_up(
-    sums: Array, q: Any, force: Array, row: Array, scale: float, stages: int, lo: int, hi: int
+    sums: Array,
+    q: Any,
+    force: Array,
+    row: Array,
+    scale: float,
+    stages: int,
+    lo: int,
+    hi: int,
 ) -> None:
     """Compute a weighted sum of forces, sums[q] = scale Σ_j row[j] force[j], 0 ≤ j < ``stages``."""
     # One pass over four rows or over all nine: the weights of stages that are still to come are 0.
@@ -56,7 +70,9 @@ def _add_up(
     k, m = scale * row[7], scale * row[8]
     for i in range(index(lo) + ONE, index(hi) + ONE):
         first = a * force[ZERO, i] + b * force[ONE, i] + c * force[index(2), i]
-        second = d * force[index(3), i] + e * force[index(4), i] + f * force[index(5), i]
+        second = (
+            d * force[index(3), i] + e * force[index(4), i] + f * force[index(5), i]
+        )
         third = g * force[index(6), i] + k * force[index(7), i] + m * force[index(8), i]
         sums[q, i] = first + second + third
 
@@ -71,7 +87,9 @@ def _integral(row: Array, power: Array) -> float:
 
 
 @part
-def _fitted(chain: Chain, beads: Beads, h: float, last: int, i: int, opened: bool) -> kinks.Quintic:
+def _fitted(
+    chain: Chain, beads: Beads, h: float, last: int, i: int, opened: bool
+) -> kinks.Quintic:
     """Return the quintic fit of contact i's compression over a step.
 
     last : the stage at the step's end. opened : True for a fit without the contact's own force at
@@ -80,21 +98,32 @@ def _fitted(chain: Chain, beads: Beads, h: float, last: int, i: int, opened: boo
     y, v, f, inverse, rest = beads.y, beads.v, beads.force, chain.inverse, chain.rest
     end = rest[i] + beads.next_y[i] - beads.next_y[i + 1]
     end_rate = beads.next_v[i] - beads.next_v[i + 1]
-    own = 0.0 if opened else chain.A[i] * kinks.push(chain.law, chain.r[i], end, end_rate)
+    own = (
+        0.0 if opened else chain.A[i] * kinks.push(chain.law, chain.r[i], end, end_rate)
+    )
     own -= chain.load[i]
-    a = (f[0, i] - f[0, i + 1]) * inverse[i] - (f[0, i + 1] - f[0, i + 2]) * inverse[i + 1]
+    a = (f[0, i] - f[0, i + 1]) * inverse[i] - (f[0, i + 1] - f[0, i + 2]) * inverse[
+        i + 1
+    ]
     end_a = (f[last, i] - own) * inverse[i] - (own - f[last, i + 2]) * inverse[i + 1]
     if i == 0:
         a, end_a = a + beads.given[0], end_a + beads.given[1]
     d, rate = rest[i] + y[i] - y[i + 1], v[i] - v[i + 1]
-    return kinks.fitted_quintic(d, h * rate, h * h * a, end, h * end_rate, h * h * end_a)
+    return kinks.fitted_quintic(
+        d, h * rate, h * h * a, end, h * end_rate, h * h * end_a
+    )
 
 
 @inlined
 def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -> None:
     """Correct a step for the pair's error at contact i, which opens or closes."""
     pair, last, inverse = plan.scheme, len(plan.scheme.moments) - 1, chain.inverse
-    A, r, law, p = chain.A[i], chain.r[i], chain.law, _fitted(chain, beads, h, last, i, False)
+    A, r, law, p = (
+        chain.A[i],
+        chain.r[i],
+        chain.law,
+        _fitted(chain, beads, h, last, i, False),
+    )
     count, top = kinks.find_intervals(law, r, p, h, beads.points)
     once, twice, third, work = kinks.integrals(law, r, p, h, 1.0, count, beads.points)
     force = beads.points[2]
@@ -102,7 +131,10 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
     once = A * (once - _integral(pair.impulses[last], force))
     twice = A * (twice - _integral(pair.moments[last], force))
     third = A * (third - _integral(pair.thirds, force))
-    error, error_once = _integral(pair.errors[0], force), _integral(pair.errors[1], force)
+    error, error_once = (
+        _integral(pair.errors[0], force),
+        _integral(pair.errors[1], force),
+    )
     if chain.damped:
         end, _ = kinks.value_and_slope(p, 1.0)
         heat = work - kinks.stored(law, end) + kinks.stored(law, p[0])
@@ -122,7 +154,9 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
     if i == 0 and chain.drive.driven:
         # ∫ ΔF v dt with v = next_v - (1 - x) h a + (1 - x)²/2 h² da/dt, a at the step's end.
         change = h * h * third * (beads.given[1] - beads.given[0])
-        beads.corrections[2] = impulse * beads.next_v[0] - moment * beads.given[1] + change
+        beads.corrections[2] = (
+            impulse * beads.next_v[0] - moment * beads.given[1] + change
+        )
         beads.corrections[3] = h * A * error_once * beads.next_v[0]
     for n in range(max(0, i - 1), i + 2):
         both = inverse[i] + inverse[i + 1] if n == i else -inverse[max(i, n)]
@@ -140,7 +174,9 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
 
 
 @inlined
-def place_of_jump(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> tuple[float, int]:
+def place_of_jump(
+    chain: Chain, beads: Beads, plan: Plan, h: float, hi: int
+) -> tuple[float, int]:
     """Return the share of a step up to just behind the first closing whose jump matters, or 1.
 
     Contacts that close at the end of the step are counted, and marked in row 4 of ``beads.sums``:
@@ -157,7 +193,9 @@ def place_of_jump(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> 
             _, slope = kinks.value_and_slope(p, x)
             jump = chain.A[i] * chain.r[i] * abs(slope)  # h times the jump of the force
             jump *= max(chain.inverse[i], chain.inverse[i + 1])
-            behind = 2.0 * _JUMP * plan.v / (jump + 1e-300)  # share of a step in which it counts
+            behind = (
+                2.0 * _JUMP * plan.v / (jump + 1e-300)
+            )  # share of a step in which it counts
             if 1.0 - x > behind:
                 # In a step that errs the fit says little: the place is looked for once more.
                 place = min(place, max(x + 0.5 * behind, _SHRINKAGE))
@@ -175,27 +213,51 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
     """
     pair, last = plan.scheme, len(plan.scheme.moments) - 1
     beads.corrections[:] = 0.0
-    y, v, next_y, next_v, rest = beads.y, beads.v, beads.next_y, beads.next_v, chain.rest
+    y, v, next_y, next_v, rest = (
+        beads.y,
+        beads.v,
+        beads.next_y,
+        beads.next_v,
+        chain.rest,
+    )
     marks, jumped, load = beads.sums[0], beads.sums[4], chain.load
     start, end = beads.force[0], beads.force[last]
-    least = _SLIGHT * plan.v * plan.lightest / h  # a force F changes a velocity by h F/m
+    least = (
+        _SLIGHT * plan.v * plan.lightest / h
+    )  # a force F changes a velocity by h F/m
     count = 0
     for lo in range(0, hi, TILE):
         up = min(lo + TILE, hi)
         for q in range(2):
             scale = h * h / plan.y if q == 0 else h / plan.v
-            _add_up(beads.sums, index(q + 2), beads.force, pair.errors[q], scale, last + 1, lo, up)
+            _add_up(
+                beads.sums,
+                index(q + 2),
+                beads.force,
+                pair.errors[q],
+                scale,
+                last + 1,
+                lo,
+                up,
+            )
         if chain.law.pulls:
             continue
         for i in range(index(lo), index(up)):
-            before, after = rest[i] + y[i] - y[i + ONE], rest[i] + next_y[i] - next_y[i + ONE]
+            before, after = (
+                rest[i] + y[i] - y[i + ONE],
+                rest[i] + next_y[i] - next_y[i + ONE],
+            )
             rise, end_rise = h * (v[i] - v[i + ONE]), h * (next_v[i] - next_v[i + ONE])
             first, then = start[i + ONE] + load[i], end[i + ONE] + load[i]
             changed = chain.damped & ((first > 0.0) != (then > 0.0))
             force, most = max(first, then), max(before, after)
-            strong = (force > least) | (chain.damped & ((before > 0.0) != (after > 0.0)))
+            strong = (force > least) | (
+                chain.damped & ((before > 0.0) != (after > 0.0))
+            )
             low, near = min(before, after), (most > 0.0) & (force > _STRONG * least)
-            near = (near & (low < _NEAR * most)) | ((most > 0.0) & (low < _VERY_NEAR * most))
+            near = (near & (low < _NEAR * most)) | (
+                (most > 0.0) & (low < _VERY_NEAR * most)
+            )
             # A contact that is open at both ends can close in between where the tangents at the
             # ends meet at δ > 0.
             meeting = (after - end_rise) * rise - before * end_rise > 0.0
@@ -233,7 +295,9 @@ def evaluate_stages(
                 continue
             ch = pair.nodes[s] * h
             for q in range(0 if again else (2 if chain.damped or s == last else 1)):
-                row, scale = (pair.moments[s], h * h) if q == 0 else (pair.impulses[s], h)
+                row, scale = (
+                    (pair.moments[s], h * h) if q == 0 else (pair.impulses[s], h)
+                )
                 _add_up(sums, index(q), force, row, scale, s, lo, up)
             if not again:
                 for i in range(index(lo), index(up)):
@@ -241,7 +305,9 @@ def evaluate_stages(
                     next_y[i] = y[i] + ch * v[i] + net
                 if chain.damped or s == last:
                     for i in range(index(lo), index(up)):
-                        next_v[i] = v[i] + (sums[ONE, i] - sums[ONE, i + ONE]) * inverse[i]
+                        next_v[i] = (
+                            v[i] + (sums[ONE, i] - sums[ONE, i + ONE]) * inverse[i]
+                        )
                 if chain.drive.driven and lo == 0:
                     given = drive_motion(chain.drive, t + h / 2, t + ch)
                     next_y[0], next_v[0], beads.given[1] = given

@@ -41,7 +41,9 @@ def store_knot(chain: Chain, beads: Beads, knots: Knots, now: Any) -> None:
 
 
 @part
-def _compression(knots: Knots, n: int, q: int, rest: float) -> tuple[float, float, float]:
+def _compression(
+    knots: Knots, n: int, q: int, rest: float
+) -> tuple[float, float, float]:
     """Return δ, δ' and δ'' of the contact between the beads of rows q and q + 1, at knot n."""
     near, far = knots.state[n, q], knots.state[n, q + 1]
     return rest + near[0] - far[0], near[1] - far[1], near[2] - far[2]
@@ -115,7 +117,12 @@ def _built(sources: int) -> Any:
             for r in range(len(rows)):
                 for end in range(2):
                     state, row = knots.state[n + end, rows[r]], ends[end, r]
-                    row[0], row[1], row[2], row[3] = state[0], h * state[1], h * h * state[2], 0.0
+                    row[0], row[1], row[2], row[3] = (
+                        state[0],
+                        h * state[1],
+                        h * h * state[2],
+                        0.0,
+                    )
                 for s in range(first, last):
                     y[r, s] = v[r, s] = 0.0
             for r in range(len(rows) - 1):
@@ -132,7 +139,9 @@ def _built(sources: int) -> Any:
                         x = (time[s] - start) / h if s < last else 1.0
                         once, twice = whole
                         if s == last or x < points[5, count - 1]:
-                            once, twice, _, _ = kinks.integrals(law, ratio, p, h, x, count, points)
+                            once, twice, _, _ = kinks.integrals(
+                                law, ratio, p, h, x, count, points
+                            )
                         moment = twice - (1.0 - x) * once  # ∫ (x - s) F(s) ds
                         if s < last:
                             y[r, s] -= near * moment

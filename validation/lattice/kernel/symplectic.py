@@ -26,7 +26,12 @@ def _built(sources: int) -> Any:
 
         Returns the time that is reached, and ``sources``.
         """
-        kicks, drifts, h, until = plan.scheme.kicks, plan.scheme.drifts, plan.h, now.tries + tries
+        kicks, drifts, h, until = (
+            plan.scheme.kicks,
+            plan.scheme.drifts,
+            plan.h,
+            now.tries + tries,
+        )
         y, v, force, inverse = beads.y, beads.v, beads.force, chain.inverse
         last = len(drifts)
         contact_forces(chain, beads, plan, y, v, ZERO, 0, plan.size)
@@ -40,7 +45,12 @@ def _built(sources: int) -> Any:
                     if lo < up:
                         b, a = h * kicks[s], h * drifts[s]
                         for i in range(index(lo), index(up)):
-                            u = v[i] + b * (force[ZERO, i] - force[ZERO, i + ONE]) * inverse[i]
+                            u = (
+                                v[i]
+                                + b
+                                * (force[ZERO, i] - force[ZERO, i + ONE])
+                                * inverse[i]
+                            )
                             v[i] = u
                             y[i] = y[i] + a * u
                         contact_forces(chain, beads, plan, y, v, ZERO, first, behind)
