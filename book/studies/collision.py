@@ -125,7 +125,7 @@ class Evolution:
     @property
     def I(self) -> sp.Expr:
         """Coefficient I in the linear chain's dispersion Ω² = κ² - I κ⁴ + …, D² included."""
-        return Dispersion(self.cell, self.law.exponent).I * self.cell.spacing**2
+        return Dispersion(self.cell, self.law.exponent).I
 
     @property
     def time_scale(self) -> sp.Expr:
