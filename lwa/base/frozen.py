@@ -43,6 +43,22 @@ def known_extent(extent: Any) -> ExtentName:
     return one_of(extent, EXTENTS, "extent")
 
 
+EXACT_DIGITS = 15
+"""Significant digits of a printed float without an error; the sixteenth is rounding."""
+
+TABLE_DIGITS = 6
+"""Significant digits of a number in a table of text, at most."""
+
+PLAIN = -5, 5
+"""Powers of ten of the first digit of a number that is printed without a power of ten."""
+
+LEAST_PLAIN = 1e-3
+"""The least error that is printed without a power of ten."""
+
+UNKNOWN_DIGITS = 4
+"""Significant digits of a printed number whose error nobody knows."""
+
+
 class Shown:
     """Base of results that notebooks and `sympy.latex` show by the rows of `latex_rows`."""
 
@@ -92,50 +108,77 @@ class Estimate(Value):
     value: float
     error: float
 
+    @classmethod
+    def against(cls, value: float, rough: float) -> Self:
+        """Return a value whose error is the difference from a less accurate value."""
+        return cls(value, abs(value - rough))
+
     def __float__(self) -> float:
         return float(self.value)
 
     def __repr__(self) -> str:
-        if math.isnan(self.error):
+        return self.text()
+
+    def __str__(self) -> str:
+        return self.text(TABLE_DIGITS)
+
+    def text(self, most: int = EXACT_DIGITS) -> str:
+        """The value to the digits that its error leaves, and the error.
+
+        Parameters
+        ----------
+        most : int
+            Significant digits of the value at most; ± then covers the digits that are left out.
+
+        Notes
+        -----
+        The error is rounded up to one digit, or to two where the first one is 1. The last digit
+        of the value stands at the place of that digit, so that ± is never below the last digit.
+
+        Examples
+        --------
+        >>> print(Estimate(4859925635.0, 99925635.0), Estimate(1.4119284, 3e-6))
+        4.86e+09 ± 1e+08 1.41193 ± 1e-05
+        """
+        if not math.isfinite(self.value + self.error):
             return f"{self.value:.{UNKNOWN_DIGITS}g}, error unknown"
-        digits, error = self.printed
-        value = rounded(self.value, digits)
-        return f"{value} ± {error}" if self.error else value
+        first = _place(self.value)
+        last = first - most + 1
+        if not self.error:
+            short = f"{self.value:.{most}g}"
+            if most == EXACT_DIGITS or float(short) == self.value:
+                return short
+        elif not self.value:
+            return f"0 ± {self.error:.2g}"
+        else:
+            own = _place(self.error)
+            if self.error < 2 * 10.0**own:
+                own -= 1
+            last = min(max(own, last), first)
+        unit = 10.0**last
+        # An error of 3e-06 is 3.0000000000000004 units of 1e-06 in floats: no reason for 4e-06.
+        error = max(math.ceil(self.error / unit * (1 - 1e-12)), 1) * unit
+        if not PLAIN[0] <= first <= PLAIN[1]:
+            return f"{self.value:.{first - last}e} ± {error:.2g}"
+        decimals = max(0, -last)
+        width = f"{error:.{decimals}f}" if error >= LEAST_PLAIN else f"{error:.2g}"
+        return f"{round(self.value, -last):.{decimals}f} ± {width}"
+
+    @property
+    def relative_error(self) -> float:
+        """The error divided by the magnitude of the value."""
+        return self.error / abs(self.value)
 
     def __mul__(self, factor: float) -> Self:
         return replace(self, value=factor * self.value, error=abs(factor) * self.error)
 
     def __truediv__(self, other: Estimate) -> Self:
         """The quotient, with the sum of the relative errors."""
-        return (self * (1 / other.value)).widened(other.relative)
-
-    @property
-    def relative(self) -> float:
-        """The error divided by the magnitude of the value."""
-        return float(self.error / abs(self.value))
+        return (self * (1 / other.value)).widened(other.relative_error)
 
     def widened(self, relative: float) -> Self:
         """Return an estimate of this value with a further error, relative to the value."""
         return replace(self, error=self.error + abs(self.value) * relative)
-
-    @property
-    def printed(self) -> tuple[int, str]:
-        """The digits of the value that are printed, and the error as text.
-
-        The error is rounded up to one digit, or to two where the first is 1, and the last digit
-        of the value is the place of that digit: ± is not below the last digit.
-        """
-        if not self.error > 0:
-            return EXACT_DIGITS, "0"
-        place = math.floor(math.log10(self.error))
-        if self.error < 2 * 10.0**place:
-            place -= 1
-        unit = 10.0**place
-        # An error of 3e-06 is 3.0000000000000004 units of 1e-06 in floats: no reason for 4e-06.
-        error = math.ceil(self.error / unit * (1 - 1e-12)) * unit
-        size = abs(self.value)
-        digits = math.floor(math.log10(size)) - place + 1 if size else 1
-        return min(max(digits, 1), EXACT_DIGITS), f"{error:.2g}"
 
     def latex(self) -> str:
         """The value and its error, if known, such as 1.411928 ± 3 · 10^{-6}."""
@@ -147,22 +190,11 @@ class Estimate(Value):
         return f"${self.latex()}$"
 
 
-EXACT_DIGITS = 15
-"""Significant digits of a printed float without an error; the sixteenth is rounding."""
-
-UNKNOWN_DIGITS = 4
-"""Significant digits of a printed number whose error nobody knows."""
-
-
-def rounded(value: float, digits: int) -> str:
-    """A number to so many significant digits, whose trailing zeros tell where it was rounded.
-
-    >>> rounded(1.41, 4), rounded(0.0, 3), rounded(1234.0, 2), rounded(123.4, 3)
-    ('1.410', '0.00', '1.2e+03', '123')
-    """
-    if digits >= EXACT_DIGITS:
-        return f"{value:.{EXACT_DIGITS}g}"
-    return f"{value:#.{digits}g}".rstrip(".").replace(".e", "e")
+def _place(value: float) -> int:
+    """The power of ten of the first digit of a number; 0 for 0."""
+    if not value:
+        return 0
+    return math.floor(math.log10(abs(value)))
 
 
 def _power_of_ten(found: re.Match[str]) -> str:

@@ -4,9 +4,9 @@ A chain at k = 1, or a chain of any k linearised about a uniform compression, is
 of compliances C_i (`Cell.shares`). In the theory's units (time τ, wavenumber κ = qD, so that Ω = κ
 to leading order) its acoustic branch is a series
 
-    Ω² = κ² (1 - I κ² + …)
+    Ω² = κ² (1 - (I/D²) κ² + …)
 
-where I D² is the coefficient of u_x^{k-1} u_4x in the wave equation. `lwa.linear.bloch` derives
+where I is the coefficient of u_x^{k-1} u_4x in the wave equation. `lwa.linear.bloch` derives
 relation and series, `lwa.linear.bands` computes frequencies and group velocities.
 """
 
@@ -108,8 +108,11 @@ class Dispersion(Value):
 
     @cached_property
     def I(self) -> sp.Expr:
-        """Coefficient I in Ω² = κ² (1 - I κ² + …): the wave equation's I divided by D²."""
-        return -self.acoustic(4)[4]
+        """The wave equation's coefficient I of u_x^{k-1} u_xxxx, D² included.
+
+        It is that of the acoustic branch Ω² = κ² (1 - (I/D²) κ² + …).
+        """
+        return -self.acoustic(4)[4] * self.cell.spacing**2
 
     @cached_property
     def _model(self) -> Model:

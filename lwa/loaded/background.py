@@ -70,8 +70,8 @@ class Background(Value):
 
     @cached_property
     def I(self) -> sp.Expr:
-        """Coefficient I in the linear chain's Ω² = κ² - I κ⁴ + …, D² included."""
-        return self.linear.I * self.cell.spacing**2
+        """Coefficient I in the linear chain's Ω² = κ² (1 - (I/D²) κ² + …)."""
+        return self.linear.I
 
     @property
     def time_scale(self) -> sp.Expr:

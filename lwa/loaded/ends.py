@@ -166,7 +166,7 @@ class Ends(Value):
             return self.lattice.statics.samples
         x = sp.Symbol("delta", positive=True)
         F1, F2 = (function_of(x, self.law.at(x, n)) for n in (1, 2))
-        I = number(self.field.linear.I)
+        I = number(self.field.I / self.field.cell.spacing**2)
         return lambda e: (F1(e), F2(e), np.full(e.shape, I))
 
     @cached_property

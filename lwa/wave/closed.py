@@ -90,7 +90,7 @@ class CompactWave(Value):
         """The wave of the canonical field of a cell; see `lwa.canonical_wave`."""
         read_cell(cell)
         k = exponent(k)
-        I = Dispersion(cell, k).I * cell.spacing**2
+        I = Dispersion(cell, k).I
         # G and H follow from I for every cell (theorem, see `lwa.equation.energy`).
         return cls(cell=cell, k=k, G=I * (k - 1) * (k - 2) / 2, H=2 * I * (k - 1), I=I)
 

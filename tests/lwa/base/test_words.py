@@ -60,7 +60,7 @@ def test_masked_numbers_are_refused_by_name(read):
 sizes = st.floats(1e-280, 1e280)
 
 
-@given(sizes, st.floats(1e-17, 10))
+@given(sizes, st.floats(1e-13, 10))
 def test_a_printed_error_covers_the_printed_digits(size, relative):
     """± is rounded up by at most a fifth, and half of the value's last digit is below it."""
     for value in (size, -size):

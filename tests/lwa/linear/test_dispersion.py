@@ -111,7 +111,7 @@ def test_the_linear_closure_of_a_dimer_is_exact_at_k_1(cell, order, branch):
 def test_long_waves_keep_their_digits():
     # Eigenvalues Ω² with an error of 1e-16 would leave nothing of Ω = 1e-8; the next term of the
     # series is below 1e-20.
-    chain = Dispersion(Cell([1, 3, 2], stiffnesses=[1, 2, 3]))
+    chain = Dispersion(Cell([1, 3, 2], stiffnesses=[1, 2, 3], spacing=1))
     kappa = np.array([1e-8, 1e-6, 1e-4])
     series = kappa * (1 - float(chain.I) * kappa**2 / 2)
     assert np.all(abs(chain.bands.branches(kappa)[:, 0] - series) < 1e-15)

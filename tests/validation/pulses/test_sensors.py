@@ -104,7 +104,7 @@ def test_small_pulses_travel_at_the_speed_of_sound():
         contact_sensors=(206, 290),
     )  # fmt: skip
     (speed,) = record(scene).speeds
-    slower = float(3 * Dispersion(Dimer(1, 0.5)).I / (2 * s**2))
+    slower = float(3 * Dispersion(Dimer(1, 0.5, spacing=1)).I / (2 * s**2))
     found = speed.numbers["speed_sites"].value / c - 1
     assert found == pytest.approx(-slower, abs=1 / s**4)
 
