@@ -43,10 +43,10 @@ from scipy.interpolate import CubicSpline
 from lwa import Breather, Cell, Power, envelope
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError
+from lwa.base.frozen import Estimate
 from lwa.base.progress import Progress
 from lwa.command.options import quantities
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Measured
 from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table, percent
@@ -437,7 +437,7 @@ class Standing:
             "energy_value": self.orbit.energy,
         }
         for name, value in self.numbers().items():
-            cells[name] = Measured(value, check[name])
+            cells[name] = Estimate.against(value, check[name])
             cells[f"{name}_theory_value"] = theory[name]
             cells[f"{name}_off_value"] = theory[name] / value - 1
         return cells

@@ -29,13 +29,14 @@ from numpy.typing import ArrayLike
 from lwa import Cell, Power
 from lwa.base.arrays import Array
 from lwa.base.exact import read_exact
+from lwa.base.frozen import Estimate
 from lwa.base.progress import Progress
 from lwa.command.options import quantities
 from lwa.law import ContactLaw
 from lwa.linear.dispersion import Dispersion
 from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Measured, measure
+from validation.pulses.pulse import measure
 from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table, percent
@@ -303,7 +304,7 @@ def _report(
     for k, (equation, lattice) in records.items():
         for key, name in _NAMES.items():
             one, other = (
-                Measured(fine[2][key], rough[2][key] * (1 + _ROUNDING))
+                Estimate.against(fine[2][key], rough[2][key] * (1 + _ROUNDING))
                 for fine, rough in (equation, lattice)
             )
             rows.append((k, name, one, other, one.value / other.value - 1))

@@ -27,11 +27,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from lwa.base.arrays import Array
+from lwa.base.frozen import Estimate
 from lwa.base.progress import Progress
 from validation.lattice.result import Run
 from validation.lattice.simulate import simulate, simulate_many
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Measured, highest_pulse
+from validation.pulses.pulse import highest_pulse
 from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
@@ -118,7 +119,7 @@ def disorder(
 
 def single_losses(
     excesses: Sequence[float] | Array, k: float = 1.5, rtol: float = 1e-9
-) -> list[Measured]:
+) -> list[Estimate]:
     """Loss in ln F of a pulse that passes a bead of mass 1 + e among equal beads, for each e.
 
     The fall without the bead is subtracted: after 20 sites the blow still sheds a millionth. Errors
@@ -138,7 +139,7 @@ def single_losses(
         for tolerance in (rtol, 10 * rtol)
     )
     falls = zip(fine[1:] - fine[0], coarse[1:] - coarse[0], strict=True)
-    return [Measured(float(one), float(other)) for one, other in falls]
+    return [Estimate.against(float(one), float(other)) for one, other in falls]
 
 
 def _struck(masses: Sequence[float], k: float, sensors: Sequence[int]) -> Scene:
@@ -174,7 +175,7 @@ def _report(
     places: Array,
     logs: Array,
     theory: float,
-    single: Sequence[tuple[float, Measured]],
+    single: Sequence[tuple[float, Estimate]],
     numerical: Finding,
 ) -> Report:
     """Build the report from ln F (chains, places) and the losses at single beads."""
@@ -245,10 +246,10 @@ def _log_forces(run: Run) -> Array:
     return np.log([highest_pulse(force).peak for force in signals])
 
 
-def _mean(values: Array) -> Measured:
+def _mean(values: Array) -> Estimate:
     """The mean over chains with its standard error."""
     mean = float(values.mean())
-    return Measured(mean, mean + float(values.std(ddof=1)) / math.sqrt(len(values)))
+    return Estimate(mean, float(values.std(ddof=1)) / math.sqrt(len(values)))
 
 
 if __name__ == "__main__":

@@ -39,13 +39,14 @@ import scipy
 
 from lwa import Cell, Power, loaded_wave
 from lwa.base.arrays import Array
+from lwa.base.frozen import Estimate
 from lwa.base.progress import Progress
 from lwa.command.options import quantities
 from lwa.loaded.background import Background
 from validation.lattice.result import Run
 from validation.lattice.simulate import simulate, twice
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Measured, highest_pulse, leading_pulses
+from validation.pulses.pulse import highest_pulse, leading_pulses
 from validation.pulses.sensors import tracks
 from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
@@ -177,7 +178,7 @@ class Upright:
 
     def fitted(
         self, x: Array, width: Array, coarse: Array
-    ) -> tuple[Measured, Measured]:
+    ) -> tuple[Estimate, Estimate]:
         """`fit` with errors: its largest change with the other correction, from the deeper half of
         the places, or in the less accurate run."""
         half, rest = len(x) // 2, (3 - self.k) / 3
@@ -189,7 +190,7 @@ class Upright:
             self.fit(x, coarse, power),
         )
         off = np.max(np.abs(np.array(others) - values), axis=0)
-        exponent, prefactor = map(Measured, values.tolist(), (values + off).tolist())
+        exponent, prefactor = map(Estimate, values.tolist(), np.abs(off).tolist())
         return exponent, prefactor
 
     def pulses(self, velocity: float) -> list[dict[str, float]]:
@@ -346,7 +347,7 @@ def _findings(
         of = ", ".join(names)
         low, high = 1 / 3 - 0.02, 1 / 3 + 0.02
         yield Finding(f"{of}: exponent", exponent.value, low, high, exponent.error)
-        over = Measured(prefactor.value / theory, prefactor.check / theory)
+        over = prefactor * (1 / theory)
         yield Finding(f"{of}: prefactor/theory", over.value, 0.97, 1.03, over.error)
     wave, front = ("solitary wave", -2), ("front", -1)
     for (name, one), (other, two) in ((wave, front), (front, wave)):

@@ -28,6 +28,7 @@ import sympy as sp
 
 from lwa import Cell, LoadedWave, Power, loaded_wave
 from lwa.base.arrays import Array
+from lwa.base.frozen import Estimate
 from lwa.base.progress import Progress
 from lwa.command.options import law_option, quantities
 from lwa.law import ContactLaw
@@ -36,7 +37,6 @@ from validation.lattice.result import Run
 from validation.lattice.simulate import twice
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import (
-    Measured,
     MeasureError,
     highest_pulse,
     leading_pulses,
@@ -283,7 +283,7 @@ class Wave:
             settled = abs(measured[name] / value - before[name] / earlier[name]) * value
             change = max(abs(measured[name] - coarse[name]), settled)
             cells |= {
-                name: Measured(measured[name], measured[name] + change),
+                name: Estimate(measured[name], change),
                 f"{name} theory": value,
                 f"{name} off": value / measured[name] - 1,
             }

@@ -31,6 +31,7 @@ import scipy
 from lwa import Cell, Power, Shock
 from lwa import shock as front
 from lwa.base.exact import InputError, read_exact
+from lwa.base.frozen import Estimate
 from lwa.base.progress import Progress
 from lwa.command.options import quantities, quantity
 from lwa.command.rows import attempt
@@ -38,7 +39,6 @@ from lwa.law import ContactLaw, named
 from validation.lattice.result import Run
 from validation.lattice.simulate import simulate, simulate_many
 from validation.pictures import Curve, Map, Panel
-from validation.pulses.pulse import Measured
 from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Finding, Table
@@ -260,7 +260,7 @@ def own_wave(chain: Shock) -> Pair:
     return scaled(share)[:2]
 
 
-def _leading(run: Run) -> tuple[Measured, Measured]:
+def _leading(run: Run) -> tuple[Estimate, Estimate]:
     """Speed and peak strain of the leading pulse."""
     x = np.array(run.scene.contact_sensors[1:], float)
     time, peak = np.array([_first_peak(run, i) for i in range(1, len(x) + 1)]).T
@@ -271,7 +271,7 @@ def _leading(run: Run) -> tuple[Measured, Measured]:
         return float(1 / slope), float(np.polyfit(1 / x[last], peak[last], 1)[1])
 
     pairs = zip(fits(slice(None)), fits(slice(len(x) // 2, None)), strict=True)
-    speed, height = (Measured(*pair) for pair in pairs)
+    speed, height = (Estimate.against(*pair) for pair in pairs)
     return speed, height
 
 

@@ -23,11 +23,12 @@ from typing import Any
 import scipy
 
 from lwa import Cell, Material, Sphere, canonical_wave
+from lwa.base.frozen import Estimate
 from lwa.base.progress import Progress
 from lwa.command.options import quantities
 from lwa.spheres.hertz import stiffness
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Measured, MeasureError
+from validation.pulses.pulse import MeasureError
 from validation.pulses.sensors import echoes, record
 from validation.report.command import option, study
 from validation.report.result import Report
@@ -51,7 +52,7 @@ def echo(
     beads: int = 20,
     sensor: int = 10,
     bead: Sphere = BEAD,
-) -> tuple[Measured, Measured]:
+) -> tuple[Estimate, Estimate]:
     """Return the delay in s, and the ratio of the peaks, at a contact of the struck chain.
 
     E, nu : Young's modulus of the wall in Pa, its Poisson's ratio. velocity : of the blow in m/s.
@@ -76,7 +77,7 @@ def echo(
     return numbers["delay"], numbers["ratio"]
 
 
-def modulus(delay: Measured, nu: float = 0.3, **chain: Any) -> Measured:
+def modulus(delay: Estimate, nu: float = 0.3, **chain: Any) -> Estimate:
     """Return the Young's modulus of a wall, in Pa, from the delay of the pulse that comes back.
 
     delay : in s, with its error. nu : Poisson's ratio of the wall. chain : as in `echo`.
@@ -99,9 +100,8 @@ def modulus(delay: Measured, nu: float = 0.3, **chain: Any) -> Measured:
         )
         return math.exp(found)
 
-    return Measured(
-        at(delay.value), max(map(at, (delay.value - delay.error, delay.check)))
-    )
+    ends = (at(delay.value - delay.error), at(delay.value + delay.error))
+    return Estimate.against(at(delay.value), max(ends))
 
 
 _ROWS = (

@@ -15,10 +15,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from lwa import TravelingWave, canonical_wave, homogenize
+from lwa.base.frozen import Estimate
 from validation.lattice.result import Run
 from validation.lattice.simulate import twice
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Measured, compared
+from validation.pulses.pulse import compared
 from validation.pulses.sensors import Train
 from validation.report.command import study
 from validation.report.result import Report
@@ -60,7 +61,7 @@ class Definition:
 
     quantity: str
     time: bool
-    average: Measured
+    average: Estimate
     errors: Lines
 
     @property
@@ -107,7 +108,7 @@ def widths() -> Report:
     runs, waves = twice(recorded_chain(beads), *TOLERANCES), _waves()
     numbers = compared(_numbers, *runs, rtol=TOLERANCES[0])
 
-    def theory(quantity: str, force: Measured, in_time: bool) -> Lines:
+    def theory(quantity: str, force: Estimate, in_time: bool) -> Lines:
         return {
             closure: {
                 line: _width(wave, quantity, force.value, in_time)
@@ -123,7 +124,7 @@ def widths() -> Report:
         length = (
             width.value * V.value / DIAMETER
         )  # both errors: they may cancel by chance
-        sites = Measured(length, length * (1 + width.relative_error + V.relative_error))
+        sites = Estimate(length, length * (width.relative_error + V.relative_error))
         for average, in_time in ((numbers[pulses], True), (sites, False)):
             errors = {
                 closure: {
@@ -164,7 +165,7 @@ def _verdict(definitions: Sequence[Definition]) -> str:
     return f"{none}; nearest: {reading}"
 
 
-def _panel(beads: Sequence[int], widths: Sequence[Measured], lines: Lines) -> Panel:
+def _panel(beads: Sequence[int], widths: Sequence[Estimate], lines: Lines) -> Panel:
     times = [1e6 * width.value for width in widths]
     curves = [
         Curve(f"lattice, {ball} bead", beads[i::2], times[i::2], style)

@@ -80,6 +80,36 @@ class Estimate(Value):
     value: float
     error: float
 
+    @classmethod
+    def against(cls, value: float, rough: float) -> Self:
+        """Return a value whose error is the difference from a less accurate value."""
+        return cls(value, abs(value - rough))
+
+    @property
+    def relative_error(self) -> float:
+        """The error over the value."""
+        return self.error / abs(self.value)
+
+    def __str__(self) -> str:
+        """The value to the digits that its error leaves, six at most; ± covers those left out.
+
+        >>> print(Estimate(4859925635.0, 99925635.0))
+        4.86e+09 ± 1e+08
+        """
+        short = f"{self.value:.6g}"
+        if not self.value or not self.error < math.inf:
+            return f"{short} ± {self.error:.0e}"
+        if not self.error and float(short) == self.value:
+            return f"{short} ± 0"
+        # Powers of ten of the first digit and of the last that is shown
+        first = math.floor(math.log10(abs(self.value)))
+        last = first - 5 if not self.error else math.floor(math.log10(self.error))
+        last = min(max(last, first - 5), first)
+        error = self.error if self.error >= 10.0**last / 2 else 10.0**last
+        if last > 4 or not -12 < first < 16:
+            return f"{self.value:.{first - last}e} ± {error:.0e}"
+        return f"{round(self.value, -last):.{max(0, -last)}f} ± {error:.0e}"
+
     def __mul__(self, factor: float) -> Self:
         return replace(self, value=factor * self.value, error=abs(factor) * self.error)
 

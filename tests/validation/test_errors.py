@@ -15,9 +15,9 @@ import pytest
 import sympy as sp
 
 from book.studies import disorder, gravity, precompressed, widths
-from lwa import Cell, Power
+from lwa import Cell, Estimate, Power
 from validation.pulses import steady
-from validation.pulses.pulse import Measured, exponent
+from validation.pulses.pulse import exponent
 from validation.pulses.sensors import record
 from validation.scenes import scenefile
 from validation.studies import paper
@@ -72,13 +72,9 @@ def test_the_error_of_a_speed_is_that_of_both_arrivals():
 
 def test_the_error_of_an_exponent_is_the_worst_of_all_signs():
     """The slope of ln y against ln x, as each of four pairs errs up or down within its ±."""
-    x = [
-        Measured(v, v * (1 + e))
-        for v, e in ((1, 2e-6), (2, 1e-6), (4, 3e-6), (9, 1e-6))
-    ]
+    x = [Estimate(v, v * e) for v, e in ((1, 2e-6), (2, 1e-6), (4, 3e-6), (9, 1e-6))]
     y = [
-        Measured(v, v * (1 + e))
-        for v, e in ((1, 1e-6), (1.4, 4e-6), (2.1, 1e-6), (3, 2e-6))
+        Estimate(v, v * e) for v, e in ((1, 1e-6), (1.4, 4e-6), (2.1, 1e-6), (3, 2e-6))
     ]
     found = exponent(x, y)
     signs = np.array(list(product((-1, 1), repeat=8)))
@@ -101,7 +97,7 @@ def test_paper():
 
 def measurements(values):
     """The numbers whose ± is known, by their names."""
-    numbers = {name: x for name, x in values.items() if isinstance(x, Measured)}
+    numbers = {name: x for name, x in values.items() if isinstance(x, Estimate)}
     return {name: x for name, x in numbers.items() if not math.isnan(x.error)}
 
 

@@ -56,8 +56,11 @@ class Motion:
 
     def __init__(self, scene: Scene, response: float | None = None) -> None:
         n, damping, self.response = scene.size, scene.damping, response
+        several = isinstance(damping and damping.value, tuple)
+        if isinstance(scene.k, tuple) or isinstance(scene.law, tuple) or several:
+            raise SceneError("contacts with laws of their own are not simulated yet")
         wall = () if scene.wall is None else (scene.wall,)
-        self.scene, self.size, self.k = scene, n, scene.k
+        self.scene, self.size, self.k = scene, n, float(scene.k)
         rows = (
             scene.masses,
             scene.stiffnesses + wall,

@@ -28,7 +28,8 @@ from scipy.interpolate import BSpline, make_lsq_spline
 from scipy.signal import find_peaks
 
 from lwa.base.arrays import Array
-from validation.pulses.pulse import Measured, MeasureError, derived, highest_pulse
+from lwa.base.frozen import Estimate
+from validation.pulses.pulse import MeasureError, highest_pulse
 from validation.pulses.signals import Piecewise, checked
 
 _BESIDE = 0.3  # widths in front of the rise and behind the fall that the fit takes in
@@ -72,7 +73,7 @@ class NoisyPulse:
     base : mean of the samples before the first pulse.
     """
 
-    numbers: Mapping[str, Measured]
+    numbers: Mapping[str, Estimate]
     base: float
 
 
@@ -85,7 +86,7 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike) -> NoisyPulse:
 
     >>> t = np.linspace(-4, 3, 701)
     >>> noise = 0.01 * np.random.default_rng(0).normal(size=701)
-    >>> noisy_pulse(t, np.exp(-9 * t**2) + noise).numbers["fwhm"]  # √(4 ln 2)/3
+    >>> print(noisy_pulse(t, np.exp(-9 * t**2) + noise).numbers["fwhm"])  # √(4 ln 2)/3
     0.557 ± 3e-03
     """
     return next(noisy_pulses(time, values))
@@ -125,7 +126,7 @@ def noisy_pulses(time: ArrayLike, values: ArrayLike) -> Iterator[NoisyPulse]:
         at, values, calm = rows.reshape(3, -1, block).mean(axis=2)
         numbers = _measured(at, values - line(at), calm == 1, (rise, fall), step)
         first = first or numbers["peak"].value
-        numbers["peak"] = derived(lambda peak: peak * size, numbers["peak"])
+        numbers["peak"] = numbers["peak"] * size
         yield NoisyPulse(numbers, base * size)
         behind = t > 2 * fall - rise
         later = f[behind] - line(t[behind])
@@ -216,7 +217,7 @@ def _check_top(
 
 def _measured(
     t: Array, f: Array, lead: Array, sides: tuple[float, float], step: float
-) -> dict[str, Measured]:
+) -> dict[str, Estimate]:
     """Return arrival, peak and FWHM of a pulse between two times, with their errors.
 
     t, f : samples over their base. lead : which of them are before the first pulse. step : distance
@@ -272,7 +273,7 @@ def _measured(
         errors = np.hypot(errors, np.subtract(numbers, coarse))
     names = ("arrival", "peak", "fwhm")
     found = zip(names, numbers, errors.tolist(), strict=True)
-    return {name: Measured(value, value + error) for name, value, error in found}
+    return {name: Estimate(value, error) for name, value, error in found}
 
 
 def _noise(both: Array, count: int) -> Array:

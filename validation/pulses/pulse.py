@@ -20,6 +20,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array
+from lwa.base.frozen import Estimate
 from validation.pulses.signals import MeasureError as MeasureError
 from validation.pulses.signals import Signal, spline
 
@@ -227,54 +228,19 @@ def speed(first: Pulse, second: Pulse, distance: float) -> float:
     return float(distance) / (second.arrival - first.arrival)
 
 
-@dataclass(frozen=True)
-class Measured:
-    """Number with an error: the difference between ``value`` and a less accurate ``check``.
-
-    >>> Measured(4859925635.0, 4.76e9)
-    4.86e+09 ± 1e+08
-    """
-
-    value: float
-    check: float
-
-    @property
-    def error(self) -> float:
-        """Absolute error |value - check|."""
-        return abs(self.value - self.check)
-
-    @property
-    def relative_error(self) -> float:
-        """Relative error |1 - check/value|."""
-        return abs(1 - self.check / self.value)
-
-    def __str__(self) -> str:
-        """The number to the digits that its error leaves, six at most; ± covers those left out."""
-        short = f"{self.value:.6g}"
-        if not self.value or not self.error < math.inf:
-            return f"{short} ± {self.error:.0e}"
-        if not self.error and float(short) == self.value:
-            return f"{short} ± 0"
-        # Powers of ten of the first digit and of the last that is shown
-        first = math.floor(math.log10(abs(self.value)))
-        last = first - 5 if not self.error else math.floor(math.log10(self.error))
-        last = min(max(last, first - 5), first)
-        error = self.error if self.error >= 10.0**last / 2 else 10.0**last
-        if last > 4 or not -12 < first < 16:
-            return f"{self.value:.{first - last}e} ± {error:.0e}"
-        return f"{round(self.value, -last):.{max(0, -last)}f} ± {error:.0e}"
-
-    __repr__ = __str__
+def derived(function: Callable[..., float], *numbers: Estimate) -> Estimate:
+    """Return a function of numbers; its error is the sum of its changes as each number errs."""
+    values = [number.value for number in numbers]
+    found = function(*values)
+    error = 0.0
+    for i, number in enumerate(numbers):
+        moved = [*values]
+        moved[i] += number.error
+        error += abs(function(*moved) - found)
+    return Estimate(found, error)
 
 
-def derived(function: Callable[..., float], *numbers: Measured) -> Measured:
-    """Return a function of measured numbers, its ``check`` computed from their checks."""
-    return Measured(
-        function(*(n.value for n in numbers)), function(*(n.check for n in numbers))
-    )
-
-
-def exponent(x: Sequence[Measured], y: Sequence[Measured]) -> Measured:
+def exponent(x: Sequence[Estimate], y: Sequence[Estimate]) -> Estimate:
     """Return the exponent p of y ~ x^p, from a least-squares fit of the logarithms."""
     log_x, log_y = (np.log([number.value for number in row]) for row in (x, y))
     log_x -= log_x.mean()
@@ -284,7 +250,7 @@ def exponent(x: Sequence[Measured], y: Sequence[Measured]) -> Measured:
     off = [
         b.relative_error + abs(p) * a.relative_error for a, b in zip(x, y, strict=True)
     ]
-    return Measured(p, p + float(np.abs(weights) @ off))
+    return Estimate(p, float(np.abs(weights) @ off))
 
 
 def compared(
@@ -292,14 +258,14 @@ def compared(
     fine: Source,
     coarse: Source,
     rtol: float = 0,
-) -> dict[str, Measured]:
+) -> dict[str, Estimate]:
     """Return the numbers of the run ``fine``, with errors from the less accurate ``coarse``.
 
     rtol : least relative error, the tolerance of ``fine``, as two runs may agree by chance.
     """
     measured, checks = {}, numbers(coarse)
     for name, value in numbers(fine).items():
-        least, check = rtol * abs(value), checks[name]
-        check = value + least if abs(check - value) < least else check
-        measured[name] = Measured(value, check)
+        error = abs(value - checks[name])
+        least = rtol * abs(value)
+        measured[name] = Estimate(value, least if error < least else error)
     return measured

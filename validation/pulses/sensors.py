@@ -19,12 +19,12 @@ from typing import Any
 import numpy as np
 
 from lwa.base.arrays import Array
+from lwa.base.frozen import Estimate
 from validation.lattice.cost import RunProgress, silent
 from validation.lattice.equations import Motion
 from validation.lattice.result import Run
 from validation.lattice.simulate import COMPILED, twice
 from validation.pulses.pulse import (
-    Measured,
     MeasureError,
     Pulse,
     all_pulses,
@@ -53,7 +53,7 @@ class Reading:
     kind: str  # "bead" or "contact"
     places: tuple[int, ...]  # number of the sensor, or of both, counted from 1
     numbers: Mapping[
-        str, Measured
+        str, Estimate
     ]  # `READINGS`, or `SPEEDS` (the second if there are spacings)
     static: float  # static force at the (first) sensor
     missing: str | None = None  # reason why there are no numbers
@@ -182,7 +182,7 @@ def _readings(pair: tuple[Track, Track], every: bool, rtol: float) -> Iterator[R
         yield reading(numbers, pulse=number)
 
 
-def first_numbers(fine: Signal, coarse: Signal, rtol: float) -> dict[str, Measured]:
+def first_numbers(fine: Signal, coarse: Signal, rtol: float) -> dict[str, Estimate]:
     """Return `READINGS` of the first pulse, with errors from a less accurate signal.
 
     The first pulse is the first one above half the maximum. The less accurate signal is also
@@ -226,9 +226,7 @@ def speeds_between(
             return reading({}, missing="a speed needs a later second arrival")
         error = total(start.error, end.error) / time
         speeds = {name: distance / time for name, distance in distances.items()}
-        return reading(
-            {name: Measured(V, V * (1 + error)) for name, V in speeds.items()}
-        )
+        return reading({name: Estimate(V, V * error) for name, V in speeds.items()})
 
     return tuple(
         leg(one, other, {name: abs(there[name] - at[name]) for name in at})
@@ -261,8 +259,8 @@ def echoes(
         error = total(*(one.numbers["peak"].relative_error for one in (r, first)))
         delay = at.value - start.value
         delays = {
-            "delay": Measured(delay, delay + total(at.error, start.error)),
-            "ratio": Measured(ratio, ratio * (1 + error)),
+            "delay": Estimate(delay, total(at.error, start.error)),
+            "ratio": Estimate(ratio, ratio * error),
         }
         reflected = True
         for other in sensors:

@@ -30,10 +30,11 @@ import sympy as sp
 
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError, read_exact
+from lwa.base.frozen import Estimate
 from validation.lattice.cost import IntegrationError
 from validation.lattice.result import Run
 from validation.lattice.simulate import simulate
-from validation.pulses.pulse import Measured, MeasureError, leading_pulses
+from validation.pulses.pulse import MeasureError, leading_pulses
 from validation.scenes.chains import struck
 
 LABELS = {  # measured numbers and their labels
@@ -48,7 +49,7 @@ TOLERANCES = (1e-6, 1e-5)  # of the accurate run and of the one that gives its e
 FARTHER = 4  # times as far as the last place: where the pulse must still be the highest
 STEADY = 0.1  # largest difference from the force that the decay predicts there, over this force
 _WEAKEST = 1 / 50  # peak force of the slowest pulse for which a run is long enough
-VERSION = 4  # of a file of points, changes with the definition of a quantity
+VERSION = 5  # of a file of points, changes with the definition of a quantity
 
 Key = tuple[sp.Rational, sp.Rational]  # k and ω of a point
 
@@ -62,7 +63,7 @@ class Point:
     sites: (
         tuple[int, int] | None
     )  # from the struck bead to both ends of the measured stretch
-    numbers: Mapping[str, Measured]  # by the names `LABELS`
+    numbers: Mapping[str, Estimate]  # by the names `LABELS`
     missing: str | None = None  # reason without numbers
 
 
@@ -123,7 +124,7 @@ def _measured(
             f"not steady: at {far} sites the highest pulse has {higher:.3g} times the force that "
             f"the leading pulse's decay at {place} sites predicts"
         )
-    measured = map(Measured, values.tolist(), (values + errors[:, best]).tolist())
+    measured = map(Estimate, values.tolist(), errors[:, best].tolist())
     sites = place, place + chain.sites
     return Point(k, omega, sites, dict(zip(LABELS, measured, strict=True)))
 
@@ -208,8 +209,8 @@ class PointFile:
     """A file of points measured with the same ``stretch``, an SQLite database.
 
     Its table ``points`` has a row for each finished point: k and ω, the ends of the stretch, the
-    reason without numbers, and the numbers in JSON, each with the less accurate number that gives
-    its error. The database's user_version is `VERSION` and the stretch.
+    reason without numbers, and the numbers in JSON, each with its error. The database's
+    user_version is `VERSION` and the stretch.
     """
 
     path: Path
@@ -244,7 +245,7 @@ class PointFile:
 
                 def keep(point: Point) -> None:
                     numbers = {
-                        name: [n.value, n.check] for name, n in point.numbers.items()
+                        name: [n.value, n.error] for name, n in point.numbers.items()
                     }
                     texts = (
                         str(point.k),
@@ -260,7 +261,7 @@ class PointFile:
                     "select * from points"
                 ):
                     pairs = json.loads(numbers).items()
-                    found = {name: Measured(*map(float, pair)) for name, pair in pairs}
+                    found = {name: Estimate(*map(float, pair)) for name, pair in pairs}
                     ends = json.loads(sites)
                     key = read_exact(k, "k"), read_exact(omega, "omega")
                     points[key] = Point(*key, ends and (*ends,), found, missing)

@@ -29,7 +29,7 @@ class Column:
         column that is only printed.
     label, unit : printed above the column; without a label the column is not printed.
     format : format of printed cells, a format specification such as ".1e" or a function.
-    error : True for cells that are `validation.pulses.pulse.Measured` (or None): in JSON two
+    error : True for cells that are `lwa.Estimate` (or None): in JSON two
         numbers, KEY_value and KEY_error_value.
     """
 
@@ -53,8 +53,8 @@ class Column:
     def values(self, cell: Any) -> Iterator[tuple[str, Any]]:
         """Yield the JSON names and values of a cell.
 
-        >>> from validation.pulses.pulse import Measured
-        >>> dict(Column("speed.m1", error=True).values(Measured(2.0, 1.75)))
+        >>> from lwa import Estimate
+        >>> dict(Column("speed.m1", error=True).values(Estimate(2.0, 0.25)))
         {'speed_value.m1': 2.0, 'speed_error_value.m1': 0.25}
         """
         if not self.error:

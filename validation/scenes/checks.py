@@ -2,35 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Iterable
 from typing import Any
 
 from lwa.base import files
-from lwa.base.exact import InputError, shorten
+from lwa.base.exact import InputError
+from lwa.base.exact import one_of as one_of
 from lwa.base.files import Reader
 
 SceneError = InputError
 """Invalid input of a scene, under the name that `validation` exports."""
 
-finite, integer, items, positive = (
-    files.finite,
-    files.integer,
-    files.items,
-    files.positive,
-)
+finite = files.finite
+integer = files.integer
+items = files.items
+positive = files.positive
 
 
 class Failure(RuntimeError):
     """A computation with valid input that could not go on; the message says where and why."""
-
-
-def one_of(value: Any, choices: Collection[str], name: str) -> str:
-    """Return a text if it is one of the choices, else raise `SceneError`."""
-    if not isinstance(value, str) or value not in choices:
-        raise SceneError(
-            f"{name} is {shorten(value)}: one of {', '.join(choices)} is wanted"
-        )
-    return value
 
 
 def between(value: Any, name: str, low: float, high: float, wanted: str = "") -> float:
@@ -48,3 +38,32 @@ def each(reader: Reader) -> Reader:
     return lambda values, name: tuple(
         reader(value, f"{name}[{i}]") for i, value in enumerate(items(values, name))
     )
+
+
+def one_or_each(reader: Reader) -> Reader:
+    """Return a reader of one value for all contacts, or of a sequence with one for each contact.
+
+    A sequence of equal values is read as one value: contacts that are alike are the same chain
+    however they were written.
+    """
+
+    def read(value: Any, name: str) -> Any:
+        if isinstance(value, str) or not isinstance(value, Iterable):
+            return reader(value, name)
+        return alike(each(reader)(value, name))
+
+    return read
+
+
+def alike(values: tuple[Any, ...]) -> Any:
+    """Return the value of a tuple of equal values, any other tuple as it is."""
+    return values[0] if len(set(values)) == 1 else values
+
+
+def check_count(value: Any, name: str, contacts: int) -> None:
+    """Raise `SceneError` for a tuple, as `one_or_each` returns it, of another length."""
+    if isinstance(value, tuple) and len(value) != contacts:
+        raise SceneError(
+            f"{name} has {len(value)} entries: one for all contacts is wanted, or one for each "
+            f"of the {contacts} (the wall's is the last)"
+        )

@@ -10,45 +10,76 @@ from typing import Any
 import numpy as np
 
 from lwa.base.arrays import Array
-from validation.scenes.checks import SceneError, between, each, finite, one_of, positive
+from validation.scenes.checks import (
+    SceneError,
+    between,
+    each,
+    finite,
+    one_of,
+    one_or_each,
+    positive,
+)
 
 DAMPINGS = ("contact", "kuwabara_kono", "restitution")
 
 
 @dataclass(frozen=True)
 class Damping:
-    """Dissipation in every contact; a damped contact of a law that opens never pulls.
+    """Dissipation in the contacts; a damped contact of a law that opens never pulls.
 
-    kind : "contact" adds γ dδ/dt to the force of a closed contact. "kuwabara_kono" adds
+    Parameters
+    ----------
+    kind : {"contact", "kuwabara_kono", "restitution"}
+        "contact" adds γ dδ/dt to the force of a closed contact. "kuwabara_kono" adds
         γ δ^{k-1} dδ/dt (Kuwabara and Kono 1987). "restitution" adds c δ^{(k-1)/2} dδ/dt: two beads
         that collide part with the same share of their speed, whatever the speed (`restitution`).
-    value : γ, or the share, the coefficient of restitution.
+    value : float or sequence of float
+        γ, or the share, the coefficient of restitution; one for all contacts, or one for each,
+        the wall's last. In a sequence γ = 0 and the share 1 stand for a contact without damping.
     """
 
     kind: str
-    value: float
+    value: float | tuple[float, ...]
 
     def __post_init__(self) -> None:
         one_of(self.kind, DAMPINGS, "damping")
-        value = positive(self.value, self.kind)
-        if self.kind == "restitution":
-            between(value, self.kind, 0.01, 1, "a coefficient from 0.01 to 1 is wanted")
+        value = one_or_each(finite)(self.value, self.kind)
+        for number in {value} if isinstance(value, float) else {*value}:
+            if self.kind == "restitution":
+                wanted = "a coefficient from 0.01 to 1 is wanted"
+                between(number, self.kind, 0.01, 1, wanted)
+            elif number or isinstance(value, float):
+                positive(number, self.kind)
         object.__setattr__(self, "value", value)
 
-    def power(self, k: float) -> float:
-        """Exponent of δ in front of the rate dδ/dt."""
-        return {"contact": 0.0, "kuwabara_kono": k - 1, "restitution": (k - 1) / 2}[
-            self.kind
-        ]
+    @property
+    def idle(self) -> float:
+        """The value of a contact without damping."""
+        return 1.0 if self.kind == "restitution" else 0.0
 
-    def coefficients(self, k: float, stiffnesses: Array, masses: Array) -> Array:
-        """Return the factors of δ^power dδ/dt, (contacts,), at reduced masses ``masses``."""
+    def power(self, k: Any) -> Any:
+        """Return the exponent of δ in front of the rate dδ/dt; k a number or an array."""
+        if self.kind == "contact":
+            return 0.0 * k
+        return k - 1 if self.kind == "kuwabara_kono" else (k - 1) / 2
+
+    def coefficients(self, k: Any, stiffnesses: Array, masses: Array) -> Array:
+        """Return the factors of δ^power dδ/dt, (contacts,).
+
+        Parameters
+        ----------
+        k : float or array
+            Exponent of the contacts, or of each contact.
+        stiffnesses, masses : array
+            Stiffnesses A and reduced masses of the two beads of each contact.
+        """
+        value = np.broadcast_to(self.value, stiffnesses.shape)
         if self.kind != "restitution":
-            return np.full(len(stiffnesses), self.value)
+            return value.astype(float)
+        shares, kind_of = np.unique(value, return_inverse=True)
+        ratios = np.array([damping_ratio(share) for share in shares])[kind_of]
         # c of the damping ratio ζ = c/√(2(k+1) m A), see `restitution`
-        return (
-            2 * damping_ratio(self.value) * np.sqrt((k + 1) / 2 * masses * stiffnesses)
-        )
+        return np.asarray(2 * ratios * np.sqrt((k + 1) / 2 * masses * stiffnesses))
 
 
 def restitution(ratio: float) -> float:

@@ -17,6 +17,7 @@ from functools import cache, partial
 from itertools import accumulate, pairwise
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import sympy as sp
 
 from lwa import Cell
@@ -27,11 +28,14 @@ from lwa.law import ContactLaw
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes.checks import (
     SceneError,
+    alike,
+    check_count,
     each,
     finite,
     integer,
     items,
     one_of,
+    one_or_each,
     positive,
 )
 from validation.scenes.forcing import Damping, Drive
@@ -54,30 +58,58 @@ class Scene:
 
     Parameters
     ----------
-    masses : masses of the n beads.
-    stiffnesses : stiffnesses A_i of the n-1 contacts between beads.
-    k : exponent of the contact law, at least 1; a number or a text such as "3/2".
-    law : any contact law of `lwa.law` without symbols, in place of k; the contact force is A F(δ).
-        A contact with F′(0) > 0 (Toda's, say) also pulls, any other opens. The scene's k is then 1.
-    damping : dissipation in the contacts, a `validation.scenes.forcing.Damping`.
-    drive : given motion of bead 0, a `validation.scenes.forcing.Drive`.
-    duration : time to simulate.
-    wall : stiffness of the contact between the last bead and a fixed wall.
-    gravity : acceleration towards the wall.
-    precompression : constant force F0 on bead 0 towards the wall. At rest every contact carries F0
-        and the weight of the beads above it.
-    displacements, velocities : initial values for the first beads; all other beads start at 0. A
-        striker is ``velocities=(v,)``.
-    contact_sensors : contacts whose force and compression are recorded.
-    bead_sensors : beads whose displacement, velocity and force are recorded. The force of a bead
-        is the mean of its two contacts' (a missing contact counts as 0).
-    samples : number of sample times, equidistant from 0 to the duration.
-    spacings : n-1 distances between neighbours at rest. They only turn speeds from sites into
-        lengths per time.
-    units : "SI", or "" for any other consistent units; labels of results depend on it.
+    masses : sequence of float
+        Masses of the n beads.
+    stiffnesses : sequence of float
+        Stiffnesses A_i of the n-1 contacts between beads.
+    k : float, str or sequence, optional
+        Exponent of the contact law, at least 1, such as 1.5 or "3/2"; one for all contacts, or one
+        for each contact, the wall's last.
+    law : ContactLaw or sequence of ContactLaw, optional
+        Any contact law of `lwa.law` without symbols, in place of ``k``, for all contacts or for
+        each; the contact force is A F(δ). A contact with F′(0) > 0 (Toda's, say) also pulls, any
+        other opens. The k of a contact whose law is no power is 1.
+    duration : float
+        Time to simulate.
+    wall : float, optional
+        Stiffness of the contact between the last bead and a fixed wall.
+    gravity : float, optional
+        Acceleration towards the wall.
+    precompression : float, optional
+        Constant force F0 on bead 0 towards the wall. At rest every contact carries F0 and the
+        weight of the beads above it.
+    displacements, velocities : sequence of float, optional
+        Initial values for the first beads; all other beads start at 0. A striker is
+        ``velocities=(v,)``.
+    damping : Damping, optional
+        Dissipation in the contacts, see `validation.scenes.forcing.Damping`.
+    drive : Drive, optional
+        Given motion of bead 0, see `validation.scenes.forcing.Drive`.
+    contact_sensors : sequence of int, optional
+        Contacts whose force and compression are recorded.
+    bead_sensors : sequence of int, optional
+        Beads whose displacement, velocity and force are recorded. The force of a bead is the mean
+        of the forces in its two contacts (a missing contact counts as 0).
+    samples : int, optional
+        Number of sample times, equidistant from 0 to the duration.
+    spacings : sequence of float, optional
+        The n-1 distances between neighbours at rest. They turn speeds from sites into lengths per
+        time, and tell a start inside the wall.
+    units : {"", "SI"}, optional
+        "" stands for any consistent units; labels of results depend on it.
 
-    Raises `SceneError` for invalid values.
+    Raises
+    ------
+    SceneError
+        For invalid values.
 
+    Notes
+    -----
+    Values of contacts that are all alike are kept as one value: ``k`` and ``law`` of a chain are
+    tuples, one entry a contact, where contacts differ. ``law`` is None for a power.
+
+    Examples
+    --------
     A scene in four steps: the chain, the wall and the load, the striker, the sensors.
 
     >>> from dataclasses import replace
@@ -93,7 +125,7 @@ class Scene:
 
     masses: tuple[float, ...]
     stiffnesses: tuple[float, ...]
-    k: float = _MISSING
+    k: float | tuple[float, ...] = _MISSING
     duration: float
     wall: float | None = None
     gravity: float = 0.0
@@ -105,7 +137,7 @@ class Scene:
     precompression: float = 0.0
     spacings: tuple[float, ...] = ()
     units: str = ""
-    law: ContactLaw | None = None
+    law: ContactLaw | tuple[ContactLaw | None, ...] | None = None
     damping: Damping | None = None
     drive: Drive | None = None
 
@@ -116,7 +148,7 @@ class Scene:
             *,
             masses: Iterable[Number],
             stiffnesses: Iterable[Number],
-            k: Number = _MISSING,
+            k: Number | Iterable[Number] = _MISSING,
             duration: Number,
             wall: Number | None = None,
             gravity: Number = 0.0,
@@ -128,13 +160,12 @@ class Scene:
             precompression: Number = 0.0,
             spacings: Iterable[Number] = (),
             units: str = "",
-            law: ContactLaw | None = None,
+            law: ContactLaw | Iterable[ContactLaw | None] | None = None,
             damping: Damping | None = None,
             drive: Drive | None = None,
         ) -> None: ...
 
     def __post_init__(self) -> None:
-        self._read_law()
         for name, read in _READERS.items():
             if name != "wall" or self.wall is not None:
                 object.__setattr__(self, name, read(getattr(self, name), name))
@@ -142,24 +173,22 @@ class Scene:
         if n == 0:
             raise SceneError("masses is empty: a chain has at least one bead")
         for name in ("stiffnesses", "spacings"):
-            if (given := len(getattr(self, name))) != n - 1 and (
-                given or name == "stiffnesses"
-            ):
+            given = len(getattr(self, name))
+            if given != n - 1 and (given or name == "stiffnesses"):
                 raise SceneError(f"{given} {name} for {n} beads: {n - 1} are wanted")
         for name in ("displacements", "velocities"):
-            if (given := len(getattr(self, name))) > n:
+            given = len(getattr(self, name))
+            if given > n:
                 raise SceneError(f"{given} {name} for {n} beads: at most {n} wanted")
         if not math.isfinite(sum(self.spacings)):
             raise SceneError("the chain's length comes out as inf: choose other units")
-        if self.k < 1:
-            raise SceneError(
-                f"k is {self.k}: the contact law A δ^k is simulated for k ≥ 1"
-            )
+        self._read_laws()
         for name, act in (
             ("gravity", "pull towards"),
             ("precompression", "push against"),
         ):
-            if (value := getattr(self, name)) < 0 or (value > 0 and self.wall is None):
+            value = getattr(self, name)
+            if value < 0 or (value > 0 and self.wall is None):
                 wanted = f"it must be positive and needs a wall to {act}"
                 raise SceneError(f"{name} is {value:g}: {wanted}")
         for name, count in (
@@ -167,66 +196,82 @@ class Scene:
             ("bead_sensors", n),
         ):
             object.__setattr__(self, name, _sensors(getattr(self, name), name, count))
-        self._check_forcing()
+        self._check_start()
+        self._check_damping()
+        self._check_drive()
 
-    def _check_forcing(self) -> None:
-        """Check the damping and the drive."""
-        for name, kind in (("damping", Damping), ("drive", Drive)):
-            value = getattr(self, name)
-            if value is not None and not isinstance(value, kind):
-                raise SceneError(
-                    f"{name} is {shorten(value)}: a {kind.__name__} is wanted"
-                )
-        if (
-            self.damping is not None
-            and self.damping.kind != "contact"
-            and self.law is not None
-        ):
-            raise SceneError(
-                f"damping is {self.damping.kind}: it is known for powers only"
-            )
-        if self.drive is None:
+    def _read_laws(self) -> None:
+        """Check the exponents and the laws; a law that is a power is kept as its exponent."""
+        k: Any = self.k
+        if k is not _MISSING:
+            k = one_or_each(_exponent)(k, "k")
+        law = one_or_each(_law)(self.law, "law")
+        check_count(k, "k", self.contact_count)
+        check_count(law, "law", self.contact_count)
+        differ = isinstance(k, tuple) or isinstance(law, tuple)
+        count = self.contact_count if differ else 1
+        read = cache(_contact)  # a chain has few kinds of contacts
+        contacts = [*map(read, _row(k, count), _row(law, count))]
+        object.__setattr__(self, "k", alike(tuple(k for k, _ in contacts)))
+        object.__setattr__(self, "law", alike(tuple(law for _, law in contacts)))
+
+    def _check_start(self) -> None:
+        """Refuse a start inside the wall or inside a neighbour, where the spacings tell."""
+        if not (self.displacements and self.spacings):
             return
-        if any(
-            row[:1] != (0,) * len(row[:1])
-            for row in (self.velocities, self.displacements)
-        ):
+        y = np.zeros(self.size)
+        y[: len(self.displacements)] = self.displacements
+        passed = y[:-1] - y[1:] > self.spacings
+        if passed.any():
+            i = int(np.argmax(passed))
             raise SceneError(
-                "drive moves bead 1, which has a velocity or displacement of its own"
+                f"displacements[{i}] is {y[i]:g}: bead {i + 1} would start behind bead {i + 2}, "
+                f"whose distance is {self.spacings[i]:g}"
             )
-        end = self.drive.time[-1:] or (self.duration,)
-        if not self.duration <= end[0] < _LONGEST * self.duration:
+        last = float(y[-1])
+        # A bead's radius is half its distance from the bead before it.
+        if self.wall is not None and last > self.spacings[-1] / 2:
+            raise SceneError(
+                f"displacements[{self.size - 1}] is {last:g}: bead {self.size} would start inside "
+                f"the wall, towards which displacements are positive; in front of it is {-last:g}"
+            )
+
+    def _check_damping(self) -> None:
+        """Check the damping."""
+        damping = self.damping
+        if damping is None:
+            return
+        if not isinstance(damping, Damping):
+            raise SceneError(f"damping is {shorten(damping)}: a Damping is wanted")
+        count = self.contact_count
+        check_count(damping.value, f"damping {damping.kind}", count)
+        if damping.kind == "contact" or self.law is None:
+            return
+        values = _row(damping.value, count)
+        for law, value in zip(_row(self.law, count), values, strict=True):
+            if law is not None and value != damping.idle:
+                raise SceneError(
+                    f"damping is {damping.kind}: it is known for powers only, not for {law.text}"
+                )
+
+    def _check_drive(self) -> None:
+        """Check the drive."""
+        drive = self.drive
+        if drive is None:
+            return
+        if not isinstance(drive, Drive):
+            raise SceneError(f"drive is {shorten(drive)}: a Drive is wanted")
+        for row in (self.velocities, self.displacements):
+            if row and row[0] != 0:
+                raise SceneError(
+                    "drive moves bead 1, which has a velocity or displacement of its own"
+                )
+        end = drive.time[-1] if drive.time else self.duration
+        if not self.duration <= end < _LONGEST * self.duration:
             wanted = (
                 f"one to {_LONGEST} times the duration, {self.duration:g}, is wanted"
             )
-            raise SceneError(f"drive.time ends at {end[0]:g}: {wanted}")
-
-    def _read_law(self) -> None:
-        """Check the law; a power law is replaced by its exponent k."""
-        law = self.law
-        if law is None:
-            if self.k is _MISSING:
-                raise SceneError("k is missing: an exponent or a law is wanted")
-            return
-        if not isinstance(law, ContactLaw):
-            raise SceneError(f"law is {shorten(law)}: a law of lwa.law is wanted")
-        if self.k is not _MISSING and self.k != 1:
-            raise SceneError(
-                f"k is {shorten(self.k)} and law {law.text}: one of them is wanted"
-            )
-        if law.symbols or law.formless:
-            raise SceneError(
-                f"law is {law.text}: the lattice needs numbers in place of symbols"
-            )
-        open_ends = (
-            cases for cases in law.F.atoms(sp.Piecewise) if cases.args[-1][1] != sp.true
-        )
-        if law.F.has(*_OTHER_CASES) or any(open_ends):
-            cases = "a force by cases is a Piecewise whose last condition is True"
-            raise SceneError(f"law is {shorten(law.text)}: {cases}")
-        if law.homogeneous:
-            object.__setattr__(self, "law", None)
-        object.__setattr__(self, "k", float(law.exponent))
+            raise SceneError(f"drive.time ends at {end:g}: {wanted}")
 
     def __repr__(self) -> str:
         return f"Scene({self})"
@@ -240,7 +285,12 @@ class Scene:
         n, c = self.size, self.contact_count
         wall = ", the last one the wall's" if self.wall is not None else ""
         size = f"{n} bead{'s' * (n != 1)}, {c} contact{'s' * (c != 1)}{wall}"
-        law = f"k = {self.k:g}" if self.law is None else f"F = {self.law.F}"
+        if isinstance(self.law, ContactLaw):
+            law = f"F = {self.law.F}"
+        elif isinstance(self.k, tuple) or self.law:
+            law = f"{len(set(self.contact_laws))} contact laws"
+        else:
+            law = f"k = {self.k:g}"
         return f"{size}, {law}; duration {self.duration:g}{' s' if self.units else ''}"
 
     @property
@@ -252,6 +302,12 @@ class Scene:
     def contact_count(self) -> int:
         """Number of contacts, the wall's included."""
         return len(self.stiffnesses) + (self.wall is not None)
+
+    @property
+    def contact_laws(self) -> tuple[tuple[float, ContactLaw | None], ...]:
+        """Exponent k and law (None for a power) of each contact."""
+        count = self.contact_count
+        return tuple(zip(_row(self.k, count), _row(self.law, count), strict=True))
 
     @property
     def load(self) -> tuple[float, ...]:
@@ -314,9 +370,56 @@ class Scene:
 
 
 def _exponent(value: Any, name: str) -> float:
+    """Read the exponent of a power law."""
     if isinstance(value, str | sp.Expr):
         return _number(exponent(value), name)
     return finite(value, name)
+
+
+def _law(value: Any, name: str) -> ContactLaw | None:
+    """Read a contact law whose force can be evaluated; None stands for a power."""
+    if value is None:
+        return None
+    if not isinstance(value, ContactLaw):
+        raise SceneError(f"{name} is {shorten(value)}: a law of lwa.law is wanted")
+    return _evaluable(value)
+
+
+@cache  # a long chain has few laws
+def _evaluable(law: ContactLaw) -> ContactLaw:
+    """Return a law, or raise `SceneError` for a law with symbols or with cases left open."""
+    if law.symbols or law.formless:
+        raise SceneError(
+            f"law is {law.text}: the lattice needs numbers in place of symbols"
+        )
+    open_ends = (
+        cases for cases in law.F.atoms(sp.Piecewise) if cases.args[-1][1] != sp.true
+    )
+    if law.F.has(*_OTHER_CASES) or any(open_ends):
+        cases = "a force by cases is a Piecewise whose last condition is True"
+        raise SceneError(f"law is {shorten(law.text)}: {cases}")
+    return law
+
+
+def _contact(k: float, law: ContactLaw | None) -> tuple[float, ContactLaw | None]:
+    """Return exponent and law of a contact, None for a power, whose exponent may be given twice."""
+    if law is None:
+        if k is _MISSING:
+            raise SceneError("k is missing: an exponent or a law is wanted")
+    elif k is not _MISSING and k != 1:
+        raise SceneError(f"k is {k:g} and law {law.text}: one of them is wanted")
+    else:
+        k = float(law.exponent)
+        if law.homogeneous:
+            law = None
+    if k < 1:
+        raise SceneError(f"k is {k}: the contact law A δ^k is simulated for k ≥ 1")
+    return k, law
+
+
+def _row(value: Any, count: int) -> tuple[Any, ...]:
+    """Return one value for each contact; a single value is that of all."""
+    return value if isinstance(value, tuple) else (value,) * count
 
 
 _READERS: dict[str, Reader] = {
@@ -326,7 +429,6 @@ _READERS: dict[str, Reader] = {
     "displacements": each(finite),
     "velocities": each(finite),
     "samples": partial(integer, low=2),
-    "k": _exponent,
     "duration": positive,
     "wall": positive,
     "gravity": finite,

@@ -30,10 +30,10 @@ from lwa import Cell
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
 from lwa.base.files import entries, load
+from lwa.base.frozen import Estimate
 from lwa.command.options import quantities, quantity
 from lwa.spheres.beads import spheres as read_spheres
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Measured, derived
 from validation.report.command import column_options, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
@@ -165,7 +165,7 @@ def _pulses(
     return force, speed, weights(force, speed, *deviations)
 
 
-def _modulus(content: dict[str, Any], material: str, stiffness: Measured) -> Measured:
+def _modulus(content: dict[str, Any], material: str, stiffness: Estimate) -> Estimate:
     """Return E of a material in a file of equal spheres, from the stiffness A of their contacts."""
 
     def contact(E: float) -> float:
@@ -183,7 +183,7 @@ def _modulus(content: dict[str, Any], material: str, stiffness: Measured) -> Mea
             f"material is {shorten(material)}: the spheres are not made of it"
         )
     # Hertz: A = E √(2R)/(3 (1 - ν²)), proportional to E.
-    return derived(lambda A: A / unit, stiffness)
+    return stiffness * (1 / unit)
 
 
 @cache
@@ -234,12 +234,12 @@ def _exponent(slope: Any) -> Any:
 class PowerFit:
     """Fit of F = A δ^k, with 95 % errors."""
 
-    k: Measured
-    A: Measured
+    k: Estimate
+    A: Estimate
     correlation: float  # of k and ln A
-    hertz: Measured  # A at k = 3/2
+    hertz: Estimate  # A at k = 3/2
     curvature: (
-        Measured  # coefficient of (ln F)² in a parabola for ln V; 0 for one power
+        Estimate  # coefficient of (ln F)² in a parabola for ln V; 0 for one power
     )
     residual: float  # standard deviation of ln V from the fit
 
@@ -278,14 +278,14 @@ def fit_power(
     (hertz,), _ = _fit(x, y - sixth * x, 0, weight)
     (curvature, *_), _ = _fit(x, y, 2, weight)
 
-    def stiffness(log_A: Array, k: float) -> Measured:
+    def stiffness(log_A: Array, k: float) -> Estimate:
         log = _interval(log_A)
         error = log.error + k * medium.ratio_error  # A ~ R^{-k}
         if not abs(log.value) + error < LARGEST:
             raise SceneError(
                 f"A is e^({log}) by the best fit: this is no number of a computer"
             )
-        return Measured(math.exp(log.value), math.exp(log.value + error))
+        return Estimate(math.exp(log.value), math.exp(log.value) * math.expm1(error))
 
     return PowerFit(
         _interval(k),
@@ -319,7 +319,7 @@ def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, 
     return np.vstack((best, best + draws)).T, middle
 
 
-def _interval(values: Array) -> Measured:
+def _interval(values: Array) -> Estimate:
     """Return the best fit's value, the first, with half the 95 % interval of the draws' values."""
     error = np.ptp(np.quantile(values[1:], (0.025, 0.975))) / 2
-    return Measured(float(values[0]), float(values[0] + error))
+    return Estimate(float(values[0]), float(error))

@@ -19,10 +19,11 @@ import numpy as np
 import sympy as sp
 
 from lwa import Dimer, PhysicalWave, TravelingWave, canonical_wave, homogenize
+from lwa.base.frozen import Estimate
 from lwa.base.progress import Progress
 from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Measured, compared, derived, highest_pulse, speed
+from validation.pulses.pulse import compared, derived, highest_pulse, speed
 from validation.pulses.signals import integral
 from validation.report.command import study
 from validation.report.result import Report
@@ -156,7 +157,7 @@ def _panel(rows: Sequence[Row], omega: sp.Rational) -> Panel:
 
 def lattice_wave(
     wave: TravelingWave, places: Sequence[float] = PLACES
-) -> dict[str, Measured]:
+) -> dict[str, Estimate]:
     """Measure `QUANTITIES` of the pulse that the theory's wave of peak strain 1 becomes.
 
     places : distances, in supports, at which the pulse is measured: the last one gives the numbers,
@@ -209,7 +210,7 @@ def quantity_rows(
     quantity: str,
     omega: sp.Rational,
     theory: Sequence[sp.Expr],
-    lattice: Sequence[Measured],
+    lattice: Sequence[Estimate],
 ) -> list[Row]:
     """Compare a quantity at each k, and the order and coefficient of its error as ε → 0."""
     law = LEADING_POWERS[quantity]
@@ -228,7 +229,7 @@ def quantity_rows(
             np.polyfit(epsilon, (numbers / values - 1) / epsilon**law.order, 2)[-1]
         )
 
-    compared_numbers: list[tuple[str, str, Any, sp.Expr, Measured, float]] = [
+    compared_numbers: list[tuple[str, str, Any, sp.Expr, Estimate, float]] = [
         (quantity, str(k), k, value, measured, law.constant * float(k - 1) ** law.order)
         for k, value, measured in zip(EXPONENTS, theory, lattice, strict=True)
     ]

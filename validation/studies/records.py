@@ -9,10 +9,11 @@ from typing import Any
 import click
 
 from lwa.base.arrays import Array
+from lwa.base.frozen import Estimate
 from validation.lattice.cost import RunProgress, silent
 from validation.pictures import Curve, Panel
 from validation.pulses.noisy import noisy_pulse, noisy_pulses
-from validation.pulses.pulse import Measured, MeasureError
+from validation.pulses.pulse import MeasureError
 from validation.pulses.sensors import (
     READINGS,
     SPEEDS,
@@ -152,7 +153,7 @@ def compare(
     label, t = simulation.run.label, simulation.run.time
     rows: list[tuple[Any, ...]] = []
     curves: list[Curve] = []
-    shift, first, start = 0.0, "", Measured(0.0, 0.0)
+    shift, first, start = 0.0, "", Estimate(0.0, 0.0)
     for i, (reading, track) in enumerate(
         zip(simulation.sensors, simulation.tracks, strict=True)
     ):
@@ -170,13 +171,11 @@ def compare(
             if reading.name == first
             else math.hypot(arrival.error, start.error)
         )
-        pulse["arrival"] = Measured(
-            arrival.value + shift, arrival.value + shift + error
-        )
+        pulse["arrival"] = Estimate(arrival.value + shift, error)
         for name, quantity in _LABELS.items():
             ours, theirs = reading.numbers[name], pulse[name]
             less = theirs.value - ours.value
-            numbers = ours, theirs, Measured(less, less + ours.error + theirs.error)
+            numbers = ours, theirs, Estimate(less, ours.error + theirs.error)
             printed = f"{reading.name}: {label(quantity)}"
             rows.append((printed, track.kind, track.number, name, *numbers))
         curves += [
@@ -202,7 +201,7 @@ def _read(
     chain: Scene,
     renamed: Mapping[str, str] | None,
     units: Mapping[str, str] | None,
-) -> dict[str, tuple[Array, Array, dict[str, Measured]]]:
+) -> dict[str, tuple[Array, Array, dict[str, Estimate]]]:
     """Read measured forces at sensors of a scene, at least one.
 
     Returns, by the sensors' names, times, forces over their base, and the numbers of the first

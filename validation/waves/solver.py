@@ -38,8 +38,7 @@ import scipy
 from lwa import Cell, loaded_wave
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError
-from lwa.base.frozen import QUANTITIES
-from validation.pulses.pulse import Measured
+from lwa.base.frozen import QUANTITIES, Estimate
 from validation.scenes.checks import SceneError, between, integer, items
 from validation.waves import newton
 from validation.waves.newton import continued
@@ -118,17 +117,15 @@ def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWa
     return replace(wave, masses=masses, c2=wave.c2 / masses[1], odd=-wave.odd)
 
 
-def measured(wave: ExactWave) -> dict[str, Measured]:
+def measured(wave: ExactWave) -> dict[str, Estimate]:
     """Return c², c and tail, and amplitude and FWHM of each of `QUANTITIES`, with errors."""
     values = {"c2": wave.c2, "c": wave.c}
     for name in QUANTITIES:
         values[f"amplitude {name}"] = wave.peak(name)[1]
         values[f"fwhm {name}"] = wave.fwhm(name)
     error = ROUNDING / (1 - wave.background) + wave.residual + wave.tail
-    numbers = {
-        name: Measured(value, value * (1 + error)) for name, value in values.items()
-    }
-    return numbers | {"tail": Measured(wave.tail, wave.tail + error)}
+    numbers = {name: Estimate(value, value * error) for name, value in values.items()}
+    return numbers | {"tail": Estimate(wave.tail, error)}
 
 
 def _uniform(k: float, p0: float) -> ExactWave:

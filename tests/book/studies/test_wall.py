@@ -5,7 +5,7 @@ import pytest
 import scipy
 
 from book.studies.wall import BEAD, SOFTEST, STIFFEST, echo, modulus, wall
-from validation.pulses.pulse import Measured
+from lwa import Estimate
 from validation.scenes.checks import SceneError
 
 
@@ -58,7 +58,7 @@ def test_another_integrator_gives_the_same_echo(E, compliance):
 def test_the_modulus_is_read_from_the_delay_with_its_error():
     """The ± is the larger change of the modulus at both ends of the delay's error."""
     delay, _ = echo(70e9)
-    read = modulus(Measured(delay.value, delay.value + 1e-6))
+    read = modulus(Estimate(delay.value, 1e-6))
     assert read.value == pytest.approx(70e9, rel=1e-7)
     ends = [echo(read.value + side * read.error)[0].value for side in (1, -1)]
     assert delay.value - ends[0] == pytest.approx(

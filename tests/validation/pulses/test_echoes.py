@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from lwa import Estimate
 from validation import simulate
 from validation.pulses.noisy import noisy_pulses
-from validation.pulses.pulse import Measured
 from validation.pulses.sensors import Reading, echoes, record
 from validation.scenes.chains import struck
 
@@ -42,7 +42,7 @@ def test_the_wall_reflects_and_the_two_sensors_tell(true):
 def test_errors_are_those_of_both_pulses():
     """Errors of 3 and 4, of times and in percent of the peaks."""
     pulses = [
-        {"arrival": Measured(t, t + e), "peak": Measured(F, F * (1 + e / 100))}
+        {"arrival": Estimate(t, e), "peak": Estimate(F, F * e / 100)}
         for t, F, e in ((100.0, 2.0, 3.0), (300.0, 1.0, 4.0))
     ]
     found = [Reading("contact", (9,), p, 0.0, pulse=i) for i, p in enumerate(pulses, 1)]

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lwa import InputError
+from lwa.base.frozen import Estimate
 from validation.pulses.pulse import (
     FEWEST,
-    Measured,
     MeasureError,
     Pulse,
     compared,
@@ -127,17 +127,16 @@ def test_speed():
 
 
 def test_a_measured_number_carries_its_error():
-    a, b = Measured(2.0, 2.1), Measured(5.0, 4.9)
+    a, b = Estimate(2.0, 0.1), Estimate(5.0, 0.2)
     product = derived(lambda x, y: x * y, a, b)
-    assert (product.value, product.check) == (10.0, 2.1 * 4.9)
-    assert a.error == pytest.approx(0.1)
+    assert (product.value, product.error) == pytest.approx((10.0, 0.1 * 5 + 0.2 * 2))
     assert a.relative_error == pytest.approx(0.05)
-    assert str(Measured(1.41192847, 1.41192831)) == "1.41193 ± 1e-05"
-    assert str(Measured(16300.0, 17000.0)) == "16300 ± 7e+02"
-    assert str(Measured(1.5, 1.5)) == "1.5 ± 0"
-    assert str(Measured(4.350971956738e-4, 4.350971959e-4)) == "0.000435097 ± 1e-09"
-    assert str(Measured(0.0, 1e-20)) == "0 ± 1e-20"
-    assert str(Measured(0.03, 0.53)) == "0.03 ± 5e-01"
+    assert str(Estimate(1.41192847, 1.6e-7)) == "1.41193 ± 1e-05"
+    assert str(Estimate(16300.0, 700.0)) == "16300 ± 7e+02"
+    assert str(Estimate(1.5, 0.0)) == "1.5 ± 0"
+    assert str(Estimate(4.350971956738e-4, 2.3e-13)) == "0.000435097 ± 1e-09"
+    assert str(Estimate(0.0, 1e-20)) == "0 ± 1e-20"
+    assert str(Estimate(0.03, 0.5)) == "0.03 ± 5e-01"
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from validation.pulses.pulse import Measured
+from lwa import Estimate
 from validation.report.table import Column, Finding, Table, aligned, plain
 
 TABLE = Table(
@@ -23,9 +23,9 @@ TABLE = Table(
         Column("", "unit"),
     ),
     (
-        (sp.Rational(3, 2), "a", Measured(2.0, 1.75), 0.25, "m/s"),
+        (sp.Rational(3, 2), "a", Estimate(2.0, 0.25), 0.25, "m/s"),
         (sp.Integer(2), "b", None, -0.5, "<m/s>"),
-        (sp.Integer(3), "a", Measured(4.0, 4.5), None, "m/s"),
+        (sp.Integer(3), "a", Estimate(4.0, 0.5), None, "m/s"),
     ),
     "rows",
     by="chain",
@@ -89,7 +89,7 @@ def test_columns_beyond_a_line_follow_in_blocks(lines, width):
 
 @given(st.floats(-1e5, 1e5), st.floats(1e-15, 10))
 def test_a_printed_number_covers_what_it_leaves_out(value, error):
-    number = Measured(value, value + error)
+    number = Estimate(value, error)
     shown, about = map(float, str(number).split(" ± "))
     assert abs(shown - value) + number.error <= 2 * about
     assert len(f"{shown:.12g}".replace("-", "").replace(".", "").lstrip("0")) <= 6

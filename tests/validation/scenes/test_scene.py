@@ -57,7 +57,7 @@ REFUSED = [
     (dict(damping=0.1), "damping is 0.1"),
     (
         dict(
-            damping=Damping("restitution", 1), k=math.nan, law=named("exponential", 1)
+            damping=Damping("restitution", 0.9), k=math.nan, law=named("exponential", 1)
         ),
         "damping",
     ),

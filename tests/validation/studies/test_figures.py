@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lwa import canonical_wave
-from validation.pulses.pulse import Measured, exponent
+from lwa import Estimate, canonical_wave
+from validation.pulses.pulse import exponent
 from validation.scenes.chains import PTFE_BEAD
 from validation.studies.paper import (
     HEIGHTS,
@@ -53,9 +53,7 @@ def test_the_fitted_exponent_is_the_published_one(document):
         [[row[f"{q}{e}_value"] for e in ("", "_error")] for row in rows]
         for q in QUANTITIES
     )
-    speed, force = (
-        [Measured(value, value + error) for value, error in pair] for pair in pairs
-    )
+    speed, force = ([Estimate(value, error) for value, error in pair] for pair in pairs)
     assert 1e-6 > found["exponent_error_value"] > exponent(force, speed).error / 2
     assert f"{found['exponent_value']:.5f}"[:6] == "0.1666"
 

@@ -5,8 +5,7 @@ import json
 import pytest
 import sympy as sp
 
-from lwa import Cell, expand
-from validation.pulses.pulse import Measured
+from lwa import Cell, Estimate, expand
 from validation.studies.limits import (
     EQUAL,
     EXPONENTS,
@@ -106,5 +105,5 @@ def test_a_theory_off_by_half_a_permille_is_refused(found, quantity, omega, wron
     )
     assert all(hold(theory, lattice))
     assert not all(hold([value * sp.Rational(str(wrong)) for value in theory], lattice))
-    rough = [Measured(number.value, 1.1 * number.value) for number in lattice]
+    rough = [Estimate(number.value, 0.1 * number.value) for number in lattice]
     assert not any(hold(theory, rough)[: len(EXPONENTS)])

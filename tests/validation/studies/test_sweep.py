@@ -14,11 +14,10 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from lwa import InputError
+from lwa import Estimate, InputError
 from tests.commands import ended
 from validation import cli
 from validation.lattice.threads import cluster, threads
-from validation.pulses.pulse import Measured
 from validation.pulses.steady import LABELS, Point, PointFile
 from validation.scenes.checks import Failure
 from validation.studies.limits import theory_at
@@ -93,7 +92,7 @@ def test_an_interrupted_sweep_resumes_and_grows(capsys, file, reference):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ("pragma user_version = 4003", "another stretch"),
+        ("pragma user_version = 5003", "another stretch"),
         ("update points set k = '__import__(0)'", "k is"),
         ("alter table points add column x", "file is"),
     ],
@@ -194,7 +193,7 @@ def points():
     found = []  # beyond ω = 6 the paper's closure has no wave at k = 6
     for k, omega in product(*AXES):
         values = map(float, (k + omega, k + 2 * omega, 1 / omega, (1 - omega) / 10))
-        read = {n: Measured(v, v + 1e-9) for n, v in zip(LABELS, values, strict=True)}
+        read = {n: Estimate(v, 1e-9) for n, v in zip(LABELS, values, strict=True)}
         found.append(Point(k, omega, (24, 32), read))
     found[4] = Point(R(2), R(1), None, {}, "broke")
     return found
