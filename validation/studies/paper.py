@@ -29,17 +29,16 @@ import sympy as sp
 
 from lwa import (
     Cell,
+    CompactWave,
     Dimer,
     PhysicalWave,
     Sphere,
-    TravelingWave,
     canonical_wave,
     homogenize,
 )
 from lwa.base.exact import number
 from lwa.base.progress import Progress
 from lwa.expansion.physical import GRAVITY
-from lwa.wave.closed import CompactWave
 from validation.lattice.cost import RunProgress, silent
 from validation.lattice.result import Run
 from validation.lattice.simulate import simulate, simulate_many, twice
@@ -218,7 +217,7 @@ def numbers(beads: Train, contacts: Train) -> dict[str, float]:
     }
 
 
-def of_momentum(wave: TravelingWave, momentum: float) -> PhysicalWave:
+def of_momentum(wave: CompactWave, momentum: float) -> PhysicalWave:
     """Return the theory's wave with a given momentum; `SceneError` unless it is positive."""
     ratio = positive(momentum, "momentum") / number(
         PhysicalWave(wave, sp.S.One).momentum
