@@ -54,7 +54,7 @@ LOADS = 10.0 ** np.arange(-12, 12.5, 0.5)  # p0/B
 
 CLOSURES: Mapping[str, Mapping[str, Any]] = {
     "paper's closure": {},
-    "full closure": {"closure": "full"},
+    "full closure": {"closure": "full", "field": "first"},
     "canonical field": {"closure": "full", "field": "center"},
 }
 """Waves that are compared, as options of `lwa.homogenize`."""
