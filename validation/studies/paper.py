@@ -28,10 +28,10 @@ import sympy as sp
 
 from lwa import (
     Cell,
+    CompactWave,
     Dimer,
     PhysicalWave,
     Sphere,
-    TravelingWave,
     canonical_wave,
     homogenize,
 )
@@ -39,7 +39,6 @@ from lwa.base.exact import number
 from lwa.base.frozen import Estimate
 from lwa.base.progress import Progress
 from lwa.expansion.physical import GRAVITY
-from lwa.wave.closed import CompactWave
 from validation.lattice.cost import RunProgress, silent
 from validation.lattice.result import Run
 from validation.lattice.simulate import simulate, simulate_many, twice
@@ -117,7 +116,7 @@ def recorded_chain(
     )
 
 
-def of_momentum(wave: TravelingWave, momentum: float) -> PhysicalWave:
+def of_momentum(wave: CompactWave, momentum: float) -> PhysicalWave:
     """Return the theory's wave with a given momentum; `SceneError` unless it is positive."""
     of_unit_force = number(PhysicalWave(wave, sp.S.One).momentum)
     ratio = positive(momentum, "momentum") / of_unit_force
