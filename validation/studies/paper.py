@@ -126,26 +126,15 @@ def of_momentum(wave: CompactWave, momentum: float) -> PhysicalWave:
     return PhysicalWave(wave, math.exp(math.log(ratio) * power))
 
 
-def bead_fwhm(wave: CompactWave) -> float:
-    """Return the FWHM of a bead's force, a length that does not depend on the amplitude."""
-    k = number(wave.k)
-    D = number(wave.D)
-    beta = (k - 1) / (2 * D * math.sqrt(number(wave.coefficient_sum)))
+def bead_fwhm(wave: PhysicalWave) -> float:
+    """Return the FWHM of the force of a bead, the mean of its two contacts', as a length."""
+    half = number(wave.bead_force) / 2
 
-    def force(x: float) -> float:
-        """Return a bead's force, the sum of its contacts' arches at x ± D/2."""
-        total = 0.0
-        for side in (-D / 2, D / 2):
-            phase = beta * (x + side)
-            if abs(phase) < math.pi / 2:
-                total += math.cos(phase) ** (2 * k / (k - 1))
-        return total
+    def above_half(x: float) -> float:
+        return float(wave.along(x, of="bead")) - half
 
-    half = force(0.0) / 2
-    end = (math.pi / beta + D) / 2
-    return 2 * float(
-        scipy.optimize.brentq(lambda x: force(x) - half, 0, end, xtol=1e-14 * end)
-    )
+    end = number(wave.wave.width)  # farther than the arch of the farther contact
+    return 2 * float(scipy.optimize.brentq(above_half, 0, end, xtol=1e-14 * end))
 
 
 # --- the experiment ---
@@ -255,7 +244,7 @@ def theory_numbers(wave: PhysicalWave) -> dict[str, float]:
             pulses[i] = Pulse(arrival, peak, arrival - half, arrival + half)
         return Train(pulses, DIAMETER)
 
-    beads = train(float(wave.bead_force), bead_fwhm(wave.wave))
+    beads = train(float(wave.bead_force), bead_fwhm(wave))
     contacts = train(float(wave.contact_force), float(wave.fwhm("force")))
     return numbers(beads, contacts)
 
