@@ -343,7 +343,7 @@ def envelope(
     else:
         read = positive if law.homogeneous else signed  # powers only push
         static = cell.spacing * read(background, "background")
-        law.check_strain(static / cell.spacing, cell, sound=True)
+        law.check_strain(static / cell.spacing, cell)
     kappa = signed(wavenumber, "wavenumber")
     if kappa.is_number and not 0 <= kappa <= sp.pi:
         raise InputError(f"wavenumber is {shorten(kappa)}: 0 … pi per cell is wanted")

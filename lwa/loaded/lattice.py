@@ -81,7 +81,7 @@ class Link(Value):
         """The compression δ at which the link pushes with this force along the lattice."""
         if force.is_zero:
             return sp.S.Zero
-        return self.law.compression(Cell((1,)), force / (self.factor * self.cosine))
+        return self.law.inverse(force / (self.factor * self.cosine))
 
 
 @dataclass(frozen=True)
