@@ -49,10 +49,9 @@ if TYPE_CHECKING:
     from lwa.spheres.hertz import Sphere as Sphere
     from lwa.theory import Theory as Theory
     from lwa.theory import homogenize as homogenize
-    from lwa.wave.closed import CompactWave as CompactWave
-    from lwa.wave.physical import PhysicalWave as PhysicalWave
-    from lwa.wave.traveling import TravelingWave as TravelingWave
-    from lwa.wave.traveling import canonical_wave as canonical_wave
+    from lwa.wave.compact import CompactWave as CompactWave
+    from lwa.wave.compact import PhysicalWave as PhysicalWave
+    from lwa.wave.compact import canonical_wave as canonical_wave
 
     __version__: str
 
@@ -75,9 +74,7 @@ _HOMES = {
     "lwa.shocks.riemann": "Shock piston shock",
     "lwa.spheres.hertz": "Material Sphere hertz",
     "lwa.theory": "Theory homogenize",
-    "lwa.wave.closed": "CompactWave",
-    "lwa.wave.physical": "PhysicalWave",
-    "lwa.wave.traveling": "TravelingWave canonical_wave",
+    "lwa.wave.compact": "CompactWave PhysicalWave canonical_wave",
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
 __all__ = sorted(_HOME.keys() - {"D", "k"})  # bound by name only

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from validation.waves.profile import ExactWave as ExactWave
     from validation.waves.solver import exact_wave as exact_wave
 
+    __version__: str
+
 # Public names by their module, each loaded on its first use (PEP 562).
 _HOMES = {
     "validation.lattice.cost": "IntegrationError",
@@ -47,6 +49,13 @@ __all__ = sorted(_HOME)
 
 def __getattr__(name: str) -> Any:
     """Load a public name on its first use."""
+    if name == "__version__":
+        return import_module("lwa").__version__
     if name not in _HOME:
         raise AttributeError(f"module 'validation' has no attribute {name!r}")
     return getattr(import_module(_HOME[name]), name)
+
+
+def __dir__() -> list[str]:
+    """Names that editors and shells complete, loaded or not."""
+    return sorted({*globals(), *__all__})

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from lwa import Dimer, PhysicalWave, TravelingWave, canonical_wave, homogenize
+from lwa import CompactWave, Dimer, PhysicalWave, canonical_wave, homogenize
 from lwa.base.frozen import Estimate
 from lwa.base.progress import Progress
 from validation.lattice.simulate import simulate
@@ -122,7 +122,7 @@ def limits(progress: Progress[Case] = iter) -> Report:
     )
 
 
-def theory_at(k: Any, omega: Any, closure: Any = "linear") -> TravelingWave:
+def theory_at(k: Any, omega: Any, closure: Any = "linear") -> CompactWave:
     """Return the theory's wave for masses 1 and ω, equal contacts A = 1 and D = 1.
 
     closure : "linear" (the paper's), "full", or "canonical" (full closure, canonical field).
@@ -156,7 +156,7 @@ def _panel(rows: Sequence[Row], omega: sp.Rational) -> Panel:
 
 
 def lattice_wave(
-    wave: TravelingWave, places: Sequence[float] = PLACES
+    wave: CompactWave, places: Sequence[float] = PLACES
 ) -> dict[str, Estimate]:
     """Measure `QUANTITIES` of the pulse that the theory's wave of peak strain 1 becomes.
 
