@@ -47,6 +47,7 @@ DELTA = sp.Symbol("delta", positive=True)
 """δ, the compression of a contact, unless the caller names another symbol."""
 
 
+@dataclass(frozen=True, repr=False)
 class ContactLaw(Value):
     """A contact force F(δ): base of `Power` and `Law`.
 
@@ -63,9 +64,9 @@ class ContactLaw(Value):
     """
 
     F: sp.Expr
-    delta: sp.Symbol
-    name: str
-    parameters: tuple[sp.Expr, ...]
+    delta: sp.Symbol = DELTA
+    name: str = field(default="", compare=False)
+    parameters: tuple[sp.Expr, ...] = field(default=(), compare=False)
     homogeneous: ClassVar[bool] = False
 
     @property
@@ -232,7 +233,6 @@ class ContactLaw(Value):
         raise NotImplementedError
 
 
-@dataclass(frozen=True)
 class Power(ContactLaw):
     """The power law F = δ^k.
 
@@ -242,17 +242,19 @@ class Power(ContactLaw):
         The exponent, 3/2 for spheres.
     """
 
-    k: sp.Expr
-    F: sp.Expr = field(init=False, repr=False)
-    delta: sp.Symbol = field(init=False, repr=False, default=DELTA)
-    name: str = field(init=False, repr=False, default="power")
-    parameters: tuple[sp.Expr, ...] = field(init=False, repr=False)
     homogeneous: ClassVar[bool] = True
 
-    def __post_init__(self) -> None:
-        k = exponent(self.k)
-        for name, value in (("k", k), ("F", DELTA**k), ("parameters", (k,))):
-            object.__setattr__(self, name, value)
+    def __init__(self, k: Any) -> None:
+        k = exponent(k)
+        super().__init__(DELTA**k, name="power", parameters=(k,))
+
+    def __repr__(self) -> str:
+        return f"Power(k={self.k})"
+
+    @property
+    def k(self) -> sp.Expr:
+        """The exponent."""
+        return self.parameters[0]
 
     @property
     def exponent(self) -> sp.Expr:
@@ -304,11 +306,6 @@ class Law(ContactLaw):
     >>> Law(x + x**2, x).phi(2)
     2*x/(2*x + 1)
     """
-
-    F: sp.Expr
-    delta: sp.Symbol = DELTA
-    name: str = field(default="", compare=False)
-    parameters: tuple[sp.Expr, ...] = field(default=(), compare=False)
 
     def __repr__(self) -> str:
         if self.name:
