@@ -135,10 +135,8 @@ class Dispersion(Value):
         return Bloch(self._model)
 
     def _expression(self, polynomial: fmpq_mpoly) -> sp.Expr:
-        ring = self._model.ring
-        count = len(ring.names)  # FLINT has no ring without generators
-        terms = [(tuple(map(int, e[:count])), c) for e, c in polynomial.terms()]
-        return sp.together(ring.expression(terms))  # compliances enter as 1/A
+        expression = self._model.ring.expression(list(polynomial.terms()))
+        return sp.together(expression)  # compliances enter as 1/A
 
     def _length(self, order: Any) -> int:
         """Return the number of powers of κ² up to κ^order; raise `lwa.InputError` for too many.
