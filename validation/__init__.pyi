@@ -1,4 +1,4 @@
-"""Public names of `validation` and their modules: for type checkers, and for `validation` itself."""
+"""Public names of `validation` and their modules: for type checkers, and for the package itself."""
 
 from validation.lattice.cost import IntegrationError as IntegrationError
 from validation.lattice.result import Run as Run
