@@ -178,6 +178,17 @@ def evaluated(value: sp.Expr, digits: int) -> sp.Expr:
     return sp.N(value, digits, maxn=MOST_CANCELLED)
 
 
+def brief(value: sp.Expr) -> str:
+    """Six digits of an exact number, or the short text of an expression, for a ``repr``.
+
+    >>> brief(sp.pi / 7), brief(sp.Symbol("x") / 3)
+    ('0.448799', 'x/3')
+    """
+    if value.free_symbols:
+        return shorten(value)
+    return f"{number(value):.6g}"
+
+
 class Unmultiplied(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymPy
     """A number that SymPy does not multiply out in a power; it prints and evaluates as usual."""
 

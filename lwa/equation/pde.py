@@ -15,7 +15,7 @@ replaces u_x^{k-1}, and coefficients hold φ_2, φ_3, … (`lwa.law`). Optical b
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -33,7 +33,7 @@ from lwa.equation.terms import (
     latex_by_order,
     terms,
 )
-from lwa.wave.traveling import TravelingWave
+from lwa.wave.compact import CompactWave
 
 
 @dataclass(frozen=True, repr=False)
@@ -120,9 +120,9 @@ class PDE(OfClosure):
         """True if all orders, D^{k+3} at least, are ∂_x of a flux: ∫ u_τ dx is conserved."""
         if not self.acoustic:
             return False
-        if self.closure.model.order < 4:
-            return conservative(self.closure.to_order(4))
-        return conservative(self.closure)
+        model = self.closure.model
+        longer = replace(model, order=max(model.order, 4))
+        return conservative(replace(self.closure, model=longer))
 
     @cached_property
     def energy(self) -> Mapping[int, Terms]:
@@ -209,7 +209,7 @@ class PDE(OfClosure):
         """
         return PDE(self.closure.at(**values))
 
-    def traveling_wave(self) -> TravelingWave:
+    def traveling_wave(self) -> CompactWave:
         """The compact wave of the equation truncated at D^{k+3}, in closed form.
 
         Raises `lwa.NoSolitaryWave` for numbers without a wave, and `lwa.InputError` if the closed
@@ -221,7 +221,7 @@ class PDE(OfClosure):
                 "the compact wave in closed form belongs to a power law: `lwa.loaded_wave` "
                 "(--background P0) has the waves of any law"
             )
-        wave = TravelingWave(cell=self.cell, k=self.k, G=self.G, H=self.H, I=self.I)
+        wave = CompactWave(cell=self.cell, k=self.k, G=self.G, H=self.H, I=self.I)
         if 2 not in self.vanishing:
             raise InputError(
                 "unequal stiffnesses leave a term at D^(k+2): no wave in closed form"
