@@ -55,6 +55,12 @@ def unpack(app: Sphinx, error: Exception | None) -> None:
                 target.write_bytes(wheel.read(name))
 
 
+def without_icons_script(app: Sphinx, error: Exception | None) -> None:
+    """Empty the script of 1.5 MB that draws icons: the theme's font has them as well."""
+    if error is None and app.builder.format == "html":
+        Path(app.outdir, "_static", "scripts", "fontawesome.js").write_text("")
+
+
 def without_thebe(
     app: Sphinx, page: str, template: str, context: dict, doctree: object
 ) -> None:
@@ -72,4 +78,5 @@ def setup(app: Sphinx) -> dict[str, bool]:
     """Sphinx's hook."""
     app.connect("html-page-context", without_thebe, priority=900)
     app.connect("build-finished", unpack)
+    app.connect("build-finished", without_icons_script)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -250,7 +250,7 @@ def test_unequal_masses():
         keys = "theory_value", "decay_value", "decay_error_value"
         assert [float(x) for x in shown] == [round(found[key], digits) for key in keys]
         assert abs(found["theory_value"] / found["decay_value"] - 1) < 0.2
-    local = disorder(spread=0.5, chains=20, sites=200).tables[0].records()[1:]
+    local = disorder(spread=0.5, chains=20, sites=200).tables[0].document()[1:]
     ends = (row["decay_value"] for row in (local[0], local[-1]))
     assert told(
         "column", r"$\varsigma = 0.5$ the decay per site falls from # to #", *ends
