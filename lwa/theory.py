@@ -127,12 +127,14 @@ class Theory(OfClosure):
 
     def _field_rows(self, most: int | None) -> list[str]:
         """LaTeX of the particles' fields to D^most."""
+        if not self.ansatz:  # one particle
+            return []
         if self.closure.name == "linear":
             return self.closure.latex_rows(most)
         rows = []
         for i, orders in self.slaved.items():
-            parts = latex_by_order(orders, self.cell.spacing, 0, most)
-            rows.append(f"w_{{{i + 1}}} = {' + '.join(['u', *parts])}")
+            field = latex_by_order("u", orders, self.cell.spacing, most=most)
+            rows.append(f"w_{{{i + 1}}} = {field}")
         return rows
 
     def _repr_latex_(self) -> str:

@@ -8,7 +8,7 @@ powers of the base are collected in print, as in u_x^{k-3} u_xx^3.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -112,7 +112,7 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
         factors = []
         for name, exponent in self._factors(jet):
             power = sp.latex(exponent, fold_short_frac=True)
-            power = re.sub(r" ([-+/]) ", r"\1", power)
+            power = re.sub(r" ?([-+/]) ", r"\1", power)
             factors.append(name if power == "1" else f"{name}^{{{power}}}")
         return " ".join(factors) or "1"
 
@@ -163,18 +163,28 @@ def by_order(orders: Mapping[int, Terms], heading: str) -> list[str]:
 
 
 def latex_by_order(
-    orders: Mapping[int, Terms], spacing: sp.Expr, below: int, most: int | None
-) -> list[str]:
-    r"""LaTeX of the orders as summands D^{n - below} (terms) to n = most, and \cdots.
+    leading: Sequence[str],
+    orders: Mapping[int, Terms],
+    spacing: sp.Expr,
+    base: int = 0,
+    most: int | None = None,
+) -> str:
+    r"""LaTeX of a sum: leading summands, then D^{n - base} (terms of order n) for each order.
 
-    most : None stands for all orders.
+    Orders above ``most`` (None: no order) are dots.
     """
-    parts: list[str] = []
+    summands = [(sp.S.One, summand) for summand in leading]
     for n, of_order in orders.items():
         if not of_order:
             continue
         if most is not None and n > most:
-            return [*parts, r"\cdots"]
-        D = latex.power(spacing, n - below)
-        parts.append(rf"{D} \Bigl({of_order.latex_rows()[0]}\Bigr)")
-    return parts
+            summands.append((sp.S.One, r"\cdots"))
+            break
+        D = latex.power(spacing, n - base)
+        if len(of_order) == 1:
+            ((jet, coefficient),) = of_order.items()
+            summands.append((coefficient, f"{D} {of_order.latex(jet)}"))
+        else:
+            (row,) = of_order.latex_rows()
+            summands.append((sp.S.One, rf"{D} \Bigl({row}\Bigr)"))
+    return latex.total(summands)
