@@ -110,20 +110,23 @@ class JetAlgebra:
         self.half = (self.k + 1) / 2
         self._dx = {}
         self._dt = {}
+        # Derivatives that raise the weight are missing at the highest one.
+        for n in range(1, self.weight):
+            index = self._r1 + n - 1
+            self._dx[index] = r[n + 1] - r[1] * r[n]
+            self._dt[index] = s[n + 1] - s[1] * r[n]
         for n in range(self.weight + 1):
-            self._dt[self._s0 + n] = -self.half * s[1] * s[n]
-            if n == self.weight:
-                # Its derivative in x has a jet of more weight.
-                break
-            self._dx[self._s0 + n] = s[n + 1] - self.half * r[1] * s[n]
-            if n > 0:
-                self._dx[self._r1 + n - 1] = r[n + 1] - r[1] * r[n]
-                self._dt[self._r1 + n - 1] = s[n + 1] - s[1] * r[n]
+            index = self._s0 + n
+            scaled = self.half * s[n]
+            self._dt[index] = -s[1] * scaled
+            if n < self.weight:
+                self._dx[index] = s[n + 1] - r[1] * scaled
         # φ_highest has no derivative either: it holds the next φ_n.
         for n in range(2, highest):
             theta = phi[n + 1] + (n - 1) * phi[n] - phi[n] * phi[2]
-            self._dx[n - 2] = r[1] * theta
-            self._dt[n - 2] = s[1] * theta
+            index = n - 2
+            self._dx[index] = r[1] * theta
+            self._dt[index] = s[1] * theta
 
     def dx(self, f: fmpq_mpoly, exponent: fmpq_mpoly | int) -> fmpq_mpoly:
         """The derivative p^{-e} ∂_x (p^e f) in x, e the exponent."""
@@ -269,6 +272,7 @@ class GradedSeries:
         total = self.algebra.zero
         for j in range(1, n + 1):
             derivative = self.dx(n - j, j)
+            # In a symmetric cell every second term vanishes.
             if not derivative.is_zero():
                 total = total + derivative * taylor(h, j)
         return total

@@ -116,6 +116,7 @@ class CoefficientRing(Value):
     def exponent(self, context: fmpq_mpoly_ctx) -> fmpq_mpoly:
         """The exponent k as an element of a ring that has `names` among its generators."""
         if self.highest:
+            # d ln(δ F′)/d ln δ
             return 1 + context.gen(context.variable_to_index("phi2"))
         if self.k.is_Rational:
             return context.constant(to_flint(self.k))
@@ -126,6 +127,7 @@ class CoefficientRing(Value):
 
         Those of a power are (k-1) … (k-n+1), given to φ_most.
         """
+        # φ_0 has no meaning; it makes places of the list and indices agree.
         found = [context.constant(0), context.constant(1)]
         if self.highest:
             return found + [context.gen(context.variable_to_index(n)) for n in self.law]
@@ -157,6 +159,7 @@ class Conversion:
 
     def __init__(self, ring: CoefficientRing) -> None:
         self._partitions = [p for p in (ring.masses, ring.contacts) if p.names]
+        # What the generators stand for
         values = list(ring.law.values())
         for partition in self._partitions:
             values += partition.distinct

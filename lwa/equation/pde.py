@@ -70,6 +70,7 @@ class PDE(OfClosure):
 
         The leading term u_x^{k-1} u_xx (or -u^k) is left out.
         """
+        # The leading term is E_1 on the acoustic branch, E_0 on the optical one.
         base = self.closure.model.base
         sign = 1 if self.acoustic else -1
         acceleration = self.closure.solution.acceleration
@@ -81,10 +82,12 @@ class PDE(OfClosure):
     @cached_property
     def third_order(self) -> dict[str, sp.Expr]:
         """Mapping from "G", "H", "I" to their values; {} below order 4 or on the optical branch."""
+        # The ansatz to D^n gives the wave equation to D^{k+n-1}.
         if not self.acoustic or self.closure.model.order < 4:
             return {}
         values = {}
         for letter, jet in LETTERS.items():
+            # A coefficient that vanishes, such as G at k = 2, has no term.
             coefficient = self.coefficients[3].get(jet, sp.S.Zero)
             values[letter] = coefficient * self.cell.spacing**2
         return values
@@ -123,6 +126,7 @@ class PDE(OfClosure):
         if not self.acoustic:
             return False
         closure = self.closure
+        # The answer is that of the paper's order D^{k+3} at least.
         if closure.model.order < 4:
             closure = replace(closure, model=replace(closure.model, order=4))
         return conservative(closure)
@@ -143,6 +147,7 @@ class PDE(OfClosure):
 
     def _summands(self, write: Callable[[Terms, Jet], str]) -> list[str]:
         """The leading term and those of G, H, I, written by `Terms.text` or `Terms.latex`."""
+        # Terms know how to write a jet; these terms are none.
         notation = Terms(self.closure.model, {})
         if not self.acoustic:
             return [f"-{write(notation, Jet(()))}"]
@@ -178,6 +183,7 @@ class PDE(OfClosure):
     @property
     def heading(self) -> str:
         """Format string for the heading of an order n, such as D^(k+{})."""
+        # F′ stands in the place of the power of D u_x.
         if not self.law.homogeneous:
             return "order {}"
         return "D^(k+{})" if self.acoustic else "D^{}"
@@ -240,6 +246,7 @@ class PDE(OfClosure):
                 "(--background P0) has the waves of any law"
             )
         wave = CompactWave(cell=self.cell, k=self.k, G=self.G, H=self.H, I=self.I)
+        # u_x^{k-2} u_xx² breaks the symmetry x → -x, u → -u, which an even pulse has.
         if 2 not in self.vanishing:
             raise InputError(
                 "unequal stiffnesses leave a term at D^(k+2): no wave in closed form"

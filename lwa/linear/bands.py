@@ -71,6 +71,7 @@ class Bands(Value):
 
     def edges(self) -> Array:
         """Least and largest frequency of each branch, shape (P, 2), at κ = 0 and π/P."""
+        # Branches of a chain have their least and largest frequency at the ends of the zone.
         edge = np.pi / len(self.fractions) / self.length
         ends = self.branches([0.0, edge])
         return np.asarray(np.sort(ends, axis=0).T)
