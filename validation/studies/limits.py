@@ -1,6 +1,6 @@
 """Limits of the theory on the lattice: equal masses, m1 ≫ m2, and k → 1.
 
-The theory's wave is the leading order in ε = k - 1, so that its error against the lattice must
+The theory's wave is the leading order in ``ε = k - 1``, so that its error against the lattice must
 vanish as a known power of ε, with a known coefficient. Each chain starts with the theory's wave,
 which turns into the lattice's wave and leaves the difference behind. The pulse is measured after
 four, six and eight times its support (the places). Its numbers come nearer to their limits by about
@@ -47,10 +47,10 @@ QUANTITIES = (FORCE_WIDTH, STRAIN_WIDTH, SUPPORT, SPEED)
 
 @dataclass(frozen=True)
 class LeadingPower:
-    """Leading power of the theory's error, coefficient · ε^order, and bounds of a measurement."""
+    """Leading power of the theory's error in k - 1, and bounds of a measurement."""
 
     order: int
-    coefficient: sp.Expr
+    coefficient: sp.Expr  # of ε^order
     constant: float  # |error| ≤ constant · ε^order at each k measured
     order_bound: float  # relative, for the fitted order
     coefficient_bound: float  # relative, for the fitted coefficient
@@ -126,9 +126,14 @@ def limits(progress: Progress[Case] = iter) -> Report:
 
 
 def theory_at(k: Any, omega: Any, closure: Any = "linear") -> CompactWave:
-    """Return the theory's wave for masses 1 and ω, equal contacts A = 1 and D = 1.
+    """Return the theory's wave for masses 1 and ω, equal contacts of stiffness 1, and spacing 1.
 
-    closure : "linear" (the paper's), "full", or "canonical" (full closure, canonical field).
+    Parameters
+    ----------
+    k, omega : number or str
+        Exponent and mass ratio.
+    closure : {"linear", "full", "canonical"}
+        The paper's, the full one, or the full one with the canonical field.
 
     >>> theory_at("3/2", 1).width
     sqrt(10)*pi/2
@@ -154,7 +159,12 @@ def lattice_wave(
 ) -> dict[str, Estimate]:
     """Measure `QUANTITIES` of the pulse that the theory's wave of peak strain 1 becomes.
 
-    places : three distances, in supports, at equal steps, at which the pulse is measured.
+    Parameters
+    ----------
+    wave : CompactWave
+        The wave with which the chain starts.
+    places : sequence of float
+        Three distances, in supports, at equal steps, at which the pulse is measured.
     """
     compact = PhysicalWave(wave, 1)  # peak force; A = D = 1
     support = float(wave.width)
@@ -210,7 +220,7 @@ def pulse_numbers(run: Run, wave: CompactWave, sensor: int) -> dict[str, float]:
 def settled(first: float, second: float, third: float) -> Estimate:
     """Return the third of three numbers on their way to a limit, with twice the way that is left.
 
-    The steps fall by a factor r: the rest of the way is (third - second)·(r + r² + …).
+    Steps fall by a factor r: the rest of the way is the last step times ``r + r² + …``.
     """
     step = abs(third - second)
     r = step / abs(second - first)
@@ -283,7 +293,7 @@ def finding(record: Record) -> Finding:
 
 
 def _panel(records: Sequence[Record], omega: sp.Rational) -> Panel:
-    """Return the panel of |error| as a function of k - 1, beside its leading power."""
+    """Return the panel of the errors as functions of k - 1, beside their leading powers."""
     epsilon = np.geomspace(float(EXPONENTS[-1] - 1) / 2, float(EXPONENTS[0] - 1), 2)
     curves = []
     for i, (quantity, law) in enumerate(LEADING_POWERS.items()):

@@ -275,8 +275,8 @@ _RANGES = "values and ranges start:stop:count, separated by commas."
     ),
     page="recipes",
     examples=(
-        "lwa-validate sweep --k 3/2,2 --omega 1/4:1:4 --file points.sqlite",
-        "lwa-validate sweep --k 3/2,2 --omega 1/4:1:4 --file points.sqlite --plot map.svg",
+        "lwa-validate sweep --k 3/2,2 --omega 1/4:1:4 --file p.sqlite",
+        "lwa-validate sweep --k 3/2,2 --omega 1/4:1:4 --file p.sqlite --plot p.svg",
     ),
 )
 def sweep(
@@ -291,13 +291,27 @@ def sweep(
     """Width, speed and decay of a struck chain's pulse over k and m2/m1. The 160 points of the
     default grid take half a minute.
 
-    ks, omegas: texts such as "5/4:3:8, 4", or exact numbers; floats count as their decimals.
-    stretch: cells between places of measurement at k ≥ 3/2, see `validation.pulses.steady`.
-    file: file of finished points (.sqlite), which are not computed again.
-    jobs, address: number of threads, by default one a core; scheduler of a Dask cluster instead.
+    Parameters
+    ----------
+    ks, omegas : str or iterable of numbers
+        Texts such as "5/4:3:8, 4", or exact numbers; floats count as their decimals.
+    stretch : int
+        Cells between places of measurement; more below k of 3/2, see `validation.pulses.steady`.
+    file : path, optional
+        File of finished points (.sqlite), which are not computed again.
+    jobs : int, optional
+        Number of threads; by default one a core.
+    address : str, optional
+        Scheduler of a Dask cluster, in place of threads.
+    progress : Progress
+        Display of the number of points that are done.
 
-    Raises `lwa.InputError` for numbers outside `RANGES` or an unfit file, and `Failure` when a
-    worker fails; the file keeps finished points.
+    Raises
+    ------
+    InputError
+        For numbers outside `RANGES`, and for an unfit file.
+    Failure
+        When a worker fails; the file keeps finished points.
 
     >>> round(sweep(["3/2"], [1]).document()["points"][0]["width_value"], 4)
     1.4119
