@@ -42,6 +42,11 @@ STUDIES = {
 }
 """Module and summary of each study, by the name of its function and command."""
 
+HELP_TEXT = """\
+Simulate chains with contacts F = A δ^k and compare them with the long-wave theory.
+
+The exit status is 1 if a comparison fails, and 2 for bad input."""
+
 EXAMPLES = """\b
 Examples:
   lwa-validate paper
@@ -63,14 +68,12 @@ _ENVIRONMENT = {
     package="validation.studies",
     table=STUDIES,
     context_settings=HELP,
+    help=HELP_TEXT,
     epilog=EXAMPLES,
 )
 @version
 def validate() -> None:
-    """Simulate chains with contacts F = A δ^k and compare them with the long-wave theory.
-
-    The exit status is 1 if a comparison fails, and 2 for bad input.
-    """
+    """The command `lwa-validate`."""
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

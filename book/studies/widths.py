@@ -216,7 +216,7 @@ def _width(wave: CompactWave, quantity: str, force: float, in_time: bool) -> flo
     """The theory's FWHM of a quantity whose peak is ``force``, in s or sites."""
     bead = quantity == "bead force"
     physical = wave.at_force(force, of="bead" if bead else "contact")
-    width = bead_fwhm(wave) if bead else float(physical.fwhm("force"))
+    width = bead_fwhm(physical) if bead else float(physical.fwhm("force"))
     return width / (float(physical.speed) if in_time else float(wave.D))
 
 

@@ -20,6 +20,7 @@ on p: p dφ_n/dp = φ_{n+1} + (n-1) φ_n - φ_n φ_2. For δ^k they are (k-1) �
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
 from math import factorial
 from typing import NamedTuple
 
@@ -145,6 +146,10 @@ class JetAlgebra:
         """The slope ∂f/∂r_n; the coefficient of the term r_n if f has weight n."""
         return f.derivative(self._r1 + n - 1)
 
+    def shift(self, h: fmpq_mpoly | int, n: int) -> fmpq_mpoly:
+        """Coefficient of D^{n+1} in (u(x + hD) - u(x)) / u_x, on the acoustic branch."""
+        return self.r[n] * taylor(h, n + 1)
+
     def terms(self, f: fmpq_mpoly, base: int) -> dict[Jet, list[Term]]:
         """Split a polynomial into a mapping from jets to the terms of their coefficients.
 
@@ -194,6 +199,11 @@ class JetAlgebra:
         return f.derivative(index).subs(dict.fromkeys(others, 0))
 
 
+def taylor(h: fmpq_mpoly | int, n: int) -> fmpq_mpoly | fmpq:
+    """The factor h^n/n! of ∂_x^n f in f(x + h)."""
+    return h**n * fmpq(1, factorial(n))
+
+
 def _powers(exponents: Sequence[int], lowest: int) -> Powers:
     return tuple((i, int(e)) for i, e in enumerate(exponents, start=lowest) if e)
 
@@ -210,7 +220,8 @@ class GradedSeries:
         self.algebra = algebra
         self.exponent = exponent
         self._derivatives = [[f_n] for f_n in terms]
-        self._velocity_slopes: dict[int, list[tuple[int, fmpq_mpoly]]] = {}
+        # Computed once for each term
+        self._velocity_slopes = cache(lambda n: algebra.velocity_slopes(self[n]))
 
     def __len__(self) -> int:
         return len(self._derivatives)
@@ -238,7 +249,7 @@ class GradedSeries:
         for j in range(1, n + 1):
             derivative = self.dx(n - j, j)
             if not derivative.is_zero():
-                total = total + derivative * (h**j * fmpq(1, factorial(j)))
+                total = total + derivative * taylor(h, j)
         return total
 
     def dt(self, E: GradedSeries, n: int) -> fmpq_mpoly:
@@ -248,8 +259,6 @@ class GradedSeries:
         """
         total = self.algebra.dt(self[n - 1], self.exponent)
         for m in range(1, n):
-            if m not in self._velocity_slopes:
-                self._velocity_slopes[m] = self.algebra.velocity_slopes(self[m])
-            for i, slope in self._velocity_slopes[m]:
+            for i, slope in self._velocity_slopes(m):
                 total = total + slope * E.dx(n - m, i)  # ∂_τ s_i holds ∂_x^i u_ττ
         return total

@@ -11,11 +11,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from math import factorial
 
-from flint import fmpq, fmpq_mpoly
+from flint import fmpq_mpoly
 
-from lwa.algebra.jets import GradedSeries
+from lwa.algebra.jets import GradedSeries, taylor
 from lwa.algebra.model import Model
 from lwa.base.progress import Progress
 from lwa.closure.slaving import Force, Solution, full
@@ -63,7 +62,7 @@ def _acoustic(model: Model, progress: Progress[int]) -> Solution:
         condition = mu[1] * force_1 - mu[0] * force_2
         condition = condition + 2 * mu[0] * mu[1] * _applied(b, first, n)
         xi = -algebra.slope(condition, n)
-        mean = algebra.one * fmpq(2**n, factorial(n + 1))
+        mean = algebra.one * taylor(2, n + 1) / 2
         strain = mean + c[1] * xi / 2
         right.append(strain * r_n)
         left.append((mean - c[0] * xi / 2) * r_n)
@@ -89,7 +88,7 @@ def _optical(model: Model, progress: Progress[int]) -> Solution:
         shifted = stiffness[1] * left.increment(-2, n)
         b.append(-algebra.slope(shifted + _applied(b, first, n), n))
         right.append(mu[0] * b[n] * r_n)
-        left.append((mu[0] * b[n] + mu[1] * fmpq(2**n, factorial(n))) * r_n)
+        left.append((mu[0] * b[n] + mu[1] * taylor(2, n)) * r_n)
         force = stiffness[0] * right.Phi[n] + stiffness[1] * left.Phi[n]
         first.append(force + shifted)
         second.append(force - b[n] * leading.dx(0, n - 1) - _applied(b, second, n))

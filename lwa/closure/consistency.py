@@ -127,10 +127,6 @@ class Closure(Value):
         """The closure for these values of the named symbols; see `lwa.cell.substitution`."""
         return replace(self, model=self.model.at(**values))
 
-    def to_order(self, order: int) -> Closure:
-        """The closure derived to another order."""
-        return replace(self, model=replace(self.model, order=order))
-
 
 @dataclass(frozen=True)
 class OfClosure(Value):

@@ -21,12 +21,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from itertools import accumulate
-from math import factorial
 from typing import Literal
 
-from flint import fmpq, fmpq_mpoly
+from flint import fmpq_mpoly
 
-from lwa.algebra.jets import GradedSeries, JetAlgebra
+from lwa.algebra.jets import GradedSeries, JetAlgebra, taylor
 from lwa.algebra.model import Model
 from lwa.base.progress import Progress
 
@@ -87,8 +86,7 @@ class Force:
     def increment(self, h: int, n: int) -> fmpq_mpoly:
         """Coefficient of D^n in [F(p) + p F' Φ](x + hD) - [F(p) + p F' Φ](x), divided by p F'."""
         # F(p) adds h^n/n! ∂_x^n F(p) = h^n/n! ∂_x^{n-1} (p F' r_1), r_1 = p_x/p.
-        shifted = self._slope.dx(0, n - 1) * fmpq(h**n, factorial(n))
-        return self.Phi.increment(h, n) + shifted
+        return self.Phi.increment(h, n) + self._slope.dx(0, n - 1) * taylor(h, n)
 
     def work(self, n: int) -> fmpq_mpoly:
         """Coefficient of D^n in ∫ Φ dX = [W(p (1 + X)) - W(p) - p F(p) X] / (p² F'), W' = F."""
@@ -197,7 +195,7 @@ class _Slaving:
             inertia = self.E[n] + accelerations[i]
             push = push + P * self.algebra.mu[i] * inertia
             differences.append(push + first - self.forces[i].nonlinear)
-        total = self._shift(n) * P ** (n + 1) + self.S[0].increment(P, n)
+        total = self.algebra.shift(P, n) + self.S[0].increment(P, n)
         for share, difference in zip(c, differences, strict=True):
             total = total - share * difference
         for force, difference in zip(self.forces, differences, strict=True):
@@ -210,12 +208,8 @@ class _Slaving:
             relative.append(relative[-1] + c * force.X[n])
         origin = self.algebra.zero
         for i, weight in enumerate(self.weights):
-            moved = (-self.x[i]) ** (n + 1) * self._shift(n)
-            moved = moved + self.S[i].increment(-self.x[i], n)
+            h = -self.x[i]
+            moved = self.algebra.shift(h, n) + self.S[i].increment(h, n)
             origin = origin - weight * (relative[i] + moved)
         for S, difference in zip(self.S, relative, strict=True):
             S.append(origin + difference)
-
-    def _shift(self, n: int) -> fmpq_mpoly:
-        """Coefficient of D^{n+1} in (φ(x + D) - φ(x)) / φ_x."""
-        return self.algebra.r[n] * fmpq(1, factorial(n + 1))

@@ -30,11 +30,10 @@ G = I(k-1)(k-2)/2, H = 2I(k-1), and I is the coefficient in the linear chain's d
 from __future__ import annotations
 
 from itertools import pairwise
-from math import factorial
 
-from flint import fmpq, fmpq_mpoly
+from flint import fmpq_mpoly
 
-from lwa.algebra.jets import GradedSeries
+from lwa.algebra.jets import GradedSeries, taylor
 from lwa.base.exact import InputError
 from lwa.closure.consistency import Closure
 from lwa.closure.slaving import Force
@@ -101,8 +100,7 @@ class _Fields:
         """Coefficients of D^n in (w_{i+1} - w_i)/(D p), i < P; w_P is w_0 of the next cell."""
         S, P = self.S, len(self.S)
         strains = [after[n] - before[n] for before, after in pairwise(S)]
-        next_cell = self.algebra.r[n] * fmpq(P ** (n + 1), factorial(n + 1))
-        next_cell = next_cell + S[0].increment(P, n) + S[0][n]
+        next_cell = S[0][n] + self.algebra.shift(P, n) + S[0].increment(P, n)
         return [*strains, next_cell - S[-1][n]]
 
     def kinetic(self, n: int) -> fmpq_mpoly:
@@ -120,10 +118,10 @@ class _Fields:
             return total
         for c, force in zip(self.algebra.c, self.forces, strict=True):
             total = total + c * force.work(n)
-        # The rest of `work` is F(p) Σ C_i p X_i / P = F(p) ∂_x Y, by parts -p F′ r_1 Y, with
-        # Y = Σ_j (PD∂_x)^j/(j+1)! w_0 - φ.
+        # The rest of `work` is F(p) Σ C_i p X_i / P = F(p) ∂_x Y / P, by parts -p F′ r_1 Y / P,
+        # with Y = Σ_j P (PD∂_x)^j/(j+1)! w_0 - Pφ.
         P, r = len(self.S), self.algebra.r
-        Y = r[n - 1] * fmpq(P**n, factorial(n + 1))
+        Y = r[n - 1] * taylor(P, n + 1)
         for j in range(n):
-            Y = Y + self.S[0].dx(n - 1 - j, j) * fmpq(P**j, factorial(j + 1))
-        return total / P - r[1] * Y
+            Y = Y + self.S[0].dx(n - 1 - j, j) * taylor(P, j + 1)
+        return (total - r[1] * Y) / P

@@ -15,7 +15,7 @@ replaces u_x^{k-1}, and coefficients hold φ_2, φ_3, … (`lwa.law`). Optical b
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -120,9 +120,9 @@ class PDE(OfClosure):
         """True if all orders, D^{k+3} at least, are ∂_x of a flux: ∫ u_τ dx is conserved."""
         if not self.acoustic:
             return False
-        if self.closure.model.order < 4:
-            return conservative(self.closure.to_order(4))
-        return conservative(self.closure)
+        model = self.closure.model
+        longer = replace(model, order=max(model.order, 4))
+        return conservative(replace(self.closure, model=longer))
 
     @cached_property
     def energy(self) -> Mapping[int, Terms]:

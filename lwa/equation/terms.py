@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, NamedTuple
+from functools import cached_property
+from typing import NamedTuple
 
 import sympy as sp
 from flint import fmpq_mpoly
@@ -19,7 +21,7 @@ from lwa.algebra.jets import Jet, Powers
 from lwa.algebra.model import Model
 from lwa.algebra.ring import Term
 from lwa.base import latex
-from lwa.base.frozen import Shown
+from lwa.base.frozen import Value
 from lwa.closure.consistency import Closure
 
 _SHOWN = 3  # terms that `Terms.__repr__` prints in full
@@ -43,52 +45,50 @@ STRAIN = BasePower(1, 0)
 ENERGY = BasePower(1, 1)
 
 
-class Terms(Shown, Mapping[Jet, sp.Expr]):
+@dataclass(frozen=True, eq=False, repr=False)
+class Terms(Value, Mapping[Jet, sp.Expr]):
     """Mapping from jets to coefficients at one order; a coefficient becomes SymPy on lookup.
 
     A jet without u_τ may also be given by its plain tuple, as in ``terms[(2, 1), (3, 1)]``.
 
+    raw : mapping from jets to the terms of their coefficients.
     power : the power of the base that multiplies all terms.
     """
 
-    def __init__(
-        self, model: Model, raw: dict[Jet, list[Term]], power: BasePower = FORCE
-    ) -> None:
-        self.power = power
-        self._model = model
-        self._raw = raw
-        self._converted: dict[Jet, sp.Expr] = {}
+    model: Model
+    raw: dict[Jet, list[Term]]
+    power: BasePower = FORCE
 
     def __getitem__(self, jet: Jet | Powers) -> sp.Expr:
         jet = jet if isinstance(jet, Jet) else Jet(jet)
         if jet not in self._converted:
-            self._converted[jet] = self._model.ring.expression(self._raw[jet])
+            self._converted[jet] = self.model.ring.expression(self.raw[jet])
         return self._converted[jet]
 
+    @cached_property
+    def _converted(self) -> dict[Jet, sp.Expr]:
+        """The coefficients that were looked up."""
+        return {}
+
     def __iter__(self) -> Iterator[Jet]:
-        return iter(self._raw)
+        return iter(self.raw)
 
     def __len__(self) -> int:
-        return len(self._raw)
-
-    def _fields(self) -> tuple[Any, ...]:
-        return (self._model, self._raw, self.power)
+        return len(self.raw)
 
     def __eq__(self, other: object) -> bool:
-        if isinstance(other, Terms) and self._fields() == other._fields():
+        # Equal polynomials of one model need no conversion.
+        if isinstance(other, Terms) and self.__getstate__() == other.__getstate__():
             return True
         return Mapping.__eq__(self, other)
 
     def __hash__(self) -> int:
-        return hash(frozenset(self._raw))
-
-    def __reduce__(self) -> tuple[type[Terms], tuple[Any, ...]]:
-        return Terms, self._fields()
+        return hash(frozenset(self.raw))
 
     def __repr__(self) -> str:
         """The first terms as text; a long coefficient is represented by its number of terms."""
         rows: list[str] = []
-        for jet, coefficient in self._raw.items():
+        for jet, coefficient in self.raw.items():
             if len(rows) < _SHOWN and len(coefficient) <= _SHOWN:
                 rows.append(f"{self.text(jet)}: {self[jet]}")
         more = len(self) - len(rows)
@@ -119,8 +119,8 @@ class Terms(Shown, Mapping[Jet, sp.Expr]):
     def _factors(self, jet: Jet) -> list[tuple[str, sp.Expr]]:
         """Names, in LaTeX, and exponents of the factors: F′, the base, the derivatives."""
         a, b = map(sp.Rational, self.power.beside(jet))
-        base = latex.derivative(1) if self._model.base else "u"
-        law = self._model.law
+        base = latex.derivative(1) if self.model.base else "u"
+        law = self.model.law
         if law.homogeneous:
             factors = [(base, a + b * law.exponent)]
         else:
@@ -133,10 +133,10 @@ class Terms(Shown, Mapping[Jet, sp.Expr]):
     def nonlinear(self) -> Terms:
         """The terms that are nonlinear in the field: those of more than one derivative."""
         raw = {}
-        for jet, coefficient in self._raw.items():
+        for jet, coefficient in self.raw.items():
             if sum(e for _, e in (*jet.x, *jet.t)) > 1:
                 raw[jet] = coefficient
-        return Terms(self._model, raw, self.power)
+        return Terms(self.model, raw, self.power)
 
     def latex_rows(self) -> list[str]:
         """LaTeX of the sum of the terms, in one row."""

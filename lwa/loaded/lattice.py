@@ -37,7 +37,7 @@ from lwa.base.files import items
 from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.law import ContactLaw, Power, for_cell
-from lwa.linear.bands import Network
+from lwa.linear.network import Bond, Network
 from lwa.loaded.statics import Function, LinkForces, Statics
 
 # Stiffness of a lattice of springs 1 that carries no load, but for rounding
@@ -93,7 +93,7 @@ class Link(Value):
         """The compression δ at which the link pushes with this force along the lattice."""
         if force.is_zero:
             return sp.S.Zero
-        return self.law.compression(Cell((1,)), force / (self.factor * self.cosine))
+        return self.law.inverse(force / (self.factor * self.cosine))
 
 
 @dataclass(frozen=True)
@@ -302,22 +302,21 @@ class Lattice(Value):
         demand_numbers(self.symbols, "numbers are wanted")
         x = sp.Symbol("delta", positive=True)
         forces = []
-        places = []
+        bonds = []
         for link in self.links:
             derivatives = (link.factor * link.law.at(x, n) for n in range(3))
             functions = [function_of(x, f) for f in derivatives]
             if not link.law.pulls:
                 functions = [_pushing(function) for function in functions]
             forces.append(LinkForces(*functions))
-            places.append((link.i, link.j, float(link.cosine)))
+            bonds.append(Bond(link.i, link.j, float(link.cosine)))
         masses = np.array([float(m) for m in self.masses])
-        return Statics(Network(self.size, tuple(places)), masses, tuple(forces))
+        return Statics(Network(self.size, tuple(bonds)), masses, tuple(forces))
 
     @cached_property
     def _network(self) -> Network:
         """The links without their angles."""
-        places = tuple((link.i, link.j, 1.0) for link in self.links)
-        return Network(self.size, places)
+        return Network(self.size, tuple(Bond(x.i, x.j) for x in self.links))
 
     def _check_paths(self) -> None:
         """Raise `lwa.InputError` unless the links join all particles and carry a load."""

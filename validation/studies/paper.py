@@ -2,8 +2,8 @@
 
 A steel bead strikes a chain in which PTFE and steel beads alternate. The chain has 38 beads,
 numbered from 1 (the striker), and ends in a steel wall. As in the paper, sensors sit in beads 15
-and 34, the peak force is F_m = (F_15 + F_34)/2, and the speed V_s is the distance of the two beads
-over the time between their peaks. The force of a bead is the mean of its two contacts' forces.
+and 34, the peak force F_m is the mean of both beads', and the speed V_s is the distance of the two
+beads over the time between their peaks. The force of a bead is the mean of its two contacts'.
 
 Bead 15 is steel and bead 34 PTFE: the shapes of their pulses differ, so that V_s is not the speed
 of the pulse. The speed between beads of one kind stands beside V_s.
@@ -12,8 +12,9 @@ The amplitude of the theory's wave is set in turn by F_m and by the striker's mo
 pulse took all of it.
 
 Figure 2: the force over time at three beads of the 1:1 and the 2:1 chain. Figure 3a: peak force
-against speed over the striker's drop heights, with both moduli of PTFE, and the exponent of
-V_s ~ F_m^e. Figure 3b: the errors of the theory's FWHM; `book/studies/widths.py` draws the figure.
+against speed over the striker's drop heights, with both moduli of PTFE, and the exponent e of
+``V_s ~ F_m^e``. Figure 3b: the errors of the theory's FWHM; `book/studies/widths.py` draws the
+figure.
 """
 
 from __future__ import annotations
@@ -125,26 +126,15 @@ def of_momentum(wave: CompactWave, momentum: float) -> PhysicalWave:
     return PhysicalWave(wave, math.exp(math.log(ratio) * power))
 
 
-def bead_fwhm(wave: CompactWave) -> float:
-    """Return the FWHM of a bead's force, a length that does not depend on the amplitude."""
-    k = number(wave.k)
-    D = number(wave.D)
-    beta = (k - 1) / (2 * D * math.sqrt(number(wave.coefficient_sum)))
+def bead_fwhm(wave: PhysicalWave) -> float:
+    """Return the FWHM of the force of a bead, the mean of its two contacts', as a length."""
+    half = number(wave.bead_force) / 2
 
-    def force(x: float) -> float:
-        """Return a bead's force: cos^p(β(x ± D/2)) summed, p = 2k/(k-1), each 0 off its arch."""
-        total = 0.0
-        for side in (-D / 2, D / 2):
-            phase = beta * (x + side)
-            if abs(phase) < math.pi / 2:
-                total += math.cos(phase) ** (2 * k / (k - 1))
-        return total
+    def above_half(x: float) -> float:
+        return float(wave.along(x, of="bead")) - half
 
-    half = force(0.0) / 2
-    end = (math.pi / beta + D) / 2
-    return 2 * float(
-        scipy.optimize.brentq(lambda x: force(x) - half, 0, end, xtol=1e-14 * end)
-    )
+    end = number(wave.wave.width)  # farther than the arch of the farther contact
+    return 2 * float(scipy.optimize.brentq(above_half, 0, end, xtol=1e-14 * end))
 
 
 # --- the experiment ---
@@ -182,12 +172,25 @@ def paper(
     """The experiment of Porter et al. (2008): a chain of steel and PTFE beads in turn is struck at
     one end. Speed, peak force and FWHM on the lattice, and by the theory.
 
-    tolerances: of the run and of the less accurate run that gives its errors. Raises `SceneError`
-    for a velocity out of range.
+    Parameters
+    ----------
+    velocity : float
+        Velocity of the striker, in m/s.
+    tolerances : (float, float)
+        Tolerance of the run, and of the less accurate run that gives its errors.
+    run_progress : RunProgress
+        Display of the run's progress.
 
-    ``velocity_value``, ``beads``, ``sensors``, ``rows``: ``quantity``, ``unit``, ``lattice_value``,
-    ``lattice_error_value``, and by the quantity that sets the theory's amplitude (``F_m``,
-    ``striker``) ``theory_value`` {…} and ``error_value`` {…}, theory over lattice - 1.
+    Raises
+    ------
+    SceneError
+        For a velocity out of range.
+
+    Notes
+    -----
+    JSON: ``velocity_value``, ``beads``, ``sensors``, ``rows``: ``quantity``, ``unit``,
+    ``lattice_value``, ``lattice_error_value``, and by the quantity that sets the theory's amplitude
+    (``F_m``, ``striker``) ``theory_value`` {…} and ``error_value`` {…}, theory over lattice - 1.
     """
     velocity = between(velocity, "velocity", 1e-6, 1000)
     scene = recorded_chain(sorted({*SENSORS, *LIKE[0], *LIKE[1]}), velocity)
@@ -241,7 +244,7 @@ def theory_numbers(wave: PhysicalWave) -> dict[str, float]:
             pulses[i] = Pulse(arrival, peak, arrival - half, arrival + half)
         return Train(pulses, DIAMETER)
 
-    beads = train(float(wave.bead_force), bead_fwhm(wave.wave))
+    beads = train(float(wave.bead_force), bead_fwhm(wave))
     contacts = train(float(wave.contact_force), float(wave.fwhm("force")))
     return numbers(beads, contacts)
 
@@ -310,8 +313,8 @@ def figures(progress: Progress[Any] = iter) -> Report:
     """The paper's figures: force records, and speed as a function of force (a few seconds).
 
     ``rows``: ``modulus_value`` of PTFE, ``height_value`` of the striker's drop, ``speed_value`` V_s
-    and ``force_value`` F_m = (F_15 + F_34)/2 with errors, ``theory_value``, speed of the canonical
-    wave at F_m; ``scaling``: ``exponent_value`` of V_s ~ F_m^e by least squares, with its error, at
+    and ``force_value`` F_m with errors, ``theory_value``, speed of the canonical wave at F_m;
+    ``scaling``: ``exponent_value`` of V_s as a power of F_m by least squares, with its error, at
     the first modulus; ``widths``: ``line``, ``stated_error_value`` and ``error_value`` of the FWHM;
     ``forces``: ``N``, ``beads``, ``time_value``, ``force_value``.
     """
@@ -412,7 +415,7 @@ def _speed_and_force(run: Run) -> dict[str, float]:
 
 
 def fitted_exponent(rows: Sequence[dict[str, Any]]) -> Estimate:
-    """Return the exponent e of V_s ~ F_m^e over the rows of `scaling`."""
+    """Return the exponent of V_s as a power of F_m over the rows of `scaling`."""
     return exponent([row["force"] for row in rows], [row["speed"] for row in rows])
 
 

@@ -1,26 +1,27 @@
 """Traveling waves of the lattice, solved by Newton's method with Fourier coefficients.
 
-Beads of masses m1 and m2 alternate at distance 1, contacts push with F = r_+^k (A = D = 1). In a
-wave of speed c all quantities depend on ξ = x - ct alone. With a(ξ) the strain of the contacts
-behind beads m1, b(ξ) the strain of the other contacts, F_a = a_+^k and F_b = b_+^k, the equations
-of motion are
+Beads of masses m1 and m2 alternate at distance 1, and contacts push with ``F = r_+^k``
+(``A = D = 1``). In a wave of speed c all quantities depend on ``ξ = x - ct`` alone. a(ξ) is the
+strain of the contacts behind beads m1, b(ξ) the strain of the other contacts, ``F_a = a_+^k`` and
+``F_b = b_+^k``. The equations of motion are::
 
     c² a'' = -Σ F_a(ξ) + F_b(ξ-1)/m1 + F_b(ξ+1)/m2,      Σ = 1/m1 + 1/m2,
 
-and the same for b with a ↔ b, m1 ↔ m2. Sought are mirror symmetric waves, b(ξ) = a(-ξ). Then
-a = e + o with e even and o odd, likewise F_a = E + O. With Δ = 1/m2 - 1/m1 the Fourier coefficients
-(of cos qξ for e and E, of sin qξ for o and O; q is the wavenumber) satisfy
+and the same for b with a and b, m1 and m2 exchanged. Sought are mirror symmetric waves,
+``b(ξ) = a(-ξ)``. Then ``a = e + o`` with e even and o odd, likewise ``F_a = E + O``. With
+``Δ = 1/m2 - 1/m1`` the Fourier coefficients (of cos qξ for e and E, of sin qξ for o and O; q is the
+wavenumber) satisfy the equations (1)::
 
-    c² q² e = Σ (1 - cos q) E + Δ sin q O,      c² q² o = Δ sin q E + Σ (1 + cos q) O.     (*)
+    c² q² e = Σ (1 - cos q) E + Δ sin q O,      c² q² o = Δ sin q E + Σ (1 + cos q) O.
 
-Profiles are trigonometric polynomials of period 2L, |ξ| ≤ L (L is the half period), spectrally
-accurate.
+Profiles are trigonometric polynomials of period 2L, ``-L ≤ ξ ≤ L`` (L is the half period),
+spectrally accurate.
 
-**The tail.** At q → 0 the second line of (*) has a pole: forces that end leave strains o = ±T
-behind. T is 0 for a solitary wave. `SpecialRatio` imposes T = 0 with one more unknown, m2.
+**The tail.** At q → 0 the second equation has a pole: forces that end leave strains ``o = ±T``
+behind. T is 0 for a solitary wave. `SpecialRatio` imposes ``T = 0`` with one more unknown, m2.
 
 **Under a load.** On a background strain p0, a and b are the additional strains, r → 0 far away, and
-F = (p0 + r)_+^k - p0^k; (*) stays.
+``F = (p0 + r)_+^k - p0^k``; equations (1) stay.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ Solution = TypeVar("Solution")
 
 
 def widening(masses: Pair) -> float:
-    """Return the canonical wave's width divided by its width at equal masses, √(12 I/D²)."""
+    """Return the canonical wave's width divided by its width at equal masses, ``√(12 I/D²)``."""
     m1, m2 = masses
     return 2 * math.sqrt(m1 * m1 - m1 * m2 + m2 * m2) / (m1 + m2)
 
@@ -65,7 +66,7 @@ def ample_half_period(masses: Pair, k: float) -> float:
 
 
 def points_needed(masses: Pair, k: float, half_period: float) -> int:
-    """Return a number of points on 0 … L = ``half_period`` that resolves the wave to rounding."""
+    """Return a number of points on 0 … L, L the half period, that resolves the wave to rounding."""
     # Points per site, in this order: for the pulse's width as k grows, for its steeper flanks at
     # large k, for the oscillation of light beads.
     beads = math.sqrt(sum(masses) / min(masses) - 1)
@@ -74,7 +75,7 @@ def points_needed(masses: Pair, k: float, half_period: float) -> int:
 
 
 def rise(strain: Array, k: float, p0: float) -> Array:
-    """Return (p0 + r)_+^k - p0^k, r the strain: force less static force, without cancellation."""
+    """Return ``(p0 + r)_+^k - p0^k``, r the strain: the dynamic force, without cancellation."""
     if not p0:
         return np.asarray(np.maximum(strain, 0) ** k)
     with np.errstate(divide="ignore"):  # an open contact
@@ -84,9 +85,10 @@ def rise(strain: Array, k: float, p0: float) -> Array:
 def respond(
     force: NDArray[np.complex128], inverse: Pair, half_period: float
 ) -> NDArray[np.complex128]:
-    """Return the Fourier coefficients of c² a from those of F_a by (*); e^{iqξ}, q = 0 … πn/L.
+    """Return the Fourier coefficients of c² a from those of F_a by equations (1).
 
-    inverse : (1/m1, 1/m2). The mean of a is set to 0.
+    Coefficients are those of ``e^{iqξ}``, ``q = 0 … πn/L``; the mean of a is set to 0. ``inverse``
+    holds 1/m1 and 1/m2.
     """
     q = np.pi * np.arange(len(force)) / half_period
     mirrored = inverse[0] * np.expm1(-1j * q) + inverse[1] * np.expm1(1j * q)
@@ -120,21 +122,18 @@ class Found:
 
 @dataclass(eq=False)
 class Border:
-    """Conditions on a wave beside F_a = `rise` of a, and the unknowns beside the forces.
+    """Conditions on a wave beside its equation, and the unknowns beside the forces."""
 
-    faults : by how much each condition is missed. rows : its derivatives by the forces.
-    columns : derivatives of F_a - `rise` by each further unknown. corner : derivatives of the
-    conditions by the further unknowns.
-    """
-
-    faults: list[float]
-    rows: list[Array]
-    columns: list[Array]
-    corner: Array
+    faults: list[float]  # by how much each condition is missed
+    rows: list[Array]  # derivatives of each condition by the forces
+    columns: list[Array]  # derivatives of the equation by each further unknown
+    corner: Array  # derivatives of the conditions by the further unknowns
 
 
 class Problem:
-    """The wave equations on a periodic grid: F_a = `rise` of the strain a, and a from F_a by (*).
+    """The wave equations on a periodic grid.
+
+    F_a is the `rise` of the strain a, and a follows from F_a by equations (1).
 
     Parameters
     ----------
@@ -262,7 +261,7 @@ class Problem:
 
 
 class SpecialRatio(Problem):
-    """The wave equations with m2 as one more unknown, and the condition T = 0."""
+    """The wave equations with m2 as one more unknown, and the condition ``T = 0``."""
 
     def _further(self) -> list[float]:
         return [self.inverse[1]]
@@ -290,7 +289,14 @@ class SpecialRatio(Problem):
 def newton(change: Callable[[Array], Array], x: Array, sizes: Array) -> Array:
     """Return a root near x, found by damped Newton steps; `LinAlgError` without convergence.
 
-    change : the full Newton step at x, to be subtracted. sizes : typical sizes of the unknowns.
+    Parameters
+    ----------
+    change : callable
+        The full Newton step at x, to be subtracted.
+    x : ndarray, shape (N,)
+        The start.
+    sizes : ndarray, shape (N,)
+        Typical sizes of the unknowns.
     """
     before = math.inf
     for _ in range(MOST_STEPS):
@@ -317,9 +323,17 @@ def continued(
 ) -> Solution:
     """Continue a solution from one value of a parameter to another, in adaptive steps.
 
-    begin, end : the parameter's values. step : length of the first step.
-    solve : returns the solution at a value, given the last one or two values with their solutions;
-        its `lwa.InputError` halves the step, and is raised at a hundredth of the first step.
+    Parameters
+    ----------
+    solution : object
+        The solution at ``begin``.
+    begin, end : float
+        The parameter's values.
+    step : float
+        Length of the first step.
+    solve : callable
+        Returns the solution at a value, given the last one or two values with their solutions; its
+        `lwa.InputError` halves the step, and is raised at a hundredth of the first step.
     """
     path = [(begin, solution)]
     size = step

@@ -1,10 +1,10 @@
 """Profiles of traveling waves of the lattice: strains, forces, velocities, peaks, widths, tails.
 
-A = D = 1. A contact's strain is a(ξ) or b(ξ) = a(-ξ), ξ = x - ct (`validation.waves.newton`). The
-contact law r_+^k has no scale of its own, so that multiples of a wave are waves: r → s r with
-c² → s^{k-1} c². Waves are found at peak contact force 1; `ExactWave.times` gives the others. On a
-background p0, which is multiplied by s too, strains and forces are those added to p0 and p0^k, and
-the force of peak 1 is the sum.
+``A = D = 1``. A contact's strain is a(ξ) or ``b(ξ) = a(-ξ)``, ``ξ = x - ct``
+(`validation.waves.newton`). The contact law ``r_+^k`` has no scale of its own, so that multiples of
+a wave are waves: s times the strain with ``s^{k-1}`` times c². Waves are found at peak contact
+force 1; `ExactWave.times` gives the others. On a background p0, which is multiplied by s too,
+strains and forces are those added to p0 and ``p0^k``, and the force of peak 1 is the sum.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from lwa.base.arrays import Array, finite
-from lwa.base.exact import one_of
-from lwa.base.frozen import QUANTITIES, Estimate, known_quantity
+from lwa.base.frozen import Estimate
+from lwa.base.words import QUANTITIES, QuantityName, one_of
 from validation.pictures import Curve, Panel, Pictured
 from validation.pulses.pulse import highest_pulse
 from validation.pulses.signals import Piecewise
@@ -34,18 +34,19 @@ TOLERANCE = 1e-9  # tail and residual of a solitary wave over its peak strain, a
 # Relative error of a solitary wave's numbers by rounding: between grids they differ by 2e-14 at
 # most (k = 1.02 … 60).
 ROUNDING = 1e-13
-_ROW = 16  # Fourier coefficients that are summed up together
 OUTSIDE = 0.6  # share of the half period at which a dimer's pulse has ended and its tail begins
 
 Number = Literal["c2", "c", "tail", "peak", "fwhm"]
 """Numbers of an exact wave that have errors."""
 
-_NUMBERS = ("c2", "c", "tail", "peak", "fwhm")
+_NUMBERS: tuple[Number, ...] = get_args(Number)
 
 
 @dataclass(frozen=True, eq=False)
 class ExactWave(Pictured):
-    """A traveling wave of the lattice as a function of ξ = x - ct, accurate to rounding; A = D = 1.
+    """A traveling wave of the lattice as a function of ``ξ = x - ct``, accurate to rounding.
+
+    Stiffness and spacing are 1.
 
     Parameters
     ----------
@@ -58,8 +59,7 @@ class ExactWave(Pictured):
     half_period : float
         L; profiles have the period 2L, and a solitary wave ends before L.
     even, odd : ndarray, shape (n + 1,)
-        Coefficients of cos(πjξ/L) in E, the even part of F_a, and of sin(πjξ/L) in O, its odd part,
-        j = 0 … n.
+        Coefficients of cos(πjξ/L) in E, the even part of F_a, and of sin(πjξ/L) in O, its odd part.
     tail : float
         Largest ``|o|``, the odd part of a, outside the pulse, divided by the peak strain.
     residual : float
@@ -93,7 +93,7 @@ class ExactWave(Pictured):
 
     @property
     def omega(self) -> float:
-        """Mass ratio ω = m2/m1."""
+        """Mass ratio m2/m1."""
         return self.masses[1] / self.masses[0]
 
     @property
@@ -123,7 +123,7 @@ class ExactWave(Pictured):
         return Estimate(value, error if name == "tail" else error * value)
 
     def times(self, s: float) -> ExactWave:
-        """Return the wave with all strains, the background's too, multiplied by s; c² ~ s^{k-1}."""
+        """Return the wave with all strains, the background's too, multiplied by s."""
         s = between(s, "s", 1e-30, 1e30)
         force = s**self.k
         return replace(
@@ -154,22 +154,22 @@ class ExactWave(Pictured):
         moving = self._velocity(at, integer(bead, "bead", 0)) - mean
         return np.where(self._ended(at), 0.0, moving)
 
-    def peak(self, name: str) -> float:
-        """Return the maximum of "strain", "force" or "velocity".
+    def peak(self, quantity: QuantityName) -> float:
+        """Return the maximum of a quantity.
 
         Strain and force are those of contact 0, the velocity is that of bead 0.
         """
         xi = np.linspace(-self.half_period, self.half_period, 4 * len(self.even) + 1)
-        _, peak = summit(self._quantity(name), xi)
+        _, peak = summit(self._profile(quantity), xi)
         return peak
 
-    def fwhm(self, name: str = "strain") -> float:
-        """Full width at half maximum of a quantity's highest hump, a length; name as in `peak`.
+    def fwhm(self, quantity: QuantityName = "strain") -> float:
+        """Full width at half maximum of a quantity's highest hump, a length; see `peak`.
 
         Raises `MeasureError` for a hump that does not fall to half its peak.
         """
         xi = np.linspace(-self.half_period, self.half_period, len(self.even) + 1)
-        return highest_pulse(Piecewise(xi, self._quantity(name))).fwhm
+        return highest_pulse(Piecewise(xi, self._profile(quantity))).fwhm
 
     def launched(self, start: int, sites: int, **rest: Any) -> Scene:
         """Return a scene of a chain that carries the wave, centered at bead ``start`` at time 0.
@@ -200,14 +200,15 @@ class ExactWave(Pictured):
         curves = []
         for name, style in zip(QUANTITIES, ("-", "--", ":"), strict=True):
             curves.append(
-                Curve(name, xi, self._quantity(name)(xi) / self.peak(name), style)
+                Curve(name, xi, self._profile(name)(xi) / self.peak(name), style)
             )
         return [Panel("ξ / D", "over its peak", tuple(curves))]
 
-    def _quantity(self, name: str) -> Callable[[ArrayLike], Array]:
-        """The method of a quantity's name."""
-        quantity: Callable[[ArrayLike], Array] = getattr(self, known_quantity(name))
-        return quantity
+    def _profile(self, quantity: QuantityName) -> Callable[[ArrayLike], Array]:
+        """The method of a quantity."""
+        profile: Callable[[ArrayLike], Array]
+        profile = getattr(self, one_of(quantity, QUANTITIES, "quantity"))
+        return profile
 
     @cached_property
     def _strains(self) -> tuple[Array, Array]:
@@ -235,17 +236,11 @@ class ExactWave(Pictured):
 
     def _sum(self, xi: ArrayLike, even: Array, odd: Array) -> Array:
         """Evaluate the Fourier sum Σ even_j cos(q_j ξ) + odd_j sin(q_j ξ) at any ξ."""
-        padding = np.zeros(-len(even) % _ROW)
-        rows = np.append(even - 1j * odd, padding).reshape(-1, _ROW)
-        q = np.pi / self.half_period * np.arange(rows.size)
-        # e^{iqξ} of every q as a product of two, of the first 16 q and of every 16th q: special
-        # ratios are found in a tenth less time than with a sine and a cosine for every q.
-        first = np.exp(1j * np.multiply.outer(xi, q[:_ROW]))
-        every = np.exp(1j * np.multiply.outer(xi, q[::_ROW]))
-        return np.asarray(((first @ rows.T) * every).real.sum(axis=-1))
+        phase = np.multiply.outer(xi, np.pi / self.half_period * np.arange(len(even)))
+        return np.asarray(np.cos(phase) @ even + np.sin(phase) @ odd)
 
     def _ended(self, xi: ArrayLike) -> NDArray[np.bool_]:
-        """True where |ξ| > L for a solitary wave: there the wave is 0, the Fourier sum periodic."""
+        """True beyond L for a solitary wave: there the wave is 0, the Fourier sum periodic."""
         return np.asarray((np.abs(xi) >= self.half_period) & self.solitary)
 
 

@@ -15,12 +15,12 @@ on both sides of the pulse, on which the light beads oscillate between the heavy
 (Betti & Pelinovsky, J. Nonlinear Sci. 23, 689 (2013)). A struck chain carries no such wave, as its
 light beads are at rest before the pulse: its pulse is measured by `validation.pulses.steady`.
 
-Newton's method solves T = 0 together with the equations of motion, with m2 as an unknown, and may
-converge to any of the special ratios, so their order is secured as follows. All ratios are found at
-k = 3/2: the first two as published, and each further one at the distance of the last two in
-√(m1/m2), which is nearly constant. From there they are continued to k in steps that change √(m1/m2)
-little. Below k = 1.3 the smaller ratios are lost on the way (measured: six are found from k = 1.3
-on, five at 1.25, four at 1.2, three at 1.15, two at 1.1).
+Newton's method solves ``T = 0`` together with the equations of motion, with m2 as an unknown, and
+may converge to any of the special ratios, so their order is secured as follows. All ratios are
+found at ``k = 3/2``: the first two as published, and each further one at the distance of the last
+two in ``√(m1/m2)``, which is nearly constant. From there they are continued to k in steps that
+change ``√(m1/m2)`` little. Below ``k = 1.3`` the smaller ratios are lost on the way (measured: six
+are found from ``k = 1.3`` on, five at 1.25, four at 1.2, three at 1.15, two at 1.1).
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWa
         m1, or m1 and m2. A ratio m2/m1 within 1e-7 of a special ratio counts as that ratio, and the
         wave has its masses: m1 and the special m2.
     k : float
-        Exponent of F = δ^k, from 1.01 to 60; with a background to 8; for unequal masses from 1.1
+        Exponent of the force, from 1.01 to 60; with a background to 8; for unequal masses from 1.1
         to 5.
     background : float
         p0, for one mass only, in units of the peak compression of the contacts. The peak force, the
@@ -224,7 +224,7 @@ def _converged(problem: newton.Problem, force: Any, c2: float) -> ExactWave:
 
 
 def resonances(k: Any, count: Any) -> tuple[ExactWave, ...]:
-    """Return the solitary waves, m1 = 1, at the largest special ratios ω = m2/m1 < 1.
+    """Return the solitary waves at the largest special mass ratios m2/m1 below 1; m1 is 1.
 
     Parameters
     ----------
@@ -244,7 +244,7 @@ def resonances(k: Any, count: Any) -> tuple[ExactWave, ...]:
 
 
 def special_waves(k: Any) -> Iterator[ExactWave]:
-    """Yield the solitary waves, m1 = 1, at the `MOST` largest special ratios, the largest first.
+    """Yield the solitary waves at the `MOST` largest special ratios, the largest first; m1 is 1.
 
     Raises `SceneError` for k out of range, `NoWave` for a ratio that is lost on the way to k.
     """

@@ -7,7 +7,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lwa import Law, Lattice, Link, Power, loaded_wave
+from lwa import Lattice, Law, Link, Power, loaded_wave
 from lwa.law import DELTA, named
 
 HERTZ = Power("3/2")
