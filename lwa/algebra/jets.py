@@ -247,9 +247,6 @@ class GradedSeries:
         # Computed once for each term
         self._velocity_slopes = cache(lambda n: algebra.velocity_slopes(self[n]))
 
-    def __len__(self) -> int:
-        return len(self._derivatives)
-
     def __getitem__(self, n: int) -> fmpq_mpoly:
         return self._derivatives[n][0]
 
