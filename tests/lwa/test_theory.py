@@ -28,6 +28,21 @@ def test_cells_of_two_masses():
     assert Dimer(1, omega).at(omega=3).masses == (1, 3)  # a symbol of the caller's
 
 
+def test_the_closure_is_the_papers_where_the_paper_has_one():
+    def chosen(cell, **kind):
+        closure = homogenize(cell, **kind).closure
+        return closure.name, closure.field
+
+    three = [Cell(masses, spacing=1) for masses in ([1, 2, 3], [2, 3, 1], [3, 1, 2])]
+    assert chosen(Cell(["m"])) == chosen(Dimer(1, 2)) == ("linear", "first")
+    assert chosen(three[0]) == chosen(Dimer(1, 2), closure="full") == ("full", "center")
+    assert chosen(Dimer(1, 2), branch="optical") == ("linear", "first")
+    theories = [homogenize(cell, k="5/2") for cell in three]
+    assert "closure='full', branch='acoustic', field='center'" in repr(theories[0])
+    # one chain, whichever bead is called the first
+    assert len({theory.pde.traveling_wave().beta for theory in theories}) == 1
+
+
 def test_floats_enter_as_their_decimals():
     own = homogenize(Dimer("9/20", "123/1000"), k="3/2").pde.I
     assert own == homogenize(Dimer(0.45, 0.123), k=1.5).pde.I
@@ -52,9 +67,7 @@ def test_the_canonical_equation_is_the_same_from_every_particle(masses, n):
     """Particles named anew change the field that the wave equation is about, and no wave."""
     n %= len(masses)
     found, again = (
-        homogenize(
-            Cell(cell), 7, k="3/2", closure="full", field="center"
-        ).pde.coefficients
+        homogenize(Cell(cell), 7, k="3/2", closure="full").pde.coefficients
         for cell in (masses, masses[n:] + masses[:n])
     )
     assert found.keys() == again.keys()
