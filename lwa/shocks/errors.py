@@ -30,8 +30,9 @@ def speed_error(delta: float) -> float:
 def rise_error(delta: float) -> float:
     """Error of the doubling rule's peak strain on the canonical wave, over the rise."""
     rho = -expm1(-delta)
-    # The first term is the canonical wave's, the second the rule's own.
-    return 0.065 * rho**2 + min(0.015, rho / 4)
+    # The first term is the canonical wave's, the second the rule's own: the lattice's peak is 1.3 %
+    # higher for powers without load, k from 1.02 to 1.1. For small jumps it is less.
+    return 0.065 * rho**2 + 0.015
 
 
 def leading_error(off: float, delta: float) -> float:
