@@ -133,6 +133,15 @@ def test_exact():
     assert max(largest) >= 1 / LARGEST
 
 
+@pytest.mark.parametrize(("k", "load"), [(1.1, 0.99), (1.5, 0.9999)])
+def test_exact_on_a_background(k, load):
+    """The wave is a small part of the strain, whose rounding is that of the whole."""
+    wave = exact_wave([1], k, background=load)
+    points = int(1.3 * len(wave.even))
+    finer = solve(Problem((1.0, 1.0), k, 1.05 * wave.half_period, points, load), wave)
+    assert held(numbers(wave), numbers(finer)) >= 1 / LARGEST
+
+
 def test_intervals_of_the_law_are_those_of_their_scatter():
     """The ± of k, ln A and curvature in 100 draws: two to three standard deviations, as of t."""
     rng, force = np.random.default_rng(6), np.geomspace(0.1, 10, 12)
