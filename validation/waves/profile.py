@@ -161,7 +161,7 @@ class ExactWave(Pictured):
 
         Strain and force are those of contact 0, the velocity is that of bead 0.
         """
-        xi = np.linspace(-self.half_period, self.half_period, 4 * len(self.even) + 1)
+        xi = np.linspace(-self.half_period, self.half_period, len(self.even) + 1)
         _, peak = summit(self._profile(quantity), xi)
         return peak
 
