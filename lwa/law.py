@@ -108,6 +108,7 @@ class ContactLaw(Value):
     @property
     def pulls(self) -> bool:
         """True if the contact also holds where δ < 0: laws with F′(0) > 0 that are no power."""
+        # δ^k is the force of a contact that opens, at k = 1 too.
         known = not (self.homogeneous or self.formless)
         return known and bool(self.slope().subs(self.delta, 0).is_positive)
 
@@ -137,6 +138,7 @@ class ContactLaw(Value):
         (8, 0, array([0., 8.]))
         """
         n = integer(n, "n", 0)
+        # A number of NumPy is an array without axes.
         if isinstance(delta, list | tuple) or getattr(delta, "ndim", 0) > 0:
             return self._at_array(delta, n)
         delta = real(delta, "delta")
@@ -169,9 +171,20 @@ class ContactLaw(Value):
         return bool(self.F.atoms(AppliedUndef))
 
     def of_strain(self, p: sp.Expr, D: sp.Expr, n: int = 0) -> sp.Expr:
-        """The n-th derivative of F at the strain p, in the units of u_ττ = F′(u_x) u_xx.
+        """The n-th derivative of F at a strain, in the units of u_ττ = F′(u_x) u_xx.
 
-        For n = 0 this is F(Dp)/D (p^k/k for a power), for n = -1 the energy W.
+        Parameters
+        ----------
+        p : expression
+            The strain.
+        D : expression
+            The spacing.
+        n : int
+            For n = 0 the result is F(Dp)/D (p^k/k for a power), for n = -1 the energy W.
+
+        Returns
+        -------
+        expression
         """
         p, D = real(p, "p"), real(D, "D")
         # Each derivative by p instead of δ = D p brings a factor D, each integral 1/D.
@@ -180,16 +193,27 @@ class ContactLaw(Value):
         return self.at(D * p, n) * D ** (n - 1)
 
     def check_strain(self, p: sp.Expr, cell: Cell) -> None:
-        """Raise `lwa.InputError` unless F is real up to the strain p and grows there, F′ > 0.
+        """Refuse a strain up to which F is not real, or at which F does not grow, F′ > 0.
 
-        Symbols are accepted, a spacing as 1.
+        Parameters
+        ----------
+        p : expression
+            The strain. Symbols are accepted.
+        cell : Cell
+            The cell, whose spacing is 1 if it is a symbol.
+
+        Raises
+        ------
+        InputError
         """
+        # F′ of a power is positive at every strain; that of a law without expression is unknown.
         if self.homogeneous or self.formless:
             return
         D = cell.spacing
         delta = D * real(p, "p")
         if D.is_Symbol:
             delta = delta.subs(D, 1)
+        # A base that changes its sign on the way is 0 there, and its negative power a pole.
         for factor in self.F.atoms(sp.Pow):
             start = factor.base.subs(self.delta, 0)
             end = factor.base.subs(self.delta, delta)
@@ -208,9 +232,12 @@ class ContactLaw(Value):
         return self.inverse(real(force, "force") / cell.stiffness(self.exponent))
 
     def inverse(self, force: sp.Expr) -> sp.Expr:
-        """The compression at which F is this force, to 35 digits.
+        """The compression at which F is this force: exact for a power, else to 35 digits.
 
-        Raises `lwa.InputError` for a force beyond the law's reach, and for symbols.
+        Raises
+        ------
+        InputError
+            For a force beyond the law's reach, and for symbols under a law that is no power.
         """
         if self.formless:
             raise InputError(
@@ -219,6 +246,7 @@ class ContactLaw(Value):
         difference = self.F - real(force, "force")
         unknown = difference.free_symbols - {self.delta}
         demand_numbers(unknown, f"the load under the law {self.text} needs numbers")
+        # 15 digits more than the result has, for what the search loses
         with mpmath.workdps(50):
             root = growing_root(difference, self.delta)
             if root is None:
@@ -264,6 +292,7 @@ class Power(ContactLaw):
     def exponent(self) -> sp.Expr:
         return self.k
 
+    # SymPy integrates δ^k by cases of k.
     @cached_property
     def energy(self) -> sp.Expr:
         return self.delta ** (self.k + 1) / (self.k + 1)
@@ -321,6 +350,7 @@ class Law(ContactLaw):
         if not isinstance(self.F, sp.Expr) or self.delta not in self.F.free_symbols:
             fault = f"a SymPy expression in {self.delta} is wanted"
             raise InputError(f"F is {shorten(self.F)}: {fault}")
+        # Floats are taken for the decimals that they print.
         object.__setattr__(self, "F", read_exact(self.F, "F"))
         if self.slope().is_zero:
             raise InputError(
@@ -384,6 +414,7 @@ def named(name: str, *parameters: Any) -> ContactLaw:
     >>> named("hertz2", 1, "1/10").F
     delta**(5/2)/10 + delta**(3/2)
     """
+    # An unknown name is refused with the list of the known ones.
     letters_of, build = _NAMED[one_of(name, NAMES, "law")]
     letters = letters_of.split()
     if len(parameters) > len(letters):
@@ -393,6 +424,7 @@ def named(name: str, *parameters: Any) -> ContactLaw:
         raise InputError(
             f"law {name} has {len(parameters)} parameters: {wanted} are wanted"
         )
+    # Only the corrections of a polynomial may soften a contact.
     read = signed if name == "polynomial" else positive
     values = []
     for letter, given in zip_longest(letters, parameters):
@@ -400,17 +432,36 @@ def named(name: str, *parameters: Any) -> ContactLaw:
         value = read(letter if given is None else given, place)
         values.append(_check_parameter(value, place, DELTA))
     force = build(*values)
+    # "power" and "general" build the law itself.
     if isinstance(force, ContactLaw):
         return force
     return Law(force, DELTA, name, tuple(values))
 
 
 def read_law(value: Any, name: str) -> ContactLaw:
-    """Read a law from its name and parameters, such as "hertz2:1,2"; ``name`` is for messages."""
+    """Read a law from its name and parameters.
+
+    Parameters
+    ----------
+    value : str
+        Such as "hertz2:1,2" or "power".
+    name : str
+        Name of the value in messages.
+
+    Returns
+    -------
+    ContactLaw
+
+    Raises
+    ------
+    InputError
+        For anything else; nothing is evaluated.
+    """
     if not isinstance(value, str):
         raise InputError(
             f"{name} is {shorten(value)}: a text such as 'hertz2:1,2' is wanted"
         )
+    # Without a colon all parameters are symbols.
     title, colon, parameters = value.partition(":")
     return named(title.strip(), *(parameters.split(",") if colon else ()))
 
@@ -430,10 +481,24 @@ def phi_symbol(n: int) -> sp.Symbol:
 
 
 def for_cell(law: Any, cell: Cell, k: Any = symbol_k) -> ContactLaw:
-    """Return the law of a cell's contacts; the power k without a law.
+    """Return the law of a cell's contacts.
 
-    Raises `lwa.InputError` for anything but a law or None, for a law besides an exponent, and for
-    unlike contacts under a law that is no power.
+    Parameters
+    ----------
+    law : ContactLaw or None
+    cell : Cell
+    k : number or symbol
+        Exponent of the power that stands for None.
+
+    Returns
+    -------
+    ContactLaw
+
+    Raises
+    ------
+    InputError
+        For anything but a law or None, for a law besides an exponent, and for unlike contacts under
+        a law that is no power.
     """
     # `k != symbol_k` alone would be an array if k is one.
     if law is not None and (not isinstance(k, sp.Symbol) or k != symbol_k):
@@ -457,7 +522,22 @@ def for_cell(law: Any, cell: Cell, k: Any = symbol_k) -> ContactLaw:
 def substituted(
     values: Mapping[str, Any], cell: Cell, law: ContactLaw, *expressions: sp.Expr
 ) -> tuple[Any, ...]:
-    """Substitute values in a cell, a law and expressions, as `lwa.cell.substitution`."""
+    """Substitute values in a cell, a law and expressions, as `lwa.cell.substitution`.
+
+    Parameters
+    ----------
+    values : mapping
+        Values by the names of symbols.
+    cell : Cell
+    law : ContactLaw
+    *expressions : expressions
+
+    Returns
+    -------
+    tuple
+        The cell, the law and the expressions, in this order.
+    """
+    # A symbol of the law that is also one of the cell is positive, as the cell's.
     others = sp.Tuple(*law.symbols, *expressions).free_symbols - {*cell.symbols}
     new = substitution(values, cell, more=sorted(others, key=str))
     replaced = [expression.xreplace(new) for expression in expressions]

@@ -59,7 +59,7 @@ def chain_functions() -> list[Function]:
     paper = homogenize(cell, k=k).pde.traveling_wave()
     theirs = paper.at_force(F)
     strain = canonical_wave(Cell([1]), k).on_background(p_0).field
-    gap = strain.stiffness(B) - strain.stiffness(v)
+    gap = strain.squared_speed(B) - strain.squared_speed(v)
     I = canonical_wave(Cell([m1, m2], spacing=1), k).I
     gradient = v * sp.sqrt(gap / (I * strain.force(p_0 + v, 1)))
     values = (k, A, m1, m2, D)

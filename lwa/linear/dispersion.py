@@ -102,12 +102,28 @@ class Dispersion(Value):
         return {m: self._expression(t) for m, t in enumerate(trace)}
 
     def acoustic(self, order: int = 4) -> dict[int, sp.Expr]:
-        """Mapping from n = 2, 4, … ≤ ``order`` to the coefficient of κ^n in the acoustic Ω²."""
+        """The series of the acoustic branch.
+
+        Parameters
+        ----------
+        order : int
+            Highest power of κ.
+
+        Returns
+        -------
+        dict
+            Mapping from n = 2, 4, … ≤ ``order`` to the coefficient of κ^n in Ω².
+
+        Raises
+        ------
+        InputError
+            For more terms than `MOST_TERMS`.
+        """
         series = self._bloch.acoustic(self._length(order))
         return {2 * n: self._expression(c) for n, c in enumerate(series) if n > 0}
 
     def optical(self, order: int = 4) -> dict[int, sp.Expr]:
-        """Mapping n = 0, 2, … ≤ ``order`` → coefficient of κ^n in a dimer's optical Ω²."""
+        """The series of a dimer's optical branch, with n = 0, 2, …; see `acoustic`."""
         if self.cell.size != 2:  # the roots of other cells are not rational
             raise InputError(
                 f"the optical series needs a cell of 2 masses, not {self.cell.size}"
@@ -144,10 +160,13 @@ class Dispersion(Value):
         The coefficient of κ^{2n} has the degree 2n - 2 in the masses and in the compliances, and
         comes from about n² products.
         """
+        # Odd powers of κ have no term.
         n = integer(order, "order", 1) // 2
         terms = n * n
         for part in (self._model.ring.masses, self._model.ring.contacts):
-            terms *= comb(2 * max(n, 1) - 2 + len(part.names), len(part.names))
+            degree = 2 * max(n, 1) - 2
+            parameters = len(part.names)
+            terms *= comb(degree + parameters, parameters)
         if terms > MOST_TERMS:
             raise InputError(
                 f"order is {order}: give numbers for the cell, or a lower order"
@@ -164,6 +183,7 @@ class Dispersion(Value):
         weights = sp.Tuple(*self.cell.fractions, *self.cell.shares(self.k))
         demand_numbers(weights.free_symbols, "bands want numbers")
         fractions, shares = np.array(list(map(float, weights))).reshape(2, -1)
+        # A float below 1e-308 is 0.
         if not (np.all(fractions > 0) and np.all(shares > 0)):
             raise InputError(
                 "masses or compliances differ by more than the range of a float"
@@ -216,6 +236,7 @@ class LoadedChain(Value):
     @cached_property
     def spring_constants(self) -> tuple[sp.Expr, ...]:
         """The spring constants A_i F′(δ_i)."""
+        # Once for each stiffness: the search for δ takes a while.
         constants = {}
         for A in set(self.cell.stiffnesses):
             delta = self.law.inverse(self.precompression / A)
@@ -237,6 +258,7 @@ class LoadedChain(Value):
         """The bands in floats, in the units of the cell; raises `lwa.InputError` for symbols."""
         D = self.cell.spacing
         rate = self.sound_speed / D  # ω/Ω, in s⁻¹ for a cell in SI
+        # A symbol is the unit of length.
         length = sp.S.One if D.is_Symbol else D
         demand_numbers(rate.free_symbols | length.free_symbols, "bands want numbers")
         return replace(self.springs.bands, rate=float(rate), length=float(length))

@@ -76,6 +76,11 @@ class Network(NamedTuple):
         springs : ndarray, shape (…, links)
             Spring constants.
         masses : ndarray, shape (size,)
+
+        Returns
+        -------
+        Acoustic
+            Arrays of the shape of the leading axes, and of ``springs``.
         """
         total = masses.sum()
         k = [np.tensordot(springs, self._powers(n), 1) for n in range(5)]
@@ -106,10 +111,12 @@ class Network(NamedTuple):
         """Coefficients of s^n in b(-s) b(s)ᵀ, shape (links, size, size)."""
         parts = np.zeros((len(self.links), self.size, self.size))
         for part, (i, j, cosine) in zip(parts, self.links, strict=True):
+            # The particle of a cell ahead moves as its image in this cell, times e^{s (j - last)}.
             last = j % self.size
             coefficient = cosine**2 * (j - i) ** n / factorial(n)  # of e^{s r}
             part[i, last] -= coefficient
             part[last, i] -= (-1) ** n * coefficient
+            # The terms without e^{±s r}
             if n == 0:
                 part[i, i] += cosine**2
                 part[last, last] += cosine**2
@@ -117,7 +124,17 @@ class Network(NamedTuple):
 
 
 def solved(matrix: Array, right: Array) -> Array:
-    """Solve linear systems with axes in front; NaN for a matrix that is singular or not finite."""
+    """Solve linear systems; NaN for a matrix that is singular or not finite.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (…, n, n)
+    right : ndarray, shape (…, n)
+
+    Returns
+    -------
+    ndarray, shape (…, n)
+    """
     scale = np.abs(matrix).max(axis=(-2, -1), keepdims=True)
     usable = np.isfinite(scale) & (scale > 0)
     scale = np.where(usable, scale, 1)

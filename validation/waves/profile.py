@@ -13,15 +13,15 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from lwa.base.arrays import Array, finite
-from lwa.base.exact import one_of
-from lwa.base.frozen import QUANTITIES, Estimate, known_quantity
+from lwa.base.frozen import Estimate
+from lwa.base.words import QUANTITIES, QuantityName, one_of
 from validation.pictures import Curve, Panel, Pictured
 from validation.pulses.pulse import highest_pulse
 from validation.pulses.signals import Piecewise
@@ -31,15 +31,17 @@ from validation.scenes.scene import Scene
 from validation.waves import newton
 
 TOLERANCE = 1e-9  # tail and residual of a solitary wave over its peak strain, at most
-# Relative error of a solitary wave's numbers by rounding: between grids they differ by 2e-14 at
-# most (k = 1.02 … 60).
-ROUNDING = 1e-13
+# Relative errors of a solitary wave's numbers by rounding, 1.5 times the differences between grids
+# or more (k = 1.02 … 60, p0 = 0 … 0.9999): of each number, and by cancellation, as a wave is bent
+# by (k - 1)(1 - p0) of its strain.
+ROUNDING = 5e-14
+CANCELLED = 1e-15
 OUTSIDE = 0.6  # share of the half period at which a dimer's pulse has ended and its tail begins
 
 Number = Literal["c2", "c", "tail", "peak", "fwhm"]
 """Numbers of an exact wave that have errors."""
 
-_NUMBERS = ("c2", "c", "tail", "peak", "fwhm")
+_NUMBERS: tuple[Number, ...] = get_args(Number)
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,8 +120,8 @@ class ExactWave(Pictured):
         value = getattr(self, one_of(name, _NUMBERS, "name"))
         if callable(value):
             value = value(*arguments)
-        # On a background rounding is that of the whole strain, of which the wave is a part.
-        error = ROUNDING / (1 - self.background) + self.residual + self.tail
+        bend = (self.k - 1) * (1 - self.background)
+        error = ROUNDING + CANCELLED / bend + self.residual + self.tail
         return Estimate(value, error if name == "tail" else error * value)
 
     def times(self, s: float) -> ExactWave:
@@ -154,22 +156,22 @@ class ExactWave(Pictured):
         moving = self._velocity(at, integer(bead, "bead", 0)) - mean
         return np.where(self._ended(at), 0.0, moving)
 
-    def peak(self, name: str) -> float:
-        """Return the maximum of "strain", "force" or "velocity".
+    def peak(self, quantity: QuantityName) -> float:
+        """Return the maximum of a quantity.
 
         Strain and force are those of contact 0, the velocity is that of bead 0.
         """
-        xi = np.linspace(-self.half_period, self.half_period, 4 * len(self.even) + 1)
-        _, peak = summit(self._quantity(name), xi)
+        xi = np.linspace(-self.half_period, self.half_period, len(self.even) + 1)
+        _, peak = summit(self._profile(quantity), xi)
         return peak
 
-    def fwhm(self, name: str = "strain") -> float:
-        """Full width at half maximum of a quantity's highest hump, a length; name as in `peak`.
+    def fwhm(self, quantity: QuantityName = "strain") -> float:
+        """Full width at half maximum of a quantity's highest hump, a length; see `peak`.
 
         Raises `MeasureError` for a hump that does not fall to half its peak.
         """
         xi = np.linspace(-self.half_period, self.half_period, len(self.even) + 1)
-        return highest_pulse(Piecewise(xi, self._quantity(name))).fwhm
+        return highest_pulse(Piecewise(xi, self._profile(quantity))).fwhm
 
     def launched(self, start: int, sites: int, **rest: Any) -> Scene:
         """Return a scene of a chain that carries the wave, centered at bead ``start`` at time 0.
@@ -200,14 +202,15 @@ class ExactWave(Pictured):
         curves = []
         for name, style in zip(QUANTITIES, ("-", "--", ":"), strict=True):
             curves.append(
-                Curve(name, xi, self._quantity(name)(xi) / self.peak(name), style)
+                Curve(name, xi, self._profile(name)(xi) / self.peak(name), style)
             )
         return [Panel("ξ / D", "over its peak", tuple(curves))]
 
-    def _quantity(self, name: str) -> Callable[[ArrayLike], Array]:
-        """The method of a quantity's name."""
-        quantity: Callable[[ArrayLike], Array] = getattr(self, known_quantity(name))
-        return quantity
+    def _profile(self, quantity: QuantityName) -> Callable[[ArrayLike], Array]:
+        """The method of a quantity."""
+        profile: Callable[[ArrayLike], Array]
+        profile = getattr(self, one_of(quantity, QUANTITIES, "quantity"))
+        return profile
 
     @cached_property
     def _strains(self) -> tuple[Array, Array]:
