@@ -422,7 +422,7 @@ Object.assign(things, {
       const middle = (n - 1) / 2; // a light bead
       const envelope = i => U / Math.cosh((b * (i - middle)) / 2);
       const lasting = i => (((k - 1) * U * U) / (2 * b)) * Math.tanh((b * (i - middle)) / 2);
-      const lattice = row({mass: middle % 2 ? [1, omega] : [omega, 1], k, p0: 1, v: 0, n, start: i => start[i], fine: 3});
+      const lattice = row({mass: middle % 2 ? [1, omega] : [omega, 1], k, p0: 1, v: 0, n, start: i => start[i], fine: 6});
       const bottom = Math.sqrt((2 * k) / omega); // F' = k at the compression 1
       return {lattice, middle, bottom, U, nu, envelope, lasting, turns: [], last: start[middle]};
     },

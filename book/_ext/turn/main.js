@@ -1,4 +1,5 @@
-window.lwaTurn = {Lattice, row, calculate, drawRecord, things};
+const speedOf = (name, F) => lawSpeed(named(LAWS[name]), F);
+window.lwaTurn = {row, theory, lawSpeed: speedOf, LATTICES, calculate, drawRecord, things};
 document.querySelectorAll(".lwa-calculator").forEach(calculator);
 for (const [name, thing] of Object.entries(things)) {
   document.querySelectorAll(`.lwa-${name}`).forEach(home => stage(home, thing));
