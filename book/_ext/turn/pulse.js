@@ -141,7 +141,7 @@ Object.assign(things, {
   // Forty equal steel balls, from a drop of five millimetres; the picture follows the pulse.
   hero: {
     label: "A row of equal steel balls. Bars of force run along it, and the long-wave theory as a line with them",
-    shape: 2.6,
+    shape: 2.8,
     begin() {
       const scene = struckRow({omega: 1}, null, values => row({...values, n: 44}));
       return {...scene, pace: scene.pace * 0.8, from: -1};
