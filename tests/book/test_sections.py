@@ -43,10 +43,15 @@ def test_a_tag_begins_its_section():
 
 @pytest.mark.parametrize("page", CHAPTERS)
 def test_a_chapter_has_its_frame(page):
-    """What it needs, scene, picture, question, answer: in this order."""
+    """What it needs, scene, question, a thing to turn, answer: in this order."""
     opening = re.search(r"^# .*?(?=^## )", TEXTS[page], re.DOTALL | re.MULTILINE)[0]
-    marks = (r"^\*Needs: .*\. About \d+ minutes\.\*$", r"^\w", r"^    name: fig-|^<div class",
-             r"^\*[^*]+\?\*$", r"^\*\*The answer\.\*\* \w")  # fmt: skip
+    marks = (
+        r"^\*Needs: .* About \d+ minutes\..*\*$",
+        r"^\w",
+        r"^\*[^*]+\?\*$",
+        r"^<div class=\"lwa-",
+        r"^\*\*The answer\.\*\* \w",
+    )
     places = [
         m and m.start()
         for m in (re.search(mark, opening, re.MULTILINE) for mark in marks)
@@ -63,7 +68,7 @@ def test_cells_and_exercises(page):
     for options, code in CELL.findall(TEXTS[page]):
         assert "assert " not in code
         fits = all(len(line) <= COLUMN for line in code.splitlines())
-        assert fits or "remove-" in options
+        assert fits or "hide-input" in options
     exercises = re.split(r"^## Exercises?\n", TEXTS[page], flags=re.MULTILINE)[1:]
     assert all(re.search("hide-cell|} Solution", text) for text in exercises)
 
