@@ -36,6 +36,7 @@ from lwa.base.exact import (
     power,
     read_exact,
     real,
+    replaced,
     shorten,
     signed,
 )
@@ -470,7 +471,7 @@ def substituted(
 ) -> tuple[Any, ...]:
     """Substitute values in a cell, a law and expressions, as `lwa.cell.substitution`."""
     # A symbol of the law that is also one of the cell is positive, as the cell's.
-    others = sp.Tuple(*law.symbols, *expressions).free_symbols - {*cell.symbols}
-    new = substitution(values, cell, more=sorted(others, key=str))
-    replaced = [expression.xreplace(new) for expression in expressions]
-    return cell.replaced(new), law.replaced(new), *replaced
+    more = sp.Tuple(*law.symbols, *expressions).free_symbols - {*cell.symbols}
+    new = substitution(values, cell, more=sorted(more, key=str))
+    others = [replaced(expression, new) for expression in expressions]
+    return cell.replaced(new), law.replaced(new), *others

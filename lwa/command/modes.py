@@ -146,7 +146,8 @@ def envelope(
             "--frequency and --detuning are both given: one says the other"
         )
     chain = take_chain(options)
-    cell, place = chain.cell, int(branch) if branch and branch.isdecimal() else branch
+    cell = chain.cell
+    place: Any = int(branch) if branch and branch.isdecimal() else branch
     load = {
         "background": background,
         "precompression": chain.load(background, precompression),
