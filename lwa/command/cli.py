@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import io
 import os
+import shlex
 import sys
 from collections.abc import Mapping, Sequence
 from importlib import import_module
@@ -12,7 +13,7 @@ from typing import Any
 
 import click
 
-from lwa.base import INTERRUPTED, InputError, NoSolitaryWave
+from lwa.base import INTERRUPTED, LONGEST_MESSAGE, Refusal, cut
 from lwa.base.progress import alive
 
 HELP = {"help_option_names": ["-h", "--help"]}
@@ -75,12 +76,14 @@ def run(
             stream.reconfigure(encoding="utf-8", errors="backslashreplace")
     # Numbers of 330 digits have coefficients of 10^5 at the highest orders; 3·10^5 are read in 1 s.
     sys.set_int_max_str_digits(300_000)
-    sys.exit(_status(command, name, arguments))
+    given = sys.argv[1:] if arguments is None else arguments
+    sys.exit(_status(command, name, given))
 
 
-def _status(command: click.Command, name: str, arguments: Sequence[str] | None) -> int:
+def _status(command: click.Command, name: str, arguments: Sequence[str]) -> int:
     """Run a command and return its exit status; what it refuses is one line on standard error."""
-    output, status, fault = sys.stdout, 2, ""
+    output = sys.stdout
+    status = 2
     try:
         if output is None:
             raise OSError(errno.EBADF, "it is closed")
@@ -92,8 +95,8 @@ def _status(command: click.Command, name: str, arguments: Sequence[str] | None) 
         return 2
     except click.ClickException as error:
         fault = error.format_message()
-    except (InputError, NoSolitaryWave) as error:
-        fault = str(error)
+    except Refusal as refusal:
+        fault = _next_step(refusal, command, name, arguments)
     except (click.Abort, KeyboardInterrupt) as error:
         status = INTERRUPTED
         interrupt = error.__cause__ or error  # click puts an Abort around it
@@ -102,16 +105,65 @@ def _status(command: click.Command, name: str, arguments: Sequence[str] | None) 
     except (OSError, SystemExit) as error:
         if isinstance(error, SystemExit) and sys.stdout is output:
             raise
-        sys.stdout = (
-            output  # click replaces the output, and exits, where a pipe is closed
-        )
+        # Click replaces the output, and exits, where a pipe is closed.
+        sys.stdout = output
         if output is not None:  # discard what is not flushed yet
             os.dup2(os.open(os.devnull, os.O_WRONLY), output.fileno())
         if isinstance(error, SystemExit):
             return CLOSED
         fault = f"{error.filename or 'the output'}: {error.strerror or error}"
-    click.echo(f"{name}: {' '.join(fault.split())}", err=True)
+    click.echo(cut(f"{name}: {fault}"), err=True)
     return status
+
+
+def _next_step(
+    refusal: Refusal, command: click.Command, name: str, arguments: Sequence[str]
+) -> str:
+    """The reason of a refusal and, if it names options to change, the line to paste."""
+    called = click.Context(command)
+    chosen: click.Command | None = command
+    if isinstance(command, click.Group):
+        chosen = command.get_command(called, arguments[0])
+    options = set()
+    for parameter in chosen.params if chosen else ():
+        options |= {x.lstrip("-") for x in parameter.opts}
+    if not refusal.change or not options >= refusal.change.keys():
+        return str(refusal)
+    line = shlex.join([name, *corrected(arguments, refusal.change)])
+    text = f"{refusal.reason}; try: {line}"
+    if len(text) + len(name) + 2 <= LONGEST_MESSAGE:
+        return text
+    parts = [f"--{option} {value}" for option, value in refusal.change.items()]
+    return f"{refusal.reason}; try {' '.join(parts)}"
+
+
+def corrected(arguments: Sequence[str], change: Mapping[str, object]) -> list[str]:
+    """The arguments of a command with some options changed.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        The words behind the name of the program.
+    change : mapping
+        Values by the names of options without dashes; None for an option that is left out.
+
+    Examples
+    --------
+    >>> corrected(["wave", "--k=0", "--force", "1"], {"k": "3/2", "force": None})
+    ['wave', '--k', '3/2']
+    """
+    kept = []
+    words = iter(arguments)
+    for word in words:
+        option, equals, _ = word.partition("=")
+        if not option.startswith("--") or option[2:] not in change:
+            kept.append(word)
+        elif not equals:
+            next(words, None)  # the option's value
+    for name, value in change.items():
+        if value is not None:
+            kept += [f"--{name}", str(value)]
+    return kept
 
 
 COMMANDS = {
