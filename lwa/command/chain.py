@@ -87,7 +87,10 @@ class ChainInput:
             return self.scale.number(value, unit) if self.si else str(value)
 
         masses = ", ".join(written(m, "kg") for m in self.cell.masses)
-        stiffnesses = ", ".join(written(A, f"N/m^({k})") for A in self.cell.stiffnesses)
+        contacts = self.cell.stiffnesses
+        if len(set(contacts)) == 1:
+            contacts = contacts[:1]
+        stiffnesses = ", ".join(written(A, f"N/m^({k})") for A in contacts)
         spacing = written(self.cell.spacing, "m")
         return (
             f"masses {masses}; contact force {force}, A = {stiffnesses}; "

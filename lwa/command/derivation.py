@@ -102,7 +102,7 @@ def derive(style: str, **options: Any) -> None:
     shown: list[Shown | str] = [theory]
     if theory.defect:
         defect = latex_by_order(theory.defect, theory.cell.spacing, 0, None)
-        difference = r"u_{\tau\tau}^{(1)} - u_{\tau\tau}^{(2)}"
+        difference = r"{u_{\tau\tau}^{(1)} - u_{\tau\tau}^{(2)}}"
         shown.append(f"{difference} = {' + '.join(defect)}")
     Answer(head, rows, shown=shown).print(style)
 

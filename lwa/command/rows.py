@@ -241,7 +241,18 @@ def approximate(value: sp.Expr, digits: int = EXACT_DIGITS) -> str:
 
 def estimated(result: Any, name: str, *arguments: Any) -> Estimate | None:
     """The estimate of a result's number; None with symbols."""
-    if not hasattr(result, "estimate"):
-        return None
+    if not hasattr(result, "estimate"):  # until Shock has it
+        error = result.errors.get((*arguments, name)[0])
+        value = (
+            attempt(getattr(result, name), *arguments)
+            if arguments
+            else attempt(getattr, result, name)
+        )
+        number = as_float(value)
+        return (
+            None
+            if error is None or number is None
+            else Estimate(number, abs(number) * error)
+        )
     found = attempt(result.estimate, name, *arguments)
     return None if isinstance(found, InputError) else found

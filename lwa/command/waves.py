@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -149,6 +148,7 @@ def _compact(theory: Theory) -> CompactWave:
 def any_amplitude(chain: ChainInput, theory: Theory) -> Answer:
     """The compact wave of any amplitude: the speed V_s by the peak strain B, and B by V_s."""
     wave = _compact(theory)
+    reduction = wave.reduction()
     rows: list[Row | str | Answer] = [
         chain.text,
         *closure_lines(theory),
@@ -164,10 +164,12 @@ def any_amplitude(chain: ChainInput, theory: Theory) -> Answer:
         Row("speed", "V_s", wave.speed()),
         f"  F_m ∝ V_s^({wave.force_exponent});  dx/dt = V_s · {wave.time_scale}",
         "",
-        *_reduction_rows(wave.reduction()),
+        *_reduction_rows(reduction),
         *_canonical(chain, theory, None),
     ]
-    return Answer(settings_json(theory), rows, chain.scale, [theory.pde, wave])
+    shown: list[Shown | str] = [theory.pde, wave]
+    shown += [reduction] if _is_short(reduction) else RELATIONS
+    return Answer(settings_json(theory), rows, chain.scale, shown)
 
 
 def _width_row(quantity: str, width: sp.Expr, time: bool = False) -> Row:
@@ -179,21 +181,34 @@ def _width_row(quantity: str, width: sp.Expr, time: bool = False) -> Row:
     return Row(f"fwhm.{quantity}", f"FWHM of the {quantity}", width, "m", symbol)
 
 
+RELATIONS = (
+    r"(G + H + I) p^{2} - (H + 3 I) p + 2 I = 0",
+    r"a = 1 - k p + 3 (p - 1) + p \frac{H}{I}",
+    r"\mu = \frac{V_{s}^{2}}{I (p + a)}",
+    r"\eta = 1 + p - k p",
+    r"\sigma = \frac{1}{I (k p + a)}",
+)
+"""The oscillator's constants by G, H, I and p, the smaller root, in LaTeX."""
+
+
 def _reduction_rows(reduction: Reduction) -> list[Row | str]:
-    """Rows of the oscillator; where p is long, of its relations to G, H, I and p."""
+    """Rows of the oscillator z'' = μ z^η - σ z; where p is long, of its relations to G, H, I."""
     names = ("p", "a", "mu", "eta", "sigma", "s")
-    labels: Sequence[str] = names
     lines: list[Row | str] = ["v = z^p, integrating factor z^a: z'' = μ z^η - σ z"]
-    if len(str(reduction.p)) > LONG:
-        labels = [""] * len(names)
+    short = _is_short(reduction)
+    if not short:
         lines += [
-            "  (G + H + I) p² - (H + 3 I) p + 2 I = 0, the smaller root;  a = 1 - k p + 3 (p - 1) "
-            "+ p H/I",
-            "  μ = V_s²/(I (p + a));  η = 1 + p - k p;  σ = 1/(I (k p + a));  s = 2/(1 - η)",
+            "  (G + H + I) p² - (H + 3 I) p + 2 I = 0, the smaller root;",
+            "  a = 1 - k p + 3 (p - 1) + p H/I;  μ = V_s²/(I (p + a));  η = 1 + p - k p;",
+            "  σ = 1/(I (k p + a));  s = 2/(1 - η)",
         ]
-    for name, label in zip(names, labels, strict=True):
-        lines.append(Row(name, label, getattr(reduction, name)))
+    for name in names:
+        lines.append(Row(name, name if short else "", getattr(reduction, name)))
     return lines
+
+
+def _is_short(reduction: Reduction) -> bool:
+    return len(str(reduction.p)) <= LONG
 
 
 def of_force(chain: ChainInput, theory: Theory, force: sp.Expr) -> Answer:
