@@ -149,7 +149,16 @@ def take_chain(options: dict[str, Any]) -> ChainInput:
                     **{name: None},
                 )
         return read_chain(file)
-    cell = Cell(chosen["masses"], chosen["stiffnesses"] or (), chosen.get("spacing", D))
+    masses, stiffnesses = chosen["masses"], chosen["stiffnesses"] or ()
+    if len(stiffnesses) not in (0, len(masses)):
+        raise InputError(
+            f"stiffnesses: {len(stiffnesses)} for {len(masses)} masses, and a periodic cell has as "
+            "many contacts as beads",
+            stiffnesses=",".join(["1"] * len(masses)),
+        )
+    if chosen.get("law") is not None and given("k"):
+        raise InputError("--k and --law are both given: a law has its own", k=None)
+    cell = Cell(masses, stiffnesses, chosen.get("spacing", D))
     if cell.spacing.is_Symbol and chosen["k"] == cell.spacing:
         raise InputError(
             f"k is {cell.spacing}: the name is that of the spacing, a unit of length",

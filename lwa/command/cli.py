@@ -5,7 +5,6 @@ from __future__ import annotations
 import errno
 import io
 import os
-import shlex
 import sys
 from collections.abc import Mapping, Sequence
 from importlib import import_module
@@ -13,8 +12,9 @@ from typing import Any
 
 import click
 
-from lwa.base import INTERRUPTED, LONGEST_MESSAGE, Refusal, cut
+from lwa.base import INTERRUPTED, Refusal, cut
 from lwa.base.progress import alive
+from lwa.command.refusals import next_step
 
 HELP = {"help_option_names": ["-h", "--help"]}
 """Settings of a command: both ways to ask for help."""
@@ -96,7 +96,7 @@ def _status(command: click.Command, name: str, arguments: Sequence[str]) -> int:
     except click.ClickException as error:
         fault = error.format_message()
     except Refusal as refusal:
-        fault = _next_step(refusal, command, name, arguments)
+        fault = next_step(refusal, command, name, arguments)
     except (click.Abort, KeyboardInterrupt) as error:
         status = INTERRUPTED
         interrupt = error.__cause__ or error  # click puts an Abort around it
@@ -114,56 +114,6 @@ def _status(command: click.Command, name: str, arguments: Sequence[str]) -> int:
         fault = f"{error.filename or 'the output'}: {error.strerror or error}"
     click.echo(cut(f"{name}: {fault}"), err=True)
     return status
-
-
-def _next_step(
-    refusal: Refusal, command: click.Command, name: str, arguments: Sequence[str]
-) -> str:
-    """The reason of a refusal and, if it names options to change, the line to paste."""
-    called = click.Context(command)
-    chosen: click.Command | None = command
-    if isinstance(command, click.Group):
-        chosen = command.get_command(called, arguments[0])
-    options = set()
-    for parameter in chosen.params if chosen else ():
-        options |= {x.lstrip("-") for x in parameter.opts}
-    if not refusal.change or not options >= refusal.change.keys():
-        return str(refusal)
-    line = shlex.join([name, *corrected(arguments, refusal.change)])
-    text = f"{refusal.reason}; try: {line}"
-    if len(text) + len(name) + 2 <= LONGEST_MESSAGE:
-        return text
-    parts = [f"--{option} {value}" for option, value in refusal.change.items()]
-    return f"{refusal.reason}; try {' '.join(parts)}"
-
-
-def corrected(arguments: Sequence[str], change: Mapping[str, object]) -> list[str]:
-    """The arguments of a command with some options changed.
-
-    Parameters
-    ----------
-    arguments : sequence of str
-        The words behind the name of the program.
-    change : mapping
-        Values by the names of options without dashes; None for an option that is left out.
-
-    Examples
-    --------
-    >>> corrected(["wave", "--k=0", "--force", "1"], {"k": "3/2", "force": None})
-    ['wave', '--k', '3/2']
-    """
-    kept = []
-    words = iter(arguments)
-    for word in words:
-        option, equals, _ = word.partition("=")
-        if not option.startswith("--") or option[2:] not in change:
-            kept.append(word)
-        elif not equals:
-            next(words, None)  # the option's value
-    for name, value in change.items():
-        if value is not None:
-            kept += [f"--{name}", str(value)]
-    return kept
 
 
 COMMANDS = {

@@ -101,9 +101,9 @@ def derive(style: str, **options: Any) -> None:
         rows.append(Answer({}, ["", FIRST, *letters], key="canonical"))
     shown: list[Shown | str] = [theory]
     if theory.defect:
-        defect = latex_by_order(theory.defect, theory.cell.spacing, 0, None)
+        defect = latex_by_order([], theory.defect, theory.cell.spacing)
         difference = r"{u_{\tau\tau}^{(1)} - u_{\tau\tau}^{(2)}}"
-        shown.append(f"{difference} = {' + '.join(defect)}")
+        shown.append(f"{difference} = {defect}")
     Answer(head, rows, shown=shown).print(style)
 
 

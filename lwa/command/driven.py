@@ -123,6 +123,7 @@ def strike(
     "--piston",
     "Velocity of the wall, in m/s if the chain is in SI, in place of --behind.",
     "1",
+    positive,
 )
 @value(
     "--ahead",

@@ -6,11 +6,11 @@ import math
 from dataclasses import replace
 from typing import Any
 
-import click
 import sympy as sp
 
 from lwa.base.exact import InputError, positive
 from lwa.base.frozen import TABLE_DIGITS, Shown
+from lwa.base.words import BRANCHES, BranchName, one_of
 from lwa.command.answer import Answer, Values
 from lwa.command.chain import ChainInput, take_chain
 from lwa.command.options import (
@@ -103,6 +103,11 @@ def _band_lines(chain: ChainInput, edges: list[list[float]]) -> list[str]:
     return lines
 
 
+def _branch(text: str, name: str) -> BranchName | int:
+    """Read a branch by its name or its number."""
+    return int(text) if text.isdecimal() else one_of(text, BRANCHES, name)
+
+
 @command(
     "lwa envelope --masses 1,1/2 --k 3/2 --precompression 1 --detuning 1/1000",
     "lwa envelope --masses 1 --k 2 --background 1 --wavenumber pi/3",
@@ -119,11 +124,13 @@ def _band_lines(chain: ChainInput, edges: list[list[float]]) -> list[str]:
     angle,
     "pi",
 )
-@click.option(
+@value(
     "--branch",
+    "Branch of the mode: acoustic, optical, or its number from 0.  [default: optical; acoustic for "
+    "equal beads]",
+    "acoustic",
+    _branch,
     metavar="NAME|N",
-    help="Branch of the mode: acoustic, optical, or its number from 0.  [default: optical; "
-    "acoustic for equal beads]",
 )
 @value(
     "--frequency",
@@ -141,7 +148,7 @@ def envelope(
     background: sp.Expr | None,
     precompression: sp.Expr | None,
     wavenumber: sp.Expr,
-    branch: str | None,
+    branch: BranchName | int | None,
     frequency: sp.Expr | None,
     detuning: sp.Expr | None,
     **options: Any,
@@ -163,14 +170,19 @@ def envelope(
             detuning=None,
         )
     chain = take_chain(options)
-    place = int(branch) if branch and branch.isdecimal() else branch
+    load = chain.load(background, precompression)
+    if background is None and load is None:
+        raise InputError(
+            "neither --background nor --precompression is given: a mode is that of a loaded chain",
+            precompression="1",
+        )
     equation = schrodinger.envelope(
         chain.cell,
         law=chain.law,
         background=background,
-        precompression=chain.load(background, precompression),
+        precompression=load,
         wavenumber=wavenumber,
-        branch=place,
+        branch=branch,
     )
     turn = 2 * sp.pi if chain.si else sp.S.One
     name = "ω/(2π)" if chain.si else "ω"

@@ -14,6 +14,8 @@ from click.core import ParameterSource
 from lwa.base.exact import InputError, integer, positive, read_exact
 from lwa.base.words import BRANCHES, CLOSURES, FIELDS, one_of, similar
 from lwa.cell import D, exponent, k
+from lwa.command.refusals import ValueOption
+from lwa.command.refusals import called as called
 from lwa.law import NAMES, read_law
 
 Function = Callable[..., None]
@@ -27,20 +29,13 @@ STYLES = ("text", "json", "latex")
 # --- readers ---
 
 
-def called(option: click.Parameter) -> str:
-    """Name of an option in messages, without its dashes."""
-    return option.opts[0].lstrip("-")
-
-
-def reader(read: Reader, example: str = "") -> Callable[..., Any]:
+def reader(read: Reader) -> Callable[..., Any]:
     """Make a callback of Click that reads the text of an option.
 
     Parameters
     ----------
     read : callable
         Function of the text and of the option's name; raises `lwa.InputError` for other texts.
-    example : str
-        A valid text, which the refusal of another one proposes.
 
     Returns
     -------
@@ -49,15 +44,7 @@ def reader(read: Reader, example: str = "") -> Callable[..., Any]:
     """
 
     def callback(context: click.Context, option: click.Parameter, text: Any) -> Any:
-        if text is None:
-            return None
-        name = called(option)
-        try:
-            return read(text, name)
-        except InputError as refusal:
-            if not example:
-                raise
-            raise InputError(refusal.reason, **{name: example}) from None
+        return None if text is None else read(text, called(option))
 
     return callback
 
@@ -181,7 +168,9 @@ def value(
     """
     return click.option(
         name,
-        callback=reader(read, example),
+        cls=ValueOption,
+        example=example,
+        callback=reader(read),
         default=default,
         show_default=default is not None,
         metavar=metavar,
@@ -241,13 +230,13 @@ SPHERES = click.option(
     help="TOML or JSON file of the chain, in place of options on masses, contacts and spacing: "
     "spheres in SI, or any scene of lwa-validate run.",
 )
-MASSES = click.option(
+MASSES = value(
     "--masses",
-    callback=reader(_row, "0.45,0.123"),
-    default="m1,m2",
-    show_default=True,
-    metavar="M1,M2,…",
-    help="Masses of the beads in one period of the chain.",
+    "Masses of the beads in one period of the chain.",
+    "0.45,0.123",
+    _row,
+    "m1,m2",
+    "M1,M2,…",
 )
 STIFFNESSES = value(
     "--stiffnesses",

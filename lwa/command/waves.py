@@ -73,6 +73,12 @@ def wave(
         _take_canonical(options)
     _check_language(style, loaded, force)
     theory = homogenize(chain.cell, law=chain.law, **options)
+    if not loaded and not chain.law.homogeneous:
+        raise InputError(
+            f"law is {chain.law.text}: the compact wave is that of a power law; waves under a "
+            "load or of a force have any law",
+            background="1/10",
+        )
     peak = read_exact("F", "force") if force is None else force
     if style in LANGUAGES:
         click.echo(_compact(theory).code(style))
@@ -127,7 +133,7 @@ def _compact(theory: Theory) -> CompactWave:
     try:
         return theory.pde.traveling_wave()
     except (InputError, NoSolitaryWave) as refusal:
-        if not depends_on_first(theory) or not theory.k > 1:
+        if not depends_on_first(theory) or theory.order < 4:
             raise
         canonical = canonical_wave(theory.cell, theory.k)
         width = as_float(canonical.fwhm("force") / canonical.D)
