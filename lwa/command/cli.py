@@ -14,7 +14,7 @@ import click
 
 from lwa.base import INTERRUPTED, Refusal, cut
 from lwa.base.progress import alive
-from lwa.command.refusals import next_step
+from lwa.command.hints import help_end, next_step
 
 HELP = {"help_option_names": ["-h", "--help"]}
 """Settings of a command: both ways to ask for help."""
@@ -128,7 +128,13 @@ COMMANDS = {
 """Module in `lwa.command`, and summary, of each command by its name."""
 
 
-@click.group(cls=Commands, package="lwa.command", table=COMMANDS, context_settings=HELP)
+@click.group(
+    cls=Commands,
+    package="lwa.command",
+    table=COMMANDS,
+    context_settings=HELP,
+    epilog=help_end(["lwa derive", "lwa wave --k 3/2 --masses 1"], "reference"),
+)
 @version
 def lwa() -> None:
     """Long-wave theory of granular chains with contact force F = A δ^k.

@@ -161,7 +161,9 @@ def shock(
     else:
         front = riemann.shock(cell, behind, ahead, law=law)
 
-    def row(name: str, label: str, unit: str, *rule: str, known: bool = True) -> Row:
+    def row(
+        name: str, label: str, unit: str, *rule: riemann.RuleName, known: bool = True
+    ) -> Row:
         """The row of an attribute, or of the leading edge by a rule."""
         key = ".".join((name, *rule))
         if rule:
@@ -196,5 +198,8 @@ def shock(
             "c₋ > 2 c₊: the beads near the wall go on oscillating. The strain behind is that of a "
             "wall at rest beside its neighbours, v_p = ∫ c dp; the mean strain is below it."
         )
+    missing = [row.value for row in rows if isinstance(row, Row)]
+    if any(str(value).startswith(f"'{cell.spacing}'") for value in missing):
+        notes.append("a number that depends on the spacing wants one: --spacing 1")
     errors = "bound of the difference to driven chains, as measured"
     Answer({"kind": named}, rows, chain.scale, [front], errors, notes).print(style)

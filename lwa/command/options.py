@@ -14,8 +14,7 @@ from click.core import ParameterSource
 from lwa.base.exact import InputError, integer, positive, read_exact
 from lwa.base.words import BRANCHES, CLOSURES, FIELDS, one_of, similar
 from lwa.cell import D, exponent, k
-from lwa.command.refusals import ValueOption
-from lwa.command.refusals import called as called
+from lwa.command.hints import ValueOption, called, help_end
 from lwa.law import NAMES, read_law
 
 Function = Callable[..., None]
@@ -114,23 +113,6 @@ def given(option: str) -> bool:
 
 
 # --- commands ---
-
-
-def help_end(examples: Sequence[str], page: str) -> str:
-    """The end of a command's help.
-
-    Parameters
-    ----------
-    examples : sequence of str
-        Lines that run one after another in an empty folder.
-    page : str
-        Name of the book's page on the command, without an ending; empty for none.
-    """
-    # Click leaves the lines of a paragraph after \b as they are.
-    parts = ["\b\nExamples:", *(f"  {line}" for line in examples)]
-    if page:
-        parts += ["", f"In the book: {page}.html"]
-    return "\n".join(parts)
 
 
 def command(*examples: str, page: str) -> Callable[[Function], click.Command]:

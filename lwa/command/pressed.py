@@ -109,17 +109,19 @@ def on_background(chain: ChainInput, theory: Theory, p0: sp.Expr) -> Answer:
 def _unit_rise(field: Background) -> Iterator[Row]:
     """Rows of the wave whose strain rises by 1; none with symbols, or if there is none."""
     cell: Cell = field.cell
+    place = "B = 1"
     # D is the unit of length where it is a symbol; beside a law that is no power it is 1.
     if cell.spacing.is_Symbol and not field.law.homogeneous:
         cell = cell.at(**{cell.spacing.name: 1})
+        place += f", {field.cell.spacing} = 1"
     with suppress(NoSolitaryWave, InputError):
         wave = loaded_wave(cell, rise=1, background=field.p0, law=field.law)
         speed = wave.field.speed(wave.strain)
         if speed.free_symbols - {cell.spacing}:
             return
-        yield Row("speed", "V_s at B = 1", speed, form="number")
+        yield Row("speed", f"V_s at {place}", speed, form="number")
         for q in QUANTITIES:
-            label = f"FWHM of the {q} at B = 1"
+            label = f"FWHM of the {q} at {place}"
             yield Row(
                 f"fwhm.{q}", label, wave.fwhm(q), form="number", digits=_WIDTH_DIGITS
             )

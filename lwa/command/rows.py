@@ -54,12 +54,18 @@ class Scale:
             return value.subs(ones)
         return value.xreplace(ones)
 
-    def length_unit(self, value: sp.Expr) -> str:
-        """The unit D^n of a value c D^n, D the symbol of the spacing, after a space; else ""."""
-        rest = sp.factor_terms(value).as_independent(self.spacing, as_Add=False)[1]
-        base, n = rest.as_base_exp()
-        if not self.spacing.is_Symbol or base != self.spacing or not n.is_number:
+    def unit_of(self, value: sp.Expr) -> str | None:
+        """The unit of a number times powers of symbols, such as " D^2"; None for other values."""
+        symbols = value.free_symbols
+        rest = sp.factor_terms(value).as_independent(*symbols, as_Add=False)[1]
+        powers = [factor.as_base_exp() for factor in sp.Mul.make_args(rest)]
+        if rest == 1:
             return ""
+        if any(not base.is_Symbol or n.free_symbols for base, n in powers):
+            return None
+        if len(powers) > 1:
+            return f"·{rest}"
+        ((base, n),) = powers
         if n == 1:
             return f" {base}"
         return f" {base}^{n}" if n.is_Integer else f" {base}^({n})"
@@ -167,7 +173,7 @@ class Row:
         if self.estimate is not None and not math.isnan(self.error):
             number = scale.measured(self.estimate, self.unit)
             if not scale.si:
-                number += scale.length_unit(self.value)
+                number += scale.unit_of(self.value) or ""
             formula = str(self.value)
             bare = scale.si or self.form == "number" or self.value.has(sp.Float)
             if bare or len(formula) > LONG or self.value.is_Rational:
@@ -189,8 +195,11 @@ class Row:
         plain = scale.plain(value)
         if plain.is_Rational and len(formula) <= FRACTION:
             return formula
+        unit = scale.unit_of(value)
+        if unit is None:  # no number but at D = 1
+            return formula
         digits = sp.sstr(evaluated(plain, self.digits), full_prec=False)
-        number = f"{digits}{scale.length_unit(value)}"
+        number = f"{digits}{unit}"
         closed = not plain.has(sp.Float) and not plain.is_Rational
         if closed and self.form == "both" and len(formula) <= LONG:
             return f"{formula} ≈ {number}"
@@ -241,18 +250,5 @@ def approximate(value: sp.Expr, digits: int = EXACT_DIGITS) -> str:
 
 def estimated(result: Any, name: str, *arguments: Any) -> Estimate | None:
     """The estimate of a result's number; None with symbols."""
-    if not hasattr(result, "estimate"):  # until Shock has it
-        error = result.errors.get((*arguments, name)[0])
-        value = (
-            attempt(getattr(result, name), *arguments)
-            if arguments
-            else attempt(getattr, result, name)
-        )
-        number = as_float(value)
-        return (
-            None
-            if error is None or number is None
-            else Estimate(number, abs(number) * error)
-        )
     found = attempt(result.estimate, name, *arguments)
     return None if isinstance(found, InputError) else found

@@ -109,11 +109,11 @@ ANSWERS = {
         "leading_speed.doubling": None,
         **{f"leading_speed_value.{rule}": front.leading_speed(rule)
            for rule in ("doubling", "dispersion")},
-        **{f"leading_speed_error_value.{rule}": front.errors[rule] * front.leading_speed(rule)
+        **{f"leading_speed_error_value.{rule}": front.estimate("leading_speed", rule).error
            for rule in ("doubling", "dispersion")},
         **{f"{name}_value": getattr(front, name)
            for name in ("trailing_speed", "peak", "peak_force")},
-        **{f"{name}_error_value": front.errors[name] * getattr(front, name)
+        **{f"{name}_error_value": front.estimate(name).error
            for name in ("trailing_speed", "peak", "peak_force")},
     },
     "shock --masses 1 --spacing 1 --k 3/2 --behind 1": {
@@ -162,7 +162,9 @@ TEXTS = {
         "  G = D**2*m1**2*(k - 2)*(k - 1)/(6*(m1 + m2)**2)\n",
         "  vanishing identically: D^(k+2)\n", "does not conserve momentum",
     ),
-    "derive --closure full --field first --order 6": ("u_x^(-1) u_xxτ u_xxxτ", "see --field center"),
+    "derive --closure full --field first --order 6": (
+        "u_x^(-1) u_xxτ u_xxxτ", "see --field center",
+    ),
     "derive --law hertz2:1,1/2": (
         "phi2 = (15*delta + 6)/(10*delta + 12)", "F' u_xx + G F' u_x^(-2) u_xx^3",
     ),

@@ -1,4 +1,4 @@
-"""Refusals of a command: the reason, and the user's own line with what makes it valid."""
+"""The next step: examples at the end of a help, and the line to paste behind a refusal."""
 
 from __future__ import annotations
 
@@ -31,6 +31,23 @@ class ValueOption(click.Option):
         except InputError as refusal:
             change = {called(self): self.example}
             raise InputError(refusal.reason, **change) from None
+
+
+def help_end(examples: Sequence[str], page: str) -> str:
+    """The end of a command's help.
+
+    Parameters
+    ----------
+    examples : sequence of str
+        Lines that run one after another in an empty folder.
+    page : str
+        Name of the book's page on the command, without an ending; empty for none.
+    """
+    # Click leaves the lines of a paragraph after \b as they are.
+    parts = ["\b\nExamples:", *(f"  {line}" for line in examples)]
+    if page:
+        parts += ["", f"In the book: {page}.html"]
+    return "\n".join(parts)
 
 
 def next_step(
