@@ -99,8 +99,8 @@ def row(name: str, value: sp.Expr) -> str:
     ('x = \\\\sqrt{2} \\\\approx 1.41421', 'y = \\\\frac{1}{2}')
     """
     text = expression(value)
-    closed = not value.is_Rational and not value.has(sp.Float)
-    if closed and not value.free_symbols and text == _formula(value):
+    irrational = value.is_number and not value.is_Rational and not value.has(sp.Float)
+    if irrational and text == _formula(value):
         text += rf" \approx {sp.latex(evaluated(value, DIGITS))}"
     return f"{name} = {text}"
 

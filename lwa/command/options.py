@@ -52,19 +52,17 @@ quantity = reader(read_exact)
 """Callback that reads an integer, a decimal, a fraction or a plain name."""
 
 
-def _row(text: str, name: str) -> tuple[sp.Expr, ...]:
-    """Read positive quantities separated by commas."""
-    return tuple(positive(part, name) for part in text.split(","))
-
-
-_quantities = reader(_row)
-
-
 def quantities(
     context: click.Context, option: click.Parameter, text: str | None
 ) -> tuple[sp.Expr, ...]:
-    """Read positive quantities separated by commas, as a callback of Click; () when absent."""
-    return _quantities(context, option, text or None) or ()
+    """Read quantities separated by commas, as a callback of Click; () when absent."""
+    parts = text.split(",") if text else []
+    return tuple(read_exact(part, called(option)) for part in parts)
+
+
+def _positive_row(text: str, name: str) -> tuple[sp.Expr, ...]:
+    """Read positive quantities separated by commas."""
+    return tuple(positive(part, name) for part in text.split(","))
 
 
 def _exponent(text: str, name: str) -> sp.Expr:
@@ -216,7 +214,7 @@ MASSES = value(
     "--masses",
     "Masses of the beads in one period of the chain.",
     "0.45,0.123",
-    _row,
+    _positive_row,
     "m1,m2",
     "M1,M2,…",
 )
@@ -225,7 +223,7 @@ STIFFNESSES = value(
     "Stiffness A of each contact in the period, the first between beads 1 and 2.  "
     "[default: all 1]",
     "1,1",
-    _row,
+    _positive_row,
     metavar="A1,A2,…",
 )
 SPACING = value(

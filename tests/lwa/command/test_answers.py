@@ -2,6 +2,7 @@
 
 import math
 import re
+import subprocess
 from collections import Counter
 
 import pytest
@@ -287,3 +288,16 @@ def test_powers_of_the_full_closure_are_written_once(capsys, options):
         ]
         assert powers
         assert all(re.fullmatch(r"-?[2-9]|-1|-?k(/2)?([+-]\d+)?", p) for p in powers)
+
+
+@pytest.mark.slow
+@pytest.mark.optional("pdflatex")
+def test_a_document_of_the_latex_of_commands_compiles(capsys, folder):
+    lines = [line for line in ANSWERS if "--order 10" not in line]
+    parts = [said(capsys, *line.split(), "--format", "latex") for line in lines]
+    assert len(parts) >= 20
+    head = r"\documentclass{article}\usepackage{amsmath}\begin{document}"
+    (folder / "all.tex").write_text("\n".join([head, *parts, r"\end{document}"]))
+    command = ["pdflatex", "-halt-on-error", "-interaction=batchmode", "all.tex"]
+    subprocess.run(command, check=True, capture_output=True, timeout=120)
+    assert (folder / "all.pdf").stat().st_size > 20_000
