@@ -13,15 +13,11 @@ import json
 import re
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 HERE = Path(__file__).parent
 FOLDER = HERE / "_static" / "stills"
-
-sys.path += [str(HERE), str(HERE / "_ext")]
-
-import interactive
-import turned
 
 # What the scripts ask of a browser.
 PAGE = """
@@ -64,8 +60,9 @@ class Svg {
     this.put("text", {x, y, fill, "font-size": size, "text-anchor": anchor}, words);
   }
   get written() {
-    const size = `viewBox="0 0 ${this.width} ${this.height}" font-family="system-ui, sans-serif"`;
-    return `<svg xmlns="http://www.w3.org/2000/svg" ${size}>\\n${this.parts.join("\\n")}\\n</svg>\\n`;
+    const size = `viewBox="0 0 ${this.width} ${this.height}"`;
+    const head = `<svg xmlns="http://www.w3.org/2000/svg" ${size} font-family="sans-serif">`;
+    return [head, ...this.parts, "</svg>", ""].join("\\n");
   }
 }
 """
@@ -84,7 +81,8 @@ for (const [name, thing] of Object.entries(lwaTurn.things)) {
 }
 const pen = new Svg(3);
 lwaTurn.drawRecord(lwaTurn.calculate({
-  a: "steel 316", b: "PTFE", radiusA: 2.38e-3, radiusB: 2.38e-3, load: 0, blow: 1.37, kind: "velocity",
+  a: "steel 316", b: "PTFE", radiusA: 2.38e-3, radiusB: 2.38e-3,
+  load: 0, blow: 1.37, kind: "velocity",
 }), pen);
 drawn.calculator = pen.written;
 console.log(JSON.stringify(drawn));
@@ -93,6 +91,8 @@ console.log(JSON.stringify(drawn));
 
 def program() -> str:
     """The page's scripts with the constants of all pages."""
+    sys.path += [str(HERE), str(HERE / "_ext")]  # the pages' own modules
+    interactive, turned = map(import_module, ("interactive", "turned"))
     tags = (turned.sums(), turned.breathers(), turned.losses(), turned.series())
     constants = [re.sub(r"</?script>", "", tag) for tag in tags]
     return "\n".join([PAGE, interactive.formulas(), *constants, interactive.written()])

@@ -27,7 +27,9 @@ LOSSES = {
 }
 
 DETUNINGS = ("1/1000", "3/2000", "1/400", "1/250", "1/200")
-BEADS = 60  # on each side of a breather's middle bead: seven lengths of the widest envelope
+BEADS = (
+    60  # on each side of a breather's middle bead: seven lengths of the widest envelope
+)
 
 
 def script(name: str, value: Any) -> str:

@@ -1,9 +1,9 @@
 """Give the pages that can be turned their scripts and the scripts' formulas.
 
-A page with an element of a class such as ``lwa-chain`` gets the scripts of the folder `turn`, joined
-in one file, and before it, inline, the functions that they call: the JavaScript that `lwa` writes of
-its own closed forms, and its table of materials. In each element stands a still picture of the
-thing's start, for readers without JavaScript and on paper; `stills.py` draws them.
+A page with an element of a class such as ``lwa-chain`` gets the scripts of the folder `turn`,
+joined in one file, and before it, inline, the functions that they call: the JavaScript that `lwa`
+writes of its own closed forms, and its table of materials. In each element stands a still picture
+of the thing's start, for readers without JavaScript and on paper; `stills.py` draws them.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ LAWS = {"hertz2": (1, 1), "exponential": (1,), "magnetic": (4, 1)}
 
 # Strengths in Pa, above which a material yields for certain: steel 316, annealed bar, ASM/MatWeb;
 # 440C hardened and tempered at 204 °C, nickelalloys.in; 6061-T6 and the hardest brass, ah-engr.com,
-# table of strengths; the strongest molded PTFE under compression, treborintl.com. Glass breaks before
-# it yields.
+# table of strengths; the strongest molded PTFE under compression, treborintl.com. Glass breaks
+# before it yields.
 STRENGTHS = {
     "steel 316": 240e6,
     "steel 440C": 1900e6,

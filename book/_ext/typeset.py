@@ -27,7 +27,9 @@ class Units(SphinxPostTransform):
             joined = APART.sub("\u00a0", text)
             # a formula in front of the text may end in the number
             if isinstance(previous(text), nodes.math):
-                joined = re.sub(APART.pattern.replace(r"(?<=\d)", "^"), "\u00a0", joined)
+                joined = re.sub(
+                    APART.pattern.replace(r"(?<=\d)", "^"), "\u00a0", joined
+                )
             if joined != text and not isinstance(parent, LITERAL):
                 parent.replace(text, nodes.Text(joined))
 
