@@ -118,8 +118,8 @@ def test_the_errors_of_a_wave_among_unlike_beads_under_a_load(law, mass, velocit
     wave = loaded_wave(
         Dimer(1, mass, spacing=1), force=1 + force, precompression=1, law=law
     )
-    assert holds(wave.speed_error, abs(float(wave.speed) - speed))
-    assert holds(wave.fwhm_error(), abs(float(wave.fwhm()) - width))
+    assert holds(wave.estimate("speed").error, abs(float(wave.speed) - speed))
+    assert holds(wave.estimate("fwhm").error, abs(float(wave.fwhm()) - width))
 
 
 @pytest.mark.parametrize(

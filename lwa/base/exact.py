@@ -18,6 +18,8 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import InputError as InputError
+from lwa.base.words import one_of as one_of
+from lwa.base.words import shorten as shorten
 
 Quantity = int | float | str | Fraction | sp.Expr
 """Accepted types of an exponent, a mass, a stiffness or a length."""
@@ -35,18 +37,13 @@ DIGITS = 330
 MOST_CANCELLED = 20_000
 """Digits that the terms of an exact number may cancel before it is evaluated in vain."""
 
-# Bits that a power is written out to: about 1000 digits. A square root, of bits (1 + 2), is of less
-# than 1024 bits then, beyond which SymPy's search for factors fails with an OverflowError.
-_POWER_BITS = 3000
+_POWER_BITS = 300
+"""Most bits of a number, times the larger part of an exponent, of powers that are written out.
 
-
-def shorten(value: object) -> str:
-    """The ``repr`` of an offending value, cut to one short line for a message."""
-    try:
-        text = repr(value)
-    except ValueError:  # Python writes no integer of more than some thousand digits
-        return "a number of thousands of digits"
-    return text if len(text) <= 60 else text[:57] + "..."
+SymPy takes whole powers out of roots, and joins the roots of a product: (6/5)^(97/197) becomes a
+root of 6^97 · 5^100. Its search for factors of a number fails with an `OverflowError` beyond the
+1024 bits of a double. The roots of three numbers of this length join to less.
+"""
 
 
 def read_exact(value: Any, name: str) -> sp.Expr:
@@ -83,7 +80,9 @@ def read_exact(value: Any, name: str) -> sp.Expr:
 
 
 def _from_number(value: Any, name: str) -> sp.Rational:
-    if hasattr(value, "item") and getattr(value, "size", 1) == 1:  # NumPy's scalars
+    # NumPy's scalars; the item of a masked one would be the number behind its mask.
+    scalar = hasattr(value, "item") and getattr(value, "size", 1) == 1
+    if scalar and not hasattr(value, "mask"):
         value = value.item()
     if isinstance(value, bool) or not isinstance(value, int | float | Fraction):
         raise InputError(f"{name} is {shorten(value)}: a number or a symbol is wanted")
@@ -157,14 +156,6 @@ def integer(value: Any, name: str, low: int, high: int = 2**63 - 1) -> int:
     return number
 
 
-def one_of(value: Any, known: Collection[str], name: str) -> str:
-    """Return a word; raise `InputError` unless it is among the known words."""
-    if not isinstance(value, str) or value not in known:
-        wanted = " or ".join(known) if len(known) == 2 else f"one of {', '.join(known)}"
-        raise InputError(f"{name} is {shorten(value)}: {wanted} is wanted")
-    return value
-
-
 def demand_numbers(free: Collection[sp.Symbol], why: str) -> None:
     """Raise `InputError` if any symbol is left; ``why`` ends the message."""
     if free:
@@ -187,6 +178,17 @@ def evaluated(value: sp.Expr, digits: int) -> sp.Expr:
     return sp.N(value, digits, maxn=MOST_CANCELLED)
 
 
+def brief(value: sp.Expr) -> str:
+    """Six digits of an exact number, or the short text of an expression, for a ``repr``.
+
+    >>> brief(sp.pi / 7), brief(sp.Symbol("x") / 3)
+    ('0.448799', 'x/3')
+    """
+    if value.free_symbols:
+        return shorten(value)
+    return f"{number(value):.6g}"
+
+
 class Unmultiplied(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymPy
     """A number that SymPy does not multiply out in a power; it prints and evaluates as usual."""
 
@@ -198,16 +200,14 @@ class Unmultiplied(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymP
 
 
 def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
-    """The power base^exponent without numbers of more than a thousand digits.
+    """The power base^exponent; that of a long number or a long exponent is not written out.
 
     >>> power(sp.Rational(9, 4), sp.Rational(3, 2)), power(sp.Rational(9, 4), sp.Rational(1, 9999))
     (27/8, (9/4)**(1/9999))
     """
-    factor = base.as_coeff_Mul()[0]
-    if factor not in (0, 1) and factor.is_Rational and exponent.is_Rational:
-        # SymPy takes whole powers out of roots: (1/3)^(1 + 1/99999) = 3^(99998/99999)/3^2 passes
-        # through 3^99999.
-        bits = int(factor.p).bit_length() + int(factor.q).bit_length()
-        if bits * (abs(int(exponent.p)) + int(exponent.q)) > _POWER_BITS:
-            base = Unmultiplied(base)
+    number, rest = base.as_coeff_Mul()
+    if number not in (0, 1) and number.is_Rational and exponent.is_Rational:
+        bits = int(number.p).bit_length() + int(number.q).bit_length()
+        if bits * max(abs(int(exponent.p)), int(exponent.q)) > _POWER_BITS:
+            base = Unmultiplied(number) * rest
     return base**exponent
