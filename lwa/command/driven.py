@@ -19,7 +19,7 @@ from lwa.command.options import (
 )
 from lwa.command.rows import Answer, Row, attempt
 from lwa.command.waves import hertz_note
-from lwa.expansion.physical import pulse_of_strike
+from lwa.expansion.strike import pulse_of_strike
 from lwa.shocks import riemann
 
 
@@ -76,7 +76,7 @@ def strike(
         Row("fwhm.length", "FWHM of the force", pulse.fwhm("force", "length"), "m"),
         Row("fwhm.time", "FWHM of the force in time", pulse.fwhm(), "s"),
     ]
-    notes = hertz_note(chain, pulse.wave.F)
+    notes = hertz_note(chain, pulse.wave.force)
     if pulse.train:
         notes.append(
             "a striker heavier than two beads sends further pulses behind this one"

@@ -36,7 +36,7 @@ ORDER = 4
 _OMEGA = sp.Symbol("omega", positive=True)
 
 _LEADING = {"c": sp.S.Half, "peak_velocity": sp.S.Half, "momentum": sp.S.One}
-"""e at k = 1: c² goes as 1/(1 + ω), and unless it stands here a quantity as √I, I ∝ (1 + ω)^{-3}."""
+"""e at k = 1: c² goes as 1/(1 + ω); a quantity that is not named goes as √I, I ∝ (1 + ω)^{-3}."""
 
 
 class FollowingRecursion(Recursion):

@@ -7,8 +7,8 @@ a = 1/(k+1) it has
 
     c₂ = 2 Γ(½ + a)/(√(π (k+1)) Γ(1 + a)),    W₂ = 2 [1 - I_x(a, ½)],
 
-the momentum 2/√(k+1), the energy 2/(k+1) and a velocity as wide as a site. (The relative velocity
-δ' of the compression δ falls from v = 2/√(k+1), δ'² = v² (1 - δ^{k+1}); the next contact closes when
+the momentum 2/√(k+1), the energy 2/(k+1) and a velocity as wide as a site. (The velocity δ'
+of the compression δ falls from v = 2/√(k+1), δ'² = v² (1 - δ^{k+1}); the next contact closes when
 this one is pressed most, so that a site takes the time ∫_0^1 dδ/δ', half of a collision. W₂ is the
 part of the two sites in which δ exceeds x^{1/(k+1)}: x = 2^{-(k+1)/k} for half of the force,
 2^{-(k+1)} for half of the strain.) The error falls as 4^{-k}. Binary collisions in chains: Rosas &
@@ -79,18 +79,6 @@ ORDERS = {"strain": 1}
 """Highest power of ε from which φ is made, 2 unless it stands here: the strain's φ hardly changes,
 and [0/1] is within 1e-3, [1/1] within 3e-3 (a pole at k = 10)."""
 
-DEFECTS = {
-    "c": 0.0014,
-    "peak_velocity": 0.009,
-    "strain": 0.012,
-    "force": 0.075,
-    "velocity": 0.0027,
-    "momentum": 0.015,
-    "energy": 0.001,
-}
-"""Size of the first term of ε φ that is left out, over its power of ε."""
-
-
 DIGITS = 60
 """Digits to which constants are evaluated."""
 
@@ -102,7 +90,7 @@ class Constant(sp.NumberSymbol):  # type: ignore[misc]  # untyped in SymPy
     is_real = True
 
     def __new__(cls, exact: sp.Expr) -> Constant:
-        self = sp.AtomicExpr.__new__(cls)
+        self: Constant = sp.AtomicExpr.__new__(cls)
         self.exact = exact
         return self
 
@@ -242,7 +230,10 @@ def _moment(integrand: sp.Expr, limits: sp.Tuple) -> sp.Expr:
     """
     end = limits[2]
     clausen = (sp.polygamma(1, sp.Rational(1, 3)) - 2 * sp.pi**2 / 3) / (2 * sp.sqrt(3))
-    moments = {sp.pi / 6: (-clausen / 2, 7 * sp.pi**3 / 216), sp.pi / 2: (0, sp.pi**3 / 24)}
+    moments = {
+        sp.pi / 6: (-clausen / 2, 7 * sp.pi**3 / 216),
+        sp.pi / 2: (0, sp.pi**3 / 24),
+    }
     first, second = moments[end]
     shifted = integrand.subs(sp.log(sp.sin(_T)), _T - sp.log(2))
     values = {0: end, 1: first, 2: second}

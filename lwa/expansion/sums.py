@@ -42,8 +42,8 @@ SAFETY = 9
 """Least ratio of the error estimate to b x^{n+1}, b as in the module.
 
 Measured on 13,403 sums of equal beads (nine quantities, 140 values of k = 1.05 … 14, orders 6 … 16)
-against the lattice's waves: no estimate is below the deviation, the closest is 1.06 of it (the width
-at k = 3.5 and c² of spheres at sixteen orders); 92.7 % are at most 30 times as large.
+against the lattice's waves: no estimate is below the deviation, the closest is 1.06 of it (the
+width at k = 3.5, and c² of spheres at sixteen orders); 92.7 % are at most 30 times as large.
 """
 
 REST = 2.6
