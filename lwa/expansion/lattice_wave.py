@@ -4,18 +4,18 @@ One class for each theory; `best_wave` takes the one that is nearest to the latt
 
 | class | beads | theory |
 |---|---|---|
-| `LatticeWave` | equal | closed form (`lwa.expansion.joined`) for every k > 1 |
-| `FollowingWave` | m2/m1 ≤ 0.5 | light beads that follow (`lwa.expansion.following`) |
+| `LatticeWave` | equal | closed form (`lwa.expansion.forms.joined`) for every k > 1 |
+| `FollowingWave` | m2/m1 ≤ 0.5 | light beads that follow (`lwa.expansion.forms.following`) |
 | `AlikeWave` | m2/m1 ≥ 0.75 | equal beads of the mean mass |
 | `ExpandedWave` | any cell, k near 1 | sums of the series (`lwa.expansion.expand`) |
 | `LongWave` | any cell | the canonical compact wave; its error is not known |
 
-Between 0.5 and 0.75 and above k = 1.2 the light beads of a dimer resonate, and the pulse of a struck
-chain decays. The force of a light bead's contacts has several humps from k = 7/4 on (m2/m1 > 0.3 at
+Between 0.5 and 0.75 and above k = 1.2 the light beads of a dimer resonate, and the pulse of a
+struck chain decays. The force of a light bead's contacts has several humps from k = 7/4 on (m2/m1 > 0.3 at
 7/4, > 0.1 at 2): the width of the highest means little there, and its error says so.
 
-With the compression δ = (F/A)^{1/k} of contacts by the peak force F, speeds are in units of √(F/(m δ))
-sites, velocities of √(F δ/m), momenta of √(m F δ) and energies of F δ; m is the mean mass.
+With the compression δ = (F/A)^{1/k} of contacts by the peak force F and the mean mass m, speeds are
+in units of D √(F/(m δ)), velocities of √(F δ/m), momenta of √(m F δ) and energies of F δ.
 """
 
 from __future__ import annotations
@@ -41,8 +41,9 @@ from lwa.base.words import (
 )
 from lwa.cell import Cell, exponent, read_cell, substitution
 from lwa.cell import k as symbol_k
-from lwa.expansion.code import source
-from lwa.expansion.errors import (
+from lwa.expansion.expand import Expansion, expand
+from lwa.expansion.forms.code import source
+from lwa.expansion.forms.errors import (
     ALIKE,
     DECAYING,
     FARTHEST,
@@ -50,9 +51,8 @@ from lwa.expansion.errors import (
     following_error,
     joined_error,
 )
-from lwa.expansion.expand import Expansion, expand
-from lwa.expansion.following import exponent_of_light_beads
-from lwa.expansion.joined import RATIOS, TWO_BODIES, joined
+from lwa.expansion.forms.following import exponent_of_light_beads
+from lwa.expansion.forms.joined import RATIOS, TWO_BODIES, joined
 from lwa.expansion.series import EpsilonSeries
 from lwa.expansion.sums import Resummed
 from lwa.law import ContactLaw, Power, for_cell
@@ -316,7 +316,7 @@ class FollowingWave(LatticeWave):
     theory = "light beads that follow, closed form"
 
     def _value(self, quantity: str) -> sp.Expr:
-        # From the units of heavy beads to those of the module: m1 = 2m/(1 + ω), D and δ are doubled.
+        # From the units of heavy beads to the module's: m1 = 2m/(1 + ω), D and δ are doubled.
         shift = {"c": sp.S.Half, "peak_velocity": sp.S.Half, "momentum": -sp.S.Half}
         power = exponent_of_light_beads(quantity).subs(symbol_k, self.k)
         ratio = 1 + mass_ratio(self.cell)

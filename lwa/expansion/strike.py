@@ -56,8 +56,8 @@ class Strike(Value):
     Notes
     -----
     The error of the force bounds the differences to struck chains at k = 5/4 … 3, for strikers of
-    any mass, and is NaN at other exponents. A contact of the striker half or twice as stiff changes the
-    force by up to 2 %.
+    any mass, and is NaN at other exponents. A contact of the striker half or twice as stiff changes
+    the force by up to 2 %.
 
     Examples
     --------
@@ -112,16 +112,9 @@ class Strike(Value):
         if ratio <= 1:
             # Largest for strikers of a third of a bead; η alone is wrong at equal masses.
             return 5e-4 + 0.028 * math.exp(-1.44 * epsilon) * min(1, 3 * (1 - ratio))
-        return max(NEAR, self._shortfall * (ratio - 1) / (ratio + 14))
-
-    @property
-    def _shortfall(self) -> float:
-        """Relative error in the limit of a heavy striker: a bead reaches twice the velocity."""
-        unit = self._unit
-        power = float(2 * self.k / (self.k + 1))
-        twice = 2 / unit.estimate("bead_velocity").value
-        rule = 2 * unit.estimate("effective_mass").value / unit.estimate("energy").value
-        return float(twice**power / rule ** (power / 2) - 1)
+        # A bead before a heavy striker reaches twice the velocity: the limit of the error.
+        limit = 0.45 * math.exp(-0.5 * epsilon)
+        return max(NEAR, limit * (ratio - 1) / (ratio + 14))
 
     @property
     def speed(self) -> Estimate:

@@ -25,7 +25,7 @@ import sympy as sp
 from flint import fmpq_mpoly
 
 from lwa.cell import Cell, k
-from lwa.expansion.joined import EPSILON, pade, reciprocal
+from lwa.expansion.forms.joined import EPSILON, pade, reciprocal
 from lwa.expansion.observables import Observables, shares_model
 from lwa.expansion.pulse import product
 from lwa.expansion.recursion import Fields, Recursion

@@ -13,7 +13,7 @@ import numpy as np
 import sympy as sp
 
 from lwa.cell import k as symbol_k
-from lwa.expansion.joined import ORDERS, RATIOS, TWO_BODIES, joined
+from lwa.expansion.forms.joined import ORDERS, RATIOS, TWO_BODIES, joined
 
 DEFECTS = {
     "c": 0.0046,
