@@ -11,8 +11,8 @@ One class for each theory; `best_wave` takes the one that is nearest to the latt
 | `LongWave` | any cell | the canonical compact wave; its error is not known |
 
 Between 0.5 and 0.75 and above k = 1.2 the light beads of a dimer resonate, and the pulse of a
-struck chain decays. The force of a light bead's contacts has several humps from k = 7/4 on (m2/m1 > 0.3 at
-7/4, > 0.1 at 2): the width of the highest means little there, and its error says so.
+struck chain decays. The force of a light bead's contacts has several humps from k = 7/4 on (at
+7/4 for m2/m1 > 0.3, at 2 for > 0.1): the width of the highest means little there, as its error says.
 
 With the compression δ = (F/A)^{1/k} of contacts by the peak force F and the mean mass m, speeds are
 in units of D √(F/(m δ)), velocities of √(F δ/m), momenta of √(m F δ) and energies of F δ.

@@ -184,6 +184,10 @@ class KdV(Value):
 
         Raises `lwa.NoSolitaryWave` where small waves disperse.
         """
+        if F2.has(sp.nan, sp.oo, sp.zoo):
+            raise NoSolitaryWave(
+                "F″ is not finite at the static strain, so that no wave is small"
+            )
         if F2.is_zero:
             raise NoSolitaryWave(
                 "F″ is 0 at the static strain: waves of small amplitude disperse"
