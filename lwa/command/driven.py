@@ -19,7 +19,7 @@ from lwa.command.options import (
     value,
 )
 from lwa.command.rows import Form, Row, attempt, estimated
-from lwa.expansion.physical import pulse_of_strike
+from lwa.expansion.strike import pulse_of_strike
 from lwa.shocks import riemann
 
 _STRIKE_FILE = "lwa-validate run --example striker > chain.toml"
@@ -97,7 +97,7 @@ def strike(
         Row("fwhm.length", "FWHM of the force", pulse.fwhm("force", "length"), "m"),
         Row("fwhm.time", "FWHM of the force in time", pulse.fwhm(), "s"),
     ]
-    notes = chain.hertz_notes(pulse.wave.F)
+    notes = chain.hertz_notes(pulse.wave.force)
     if chain.gravity:
         notes.append(
             f"gravity {chain.gravity:g} is neglected: the weight of the beads is taken for small "

@@ -2,11 +2,12 @@
 
 A series is the list of its coefficients, polynomials over a ring of python-flint whose first
 generator is Z; t is its small parameter. The waves of `lwa.expansion.expand` are such pulses.
+`product`, `power` and `logarithm` also take coefficients that are SymPy expressions.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from math import factorial, prod
 from typing import Any
@@ -16,6 +17,15 @@ from sympy import factorial2
 
 Series = list[fmpq_mpoly]
 """The coefficients of t^0, t^1, …"""
+
+
+def last(a: Series, b: Series) -> fmpq_mpoly:
+    """Coefficient of t^n in the product of two series, n the last order of the first one."""
+    total = 0 * b[0]
+    for term, other in zip(a, b[len(a) - 1 :: -1], strict=True):
+        if term:
+            total = total + term * other
+    return total
 
 
 def log_term(S: Series, log: Series) -> fmpq_mpoly:
@@ -29,14 +39,18 @@ def log_term(S: Series, log: Series) -> fmpq_mpoly:
 def exp_term(log: Series, S: Series) -> fmpq_mpoly:
     """The next coefficient of exp Σ log_n t^n (log_0 = 0), by n S_n = Σ j log_j S_{n-j}."""
     n = len(S)
-    return _weighted(log, S, n, n) / n if n else log[0] + 1
+    if n == 0:
+        return log[0] + 1
+    return _weighted(log, S, n, n) / n
 
 
-def _weighted(log: Series, S: Series, last: int, n: int) -> fmpq_mpoly:
-    """The sum Σ j log_j S_{n-j}, j = 1 … last, of the coefficients of ln S and of S."""
-    return sum(
-        (j * log[j] * S[n - j] for j in range(1, last + 1) if log[j]), 0 * log[0]
-    )
+def _weighted(log: Series, S: Series, end: int, n: int) -> fmpq_mpoly:
+    """The sum Σ j log_j S_{n-j}, j = 1 … end, of the coefficients of ln S and of S."""
+    total = 0 * log[0]
+    for j in range(1, end + 1):
+        if log[j]:
+            total = total + j * log[j] * S[n - j]
+    return total
 
 
 def logarithm(S: Series) -> Series:
@@ -47,20 +61,62 @@ def logarithm(S: Series) -> Series:
     return log
 
 
+def product(a: Series, b: Series) -> Series:
+    """The product of two series, to the length of the first one."""
+    return _product(a, b, 1)
+
+
+def even_product(a: Series, b: Series) -> Series:
+    """The even powers of t in the product of two series; the coefficients of odd ones are 0."""
+    return _product(a, b, 2)
+
+
+def _product(a: Series, b: Series, step: int) -> Series:
+    """The coefficients of t^0, t^step, … in the product of two series; 0 between them."""
+    total = [0 * a[0] for _ in a]
+    for n, term in enumerate(a):
+        if not term:
+            continue
+        for m in range(-n % step, len(a) - n, step):
+            if b[m]:
+                total[n + m] = total[n + m] + term * b[m]
+    return total
+
+
+def power(S: Series, a: fmpq) -> Series:
+    """The power (Σ S_n t^n)^a, S_0 = 1, by n R_n = Σ_{j≥1} (a j - (n - j)) S_j R_{n-j}."""
+    R = [S[0]]
+    for n in range(1, len(S)):  # from S R' = a S' R
+        total = 0 * S[0]
+        for j in range(1, n + 1):
+            total = total + (a * j - (n - j)) * S[j] * R[n - j]
+        R.append(total / n)
+    return R
+
+
 def by_degree(polynomial: fmpq_mpoly) -> dict[int, fmpq_mpoly]:
     """Coefficients of Z^d by d."""
     parts: dict[int, dict[tuple[int, ...], Any]] = {}
     for exponents, coefficient in polynomial.terms():
         d, *rest = map(int, exponents)
         parts.setdefault(d, {})[0, *rest] = coefficient
-    return {d: polynomial.context().from_dict(part) for d, part in parts.items()}
+    context = polynomial.context()
+    return {d: context.from_dict(part) for d, part in parts.items()}
 
 
 def moment(polynomial: fmpq_mpoly, variance: int) -> fmpq_mpoly:
     """The mean of a polynomial in Z under the normal distribution: Z^{2m} → (2m-1)!! v^m."""
-    even = ((d, c) for d, c in by_degree(polynomial).items() if d % 2 == 0)
-    means = (c * int(factorial2(d - 1)) * variance ** (d // 2) for d, c in even)
-    return sum(means, 0 * polynomial)
+    total = 0 * polynomial
+    for d, coefficient in by_degree(polynomial).items():
+        if d % 2 == 0:
+            mean = int(factorial2(d - 1)) * variance ** (d // 2)
+            total = total + coefficient * mean
+    return total
+
+
+def moments(terms: Iterable[fmpq_mpoly], variance: int) -> Series:
+    """The `moment` of each coefficient of a series."""
+    return [moment(term, variance) for term in terms]
 
 
 def half_width(log: Series) -> Series:
@@ -79,11 +135,16 @@ def half_width(log: Series) -> Series:
     while any(powers[-1]):
         powers.append(product(powers[-1], p))
     total = powers[-1]
-    for m in range(len(powers) - 1, 0, -1):  # d/dy² of a/y is (y a' - a)/(2y³)
-        slopes = [_over_square(y * a.derivative(0) - a, y) / (2 * m + 2) for a in total]
-        total = [b / 2 + slope for b, slope in zip(powers[m - 1], slopes, strict=True)]
-    even = [_over_square(_reweighted(a, lambda d: fmpq(1 - d % 2)), y) for a in total]
-    return [even[0] + 1, *even[1:]]
+    for m in range(len(powers) - 1, 0, -1):
+        following = []
+        for term, own in zip(total, powers[m - 1], strict=True):
+            slope = _over_square(y * term.derivative(0) - term, y)  # d/dy² of a/y
+            following.append(own / 2 + slope / (2 * m + 2))
+        total = following
+    even = [_reweighted(term, lambda d: fmpq(1 - d % 2)) for term in total]
+    width = [_over_square(term, y) for term in even]
+    width[0] = width[0] + 1
+    return width
 
 
 def _from_peak(log: Series) -> Series:
@@ -95,18 +156,23 @@ def _from_peak(log: Series) -> Series:
     phi = [log[0] - Z**2 / 4, *log[1:]]
     for n in range(1, len(phi)):
         # -Z²/4 + a Z t^n has its maximum at Z = 2a t^n, to this order.
-        if place := 2 * by_degree(phi[n]).get(1, 0 * Z):
-            moved, derivatives = list(phi), phi
-            for j in range(
-                1, (len(phi) - 1) // n + 1
-            ):  # Taylor's series in place · t^n
-                derivatives = [place * term.derivative(0) / j for term in derivatives]
-                for m in range(j * n, len(phi)):
-                    moved[m] = moved[m] + derivatives[m - j * n]
-            phi = moved
+        place = 2 * by_degree(phi[n]).get(1, 0 * Z)
+        if place:
+            phi = _shifted(phi, place, n)
     if phi[0] != -(Z**2) / 4:
         raise ArithmeticError("the pulse has no quadratic maximum")
     return [0 * Z, *(_reweighted(term, lambda d: fmpq(min(d, 1))) for term in phi[1:])]
+
+
+def _shifted(phi: Series, place: fmpq_mpoly, n: int) -> Series:
+    """The series of φ(Z + place · t^n), by Taylor's formula."""
+    moved = list(phi)
+    derivatives = phi
+    for j in range(1, (len(phi) - 1) // n + 1):
+        derivatives = [place * term.derivative(0) / j for term in derivatives]
+        for m in range(j * n, len(phi)):
+            moved[m] = moved[m] + derivatives[m - j * n]
+    return moved
 
 
 def width_of_power(width: Series, epsilon: fmpq_mpoly) -> Series:
@@ -129,34 +195,17 @@ def _binomial_of_root(d: int, j: int) -> fmpq:
 
 
 def _over_square(polynomial: fmpq_mpoly, y: fmpq_mpoly) -> fmpq_mpoly:
-    return polynomial // y**2 if polynomial else polynomial
+    """The quotient by y²; python-flint divides no zero polynomial."""
+    if not polynomial:
+        return polynomial
+    return polynomial // y**2
 
 
 def _reweighted(polynomial: fmpq_mpoly, weight: Callable[[int], fmpq]) -> fmpq_mpoly:
     """Multiply each term c Z^d of a polynomial by weight(d)."""
-    terms = {
-        exponents: factor * coefficient
-        for exponents, coefficient in polynomial.terms()
-        if (factor := weight(int(exponents[0])))
-    }
+    terms = {}
+    for exponents, coefficient in polynomial.terms():
+        factor = weight(int(exponents[0]))
+        if factor:
+            terms[exponents] = factor * coefficient
     return polynomial.context().from_dict(terms)
-
-
-def product(a: Series, b: Series, step: int = 1) -> Series:
-    """The product a · b to the same length; only terms t^n with n a multiple of ``step``."""
-    total = [0 * a[0] for _ in a]
-    for n, x in enumerate(a):
-        if x:
-            for m in range(-n % step, len(a) - n, step):
-                if b[m]:
-                    total[n + m] = total[n + m] + x * b[m]
-    return total
-
-
-def power(S: Series, a: fmpq) -> Series:
-    """The power (Σ S_n t^n)^a, S_0 = 1, by n R_n = Σ_{j≥1} (a j - (n - j)) S_j R_{n-j}."""
-    R = [S[0]]
-    for n in range(1, len(S)):  # from S R' = a S' R
-        terms = ((a * j - (n - j)) * S[j] * R[n - j] for j in range(1, n + 1))
-        R.append(sum(terms, 0 * S[0]) / n)
-    return R

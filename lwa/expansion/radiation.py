@@ -32,6 +32,7 @@ import sympy as sp
 from lwa.base.arrays import Array
 from lwa.cell import Cell
 from lwa.expansion.observables import Observables, shares_model
+from lwa.expansion.recursion import Recursion
 from lwa.linear.dispersion import Dispersion
 
 POINTS = 8001
@@ -63,7 +64,7 @@ class Parameters(NamedTuple):
 def parameters(cell: Cell, k: sp.Expr) -> Parameters:
     """Return the parameters of a chain; all values are numbers, but for k under equal contacts."""
     model = shares_model(cell, k)
-    wave = Observables(model, 1)
+    wave = Observables(Recursion(model, 1))
     trace = [float(t) for t in Dispersion(cell, model.k).trace.values()]
     # 2 cos(Pκ) = 2 = t_0 at κ = 0, where one root is 0: the others are those of Σ t_m Ω^{2m-2}
     optical = min(np.roots(trace[:0:-1]).real, default=math.inf)

@@ -33,7 +33,7 @@ from sympy import bernoulli
 from lwa.algebra.model import Model
 from lwa.algebra.ring import to_flint
 from lwa.base.progress import Progress
-from lwa.expansion.pulse import Series, by_degree, exp_term, log_term
+from lwa.expansion.pulse import Series, by_degree, exp_term, last, log_term
 from lwa.linear.bloch import Bloch
 
 LINEAR = 3
@@ -41,25 +41,70 @@ LINEAR = 3
 takes two to three times as long (orders 10 to 60, one to three beads)."""
 
 
-class Fields:
-    """Forces, strains and slopes of a wave, or changes of these: the S_n of e^{-Z²/4} Σ S_n t^n.
+class Pulse:
+    """A field e^{-Z²/4} Σ S_n t^n of the wave, with the logarithm of its series.
 
-    `force` and `strain` (with their logarithms) have one field per contact, `slope` one per bead.
-    `means` and `pushes` map n to the coefficients of t^n in the mean strain Σ C_i r_i / P or the
-    last contact's force, and in the first n derivatives of these.
+    Terms are appended to one of the two, and the other follows.
     """
 
-    def __init__(self, size: int) -> None:
-        self.force, self.strain, self.slope, self.log_force, self.log_strain = (
-            [list[fmpq_mpoly]() for _ in range(size)] for _ in range(5)
-        )
+    def __init__(self) -> None:
+        self.series: Series = []
+        self.log: Series = []
+
+    def append(self, term: fmpq_mpoly) -> None:
+        """Append a coefficient of the series."""
+        self.series.append(term)
+        self.log.append(log_term(self.series, self.log))
+
+    def append_log(self, term: fmpq_mpoly) -> None:
+        """Append a coefficient of the logarithm."""
+        self.log.append(term)
+        self.series.append(exp_term(self.log, self.series))
+
+
+class Variation(Pulse):
+    """A small change of a field e^{-Z²/4} S of the wave: δS = S δ log S."""
+
+    def __init__(self, changed: Pulse) -> None:
+        super().__init__()
+        self.changed = changed
+
+    def append(self, term: fmpq_mpoly) -> None:
+        self.series.append(term)
+        known = last([*self.log, 0 * term], self.changed.series)
+        self.log.append(term - known)
+
+    def append_log(self, term: fmpq_mpoly) -> None:
+        self.log.append(term)
+        self.series.append(last(self.log, self.changed.series))
+
+
+class Fields:
+    """Forces, strains and slopes of a wave, or variations of these.
+
+    force, strain : one field per contact.
+    slope : the S_n of one field per bead.
+    means, pushes : mappings from n to the coefficients of t^n in the mean strain Σ C_i r_i / P, or
+        in the last contact's force, and in the first n derivatives of these.
+    gaussian : Z²/4 of the wave's e^{-Z²/4}, which a power of a field divides by k; 0 in variations.
+    """
+
+    def __init__(
+        self, force: list[Pulse], strain: list[Pulse], gaussian: fmpq_mpoly
+    ) -> None:
+        self.force = force
+        self.strain = strain
+        self.slope: list[Series] = [[] for _ in force]
         self.means: list[Series] = []
         self.pushes: list[Series] = []
+        self.gaussian = gaussian
 
     @property
     def _rows(self) -> list[Series]:
-        groups = (self.force, self.strain, self.slope, self.log_force, self.log_strain)
-        return [row for group in groups for row in group]
+        rows = list(self.slope)
+        for pulse in (*self.force, *self.strain):
+            rows += [pulse.series, pulse.log]
+        return rows
 
     def truncate(self, n: int) -> None:
         """Delete the terms from t^n on."""
@@ -68,7 +113,7 @@ class Fields:
         del self.means[n:], self.pushes[n:]
 
     def add(self, change: Fields, n: int) -> None:
-        """Add small changes of the fields, whose first terms are at t^n."""
+        """Add variations of the fields, whose first terms are at t^n."""
         for row, terms in zip(self._rows, change._rows, strict=True):
             for j, term in enumerate(terms, start=n):
                 row[j] = row[j] + term
@@ -79,49 +124,66 @@ class Fields:
 
 
 class Recursion:
-    """Solver of the recursion: a wave's `fields` as power series in t over Q[Z, m̂, C]."""
+    """Solver of the recursion: a wave's `fields` as power series in t over Q[Z, m̂, C].
+
+    model : the cell at its exponent.
+    order : highest power of ε; that of t is twice as high.
+    """
 
     def __init__(
         self, model: Model, order: int, progress: Progress[int] = iter
     ) -> None:
+        self.model = model
+        self.order = order
         self.context = fmpq_mpoly_ctx.get(("Z", *model.ring.names), Ordering.lex)
-        self.Z, self.zero = self.context.gen(0), self.context.constant(0)
+        self.Z = self.context.gen(0)
+        self.zero = self.context.constant(0)
         self.mu = model.ring.masses.elements(self.context)
         self.c = model.ring.contacts.elements(self.context)
         self.P = model.cell.size
-        quartic = Bloch(model).acoustic(2)[2]
-        self.I = -self.context.from_dict(
-            {(0, *map(int, e)): c for e, c in quartic.terms()}
-        )
+        self.I = self._dispersion()
         self.epsilon = self.I**3  # ε = I³ t²
         self._half = self.Z / 2
         self.gamma: Series = [self.context.constant(1)]
-        self.fields = Fields(self.P)
-        self._solve(order, progress)
+        contacts = range(self.P)
+        self.fields = Fields(
+            [Pulse() for _ in contacts], [Pulse() for _ in contacts], self.Z**2 / 4
+        )
+        self._solve(2 * order, progress)
+
+    def _dispersion(self) -> fmpq_mpoly:
+        """Coefficient I in the dispersion Ω² = κ² - I κ⁴ + … of the linear chain."""
+        I = self.zero
+        for exponents, coefficient in Bloch(self.model).acoustic(2)[2].terms():
+            powers = (0, *map(int, exponents))
+            I = I - self.context.from_dict({powers: coefficient})
+        return I
 
     def derivative(self, S: fmpq_mpoly) -> fmpq_mpoly:
         """The polynomial R of the derivative ∂ (e^{-Z²/4} S t^n) = e^{-Z²/4} R t^{n+1}."""
-        return self.I * (S.derivative(0) - self._half * S) if S else S
+        if not S:
+            return S
+        return self.I * (S.derivative(0) - self._half * S)
 
     def _solve(self, order: int, progress: Progress[int]) -> None:
         """Solve for γ_2 at the order of the Gaussian, then for q_n and γ_{n+2}, n = 1, 2, …"""
         fields = self.fields
         for n in range(3):
-            residual = self._extend(n)
+            residual = self._extend(n, self.zero)
         # γ_1 = 0: c² is even, (Z, t) and (-Z, -t) are one wave
         self.gamma += [self.zero, -residual]
         for n in progress(range(1, order + 1)):
             if n <= LINEAR:
                 fields.truncate(n)
             for m in range(len(fields.means), n + 3):
-                residual = self._extend(m)
+                residual = self._extend(m, self.zero)
             q, gamma = self._invert(residual)
             self.gamma.append(gamma)
             if n < LINEAR:
                 fields.truncate(n)
                 self._extend(n, q)
             elif q:
-                fields.add(self._change(q), n)
+                fields.add(self._variation(q), n)
         fields.truncate(order + 1)
 
     def _invert(self, residual: fmpq_mpoly) -> tuple[fmpq_mpoly, fmpq_mpoly]:
@@ -139,13 +201,13 @@ class Recursion:
             )
         return q, -left.get(0, self.zero)
 
-    def _extend(self, n: int, q: fmpq_mpoly | None = None) -> fmpq_mpoly:
-        """Append the wave's terms at t^n, with q for q_n, by default 0; return the residual.
+    def _extend(self, n: int, q: fmpq_mpoly) -> fmpq_mpoly:
+        """Append the wave's terms at t^n, with q for q_n; return the residual.
 
         The residual is that of the last equation, the balance of momentum, divided by P.
         """
         fields = self.fields
-        self._step(fields, n, self.zero if q is None else q)
+        self._append(fields, n, q)
         residual = self.zero
         for mu, slope in zip(self.mu, fields.slope, strict=True):
             residual = residual + mu * self._accelerated(slope, n)
@@ -153,67 +215,70 @@ class Recursion:
             residual = residual - fmpq((-self.P) ** m, factorial(m + 1)) * term
         return residual
 
-    def _change(self, q: fmpq_mpoly) -> Fields:
+    def _variation(self, q: fmpq_mpoly) -> Fields:
         """Contribution of the term q_n of log f_0 to the fields at t^n … t^{n+2}, n ≥ `LINEAR`."""
-        change = Fields(self.P)
-        for j in range(3):
-            self._step(change, j, self.zero if j else q)
+        wave = self.fields
+        force: list[Pulse] = [Variation(pulse) for pulse in wave.force]
+        strain: list[Pulse] = [Variation(pulse) for pulse in wave.strain]
+        change = Fields(force, strain, self.zero)
+        self._append(change, 0, q)
+        for j in (1, 2):
+            self._append(change, j, self.zero)
         return change
 
-    def _step(self, fields: Fields, n: int, q: fmpq_mpoly) -> None:
-        """Append the terms at t^n to a wave's forces, strains and slopes or to changes of them."""
-        wave, P = self.fields, range(self.P)
-        linear = fields is not wave
-
-        def exponential(log: Series, S: Series, of_wave: Series) -> fmpq_mpoly:
-            return _last(log, of_wave) if linear else exp_term(log, S)  # δ e^S = e^S δS
-
-        def logarithm(S: Series, log: Series, of_wave: Series) -> fmpq_mpoly:
-            return (
-                S[-1] - _last([*log, self.zero], of_wave)
-                if linear
-                else log_term(S, log)
-            )
-
-        for i in P:
-            S, log = fields.force[i], fields.log_force[i]
-            if i == 0:
-                log.append(q)
-                S.append(exponential(log, S, wave.force[0]))
-            else:  # f_i = f_{i-1} + P m̂_i γ ∂s_i
-                S.append(fields.force[i - 1][n])
-                if n:
-                    inertia = self.derivative(self._accelerated(fields.slope[i], n - 1))
-                    S[n] = S[n] + self.P * self.mu[i] * inertia
-                log.append(logarithm(S, log, wave.force[i]))
-            # r = f^{1/(1+ε)}: log r = Σ (-ε)^m log f, whose Gaussian leaves -(-ε)^m Z²/4 for m ≥ 1
-            gaussian = n and n % 2 == 0 and not linear
-            log_r = (
-                -((-self.epsilon) ** (n // 2)) * self.Z**2 / 4
-                if gaussian
-                else self.zero
-            )
-            for m in range(n // 2 + 1):
-                log_r = log_r + (-self.epsilon) ** m * log[n - 2 * m]
-            strain = fields.strain[i]
-            fields.log_strain[i].append(log_r)
-            strain.append(exponential(fields.log_strain[i], strain, wave.strain[i]))
-        mean = sum(
-            (c * r[n] for c, r in zip(self.c, fields.strain, strict=True)), self.zero
-        )
+    def _append(self, fields: Fields, n: int, q: fmpq_mpoly) -> None:
+        """Append the terms at t^n to the fields of a wave or to variations of these."""
+        fields.force[0].append_log(q)
+        for i in range(1, self.P):
+            fields.force[i].append(self._next_force(fields, i, n))
+        for force, strain in zip(fields.force, fields.strain, strict=True):
+            strain.append_log(self._log_strain(fields, force, n))
+        mean = self.zero
+        for c, strain in zip(self.c, fields.strain, strict=True):
+            mean = mean + c * strain.series[n]
+        push = self._last_force(fields, n)
         fields.means.append(self._derivatives(mean / self.P, fields.means))
-        fields.pushes.append(self._derivatives(fields.force[-1][n], fields.pushes))
+        fields.pushes.append(self._derivatives(push, fields.pushes))
+        self._append_slopes(fields, n)
+
+    def _next_force(self, fields: Fields, i: int, n: int) -> fmpq_mpoly:
+        """Coefficient of t^n in the force of contact i, by the equation of motion of bead i."""
+        return fields.force[i - 1].series[n] + self._inertia(fields, i, n)
+
+    def _last_force(self, fields: Fields, n: int) -> fmpq_mpoly:
+        """Coefficient of t^n in the force with which the last contact pushes the next cell."""
+        return fields.force[-1].series[n]
+
+    def _inertia(self, fields: Fields, i: int, n: int) -> fmpq_mpoly:
+        """Coefficient of t^n in P m̂_i γ ∂s_i, mass times acceleration of bead i."""
+        if n == 0:
+            return self.zero
+        slope = self._accelerated(fields.slope[i], n - 1)
+        return self.P * self.mu[i] * self.derivative(slope)
+
+    def _log_strain(self, fields: Fields, force: Pulse, n: int) -> fmpq_mpoly:
+        """Coefficient of t^n in log r = (1 - ε + ε² - …) log f, but for the Gaussian at t^0."""
+        total = self.zero
+        if n > 0 and n % 2 == 0:
+            total = -((-self.epsilon) ** (n // 2)) * fields.gaussian
+        for m in range(n // 2 + 1):
+            total = total + (-self.epsilon) ** m * force.log[n - 2 * m]
+        return total
+
+    def _append_slopes(self, fields: Fields, n: int) -> None:
+        """Append the terms at t^n to the slopes: s_0 is P∂/(e^{P∂} - 1) of the mean strain."""
         slope = self.zero
-        for m, term in enumerate(
-            fields.means[n]
-        ):  # s_0 = P∂/(e^{P∂} - 1) of the mean strain
-            # Bernoulli's numbers, with B_1 = -1/2
-            if factor := fmpq(-1, 2) if m == 1 else to_flint(bernoulli(m)):
-                slope = slope + fmpq(self.P**m, factorial(m)) * factor * term
-        for i in P:
+        for m, term in enumerate(fields.means[n]):
+            number = to_flint(bernoulli(m))
+            if m == 1:
+                number = fmpq(-1, 2)  # the series has the other sign than SymPy's B_1
+            if number:
+                slope = slope + fmpq(self.P**m, factorial(m)) * number * term
+        for i in range(self.P):
             fields.slope[i].append(slope)
             if n:  # s_{i+1} = s_i + C_i ∂r_i
-                slope = slope + self.c[i] * self.derivative(fields.strain[i][n - 1])
+                strain = fields.strain[i].series[n - 1]
+                slope = slope + self.c[i] * self.derivative(strain)
 
     def _accelerated(self, slope: Series, n: int) -> fmpq_mpoly:
         """Coefficient of t^n in γ s_i, s_i the slope of a bead's displacement."""
@@ -225,10 +290,6 @@ class Recursion:
 
     def _derivatives(self, term: fmpq_mpoly, rows: list[Series]) -> Series:
         """Coefficients of t^n in a field and its n first derivatives, from those of t^{n-1}."""
-        return [term, *map(self.derivative, rows[-1])] if rows else [term]
-
-
-def _last(a: Series, b: Series) -> fmpq_mpoly:
-    """Coefficient of t^n in the product a · b of two series, n the last order of a."""
-    n = len(a) - 1
-    return sum((x * b[n - j] for j, x in enumerate(a) if x), 0 * b[0])
+        if not rows:
+            return [term]
+        return [term, *(self.derivative(before) for before in rows[-1])]

@@ -42,9 +42,17 @@ _LETTERS = {
 class EpsilonSeries(Value):
     """The series prefactor · ε^power · Σ coefficients[n] ε^n, ε = k - 1.
 
-    k : the exponent. The series is summed at a number; a symbol may be replaced by a number or
+    Attributes
+    ----------
+    prefactor, power, coefficients : sympy.Expr, sympy.Expr, tuple of sympy.Expr
+        The series.
+    k : sympy.Expr
+        The exponent. The series is summed at a number; a symbol may be replaced by a number or
         another symbol, also in the prefactor and the shares of unlike contacts.
-    cell, quantity : the chain and the name of the quantity.
+    cell : Cell
+        The chain.
+    quantity : str
+        Name of the quantity.
     """
 
     prefactor: sp.Expr
@@ -60,52 +68,66 @@ class EpsilonSeries(Value):
         return len(self.coefficients) - 1
 
     def at(self, k: Any = None) -> Resummed:
-        """The sum and an estimate of its error, at a number k > 1 for a series in a symbol k.
+        """Sum the series at a number k > 1, with an estimate of the error.
 
-        The series of equal beads and the difference to it are summed apart; the error by radiation
-        is added.
+        Parameters
+        ----------
+        k : number, optional
+            The exponent, for a series in a symbol k.
 
-        Raises `lwa.InputError` when k or the cell holds symbols, for k ≤ 1, for a k besides that of
-        the series, for orders below `LOWEST`, and where the error is as large as the sum of these
-        positive quantities, or `UNLIKE` of it for unlike beads.
+        Returns
+        -------
+        Resummed
+            The series of equal beads and the difference to it are summed apart; the error by
+            radiation is added.
+
+        Raises
+        ------
+        lwa.InputError
+            If k or the cell holds symbols, for k ≤ 1, for a k besides that of the series, for
+            orders below `LOWEST`, and where the error is as large as the sum of these positive
+            quantities, or `UNLIKE` of it for unlike beads.
         """
         if self.order < LOWEST:
             raise InputError(
                 f"order is {self.order}: sums are stated from order {LOWEST} on"
             )
-        series = self if k is None else self._for(exponent(k))
-        values = (series.k, series.prefactor, *series.coefficients)
-        symbols = set().union(*(value.free_symbols for value in values))
+        if k is not None:
+            return self._for(exponent(k)).at()
+        symbols: set[sp.Symbol] = set()
+        for value in (self.k, self.prefactor, *self.coefficients):
+            symbols |= value.free_symbols
         demand_numbers(symbols, "a sum needs numbers")
-        if not series.k > 1:
+        if not self.k > 1:
             raise InputError(
-                f"k is {series.k}: the expansion in k - 1 is summed for k > 1"
+                f"k is {self.k}: the expansion in k - 1 is summed for k > 1"
             )
-        from lwa.expansion.radiation import radiated  # start-up: it loads NumPy
-
-        uniform, epsilon = self.cell.uniform, series.k - 1
-        base = () if uniform else equal_beads(self.quantity, self.order)
-        unit, lost = (
-            series.prefactor * epsilon**series.power,
-            radiated(self.cell, series.k),
-        )
-        total = resum(series.coefficients, epsilon, base, unit, lost)
-        most = 1 if uniform else UNLIKE
-        if not total.error < most * total.value:
-            size = (
-                "as large as itself"
-                if uniform
-                else f"over {UNLIKE:.0%} of it (unlike beads)"
-            )
-            more = (
-                "higher orders do not help"
-                if total.asymptotic
-                else "a higher order may help"
-            )
+        total = self._summed()
+        largest = UNLIKE
+        size = f"over {UNLIKE:.0%} of it (unlike beads)"
+        if self.cell.uniform:
+            largest = 1
+            size = "as large as itself"
+        if not total.error < largest * total.value:
+            more = "a higher order may help"
+            if total.asymptotic:
+                more = "higher orders do not help"
             raise InputError(
-                f"no sum at k = {shorten(series.k)}: to ε^{self.order} its error is {size}; {more}"
+                f"no sum at k = {shorten(self.k)}: to ε^{self.order} its error is {size}; {more}"
             )
         return total
+
+    def _summed(self) -> Resummed:
+        """The sum of a series of numbers, whatever its error."""
+        from lwa.expansion.radiation import radiated  # start-up: it loads NumPy
+
+        epsilon = self.k - 1
+        unit = self.prefactor * epsilon**self.power
+        if self.cell.uniform:
+            return resum(self.coefficients, epsilon, unit=unit)
+        base = equal_beads(self.quantity, self.order)
+        lost = radiated(self.cell, self.k)
+        return resum(self.coefficients, epsilon, base, unit, lost)
 
     def _for(self, k: sp.Expr) -> EpsilonSeries:
         """The series with a number or symbol in place of its symbol k."""
@@ -114,9 +136,11 @@ class EpsilonSeries(Value):
                 f"k is {k}, but the series is that of k = {self.k}: leave k out"
             )
         at = {self.k: k}
-        coefficients = tuple(a.xreplace(at) for a in self.coefficients)
         return replace(
-            self, prefactor=self.prefactor.xreplace(at), coefficients=coefficients, k=k
+            self,
+            prefactor=self.prefactor.xreplace(at),
+            coefficients=tuple(a.xreplace(at) for a in self.coefficients),
+            k=k,
         )
 
     def __repr__(self) -> str:
@@ -125,9 +149,12 @@ class EpsilonSeries(Value):
     def latex_rows(self) -> list[str]:
         """The series as a paper prints it: its name, its first `SHOWN` terms and dots."""
         epsilon = sp.Symbol(r"\varepsilon")
-        powers = ["", *(latex.power(epsilon, n) for n in range(1, SHOWN))]
-        shown = zip(self.coefficients, powers, strict=False)
-        body = latex.total((a, power) for a, power in shown if a) + r" + \dots"
+        terms = []
+        for n, a in enumerate(self.coefficients[:SHOWN]):
+            if a:
+                terms.append((a, latex.power(epsilon, n) if n else ""))
+        value = latex.total(terms) + r" + \dots"
         unit = self.prefactor * epsilon**self.power
-        value = body if unit == 1 else rf"{sp.latex(unit)} \Bigl({body}\Bigr)"
+        if unit != 1:
+            value = rf"{sp.latex(unit)} \Bigl({value}\Bigr)"
         return [f"{_LETTERS[self.quantity]} = {value}"]

@@ -1,0 +1,1 @@
+"""Closed forms of the lattice's own wave, their errors, and their source text."""
