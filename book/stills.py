@@ -93,7 +93,12 @@ def program() -> str:
     """The page's scripts with the constants of all pages."""
     sys.path += [str(HERE), str(HERE / "_ext")]  # the pages' own modules
     interactive, turned = map(import_module, ("interactive", "turned"))
-    tags = (turned.sums(), turned.breathers(), turned.losses(), turned.series())
+    tags = (
+        turned.sums(),
+        turned.breathers(),
+        turned.losses(),
+        turned.closed_forms(),
+    )
     constants = [re.sub(r"</?script>", "", tag) for tag in tags]
     return "\n".join([PAGE, interactive.formulas(), *constants, interactive.written()])
 

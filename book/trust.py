@@ -1,72 +1,84 @@
 """Width of the contact force by each theory, and the lattice's, over the mass ratio.
 
-The map of the theories, the calculator and the chapter on the series show these widths.
-Units: the heavy bead's mass, A and D are 1, so that widths are in sites.
+The map of the theories shows these widths. Units: the heavy bead's mass, A and D are 1, so that
+widths are in sites.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
 import sympy as sp
 from pulse import StruckPulse, struck_pulse
 
-from lwa import Cell, Dimer, InputError, canonical_wave, expand, homogenize
-from lwa.expansion.sums import Resummed
+from lwa import (
+    Cell,
+    Dimer,
+    LatticeWave,
+    NoSolitaryWave,
+    best_wave,
+    canonical_wave,
+    homogenize,
+)
 
-THEORIES = ("paper's closure", "canonical wave", "series, 8 orders")
-ORDERS = 8
-_M1, _M2 = sp.symbols("m1 m2", positive=True)
+THEORIES = ("paper's closure", "canonical wave", "closed form")
 
 
 @dataclass(frozen=True)
 class Trust:
     """Errors of the theories at one mass ratio.
 
-    pulse : the lattice's pulse between the contacts 40 and 80.
-    errors : FWHM of the contact force, theory over lattice less one, in the order of `THEORIES`;
-        NaN where the series refuses a number.
-    estimate : error that the series expects of itself, over the lattice's width; NaN likewise.
+    Parameters
+    ----------
+    pulse : StruckPulse
+        The lattice's pulse between the contacts 40 and 80.
+    widths, speeds : tuple of float
+        Full width at half maximum (FWHM) of the contact force, and speed at the lattice's peak
+        force: theory over lattice less one, in the order of `THEORIES`; NaN where a theory has no
+        wave.
+    estimate : float
+        Relative error of its width that the closed form states; NaN likewise.
+    name : str
+        The theory behind the closed form.
     """
 
     pulse: StruckPulse
-    errors: tuple[float, float, float]
+    widths: tuple[float, ...]
+    speeds: tuple[float, ...]
     estimate: float
+    name: str
+
+
+def nearest(k: Any, omega: Any) -> LatticeWave | None:
+    """The wave that is nearest to the lattice's, of masses 1 and ω; None where there is none."""
+    cell = Cell([1], spacing=1) if omega == 1 else Dimer(1, omega, spacing=1)
+    try:
+        return best_wave(cell, k=k)
+    except NoSolitaryWave:
+        return None
 
 
 def trust(k: Any, omega: Any) -> Trust:
     """Compare the theories with a struck chain of masses 1 and omega."""
     k, omega = sp.Rational(str(k)), sp.Rational(str(omega))
     pulse = struck_pulse(k, omega)
-    widths = [float(wave.fwhm(float(k), float(omega), "force")) for wave in _compact()]
-    summed, estimate = series_width(k, omega)
-    paper, canonical, series = (width / pulse.width - 1 for width in (*widths, summed))
-    return Trust(pulse, (paper, canonical, series), estimate / pulse.width)
-
-
-def series_width(k: Any, omega: Any) -> tuple[float, float]:
-    """Return the FWHM of the force by the series and its estimate of its error; NaN if refused."""
-    try:
-        total = _series(sp.Rational(str(omega))).at(sp.Rational(str(k)))
-        return float(total.value), float(total.error)
-    except InputError:
-        return math.nan, math.nan
-
-
-@cache
-def _series(omega: sp.Rational) -> Resummed:
-    """Width of the force as a series in k - 1."""
-    return expand(Cell([1]) if omega == 1 else Dimer(1, omega), ORDERS).fwhm("force")
-
-
-@cache
-def _compact() -> tuple[Any, Any]:
-    """Compact waves of the paper's closure and of the full one, as functions of k and ω."""
-    theories = (
-        homogenize(Dimer(_M1, _M2)).pde.traveling_wave(),
-        canonical_wave(Dimer(_M1, _M2)),
+    chain = Dimer(1, omega, spacing=1)
+    closed = nearest(k, omega)
+    waves = (
+        homogenize(chain, k=k).pde.traveling_wave().at_force(1),
+        canonical_wave(chain, k).at_force(1),
+        closed,
     )
-    return theories[0].numeric(), theories[1].numeric()
+    growth = pulse.force ** float((k - 1) / (2 * k))  # of speeds with the force
+    widths, speeds = [], []
+    for wave in waves:
+        width = math.nan if wave is None else float(wave.fwhm("force"))
+        speed = math.nan if wave is None else float(wave.speed)
+        widths.append(width / pulse.width - 1)
+        speeds.append(speed * growth / pulse.speed - 1)
+    if closed is None:
+        return Trust(pulse, tuple(widths), tuple(speeds), math.nan, "no steady pulse")
+    stated = closed.estimate("fwhm").relative_error
+    return Trust(pulse, tuple(widths), tuple(speeds), stated, closed.theory)

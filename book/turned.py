@@ -6,13 +6,14 @@ Each function returns a script that defines a constant of the scripts in `_ext/t
 from __future__ import annotations
 
 import json
+import math
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 import sympy as sp
 from studies.breather import Standing
-from trust import series_width
+from trust import nearest
 
 from lwa import Cell, Dimer, Power, envelope, expand
 from validation import exact_wave
@@ -77,12 +78,18 @@ def losses() -> str:
     return script("lwaLosses", LOSSES)
 
 
-def series() -> str:
-    """``lwaSeries``: ln ω, width of spheres by the series and its error, where there is one."""
-    below = np.geomspace(0.01, 0.07, 19)
-    above = np.geomspace(0.8, 1, 15)
+def closed_forms() -> str:
+    """``lwaForms``: ln ω, speed and width of spheres at unit force, and their relative errors."""
     rows = []
-    for omega in (*below, 0.08, 0.79, *above):  # in between the series has no sum
+    for omega in np.geomspace(0.01, 1, 41):
         ratio = sp.Rational(round(1e6 * omega), 10**6)
-        rows.append((np.log(omega), *series_width("3/2", ratio)))
-    return script("lwaSeries", rows)
+        wave = nearest(sp.Rational(3, 2), ratio)
+        row = [float(np.log(omega))]
+        for name in ("speed", "fwhm"):
+            if wave is None:
+                row += [math.nan, math.nan]
+            else:
+                value = wave.estimate(name)
+                row += [value.value, value.relative_error]
+        rows.append(row)
+    return script("lwaForms", rows)

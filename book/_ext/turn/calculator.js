@@ -1,6 +1,7 @@
 // The calculator: the reader's own row of spheres, integrated, beside each theory.
 
 const UNSTEADY = 0.1; // growth of the duration from which the theories do not describe the pulse
+const FORM = "closed form"; // of the lattice's own wave, or the nearest to it
 const FLATTENED = 0.1; // compression over the smaller radius from which Hertz's law is refused
 
 // The pulse behind a blow on spheres, m1 = A = D = v = 1, at contacts 80 and 81: dynamic force of
@@ -30,9 +31,9 @@ function struck(omega, p0) {
 }
 
 // Numbers of a blow on spheres in SI units, by the lattice and by each theory, at contact 80. A
-// given force fixes the unit of length, which the lattice's force depends on. lwaSeries: rows of
-// ln omega, width in sites and its error, NaN where the series refuses a value. A material is a name
-// of the table or {E, nu, density, yield}.
+// given force fixes the unit of length, which the lattice's force depends on. lwaForms: rows of
+// ln omega, speed and width in sites, each with its relative error, NaN where no pulse is steady. A
+// material is a name of the table or {E, nu, density, yield}.
 function calculate({a, b, radiusA, radiusB, load, blow, kind}) {
   if (!(radiusA > 0 && radiusB > 0 && blow > 0 && load >= 0)) {
     return {refused: "Radii and the blow must be positive numbers, the load a number that is not negative."};
@@ -69,7 +70,8 @@ function calculate({a, b, radiusA, radiusB, load, blow, kind}) {
   const values = [1.5, A, m1, m2, D];
   const second = unit / v;
   const lattice = {speed: (found.speed * D) / second, width: found.width * second};
-  const theories = load > 0 ? underLoad({F, load, A, D, omega, values}) : withoutLoad({F, D, omega, values, lattice});
+  const given = {F, load, A, D, omega, values, m1, m2};
+  const theories = load > 0 ? underLoad(given) : withoutLoad(given);
   const curvature = D / (radiusA * radiusB);
   const pressure = (1.5 * Math.cbrt(F * A * A) * curvature) / Math.PI; // in the middle of the contact
   return {
@@ -91,15 +93,16 @@ function underLoad({F, load, A, D, omega, values}) {
   return {"canonical wave": {speed, width}};
 }
 
-function withoutLoad({F, D, omega, values, lattice}) {
-  const found = between(lwaSeries, Math.log(Math.min(omega, 1 / omega))) ?? [];
-  const width = (found[1] * D) / lattice.speed;
-  const refused = {refused: "refuses a value at this mass ratio"};
-  return {
+function withoutLoad({F, A, D, omega, values, m1, m2}) {
+  const waves = {
     "canonical wave": {speed: f.pulse_speed(F, ...values), width: f.pulse_time(F, ...values)},
     "paper's closure": {speed: f.paper_speed(F, ...values), width: f.paper_time(F, ...values)},
-    "series in k − 1": found[1] ? {width, error: found[2] / found[1]} : refused,
   };
+  // in units of the heavy ball's mass, A and D, at unit force
+  const [, c, offC, sites, offWidth] = between(lwaForms, Math.log(Math.min(omega, 1 / omega))) ?? [];
+  if (!c) return {...waves, [FORM]: {refused: "no steady pulse"}};
+  const speed = c * D * Math.cbrt(A) * Math.pow(F, 1 / 6) / Math.sqrt(Math.max(m1, m2));
+  return {...waves, [FORM]: {speed, width: (sites * D) / speed, errors: [offC, offC + offWidth]}};
 }
 
 // Force at contact 80 over time, with its peak, its width at half height and its arrival.
@@ -149,7 +152,7 @@ function calculator(home) {
   }
   const canvas = element("canvas", {role: "img", "aria-label": "Force at contact 80 over time, with its peak, its width at half height and its arrival"});
   const body = element("tbody");
-  const head = ["", "by the simulation", ...["canonical wave", "paper's closure", "series in k − 1"]];
+  const head = ["", "by the simulation", ...["canonical wave", "paper's closure", FORM]];
   const titles = element("tr", {}, ...head.map(text => element("th", {scope: "col"}, text)));
   const caption = element("caption", {}, "The pulse at contact 80");
   const scrolls = element("div", {class: "lwa-scrolls", tabindex: "0", role: "region", "aria-label": "numbers of the pulse"},
@@ -183,8 +186,14 @@ function calculator(home) {
     const names = head.slice(2).filter(() => steady);
     const cells = write => names.map(name => (theories[name] ? write(theories[name]) : "–"));
     put("force", "peak force of a contact", si(F, "N"), ...cells(() => "given"));
-    put("speed", "speed", si(lattice.speed, "m/s"), ...cells(({speed}) => (speed ? `${si(speed, "m/s")} (${signed(speed / lattice.speed - 1)})` : "–")));
-    put("width", "FWHM of the force", si(lattice.width, "s"), ...cells(({width, error, refused}) => (refused ? "refused" : `${si(width, "s")} (${signed(width / lattice.width - 1)}${error ? `, ± ${percent(error)}` : ""})`)));
+    const beside = (value, unit, truth, error) => {
+      const covered = error ? `, ±\u00a0${percent(error)}` : "";
+      return `${si(value, unit)} (${signed(value / truth - 1)}${covered})`;
+    };
+    const write = (name, unit, number) => cells(one =>
+      one.refused ?? beside(one[name], unit, lattice[name], one.errors?.[number]));
+    put("speed", "speed", si(lattice.speed, "m/s"), ...write("speed", "m/s", 0));
+    put("width", "FWHM of the force", si(lattice.width, "s"), ...write("width", "s", 1));
     put("beads", "force of a first, a second ball", `${si(beads[0], "N")}, ${si(beads[1], "N")}`);
     put("decay", "loss of force per ball", percent(-Math.expm1(-decay)));
     if (sound) put("sound", "speed of sound", si(sound, "m/s"));
