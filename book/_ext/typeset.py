@@ -1,4 +1,7 @@
-"""A number does not part from its unit: the blank between them does not break."""
+"""Typesetting of the pages: numbers beside their units, and names of folded cells.
+
+A cell that is folded whole is the solution of an exercise; of others the code is folded.
+"""
 
 from __future__ import annotations
 
@@ -44,7 +47,20 @@ def previous(node: nodes.Node) -> nodes.Node | None:
     return None
 
 
+class Solutions(SphinxPostTransform):
+    """Name folded solutions."""
+
+    default_priority = 198  # before MyST-NB folds the cells
+
+    def run(self, **options: object) -> None:
+        for cell in self.document.findall(nodes.container):
+            if cell.get("hide_mode") == "all":
+                cell["prompt_show"] = "Solution"
+                cell["prompt_hide"] = "Hide the solution"
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """Sphinx's hook."""
     app.add_post_transform(Units)
+    app.add_post_transform(Solutions)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
