@@ -1,11 +1,15 @@
 """Notebooks downloaded from the book run alone: in an empty folder, without MyST."""
 
 import importlib
+import os
 import re
 import sys
 from pathlib import Path
+from shutil import copy
 
 import pytest
+
+from tests.book.prose import CELL
 
 pytestmark = pytest.mark.optional("nbclient", "jupyter_book")
 
@@ -40,13 +44,36 @@ def test_no_cell_needs_the_book_or_myst(notebooks, book, page):
             assert not re.findall(r"\{[\w:]+\}`|^```\{|^:::", cell.source, re.MULTILINE)
 
 
+def executed(cells, folder):
+    """Run a notebook's cells in a folder."""
+    from nbclient import NotebookClient
+
+    there = {"metadata": {"path": folder}}
+    client = NotebookClient(cells, timeout=200, kernel_name="python3", resources=there)
+    client.execute()
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("page", ["cells", "experiment"])
 def test_a_notebook_runs_in_an_empty_folder(notebooks, book, tmp_path, page):
-    from nbclient import NotebookClient
+    copy(FOLDER / "record.csv", tmp_path)  # the page's download
+    executed(notebooks.notebook(page, book), tmp_path)
 
-    cells, there = notebooks.notebook(page, book), {"metadata": {"path": tmp_path}}
-    NotebookClient(cells, timeout=200, kernel_name="python3", resources=there).execute()
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", CHAPTERS)
+def test_what_a_page_shows_runs_when_it_is_copied_in_order(tmp_path, page, monkeypatch):
+    """Without the folded code of pictures, and without the book's own modules."""
+    import nbformat
+
+    notebook = nbformat.v4.new_notebook()
+    for options, code in CELL.findall((FOLDER / f"{page}.md").read_text()):
+        if not re.search("hide-input|remove-", options):
+            notebook.cells.append(nbformat.v4.new_code_cell(code))
+    copy(FOLDER / "record.csv", tmp_path)
+    programs = Path(sys.executable).parent
+    monkeypatch.setenv("PATH", f"{programs}{os.pathsep}{os.environ['PATH']}")
+    executed(notebook, tmp_path)
 
 
 def test_roles_are_rendered(notebooks):
