@@ -25,7 +25,7 @@ TABLE = Table(
     (
         (sp.Rational(3, 2), "a", Estimate(4e-4, 0.5e-5), 0.25, "m/s"),
         (sp.Integer(2), "b", None, -0.5, "<m/s>"),
-        (sp.Integer(3), "a", Estimate(2e-7, 0.25e-7), None, "m/s"),
+        (sp.Integer(3), "a", Estimate(2e-7, 0.25e-7), math.nan, "m/s"),
     ),
     "rows",
     errors="a deviation",
