@@ -181,6 +181,7 @@ class Cell(Value):
 
     def stiffness(self, k: Any = k) -> sp.Expr:
         """The stiffness A_eff of P equal contacts with the same response as the cell."""
+        # Equal contacts: no power is taken and undone.
         if len(set(self.stiffnesses)) == 1:
             return self.stiffnesses[0]
         # A_eff^{-1/k} is the mean of the A_i^{-1/k}: compressions add.
@@ -295,6 +296,7 @@ def substitution(
                 f"{symbol.name!r} names two symbols, with different assumptions: use one"
             )
         known[symbol.name] = symbol
+    # The values, by symbol
     new = {}
     for name, value in values.items():
         if name in known:

@@ -67,6 +67,7 @@ class Partition(Value):
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the ring's generators: one per distinct weight but the last."""
+        # Numbers need no generator.
         if self.rational:
             return ()
         return tuple(f"{self.letter}{i}" for i in range(len(self.distinct) - 1))
@@ -104,6 +105,7 @@ class CoefficientRing(Value):
     @cached_property
     def law(self) -> dict[str, sp.Expr]:
         """Mapping from the generators of the contact law, k or φ_2, φ_3, …, to their values."""
+        # A rational k is a number of the ring.
         if self.highest:
             symbols = map(phi_symbol, range(2, self.highest + 1))
             return {symbol.name: symbol for symbol in symbols}

@@ -59,7 +59,8 @@ class PDE(OfClosure):
         """The ratio τ/t of the equation's time to the chain's."""
         if self.acoustic:
             return self.cell.time_scale(self.law.exponent)
-        # w = λu strains each contact by (λ - 1)u, and 1 - λ = M/m2.
+        # w = λu strains each contact by (λ - 1)u, and 1 - λ = M/m2. The unit of time makes the
+        # leading term -u^k.
         m1, m2 = self.cell.masses
         stretch = power(self.cell.mass / m2, self.k)
         return power(sp.Add(*self.cell.stiffnesses) * stretch / m1, sp.S.Half)
@@ -159,6 +160,7 @@ class PDE(OfClosure):
     @property
     def _without_letters(self) -> dict[int, Terms]:
         """The terms by their orders, but for those of G, H and I."""
+        # A copy: the equation keeps its own.
         rest = dict(self.coefficients)
         if self.third_order:
             del rest[3]
@@ -191,6 +193,7 @@ class PDE(OfClosure):
     def __str__(self) -> str:
         """The equation as text, with G, H, I and the terms of the other orders below it."""
         lines = [self.headline]
+        # -u^k acts on both signs of u.
         if not self.acoustic:
             lines.append("  (contacts that also pull: the odd law |δ|^(k-1) δ)")
         lines += [f"  {letter} = {value}" for letter, value in self.third_order.items()]

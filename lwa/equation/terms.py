@@ -128,8 +128,10 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
     def _factors(self, jet: Jet) -> list[tuple[str, sp.Expr]]:
         """Names, in LaTeX, and exponents of the factors: F′, the base, the derivatives."""
         a, b = map(sp.Rational, self.power.beside(jet))
+        # u_x on the acoustic branch
         base = latex.derivative(1) if self.model.base else "u"
         law = self.model.law
+        # F′ belongs to a law that is no power; of a power it is joined to the base.
         if law.homogeneous:
             factors = [(base, a + b * law.exponent)]
         else:
