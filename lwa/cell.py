@@ -11,7 +11,11 @@ a cell with P equal contacts of stiffness A_eff, A_eff^{-1/k} = (1/P) Σ A_i^{-1
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import (
+    Iterable,
+    Mapping,
+    Sequence,
+)
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -196,7 +200,12 @@ class Cell(Value):
 
 
 def Dimer(
-    m1: Any, m2: Any, N: int = 1, *, stiffnesses: Sequence[Any] = (), spacing: Any = D
+    m1: Any,
+    m2: Any,
+    N: int = 1,
+    *,
+    stiffnesses: Sequence[Any] = (),
+    spacing: Any = D,
 ) -> Cell:
     """The paper's N:1 dimer.
 
@@ -313,7 +322,9 @@ def substitution(
 
 
 def _by_ratio(
-    cell: Cell, omega: sp.Expr, known: Mapping[sp.Symbol, sp.Expr]
+    cell: Cell,
+    omega: sp.Expr,
+    known: Mapping[sp.Symbol, sp.Expr],
 ) -> tuple[sp.Symbol, sp.Expr]:
     """The mass that a ratio ω = m2/m1 replaces, where others have known values, and its value."""
     masses = tuple(dict.fromkeys(cell.masses))
@@ -335,7 +346,11 @@ def _by_ratio(
     )
 
 
-def _quantities(values: Any, name: str, singular: str) -> tuple[sp.Expr, ...]:
+def _quantities(
+    values: Any,
+    name: str,
+    singular: str,
+) -> tuple[sp.Expr, ...]:
     """Read a sequence of positive numbers or symbols."""
     numbered = enumerate(items(values, name), start=1)
     return tuple(positive(x, f"{singular} {i}") for i, x in numbered)

@@ -12,7 +12,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import sympy as sp
-from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+from flint import (
+    Ordering,
+    fmpq,
+    fmpq_mpoly,
+    fmpq_mpoly_ctx,
+)
 from sympy.polys.polyerrors import BasePolynomialError
 
 from lwa.base.exact import factored

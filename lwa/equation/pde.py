@@ -23,7 +23,11 @@ import sympy as sp
 
 from lwa.algebra.jets import Jet
 from lwa.base import latex
-from lwa.base.exact import InputError, power, shorten
+from lwa.base.exact import (
+    InputError,
+    power,
+    shorten,
+)
 from lwa.closure.consistency import OfClosure
 from lwa.equation.energy import conservative, energy
 from lwa.equation.terms import (
@@ -248,6 +252,7 @@ class PDE(OfClosure):
                 f"law is {self.law.text}: the compact wave in closed form belongs to a power law; "
                 "`lwa.loaded_wave` has the waves of any law, on a background or of a force"
             )
+        # G, H, I refuse an order below 4 and the optical branch.
         wave = CompactWave(cell=self.cell, k=self.k, G=self.G, H=self.H, I=self.I)
         # u_x^{k-2} u_xx² breaks the symmetry x → -x, u → -u, which an even pulse has.
         if 2 not in self.vanishing:

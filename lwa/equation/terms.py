@@ -8,7 +8,11 @@ powers of the base are collected in print, as in u_x^{k-3} u_xx^3.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import (
+    Iterator,
+    Mapping,
+    Sequence,
+)
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -154,7 +158,11 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
         return [latex.total((self[jet], self.latex(jet)) for jet in self)]
 
 
-def terms(closure: Closure, polynomial: fmpq_mpoly, power: BasePower = FORCE) -> Terms:
+def terms(
+    closure: Closure,
+    polynomial: fmpq_mpoly,
+    power: BasePower = FORCE,
+) -> Terms:
     """Convert a polynomial of the closure's algebra into jets of the field.
 
     Parameters
