@@ -195,8 +195,8 @@ class Cell(Value):
         """The ratio τ/t = √(P k A_eff D^{k+1} / M) of the time in u_ττ = u_x^{k-1} u_xx + …."""
         # Force A_eff (D u_x)^k on the density M/(P D): M/(P D) u_tt = k A_eff D^k u_x^{k-1} u_xx
         k = exponent(k)
-        stiffness = self.size * k * self.stiffness(k) * power(self.spacing, k + 1)
-        return power(stiffness / self.mass, sp.S.Half)
+        modulus = self.size * k * self.stiffness(k) * power(self.spacing, k + 1)
+        return power(modulus / self.mass, sp.S.Half)
 
 
 def Dimer(

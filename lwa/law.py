@@ -114,8 +114,8 @@ class ContactLaw(Value):
     def phi(self, n: int) -> sp.Expr:
         """The parameter φ_n = δ^{n-1} F^{(n)}/F′ as an expression in δ."""
         # φ_0 has no meaning.
-        power = integer(n, "n", 1) - 1
-        return ratio(self.delta**power * self.slope(n), self.slope())
+        order = integer(n, "n", 1) - 1
+        return ratio(self.delta**order * self.slope(n), self.slope())
 
     @property
     def pulls(self) -> bool:
