@@ -76,8 +76,8 @@ class Answer:
         """The object that ``--format json`` prints.
 
         Names ending in ``_value`` are floats, in the unit of length where the spacing is a symbol,
-        at V_s = 1 and B = 1, or -1 where B < 0. Symbols, complex numbers and numbers beyond a
-        double have none. The notes include the reasons of missing values.
+        at ``V_s = 1`` and ``B = 1``, or ``B = -1`` if B is negative. Symbols, complex numbers and
+        numbers beyond a double have none. The notes include the reasons of missing values.
         """
         result = dict(self.head)
         units: Values = {}

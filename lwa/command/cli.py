@@ -19,9 +19,8 @@ from lwa.command.hints import help_end, next_step
 HELP = {"help_option_names": ["-h", "--help"]}
 """Settings of a command: both ways to ask for help."""
 
-CLOSED = (
-    128 + 13
-)  # exit status as in shells: 128 and SIGPIPE's number, which Windows lacks
+CLOSED = 128 + 13
+"""Exit status of a closed pipe, as in shells: 128 and SIGPIPE's number, which Windows lacks."""
 
 version = click.version_option(package_name="lwa", message="%(prog)s %(version)s")
 """The option ``--version`` of a command."""
@@ -30,24 +29,32 @@ version = click.version_option(package_name="lwa", message="%(prog)s %(version)s
 class Commands(click.Group):
     """A Click group that loads a command when it is called: `--help` loads none, for a quick start.
 
-    table : module in ``package``, and summary, of each command by its name. The module has a Click
+    Parameters
+    ----------
+    package : str
+        The package of the commands' modules.
+    table : mapping
+        Name of a module and summary of each command, by the command's name. The module has a Click
         command of that name, or an object whose ``command`` is one.
+    **settings
+        Further arguments of the group.
     """
 
     def __init__(
         self, package: str, table: Mapping[str, tuple[str, str]], **settings: Any
     ) -> None:
-        # placeholders: Click lists their names, and suggests one for a mistyped name
-        super().__init__(
-            commands={name: click.Command(name) for name in table}, **settings
-        )
-        self.package, self.table = package, table
+        # Click lists the names of these placeholders, and suggests one for a mistyped name.
+        commands = {name: click.Command(name) for name in table}
+        super().__init__(commands=commands, **settings)
+        self.package = package
+        self.table = table
 
     def get_command(self, context: click.Context, name: str) -> click.Command | None:
         """Return the command with a given name, or None."""
         if name not in self.table:
             return None
-        loaded = getattr(import_module(f"{self.package}.{self.table[name][0]}"), name)
+        module, _ = self.table[name]
+        loaded = getattr(import_module(f"{self.package}.{module}"), name)
         command: click.Command = getattr(loaded, "command", loaded)
         return command
 
@@ -55,10 +62,9 @@ class Commands(click.Group):
         self, context: click.Context, formatter: click.HelpFormatter
     ) -> None:
         """Write the list of commands without loading them."""
+        rows = [(name, summary) for name, (_, summary) in self.table.items()]
         with formatter.section("Commands"):
-            formatter.write_dl(
-                [(name, summary) for name, (_, summary) in self.table.items()]
-            )
+            formatter.write_dl(rows)
 
 
 def run(
@@ -74,8 +80,7 @@ def run(
             # UTF-8 for Greek letters whatever the locale says; a file name that is not UTF-8 stands
             # as \udcff in a message
             stream.reconfigure(encoding="utf-8", errors="backslashreplace")
-    # Numbers of 330 digits have coefficients of 10^5 at the highest orders; 3·10^5 are read in 1 s.
-    sys.set_int_max_str_digits(300_000)
+    sys.set_int_max_str_digits(MOST_DIGITS)
     given = sys.argv[1:] if arguments is None else arguments
     sys.exit(_status(command, name, given))
 
@@ -128,6 +133,11 @@ COMMANDS = {
 """Module in `lwa.command`, and summary, of each command by its name."""
 
 
+MOST_DIGITS = 300_000
+"""Digits of an integer that are printed: numbers of 330 digits have coefficients of 10⁵ at the
+highest orders; 3·10⁵ take a second."""
+
+
 @click.group(
     cls=Commands,
     package="lwa.command",
@@ -137,7 +147,7 @@ COMMANDS = {
 )
 @version
 def lwa() -> None:
-    """Long-wave theory of granular chains with contact force F = A δ^k.
+    """Long-wave theory of granular chains, whose contacts push with the force A δᵏ.
 
     δ is the compression of a contact, A its stiffness. Numbers are integers, decimals or fractions
     (3/2); any of them may be a plain name instead, and results then hold the symbol. Results have

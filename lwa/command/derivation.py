@@ -68,8 +68,8 @@ def depends_on_first(theory: Theory) -> bool:
 def derive(style: str, **options: Any) -> None:
     """Derive the long-wave equation of a chain.
 
-    Results are the ansatz, the wave equation u_ττ = u_x^(k-1) u_xx + … for the displacement u, and
-    the defect: u_ττ by the first bead's equation of motion minus u_ττ by the second bead's.
+    Results are the ansatz, the wave equation ``u_ττ = u_x^(k-1) u_xx + …`` for the displacement u,
+    and the defect: u_ττ by the first bead's equation of motion minus u_ττ by the second bead's.
 
     In JSON `terms` is the right-hand side of u_ττ after its leading term.
     """

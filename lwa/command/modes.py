@@ -49,7 +49,7 @@ def dispersion(
     Ω is the frequency in the time τ of `lwa derive`, and κ the wavenumber, both times D. The
     exponent k matters for unequal contacts only, whose shares of the strain depend on k.
 
-    With --precompression also the bands about this load (k = 3/2 unless --k is given), in rad/s
+    With --precompression also the bands about this load (``k = 3/2`` unless --k is given), in rad/s
     for masses, stiffnesses and spacing in SI, and with --spheres. In JSON `band_edges_value` has
     the frequencies (from, to) of each band, and `band_edges_frequency_value` these over 2π (Hz in
     SI).

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import re
 from collections.abc import Callable, Sequence
 from functools import reduce
@@ -114,8 +115,22 @@ def given(option: str) -> bool:
 
 
 def command(*examples: str, page: str) -> Callable[[Function], click.Command]:
-    """Make a decorator that turns a function into a command with examples in its help."""
-    return click.command(epilog=help_end(examples, page))
+    """Make a decorator that turns a function into a command, whose help is its docstring.
+
+    Parameters
+    ----------
+    *examples : str
+        Lines that run one after another in an empty folder, shown at the end of the help.
+    page : str
+        Page of the book on the command.
+    """
+
+    def decorate(function: Function) -> click.Command:
+        # Literals of reStructuredText have no marks on a terminal.
+        says = inspect.cleandoc(function.__doc__ or "").replace("``", "")
+        return click.command(help=says, epilog=help_end(examples, page))(function)
+
+    return decorate
 
 
 # --- options ---

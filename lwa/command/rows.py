@@ -42,7 +42,7 @@ class Scale:
     spacing: sp.Expr = sp.S.One
 
     def plain(self, value: sp.Expr) -> sp.Expr:
-        """The value at V_s = 1, |B| = 1, and at D = 1 where the spacing is a symbol."""
+        """The value at ``V_s = 1``, ``|B| = 1``, and at ``D = 1`` where the spacing is a symbol."""
         ones = {}
         for symbol in value.free_symbols:
             if symbol.name in ("V_s", "B"):
@@ -55,7 +55,7 @@ class Scale:
         return value.xreplace(ones)
 
     def unit_of(self, value: sp.Expr) -> str | None:
-        """The unit of a number times powers of symbols, such as " D^2"; None for other values."""
+        """The unit of a number times powers of symbols, such as ``" D^2"``; None for others."""
         symbols = value.free_symbols
         rest = sp.factor_terms(value).as_independent(*symbols, as_Add=False)[1]
         powers = [factor.as_base_exp() for factor in sp.Mul.make_args(rest)]

@@ -32,12 +32,12 @@ _ERRORS = "estimate of the sum's error, by its last terms and by radiation"
     k.name, "Highest power of ε = k - 1; by default 8, or 4 with symbols.", None
 )
 def expansion(order: int | None, style: str, **options: Any) -> None:
-    """Expand the lattice's own wave in ε = k - 1, and sum the series.
+    """Expand the lattice's own wave in ``ε = k - 1``, and sum the series.
 
     Each sum comes with an estimate of its absolute error, at the peak force 1 on the first contact
     and with lengths in D; k and the cell must be numbers.
 
-    In JSON c² is the sum of `c2`[n] ε^n.
+    In JSON c² is the sum of ``c2[n] ε^n``.
     """
     chain = take_chain(options)
     cell = chain.cell

@@ -58,8 +58,9 @@ def wave(
     A programming language as --format gives the source of functions that compute the wave without
     load.
 
-    Without --force the floats in JSON are those at B = 1 (speed) and at V_s = 1 (B, mu), with D as
-    the unit of length if D is a symbol. `speed` is V_s = dx/dτ, and dx/dt with --force.
+    Without --force the floats in JSON are those at ``B = 1`` (speed) and at ``V_s = 1`` (B, mu),
+    with D as the unit of length if D is a symbol. `speed` is ``V_s = dx/dτ``, and dx/dt with
+    --force.
     """
     spheres = options["spheres"] is not None
     chain = take_chain(options)
