@@ -25,6 +25,8 @@ WIDTH = 100
 _BREAK = re.compile(r"(\s+|(?<=[^*/][*/])(?![*/\s]))")
 
 Values = dict[str, Any]
+Lines = list["Row | str | Answer"]
+"""Rows, lines of text, and parts of an answer."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +116,8 @@ class Answer:
                 yield from row.split("\n")
             elif row.label:
                 yield f"  {row.text(self.scale)}"
-        if self.errors and any(row.error > 0 for row in self._values()):
+        measured = [row.measured for row in self._values() if row.measured is not None]
+        if self.errors and any(number.error > 0 for number in measured):
             yield f"±: {self.errors}"
         for note in self.notes:
             yield ""

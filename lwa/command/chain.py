@@ -82,19 +82,15 @@ class ChainInput:
         force = f"A F, F = {self.law.F}"
         if self.law.homogeneous:
             force = f"A δ^k, k = {k}"
-
-        def written(value: sp.Expr, unit: str) -> str:
-            return self.scale.number(value, unit) if self.si else str(value)
-
-        masses = ", ".join(written(m, "kg") for m in self.cell.masses)
         contacts = self.cell.stiffnesses
         if len(set(contacts)) == 1:
             contacts = contacts[:1]
-        stiffnesses = ", ".join(written(A, f"N/m^({k})") for A in contacts)
-        spacing = written(self.cell.spacing, "m")
+        write = self.scale.written
+        masses = ", ".join(write(m, "kg") for m in self.cell.masses)
+        stiffnesses = ", ".join(write(A, f"N/m^({k})") for A in contacts)
         return (
             f"masses {masses}; contact force {force}, A = {stiffnesses}; "
-            f"spacing D = {spacing}"
+            f"spacing D = {write(self.cell.spacing, 'm')}"
         )
 
     def load(

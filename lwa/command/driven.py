@@ -8,7 +8,7 @@ import sympy as sp
 
 from lwa.base import InputError
 from lwa.base.exact import positive
-from lwa.command.answer import Answer
+from lwa.command.answer import Answer, Lines
 from lwa.command.chain import take_chain
 from lwa.command.options import (
     SPHERES,
@@ -83,7 +83,7 @@ def strike(
     if mass is None:
         mass = striker.mass or cell.masses[0]
     pulse = pulse_of_strike(cell, mass, velocity, drop=drop, k=chain.law.exponent)
-    rows: list[Row | str | Answer] = [
+    rows: Lines = [
         f"chain of equal beads; F = A δ^k, k = {chain.law.exponent}",
         Row("", "mass of the beads", cell.masses[0], "kg"),
         Row("mass", "mass of the striker", pulse.mass, "kg", form="number"),
@@ -178,7 +178,7 @@ def shock(
 
     kind = attempt(getattr, front, "kind")
     named = None if isinstance(kind, InputError) else kind
-    rows: list[Row | str | Answer] = [
+    rows: Lines = [
         chain.text,
         row("behind", "strain behind", "", known=False),
         Row("ahead", "strain ahead", front.ahead),

@@ -11,7 +11,7 @@ import sympy as sp
 from lwa.base.exact import InputError, positive
 from lwa.base.frozen import TABLE_DIGITS, Shown
 from lwa.base.words import BRANCHES, BranchName, one_of
-from lwa.command.answer import Answer, Values
+from lwa.command.answer import Answer, Lines, Values
 from lwa.command.chain import ChainInput, take_chain
 from lwa.command.options import (
     BACKGROUND,
@@ -61,13 +61,13 @@ def dispersion(
         chain = replace(chain, law=Power(EXPONENT))
     linear = Dispersion(chain.cell, chain.law.exponent)
     head: Values = {"acoustic": None, "optical": None}
-    rows: list[Row | str | Answer] = [
+    rows: Lines = [
         chain.text,
         "Ω²(κ), κ = qD and Ω/D the frequency in τ",
         "",
     ]
     for name, series in linear.series(order).items():
-        head[name] = {str(n): str(c) for n, c in series.items()}
+        head[name] = series
         rows.append(f"{name}:")
         for n, c in series.items():
             rows.append(f"  {f'κ^{n}' if n else '1'}: {c}")
@@ -192,7 +192,7 @@ def envelope(
     if not isinstance(kind, InputError):
         head["kind"] = kind
         described = f"  {kind} envelopes"
-    rows: list[Row | str | Answer] = [
+    rows: Lines = [
         chain.text,
         "u = Ψ(X, T) U e^{i(κ n - ω t)} + c.c., Σ m |U|² = 1, n and κ per cell",
         "i Ψ_T + ½ ω'' Ψ_XX = χ |Ψ|² Ψ",

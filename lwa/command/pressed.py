@@ -11,7 +11,7 @@ from lwa.base.exact import InputError
 from lwa.base.frozen import NoSolitaryWave, Shown
 from lwa.base.words import QUANTITIES
 from lwa.cell import Cell
-from lwa.command.answer import Answer
+from lwa.command.answer import Answer, Lines
 from lwa.command.chain import ChainInput
 from lwa.command.derivation import closure_lines, settings_json
 from lwa.command.rows import Row, attempt, estimated
@@ -29,7 +29,7 @@ def of_force(
 ) -> Answer:
     """The wave of a peak contact force in a chain under a static force."""
     wave = loaded_wave(chain.cell, force=force, precompression=static, law=chain.law)
-    rows: list[Row | str | Answer] = [
+    rows: Lines = [
         f"endless chain {'without load' if static.is_zero else 'under a load'}",
         *closure_lines(theory),
         chain.text,
@@ -84,7 +84,7 @@ def on_background(chain: ChainInput, theory: Theory, p0: sp.Expr) -> Answer:
     """The waves on the strain p0: V_s by the rise B of the strain, and the limit of small waves."""
     field = Background(chain.cell, chain.law, p0)
     head = settings_json(theory)
-    rows: list[Row | str | Answer] = [
+    rows: Lines = [
         chain.text,
         *closure_lines(theory),
         f"u_x = p0 + v(ξ), ξ = x - V_s τ, p0 = {field.p0}; v rises by B",
@@ -127,7 +127,7 @@ def _unit_rise(field: Background) -> Iterator[Row]:
             )
 
 
-def _small_waves(kdv: KdV) -> list[Row | str | Answer]:
+def _small_waves(kdv: KdV) -> Lines:
     """Rows of the Korteweg-de Vries equation and its solitary wave."""
     equation = "small waves: v_τ + c0 v_x + α v v_x + γ v_xxx = 0, v = B sech²(ξ/L)"
     if kdv.rise.is_negative:

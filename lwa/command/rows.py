@@ -7,7 +7,7 @@ error (`Estimate`), or the `InputError` that says why there is no value.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -56,31 +56,26 @@ class Scale:
 
     def unit_of(self, value: sp.Expr) -> str | None:
         """The unit of a number times powers of symbols, such as ``" D^2"``; None for others."""
-        symbols = value.free_symbols
-        rest = sp.factor_terms(value).as_independent(*symbols, as_Add=False)[1]
-        powers = [factor.as_base_exp() for factor in sp.Mul.make_args(rest)]
-        if rest == 1:
-            return ""
-        if any(not base.is_Symbol or n.free_symbols for base, n in powers):
-            return None
-        if len(powers) > 1:
-            return f"·{rest}"
-        ((base, n),) = powers
-        if n == 1:
-            return f" {base}"
-        return f" {base}^{n}" if n.is_Integer else f" {base}^({n})"
+        unit = sp.S.One
+        for base, n in sp.factor_terms(value).as_powers_dict().items():
+            if base.is_Symbol and n.is_number:
+                unit *= base**n
+            elif base.free_symbols or n.free_symbols:
+                return None
+        return "" if unit == 1 else f" {unit}".replace("**", "^")
 
-    def measured(self, value: Estimate, unit: str) -> str:
+    def measured(self, number: Estimate, unit: str) -> str:
         """A number with its error as text; in SI with the prefix that suits its size."""
-        if not self.si or not unit:
-            return value.text()
-        fitted = fitting(unit, abs(value.value))
-        text = (value * (1 / fitted.size)).text()
-        number, comma, unknown = text.partition(",")
-        return f"{number} {fitted.name}{comma}{unknown}"
+        if not self.si:
+            return number.text()
+        fitted = fitting(unit, abs(number.value))
+        text, comma, unknown = (number * (1 / fitted.size)).text().partition(",")
+        return f"{text} {fitted.name}".rstrip() + comma + unknown
 
-    def number(self, value: sp.Expr, unit: str) -> str:
-        """An exact number in SI as text: six digits, and the unit with a prefix."""
+    def written(self, value: sp.Expr, unit: str) -> str:
+        """An expression as text; in SI six digits, and the unit with a prefix."""
+        if not self.si:
+            return str(value)
         number = as_float(value)
         if number is None:
             return f"{approximate(value, TABLE_DIGITS)} {unit}".rstrip()
@@ -126,30 +121,30 @@ class Row:
     estimate: Estimate | None = None
 
     @property
-    def error(self) -> float:
-        """The absolute error of the value; NaN if unknown or if there is none."""
-        measured = self.value if isinstance(self.value, Estimate) else self.estimate
-        return math.nan if measured is None else measured.error
-
-    # --- JSON -------------------------------------------------------------------------------
+    def measured(self) -> Estimate | None:
+        """The number with its error; None for an expression whose error nobody knows."""
+        if isinstance(self.value, Estimate):
+            return self.value
+        if self.estimate is None or math.isnan(self.estimate.error):
+            return None
+        return self.estimate
 
     def entries(self, scale: Scale) -> dict[str, Any]:
         """The values in JSON, by the ending of their names: "", "_value", "_error_value"."""
         if isinstance(self.value, InputError):
             return {"_value": None, "_error_value": None}
-        error = None if math.isnan(self.error) else float(self.error)
+        found: dict[str, Any] = {}
         if isinstance(self.value, Estimate):
-            return {"_value": float(self.value), "_error_value": error}
-        found = {}
-        if self.form != "number":
-            found[""] = self.value
-        floats = None
-        if self.form != "formula":
+            found["_value"] = float(self.value)
+        else:
             floats = self._floats(scale)
-        if floats is not None:
-            found["_value"] = floats
-        if self.estimate is not None:
-            found["_error_value"] = error
+            if self.form != "number":
+                found[""] = self.value
+            if self.form != "formula" and floats is not None:
+                found["_value"] = floats
+        if self.measured is not None:
+            error = float(self.measured.error)
+            found["_error_value"] = None if math.isnan(error) else error
         return found
 
     def _floats(self, scale: Scale) -> Any:
@@ -159,64 +154,52 @@ class Row:
         floats = [as_float(scale.plain(x)) for x in self.value]
         return None if None in floats else floats
 
-    # --- text -------------------------------------------------------------------------------
+    @property
+    def _each(self) -> Sequence[sp.Expr]:
+        """The expressions, those of contacts that are alike once."""
+        values = self.value if isinstance(self.value, tuple) else (self.value,)
+        return list(dict.fromkeys(values))
 
     def text(self, scale: Scale) -> str:
         """The row as a line of text."""
         if isinstance(self.value, InputError):
             return f"{self.label}: {self.value.reason}"
-        return f"{self.label} = {self._value_text(scale)}"
-
-    def _value_text(self, scale: Scale) -> str:
-        if isinstance(self.value, Estimate):
-            return scale.measured(self.value, self.unit)
-        if self.estimate is not None and not math.isnan(self.error):
-            number = scale.measured(self.estimate, self.unit)
-            if not scale.si:
-                number += scale.unit_of(self.value) or ""
-            formula = str(self.value)
-            bare = scale.si or self.form == "number" or self.value.has(sp.Float)
-            if bare or len(formula) > LONG or self.value.is_Rational:
-                return number
-            return f"{formula} ≈ {number}"
-        values = self.value if isinstance(self.value, tuple) else (self.value,)
-        # Contacts that are alike are printed once.
-        texts = dict.fromkeys(self._expression(x, scale) for x in values)
-        return ", ".join(texts)
+        if self.measured is None:
+            texts = [self._expression(x, scale) for x in self._each]
+            return f"{self.label} = {', '.join(texts)}"
+        number = scale.measured(self.measured, self.unit)
+        if not isinstance(self.value, Estimate):
+            unit = "" if scale.si else scale.unit_of(self.value)
+            number = self._beside(self.value, f"{number}{unit or ''}", scale)
+        return f"{self.label} = {number}"
 
     def _expression(self, value: sp.Expr, scale: Scale) -> str:
         """An expression as text: the formula, its digits, or both."""
-        if scale.si:
-            return scale.number(value, self.unit)
-        formula = str(value)
-        symbolic = value.free_symbols - {scale.spacing} or value.has(AppliedUndef)
-        if self.form == "formula" or symbolic:
-            return formula
-        plain = scale.plain(value)
-        if plain.is_Rational and len(formula) <= FRACTION:
-            return formula
         unit = scale.unit_of(value)
-        if unit is None:  # no number but at D = 1
-            return formula
-        digits = sp.sstr(evaluated(plain, self.digits), full_prec=False)
-        number = f"{digits}{unit}"
-        closed = not plain.has(sp.Float) and not plain.is_Rational
-        if closed and self.form == "both" and len(formula) <= LONG:
-            return f"{formula} ≈ {number}"
-        return number
+        symbolic = value.free_symbols - {scale.spacing} or value.has(AppliedUndef)
+        if scale.si or self.form == "formula" or symbolic or unit is None:
+            return scale.written(value, self.unit)
+        digits = evaluated(scale.plain(value), self.digits)
+        number = f"{sp.sstr(digits, full_prec=False)}{unit}"
+        return self._beside(value, number, scale)
 
-    # --- LaTeX ------------------------------------------------------------------------------
+    def _beside(self, value: sp.Expr, number: str, scale: Scale) -> str:
+        """A number behind its formula, or one of them where the other says no more."""
+        if scale.si or self.form == "number" or value.has(sp.Float):
+            return number
+        formula = str(value)
+        if scale.plain(value).is_Rational:
+            exact = self.measured is None and len(formula) <= FRACTION
+            return formula if exact else number
+        return number if len(formula) > LONG else f"{formula} ≈ {number}"
 
     def latex(self) -> str:
         """The row as ``symbol = value``; "" without a symbol or a value."""
         if not self.symbol or isinstance(self.value, InputError):
             return ""
-        measured = self.value if isinstance(self.value, Estimate) else self.estimate
-        if measured is not None and not math.isnan(measured.error):
-            return f"{self.symbol} = {measured.latex()}"
-        values = self.value if isinstance(self.value, tuple) else (self.value,)
-        texts = dict.fromkeys(latex.expression(x) for x in values)
-        return f"{self.symbol} = {', '.join(texts)}"
+        if self.measured is not None:
+            return f"{self.symbol} = {self.measured.latex()}"
+        return f"{self.symbol} = {', '.join(map(latex.expression, self._each))}"
 
 
 def as_float(value: sp.Expr) -> float | None:

@@ -7,7 +7,7 @@ from typing import Any
 
 from lwa.base.words import QUANTITIES
 from lwa.cell import k
-from lwa.command.answer import Answer, Values
+from lwa.command.answer import Answer, Lines, Values
 from lwa.command.chain import take_chain
 from lwa.command.options import command, series_options
 from lwa.command.rows import Row, attempt
@@ -45,9 +45,9 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
     if order is None and expanded.numeric:
         expanded = expand(cell, _ORDER, law=chain.law)
     head: Values = {
-        "k": str(expanded.k),
-        "masses": [str(m) for m in cell.masses],
-        "stiffnesses": [str(A) for A in cell.stiffnesses],
+        "k": expanded.k,
+        "masses": cell.masses,
+        "stiffnesses": cell.stiffnesses,
         "order": expanded.order,
         "c2": [expanded.c2.prefactor * a for a in expanded.c2.coefficients],
     }
@@ -56,7 +56,7 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
         series[f"fwhm.{q}"] = (f"FWHM of the {q}", expanded.fwhm(q))
     series["momentum"] = ("momentum", expanded.momentum)
     series["energy"] = ("energy", expanded.energy)
-    sums: list[Row | str | Answer] = [
+    sums: Lines = [
         chain.text,
         "ε = k - 1; peak force 1 on the first contact, lengths in D",
         "",

@@ -11,7 +11,7 @@ import sympy as sp
 from lwa.base.exact import InputError, read_exact
 from lwa.base.frozen import TABLE_DIGITS, NoSolitaryWave, Shown
 from lwa.base.words import LANGUAGES, QUANTITIES
-from lwa.command.answer import Answer, Values
+from lwa.command.answer import Answer, Lines, Values
 from lwa.command.chain import ChainInput, take_chain
 from lwa.command.derivation import closure_lines, depends_on_first, settings_json
 from lwa.command.options import (
@@ -156,7 +156,7 @@ def any_amplitude(chain: ChainInput, theory: Theory) -> Answer:
     """The compact wave of any amplitude: the speed V_s by the peak strain B, and B by V_s."""
     wave = _compact(theory)
     reduction = wave.reduction()
-    rows: list[Row | str | Answer] = [
+    rows: Lines = [
         chain.text,
         *closure_lines(theory),
         "v = u_x = B cos^(2/(k-1))(β ξ), ξ = x - V_s τ, on |ξ| ≤ π/(2β)",
@@ -198,10 +198,10 @@ RELATIONS = (
 """The oscillator's constants by G, H, I and p, the smaller root, in LaTeX."""
 
 
-def _reduction_rows(reduction: Reduction) -> list[Row | str]:
+def _reduction_rows(reduction: Reduction) -> Lines:
     """Rows of the oscillator z'' = μ z^η - σ z; where p is long, of its relations to G, H, I."""
     names = ("p", "a", "mu", "eta", "sigma", "s")
-    lines: list[Row | str] = ["v = z^p, integrating factor z^a: z'' = μ z^η - σ z"]
+    lines: Lines = ["v = z^p, integrating factor z^a: z'' = μ z^η - σ z"]
     short = _is_short(reduction)
     if not short:
         lines += [
@@ -221,7 +221,7 @@ def _is_short(reduction: Reduction) -> bool:
 def of_force(chain: ChainInput, theory: Theory, force: sp.Expr) -> Answer:
     """The compact wave of a peak contact force, in space and time."""
     wave = _compact(theory).at_force(force)
-    rows: list[Row | str | Answer] = [
+    rows: Lines = [
         "endless chain without load",
         *closure_lines(theory),
         chain.text,
@@ -263,7 +263,7 @@ def _canonical(
     if not depends_on_first(theory) or any(x.free_symbols for x in numbers):
         return []
     wave = canonical_wave(cell, k=k)
-    rows: list[Row | str | Answer] = ["", f"{CANONICAL}:"]
+    rows: Lines = ["", f"{CANONICAL}:"]
     if force is None:
         at: Any = wave
         speed = Row("speed", "V_s at B = 1", wave.speed(sp.S.One))
