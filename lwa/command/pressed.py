@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import suppress
+from dataclasses import replace
 
 import sympy as sp
 
@@ -14,9 +15,10 @@ from lwa.cell import Cell
 from lwa.command.answer import Answer, Lines
 from lwa.command.chain import ChainInput
 from lwa.command.derivation import closure_lines, settings_json
-from lwa.command.rows import Row, attempt, estimated
+from lwa.command.pulse import pulse_rows, width_row
+from lwa.command.rows import Row
 from lwa.loaded.background import Background, KdV
-from lwa.loaded.wave import LoadedWave, loaded_wave
+from lwa.loaded.wave import loaded_wave
 from lwa.theory import Theory
 
 _WIDTH_DIGITS = 12  # of widths under a load that are right (`lwa.loaded.quadrature`)
@@ -34,18 +36,7 @@ def of_force(
         *closure_lines(theory),
         chain.text,
         "",
-        Row("force", "peak contact force F", wave.force, "N"),
-        Row("B", "rise of the strain B", wave.strain),
-        Row("compression", "rise of the compression", wave.compression, "m"),
-        Row(
-            "speed",
-            "speed dx/dt",
-            wave.speed,
-            "m/s",
-            estimate=estimated(wave, "speed"),
-        ),
-        Row("bead_velocity", "peak velocity of the beads", wave.bead_velocity, "m/s"),
-        *_width_rows(wave),
+        *pulse_rows(wave, "rise of the", "number", _WIDTH_DIGITS),
         Row("precompression", "static force F0", wave.precompression, "N"),
         Row("background", "static strain p0", wave.background),
         Row("static_compression", "static compression", wave.static_compression, "m"),
@@ -53,31 +44,6 @@ def of_force(
     ]
     notes = chain.hertz_notes(wave.force)
     return Answer(settings_json(theory), rows, chain.scale, [wave], _ERRORS, notes)
-
-
-def _width_rows(wave: LoadedWave) -> Iterator[Row]:
-    """Rows of the widths in space and time; none with symbols."""
-    for key, label, extent, unit in (
-        ("fwhm", "", "length", "m"),
-        ("fwhm_time", " in time", "time", "s"),
-    ):
-        for q in QUANTITIES:
-            width = attempt(wave.fwhm, q, extent)
-            if isinstance(width, InputError):
-                return
-            symbol = rf"\mathrm{{FWHM}}_{{\mathrm{{{q}}}}}"
-            if extent == "time":
-                symbol += "^{(t)}"
-            yield Row(
-                f"{key}.{q}",
-                f"FWHM of the {q}{label}",
-                width,
-                unit,
-                symbol,
-                form="number",
-                digits=_WIDTH_DIGITS,
-                estimate=estimated(wave, "fwhm", q, extent),
-            )
 
 
 def on_background(chain: ChainInput, theory: Theory, p0: sp.Expr) -> Answer:
@@ -121,10 +87,9 @@ def _unit_rise(field: Background) -> Iterator[Row]:
             return
         yield Row("speed", f"V_s at {place}", speed, form="number")
         for q in QUANTITIES:
-            label = f"FWHM of the {q} at {place}"
-            yield Row(
-                f"fwhm.{q}", label, wave.fwhm(q), form="number", digits=_WIDTH_DIGITS
-            )
+            width = wave.fwhm(q)
+            row = width_row(q, width, form="number", digits=_WIDTH_DIGITS)
+            yield replace(row, label=f"{row.label} at {place}", unit="", symbol="")
 
 
 def _small_waves(kdv: KdV) -> Lines:

@@ -232,6 +232,8 @@ def approximate(value: sp.Expr, digits: int = EXACT_DIGITS) -> str:
 
 
 def estimated(result: Any, name: str, *arguments: Any) -> Estimate | None:
-    """The estimate of a result's number; None with symbols."""
+    """The estimate of a result's number; None with symbols, and for results that have none."""
+    if not hasattr(result, "estimate"):
+        return None
     found = attempt(result.estimate, name, *arguments)
     return None if isinstance(found, InputError) else found

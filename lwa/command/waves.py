@@ -9,7 +9,7 @@ import click
 import sympy as sp
 
 from lwa.base.exact import InputError, read_exact
-from lwa.base.frozen import TABLE_DIGITS, NoSolitaryWave, Shown
+from lwa.base.frozen import EXACT_DIGITS, TABLE_DIGITS, NoSolitaryWave, Shown
 from lwa.base.words import LANGUAGES, QUANTITIES
 from lwa.command.answer import Answer, Lines, Values
 from lwa.command.chain import ChainInput, take_chain
@@ -23,6 +23,7 @@ from lwa.command.options import (
     given,
     theory_options,
 )
+from lwa.command.pulse import pulse_rows, width_row
 from lwa.command.rows import LONG, Row, as_float
 from lwa.theory import Theory, homogenize
 from lwa.wave.compact import CompactWave, canonical_wave
@@ -165,7 +166,7 @@ def any_amplitude(chain: ChainInput, theory: Theory) -> Answer:
         Row("width", "width π/β", wave.width, symbol=r"\frac{\pi}{\beta}"),
     ]
     for q in QUANTITIES:
-        rows.append(_width_row(q, wave.fwhm(q)))
+        rows.append(width_row(q, wave.fwhm(q)))
     rows += [
         Row("B", "B", wave.amplitude()),
         Row("speed", "V_s", wave.speed()),
@@ -177,15 +178,6 @@ def any_amplitude(chain: ChainInput, theory: Theory) -> Answer:
     shown: list[Shown | str] = [theory.pde, wave]
     shown += [reduction] if _is_short(reduction) else RELATIONS
     return Answer(settings_json(theory), rows, chain.scale, shown)
-
-
-def _width_row(quantity: str, width: sp.Expr, time: bool = False) -> Row:
-    """The row of a width in space or in time."""
-    symbol = rf"\mathrm{{FWHM}}_{{\mathrm{{{quantity}}}}}"
-    if time:
-        label = f"FWHM of the {quantity} in time"
-        return Row(f"fwhm_time.{quantity}", label, width, "s", rf"{symbol}^{{(t)}}")
-    return Row(f"fwhm.{quantity}", f"FWHM of the {quantity}", width, "m", symbol)
 
 
 RELATIONS = (
@@ -226,17 +218,7 @@ def of_force(chain: ChainInput, theory: Theory, force: sp.Expr) -> Answer:
         *closure_lines(theory),
         chain.text,
         "",
-        Row("force", "peak contact force F", wave.force, "N"),
-        Row("B", "peak strain B", wave.strain),
-        Row("compression", "peak compression", wave.compression, "m"),
-        Row("speed", "speed dx/dt", wave.speed, "m/s"),
-        Row("bead_velocity", "peak velocity of the beads", wave.bead_velocity, "m/s"),
-    ]
-    for q in QUANTITIES:
-        rows.append(_width_row(q, wave.fwhm(q)))
-    for q in QUANTITIES:
-        rows.append(_width_row(q, wave.fwhm(q, "time"), time=True))
-    rows += [
+        *pulse_rows(wave, "peak", "both", EXACT_DIGITS),
         Row("beta", "", wave.wave.beta, "1/m"),
         Row("width", "", wave.wave.width, "m", r"\frac{\pi}{\beta}"),
         *_canonical(chain, theory, wave.force),
@@ -270,7 +252,7 @@ def _canonical(
     else:
         at = wave.at_force(force)
         speed = Row("speed", "speed dx/dt", at.speed, "m/s")
-    widths = (_width_row(q, at.fwhm(q)) for q in QUANTITIES)
+    widths = (width_row(q, at.fwhm(q)) for q in QUANTITIES)
     for row in (speed, *widths):
         # A comparison needs no formula, and no LaTeX beside that of the field asked for.
         rows.append(replace(row, form="number", digits=TABLE_DIGITS, symbol=""))
