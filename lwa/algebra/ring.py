@@ -12,7 +12,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import sympy as sp
-from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+from flint import (
+    Ordering,
+    fmpq,
+    fmpq_mpoly,
+    fmpq_mpoly_ctx,
+)
 from sympy.polys.polyerrors import BasePolynomialError
 
 from lwa.base.exact import factored
@@ -67,6 +72,7 @@ class Partition(Value):
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the ring's generators: one per distinct weight but the last."""
+        # Numbers need no generator.
         if self.rational:
             return ()
         return tuple(f"{self.letter}{i}" for i in range(len(self.distinct) - 1))
@@ -104,6 +110,7 @@ class CoefficientRing(Value):
     @cached_property
     def law(self) -> dict[str, sp.Expr]:
         """Mapping from the generators of the contact law, k or φ_2, φ_3, …, to their values."""
+        # A rational k is a number of the ring.
         if self.highest:
             symbols = map(phi_symbol, range(2, self.highest + 1))
             return {symbol.name: symbol for symbol in symbols}
