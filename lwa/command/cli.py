@@ -5,6 +5,8 @@ from __future__ import annotations
 import errno
 import io
 import os
+import re
+import shlex
 import sys
 from collections.abc import Mapping, Sequence
 from importlib import import_module
@@ -14,7 +16,6 @@ import click
 
 from lwa.base import INTERRUPTED, Refusal, cut
 from lwa.base.progress import alive
-from lwa.command.hints import help_end, next_step
 
 HELP = {"help_option_names": ["-h", "--help"]}
 """Settings of a command: both ways to ask for help."""
@@ -24,6 +25,28 @@ CLOSED = 128 + 13
 
 version = click.version_option(package_name="lwa", message="%(prog)s %(version)s")
 """The option ``--version`` of a command."""
+
+
+def called(option: click.Parameter) -> str:
+    """Name of an option in messages, without its dashes."""
+    return option.opts[0].lstrip("-")
+
+
+def help_end(examples: Sequence[str], page: str) -> str:
+    """The end of a command's help.
+
+    Parameters
+    ----------
+    examples : sequence of str
+        Lines that run one after another in an empty folder.
+    page : str
+        Name of the book's page on the command, without an ending; empty for none.
+    """
+    # Click leaves the lines of a paragraph after \b as they are.
+    parts = ["\b\nExamples:", *(f"  {line}" for line in examples)]
+    if page:
+        parts += ["", f"In the book: {page}.html"]
+    return "\n".join(parts)
 
 
 class Commands(click.Group):
@@ -100,8 +123,11 @@ def _status(command: click.Command, name: str, arguments: Sequence[str]) -> int:
         return 2
     except click.ClickException as error:
         fault = error.format_message()
+        context = getattr(error, "ctx", None)
+        if context is not None:
+            fault += f" Try: {context.command_path} --help"
     except Refusal as refusal:
-        fault = next_step(refusal, command, name, arguments)
+        fault = next_step(refusal, command, arguments)
     except (click.Abort, KeyboardInterrupt) as error:
         status = INTERRUPTED
         interrupt = error.__cause__ or error  # click puts an Abort around it
@@ -119,6 +145,49 @@ def _status(command: click.Command, name: str, arguments: Sequence[str]) -> int:
         fault = f"{error.filename or 'the output'}: {error.strerror or error}"
     click.echo(cut(f"{name}: {fault}"), err=True)
     return status
+
+
+def next_step(
+    refusal: Refusal, command: click.Command, arguments: Sequence[str]
+) -> str:
+    """The reason of a refusal and, where an option is to be changed, the line to paste."""
+    context = click.Context(command)
+    chosen: click.Command | None = command
+    line = list(arguments)
+    if isinstance(command, click.Group):
+        chosen = command.get_command(context, line[0])
+    examples = {}
+    for option in chosen.params if chosen else ():
+        examples[called(option)] = getattr(option.type, "example", "")
+    change = refusal.change or _example(refusal.reason, examples, line)
+    if not change or not examples.keys() >= change.keys():
+        return str(refusal)
+    for name, value in change.items():
+        if f"--{name}" in line:  # an option and its value
+            at = line.index(f"--{name}")
+            del line[at : at + 2]
+        if value is not None:
+            line += [f"--{name}", str(value)]
+    return f"{refusal.reason}; try: {shlex.join([command.name or '', *line])}"
+
+
+_SUBJECT = re.compile(r"(\w+) is |'(\w+)' has no value")
+"""The option at the start of a reason, or the symbol for which a number is wanted."""
+
+_HOLDER = {"k": "k", "D": "spacing"}
+"""Option of a symbol; any other one is taken for a mass."""
+
+
+def _example(
+    reason: str, examples: Mapping[str, str], line: Sequence[str]
+) -> dict[str, object]:
+    """The example of the option that a reason is about; {} for none, and if it is given."""
+    subject = _SUBJECT.match(reason)
+    if subject is None:
+        return {}
+    name = subject[1] or _HOLDER.get(subject[2], "masses")
+    example = examples.get(name)
+    return {name: example} if example and example not in line else {}
 
 
 COMMANDS = {

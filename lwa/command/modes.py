@@ -9,10 +9,10 @@ from typing import Any
 import sympy as sp
 
 from lwa.base.exact import InputError, positive
-from lwa.base.frozen import TABLE_DIGITS, Shown
+from lwa.base.frozen import Shown
 from lwa.base.words import BRANCHES, BranchName, one_of
 from lwa.command.answer import Answer, Lines, Values
-from lwa.command.chain import ChainInput, take_chain
+from lwa.command.chain import take_chain
 from lwa.command.options import (
     BACKGROUND,
     PRECOMPRESSION,
@@ -29,7 +29,6 @@ from lwa.command.rows import Row, attempt
 from lwa.law import Power
 from lwa.linear.dispersion import Dispersion, LoadedChain
 from lwa.spheres.hertz import EXPONENT
-from lwa.spheres.units import fitting
 
 
 @command(
@@ -56,7 +55,7 @@ def dispersion(
     """
     spheres = options["spheres"] is not None
     chain = take_chain(options)
-    precompression = chain.load(None, precompression)
+    precompression = chain.load(precompression)
     if precompression is not None and not (spheres or given("k")):
         chain = replace(chain, law=Power(EXPONENT))
     linear = Dispersion(chain.cell, chain.law.exponent)
@@ -87,20 +86,12 @@ def dispersion(
             edges = loaded.bands.edges()
             head["band_edges_value"] = edges.tolist()
             head["band_edges_frequency_value"] = (edges / (2 * math.pi)).tolist()
-            rows += _band_lines(chain, edges.tolist())
+            turn = 2 * math.pi if chain.si else 1.0
+            for i, band in enumerate(edges.tolist(), start=1):
+                ends = tuple(sp.Float(x / turn) for x in band)
+                unit = "" if chain.si else ", in rad per unit of time"
+                rows.append(Row("", f"band {i}{unit}", ends, "Hz", form="number"))
     Answer(head, rows, chain.scale, shown).print(style)
-
-
-def _band_lines(chain: ChainInput, edges: list[list[float]]) -> list[str]:
-    """Lines of text with the frequencies from and to of each band."""
-    unit = "Hz" if chain.si else "rad per unit of time"
-    turn = 2 * math.pi if chain.si else 1.0
-    fitted = fitting(unit, edges[-1][1] / turn)
-    lines = []
-    for i, band in enumerate(edges, start=1):
-        low, high = (f"{x / turn / fitted.size:.{TABLE_DIGITS}g}" for x in band)
-        lines.append(f"  band {i}: {low} … {high} {fitted.name}")
-    return lines
 
 
 def _branch(text: str, name: str) -> BranchName | int:
@@ -164,17 +155,12 @@ def envelope(
     """
     from lwa.envelopes import schrodinger  # here: `lwa dispersion` spares NumPy
 
-    if frequency is not None and detuning is not None:
-        raise InputError(
-            "--frequency and --detuning are both given: one says the other",
-            detuning=None,
-        )
     chain = take_chain(options)
-    load = chain.load(background, precompression)
+    load = chain.load(precompression)
     if background is None and load is None:
         raise InputError(
             "neither --background nor --precompression is given: a mode is that of a loaded chain",
-            precompression="1",
+            precompression=1,
         )
     equation = schrodinger.envelope(
         chain.cell,

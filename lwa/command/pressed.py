@@ -21,8 +21,6 @@ from lwa.loaded.background import Background, KdV
 from lwa.loaded.wave import loaded_wave
 from lwa.theory import Theory
 
-_WIDTH_DIGITS = 12  # of widths under a load that are right (`lwa.loaded.quadrature`)
-
 _ERRORS = "bound of the difference to waves of the lattice, by those that were measured"
 
 
@@ -36,7 +34,7 @@ def of_force(
         *closure_lines(theory),
         chain.text,
         "",
-        *pulse_rows(wave, "rise of the", "number", _WIDTH_DIGITS),
+        *pulse_rows(wave, "rise of the", "number"),
         Row("precompression", "static force F0", wave.precompression, "N"),
         Row("background", "static strain p0", wave.background),
         Row("static_compression", "static compression", wave.static_compression, "m"),
@@ -88,7 +86,7 @@ def _unit_rise(field: Background) -> Iterator[Row]:
         yield Row("speed", f"V_s at {place}", speed, form="number")
         for q in QUANTITIES:
             width = wave.fwhm(q)
-            row = width_row(q, width, form="number", digits=_WIDTH_DIGITS)
+            row = width_row(q, width, form="number")
             yield replace(row, label=f"{row.label} at {place}", unit="", symbol="")
 
 

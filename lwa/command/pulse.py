@@ -25,7 +25,7 @@ def width_row(
     return Row(f"{key}.{quantity}", label, width, unit, symbol, **settings)
 
 
-def pulse_rows(wave: Any, rise: str, form: Form, digits: int) -> Iterator[Row]:
+def pulse_rows(wave: Any, rise: str, form: Form) -> Iterator[Row]:
     """Rows of the size, the speed and the widths of a wave.
 
     Parameters
@@ -36,8 +36,6 @@ def pulse_rows(wave: Any, rise: str, form: Form, digits: int) -> Iterator[Row]:
         What its strain is called: "peak", or "rise of the" static strain.
     form : {"both", "formula", "number"}
         What is shown of the widths.
-    digits : int
-        Digits of the widths.
     """
     speed = estimated(wave, "speed")
     yield Row("force", "peak contact force F", wave.force, "N")
@@ -51,4 +49,4 @@ def pulse_rows(wave: Any, rise: str, form: Form, digits: int) -> Iterator[Row]:
             if isinstance(width, InputError):  # under a load widths are numbers
                 return
             error = estimated(wave, "fwhm", q, extent)
-            yield width_row(q, width, extent, form=form, digits=digits, estimate=error)
+            yield width_row(q, width, extent, form=form, estimate=error)

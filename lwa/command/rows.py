@@ -105,8 +105,6 @@ class Row:
         Name in LaTeX; not in LaTeX where empty.
     form : {"both", "formula", "number"}
         What is shown of an expression.
-    digits : int
-        Digits of an expression that are printed.
     estimate : Estimate, optional
         The number of an expression with its error.
     """
@@ -117,7 +115,6 @@ class Row:
     unit: str = ""
     symbol: str = ""
     form: Form = "both"
-    digits: int = EXACT_DIGITS
     estimate: Estimate | None = None
 
     @property
@@ -179,7 +176,8 @@ class Row:
         symbolic = value.free_symbols - {scale.spacing} or value.has(AppliedUndef)
         if scale.si or self.form == "formula" or symbolic or unit is None:
             return scale.written(value, self.unit)
-        digits = evaluated(scale.plain(value), self.digits)
+        places = TABLE_DIGITS if self.form == "number" else EXACT_DIGITS
+        digits = evaluated(scale.plain(value), places)
         number = f"{sp.sstr(digits, full_prec=False)}{unit}"
         return self._beside(value, number, scale)
 

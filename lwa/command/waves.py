@@ -9,7 +9,7 @@ import click
 import sympy as sp
 
 from lwa.base.exact import InputError, read_exact
-from lwa.base.frozen import EXACT_DIGITS, TABLE_DIGITS, NoSolitaryWave, Shown
+from lwa.base.frozen import NoSolitaryWave, Shown
 from lwa.base.words import LANGUAGES, QUANTITIES
 from lwa.command.answer import Answer, Lines, Values
 from lwa.command.chain import ChainInput, take_chain
@@ -65,7 +65,7 @@ def wave(
     """
     spheres = options["spheres"] is not None
     chain = take_chain(options)
-    precompression = chain.load(background, precompression)
+    precompression = chain.load(precompression)
     load = precompression if background is None else background
     loaded = load is not None and not load.is_zero
     if not chain.law.homogeneous:
@@ -73,7 +73,11 @@ def wave(
         loaded = load is not None or force is not None
     if loaded:
         _take_canonical(options)
-    _check_language(style, loaded, force)
+    if style in LANGUAGES and (loaded or force is not None):
+        raise InputError(
+            f"--format {style} is that of a chain without load, whose functions take any force",
+            format="text",
+        )
     theory = homogenize(chain.cell, law=chain.law, **options)
     if not loaded and not chain.law.homogeneous:
         raise InputError(
@@ -94,13 +98,8 @@ def wave(
         if background is None:
             static = precompression or sp.S.Zero
             pressed.of_force(chain, theory, peak, static).print(style)
-        elif force is None:
-            pressed.on_background(chain, theory, background).print(style)
         else:
-            raise InputError(
-                "--force goes with --precompression, a force; --background is a strain",
-                force=None,
-            )
+            pressed.on_background(chain, theory, background).print(style)
 
 
 def _take_canonical(options: dict[str, Any]) -> None:
@@ -116,18 +115,6 @@ def _take_canonical(options: dict[str, Any]) -> None:
                 **{name: wanted},
             )
         options[name] = wanted
-
-
-def _check_language(style: str, loaded: bool, force: sp.Expr | None) -> None:
-    """Refuse the source code of a wave under load or of a given force."""
-    if style not in LANGUAGES:
-        return
-    if loaded:
-        raise InputError(f"--format {style} is of a chain without load", format="text")
-    if force is not None:
-        raise InputError(
-            f"--format {style} is for any force: its functions take one", force=None
-        )
 
 
 def _compact(theory: Theory) -> CompactWave:
@@ -218,7 +205,7 @@ def of_force(chain: ChainInput, theory: Theory, force: sp.Expr) -> Answer:
         *closure_lines(theory),
         chain.text,
         "",
-        *pulse_rows(wave, "peak", "both", EXACT_DIGITS),
+        *pulse_rows(wave, "peak", "both"),
         Row("beta", "", wave.wave.beta, "1/m"),
         Row("width", "", wave.wave.width, "m", r"\frac{\pi}{\beta}"),
         *_canonical(chain, theory, wave.force),
@@ -255,5 +242,5 @@ def _canonical(
     widths = (width_row(q, at.fwhm(q)) for q in QUANTITIES)
     for row in (speed, *widths):
         # A comparison needs no formula, and no LaTeX beside that of the field asked for.
-        rows.append(replace(row, form="number", digits=TABLE_DIGITS, symbol=""))
+        rows.append(replace(row, form="number", symbol=""))
     return [Answer({}, rows, chain.scale, key="canonical")]

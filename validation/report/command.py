@@ -17,9 +17,8 @@ import click
 
 from lwa.base.exact import shorten
 from lwa.base.progress import bar, shown
-from lwa.command.cli import HELP
+from lwa.command.cli import HELP, called, help_end
 from lwa.command.cli import run as run_command
-from lwa.command.hints import called, help_end
 from lwa.command.options import quantities, quantity
 from validation.pictures import SUFFIXES
 from validation.report.result import Report, output_file
