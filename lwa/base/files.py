@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import sys
 import tomllib
 from collections.abc import Callable, Mapping, Sequence, Set
@@ -19,7 +18,7 @@ from typing import Any, TypeVar
 
 from lwa.base.exact import InputError, shorten
 from lwa.base.exact import integer as integer
-from lwa.base.words import one_of, similar, suggestion
+from lwa.base.words import one_of, suggestion
 
 T = TypeVar("T")
 Reader = Callable[[Any, str], Any]
@@ -67,7 +66,7 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
             parse(content(Path(path), MOST_BYTES[suffix]).decode("utf-8-sig"))
         )
     except (InputError, OSError) as error:
-        fault = reason(error) + _near_files(Path(path), error)
+        fault = reason(error)
     except UnicodeDecodeError:
         fault = "not a text in UTF-8"
     except RecursionError:
@@ -75,14 +74,6 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
     except ValueError as error:  # raised by the parsers
         fault = f"not {suffix[1:].upper()}: {str(error).partition(';')[0]}"
     raise InputError(f"{path}: {fault}") from None
-
-
-def _near_files(path: Path, error: Exception) -> str:
-    """Words on the files of similar names beside a file that is not there."""
-    near: list[str] = []
-    if isinstance(error, FileNotFoundError) and path.parent.is_dir():
-        near = similar(path.name, os.listdir(path.parent))
-    return f": did you mean {' or '.join(near)}?" if near else ""
 
 
 def content(file: Path, most: int = 10**9) -> bytes:

@@ -15,7 +15,7 @@ import sympy as sp
 from lwa.base.exact import InputError
 from lwa.base.files import Reader, Table, among, finite, load, positive, table
 from lwa.cell import Cell, D
-from lwa.command.rows import Scale
+from lwa.command.answer import Scale
 from lwa.law import ContactLaw, Power, for_cell, read_law
 from lwa.spheres.beads import (
     FILE,

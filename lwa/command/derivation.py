@@ -6,10 +6,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from lwa.base.frozen import Shown
-from lwa.command.answer import Answer, Lines, Values
+from lwa.command.answer import Answer, Lines, Row, Values
 from lwa.command.chain import take_chain
 from lwa.command.options import command, given, theory_options
-from lwa.command.rows import Row
 from lwa.equation.terms import Terms, by_order, latex_by_order
 from lwa.theory import Theory, homogenize
 from lwa.wave.compact import canonical_wave

@@ -8,7 +8,7 @@ import sympy as sp
 
 from lwa.base import InputError
 from lwa.base.exact import positive
-from lwa.command.answer import Answer, Lines
+from lwa.command.answer import Answer, Lines, Row, attempt, estimated
 from lwa.command.chain import take_chain
 from lwa.command.options import (
     SPHERES,
@@ -18,7 +18,6 @@ from lwa.command.options import (
     style_option,
     value,
 )
-from lwa.command.rows import Form, Row, attempt, estimated
 from lwa.expansion.physical import pulse_of_strike
 from lwa.shocks import riemann
 
@@ -157,36 +156,29 @@ def shock(
     else:
         front = riemann.shock(cell, behind, ahead, law=law)
 
-    def row(
-        name: str, label: str, unit: str, *rule: riemann.RuleName, known: bool = True
-    ) -> Row:
+    def row(name: str, label: str, unit: str = "", *rule: riemann.RuleName) -> Row:
         """The row of an attribute, or of the leading edge by a rule."""
-        key = ".".join((name, *rule))
+        result = attempt(getattr, front, name)
         if rule:
             result = attempt(front.leading_speed, *rule)
-        else:
-            result = attempt(getattr, front, name)
-        if isinstance(result, InputError):
-            return Row(key, label, result, unit)
-        form: Form = "number" if result.has(sp.Float) else "both"
-        error = estimated(front, name, *rule) if known else None
-        return Row(key, label, result, unit, form=form, estimate=error)
+        error = estimated(front, name, *rule)
+        return Row(".".join((name, *rule)), label, result, unit, estimate=error)
 
     kind = attempt(getattr, front, "kind")
     named = None if isinstance(kind, InputError) else kind
     rows: Lines = [
         chain.text,
-        row("behind", "strain behind", "", known=False),
+        row("behind", "strain behind"),
         Row("ahead", "strain ahead", front.ahead),
         "",
         f"{named or 'front'}, speeds dx/dt:",
-        row("plateau", "velocity of the wall", "m/s", known=False),
+        row("plateau", "velocity of the wall", "m/s"),
         row("trailing_speed", "trailing edge", "m/s"),
     ]
     for rule in riemann.RULES:
         rows.append(row("leading_speed", f"leading edge, {rule}", "m/s", rule))
     if kind != "rarefaction":
-        rows.append(row("peak", "peak strain, doubling", ""))
+        rows.append(row("peak", "peak strain, doubling"))
         rows.append(row("peak_force", "peak force, doubling", "N"))
     notes = []
     if front.oscillates:

@@ -11,7 +11,7 @@ import sympy as sp
 from lwa.base.exact import InputError, positive
 from lwa.base.frozen import Shown
 from lwa.base.words import BRANCHES, BranchName, one_of
-from lwa.command.answer import Answer, Lines, Values
+from lwa.command.answer import Answer, Lines, Row, Values, attempt
 from lwa.command.chain import take_chain
 from lwa.command.options import (
     BACKGROUND,
@@ -25,7 +25,6 @@ from lwa.command.options import (
     series_options,
     value,
 )
-from lwa.command.rows import Row, attempt
 from lwa.law import Power
 from lwa.linear.dispersion import Dispersion, LoadedChain
 from lwa.spheres.hertz import EXPONENT

@@ -7,10 +7,9 @@ from typing import Any
 
 from lwa.base.words import QUANTITIES
 from lwa.cell import k
-from lwa.command.answer import Answer, Lines, Values
+from lwa.command.answer import Answer, Lines, Row, Values, attempt
 from lwa.command.chain import take_chain
 from lwa.command.options import command, series_options
-from lwa.command.rows import Row, attempt
 from lwa.expansion.expand import Expansion, expand
 from lwa.expansion.series import EpsilonSeries
 
