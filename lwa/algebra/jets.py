@@ -208,7 +208,10 @@ class JetAlgebra:
         # the velocity, then among those of the strain.
         total = self.zero
         for index in self._derived:
-            part = f.derivative(index).integral(index - 1)
+            slope = f.derivative(index)
+            if not slope.derivative(index).is_zero():
+                return None
+            part = slope.integral(index - 1)
             total = total + part
             f = f - self.dx(part, exponent)
         return total if f.is_zero() else None
