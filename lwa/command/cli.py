@@ -127,7 +127,7 @@ def _status(command: click.Command, name: str, arguments: Sequence[str]) -> int:
         if context is not None:
             fault += f" Try: {context.command_path} --help"
     except Refusal as refusal:
-        fault = next_step(refusal, command, arguments)
+        fault = next_step(refusal, command, name, arguments)
     except (click.Abort, KeyboardInterrupt) as error:
         status = INTERRUPTED
         interrupt = error.__cause__ or error  # click puts an Abort around it
@@ -148,7 +148,7 @@ def _status(command: click.Command, name: str, arguments: Sequence[str]) -> int:
 
 
 def next_step(
-    refusal: Refusal, command: click.Command, arguments: Sequence[str]
+    refusal: Refusal, command: click.Command, name: str, arguments: Sequence[str]
 ) -> str:
     """The reason of a refusal and, where an option is to be changed, the line to paste."""
     context = click.Context(command)
@@ -158,17 +158,17 @@ def next_step(
         chosen = command.get_command(context, line[0])
     examples = {}
     for option in chosen.params if chosen else ():
-        examples[called(option)] = getattr(option.type, "example", "")
+        examples[called(option)] = getattr(option.type, "example", option.default)
     change = refusal.change or _example(refusal.reason, examples, line)
     if not change or not examples.keys() >= change.keys():
         return str(refusal)
-    for name, value in change.items():
-        if f"--{name}" in line:  # an option and its value
-            at = line.index(f"--{name}")
+    for changed, value in change.items():
+        if f"--{changed}" in line:  # an option and its value
+            at = line.index(f"--{changed}")
             del line[at : at + 2]
         if value is not None:
-            line += [f"--{name}", str(value)]
-    return f"{refusal.reason}; try: {shlex.join([command.name or '', *line])}"
+            line += [f"--{changed}", str(value)]
+    return f"{refusal.reason}; try: {shlex.join([name, *line])}"
 
 
 _SUBJECT = re.compile(r"(\w+) is |'(\w+)' has no value")
@@ -179,7 +179,7 @@ _HOLDER = {"k": "k", "D": "spacing"}
 
 
 def _example(
-    reason: str, examples: Mapping[str, str], line: Sequence[str]
+    reason: str, examples: Mapping[str, object], line: Sequence[str]
 ) -> dict[str, object]:
     """The example of the option that a reason is about; {} for none, and if it is given."""
     subject = _SUBJECT.match(reason)
@@ -187,7 +187,9 @@ def _example(
         return {}
     name = subject[1] or _HOLDER.get(subject[2], "masses")
     example = examples.get(name)
-    return {name: example} if example and example not in line else {}
+    if not isinstance(example, str) or example in line:
+        return {}
+    return {name: example}
 
 
 COMMANDS = {

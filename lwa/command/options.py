@@ -13,7 +13,7 @@ import sympy as sp
 from click.core import ParameterSource
 
 from lwa.base.exact import InputError, integer, positive, read_exact
-from lwa.base.words import BRANCHES, CLOSURES, FIELDS
+from lwa.base.words import BRANCHES, CLOSURES, FIELDS, one_of, similar
 from lwa.cell import D, exponent, k
 from lwa.command.cli import called, help_end
 from lwa.law import NAMES, read_law
@@ -50,11 +50,23 @@ class Read(click.ParamType[Any]):
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> Any:
         """Read the text of an option."""
+        return self.read(value, called(param) if param else self.name)
+
+
+class Words(click.Choice[str]):
+    """One of several words; the refusal of another word names those that are spelt alike."""
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> str:
+        """Return a word that is among the choices; see `lwa.base.words.one_of`."""
+        words = list(self.choices)
         name = called(param) if param else self.name
         try:
-            return self.read(value, name)
+            return one_of(value, words, name)
         except InputError as refusal:
-            raise InputError(refusal.reason, **{name: self.example}) from None
+            near = similar(value, words) or words
+            raise InputError(refusal.reason, **{name: near[0]}) from None
 
 
 def quantity(context: click.Context, option: click.Parameter, text: str | None) -> Any:
@@ -218,7 +230,7 @@ def style_option(languages: Sequence[str] = ()) -> Option:
     return click.option(
         "--format",
         "style",
-        type=click.Choice([*STYLES, *languages]),
+        type=Words([*STYLES, *languages]),
         default=STYLES[0],
         show_default=True,
         help="Form of the result.",
@@ -295,21 +307,21 @@ def theory_options(languages: Sequence[str] = ()) -> Option:
         order_option("Highest power of D in the ansatz, an integer."),
         click.option(
             "--closure",
-            type=click.Choice(CLOSURES),
+            type=Words(CLOSURES),
             help="How the motion of the other beads follows from that of the first: linear, the "
             "paper's ansatz, or full, which satisfies the equation of motion of every bead.  "
             "[default: linear for one or two masses, else full]",
         ),
         click.option(
             "--field",
-            type=click.Choice(FIELDS),
+            type=Words(FIELDS),
             help="Unknown u of the wave equation: displacement of the first bead, or the "
             "mass-weighted mean of all beads.  [default: first with --closure linear, else "
             "center]",
         ),
         click.option(
             "--branch",
-            type=click.Choice(BRANCHES),
+            type=Words(BRANCHES),
             default=BRANCHES[0],
             show_default=True,
             help="Neighbours move together (acoustic) or against each other.",

@@ -19,7 +19,7 @@ from lwa.base.exact import shorten
 from lwa.base.progress import bar, shown
 from lwa.command.cli import HELP, called, help_end
 from lwa.command.cli import run as run_command
-from lwa.command.options import quantities, quantity
+from lwa.command.options import Words, quantities, quantity
 from validation.pictures import SUFFIXES
 from validation.report.result import Report, output_file
 from validation.report.table import WIDTH
@@ -240,7 +240,7 @@ _OUTPUT = (
     option(
         "--format",
         "style",
-        type=click.Choice(("text", "json", "csv")),
+        type=Words(("text", "json", "csv")),
         default="text",
         says="How to print the result.",
     ),

@@ -39,7 +39,10 @@ LINES = [
     ("derive --order 0", "order is 0"),
     ("derive --order 200", "order is 200"),
     ("derive --order 20 --closure full", "order is 20"),
-    ("derive --closure ful", "is not one of 'linear', 'full'. Try: lwa derive --help"),
+    (
+        "derive --closure ful",
+        "closure is 'ful': did you mean full?; try: lwa derive --clos",
+    ),
     ("derive --field center", "field is 'center'"),
     ("derive --closure full --branch optical", "the optical branch"),
     ("derive --law toda", "one of power"),
