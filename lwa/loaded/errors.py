@@ -1,12 +1,12 @@
 """Bounds on the errors of waves under a load, as measured.
 
 The theory was compared with exact waves of the lattice and with struck chains
-(`book/studies/links.py`, `book/studies/struck.py`). The measure of a wave is its steepness
+(`book/studies/links.py`, `book/studies/struck.py`). The measure of a wave is its steepness::
 
     Δ = ln(F′(p0+B) / V̂²),
 
-which vanishes with B/p0, and without load with k - 1. The errors of V̂² - c0² and of widths are at
-most constant parts of Δ for each kind of lattice, up to a largest Δ.
+which vanishes with B/p0, and without load with k - 1. The errors of ``V̂² - c0²`` and of widths are
+at most constant parts of Δ for each kind of lattice, up to a largest Δ.
 
 Strongly unlike contacts driven hard have widths 20 to 34 % too small and squared speeds up to 6 %
 off: there, and without load, the width of a pair has no bound. Unlike masses without load radiate,
@@ -62,7 +62,7 @@ class Bounds(NamedTuple):
 
 
 def steepness(slope_at_peak: float, square: float) -> float:
-    """The steepness Δ = ln(F′(p0+B)/V²) of a wave: how much the law stiffens along the wave."""
+    """The steepness ``Δ = ln(F′(p0+B)/V²)`` of a wave: how much the law stiffens along the wave."""
     return log(slope_at_peak / square)
 
 
