@@ -99,6 +99,7 @@ class Envelope(Value):
         )
         rows = {
             r"\omega": self.frequency,
+            r"\omega'": self.group_velocity,
             r"\omega''": self.dispersion,
             r"\chi": self.nonlinearity,
         }

@@ -207,7 +207,8 @@ class KdV(Value):
             r"\gamma": self.dispersion,
         }
         equation = r"v_{\tau} + c_{0} v_{x} + \alpha v v_{x} + \gamma v_{xxx} = 0"
-        return [equation, *latex.rows(names)]
+        wave = r"v = B \operatorname{sech}^{2}(\xi / L)"
+        return [equation, *latex.rows(names), wave, latex.row("L", self.width())]
 
     @property
     def rise(self) -> sp.Symbol:

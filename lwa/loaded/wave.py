@@ -28,6 +28,7 @@ errors.
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi, sqrt
@@ -44,7 +45,6 @@ from lwa.base.exact import (
     Quantity,
     brief,
     number,
-    one_of,
     positive,
     power,
     read_exact,
@@ -56,6 +56,7 @@ from lwa.base.frozen import (
     known_extent,
     known_quantity,
 )
+from lwa.base.words import ExtentName, QuantityName, one_of
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
 from lwa.law import ContactLaw, for_cell, substituted
@@ -116,15 +117,22 @@ class LoadedWave(States):
         )
 
     def latex_rows(self) -> list[str]:
-        rows = {
-            "F_{0}": self.precompression,
-            "F": self.force,
-            "p_{0}": self.background,
-            "B": self.strain,
-            latex.SPEED: self.speed,
-        }
-        laws = [] if self.law is None else self.law.latex_rows()
-        return [*laws, *latex.rows(rows)]
+        """LaTeX of the law and of the wave; of numbers with their errors, where these are known."""
+        rows = latex.rows(
+            {
+                "F_{0}": self.precompression,
+                "F": self.force,
+                "p_{0}": self.background,
+                "B": self.strain,
+                latex.SPEED: self.speed,
+            }
+        )
+        with suppress(InputError):  # symbols have no estimate
+            speed = self.estimate("speed").latex()
+            width = self.estimate("fwhm").latex()
+            rows[-1] += rf" \approx {speed}"
+            rows.append(f"{latex.fwhm('force')} = {width}")
+        return rows if self.law is None else [*self.law.latex_rows(), *rows]
 
     def at(self, **values: Any) -> LoadedWave:
         """Substitute values for symbols of a chain, as `lwa.CompactWave.at`."""
@@ -199,7 +207,9 @@ class LoadedWave(States):
             I = D**2 * (sp.Float(float(law.dispersion)) + resonance)
         return KdV.of_slopes(self.sound_speed, slope, D * bend, I)
 
-    def fwhm(self, quantity: str = "force", extent: str = "length") -> sp.Expr:
+    def fwhm(
+        self, quantity: QuantityName = "force", extent: ExtentName = "length"
+    ) -> sp.Expr:
         """Full width at half maximum of the rise of a quantity, in numbers.
 
         Parameters
@@ -215,7 +225,7 @@ class LoadedWave(States):
             return sp.Float(sites / number(self.speed / self.chain.spacing))
         return sp.Float(sites) * self.chain.spacing
 
-    def along(self, x: ArrayLike, quantity: str = "force") -> Array:
+    def along(self, x: ArrayLike, quantity: QuantityName = "force") -> Array:
         """Profile in space: rises above the load at positions x, with the peak at ``x = 0``.
 
         Strains and velocities are right to 1e-9 of the larger of v and B/1000, forces to rounding
@@ -239,7 +249,10 @@ class LoadedWave(States):
         return np.asarray(rises / peak * number(self.force - self.precompression))
 
     def estimate(
-        self, name: EstimatedName, quantity: str = "force", extent: str = "length"
+        self,
+        name: EstimatedName,
+        quantity: QuantityName = "force",
+        extent: ExtentName = "length",
     ) -> Estimate:
         """A result in floats with a bound on its error, as measured on lattices.
 

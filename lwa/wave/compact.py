@@ -32,9 +32,9 @@ from lwa.base import latex
 from lwa.base.exact import (
     InputError,
     brief,
+    factored,
     integer,
     number,
-    one_of,
     positive,
     power,
     read_exact,
@@ -50,6 +50,7 @@ from lwa.base.frozen import (
     known_quantity,
     strain_power,
 )
+from lwa.base.words import ExtentName, LanguageName, QuantityName, one_of
 from lwa.cell import Cell, exponent, read_cell, substitution
 from lwa.cell import k as symbol_k
 from lwa.law import ContactLaw, Power, for_cell
@@ -115,6 +116,9 @@ class CompactWave(Value):
         return [
             r"v = u_{x} = B \cos^{2/(k-1)}(\beta \xi), \quad |\xi| \leq \frac{\pi}{2\beta}",
             latex.row(r"\beta", self.beta),
+            latex.row(r"\frac{\pi}{\beta}", self.width),
+            latex.row(latex.fwhm("strain"), self.fwhm("strain")),
+            latex.row(latex.fwhm("force"), self.fwhm("force")),
             latex.row("V_{s}", self.speed()),
         ]
 
@@ -126,15 +130,15 @@ class CompactWave(Value):
     @cached_property
     def _ratios(self) -> tuple[sp.Expr, sp.Expr]:
         """The ratios G/I and H/I, which in the canonical field depend on k alone."""
-        return sp.factor(self.G / self.I), sp.factor(self.H / self.I)
+        return factored(self.G / self.I), factored(self.H / self.I)
 
     @cached_property
     def coefficient_sum(self) -> sp.Expr:
         """The sum (G + H + I) / D²."""
         g, h = self._ratios
         if (g + h).free_symbols <= self.k.free_symbols:  # I stays a factor
-            return self.I / self.D**2 * sp.factor(1 + g + h)
-        return sp.factor((self.G + self.H + self.I) / self.D**2)
+            return self.I / self.D**2 * factored(1 + g + h)
+        return factored((self.G + self.H + self.I) / self.D**2)
 
     @property
     def m(self) -> sp.Expr:
@@ -156,7 +160,7 @@ class CompactWave(Value):
         """The number π/(βD) of particles under the wave."""
         return self.width / self.D
 
-    def fwhm(self, quantity: str = "strain") -> sp.Expr:
+    def fwhm(self, quantity: QuantityName = "strain") -> sp.Expr:
         """Full width at half maximum, a length in x.
 
         Parameters
@@ -180,7 +184,7 @@ class CompactWave(Value):
         # With β² = (k-1)²/(4 I (1+g+h)) and m = 2/(k-1) written out k - 1 cancels.
         k = self.k
         g, h = self._ratios
-        return sp.factor(1 - (k - 1) * (h + 4 - k) / (2 * (1 + g + h)))
+        return factored(1 - (k - 1) * (h + 4 - k) / (2 * (1 + g + h)))
 
     def speed(self, B: Any = RISE) -> sp.Expr:
         """Speed ``V = dx/dτ`` of the wave whose strain peaks at B."""
@@ -256,15 +260,15 @@ class CompactWave(Value):
         )
 
     @overload
-    def at_force(self, F: Any = "F", of: str = "contact") -> PhysicalWave: ...
+    def at_force(self, F: Any = "F", of: BearerName = "contact") -> PhysicalWave: ...
 
     @overload
     def at_force(
-        self, F: Any = "F", of: str = "contact", *, precompression: Any
+        self, F: Any = "F", of: BearerName = "contact", *, precompression: Any
     ) -> PhysicalWave | LoadedWave: ...
 
     def at_force(
-        self, F: Any = "F", of: str = "contact", *, precompression: Any = 0
+        self, F: Any = "F", of: BearerName = "contact", *, precompression: Any = 0
     ) -> PhysicalWave | LoadedWave:
         """The wave of a given peak force: a `PhysicalWave`, or under load a `LoadedWave`.
 
@@ -343,7 +347,7 @@ class CompactWave(Value):
             self.k, self.cell.masses, self.coefficient_sum, self.speed_factor, missing
         )
 
-    def code(self, language: str) -> str:
+    def code(self, language: LanguageName) -> str:
         """Source text of a program: β, widths, speed, amplitude and profile as functions.
 
         Arguments and accuracy of the functions are those of `lwa.wave.source`.
@@ -440,7 +444,7 @@ class PhysicalWave(Value):
 
     wave: CompactWave
     force: sp.Expr
-    of: str = "contact"
+    of: BearerName = "contact"
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "force", positive(self.force, "force"))
@@ -454,7 +458,12 @@ class PhysicalWave(Value):
         )
 
     def latex_rows(self) -> list[str]:
-        rows = {"F": self.contact_force, "B": self.strain, latex.SPEED: self.speed}
+        rows = {
+            "F": self.contact_force,
+            "B": self.strain,
+            latex.SPEED: self.speed,
+            latex.fwhm("force"): self.fwhm("force"),
+        }
         return latex.rows(rows)
 
     @cached_property
@@ -526,7 +535,9 @@ class PhysicalWave(Value):
         arch = sp.sqrt(sp.pi) * sp.gamma((m + 1) / 2) / sp.gamma(m / 2 + 1)
         return density * arch / self.wave.beta * self.bead_velocity
 
-    def fwhm(self, quantity: str = "force", extent: str = "length") -> sp.Expr:
+    def fwhm(
+        self, quantity: QuantityName = "force", extent: ExtentName = "length"
+    ) -> sp.Expr:
         """Full width at half maximum.
 
         Parameters
@@ -544,7 +555,12 @@ class PhysicalWave(Value):
         length = self.wave.fwhm(quantity)
         return length if known_extent(extent) == "length" else length / self.speed
 
-    def curve(self, t: ArrayLike, quantity: str = "force", of: str = "") -> Array:
+    def curve(
+        self,
+        t: ArrayLike,
+        quantity: QuantityName = "force",
+        of: BearerName | None = None,
+    ) -> Array:
         """Course in time: values at the times t, with the peak at ``t = 0``.
 
         Parameters
@@ -571,7 +587,12 @@ class PhysicalWave(Value):
 
         return self.along(-number(self.speed) * finite(t, "t"), quantity, of)
 
-    def along(self, x: ArrayLike, quantity: str = "force", of: str = "") -> Array:
+    def along(
+        self,
+        x: ArrayLike,
+        quantity: QuantityName = "force",
+        of: BearerName | None = None,
+    ) -> Array:
         """Profile in space: values at the positions x when the peak is at 0; see `curve`."""
         import numpy as np  # start-up: `lwa wave` does without
 

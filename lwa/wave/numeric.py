@@ -20,8 +20,9 @@ import sympy as sp
 from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array, finite
-from lwa.base.exact import InputError, one_of
+from lwa.base.exact import InputError, factored
 from lwa.base.frozen import NoSolitaryWave, Value, strain_power
+from lwa.base.words import QuantityName, one_of
 
 LARGEST = 1e150
 """Largest mass ratio: V² holds the square of its reciprocal, the least that a double has."""
@@ -117,7 +118,7 @@ class NumericWave(Value):
             return total
 
         forms = []
-        excess = sp.factor((self.speed_factor - 1) / (self.k - 1))
+        excess = factored((self.speed_factor - 1) / (self.k - 1))
         for value in (self.coefficient_sum, self.speed_factor, excess):
             numerator, denominator = sp.fraction(value)
             forms.append(by_masses(numerator) / by_masses(denominator))
@@ -135,7 +136,9 @@ class NumericWave(Value):
         """The number π/(βD) of sites under the wave."""
         return np.pi / self.beta(k, omega)
 
-    def fwhm(self, k: ArrayLike, omega: ArrayLike, quantity: str = "strain") -> Array:
+    def fwhm(
+        self, k: ArrayLike, omega: ArrayLike, quantity: QuantityName = "strain"
+    ) -> Array:
         """FWHM of strain, contact force or velocity in units of D (`lwa.CompactWave.fwhm`)."""
         beta = self.beta(k, omega)
         k = np.asarray(k, np.float64)

@@ -19,8 +19,9 @@ from sympy.printing.c import C99CodePrinter
 from sympy.printing.jscode import JavascriptCodePrinter
 from sympy.printing.numpy import NumPyPrinter
 
-from lwa.base.exact import InputError, one_of, shorten
+from lwa.base.exact import InputError, shorten
 from lwa.base.frozen import QUANTITIES, strain_power
+from lwa.base.words import LanguageName, one_of
 from lwa.cell import Cell
 from lwa.law import Power
 
@@ -92,7 +93,7 @@ class Language:
     settings: Mapping[str, Any] = field(default_factory=dict)
 
 
-LANGUAGES: Mapping[str, Language] = {
+LANGUAGES: Mapping[LanguageName, Language] = {
     "numpy": Language(
         NumPyPrinter,
         "#",
@@ -138,7 +139,9 @@ LANGUAGES: Mapping[str, Language] = {
 _EXACT = 2**53  # a double holds integers up to this one
 
 
-def module(functions: Sequence[Function], language: str, title: Sequence[str]) -> str:
+def module(
+    functions: Sequence[Function], language: LanguageName, title: Sequence[str]
+) -> str:
     """Write the source text of functions.
 
     Symbols keep their names, with underscores behind those that have another meaning.
