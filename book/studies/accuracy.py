@@ -46,6 +46,7 @@ from validation.scenes.checks import one_of
 from validation.scenes.scene import Scene
 from validation.studies.limits import theory_at
 from validation.studies.paper import recorded_chain
+from validation.waves.profile import ExactWave
 from validation.waves.solver import exact_wave
 
 WANTED = (1e-4, 1e-6, 1e-8, 1e-10)
@@ -116,7 +117,31 @@ def solitary_wave(sites: int = 100) -> Task:
         "samples": 2,
     }
     truth = Pulse(arrival, 1.0, arrival - width / 2, arrival + width / 2)
-    return Task(wave.launched(start, sites, **recorded), truth)
+    return Task(launched(wave, start, sites, **recorded), truth)
+
+
+def launched(wave: ExactWave, start: int, sites: int, **rest: Any) -> Scene:
+    """Return a scene of a chain that carries a wave, centered at bead ``start`` at time 0.
+
+    Parameters
+    ----------
+    wave : ExactWave
+        The wave.
+    start, sites : int
+        Sites before the wave's center, and the distance that the wave is to run.
+    **rest
+        Further fields of the scene.
+    """
+    bead = np.arange(2 * start + sites) - start
+    contact = bead[:-1] + 0.5
+    is_first = bead % 2 == 0
+    return chains.carrying(
+        tuple(np.where(is_first, *wave.masses)),
+        np.where(is_first[:-1], wave.strain(contact, 0), wave.strain(contact, 1)),
+        np.where(is_first, wave.velocity(bead, 0), wave.velocity(bead, 1)),
+        k=wave.k,
+        **rest,
+    )
 
 
 def experiment() -> Task:

@@ -21,6 +21,7 @@ from lwa import Cell, CompactWave, Dimer, homogenize, loaded_wave
 from lwa.base.arrays import Array
 from lwa.base.exact import number
 from lwa.base.progress import Progress
+from lwa.base.words import QuantityName
 from lwa.law import ContactLaw
 from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
@@ -243,7 +244,7 @@ def true_wave(
     return mp.sqrt(top), place, height
 
 
-def width_error(cell: Cell, p0: float, quantity: str) -> float:
+def width_error(cell: Cell, p0: float, quantity: QuantityName) -> float:
     """Return the relative error of the float64 FWHM of a wave on the background strain p0."""
     wave = loaded_wave(cell, rise=RISE, background=p0, k="3/2")
     with mp.workdps(REFERENCE_DIGITS):

@@ -136,6 +136,11 @@ def _formula(value: sp.Expr) -> str:
 SPEED = r"\frac{dx}{dt}"
 
 
+def fwhm(quantity: str) -> str:
+    """The name of a full width at half maximum."""
+    return rf"\mathrm{{FWHM}}_{{\mathrm{{{quantity}}}}}"
+
+
 def rows(values: Mapping[str, sp.Expr]) -> list[str]:
     """Return the rows ``name = value``, names in LaTeX, leaving out rows such as ``F = F``."""
     written = {name: row(name, value) for name, value in values.items()}
