@@ -160,7 +160,14 @@ class ContactLaw(Value):
 
     def _at(self, delta: sp.Expr, n: int) -> sp.Expr:
         """The n-th derivative of F at the compression of a closed contact."""
-        return self.slope(n).subs(self.delta, delta)
+        return self._put(self.slope(n), delta)
+
+    def _put(self, value: sp.Expr, delta: sp.Expr) -> sp.Expr:
+        """An expression in δ at a compression; long numbers are not written out."""
+        # SymPy alone can put a value into the derivative of an unknown function.
+        if self.formless:
+            return value.subs(self.delta, delta)
+        return replaced(value, {self.delta: delta})
 
     def _at_array(self, delta: Any, n: int) -> Any:
         """The n-th derivative of F at an array of compressions, 0 at open contacts."""
@@ -206,7 +213,7 @@ class ContactLaw(Value):
         p, D = real(p, "p"), real(D, "D")
         # Each derivative by p instead of δ = D p brings a factor D, each integral 1/D.
         if n < 0:
-            return self.energy.subs(self.delta, D * p) / D**2
+            return self._put(self.energy, D * p) / D**2
         return self.at(D * p, n) * D ** (n - 1)
 
     def check_strain(self, p: sp.Expr, cell: Cell) -> None:

@@ -23,6 +23,7 @@ from lwa import (
     expand,
     homogenize,
 )
+from lwa.base import LONGEST_MESSAGE
 from lwa.law import general, named
 
 TEXT = "__import__('os').system('true')"
@@ -32,6 +33,7 @@ ODD = (
     None, "", "m", "3/2", "strain", "time", "full", b"x", True, 0, -1, 1, 2, 3, 7, 0.5, -0.25, 1e-5,
     1e300, float("nan"), float("inf"), sp.Symbol("x"), sp.sqrt(2), sp.I, sp.oo, [], [1, 2],
     [[1], [2]], {"a": 1}, np.array([1.0, 2.0]), np.array(3.0), object(),
+    np.ma.array([1.0, 2.0], mask=[True, False]), np.ma.masked,
 )  # fmt: skip
 # Methods by which the package's own classes speak to each other, and constructors whose objects a
 # function returns: no user calls them, and they may fail in any way.
@@ -49,31 +51,57 @@ VALUES = {
     "force": 3, "rise": 1, "quantity": "force", "extent": "time", "name": "hertz2", "low": 0,
     "spheres": [STEEL, STEEL], "sphere": STEEL, "other": STEEL, "material": STEEL.material,
     "radius": 1, "F": sp.Symbol("delta", positive=True) ** 2, "background": 1, "behind": 2,
-    "ahead": 1, "kappa": 1, "q": 1, "value": 1, "exponent": 2, "base": 2, "digits": 10,
+    "ahead": 1, "kappa": 1, "q": 1, "value": 1, "exponent": 2, "base": 2, "digits": 10, "E": 1,
+    "nu": 0, "mass": 1, "i": 0, "j": 1, "links": [Link(0, 1, HERTZ)], "bead": 0, "stiffness": 1,
+    "direction": "across", "chain": Cell([1], spacing=1),
+}  # fmt: skip
+
+
+# Further arguments that a call needs before it reads the others.
+FURTHER = {
+    "envelope": {"background": 1},
+    "pulse_of_strike": {"velocity": 1},
+    "Shock.estimate": {"name": "leading_speed"},
+}
+
+# Classes of values that a user gives; other classes are those of results.
+GIVEN = {"Cell", "Lattice", "Link", "Resonator", "Material", "Sphere", "Dispersion"}
+
+# What no parameter of this name takes, whatever function has the parameter.
+NOT_POSITIVE, NO_COUNT, NO_WORD, NO_ARRAY = (
+    (0, -1),
+    (0, 1.5),
+    ("wall", b"x"),
+    ("now", np.nan),
+)
+WRONG = {
+    **dict.fromkeys(("E", "radius", "density", "mass", "m1", "m2", "spacing"), NOT_POSITIVE),
+    **dict.fromkeys(("factor", "cosine", "diameter", "stiffness", "rtol"), NOT_POSITIVE),
+    **dict.fromkeys(("order", "N"), NO_COUNT),
+    **dict.fromkeys(("quantity", "extent", "closure", "branch", "field", "rule"), NO_WORD),
+    **dict.fromkeys(("language", "direction", "missing", "method", "kind"), NO_WORD),
+    **dict.fromkeys(("t", "x", "delta"), NO_ARRAY), "wavenumber": (np.nan,),
+    "cell": ([1, 2], 1), "law": ([1],), "material": ("steel",),
+    "masses": ("m1,m2", [1, 0], []),
 }  # fmt: skip
 
 
 def samples():
     """An object of each class whose methods take values."""
     theory = homogenize(Dimer("m1", "m2"))
-    wave = theory.pde.traveling_wave()
-    numbers = homogenize(Dimer(1, 2), k="3/2").pde.traveling_wave()
-    link = Link(0, 1, HERTZ)
+    dimer = homogenize(Dimer(1, 2, spacing=1), k="3/2").pde.traveling_wave()
+    yield from (theory, theory.pde, theory.closure, theory.pde.traveling_wave())
+    yield from (dimer, dimer.at_force(1), STEEL, STEEL.material, Link(0, 1, HERTZ))
     yield from (
-        Cell(["m1", "m2"]),
         HERTZ,
         general(),
         named("hertz2"),
         named("polynomial"),
+        Cell(["m1", "m2"]),
     )
-    yield from (theory, theory.pde, theory.closure, wave, numbers, numbers.at_force(1))
-    yield from (Dispersion(Dimer("m1", "m2")), expand(Cell([1]), 3, k="3/2"), link)
-    yield from (
-        STEEL,
-        STEEL.material,
-        lwa.shock(Cell([1]), law=HERTZ, behind=2, ahead=1),
-    )
-    yield from (lwa.envelope(Cell([1]), law=HERTZ, background=1, wavenumber=1),)
+    yield from (Dispersion(Dimer("m1", "m2")), expand(Cell([1]), 3, k="3/2"))
+    yield lwa.shock(Cell([1]), law=HERTZ, behind=2, ahead=1)
+    yield lwa.envelope(Cell([1]), law=HERTZ, background=1, wavenumber=1)
     yield validation.exact_wave([1], 1.5)
 
 
@@ -87,26 +115,27 @@ def calls():
     for sample in samples():
         for name in dir(type(sample)):
             found = inspect.getattr_static(type(sample), name)
-            if not name.startswith("_") and isinstance(
-                found, FunctionType | classmethod
-            ):
+            method = isinstance(found, FunctionType | classmethod)
+            if method and not name.startswith("_"):
                 yield f"{type(sample).__name__}.{name}", getattr(sample, name)
+
+
+def parameters(call):
+    """Names of the parameters of a call, values of those that it needs, and the kinds."""
+    try:
+        every = inspect.signature(call).parameters.values()
+    except ValueError:
+        return [], {}, set()
+    single = [x for x in every if x.kind in (x.POSITIONAL_OR_KEYWORD, x.KEYWORD_ONLY)]
+    needed = {x.name: VALUES.get(x.name, TEXT) for x in single if x.default is x.empty}
+    return [x.name for x in single], needed, {x.kind for x in every}
 
 
 def attempts(call, draw, odds):
     """Yield arguments with the text, or one of so many odd values, in one place."""
-    try:
-        parameters = inspect.signature(call).parameters.values()
-    except ValueError:
-        return
-    known = [
-        x for x in parameters if x.kind in (x.POSITIONAL_OR_KEYWORD, x.KEYWORD_ONLY)
-    ]
-    needed = {x.name: VALUES.get(x.name, TEXT) for x in known if x.default is x.empty}
-    kinds = {x.kind for x in parameters}
-    names = [x.name for x in known] + ["m1", "k", "omega", "D"] * (
-        inspect.Parameter.VAR_KEYWORD in kinds
-    )
+    names, needed, kinds = parameters(call)
+    if inspect.Parameter.VAR_KEYWORD in kinds:
+        names = [*names, "m1", "k", "omega", "D"]
     for name in names:
         for value in (TEXT, (TEXT,), *draw.sample(ODD, odds)):
             yield (), needed | {name: value}
@@ -117,7 +146,7 @@ def attempts(call, draw, odds):
 
 @pytest.mark.parametrize("odds", [1, pytest.param(len(ODD), marks=pytest.mark.slow)])
 def test_arguments_are_answered_or_refused_and_never_evaluated(monkeypatch, odds):
-    executed, answered, draw = [], 0, random.Random(odds)
+    executed, answered, longest, draw = [], 0, 0, random.Random(odds)
     monkeypatch.setattr(os, "system", executed.append)
     for name, call in calls():
         own = name.split(".")[-1] in OWN
@@ -126,7 +155,8 @@ def test_arguments_are_answered_or_refused_and_never_evaluated(monkeypatch, odds
                 with warnings.catch_warnings():
                     warnings.simplefilter("ignore" if own else "error")
                     found = call(*positional, **keywords)
-            except (lwa.InputError, lwa.NoSolitaryWave):
+            except (lwa.InputError, lwa.NoSolitaryWave) as refusal:
+                longest = max(longest, len(str(refusal)))
                 continue
             except Exception as error:
                 if not own:
@@ -137,3 +167,22 @@ def test_arguments_are_answered_or_refused_and_never_evaluated(monkeypatch, odds
                 assert not np.isnan(found).any(), (name, positional, keywords)
         assert not executed, name
     assert answered > 100
+    assert longest <= LONGEST_MESSAGE
+
+
+def test_every_reader_refuses_wrong_values_by_name():
+    """0 for a mass, a word that is none: whatever the function, the message names the parameter."""
+    tried = named = 0
+    for name, call in calls():
+        names, needed, _ = parameters(call)
+        if name.split(".")[-1] in OWN or (isinstance(call, type) and name not in GIVEN):
+            continue
+        for parameter in WRONG.keys() & set(names):
+            for value in WRONG[parameter]:
+                arguments = needed | FURTHER.get(name, {}) | {parameter: value}
+                with pytest.raises((lwa.InputError, lwa.NoSolitaryWave)) as refusal:
+                    print(name, parameter, value, call(**arguments))
+                named += parameter in str(refusal.value)
+                tried += 1
+    assert named > 100
+    assert tried - named < 20  # a mass is called by its number

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 
 import click
 
-from lwa.command.cli import HELP, Commands, run, version
-from lwa.command.hints import help_end
+from lwa.command.cli import HELP, Commands, help_end, run, version
 
 STUDIES = {
     "compare": ("records", "Measured forces beside the simulation of their scene."),

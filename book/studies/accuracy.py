@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import takewhile
 from statistics import median
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import click
 import numpy as np
@@ -36,6 +36,7 @@ from validation.scenes import chains
 from validation.scenes.checks import one_of
 from validation.scenes.scene import Scene
 from validation.studies.paper import recorded_chain
+from validation.waves.profile import ExactWave
 from validation.waves.solver import exact_wave
 
 WANTED = (1e-4, 1e-6, 1e-8, 1e-10)
@@ -108,7 +109,8 @@ def solitary_wave(sites: int = 100) -> Task:
     arrival = (sites + 0.5) / wave.c  # a contact lies half a site behind its bead
     width = wave.fwhm("force") / wave.c
     truth = Pulse(arrival, 1.0, arrival - width / 2, arrival + width / 2)
-    scene = wave.launched(
+    scene = launched(
+        wave,
         start,
         sites,
         contact_sensors=(start + sites,),
@@ -116,6 +118,30 @@ def solitary_wave(sites: int = 100) -> Task:
         samples=2,
     )
     return Task(scene, truth)
+
+
+def launched(wave: ExactWave, start: int, sites: int, **rest: Any) -> Scene:
+    """Return a scene of a chain that carries a wave, centered at bead ``start`` at time 0.
+
+    Parameters
+    ----------
+    wave : ExactWave
+        The wave.
+    start, sites : int
+        Sites before the wave's center, and the distance that the wave is to run.
+    **rest
+        Further fields of the scene.
+    """
+    bead = np.arange(2 * start + sites) - start
+    contact = bead[:-1] + 0.5
+    is_first = bead % 2 == 0
+    return chains.carrying(
+        tuple(np.where(is_first, *wave.masses)),
+        np.where(is_first[:-1], wave.strain(contact, 0), wave.strain(contact, 1)),
+        np.where(is_first, wave.velocity(bead, 0), wave.velocity(bead, 1)),
+        k=wave.k,
+        **rest,
+    )
 
 
 def experiment() -> Task:

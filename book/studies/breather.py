@@ -52,7 +52,6 @@ from validation.report.result import Report
 from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import numeric_cell
 from validation.scenes.checks import SceneError, between, integer
-from validation.waves import newton
 
 HARMONICS = 5  # H; 8 change amplitude and width by less than their errors
 MOST_STEPS = 30  # of Newton's method
@@ -282,18 +281,32 @@ def orbit(
 
 
 def continued(begin: Orbit, frequency: float) -> Orbit:
-    """Continue an orbit to another frequency; raises `NoOrbit` if Newton's method fails."""
+    """Continue an orbit to another frequency; raises `NoOrbit` if Newton's method fails.
 
-    def at(omega: float, path: Sequence[tuple[float, Orbit]]) -> Orbit:
-        (omega1, older), (omega2, last) = path[0], path[-1]
-        start = last.coefficients  # extrapolated from the two orbits before
-        if len(path) > 1:
-            share = (omega - omega2) / (omega2 - omega1)
-            start = start + share * (start - older.coefficients)
-        return orbit(begin.chain, omega, start, start.shape[1] - 1)
-
+    Steps adapt: an orbit that is not found halves the step, down to a hundredth of the first one.
+    """
+    path = [begin]
     first_step = abs(frequency - begin.frequency) / 4
-    return newton.continued(begin, begin.frequency, frequency, first_step, at)
+    step = first_step
+    while path[-1].frequency != frequency:
+        last = path[-1]
+        left = frequency - last.frequency
+        omega = frequency
+        if abs(left) > step:
+            omega = last.frequency + math.copysign(step, left)
+        start = last.coefficients
+        if len(path) > 1:  # extrapolated from the two orbits before
+            older = path[-2]
+            share = (omega - last.frequency) / (last.frequency - older.frequency)
+            start = start + share * (start - older.coefficients)
+        try:
+            path.append(orbit(begin.chain, omega, start, start.shape[1] - 1))
+            step *= 1.5
+        except NoOrbit:
+            step /= 2
+            if step < first_step / 100:
+                raise
+    return path[-1]
 
 
 def _cosines(a: Array, phase: Array) -> Array:

@@ -35,6 +35,7 @@ import sympy as sp
 from lwa import Lattice, Law, Link, Power, loaded_wave
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
+from lwa.base.words import QuantityName
 from lwa.law import DELTA
 from validation.lattice.laws import Contact
 from validation.pictures import Curve, Panel
@@ -195,7 +196,7 @@ class Exact:
     """
 
     square: float
-    of: str
+    of: QuantityName
     fwhm: float
     tail: float
 
@@ -261,7 +262,8 @@ def periodic(lattice: Lattice, force: float, load: float, half: float) -> Exact:
             break
     else:
         raise Failure("Newton's method does not converge")
-    of, curves = ("force", F[:own]) if own > 1 else ("strain", d[None])
+    of: QuantityName = "force" if own > 1 else "strain"
+    curves = F[:own] if own > 1 else d[None]
     width = np.mean([_width(x, curve) for curve in curves])
     tail = np.abs(curves[:, x > 0.9 * x[-1]]).max() / curves[:, 0].max()
     return Exact(float(square), of, float(width), float(tail))

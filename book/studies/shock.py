@@ -33,8 +33,8 @@ from lwa import shock as front
 from lwa.base.exact import InputError, read_exact
 from lwa.base.frozen import Estimate
 from lwa.base.progress import Progress
+from lwa.command.answer import attempt
 from lwa.command.options import quantities, quantity
-from lwa.command.rows import attempt
 from lwa.law import ContactLaw, named
 from validation.lattice.result import Run
 from validation.lattice.simulate import simulate, simulate_many

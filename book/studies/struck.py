@@ -30,6 +30,7 @@ from numpy.typing import NDArray
 from lwa import Lattice, Link, Power, Resonator, hexagonal, loaded_wave
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
+from lwa.base.words import QuantityName
 from lwa.loaded.lattice import DirectionName
 from validation.lattice.laws import Contact
 from validation.pictures import Curve, Panel
@@ -95,7 +96,7 @@ class Seen:
     peak, decay : of the quantity ``of``, "force" or "strain", and its loss per site.
     """
 
-    of: str
+    of: QuantityName
     peak: float
     decay: float
     speed: float
@@ -103,7 +104,9 @@ class Seen:
     ringing: float | None = None
 
     @classmethod
-    def between(cls, of: str, near: Sequence[Pulse], far: Sequence[Pulse]) -> Seen:
+    def between(
+        cls, of: QuantityName, near: Sequence[Pulse], far: Sequence[Pulse]
+    ) -> Seen:
         """Measure pulses of the same links at the two sensors."""
         pairs, sites = list(zip(near, far, strict=True)), SENSORS[1] - SENSORS[0]
         peaks = [float(np.mean([p.peak for p in pulses])) for pulses in (near, far)]

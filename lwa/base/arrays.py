@@ -56,14 +56,22 @@ def finite(values: ArrayLike, name: str) -> Array:
 def function_of(x: sp.Symbol, value: sp.Expr) -> Callable[[Array], Array]:
     """Compile an expression in a symbol to a function of arrays.
 
-    Raises `lwa.InputError` for a function without an expression, such as the law `general`.
+    Raises
+    ------
+    InputError
+        For a function without an expression, such as the law `general`.
     """
     if value.has(AppliedUndef):
         raise InputError(f"{shorten(value)} has no expression: floats need one")
-    # NumPy has no integers of more than 63 bits.
-    long = {
-        q: sp.Float(q, 17) for q in value.atoms(sp.Rational) if q.p.bit_length() > 53
-    }
+    # NumPy has no integers of more than 63 bits; those of more than 53 are rounded anyway.
+    long = {}
+    for q in value.atoms(sp.Rational):
+        if q.p.bit_length() > 53:
+            long[q] = sp.Float(q, 17)
     function = sp.lambdify(x, value.xreplace(long), "numpy")
 
-    return lambda at: np.broadcast_to(np.asarray(function(at), np.float64), at.shape)
+    def values(at: Array) -> Array:
+        # A constant expression gives a number, whatever the array.
+        return np.broadcast_to(np.asarray(function(at), np.float64), at.shape)
+
+    return values

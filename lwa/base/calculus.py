@@ -12,7 +12,7 @@ from lwa.base.exact import rearranged
 
 
 def integral(F: sp.Expr, x: sp.Symbol) -> sp.Expr:
-    """The integral ∫ F dx; rational powers of linear functions by the power rule.
+    """The integral ``∫ F dx``; rational powers of linear functions by the power rule.
 
     SymPy multiplies these out: large powers take long, and the terms of a pole cancel next to it.
     """
@@ -33,25 +33,60 @@ def ratio(top: sp.Expr, bottom: sp.Expr) -> sp.Expr:
     return rearranged(sp.cancel, sp.powsimp(top / bottom))
 
 
-def growing_root(F: sp.Expr, x: sp.Symbol) -> Any:
-    """The first root x > 0 of a function that grows up to the root, by mpmath; None without a root.
+_FIRST_STEP = mpmath.mpf(2) ** -20
+"""The first step of a search; a root below it is found by bisection."""
 
+_LEAST_STEP = (
+    mpmath.mpf(2) ** -150
+)  # relative to the place: beyond 45 digits there is no root
+_FARTHEST = 2**40  # no strain is that large
+_LONGER = mpmath.mpf("1.2")  # ratio of a step to the one before
+
+
+def growing_root(F: sp.Expr, x: sp.Symbol) -> Any:
+    """The first root ``x > 0`` of a function that grows up to the root.
+
+    Parameters
+    ----------
+    F : Expr
+        The function, of one symbol.
+    x : Symbol
+        The symbol.
+
+    Returns
+    -------
+    mpf or None
+        The root to mpmath's precision; None without a root.
+
+    Notes
+    -----
     Steps that leave the interval on which F is real and grows (its pole, its maximum) are halved.
     """
-    value, slope = (real_function(sp.lambdify(x, f, "mpmath")) for f in (F, F.diff(x)))
-    # Steps from 2^-20 on, each a fifth longer; a root below the first is found by the bisection.
-    low, step, least = mpmath.mpf(0), mpmath.mpf(2) ** -20, mpmath.mpf(2) ** -150
-    while (above := value(low + step)) < 0 or not slope(low + step) > 0:
-        if above > value(low) and slope(low + step) > 0:
-            low, step = low + step, step * mpmath.mpf("1.2")
+    value = real_function(sp.lambdify(x, F, "mpmath"))
+    slope = real_function(sp.lambdify(x, F.diff(x), "mpmath"))
+    low = mpmath.mpf(0)
+    step = _FIRST_STEP
+    while True:
+        above = value(low + step)
+        grows = slope(low + step) > 0
+        if above >= 0 and grows:
+            break
+        if above > value(low) and grows:
+            low += step
+            step *= _LONGER
         else:
             step /= 2
-        if step < least * max(low, 1) or low > 2**40:
+        if step < _LEAST_STEP * max(low, 1) or low > _FARTHEST:
             return None
-    # F rises through 0 in this interval, and Anderson's method keeps a bracket
-    ends, close = (low, low + step), mpmath.eps * (low + step)
+    # F rises through 0 in this interval, and Anderson's method keeps a bracket.
+    high = low + step
     return mpmath.findroot(
-        value, ends, tol=close, maxsteps=200, solver="anderson", verify=False
+        value,
+        (low, high),
+        tol=mpmath.eps * high,
+        maxsteps=200,
+        solver="anderson",
+        verify=False,
     )
 
 

@@ -32,49 +32,60 @@ _NOT_A_NUMBER = {"nan", "inf", "infinity", "none", "null", "true", "false"}
 _LONGEST_TEXT = 200  # characters: no number and no name of a chain needs more
 
 DIGITS = 330
-"""Digits of a numerator or denominator; the smallest floats are fractions over 10^324."""
+"""Digits of a numerator or denominator; the smallest floats are fractions over ``10^324``."""
+
+_FIRST_BEYOND = 2**1024  # the first integer beyond a double
 
 MOST_CANCELLED = 20_000
 """Digits that the terms of an exact number may cancel before it is evaluated in vain."""
 
+_UNLIMITED = 2**63 - 1  # the largest integer that NumPy and files hold
+
 _FINEST_ROOT = 12
-"""Greatest q of powers x^{p/q} that are rearranged as polynomials in x^{1/q}."""
+"""Greatest q of powers ``x^{p/q}`` that are rearranged as polynomials in ``x^{1/q}``."""
 
 _POWER_BITS = 300
 """Most bits of a number, times the larger part of an exponent, of powers that are written out.
 
-SymPy takes whole powers out of roots, and joins the roots of a product: (6/5)^(97/197) becomes a
-root of 6^97 · 5^100. Its search for factors of a number fails with an `OverflowError` beyond the
-1024 bits of a double. The roots of three numbers of this length join to less.
+SymPy takes whole powers out of roots, and joins the roots of a product: ``(6/5)^(97/197)`` becomes
+a root of ``6^97 · 5^100``. Its search for factors of a number fails with an `OverflowError` beyond
+the 1024 bits of a double. The roots of three numbers of this length join to less.
 """
 
 
 def read_exact(value: Any, name: str) -> sp.Expr:
-    """Read ``value`` (see `Quantity`) as an exact SymPy expression.
+    """Read a quantity as an exact SymPy expression.
 
-    ``name`` names the value in messages. Texts are integers, decimals, fractions or plain names;
-    a name becomes a positive symbol.
+    Parameters
+    ----------
+    value : Quantity
+        A number, an expression, or a text: an integer, a decimal, a fraction or a plain name, which
+        becomes a positive symbol. A float stands for the decimal that it prints as.
+    name : str
+        Name of the quantity in messages.
 
-    Raises `InputError` for NaN, infinities, complex numbers, other text, and numbers beyond the
-    range of a float or of more than `DIGITS` digits.
+    Raises
+    ------
+    InputError
+        For NaN, infinities, complex numbers, other text, and numbers beyond the range of a float
+        or of more than `DIGITS` digits.
 
+    Examples
+    --------
     >>> read_exact(0.1, "k"), read_exact("3/2", "k"), read_exact("m1", "mass")
     (1/10, 3/2, m1)
     """
     if isinstance(value, str):
         expression = _from_text(value.strip(), name)
     elif isinstance(value, sp.Expr):
-        real(value, name)
-        expression = value.xreplace(
-            {f: sp.Rational(str(f)) for f in value.atoms(sp.Float)}
-        )
+        floats = real(value, name).atoms(sp.Float)
+        expression = value.xreplace({x: sp.Rational(str(x)) for x in floats})
     else:
         expression = _from_number(value, name)
     for number in expression.atoms(sp.Rational):
-        p, q = abs(int(number.p)), int(number.q)
-        if (
-            max(p, q) >= 10**DIGITS or p >= q * 2**1024
-        ):  # 2^1024: the first beyond a double
+        p = abs(int(number.p))
+        q = int(number.q)
+        if max(p, q) >= 10**DIGITS or p >= q * _FIRST_BEYOND:
             raise InputError(
                 f"{name} is a number beyond 1e±308 or of more than {DIGITS} digits: give a shorter "
                 "number"
@@ -83,32 +94,36 @@ def read_exact(value: Any, name: str) -> sp.Expr:
 
 
 def _from_number(value: Any, name: str) -> sp.Rational:
-    # NumPy's scalars; the item of a masked one would be the number behind its mask.
+    """Read a number of Python or NumPy."""
+    # The item of a masked scalar would be the number behind its mask.
     scalar = hasattr(value, "item") and getattr(value, "size", 1) == 1
     if scalar and not hasattr(value, "mask"):
         value = value.item()
     if isinstance(value, bool) or not isinstance(value, int | float | Fraction):
         raise InputError(f"{name} is {shorten(value)}: a number or a symbol is wanted")
-    if isinstance(value, float) and not math.isfinite(value):
+    if not isinstance(value, float):
+        return sp.Rational(value)
+    if not math.isfinite(value):
         raise InputError(f"{name} is {value}: a finite number is wanted")
-    return sp.Rational(value if isinstance(value, int | Fraction) else str(value))
+    return sp.Rational(str(value))
 
 
 def _from_text(text: str, name: str) -> sp.Expr:
-    wanted = "an integer, a decimal, a fraction such as 3/2, or a plain name is wanted"
-    if len(text) <= _LONGEST_TEXT and _NUMBER.fullmatch(text):
+    """Read a number, or a name as a positive symbol."""
+    short = len(text) <= _LONGEST_TEXT
+    if short and _NUMBER.fullmatch(text):
         try:
             return sp.Rational(Fraction(text))
         except ZeroDivisionError:
             raise InputError(
                 f"{name} is {text}: the denominator must not be zero"
             ) from None
-    if (
-        len(text) > _LONGEST_TEXT
-        or not _NAME.fullmatch(text)
-        or text.lower() in _NOT_A_NUMBER
-    ):
-        raise InputError(f"{name} is {shorten(text)}: {wanted}")
+    named = short and _NAME.fullmatch(text)
+    if not named or text.lower() in _NOT_A_NUMBER:
+        raise InputError(
+            f"{name} is {shorten(text)}: an integer, a decimal, a fraction such as 3/2, or a plain "
+            "name is wanted"
+        )
     if keyword.iskeyword(text) or hasattr(sp, text):
         raise InputError(
             f"{name} is {text!r}, a word with a meaning of its own: choose another"
@@ -140,21 +155,23 @@ def signed(value: Any, name: str) -> sp.Expr:
 def positive(value: Any, name: str) -> sp.Expr:
     """Read an exact positive number, or an expression in symbols that may be positive."""
     expression = read_exact(value, name)
-    if expression.is_positive is False or (
-        expression.is_number and not expression.is_positive
-    ):
-        raise InputError(f"{name} is {expression}: it must be positive")
+    # The sign of an expression in symbols may be unknown, None; that of a number must be known.
+    sign = expression.is_positive
+    if sign is False or (expression.is_number and not sign):
+        raise InputError(f"{name} is {shorten(expression)}: it must be positive")
     return expression
 
 
-def integer(value: Any, name: str, low: int, high: int = 2**63 - 1) -> int:
+def integer(value: Any, name: str, low: int, high: int = _UNLIMITED) -> int:
     """Read an integer (Python's, NumPy's or SymPy's) from ``low`` to ``high``."""
     try:
         number = operator.index(value)
     except TypeError:
         number = low - 1
     if isinstance(value, bool) or not low <= number <= high:
-        wanted = f"from {low} on" if high == 2**63 - 1 else f"from {low} to {high}"
+        wanted = f"from {low} to {high}"
+        if high == _UNLIMITED:
+            wanted = f"from {low} on"
         raise InputError(f"{name} is {shorten(value)}: an integer {wanted} is wanted")
     return number
 
@@ -184,7 +201,7 @@ def demand_distinct(**parts: Collection[sp.Symbol]) -> None:
 
 
 def number(value: sp.Expr) -> float:
-    """The float of an exact number, right to the last digit however much its terms cancel.
+    """The float of an exact number; see `evaluated`.
 
     Raises `lwa.InputError` for an expression with symbols.
     """
@@ -195,7 +212,7 @@ def number(value: sp.Expr) -> float:
 
 
 def evaluated(value: sp.Expr, digits: int) -> sp.Expr:
-    """Evaluate an exact number to the given digits, even if thousands of digits cancel."""
+    """Evaluate an exact number to the given digits, though `MOST_CANCELLED` digits cancel."""
     return sp.N(value, digits, maxn=MOST_CANCELLED)
 
 
@@ -221,7 +238,7 @@ class Unmultiplied(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymP
 
 
 def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
-    """The power base^exponent; that of a long number or a long exponent is not written out.
+    """The power ``base^exponent``; that of a long number or a long exponent is not written out.
 
     >>> power(sp.Rational(9, 4), sp.Rational(3, 2)), power(sp.Rational(9, 4), sp.Rational(1, 9999))
     (27/8, (9/4)**(1/9999))

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import sys
 import tomllib
 from collections.abc import Callable, Mapping, Sequence, Set
@@ -19,7 +18,7 @@ from typing import Any, TypeVar
 
 from lwa.base.exact import InputError, shorten
 from lwa.base.exact import integer as integer
-from lwa.base.words import similar, suggestion
+from lwa.base.words import one_of, suggestion
 
 T = TypeVar("T")
 Reader = Callable[[Any, str], Any]
@@ -32,12 +31,27 @@ MOST_BYTES = {".toml": 8_000_000, ".json": 64_000_000}
 
 
 def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
-    """Parse a file and pass its content to ``reader``, whose result is returned.
+    """Parse a TOML or JSON file and read its content.
 
-    ``what`` names the expected kind of file in messages, such as "a scene".
+    Parameters
+    ----------
+    path : str or Path
+        The file, whose ending tells the format.
+    what : str
+        The expected kind of file in messages, such as "a scene".
+    reader : callable
+        Function of the parsed content.
 
-    Raises `lwa.InputError`, in one line that names the file, if the file cannot be read or parsed,
-    or if the reader refuses its content.
+    Returns
+    -------
+    object
+        The result of the reader.
+
+    Raises
+    ------
+    InputError
+        In one line that names the file, if it cannot be read or parsed, or if the reader refuses
+        its content.
     """
     if not isinstance(path, str | Path):
         raise InputError(f"{what} is read from a file: {shorten(path)} is no file name")
@@ -52,7 +66,7 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
             parse(content(Path(path), MOST_BYTES[suffix]).decode("utf-8-sig"))
         )
     except (InputError, OSError) as error:
-        fault = reason(error) + _near_files(Path(path), error)
+        fault = reason(error)
     except UnicodeDecodeError:
         fault = "not a text in UTF-8"
     except RecursionError:
@@ -62,19 +76,15 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
     raise InputError(f"{path}: {fault}") from None
 
 
-def _near_files(path: Path, error: Exception) -> str:
-    """Words on the files of similar names beside a file that is not there."""
-    near: list[str] = []
-    if isinstance(error, FileNotFoundError) and path.parent.is_dir():
-        near = similar(path.name, os.listdir(path.parent))
-    return f": did you mean {' or '.join(near)}?" if near else ""
-
-
 def content(file: Path, most: int = 10**9) -> bytes:
     """Read a regular file of at most ``most`` bytes, by default a gigabyte.
 
-    Raises `OSError` if it cannot be read, and `lwa.InputError` for a folder, a pipe or a device
-    (nothing is read then) and for a larger file.
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    InputError
+        For a folder, a pipe or a device (nothing is read then), and for a larger file.
     """
     size = file.stat().st_size
     if not file.is_file():  # opening a pipe would wait for a writer
@@ -86,7 +96,9 @@ def content(file: Path, most: int = 10**9) -> bytes:
 
 def reason(error: Exception) -> str:
     """Return the system's message for an error, without error number and file name."""
-    return (isinstance(error, OSError) and error.strerror) or str(error)
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror
+    return str(error)
 
 
 def finite(value: Any, name: str) -> float:
@@ -118,6 +130,17 @@ def positive(value: Any, name: str) -> float:
 class Table:
     """A table of a file, refused if it holds unknown keys.
 
+    Parameters
+    ----------
+    value : dict
+        The parsed table.
+    name : str
+        The full key of the table; "" for the file itself.
+    known : sequence of str
+        Its keys.
+
+    Examples
+    --------
     >>> Table({"masss": 1}, "bead", ("mass", "radius"))
     Traceback (most recent call last):
         ...
@@ -125,7 +148,8 @@ class Table:
     """
 
     def __init__(self, value: Any, name: str, known: Sequence[str]) -> None:
-        self.name, self.entries = name, entries(value, name or "the file")
+        self.name = name
+        self.entries = entries(value, name or "the file")
         for key in self.entries:
             if key not in known:
                 raise InputError(
@@ -150,14 +174,12 @@ class Table:
     def one(self, *keys: str) -> str:
         """Return the key that is present; exactly one of the keys must be."""
         present = [key for key in keys if key in self]
-        if len(present) != 1:
-            fault = (
-                f"both {' and '.join(present)}"
-                if present
-                else f"neither {' nor '.join(keys)}"
-            )
-            raise InputError(f"{self.name} has {fault}: one is wanted")
-        return present[0]
+        if len(present) == 1:
+            return present[0]
+        fault = f"neither {' nor '.join(keys)}"
+        if present:
+            fault = f"both {' and '.join(present)}"
+        raise InputError(f"{self.name} has {fault}: one is wanted")
 
 
 def table(known: Sequence[str]) -> Reader:
@@ -207,9 +229,7 @@ def among(values: Mapping[str, Any]) -> Reader:
     """Reader of one of the names in ``values``; returns the value of that name."""
 
     def read(value: Any, name: str) -> Any:
-        if not isinstance(value, str) or value not in values:
-            raise InputError(f"{name} is {shorten(value)}: {suggestion(value, values)}")
-        return values[value]
+        return values[one_of(value, values, name)]
 
     return read
 

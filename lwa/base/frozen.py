@@ -22,11 +22,11 @@ FALL = sp.Symbol("B", negative=True)
 """B of a wave of lower strain, in a chain that softens."""
 
 SPEED = sp.Symbol("V_s", positive=True)
-"""V_s = dx/dτ, the speed of a wave, unless the caller gives another."""
+"""``V_s = dx/dτ``, the speed of a wave, unless the caller gives another."""
 
 
 def strain_power(quantity: str, k: Any) -> Any:
-    """The exponent q of a quantity that scales as strain^q: k for the force, else 1.
+    """The exponent q of a quantity that scales as ``strain^q``: k for the force, else 1.
 
     Raises `lwa.InputError` unless the quantity is among `QUANTITIES`.
     """
@@ -182,7 +182,7 @@ class Estimate(Value):
         return replace(self, error=self.error + abs(self.value) * relative)
 
     def latex(self) -> str:
-        """The value and its error, if known, such as 1.411928 ± 3 · 10^{-6}."""
+        """The value and its error, if known, such as ``1.411928 ± 3 · 10^{-6}``."""
         return re.sub(
             r"e([+-])0*(\d+)", _power_of_ten, repr(self).partition(",")[0]
         ).replace("±", r"\pm")

@@ -119,6 +119,7 @@ def expression(value: sp.Expr) -> str:
 
 
 def _formula(value: sp.Expr) -> str:
+    """LaTeX of a value in closed form."""
     # A power such as a^{1/k} is printed first, as SymPy asks at length whether 1/k is constant.
     powers = {}
     for p in value.atoms(sp.Pow):
@@ -135,35 +136,50 @@ def _formula(value: sp.Expr) -> str:
 SPEED = r"\frac{dx}{dt}"
 
 
+def fwhm(quantity: str) -> str:
+    """The name of a full width at half maximum."""
+    return rf"\mathrm{{FWHM}}_{{\mathrm{{{quantity}}}}}"
+
+
 def rows(values: Mapping[str, sp.Expr]) -> list[str]:
-    """Return the rows ``name = value``, names in LaTeX, leaving out rows such as F = F."""
+    """Return the rows ``name = value``, names in LaTeX, leaving out rows such as ``F = F``."""
     written = {name: row(name, value) for name, value in values.items()}
     return [text for name, text in written.items() if text != f"{name} = {name}"]
 
 
 def power(symbol: sp.Expr, n: int) -> str:
-    """The power symbol^n in LaTeX."""
-    return f"{sp.latex(symbol)}^{{{n}}}" if n > 1 else str(sp.latex(symbol))
+    """The power ``symbol^n`` in LaTeX."""
+    base = str(sp.latex(symbol))
+    return f"{base}^{{{n}}}" if n > 1 else base
 
 
 def derivative(n: int, mark: str = "") -> str:
-    """The derivative ∂_x^n u in LaTeX, such as u_{xx} and u_{4x}, with a further subscript."""
-    return f"u_{{{'x' * n if n < 4 else f'{n}x'}{mark}}}"
+    """The derivative ``∂_x^n u``, such as ``u_{xx}`` and ``u_{4x}``, with a further subscript."""
+    order = "x" * n
+    if n > _MOST_LETTERS:
+        order = f"{n}x"
+    return f"u_{{{order}{mark}}}"
+
+
+_MOST_LETTERS = 3  # u_{xxx} is read at a glance, u_{xxxx} is not
 
 
 def total(terms: Iterable[tuple[sp.Expr, str]]) -> str:
-    """The sum Σ coefficient · factor in LaTeX, with the signs between the terms.
+    """The sum ``Σ coefficient · factor`` in LaTeX, with the signs between the terms.
 
     >>> total([(-sp.Symbol("G"), "u"), (sp.Integer(1), "v")])
     '- G u + v'
     """
-    written = []
-    for i, (coefficient, factor) in enumerate(terms):
-        minus = coefficient.could_extract_minus_sign()
-        size = -coefficient if minus else coefficient
-        value = rf"\left({expression(size)}\right)" if size.is_Add else expression(size)
-        sign = "-" if minus else "+" if i else ""
-        written.append(
-            f"{sign} {'' if value == '1' and factor else value} {factor}".strip()
-        )
-    return " ".join(" ".join(written).split()) or "0"
+    parts: list[str] = []
+    for coefficient, factor in terms:
+        sign = "+" if parts else ""
+        if coefficient.could_extract_minus_sign():
+            sign = "-"
+            coefficient = -coefficient
+        value = expression(coefficient)
+        if coefficient.is_Add:
+            value = rf"\left({value}\right)"
+        if value == "1" and factor:
+            value = ""
+        parts += [sign, value, factor]
+    return " ".join(filter(None, parts)) or "0"

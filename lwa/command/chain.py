@@ -15,8 +15,7 @@ import sympy as sp
 from lwa.base.exact import InputError
 from lwa.base.files import Reader, Table, among, finite, load, positive, table
 from lwa.cell import Cell, D
-from lwa.command.options import given
-from lwa.command.rows import Scale
+from lwa.command.answer import Scale
 from lwa.law import ContactLaw, Power, for_cell, read_law
 from lwa.spheres.beads import (
     FILE,
@@ -82,46 +81,27 @@ class ChainInput:
         force = f"A F, F = {self.law.F}"
         if self.law.homogeneous:
             force = f"A δ^k, k = {k}"
-
-        def written(value: sp.Expr, unit: str) -> str:
-            return self.scale.number(value, unit) if self.si else str(value)
-
-        masses = ", ".join(written(m, "kg") for m in self.cell.masses)
         contacts = self.cell.stiffnesses
         if len(set(contacts)) == 1:
             contacts = contacts[:1]
-        stiffnesses = ", ".join(written(A, f"N/m^({k})") for A in contacts)
-        spacing = written(self.cell.spacing, "m")
+        write = self.scale.written
+        masses = ", ".join(write(m, "kg") for m in self.cell.masses)
+        stiffnesses = ", ".join(write(A, f"N/m^({k})") for A in contacts)
         return (
             f"masses {masses}; contact force {force}, A = {stiffnesses}; "
-            f"spacing D = {spacing}"
+            f"spacing D = {write(self.cell.spacing, 'm')}"
         )
 
-    def load(
-        self, background: sp.Expr | None, precompression: sp.Expr | None
-    ) -> sp.Expr | None:
-        """The static force of the file or of the options; None for none, or for a strain.
+    def load(self, given: sp.Expr | None) -> sp.Expr | None:
+        """The static force: that of the file, or the given one; None for none.
 
         Raises `lwa.InputError` for two loads.
         """
-        static = self.precompression
-        if static:
-            for name, load in (
-                ("background", background),
-                ("precompression", precompression),
-            ):
-                if load is not None:
-                    raise InputError(
-                        f"the file has a precompression of {static}: give no other load",
-                        **{name: None},
-                    )
-            return static
-        if background is not None and precompression is not None:
+        if self.precompression and given is not None:
             raise InputError(
-                "--background and --precompression are both given: one says the other",
-                background=None,
+                f"the file has a precompression of {self.precompression}: give no other load"
             )
-        return precompression
+        return self.precompression or given
 
     def hertz_notes(self, force: sp.Expr) -> list[str]:
         """A note on a force that presses spheres too much for Hertz's contact; [] for others."""
@@ -142,27 +122,11 @@ def take_chain(options: dict[str, Any]) -> ChainInput:
     chosen = {name: options.pop(name) for name in names if name in options}
     file = options.pop("spheres", None)
     if file is not None:
-        for name in chosen:
-            if given(name):
-                raise InputError(
-                    f"--{name} and --spheres are both given: spheres have their own",
-                    **{name: None},
-                )
         return read_chain(file)
-    masses, stiffnesses = chosen["masses"], chosen["stiffnesses"] or ()
-    if len(stiffnesses) not in (0, len(masses)):
-        raise InputError(
-            f"stiffnesses: {len(stiffnesses)} for {len(masses)} masses, and a periodic cell has as "
-            "many contacts as beads",
-            stiffnesses=",".join(["1"] * len(masses)),
-        )
-    if chosen.get("law") is not None and given("k"):
-        raise InputError("--k and --law are both given: a law has its own", k=None)
-    cell = Cell(masses, stiffnesses, chosen.get("spacing", D))
+    cell = Cell(chosen["masses"], chosen["stiffnesses"] or (), chosen.get("spacing", D))
     if cell.spacing.is_Symbol and chosen["k"] == cell.spacing:
         raise InputError(
-            f"k is {cell.spacing}: the name is that of the spacing, a unit of length",
-            k="k",
+            f"k is {cell.spacing}: the name is that of the spacing, a unit of length"
         )
     return ChainInput(cell, for_cell(chosen.get("law"), cell, chosen["k"]))
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import errno
 import io
 import os
+import re
+import shlex
 import sys
 from collections.abc import Mapping, Sequence
 from importlib import import_module
@@ -14,40 +16,68 @@ import click
 
 from lwa.base import INTERRUPTED, Refusal, cut
 from lwa.base.progress import alive
-from lwa.command.hints import help_end, next_step
 
 HELP = {"help_option_names": ["-h", "--help"]}
 """Settings of a command: both ways to ask for help."""
 
-CLOSED = (
-    128 + 13
-)  # exit status as in shells: 128 and SIGPIPE's number, which Windows lacks
+CLOSED = 128 + 13
+"""Exit status of a closed pipe, as in shells: 128 and SIGPIPE's number, which Windows lacks."""
 
 version = click.version_option(package_name="lwa", message="%(prog)s %(version)s")
 """The option ``--version`` of a command."""
 
 
+def called(option: click.Parameter) -> str:
+    """Name of an option in messages, without its dashes."""
+    return option.opts[0].lstrip("-")
+
+
+def help_end(examples: Sequence[str], page: str) -> str:
+    """The end of a command's help.
+
+    Parameters
+    ----------
+    examples : sequence of str
+        Lines that run one after another in an empty folder.
+    page : str
+        Name of the book's page on the command, without an ending; empty for none.
+    """
+    # Click leaves the lines of a paragraph after \b as they are.
+    parts = ["\b\nExamples:", *(f"  {line}" for line in examples)]
+    if page:
+        parts += ["", f"In the book: {page}.html"]
+    return "\n".join(parts)
+
+
 class Commands(click.Group):
     """A Click group that loads a command when it is called: `--help` loads none, for a quick start.
 
-    table : module in ``package``, and summary, of each command by its name. The module has a Click
+    Parameters
+    ----------
+    package : str
+        The package of the commands' modules.
+    table : mapping
+        Name of a module and summary of each command, by the command's name. The module has a Click
         command of that name, or an object whose ``command`` is one.
+    **settings
+        Further arguments of the group.
     """
 
     def __init__(
         self, package: str, table: Mapping[str, tuple[str, str]], **settings: Any
     ) -> None:
-        # placeholders: Click lists their names, and suggests one for a mistyped name
-        super().__init__(
-            commands={name: click.Command(name) for name in table}, **settings
-        )
-        self.package, self.table = package, table
+        # Click lists the names of these placeholders, and suggests one for a mistyped name.
+        commands = {name: click.Command(name) for name in table}
+        super().__init__(commands=commands, **settings)
+        self.package = package
+        self.table = table
 
     def get_command(self, context: click.Context, name: str) -> click.Command | None:
         """Return the command with a given name, or None."""
         if name not in self.table:
             return None
-        loaded = getattr(import_module(f"{self.package}.{self.table[name][0]}"), name)
+        module, _ = self.table[name]
+        loaded = getattr(import_module(f"{self.package}.{module}"), name)
         command: click.Command = getattr(loaded, "command", loaded)
         return command
 
@@ -55,10 +85,9 @@ class Commands(click.Group):
         self, context: click.Context, formatter: click.HelpFormatter
     ) -> None:
         """Write the list of commands without loading them."""
+        rows = [(name, summary) for name, (_, summary) in self.table.items()]
         with formatter.section("Commands"):
-            formatter.write_dl(
-                [(name, summary) for name, (_, summary) in self.table.items()]
-            )
+            formatter.write_dl(rows)
 
 
 def run(
@@ -74,8 +103,7 @@ def run(
             # UTF-8 for Greek letters whatever the locale says; a file name that is not UTF-8 stands
             # as \udcff in a message
             stream.reconfigure(encoding="utf-8", errors="backslashreplace")
-    # Numbers of 330 digits have coefficients of 10^5 at the highest orders; 3·10^5 are read in 1 s.
-    sys.set_int_max_str_digits(300_000)
+    sys.set_int_max_str_digits(MOST_DIGITS)
     given = sys.argv[1:] if arguments is None else arguments
     sys.exit(_status(command, name, given))
 
@@ -95,6 +123,9 @@ def _status(command: click.Command, name: str, arguments: Sequence[str]) -> int:
         return 2
     except click.ClickException as error:
         fault = error.format_message()
+        context = getattr(error, "ctx", None)
+        if context is not None:
+            fault += f" Try: {context.command_path} --help"
     except Refusal as refusal:
         fault = next_step(refusal, command, name, arguments)
     except (click.Abort, KeyboardInterrupt) as error:
@@ -116,6 +147,51 @@ def _status(command: click.Command, name: str, arguments: Sequence[str]) -> int:
     return status
 
 
+def next_step(
+    refusal: Refusal, command: click.Command, name: str, arguments: Sequence[str]
+) -> str:
+    """The reason of a refusal and, where an option is to be changed, the line to paste."""
+    context = click.Context(command)
+    chosen: click.Command | None = command
+    line = list(arguments)
+    if isinstance(command, click.Group):
+        chosen = command.get_command(context, line[0])
+    examples = {}
+    for option in chosen.params if chosen else ():
+        examples[called(option)] = getattr(option.type, "example", option.default)
+    change = refusal.change or _example(refusal.reason, examples, line)
+    if not change or not examples.keys() >= change.keys():
+        return str(refusal)
+    for changed, value in change.items():
+        if f"--{changed}" in line:  # an option and its value
+            at = line.index(f"--{changed}")
+            del line[at : at + 2]
+        if value is not None:
+            line += [f"--{changed}", str(value)]
+    return f"{refusal.reason}; try: {shlex.join([name, *line])}"
+
+
+_SUBJECT = re.compile(r"(\w+) is |'(\w+)' has no value")
+"""The option at the start of a reason, or the symbol for which a number is wanted."""
+
+_HOLDER = {"k": "k", "D": "spacing"}
+"""Option of a symbol; any other one is taken for a mass."""
+
+
+def _example(
+    reason: str, examples: Mapping[str, object], line: Sequence[str]
+) -> dict[str, object]:
+    """The example of the option that a reason is about; {} for none, and if it is given."""
+    subject = _SUBJECT.match(reason)
+    if subject is None:
+        return {}
+    name = subject[1] or _HOLDER.get(subject[2], "masses")
+    example = examples.get(name)
+    if not isinstance(example, str) or example in line:
+        return {}
+    return {name: example}
+
+
 COMMANDS = {
     "derive": ("derivation", "Derive the long-wave equation of a chain."),
     "dispersion": ("modes", "Series of Ω²(κ), and the bands of a loaded chain."),
@@ -128,6 +204,11 @@ COMMANDS = {
 """Module in `lwa.command`, and summary, of each command by its name."""
 
 
+MOST_DIGITS = 300_000
+"""Digits of an integer that are printed: numbers of 330 digits have coefficients of 10⁵ at the
+highest orders; 3·10⁵ take a second."""
+
+
 @click.group(
     cls=Commands,
     package="lwa.command",
@@ -137,7 +218,7 @@ COMMANDS = {
 )
 @version
 def lwa() -> None:
-    """Long-wave theory of granular chains with contact force F = A δ^k.
+    """Long-wave theory of granular chains, whose contacts push with the force A δᵏ.
 
     δ is the compression of a contact, A its stiffness. Numbers are integers, decimals or fractions
     (3/2); any of them may be a plain name instead, and results then hold the symbol. Results have

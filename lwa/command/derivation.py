@@ -6,10 +6,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from lwa.base.frozen import Shown
-from lwa.command.answer import Answer, Values
+from lwa.command.answer import Answer, Lines, Row, Values
 from lwa.command.chain import take_chain
 from lwa.command.options import command, given, theory_options
-from lwa.command.rows import Row
 from lwa.equation.terms import Terms, by_order, latex_by_order
 from lwa.theory import Theory, homogenize
 from lwa.wave.compact import canonical_wave
@@ -26,17 +25,18 @@ FIRST = "from field to field G and H differ; in the canonical field, whichever b
 
 def settings_json(theory: Theory) -> Values:
     """JSON of the chain, its law and the settings; the φ_n are functions of the compression."""
-    settings: Values = {"k": str(theory.k)}
+    settings: Values = {
+        "k": theory.k,
+        "masses": theory.cell.masses,
+        "stiffnesses": theory.cell.stiffnesses,
+        "spacing": theory.cell.spacing,
+        "order": theory.order,
+        "closure": theory.closure.name,
+        "branch": theory.closure.model.branch,
+        "field": theory.closure.field,
+    }
     if not theory.law.homogeneous:
-        settings["law"] = str(theory.law.F)
-        settings["phi"] = {str(n): str(x) for n, x in theory.phi.items()}
-    settings["masses"] = [str(m) for m in theory.cell.masses]
-    settings["stiffnesses"] = [str(A) for A in theory.cell.stiffnesses]
-    settings["spacing"] = str(theory.cell.spacing)
-    settings["order"] = theory.order
-    settings["closure"] = theory.closure.name
-    settings["branch"] = theory.closure.model.branch
-    settings["field"] = theory.closure.field
+        settings |= {"law": theory.law.F, "phi": theory.phi}
     return settings
 
 
@@ -68,8 +68,8 @@ def depends_on_first(theory: Theory) -> bool:
 def derive(style: str, **options: Any) -> None:
     """Derive the long-wave equation of a chain.
 
-    Results are the ansatz, the wave equation u_ττ = u_x^(k-1) u_xx + … for the displacement u, and
-    the defect: u_ττ by the first bead's equation of motion minus u_ττ by the second bead's.
+    Results are the ansatz, the wave equation ``u_ττ = u_x^(k-1) u_xx + …`` for the displacement u,
+    and the defect: u_ττ by the first bead's equation of motion minus u_ττ by the second bead's.
 
     In JSON `terms` is the right-hand side of u_ττ after its leading term.
     """
@@ -83,7 +83,7 @@ def derive(style: str, **options: Any) -> None:
     head["terms"] = _terms_json(pde.coefficients)
     head["defect"] = _terms_json(theory.defect)
     head["conservative"] = pde.conservative
-    rows: list[Row | str | Answer] = [
+    rows: Lines = [
         chain.text,
         *closure_lines(theory),
         f"{theory.closure.model.branch} branch, to D^{theory.order}; τ = t·{pde.time_scale}",
@@ -117,11 +117,11 @@ def _law_lines(theory: Theory) -> list[str]:
     return lines + [f"  phi{n} = {value}" for n, value in theory.phi.items()]
 
 
-def _ansatz_rows(theory: Theory) -> list[Row | str]:
+def _ansatz_rows(theory: Theory) -> Lines:
     """Rows of λ and the b_n; [] for a cell of one particle."""
     if not theory.ansatz:
         return []
-    rows: list[Row | str] = [
+    rows: Lines = [
         "w = λ (u + Σ b_n D^n ∂_x^n u), the linear part of the second particle's field",
         f"  λ = {theory.amplitude_ratio}",
     ]
@@ -169,9 +169,6 @@ def _terms_json(coefficients: Mapping[int, Terms]) -> list[Values]:
     rows: list[Values] = []
     for n, terms in coefficients.items():
         for jet, coefficient in terms.items():
-            row: Values = {"order": n}
-            row["jet"] = [list(power) for power in jet.x]
-            row["jet_t"] = [list(power) for power in jet.t]
-            row["coefficient"] = coefficient
+            row = {"order": n, "jet": jet.x, "jet_t": jet.t, "coefficient": coefficient}
             rows.append(row)
     return rows

@@ -9,10 +9,10 @@ from typing import Any
 import sympy as sp
 
 from lwa.base.exact import InputError, positive
-from lwa.base.frozen import TABLE_DIGITS, Shown
+from lwa.base.frozen import Shown
 from lwa.base.words import BRANCHES, BranchName, one_of
-from lwa.command.answer import Answer, Values
-from lwa.command.chain import ChainInput, take_chain
+from lwa.command.answer import Answer, Lines, Row, Values, attempt
+from lwa.command.chain import take_chain
 from lwa.command.options import (
     BACKGROUND,
     PRECOMPRESSION,
@@ -25,11 +25,9 @@ from lwa.command.options import (
     series_options,
     value,
 )
-from lwa.command.rows import Row, attempt
 from lwa.law import Power
 from lwa.linear.dispersion import Dispersion, LoadedChain
 from lwa.spheres.hertz import EXPONENT
-from lwa.spheres.units import fitting
 
 
 @command(
@@ -49,25 +47,25 @@ def dispersion(
     Ω is the frequency in the time τ of `lwa derive`, and κ the wavenumber, both times D. The
     exponent k matters for unequal contacts only, whose shares of the strain depend on k.
 
-    With --precompression also the bands about this load (k = 3/2 unless --k is given), in rad/s
+    With --precompression also the bands about this load (``k = 3/2`` unless --k is given), in rad/s
     for masses, stiffnesses and spacing in SI, and with --spheres. In JSON `band_edges_value` has
     the frequencies (from, to) of each band, and `band_edges_frequency_value` these over 2π (Hz in
     SI).
     """
     spheres = options["spheres"] is not None
     chain = take_chain(options)
-    precompression = chain.load(None, precompression)
+    precompression = chain.load(precompression)
     if precompression is not None and not (spheres or given("k")):
         chain = replace(chain, law=Power(EXPONENT))
     linear = Dispersion(chain.cell, chain.law.exponent)
     head: Values = {"acoustic": None, "optical": None}
-    rows: list[Row | str | Answer] = [
+    rows: Lines = [
         chain.text,
         "Ω²(κ), κ = qD and Ω/D the frequency in τ",
         "",
     ]
     for name, series in linear.series(order).items():
-        head[name] = {str(n): str(c) for n, c in series.items()}
+        head[name] = series
         rows.append(f"{name}:")
         for n, c in series.items():
             rows.append(f"  {f'κ^{n}' if n else '1'}: {c}")
@@ -87,20 +85,12 @@ def dispersion(
             edges = loaded.bands.edges()
             head["band_edges_value"] = edges.tolist()
             head["band_edges_frequency_value"] = (edges / (2 * math.pi)).tolist()
-            rows += _band_lines(chain, edges.tolist())
+            turn = 2 * math.pi if chain.si else 1.0
+            for i, band in enumerate(edges.tolist(), start=1):
+                ends = tuple(sp.Float(x / turn) for x in band)
+                unit = "" if chain.si else ", in rad per unit of time"
+                rows.append(Row("", f"band {i}{unit}", ends, "Hz", form="number"))
     Answer(head, rows, chain.scale, shown).print(style)
-
-
-def _band_lines(chain: ChainInput, edges: list[list[float]]) -> list[str]:
-    """Lines of text with the frequencies from and to of each band."""
-    unit = "Hz" if chain.si else "rad per unit of time"
-    turn = 2 * math.pi if chain.si else 1.0
-    fitted = fitting(unit, edges[-1][1] / turn)
-    lines = []
-    for i, band in enumerate(edges, start=1):
-        low, high = (f"{x / turn / fitted.size:.{TABLE_DIGITS}g}" for x in band)
-        lines.append(f"  band {i}: {low} … {high} {fitted.name}")
-    return lines
 
 
 def _branch(text: str, name: str) -> BranchName | int:
@@ -164,17 +154,12 @@ def envelope(
     """
     from lwa.envelopes import schrodinger  # here: `lwa dispersion` spares NumPy
 
-    if frequency is not None and detuning is not None:
-        raise InputError(
-            "--frequency and --detuning are both given: one says the other",
-            detuning=None,
-        )
     chain = take_chain(options)
-    load = chain.load(background, precompression)
+    load = chain.load(precompression)
     if background is None and load is None:
         raise InputError(
             "neither --background nor --precompression is given: a mode is that of a loaded chain",
-            precompression="1",
+            precompression=1,
         )
     equation = schrodinger.envelope(
         chain.cell,
@@ -192,7 +177,7 @@ def envelope(
     if not isinstance(kind, InputError):
         head["kind"] = kind
         described = f"  {kind} envelopes"
-    rows: list[Row | str | Answer] = [
+    rows: Lines = [
         chain.text,
         "u = Ψ(X, T) U e^{i(κ n - ω t)} + c.c., Σ m |U|² = 1, n and κ per cell",
         "i Ψ_T + ½ ω'' Ψ_XX = χ |Ψ|² Ψ",

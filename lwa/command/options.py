@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import inspect
 import re
 from collections.abc import Callable, Sequence
-from functools import reduce
+from functools import reduce, wraps
 from typing import Any
 
 import click
@@ -14,7 +15,7 @@ from click.core import ParameterSource
 from lwa.base.exact import InputError, integer, positive, read_exact
 from lwa.base.words import BRANCHES, CLOSURES, FIELDS, one_of, similar
 from lwa.cell import D, exponent, k
-from lwa.command.hints import ValueOption, called, help_end
+from lwa.command.cli import called, help_end
 from lwa.law import NAMES, read_law
 
 Function = Callable[..., None]
@@ -28,28 +29,49 @@ STYLES = ("text", "json", "latex")
 # --- readers ---
 
 
-def reader(read: Reader) -> Callable[..., Any]:
-    """Make a callback of Click that reads the text of an option.
+class Read(click.ParamType[Any]):
+    """The type of an option's value: a text that a reader takes.
 
     Parameters
     ----------
     read : callable
         Function of the text and of the option's name; raises `lwa.InputError` for other texts.
-
-    Returns
-    -------
-    callable
-        The callback; its value is None for an option that is absent.
+    example : str
+        A valid text, which the refusal of another one proposes.
     """
 
-    def callback(context: click.Context, option: click.Parameter, text: Any) -> Any:
-        return None if text is None else read(text, called(option))
+    name = "value"
 
-    return callback
+    def __init__(self, read: Reader, example: str) -> None:
+        self.read = read
+        self.example = example
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> Any:
+        """Read the text of an option."""
+        return self.read(value, called(param) if param else self.name)
 
 
-quantity = reader(read_exact)
-"""Callback that reads an integer, a decimal, a fraction or a plain name."""
+class Words(click.Choice[str]):
+    """One of several words; the refusal of another word names those that are spelt alike."""
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> str:
+        """Return a word that is among the choices; see `lwa.base.words.one_of`."""
+        words = list(self.choices)
+        name = called(param) if param else self.name
+        try:
+            return one_of(value, words, name)
+        except InputError as refusal:
+            near = similar(value, words) or words
+            raise InputError(refusal.reason, **{name: near[0]}) from None
+
+
+def quantity(context: click.Context, option: click.Parameter, text: str | None) -> Any:
+    """Read an integer, a decimal, a fraction or a plain name, as a callback of Click."""
+    return None if text is None else read_exact(text, called(option))
 
 
 def quantities(
@@ -60,7 +82,7 @@ def quantities(
     return tuple(read_exact(part, called(option)) for part in parts)
 
 
-def _positive_row(text: str, name: str) -> tuple[sp.Expr, ...]:
+def positive_row(text: str, name: str) -> tuple[sp.Expr, ...]:
     """Read positive quantities separated by commas."""
     return tuple(positive(part, name) for part in text.split(","))
 
@@ -71,8 +93,8 @@ def _exponent(text: str, name: str) -> sp.Expr:
 
 def not_negative(text: str, name: str) -> sp.Expr:
     """Read a positive quantity or zero."""
-    value = read_exact(text, name)
-    return value if value.is_zero else positive(value, name)
+    number = read_exact(text, name)
+    return number if number.is_zero else positive(number, name)
 
 
 def angle(text: str, name: str) -> sp.Expr:
@@ -88,20 +110,22 @@ def count(text: str, name: str) -> int:
     return integer(read_exact(text, name), name, 1)
 
 
-class Words(click.Choice[str]):
-    """One of several words; the refusal of another word names those that are spelt alike."""
+# --- commands ---
 
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> str:
-        """Return a word that is among the choices; see `lwa.base.words.one_of`."""
-        words = list(self.choices)
-        name = "value" if param is None else called(param)
-        try:
-            return one_of(value, words, name)
-        except InputError as refusal:
-            near = similar(value, words) or words
-            raise InputError(refusal.reason, **{name: near[0]}) from None
+ALTERNATIVES = (
+    ("law", "k"),
+    ("spheres", "k"),
+    ("spheres", "law"),
+    ("spheres", "masses"),
+    ("spheres", "stiffnesses"),
+    ("spheres", "spacing"),
+    ("precompression", "background"),
+    ("background", "force"),
+    ("behind", "piston"),
+    ("velocity", "drop"),
+    ("frequency", "detuning"),
+)
+"""Options of which one says the other."""
 
 
 def given(option: str) -> bool:
@@ -110,12 +134,34 @@ def given(option: str) -> bool:
     return source is ParameterSource.COMMANDLINE
 
 
-# --- commands ---
-
-
 def command(*examples: str, page: str) -> Callable[[Function], click.Command]:
-    """Make a decorator that turns a function into a command with examples in its help."""
-    return click.command(epilog=help_end(examples, page))
+    """Make a decorator that turns a function into a command, whose help is its docstring.
+
+    Parameters
+    ----------
+    *examples : str
+        Lines that run one after another in an empty folder, shown at the end of the help.
+    page : str
+        Page of the book on the command.
+    """
+
+    def decorate(function: Function) -> click.Command:
+        # Literals of reStructuredText have no marks on a terminal.
+        says = inspect.cleandoc(function.__doc__ or "").replace("``", "")
+
+        @wraps(function)
+        def checked(**options: Any) -> None:
+            for one, other in ALTERNATIVES:
+                if given(one) and given(other):
+                    raise InputError(
+                        f"--{one} and --{other} are both given: one says the other",
+                        **{other: None},
+                    )
+            function(**options)
+
+        return click.command(help=says, epilog=help_end(examples, page))(checked)
+
+    return decorate
 
 
 # --- options ---
@@ -148,9 +194,7 @@ def value(
     """
     return click.option(
         name,
-        cls=ValueOption,
-        example=example,
-        callback=reader(read),
+        type=Read(read, example),
         default=default,
         show_default=default is not None,
         metavar=metavar,
@@ -183,23 +227,13 @@ def law_option(says: str) -> Option:
 
 def style_option(languages: Sequence[str] = ()) -> Option:
     """Make the option ``--format``, the argument ``style`` of a command."""
-    words = Words((*STYLES, *languages))
-    says = "Form of the result."
     return click.option(
-        "--format", "style", default="text", show_default=True, type=words, help=says
-    )
-
-
-def _choice(
-    name: str, words: Sequence[str], says: str, default: str | None = None
-) -> Option:
-    """Make an option with a word; without a default the theory chooses."""
-    return click.option(
-        name,
-        type=Words(words),
-        default=default,
-        show_default=default is not None,
-        help=says,
+        "--format",
+        "style",
+        type=Words([*STYLES, *languages]),
+        default=STYLES[0],
+        show_default=True,
+        help="Form of the result.",
     )
 
 
@@ -214,7 +248,7 @@ MASSES = value(
     "--masses",
     "Masses of the beads in one period of the chain.",
     "0.45,0.123",
-    _positive_row,
+    positive_row,
     "m1,m2",
     "M1,M2,…",
 )
@@ -223,7 +257,7 @@ STIFFNESSES = value(
     "Stiffness A of each contact in the period, the first between beads 1 and 2.  "
     "[default: all 1]",
     "1,1",
-    _positive_row,
+    positive_row,
     metavar="A1,A2,…",
 )
 SPACING = value(
@@ -271,24 +305,26 @@ def theory_options(languages: Sequence[str] = ()) -> Option:
     return together(
         cell_options(languages),
         order_option("Highest power of D in the ansatz, an integer."),
-        _choice(
+        click.option(
             "--closure",
-            CLOSURES,
-            "How the motion of the other beads follows from that of the first: linear, the "
+            type=Words(CLOSURES),
+            help="How the motion of the other beads follows from that of the first: linear, the "
             "paper's ansatz, or full, which satisfies the equation of motion of every bead.  "
             "[default: linear for one or two masses, else full]",
         ),
-        _choice(
+        click.option(
             "--field",
-            FIELDS,
-            "Unknown u of the wave equation: displacement of the first bead, or the mass-weighted "
-            "mean of all beads.  [default: first with --closure linear, else center]",
+            type=Words(FIELDS),
+            help="Unknown u of the wave equation: displacement of the first bead, or the "
+            "mass-weighted mean of all beads.  [default: first with --closure linear, else "
+            "center]",
         ),
-        _choice(
+        click.option(
             "--branch",
-            BRANCHES,
-            "Neighbours move together (acoustic) or against each other.",
-            "acoustic",
+            type=Words(BRANCHES),
+            default=BRANCHES[0],
+            show_default=True,
+            help="Neighbours move together (acoustic) or against each other.",
         ),
     )
 

@@ -7,10 +7,9 @@ from typing import Any
 
 from lwa.base.words import QUANTITIES
 from lwa.cell import k
-from lwa.command.answer import Answer, Values
+from lwa.command.answer import Answer, Lines, Row, Values, attempt
 from lwa.command.chain import take_chain
 from lwa.command.options import command, series_options
-from lwa.command.rows import Row, attempt
 from lwa.expansion.expand import Expansion, expand
 from lwa.expansion.series import EpsilonSeries
 
@@ -32,12 +31,12 @@ _ERRORS = "estimate of the sum's error, by its last terms and by radiation"
     k.name, "Highest power of ε = k - 1; by default 8, or 4 with symbols.", None
 )
 def expansion(order: int | None, style: str, **options: Any) -> None:
-    """Expand the lattice's own wave in ε = k - 1, and sum the series.
+    """Expand the lattice's own wave in ``ε = k - 1``, and sum the series.
 
     Each sum comes with an estimate of its absolute error, at the peak force 1 on the first contact
     and with lengths in D; k and the cell must be numbers.
 
-    In JSON c² is the sum of `c2`[n] ε^n.
+    In JSON c² is the sum of ``c2[n] ε^n``.
     """
     chain = take_chain(options)
     cell = chain.cell
@@ -45,9 +44,9 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
     if order is None and expanded.numeric:
         expanded = expand(cell, _ORDER, law=chain.law)
     head: Values = {
-        "k": str(expanded.k),
-        "masses": [str(m) for m in cell.masses],
-        "stiffnesses": [str(A) for A in cell.stiffnesses],
+        "k": expanded.k,
+        "masses": cell.masses,
+        "stiffnesses": cell.stiffnesses,
         "order": expanded.order,
         "c2": [expanded.c2.prefactor * a for a in expanded.c2.coefficients],
     }
@@ -56,7 +55,7 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
         series[f"fwhm.{q}"] = (f"FWHM of the {q}", expanded.fwhm(q))
     series["momentum"] = ("momentum", expanded.momentum)
     series["energy"] = ("energy", expanded.energy)
-    sums: list[Row | str | Answer] = [
+    sums: Lines = [
         chain.text,
         "ε = k - 1; peak force 1 on the first contact, lengths in D",
         "",

@@ -2,16 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 import sympy as sp
 
 from lwa.base.exact import InputError, read_exact
-from lwa.base.frozen import TABLE_DIGITS, NoSolitaryWave, Shown
-from lwa.base.words import LANGUAGES, QUANTITIES
-from lwa.command.answer import Answer, Values
+from lwa.base.frozen import NoSolitaryWave, Shown
+from lwa.base.words import EXTENTS, LANGUAGES, QUANTITIES, ExtentName, QuantityName
+from lwa.command.answer import (
+    LONG,
+    Answer,
+    Form,
+    Lines,
+    Row,
+    Values,
+    as_float,
+    attempt,
+    estimated,
+)
 from lwa.command.chain import ChainInput, take_chain
 from lwa.command.derivation import closure_lines, depends_on_first, settings_json
 from lwa.command.options import (
@@ -23,10 +35,13 @@ from lwa.command.options import (
     given,
     theory_options,
 )
-from lwa.command.rows import LONG, Row, as_float
 from lwa.theory import Theory, homogenize
 from lwa.wave.compact import CompactWave, canonical_wave
 from lwa.wave.reduction import Reduction
+
+if TYPE_CHECKING:
+    from lwa.cell import Cell
+    from lwa.loaded.background import Background, KdV
 
 CANONICAL = "the canonical field, whichever bead is the first"
 
@@ -58,12 +73,13 @@ def wave(
     A programming language as --format gives the source of functions that compute the wave without
     load.
 
-    Without --force the floats in JSON are those at B = 1 (speed) and at V_s = 1 (B, mu), with D as
-    the unit of length if D is a symbol. `speed` is V_s = dx/dτ, and dx/dt with --force.
+    Without --force the floats in JSON are those at ``B = 1`` (speed) and at ``V_s = 1`` (B, mu),
+    with D as the unit of length if D is a symbol. `speed` is ``V_s = dx/dτ``, and dx/dt with
+    --force.
     """
     spheres = options["spheres"] is not None
     chain = take_chain(options)
-    precompression = chain.load(background, precompression)
+    precompression = chain.load(precompression)
     load = precompression if background is None else background
     loaded = load is not None and not load.is_zero
     if not chain.law.homogeneous:
@@ -71,7 +87,11 @@ def wave(
         loaded = load is not None or force is not None
     if loaded:
         _take_canonical(options)
-    _check_language(style, loaded, force)
+    if style in LANGUAGES and (loaded or force is not None):
+        raise InputError(
+            f"--format {style} is that of a chain without load, whose functions take any force",
+            format="text",
+        )
     theory = homogenize(chain.cell, law=chain.law, **options)
     if not loaded and not chain.law.homogeneous:
         raise InputError(
@@ -87,18 +107,11 @@ def wave(
     elif not loaded:
         of_force(chain, theory, peak).print(style)
     else:
-        from lwa.command import pressed  # here: it loads NumPy
-
         if background is None:
             static = precompression or sp.S.Zero
-            pressed.of_force(chain, theory, peak, static).print(style)
-        elif force is None:
-            pressed.on_background(chain, theory, background).print(style)
+            under_load(chain, theory, peak, static).print(style)
         else:
-            raise InputError(
-                "--force goes with --precompression, a force; --background is a strain",
-                force=None,
-            )
+            on_background(chain, theory, background).print(style)
 
 
 def _take_canonical(options: dict[str, Any]) -> None:
@@ -114,18 +127,6 @@ def _take_canonical(options: dict[str, Any]) -> None:
                 **{name: wanted},
             )
         options[name] = wanted
-
-
-def _check_language(style: str, loaded: bool, force: sp.Expr | None) -> None:
-    """Refuse the source code of a wave under load or of a given force."""
-    if style not in LANGUAGES:
-        return
-    if loaded:
-        raise InputError(f"--format {style} is of a chain without load", format="text")
-    if force is not None:
-        raise InputError(
-            f"--format {style} is for any force: its functions take one", force=None
-        )
 
 
 def _compact(theory: Theory) -> CompactWave:
@@ -148,6 +149,51 @@ def _compact(theory: Theory) -> CompactWave:
         ) from None
 
 
+# --- rows of all waves ---
+
+_WIDTHS = {"length": ("fwhm", "", "m"), "time": ("fwhm_time", " in time", "s")}
+"""Key in JSON, end of the label and unit of a width, by its extent."""
+
+
+def width_row(
+    quantity: QuantityName, width: Any, extent: ExtentName = "length", **settings: Any
+) -> Row:
+    """The row of a width; ``settings`` are further fields of the row."""
+    key, end, unit = _WIDTHS[extent]
+    symbol = rf"\mathrm{{FWHM}}_{{\mathrm{{{quantity}}}}}"
+    if extent == "time":
+        symbol += "^{(t)}"
+    label = f"FWHM of the {quantity}{end}"
+    return Row(f"{key}.{quantity}", label, width, unit, symbol, **settings)
+
+
+def pulse_rows(wave: Any, rise: str, form: Form) -> Iterator[Row]:
+    """Rows of the size, the speed and the widths of a wave.
+
+    Parameters
+    ----------
+    wave : PhysicalWave or LoadedWave
+        The wave of a peak force.
+    rise : str
+        What its strain is called: "peak", or "rise of the" static strain.
+    form : {"both", "formula", "number"}
+        What is shown of the widths.
+    """
+    speed = estimated(wave, "speed")
+    yield Row("force", "peak contact force F", wave.force, "N")
+    yield Row("B", f"{rise} strain B", wave.strain)
+    yield Row("compression", f"{rise} compression", wave.compression, "m")
+    yield Row("speed", "speed dx/dt", wave.speed, "m/s", estimate=speed)
+    yield Row("bead_velocity", "peak velocity of the beads", wave.bead_velocity, "m/s")
+    for extent in EXTENTS:
+        for q in QUANTITIES:
+            width = attempt(wave.fwhm, q, extent)
+            if isinstance(width, InputError):  # under a load widths are numbers
+                return
+            error = estimated(wave, "fwhm", q, extent)
+            yield width_row(q, width, extent, form=form, estimate=error)
+
+
 # --- without load -------------------------------------------------------------------------------
 
 
@@ -155,7 +201,7 @@ def any_amplitude(chain: ChainInput, theory: Theory) -> Answer:
     """The compact wave of any amplitude: the speed V_s by the peak strain B, and B by V_s."""
     wave = _compact(theory)
     reduction = wave.reduction()
-    rows: list[Row | str | Answer] = [
+    rows: Lines = [
         chain.text,
         *closure_lines(theory),
         "v = u_x = B cos^(2/(k-1))(β ξ), ξ = x - V_s τ, on |ξ| ≤ π/(2β)",
@@ -164,7 +210,7 @@ def any_amplitude(chain: ChainInput, theory: Theory) -> Answer:
         Row("width", "width π/β", wave.width, symbol=r"\frac{\pi}{\beta}"),
     ]
     for q in QUANTITIES:
-        rows.append(_width_row(q, wave.fwhm(q)))
+        rows.append(width_row(q, wave.fwhm(q)))
     rows += [
         Row("B", "B", wave.amplitude()),
         Row("speed", "V_s", wave.speed()),
@@ -178,15 +224,6 @@ def any_amplitude(chain: ChainInput, theory: Theory) -> Answer:
     return Answer(settings_json(theory), rows, chain.scale, shown)
 
 
-def _width_row(quantity: str, width: sp.Expr, time: bool = False) -> Row:
-    """The row of a width in space or in time."""
-    symbol = rf"\mathrm{{FWHM}}_{{\mathrm{{{quantity}}}}}"
-    if time:
-        label = f"FWHM of the {quantity} in time"
-        return Row(f"fwhm_time.{quantity}", label, width, "s", rf"{symbol}^{{(t)}}")
-    return Row(f"fwhm.{quantity}", f"FWHM of the {quantity}", width, "m", symbol)
-
-
 RELATIONS = (
     r"(G + H + I) p^{2} - (H + 3 I) p + 2 I = 0",
     r"a = 1 - k p + 3 (p - 1) + p \frac{H}{I}",
@@ -197,10 +234,10 @@ RELATIONS = (
 """The oscillator's constants by G, H, I and p, the smaller root, in LaTeX."""
 
 
-def _reduction_rows(reduction: Reduction) -> list[Row | str]:
+def _reduction_rows(reduction: Reduction) -> Lines:
     """Rows of the oscillator z'' = μ z^η - σ z; where p is long, of its relations to G, H, I."""
     names = ("p", "a", "mu", "eta", "sigma", "s")
-    lines: list[Row | str] = ["v = z^p, integrating factor z^a: z'' = μ z^η - σ z"]
+    lines: Lines = ["v = z^p, integrating factor z^a: z'' = μ z^η - σ z"]
     short = _is_short(reduction)
     if not short:
         lines += [
@@ -220,22 +257,12 @@ def _is_short(reduction: Reduction) -> bool:
 def of_force(chain: ChainInput, theory: Theory, force: sp.Expr) -> Answer:
     """The compact wave of a peak contact force, in space and time."""
     wave = _compact(theory).at_force(force)
-    rows: list[Row | str | Answer] = [
+    rows: Lines = [
         "endless chain without load",
         *closure_lines(theory),
         chain.text,
         "",
-        Row("force", "peak contact force F", wave.force, "N"),
-        Row("B", "peak strain B", wave.strain),
-        Row("compression", "peak compression", wave.compression, "m"),
-        Row("speed", "speed dx/dt", wave.speed, "m/s"),
-        Row("bead_velocity", "peak velocity of the beads", wave.bead_velocity, "m/s"),
-    ]
-    for q in QUANTITIES:
-        rows.append(_width_row(q, wave.fwhm(q)))
-    for q in QUANTITIES:
-        rows.append(_width_row(q, wave.fwhm(q, "time"), time=True))
-    rows += [
+        *pulse_rows(wave, "peak", "both"),
         Row("beta", "", wave.wave.beta, "1/m"),
         Row("width", "", wave.wave.width, "m", r"\frac{\pi}{\beta}"),
         *_canonical(chain, theory, wave.force),
@@ -262,15 +289,108 @@ def _canonical(
     if not depends_on_first(theory) or any(x.free_symbols for x in numbers):
         return []
     wave = canonical_wave(cell, k=k)
-    rows: list[Row | str | Answer] = ["", f"{CANONICAL}:"]
+    rows: Lines = ["", f"{CANONICAL}:"]
     if force is None:
         at: Any = wave
         speed = Row("speed", "V_s at B = 1", wave.speed(sp.S.One))
     else:
         at = wave.at_force(force)
         speed = Row("speed", "speed dx/dt", at.speed, "m/s")
-    widths = (_width_row(q, at.fwhm(q)) for q in QUANTITIES)
+    widths = (width_row(q, at.fwhm(q)) for q in QUANTITIES)
     for row in (speed, *widths):
         # A comparison needs no formula, and no LaTeX beside that of the field asked for.
-        rows.append(replace(row, form="number", digits=TABLE_DIGITS, symbol=""))
+        rows.append(replace(row, form="number", symbol=""))
     return [Answer({}, rows, chain.scale, key="canonical")]
+
+
+# --- under load ---
+
+_ERRORS = "bound of the difference to waves of the lattice, by those that were measured"
+
+
+def under_load(
+    chain: ChainInput, theory: Theory, force: sp.Expr, static: sp.Expr
+) -> Answer:
+    """The wave of a peak contact force in a chain under a static force."""
+    from lwa.loaded.wave import loaded_wave  # here: it loads NumPy
+
+    wave = loaded_wave(chain.cell, force=force, precompression=static, law=chain.law)
+    rows: Lines = [
+        f"endless chain {'without load' if static.is_zero else 'under a load'}",
+        *closure_lines(theory),
+        chain.text,
+        "",
+        *pulse_rows(wave, "rise of the", "number"),
+        Row("precompression", "static force F0", wave.precompression, "N"),
+        Row("background", "static strain p0", wave.background),
+        Row("static_compression", "static compression", wave.static_compression, "m"),
+        Row("sound_speed", "speed of sound dx/dt", wave.sound_speed, "m/s"),
+    ]
+    notes = chain.hertz_notes(wave.force)
+    return Answer(settings_json(theory), rows, chain.scale, [wave], _ERRORS, notes)
+
+
+def on_background(chain: ChainInput, theory: Theory, p0: sp.Expr) -> Answer:
+    """The waves on the strain p0: V_s by the rise B of the strain, and the limit of small waves."""
+    from lwa.loaded.background import Background  # here: it loads NumPy
+
+    field = Background(chain.cell, chain.law, p0)
+    head = settings_json(theory)
+    rows: Lines = [
+        chain.text,
+        *closure_lines(theory),
+        f"u_x = p0 + v(ξ), ξ = x - V_s τ, p0 = {field.p0}; v rises by B",
+        "",
+        Row("background", "", field.p0, form="formula"),
+        Row("speed", "V_s", field.speed(field.rise), form="formula"),
+        f"  dx/dt = V_s · {field.time_scale}",
+        *_unit_rise(field),
+    ]
+    shown: list[Shown | str] = [field]
+    try:
+        kdv = field.kdv
+    except NoSolitaryWave as reason:
+        head["kdv"] = None
+        rows += ["", str(reason)]
+    else:
+        shown.append(kdv)
+        rows += _small_waves(kdv)
+    return Answer(head, rows, chain.scale, shown, _ERRORS)
+
+
+def _unit_rise(field: Background) -> Iterator[Row]:
+    """Rows of the wave whose strain rises by 1; none with symbols, or if there is none."""
+    from lwa.loaded.wave import loaded_wave
+
+    cell: Cell = field.cell
+    place = "B = 1"
+    # D is the unit of length where it is a symbol; beside a law that is no power it is 1.
+    if cell.spacing.is_Symbol and not field.law.homogeneous:
+        cell = cell.at(**{cell.spacing.name: 1})
+        place += f", {field.cell.spacing} = 1"
+    with suppress(NoSolitaryWave, InputError):
+        wave = loaded_wave(cell, rise=1, background=field.p0, law=field.law)
+        speed = wave.field.speed(wave.strain)
+        if speed.free_symbols - {cell.spacing}:
+            return
+        yield Row("speed", f"V_s at {place}", speed, form="number")
+        for q in QUANTITIES:
+            width = wave.fwhm(q)
+            row = width_row(q, width, form="number")
+            yield replace(row, label=f"{row.label} at {place}", unit="", symbol="")
+
+
+def _small_waves(kdv: KdV) -> Lines:
+    """Rows of the Korteweg-de Vries equation and its solitary wave."""
+    equation = "small waves: v_τ + c0 v_x + α v v_x + γ v_xxx = 0, v = B sech²(ξ/L)"
+    if kdv.rise.is_negative:
+        equation += ", B < 0"
+    return [
+        "",
+        equation,
+        Row("kdv.sound_speed", "c0", kdv.sound_speed),
+        Row("kdv.nonlinearity", "α", kdv.nonlinearity),
+        Row("kdv.dispersion", "γ", kdv.dispersion),
+        Row("kdv.speed", "V_s of a small wave", kdv.speed(), symbol="V_{s}"),
+        Row("kdv.width", "L", kdv.width(), symbol="L"),
+    ]

@@ -25,12 +25,12 @@ K2, K3, K4 = sp.symbols("K2 K3 K4", positive=True)
 
 
 class LoadedLaw(NamedTuple):
-    """A contact law about a static compression: the force F′ (δ + s δ²/δ0 + t δ³/δ0²) on top.
+    """A contact law about a static compression: the force ``F′ (δ + s δ²/δ0 + t δ³/δ0²)`` on top.
 
     Parameters
     ----------
     slope : Expr
-        F′.
+        ``F′``.
     s, t : Expr
         The nonlinearities.
     length : Expr
@@ -154,9 +154,9 @@ class Sampled:
     contacts : Contacts
         The cell.
     z : complex or int
-        e^{iκ}, real at the edges.
+        ``e^{iκ}``, real at the edges.
     squares, vectors : array
-        Squared frequencies, and √m times the modes.
+        Squared frequencies, and ``√m`` times the modes.
     branch : int
         Number of the branch.
     """
@@ -286,9 +286,9 @@ def edge_mode(
     cell : Cell
         The chain; its symbols have sample values by which the branches are ordered.
     contacts : Contacts
-        The cell under load; at κ = π masses or contacts are alike.
+        The cell under load; at ``κ = π`` masses or contacts are alike.
     edge : {1, -1}
-        e^{iκ}.
+        ``e^{iκ}``.
     branch : int
         Number of the branch.
     bead : int
@@ -352,7 +352,7 @@ def _letters(contacts: Contacts) -> tuple[Contacts, dict[sp.Symbol, sp.Expr]]:
 
 
 def _edge_squares(contacts: Contacts, edge: sp.Integer) -> list[sp.Expr]:
-    """Squared frequencies of two beads: at κ = 0, or at κ = π of like masses or like contacts."""
+    """Squared frequencies of two beads: at κ = 0, or of like masses or contacts at π."""
     m1, m2 = contacts.masses
     k1, k2 = 1 / contacts.c
     if edge == 1:

@@ -16,10 +16,10 @@ Solitons*, 1999)::
     the second harmonic   A² e2,    e2 = -G K3 d²,   G = B(2κ) [K(2κ) - 4ω²M]^{-1} B(2κ)†,
     a lasting strain    |Ψ|² e0,    K2 e0 + 2 K3 |d|² = f, the same in all contacts.
 
-The lasting force f accelerates the cells, and their mean strain Σ e0 travels at the group velocity
-c_g, hence ``f = c_g² Σm Σe0``. With ``v = c_g/c_0``, ``c_0² = 1/(Σm Σc)`` the squared speed of
-sound, this gives ``f = 2 Σ c K3|d|²/Σ c · v²/(v² - 1)``, zero at a band's edge, where the load is
-held. At third order the frequency rises by ``χ|Ψ|²``, with the sum of all contacts i::
+The lasting force f accelerates the cells, and their mean strain ``Σ e0`` travels at the group
+velocity c_g, hence ``f = c_g² Σm Σe0``. With ``v = c_g/c_0``, ``c_0² = 1/(Σm Σc)`` the squared
+speed of sound, this gives ``f = 2 Σ c K3|d|²/Σ c · v²/(v² - 1)``, zero at a band's edge, where the
+load is held. At third order the frequency rises by ``χ|Ψ|²``, with the sum of all contacts i::
 
     2ω χ = Σ_i [3 K4_i |d_i|⁴ + 2 K3_i (d̄_i² e2_i + |d_i|² e0_i)].
 
@@ -81,7 +81,7 @@ class Contacts:
 
     @property
     def units(self) -> Matrix:
-        """Matrix √(m_i m_j), by which K divided is the matrix of the squared frequencies."""
+        """Matrix ``√(m_i m_j)``, by which K divided is the matrix of the squared frequencies."""
         return np.asarray(np.sqrt(np.outer(self.masses, self.masses)))
 
     @property
@@ -90,14 +90,14 @@ class Contacts:
         return CLOSE / float(self.c.min() * self.masses.min())
 
     def strains(self, z: Any) -> Matrix:
-        """The matrix B(κ), shape (contacts, beads), z = e^{iκ}; B(κ)† is the transpose for 1/z."""
+        """The matrix B(κ), shape (contacts, beads), ``z = e^{iκ}``; B† is the transpose for 1/z."""
         identity = np.diag(self.masses * 0 + 1)
         after = np.roll(identity, 1, axis=1)
         after = np.vstack([after[:-1], after[-1:] * z])
         return np.asarray(identity - after)
 
     def secular(self, z: Any, x: Any) -> Matrix:
-        """The matrix K(κ) - xM, shape (beads, beads), z = e^{iκ}."""
+        """The matrix ``K(κ) - xM``, shape (beads, beads), ``z = e^{iκ}``."""
         K = self.strains(1 / z).T @ (self.strains(z) / self.c[:, None])
         return np.asarray(K - np.diag(self.masses) * x)
 
@@ -117,11 +117,11 @@ class Contacts:
         Parameters
         ----------
         z, sine : number
-            e^{iκ}, and sin κ.
+            ``e^{iκ}``, and sin κ.
         x : number
             The squared frequency.
         slopes : tuple of two numbers
-            T′ and T″ at x.
+            ``T′`` and ``T″`` at x.
         projector : array, shape (beads, beads)
             The matrix φφ†.
         resolvent : array, shape (beads, beads)

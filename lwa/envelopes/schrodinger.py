@@ -4,7 +4,7 @@
 
 To leading order the displacements in cell n are ``u = Ψ(X,T) U e^{i(κn - ωt)} + c.c.``: U is the
 mode, with ``Σ m_i |U_i|² = 1`` over the beads of a cell, ω its frequency, κ its wavenumber per
-cell, ω″ the second derivative of ω by κ, ``X = n - (dω/dκ) t``, ``T = t``, and χ the nonlinear
+cell, ``ω″`` the second derivative of ω by κ, ``X = n - (dω/dκ) t``, ``T = t``, and χ the nonlinear
 coefficient (`lwa.envelopes.response`). The load is held, not the length. Equal beads under a power
 law of the exponent k have ``χ = -ω (k-1) (k - cos² κ/2)/(m δ0²)``, δ0 the static compression.
 
@@ -99,6 +99,7 @@ class Envelope(Value):
         )
         rows = {
             r"\omega": self.frequency,
+            r"\omega'": self.group_velocity,
             r"\omega''": self.dispersion,
             r"\chi": self.nonlinearity,
         }
@@ -134,7 +135,7 @@ class Envelope(Value):
 
     @cached_property
     def dispersion(self) -> sp.Expr:
-        """Dispersion coefficient ω″, the second derivative of ω by κ.
+        """Dispersion coefficient ``ω″``, the second derivative of ω by κ.
 
         >>> envelope(Cell(["m"], ["K"]), k=1, background="p0", wavenumber="q").dispersion
         -sqrt(K)*sin(q/2)/(2*sqrt(m))
@@ -390,8 +391,8 @@ def envelope(
     """The nonlinear Schrödinger equation of a mode of a chain under load.
 
     Results are exact, in symbols as well, for cells of one bead at any wavenumber, and of two beads
-    at κ = 0 and, with equal masses or contacts, at κ = π, unless they are `numeric`; elsewhere they
-    are floats, for numbers.
+    at ``κ = 0`` and, with equal masses or contacts, at ``κ = π``, unless they are `numeric`;
+    elsewhere they are floats, for numbers.
 
     Parameters
     ----------

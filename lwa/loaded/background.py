@@ -1,15 +1,19 @@
 """The long-wave field of a chain on a static strain, in closed form.
 
-The canonical field obeys u_ττ = ∂_x [F(u_x) + I (F′ u_xxx + ½ F″ u_xx²)]: F is the force in the
-units of `lwa.equation.pde` (p^k/k for a power), W its energy, W′ = F, and I the coefficient of
-dispersion, D² included. A wave v on a strain p0, u_x = p0 + v(ξ), ξ = x - V τ, obeys (Nesterenko,
-*Dynamics of Heterogeneous Materials*, 2001, ch. 1, for equal spheres)
+Let F be the force in the units of `lwa.equation.pde` (``p^k/k`` for a power), W its energy, so that
+``W′ = F``, and I the coefficient of dispersion, D² included. The canonical field obeys::
+
+    u_ττ = ∂_x [F(u_x) + I (F′ u_xxx + ½ F″ u_xx²)].
+
+A wave v on a strain p0, ``u_x = p0 + v(ξ)`` with ``ξ = x - V τ``, obeys (Nesterenko, *Dynamics of
+Heterogeneous Materials*, 2001, ch. 1, for equal spheres)::
 
     I F′(p0 + v) v′² = v² (Q(B) - Q(v)),    Q(v) = 2 [W(p0+v) - W(p0) - F(p0) v] / v²,
 
-so that V² = Q(B) for the wave that rises by B. It exists where F′ > 0 and Q(v) < Q(B) for all v
-between 0 and B, and B Q′(B) > 0: at Q′(B) = 0, the limiting amplitude of a law that softens, the
-wave is infinitely long. Its limit B → 0 is the wave of Korteweg and de Vries.
+so that ``V² = Q(B)`` for the wave that rises by B. It exists where ``F′ > 0`` and
+``Q(v) < Q(B)`` for all v between 0 and B, and ``B Q′(B) > 0``: at ``Q′(B) = 0``, the limiting
+amplitude of a law that softens, the wave is infinitely long. Its limit B → 0 is the wave of
+Korteweg and de Vries.
 """
 
 from __future__ import annotations
@@ -29,7 +33,7 @@ from lwa.linear.dispersion import Dispersion
 
 
 def squared_speed(work: sp.Expr, force: sp.Expr, rise: sp.Expr) -> sp.Expr:
-    """The relation Q = 2 [W(p0+B) - W(p0) - F(p0) B] / B² of a wave that rises by B.
+    """The relation ``Q = 2 [W(p0+B) - W(p0) - F(p0) B] / B²`` of a wave that rises by B.
 
     Parameters
     ----------
@@ -70,7 +74,7 @@ class Background(Value):
     ------
     InputError
         For a negative strain under a power law, whose contacts only push, for unlike contacts
-        under a law that is no power, and unless F′ > 0 at a strain other than 0.
+        under a law that is no power, and unless ``F′ > 0`` at a strain other than 0.
     """
 
     cell: Cell
@@ -101,21 +105,21 @@ class Background(Value):
 
     @cached_property
     def I(self) -> sp.Expr:
-        """Coefficient I in the linear chain's Ω² = κ² (1 - (I/D²) κ² + …), at any strain."""
+        """Coefficient I in the linear chain's ``Ω² = κ² (1 - (I/D²) κ² + …)``, at any strain."""
         return Dispersion(self.cell, self.law.exponent).I
 
     @property
     def time_scale(self) -> sp.Expr:
-        """The ratio τ/t, by which dx/dt = V τ/t."""
+        """The ratio τ/t, by which ``dx/dt = V τ/t``."""
         return self.cell.time_scale(self.law.exponent)
 
     def force(self, p: sp.Expr, n: int = 0) -> sp.Expr:
-        """Force F(p) in the wave equation's units, its n-th derivative, or energy W(p): n = -1."""
+        """Force in the wave equation's units, its n-th derivative, or for n of -1 the energy W."""
         return self.law.of_strain(p, self.cell.spacing, n)
 
     @cached_property
     def sound_speed(self) -> sp.Expr:
-        """The speed c0 = √F′(p0) of long small waves."""
+        """The speed ``c0 = √F′(p0)`` of long small waves."""
         return power(self.force(self.p0, 1), sp.S.Half)
 
     @property
@@ -131,7 +135,7 @@ class Background(Value):
         return sp.powsimp(squared_speed(work, self.force(self.p0), B))
 
     def speed(self, B: sp.Expr) -> sp.Expr:
-        """Speed V = √Q(B) of the wave that rises by B, whether it exists or not."""
+        """Speed ``V = √Q(B)`` of the wave that rises by B, whether it exists or not."""
         square = self.squared_speed(B)
         if self.law.homogeneous and self.law.exponent.is_Integer:
             square = sp.expand(sp.cancel(square))  # a polynomial in p0 and B
@@ -144,8 +148,8 @@ class Background(Value):
         Raises
         ------
         NoSolitaryWave
-            Where no sound runs (p0 = 0 under most laws), and at F″ = 0 as for k = 1, where small
-            waves of any amplitude run at one speed.
+            Where no sound runs (``p0 = 0`` under most laws), and at ``F″ = 0`` as for ``k = 1``,
+            where small waves of any amplitude run at one speed.
         """
         demand_sound(self.sound_speed)
         return KdV.of_slopes(
@@ -159,10 +163,10 @@ class Background(Value):
 
 @dataclass(frozen=True)
 class KdV(Value):
-    """The limit of small waves, v_t + c0 v_x + α v v_x + γ v_xxx = 0, and its sech² wave.
+    """The limit of small waves, ``v_t + c0 v_x + α v v_x + γ v_xxx = 0``, and its sech² wave.
 
-    Here v is the strain above p0. For a power, in the time τ, c0 = p0^{(k-1)/2},
-    α = (k-1) c0/(2 p0) and γ = I c0/2.
+    Here v is the strain above p0. For a power, in the time τ, ``c0 = p0^{(k-1)/2}``,
+    ``α = (k-1) c0/(2 p0)`` and ``γ = I c0/2``.
 
     Parameters
     ----------
@@ -180,7 +184,7 @@ class KdV(Value):
 
     @classmethod
     def of_slopes(cls, c0: sp.Expr, F1: sp.Expr, F2: sp.Expr, I: sp.Expr) -> Self:
-        """Return the equation of a lattice with the slopes F′ and F″ at its static strain.
+        """Return the equation of a lattice with the slopes ``F′`` and ``F″`` at its static strain.
 
         Raises `lwa.NoSolitaryWave` where small waves disperse.
         """
@@ -203,7 +207,8 @@ class KdV(Value):
             r"\gamma": self.dispersion,
         }
         equation = r"v_{\tau} + c_{0} v_{x} + \alpha v v_{x} + \gamma v_{xxx} = 0"
-        return [equation, *latex.rows(names)]
+        wave = r"v = B \operatorname{sech}^{2}(\xi / L)"
+        return [equation, *latex.rows(names), wave, latex.row("L", self.width())]
 
     @property
     def rise(self) -> sp.Symbol:
@@ -220,14 +225,14 @@ class KdV(Value):
         return B
 
     def speed(self, B: Any = None) -> sp.Expr:
-        """Speed V = c0 + α B/3 of the wave v = B sech²(ξ/L); B is a symbol unless given."""
+        """Speed ``V = c0 + α B/3`` of the wave ``v = B sech²(ξ/L)``; B is a symbol unless given."""
         return self.sound_speed + self.nonlinearity * self._read_rise(B) / 3
 
     def width(self, B: Any = None) -> sp.Expr:
-        """Width L = √(12 γ / (α B)) of v = B sech²(ξ/L); the FWHM is 2 arcosh(√2) L."""
+        """Width ``L = √(12 γ / (α B))`` of ``v = B sech²(ξ/L)``; the FWHM is ``2 arcosh(√2) L``."""
         ratio = sp.simplify(self.dispersion / self.nonlinearity)
         return sp.sqrt(12 * ratio / self._read_rise(B))
 
     def profile(self, xi: Any, B: Any = None) -> sp.Expr:
-        """Strain v = B sech²(ξ/L) above the background."""
+        """Strain ``v = B sech²(ξ/L)`` above the background."""
         return self._read_rise(B) * sp.sech(signed(xi, "xi") / self.width(B)) ** 2

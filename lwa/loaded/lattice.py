@@ -1,7 +1,8 @@
 """Lattices of particles and links with laws of their own, packings, and their static states.
 
 A cell of P particles repeats with the period P·D. A link pushes its two particles apart with the
-force factor · F(δ). Along a lattice of mean strain p the compressions of a link of the range r are
+force factor · F(δ). Along a lattice of mean strain p the compressions of a link of the range r
+are::
 
     δ = cosine · (r D p + w_i - w_j),
 
@@ -361,10 +362,10 @@ def hexagonal(
     Parameters
     ----------
     law : ContactLaw or number
-        The law of the contacts, or the exponent k of δ^k.
+        The law of the contacts, or the exponent k of ``δ^k``.
     direction : {"across", "along"}
-        Across the rows, in layers √3/2 diameters apart, each joined to the next by two contacts a
-        particle at 30° to the wave; or along the rows, in layers half a diameter apart, joined to
+        Across the rows, in layers ``√3/2`` diameters apart, each joined to the next by two contacts
+        a particle at 30° to the wave; or along the rows, in layers half a diameter apart, joined to
         the next by two contacts at 60° and to the next but one by a contact.
     mass, diameter : number or str
         Mass and diameter of a particle.

@@ -1,17 +1,18 @@
 """Speed, width and profile of a wave under a load in float64.
 
-A wave of strain v on the strain p0, which rises by B at its peak, obeys
+A wave of strain v on the strain p0, which rises by B at its peak, obeys::
 
     J(p0+v) v′² = v² (Q(B) - Q(v)),    Q(v) = 2 [W(p0+v) - W(p0) - F(p0) v] / v²,    V² = Q(B),
 
-with J = I F′ + R V⁴, R the sum of resonators (`lwa.loaded.wave`). Differences of W and F cancel.
-Here they are integrals of F′ and F″ at the strains p = p0 + sB of the wave, 0 < s < 1:
+with ``J = I F′ + R V⁴``, R the sum of resonators (`lwa.loaded.wave`). Differences of W and F
+cancel. Here they are integrals of ``F′`` and ``F″`` at the strains ``p = p0 + sB`` of the wave, s
+from 0 at its foot to 1 at its peak::
 
     Q(B)        = 2 ∫ (1-s) F′ ds,
     Q(B) - Q(v) = B ∫ K F″ ds,    K = (1-s)² for s > v/B,  (1-s)² - (1 - sB/v)² below.
 
 Under a law that stiffens the integrands keep one sign. All integrals are sums over one grid,
-equally spaced in t with s = 1/(1 + exp(-π sinh t)), the double-exponential rule of Takahasi and
+equally spaced in t with ``s = 1/(1 + exp(-π sinh t))``, the double-exponential rule of Takahasi and
 Mori (Publ. RIMS 9, 721 (1974)). Integrals to a place on the way are the same sums with an end
 correction, the integral of a polynomial through `_WINDOW` neighbours (`_cumulated`).
 """
@@ -43,7 +44,7 @@ _PLACES = 16  # nodes through which results are interpolated
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Nodes of the double-exponential rule, from the foot of a wave, s = 0, to the peak, s = 1.
+    """Nodes of the double-exponential rule, from the foot of a wave to the peak.
 
     Distances ξ from the peak are wanted at the last nodes alone, the rows.
 
@@ -52,15 +53,15 @@ class Grid:
     s, rest : Array
         The nodes, and 1 - s with all digits.
     ds : Array
-        Weights of ∫ … ds over all nodes.
+        Weights of ``∫ … ds`` over all nodes.
     rows : slice
         The rows among the nodes.
     to_peak : Array
-        Row j maps values at the nodes to ∫ … dt from the node j to the peak.
+        Row j maps values at the nodes to ``∫ … dt`` from the node j to the peak.
     kernel : Array
-        Row j maps F″ at the nodes to (Q(B) - Q(v)) / (B - v), v = B s_j.
+        Row j maps ``F″`` at the nodes to ``(Q(B) - Q(v)) / (B - v)``, ``v = B s_j``.
     length : Array
-        (1-s)^{1/2} ds/dt / (s (1-s)) at the rows, the factor of dξ.
+        ``(1-s)^{1/2} ds/dt / (s (1-s))`` at the rows, the factor of dξ.
     """
 
     s: Array
@@ -73,7 +74,7 @@ class Grid:
 
     @property
     def middle(self) -> int:
-        """The row of the node s = 1/2, which is the middle one of all nodes."""
+        """The row of the node ``s = 1/2``, which is the middle one of all nodes."""
         return len(self.s) // 2 - int(self.rows.start)
 
     def strains(self, p0: float, B: float) -> Array:
@@ -94,7 +95,7 @@ class Grid:
 
 @cache
 def grid(steps: int, start: float = _NEAR) -> Grid:
-    """Build the grid of ``steps`` nodes per unit of t, with rows from t = ``start`` on."""
+    """Build the grid of ``steps`` nodes per unit of t, with rows from ``start`` on."""
     t = np.arange(-_END * steps, _END * steps + 1) / steps
     grown = np.exp(np.pi * np.sinh(t))
     s = grown / (1 + grown)
@@ -158,7 +159,7 @@ def _interpolated(x: Array, y: Array, at: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Quadrature:
-    """Speed, half widths and profile of the wave J v′² = v² (Q(B) - Q(v)) on the strain p0.
+    """Speed, half widths and profile of the wave ``J v′² = v² (Q(B) - Q(v))`` on the strain p0.
 
     Methods raise `lwa.InputError` for a wave that the finest grid does not resolve.
 
@@ -179,7 +180,7 @@ class Quadrature:
 
     @cached_property
     def square(self) -> float:
-        """The squared speed V² = Q(B)."""
+        """The squared speed ``V² = Q(B)``."""
         return float(self._converged(Nodes.square))
 
     def half_width(self, of_force: bool = False) -> float:
@@ -201,7 +202,7 @@ class Quadrature:
     def refusal(self) -> str:
         """Reason why there is no wave; "" for a wave.
 
-        A wave has 0 < F′ < ∞, BQ′(B) > 0, Q(v) < Q(B) and J > 0.
+        A wave has ``0 < F′ < ∞``, ``BQ′(B) > 0``, ``Q(v) < Q(B)`` and ``J > 0``.
         """
         g = grid(_STEPS[0], _FAR)
         with np.errstate(all="ignore"):
@@ -224,7 +225,7 @@ class Quadrature:
         return ""
 
     def inertia(self, law: Samples) -> Array:
-        """The coefficient J = I F′ + R V⁴."""
+        """The coefficient ``J = I F′ + R V⁴``."""
         J = law.slope * law.dispersion
         return J + self.resonance * self.square**2 if self.resonance else J
 
@@ -274,7 +275,7 @@ class Nodes:
     law: Samples
 
     def square(self) -> Array:
-        """V²: 2 ∫(1-s) F′ ds, or F′(p0) + B ∫(1-s)² F″ ds for small waves."""
+        """V²: ``2 ∫(1-s) F′ ds``, or ``F′(p0) + B ∫(1-s)² F″ ds`` for small waves."""
         g = self.grid
         F1 = self.law.slope
         # The sums of the weights are 1/2 and 1/3, but for rounding.

@@ -157,7 +157,7 @@ class States(Value):
 
     @cached_property
     def stiffness(self) -> sp.Expr | None:
-        """The slope F′ by the mean compression at rest; None without a closed form."""
+        """The slope ``F′`` by the mean compression at rest; None without a closed form."""
         if isinstance(self.chain, Cell):
             A = self.chain.stiffness(self.law.exponent)
             return A * self.law.at(self.exact_static_compression, 1)

@@ -1,7 +1,7 @@
-"""Static states of a lattice in floats: compressions, F′, F″ and I at any mean compression.
+"""Static states of a lattice in floats: compressions, slopes and dispersion at a mean compression.
 
-The displacements w inside a cell minimise the energy at a mean compression e = D p per spacing.
-The energy is stationary there, hence F″ is the sum over the links of f″ (dδ/de)³ / P.
+The displacements w inside a cell minimise the energy at a mean compression ``e = D p`` per spacing.
+The energy is stationary there, hence ``F″`` is the sum over the links of ``f″ (dδ/de)³ / P``.
 
 Arrays of mean compressions have any shape. Arrays of compressions, and of displacements inside the
 cell, have one more axis, of the links or of the particles.
@@ -57,9 +57,9 @@ class Samples(NamedTuple):
     Parameters
     ----------
     slope, bend : Array
-        F′ and F″.
+        ``F′`` and ``F″``.
     dispersion : Array
-        The coefficient I in Ω² = c² (q² - I q⁴ + …), resonators left out.
+        The coefficient I in ``Ω² = c² (q² - I q⁴ + …)``, resonators left out.
     """
 
     slope: Array
@@ -172,7 +172,7 @@ class Statics:
             return np.asarray(forces @ self.network.spans / self.network.size)
 
     def samples(self, e: Array) -> Samples:
-        """F′, F″ and I at mean compressions."""
+        """``F′``, ``F″`` and I at mean compressions."""
         size = self.network.size
         if size > 1:
             # Far below the largest e a compression, or a force, may be a rounding error.
@@ -216,7 +216,7 @@ class Statics:
     def rise(self, e: float, force: float, added: float) -> float:
         """The rise of the mean compression from e to that under a force, which is larger by added.
 
-        A small difference of compressions has lost its digits: the force added over the mean F′
+        A small difference of compressions has lost its digits: the force added over the mean ``F′``
         between them, by Gauss's rule, has not.
         """
         rough = self.mean_compression(force) - e

@@ -1,31 +1,34 @@
 """Waves under a load in any lattice: one relation between speed, width and the static law.
 
-Let F(p) be the mean force at the mean strain p, W′ = F its energy per length, m̄ the mean mass and D
-the spacing. A wave u_x = p0 + v(x - Vt) that rises by B obeys, with V̂² = m̄ V²/D,
+Let F(p) be the mean force at the mean strain p, W its energy per length, ``W′ = F``, m̄ the mean
+mass and D the spacing. A wave ``u_x = p0 + v(x - Vt)`` that rises by B obeys, with
+``V̂² = m̄ V²/D``::
 
     J(p0+v) v′² = V̂² v² - 2 [W(p0+v) - W(p0) - F(p0) v],  V̂² = 2 [W(p0+B) - W(p0) - F(p0) B]/B²:
 
 the speed knows the static law alone, and the width one function more. Small waves on the strain p
-have Ω² = c² (q² - I(p) q⁴ + …): hence J = F′ I.
+have ``Ω² = c² (q² - I(p) q⁴ + …)``: hence ``J = F′ I``.
 
-Proof. Let u be the mass-weighted mean of the particles' displacements w_i in one cell, and
-y_i = w_i - u. The kinetic energy of a cell is M u_t²/2 + T(y_t), without a mixed term. The
+Proof. Let u be the mass-weighted mean of the displacements w_i of the particles of one cell, and
+``y_i = w_i - u``. The kinetic energy of a cell is ``M u_t²/2 + T(y_t)``, without a mixed term. The
 elastic energy knows y and the differences of u alone. The equations of y determine y by u_x and its
-derivatives, order by order. So the Lagrangian without y is M u_t²/2 plus a function of u_x and its
-derivatives in x and t. To the order beyond the static law -W(u_x) this function has the terms u_xx²
-and u_xt², each times a function of u_x: a term linear in a third derivative is one of these by
-parts, a term odd in t is forbidden, and the term of odd order, a(u_x) u_xx, is a divergence. In the
-wave both are a part of J v′²/2. ∎
+derivatives, order by order. So the Lagrangian without y is ``M u_t²/2`` plus a function of u_x and
+its derivatives in x and t. To the order beyond the static law this function has the terms u_xx² and
+u_xt², each times a function of u_x: a term linear in a third derivative is one of these by parts, a
+term odd in t is forbidden, and the term of odd order, a(u_x) u_xx, is a divergence. In the wave
+both are a part of ``J v′²/2``. ∎
 
-Resonators follow the acceleration of their particles. To the same order J = F′ I + R V⁴, with R the
-sum of m_r²/k_r per length and I without the resonators; this J is also right where the sound's
-speed is far from V. Their tails vanish at V = ω0 D/(2πn) (Kevrekidis, Stefanov and Xu, Lett. Math.
-Phys. 106, 1067 (2016)), ω0² = k_r (1/m_r + 1/m). `lwa.loaded.errors` has bounds on the errors.
+Resonators follow the acceleration of their particles. To the same order ``J = F′ I + R V⁴``, with R
+the sum of m_r²/k_r per length and I without the resonators; this J is also right where the speed of
+sound is far from V. Their tails vanish at ``V = ω0 D/(2πn)`` (Kevrekidis, Stefanov and Xu, Lett.
+Math. Phys. 106, 1067 (2016)), ``ω0² = k_r (1/m_r + 1/m)``. `lwa.loaded.errors` has bounds on the
+errors.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi, sqrt
@@ -42,7 +45,6 @@ from lwa.base.exact import (
     Quantity,
     brief,
     number,
-    one_of,
     positive,
     power,
     read_exact,
@@ -54,6 +56,7 @@ from lwa.base.frozen import (
     known_extent,
     known_quantity,
 )
+from lwa.base.words import ExtentName, QuantityName, one_of
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
 from lwa.law import ContactLaw, for_cell, substituted
@@ -114,15 +117,22 @@ class LoadedWave(States):
         )
 
     def latex_rows(self) -> list[str]:
-        rows = {
-            "F_{0}": self.precompression,
-            "F": self.force,
-            "p_{0}": self.background,
-            "B": self.strain,
-            latex.SPEED: self.speed,
-        }
-        laws = [] if self.law is None else self.law.latex_rows()
-        return [*laws, *latex.rows(rows)]
+        """LaTeX of the law and of the wave; of numbers with their errors, where these are known."""
+        rows = latex.rows(
+            {
+                "F_{0}": self.precompression,
+                "F": self.force,
+                "p_{0}": self.background,
+                "B": self.strain,
+                latex.SPEED: self.speed,
+            }
+        )
+        with suppress(InputError):  # symbols have no estimate
+            speed = self.estimate("speed").latex()
+            width = self.estimate("fwhm").latex()
+            rows[-1] += rf" \approx {speed}"
+            rows.append(f"{latex.fwhm('force')} = {width}")
+        return rows if self.law is None else [*self.law.latex_rows(), *rows]
 
     def at(self, **values: Any) -> LoadedWave:
         """Substitute values for symbols of a chain, as `lwa.CompactWave.at`."""
@@ -197,7 +207,9 @@ class LoadedWave(States):
             I = D**2 * (sp.Float(float(law.dispersion)) + resonance)
         return KdV.of_slopes(self.sound_speed, slope, D * bend, I)
 
-    def fwhm(self, quantity: str = "force", extent: str = "length") -> sp.Expr:
+    def fwhm(
+        self, quantity: QuantityName = "force", extent: ExtentName = "length"
+    ) -> sp.Expr:
         """Full width at half maximum of the rise of a quantity, in numbers.
 
         Parameters
@@ -213,8 +225,8 @@ class LoadedWave(States):
             return sp.Float(sites / number(self.speed / self.chain.spacing))
         return sp.Float(sites) * self.chain.spacing
 
-    def along(self, x: ArrayLike, quantity: str = "force") -> Array:
-        """Profile in space: rises above the load at positions x, with the peak at x = 0.
+    def along(self, x: ArrayLike, quantity: QuantityName = "force") -> Array:
+        """Profile in space: rises above the load at positions x, with the peak at ``x = 0``.
 
         Strains and velocities are right to 1e-9 of the larger of v and B/1000, forces to rounding
         of the load.
@@ -237,7 +249,10 @@ class LoadedWave(States):
         return np.asarray(rises / peak * number(self.force - self.precompression))
 
     def estimate(
-        self, name: EstimatedName, quantity: str = "force", extent: str = "length"
+        self,
+        name: EstimatedName,
+        quantity: QuantityName = "force",
+        extent: ExtentName = "length",
     ) -> Estimate:
         """A result in floats with a bound on its error, as measured on lattices.
 
@@ -310,7 +325,7 @@ class LoadedWave(States):
 
 
 def _refusal_under_power(excess: sp.Expr, p0: sp.Expr, B: sp.Expr) -> str:
-    """Reason why δ^k has no wave of the rise B on the strain p0; empty if there may be a wave.
+    """Reason why ``δ^k`` has no wave of the rise B on the strain p0; empty if there may be a wave.
 
     Speeds scale as strain^{(k-1)/2}; ``excess`` is k - 1.
     """
@@ -340,8 +355,8 @@ def loaded_wave(
     """The wave on a static load in a chain of a cell, or in a lattice, in the canonical field.
 
     Symbols are taken where results are closed forms: by strain under any law, by force under
-    powers. For equal spheres V²/c0² is Nesterenko's (4/15) (3 + 2 ζ^{5/2} - 5 ζ) / (ζ - 1)²,
-    ζ = (F/F0)^{2/3}.
+    powers. For equal spheres V²/c0² is Nesterenko's ``(4/15) (3 + 2 ζ^{5/2} - 5 ζ) / (ζ - 1)²``,
+    ``ζ = (F/F0)^{2/3}``.
 
     Parameters
     ----------
@@ -357,7 +372,7 @@ def loaded_wave(
     background : number or str, optional
         Static strain p0, in place of forces; by default 0.
     law : ContactLaw, optional
-        Law of a cell's contacts, by default δ^k. The links of a lattice have their own.
+        Law of a cell's contacts, by default ``δ^k``. The links of a lattice have their own.
     k : number or str
         Exponent of the law.
 

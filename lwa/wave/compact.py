@@ -1,20 +1,23 @@
-"""The compact traveling wave of the wave equation at D^{k+3}, in closed form.
+"""The compact traveling wave of the wave equation at the first order of dispersion, in closed form.
+
+The equation, at ``D^{k+3}``, is::
 
     u_ττ = u_x^{k-1} u_xx + G u_x^{k-3} u_xx³ + H u_x^{k-2} u_xx u_xxx + I u_x^{k-1} u_4x.
 
-With ξ = x - V τ the strain v = u_ξ obeys a third-order equation, whose compact wave is
-v = B cos^m(βξ) on |ξ| ≤ π/(2β), m = 2/(k-1) (Porter et al. 2008; `lwa.wave.reduction`), with
+With ``ξ = x - V τ`` the strain ``v = u_ξ`` obeys a third-order equation, whose compact wave is
+``v = B cos^m(βξ)`` on ``|ξ| ≤ π/(2β)``, ``m = 2/(k-1)`` (Porter et al. 2008; `lwa.wave.reduction`),
+with::
 
     β = (k-1) / (2 √(G+H+I)),    V² = B^{k-1} (1 - β² [(H + 3I) m - 2I]).
 
-The wave needs G + H + I > 0 and V² > 0.
+The wave needs ``G + H + I > 0`` and ``V² > 0``.
 
 In space and time. All contacts of a cell carry the same force at leading order. Without load
-F = A_eff (D u_x)^k, so that the wave whose contact force peaks at F has the peak strain
-B = (F/A_eff)^{1/k} / D. A contact has the force F cos^{mk}(βξ). A bead bears the mean force of its
-two contacts, half a spacing before and behind the bead, which peaks at F cos^{mk}(βD/2). Results
-are in the units of the cell: in SI for `lwa.Cell.of_spheres`. Waves under a load are those of
-`lwa.loaded.wave`.
+``F = A_eff (D u_x)^k``, so that the wave whose contact force peaks at F has the peak strain
+``B = (F/A_eff)^{1/k} / D``. A contact has the force ``F cos^{mk}(βξ)``. A bead bears the mean force
+of its two contacts, half a spacing before and behind the bead, which peaks at
+``F cos^{mk}(βD/2)``. Results are in the units of the cell: in SI for `lwa.Cell.of_spheres`. Waves
+under a load are those of `lwa.loaded.wave`.
 """
 
 from __future__ import annotations
@@ -32,7 +35,6 @@ from lwa.base.exact import (
     factored,
     integer,
     number,
-    one_of,
     positive,
     power,
     read_exact,
@@ -48,6 +50,7 @@ from lwa.base.frozen import (
     known_quantity,
     strain_power,
 )
+from lwa.base.words import ExtentName, LanguageName, QuantityName, one_of
 from lwa.cell import Cell, exponent, read_cell, substitution
 from lwa.cell import k as symbol_k
 from lwa.law import ContactLaw, Power, for_cell
@@ -69,9 +72,9 @@ BEARERS: tuple[BearerName, ...] = get_args(BearerName)
 
 @dataclass(frozen=True, repr=False)
 class CompactWave(Value):
-    """Closed forms of the compact wave v = u_x = B cos^m(βξ), ξ = x - V τ.
+    """Closed forms of the compact wave ``v = u_x = B cos^m(βξ)``, ``ξ = x - V τ``.
 
-    Results are exact SymPy expressions; the speed V = dx/dτ becomes dx/dt by `time_scale`.
+    Results are exact SymPy expressions; the speed ``V = dx/dτ`` becomes dx/dt by `time_scale`.
 
     Parameters
     ----------
@@ -85,7 +88,7 @@ class CompactWave(Value):
     Raises
     ------
     NoSolitaryWave
-        For numbers without a wave: k ≤ 1, G + H + I ≤ 0, or V² ≤ 0.
+        For numbers without a wave: ``k ≤ 1``, ``G + H + I ≤ 0``, or ``V² ≤ 0``.
     """
 
     cell: Cell
@@ -113,6 +116,9 @@ class CompactWave(Value):
         return [
             r"v = u_{x} = B \cos^{2/(k-1)}(\beta \xi), \quad |\xi| \leq \frac{\pi}{2\beta}",
             latex.row(r"\beta", self.beta),
+            latex.row(r"\frac{\pi}{\beta}", self.width),
+            latex.row(latex.fwhm("strain"), self.fwhm("strain")),
+            latex.row(latex.fwhm("force"), self.fwhm("force")),
             latex.row("V_{s}", self.speed()),
         ]
 
@@ -136,12 +142,12 @@ class CompactWave(Value):
 
     @property
     def m(self) -> sp.Expr:
-        """The power m = 2/(k-1) of the cosine in the strain."""
+        """The power ``m = 2/(k-1)`` of the cosine in the strain."""
         return 2 / (self.k - 1)
 
     @cached_property
     def beta(self) -> sp.Expr:
-        """The wavenumber β = (k-1) / (2 √(G+H+I)) of the cosine."""
+        """The wavenumber ``β = (k-1) / (2 √(G+H+I))`` of the cosine."""
         return (self.k - 1) / (2 * self.D * square_root(self.coefficient_sum))
 
     @cached_property
@@ -154,13 +160,14 @@ class CompactWave(Value):
         """The number π/(βD) of particles under the wave."""
         return self.width / self.D
 
-    def fwhm(self, quantity: str = "strain") -> sp.Expr:
+    def fwhm(self, quantity: QuantityName = "strain") -> sp.Expr:
         """Full width at half maximum, a length in x.
 
         Parameters
         ----------
         quantity : {"strain", "force", "velocity"}
-            The strain u_x, the force A (D u_x)^k of a contact, or the velocity u_τ = -V u_x.
+            The strain u_x, the force ``A (D u_x)^k`` of a contact, or the velocity
+            ``u_τ = -V u_x``.
 
         Raises
         ------
@@ -173,19 +180,19 @@ class CompactWave(Value):
 
     @cached_property
     def speed_factor(self) -> sp.Expr:
-        """The ratio V²/B^{k-1} = 1 - β² [(H + 3I) m - 2I]."""
+        """The ratio ``V²/B^{k-1} = 1 - β² [(H + 3I) m - 2I]``."""
         # With β² = (k-1)²/(4 I (1+g+h)) and m = 2/(k-1) written out k - 1 cancels.
         k = self.k
         g, h = self._ratios
         return factored(1 - (k - 1) * (h + 4 - k) / (2 * (1 + g + h)))
 
     def speed(self, B: Any = RISE) -> sp.Expr:
-        """Speed V = dx/dτ of the wave whose strain peaks at B."""
+        """Speed ``V = dx/dτ`` of the wave whose strain peaks at B."""
         factor = square_root(self.speed_factor)
         return factor * power(positive(B, "B"), (self.k - 1) / 2)
 
     def amplitude(self, V: Any = SPEED) -> sp.Expr:
-        """Peak strain B = (V² / speed_factor)^{1/(k-1)} of the wave of speed V = dx/dτ."""
+        """Peak strain ``B = (V² / speed_factor)^{1/(k-1)}`` of the wave of speed ``V = dx/dτ``."""
         return power(positive(V, "V") ** 2 / self.speed_factor, 1 / (self.k - 1))
 
     @property
@@ -195,11 +202,11 @@ class CompactWave(Value):
 
     @property
     def time_scale(self) -> sp.Expr:
-        """The ratio τ/t, by which dx/dt = V τ/t."""
+        """The ratio τ/t, by which ``dx/dt = V τ/t``."""
         return self.cell.time_scale(self.k)
 
     def profile(self, xi: Any, B: Any = RISE) -> sp.Expr:
-        """Strain v(ξ) = B cos^m(βξ) on |ξ| ≤ π/(2β) and 0 outside, as a SymPy Piecewise.
+        """Strain ``v(ξ) = B cos^m(βξ)`` on ``|ξ| ≤ π/(2β)`` and 0 outside, as a SymPy Piecewise.
 
         >>> canonical_wave(Cell([1]), 3).profile("xi", B=1)
         Piecewise((cos(sqrt(2)*xi/D), Abs(xi) <= sqrt(2)*pi*D/4), (0, True))
@@ -210,12 +217,12 @@ class CompactWave(Value):
 
     @cached_property
     def roots(self) -> tuple[sp.Expr, sp.Expr]:
-        """The two p for which v = z^p removes z_ξ³; the paper's is the first."""
+        """The two p for which ``v = z^p`` removes ``z_ξ³``; the paper's is the first."""
         total = self.coefficient_sum * self.D**2 / self.I  # 1 + G/I + H/I
         return roots(total, self._ratios[1])
 
     def reduction(self, root: int = 0, V: Any = SPEED) -> Reduction:
-        """Reduction to z'' = μ z^η - σ z for one of the `roots` p.
+        """Reduction to ``z'' = μ z^η - σ z`` for one of the `roots` p.
 
         Parameters
         ----------
@@ -228,7 +235,7 @@ class CompactWave(Value):
         return Reduction.of(p, self.k, self.I, self._ratios[1], positive(V, "V"))
 
     def at(self, **values: Any) -> Self:
-        """Substitute numbers (or other symbols) for the named symbols, and for ω = m2/m1.
+        """Substitute numbers (or other symbols) for the named symbols, and for ``ω = m2/m1``.
 
         Raises
         ------
@@ -253,15 +260,15 @@ class CompactWave(Value):
         )
 
     @overload
-    def at_force(self, F: Any = "F", of: str = "contact") -> PhysicalWave: ...
+    def at_force(self, F: Any = "F", of: BearerName = "contact") -> PhysicalWave: ...
 
     @overload
     def at_force(
-        self, F: Any = "F", of: str = "contact", *, precompression: Any
+        self, F: Any = "F", of: BearerName = "contact", *, precompression: Any
     ) -> PhysicalWave | LoadedWave: ...
 
     def at_force(
-        self, F: Any = "F", of: str = "contact", *, precompression: Any = 0
+        self, F: Any = "F", of: BearerName = "contact", *, precompression: Any = 0
     ) -> PhysicalWave | LoadedWave:
         """The wave of a given peak force: a `PhysicalWave`, or under load a `LoadedWave`.
 
@@ -322,7 +329,7 @@ class CompactWave(Value):
         return loaded_wave(self.cell, k=self.k, **states)
 
     def numeric(self, missing: Missing = "raise") -> NumericWave:
-        """Vectorised float64 functions of (k, ω), ω = m2/m1.
+        """Vectorised float64 functions of (k, ω), ``ω = m2/m1``.
 
         Parameters
         ----------
@@ -340,7 +347,7 @@ class CompactWave(Value):
             self.k, self.cell.masses, self.coefficient_sum, self.speed_factor, missing
         )
 
-    def code(self, language: str) -> str:
+    def code(self, language: LanguageName) -> str:
         """Source text of a program: β, widths, speed, amplitude and profile as functions.
 
         Arguments and accuracy of the functions are those of `lwa.wave.source`.
@@ -368,9 +375,9 @@ def canonical_wave(
 ) -> CompactWave:
     """The wave of the canonical field of any cell, from the linear chain's dispersion alone.
 
-    With Ω² = κ² (1 - (I/D²) κ² + …) the equation of the canonical field has G = I (k-1)(k-2)/2 and
-    H = 2I (k-1) for every cell (theorem, see `lwa.equation.energy`), hence
-    β = (k-1)/√(2I k(k+1)) and V² = 2 B^{k-1}/(k(k+1)). The wave is that of
+    With ``Ω² = κ² (1 - (I/D²) κ² + …)`` the equation of the canonical field has
+    ``G = I (k-1)(k-2)/2`` and ``H = 2I (k-1)`` for every cell (theorem, see `lwa.equation.energy`),
+    hence ``β = (k-1)/√(2I k(k+1))`` and ``V² = 2 B^{k-1}/(k(k+1))``. The wave is that of
     ``homogenize(cell, closure="full", field="center").pde.traveling_wave()``.
 
     Parameters
@@ -437,7 +444,7 @@ class PhysicalWave(Value):
 
     wave: CompactWave
     force: sp.Expr
-    of: str = "contact"
+    of: BearerName = "contact"
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "force", positive(self.force, "force"))
@@ -451,7 +458,12 @@ class PhysicalWave(Value):
         )
 
     def latex_rows(self) -> list[str]:
-        rows = {"F": self.contact_force, "B": self.strain, latex.SPEED: self.speed}
+        rows = {
+            "F": self.contact_force,
+            "B": self.strain,
+            latex.SPEED: self.speed,
+            latex.fwhm("force"): self.fwhm("force"),
+        }
         return latex.rows(rows)
 
     @cached_property
@@ -492,7 +504,7 @@ class PhysicalWave(Value):
 
     @cached_property
     def speed(self) -> sp.Expr:
-        """The speed dx/dt = D √(f P k / M) A_eff^{1/(2k)} F^{(k-1)/(2k)}, f = V²/B^{k-1}.
+        """The speed ``dx/dt = D √(f P k / M) A_eff^{1/(2k)} F^{(k-1)/(2k)}``, ``f = V²/B^{k-1}``.
 
         The cell has P beads, the mass M and the mean stiffness A_eff; F is the peak contact force.
         """
@@ -510,12 +522,12 @@ class PhysicalWave(Value):
 
     @cached_property
     def bead_velocity(self) -> sp.Expr:
-        """The peak velocity u_t = B dx/dt of the beads, the same for all beads of a cell."""
+        """The peak velocity ``u_t = B dx/dt`` of the beads, the same for all beads of a cell."""
         return self.strain * self.speed
 
     @cached_property
     def momentum(self) -> sp.Expr:
-        """The momentum Σ m u_t = M/(P D) · B dx/dt · ∫ cos^m(βξ) dξ of the chain."""
+        """The momentum ``Σ m u_t = M/(P D) · B dx/dt · ∫ cos^m(βξ) dξ`` of the chain."""
         cell = self.wave.cell
         m = self.wave.m
         density = cell.mass / (cell.size * cell.spacing)
@@ -523,7 +535,9 @@ class PhysicalWave(Value):
         arch = sp.sqrt(sp.pi) * sp.gamma((m + 1) / 2) / sp.gamma(m / 2 + 1)
         return density * arch / self.wave.beta * self.bead_velocity
 
-    def fwhm(self, quantity: str = "force", extent: str = "length") -> sp.Expr:
+    def fwhm(
+        self, quantity: QuantityName = "force", extent: ExtentName = "length"
+    ) -> sp.Expr:
         """Full width at half maximum.
 
         Parameters
@@ -541,8 +555,13 @@ class PhysicalWave(Value):
         length = self.wave.fwhm(quantity)
         return length if known_extent(extent) == "length" else length / self.speed
 
-    def curve(self, t: ArrayLike, quantity: str = "force", of: str = "") -> Array:
-        """Course in time: values at the times t, with the peak at t = 0.
+    def curve(
+        self,
+        t: ArrayLike,
+        quantity: QuantityName = "force",
+        of: BearerName | None = None,
+    ) -> Array:
+        """Course in time: values at the times t, with the peak at ``t = 0``.
 
         Parameters
         ----------
@@ -568,8 +587,13 @@ class PhysicalWave(Value):
 
         return self.along(-number(self.speed) * finite(t, "t"), quantity, of)
 
-    def along(self, x: ArrayLike, quantity: str = "force", of: str = "") -> Array:
-        """Profile in space: values at the positions x when the peak is at x = 0; see `curve`."""
+    def along(
+        self,
+        x: ArrayLike,
+        quantity: QuantityName = "force",
+        of: BearerName | None = None,
+    ) -> Array:
+        """Profile in space: values at the positions x when the peak is at 0; see `curve`."""
         import numpy as np  # start-up: `lwa wave` does without
 
         from lwa.base.arrays import finite

@@ -1,11 +1,11 @@
-"""The compact wave's closed forms in float64: NumPy functions of arrays of k and ω = m2/m1.
+"""The compact wave's closed forms in float64: NumPy functions of arrays of k and m2/m1, or ω.
 
-Letters as in `lwa.wave.compact`; lengths are in units of D. The rational functions (G+H+I)/D² and
-(V²/B^{k-1} - 1)/(k-1) of k and the masses are compiled as polynomials in the masses, with
-coefficients that are factored in k, so that a coefficient vanishes where it should. Logarithms and
-powers near k = 1 come by log1p and expm1. Relative errors are below 1e-11; next to the edge of the
-domain of waves, where G + H + I or V² vanishes, the last digit of k or ω changes the results by
-more.
+Letters as in `lwa.wave.compact`; lengths are in units of D. The rational functions
+``(G+H+I)/D²`` and ``(V²/B^{k-1} - 1)/(k-1)`` of k and the masses are compiled as polynomials in the
+masses, with coefficients that are factored in k, so that a coefficient vanishes where it should.
+Logarithms and powers near ``k = 1`` come by log1p and expm1. Relative errors are below 1e-11; next
+to the edge of the domain of waves, where G + H + I or V² vanishes, the last digit of k or ω changes
+the results by more.
 """
 
 from __future__ import annotations
@@ -20,8 +20,9 @@ import sympy as sp
 from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array, finite
-from lwa.base.exact import InputError, factored, one_of
+from lwa.base.exact import InputError, factored
 from lwa.base.frozen import NoSolitaryWave, Value, strain_power
+from lwa.base.words import QuantityName, one_of
 
 LARGEST = 1e150
 """Largest mass ratio: V² holds the square of its reciprocal, the least that a double has."""
@@ -43,11 +44,11 @@ class Domain(NamedTuple):
     k : Array
         The exponents.
     coefficient_sum : Array
-        (G + H + I)/D².
+        ``(G + H + I)/D²``.
     speed_factor : Array
-        V²/B^{k-1}.
+        ``V²/B^{k-1}``.
     excess : Array
-        (V²/B^{k-1} - 1)/(k - 1).
+        ``(V²/B^{k-1} - 1)/(k - 1)``.
     """
 
     k: Array
@@ -69,10 +70,10 @@ class NumericWave(Value):
     masses : tuple of Symbol
         Masses of the cell, two different symbols.
     coefficient_sum, speed_factor : Expr
-        (G + H + I)/D² and V²/B^{k-1}, rational functions of k and the masses.
+        ``(G + H + I)/D²`` and ``V²/B^{k-1}``, rational functions of k and the masses.
     missing : {"raise", "nan"}
-        Raise `lwa.NoSolitaryWave` with the first point without a wave (k ≤ 1, G + H + I ≤ 0,
-        V² ≤ 0), or return NaN at these points.
+        Raise `lwa.NoSolitaryWave` with the first point without a wave (``k ≤ 1``,
+        ``G + H + I ≤ 0``, ``V² ≤ 0``), or return NaN at these points.
 
     Raises
     ------
@@ -105,7 +106,7 @@ class NumericWave(Value):
 
     @cached_property
     def _compiled(self) -> Callable[..., Any]:
-        """(G+H+I)/D², V²/B^{k-1} and (V²/B^{k-1} - 1)/(k - 1) as functions of k and the masses."""
+        """The last three fields of `Domain` as functions of k and the masses."""
         masses = tuple(dict.fromkeys(self.masses))
 
         def by_masses(polynomial: sp.Expr) -> sp.Expr:
@@ -127,7 +128,7 @@ class NumericWave(Value):
         return compiled
 
     def beta(self, k: ArrayLike, omega: ArrayLike) -> Array:
-        """The wavenumber β D = (k-1) / (2 √((G+H+I)/D²))."""
+        """The wavenumber ``β D = (k-1) / (2 √((G+H+I)/D²))``."""
         at = self._domain(k, omega)
         return np.asarray((at.k - 1) / (2 * np.sqrt(at.coefficient_sum)))
 
@@ -135,7 +136,9 @@ class NumericWave(Value):
         """The number π/(βD) of sites under the wave."""
         return np.pi / self.beta(k, omega)
 
-    def fwhm(self, k: ArrayLike, omega: ArrayLike, quantity: str = "strain") -> Array:
+    def fwhm(
+        self, k: ArrayLike, omega: ArrayLike, quantity: QuantityName = "strain"
+    ) -> Array:
         """FWHM of strain, contact force or velocity in units of D (`lwa.CompactWave.fwhm`)."""
         beta = self.beta(k, omega)
         k = np.asarray(k, np.float64)
@@ -144,7 +147,7 @@ class NumericWave(Value):
         return np.asarray(2 * np.arctan(np.sqrt(np.expm1(x * np.log(4.0)))) / beta)
 
     def speed(self, k: ArrayLike, omega: ArrayLike, B: ArrayLike = 1.0) -> Array:
-        """Speed V = dx/dτ of the wave whose strain peaks at B."""
+        """Speed ``V = dx/dτ`` of the wave whose strain peaks at B."""
         at = self._domain(k, omega)
         growth = _positive(B, "B") ** ((at.k - 1) / 2)
         return np.asarray(np.sqrt(at.speed_factor) * growth)

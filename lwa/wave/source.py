@@ -2,10 +2,10 @@
 
 SymPy's printers write the expressions; a table has what they leave out, the lines about them. All
 numbers are doubles. The formulas are written in forms that keep their digits in floating point:
-relative errors are 1e-14, with three ill-conditioned exceptions. The amplitude's exponent 2/(k-1)
-makes each rounding |ln B| times larger. Near the edge of the domain of waves (G + H + I → 0,
-V² → 0) the last digit of k or of a mass changes the result by more. Near the end of the support the
-last digit of ξ does: the profile is right to 1e-14 B at a ξ off by 1e-14 ξ.
+relative errors are 1e-14, with three ill-conditioned exceptions. The amplitude's exponent
+``2/(k-1)`` makes each rounding ``|ln B|`` times larger. Near the edge of the domain of waves (G + H
++ I → 0, V² → 0) the last digit of k or of a mass changes the result by more. Near the end of the
+support the last digit of ξ does: the profile is right to 1e-14 B at a ξ off by 1e-14 ξ.
 """
 
 from __future__ import annotations
@@ -19,8 +19,9 @@ from sympy.printing.c import C99CodePrinter
 from sympy.printing.jscode import JavascriptCodePrinter
 from sympy.printing.numpy import NumPyPrinter
 
-from lwa.base.exact import InputError, one_of, shorten
+from lwa.base.exact import InputError, shorten
 from lwa.base.frozen import QUANTITIES, strain_power
+from lwa.base.words import LanguageName, one_of
 from lwa.cell import Cell
 from lwa.law import Power
 
@@ -92,7 +93,7 @@ class Language:
     settings: Mapping[str, Any] = field(default_factory=dict)
 
 
-LANGUAGES: Mapping[str, Language] = {
+LANGUAGES: Mapping[LanguageName, Language] = {
     "numpy": Language(
         NumPyPrinter,
         "#",
@@ -138,7 +139,9 @@ LANGUAGES: Mapping[str, Language] = {
 _EXACT = 2**53  # a double holds integers up to this one
 
 
-def module(functions: Sequence[Function], language: str, title: Sequence[str]) -> str:
+def module(
+    functions: Sequence[Function], language: LanguageName, title: Sequence[str]
+) -> str:
     """Write the source text of functions.
 
     Symbols keep their names, with underscores behind those that have another meaning.
@@ -278,7 +281,7 @@ def wave_functions(
     cell : Cell
         The chain.
     coefficient_sum, speed_factor : Expr
-        (G + H + I)/D² and V²/B^{k-1}, rational functions of k and the masses.
+        ``(G + H + I)/D²`` and ``V²/B^{k-1}``, rational functions of k and the masses.
     """
     D = cell.spacing
     functions = Functions(k, *cell.masses, *cell.stiffnesses, D, coefficient_sum)

@@ -109,3 +109,11 @@ def test_an_open_contact_carries_nothing():
     assert np.array_equal(Power(1).at([-1, 1], 1), [0, 1])
     assert toda.at(-1) == sp.exp(-1) - 1
     assert np.allclose(toda.at([-1.0, 1.0]), np.expm1([-1.0, 1.0]), rtol=1e-15)
+
+
+def test_long_powers_of_a_law_are_not_written_out():
+    """SymPy's search for their factors would take for ever."""
+    n, d = 1234 / 99991, 2.123456789012345
+    law = named("magnetic", "1234/99991", d)
+    expected = n * (n + 1) / d**2 * (1 - 1.7 / d) ** (-n - 2)
+    assert float(law.at(1.7, 2)) == pytest.approx(expected, rel=1e-14)

@@ -1,7 +1,5 @@
 """Bad arguments that no command reaches, and waves that do not exist: one line says why."""
 
-from fractions import Fraction
-
 import numpy as np
 import pytest
 import sympy as sp
@@ -45,34 +43,19 @@ def front(*strains, law=HERTZ, cell=EQUAL):
 
 CALLS = [
     (lambda: Cell([]), "at least one mass"),
-    (lambda: Cell([1, 0]), "mass 2 is 0"),
     (lambda: Cell([sp.sqrt(2) - 2]), r"mass 1 is -2 \+ sqrt\(2\): it must be positive"),
     (lambda: Cell([-y]), "mass 1 is -y: it must be positive"),
-    (lambda: Cell([1], spacing="0.0"), "spacing is 0"),
-    (lambda: Cell("m1,m2"), "masses is .*: a sequence"),
     (lambda: Cell([1, 10**5000]), "mass 2 is a number beyond"),
-    (lambda: Dimer(1, 2, N=0), "N is 0"),
     (lambda: Dimer(1, 2, N=1.5), "N is 1.5"),
-    (lambda: homogenize(DIMER, 10**5000), "order is .*: an integer from 1 on"),
     (
         lambda: lwa.Dispersion(Cell([1, 1], [1, 2]), "1e-9"),
         "exponents from 1/100 to 1000",
     ),
     (lambda: Cell(["m1"]).at(omega=1), "a cell with two masses"),
     (lambda: DIMER.at(m1=1, m2=2, omega=2), "omega is m2/m1: one of the masses"),
-    (lambda: DIMER.at(omega=-1), "omega is -1"),
     (lambda: DIMER.at(m3=1), "'m3' is not among the symbols: D, m1, m2"),
     (lambda: TWO_A.at(a=1), "'a' names two symbols"),
-    *(
-        (lambda call=call: call([1, 2]), r"cell is \[1, 2\]")
-        for call in (
-            homogenize,
-            canonical_wave,
-            expand,
-            lwa.loaded_wave,
-            lwa.Dispersion,
-        )
-    ),
+    (lambda: homogenize([1, 2]), r"cell is \[1, 2\]"),
     (lambda: homogenize(CHAIN, law="hertz2"), "law is 'hertz2'"),
     (lambda: canonical_wave(CHAIN, k="3/2", law=3), "one of them"),
     (
@@ -97,10 +80,8 @@ CALLS = [
     ),
     *(
         (lambda delta=delta: Power("3/2").at(delta), "delta is")
-        for delta in (None, "1", float("nan"), 1j, sp.I, sp.oo, ["x"])
+        for delta in ("1", float("nan"), sp.I, ["x"])
     ),
-    (lambda: lwa.Dispersion(TWO).bands.branches(float("nan")), "wavenumber is nan"),
-    (lambda: lwa.Dispersion(TWO).bands.branches([[1], [2, 3]]), "wavenumber is"),
     (
         lambda: lwa.Dispersion(Cell(["a", "b"], ["d", "e"])).acoustic(10000),
         "is 10000: .* lower",
@@ -109,107 +90,62 @@ CALLS = [
         lambda: lwa.Dispersion(Cell([1, 2, 3])).optical(4),
         "needs a cell of 2 masses, not 3",
     ),
-    (lambda: lwa.Dispersion(Cell([1, "m2"])).bands.branches(1), "'m2' has no value"),
-    (
-        lambda: lwa.Dispersion(Cell([1, 2], [1, 2]), "k").bands.edges(),
-        "'k' has no value",
-    ),
     (
         lambda: lwa.Dispersion(Cell(["1e200", "1e-200"])).bands.branches(1),
         "the range of a float",
     ),
-    (lambda: ONE.at_force(1, of="wall"), "of is 'wall': contact or bead"),
     (
         lambda: ONE.at_force([1, 2]),
         r"force is \[1, 2\]: a number or a symbol is wanted",
     ),
     (lambda: ONE.at_force(1).curve([0], "pressure"), "quantity is 'pressure'"),
-    (lambda: ONE.at_force(1).curve("now"), "t is 'now': real numbers"),
-    (lambda: ONE.at_force(1).curve([np.inf]), "t is inf: finite numbers"),
-    (lambda: ONE.at_force(1).curve([0], of="wall"), "of is 'wall'"),
-    (lambda: ONE.at_force("F").curve([0]), "has no value: a curve needs numbers"),
-    (lambda: ONE.at_force(1).fwhm("force", "area"), "extent is 'area'"),
     (lambda: WAVE.numeric().beta(np.nan, 1.0), "k is nan"),
     (lambda: WAVE.numeric().beta(1.5, 1e151), "ω = m2/m1 is not between"),
-    (lambda: WAVE.numeric().beta(1.5, 1e-300), "ω = m2/m1 is not between"),
     (
         lambda: WAVE.numeric().beta(1.5, -1.0),
         r"ω = m2/m1 is -1\.0: it must be positive",
     ),
-    (
-        lambda: WAVE.numeric().speed(1.5, 1.0, B=-1.0),
-        r"B is -1\.0: it must be positive",
-    ),
-    (lambda: WAVE.numeric(missing="zero"), "missing is 'zero'"),
     (lambda: canonical_wave(Cell(["m1", "m2"], ["A1", "A2"])).numeric(), "two masses"),
-    (lambda: WAVE.code("rust"), "language is 'rust': one of numpy"),
     (lambda: canonical_wave(Cell([sp.Symbol("x y")])).code("c"), "'x y' is no name"),
-    (lambda: expand(DIMER, 6).c2.at("3/2"), "has no value"),
     (lambda: expand(Cell([1], [8]), 6, k="3/2").c2.at("6/5"), "that of k = 3/2"),
     (lambda: expand(CHAIN, 6).c2.at(1), "k is 1"),
     (lambda: expand(CHAIN, 5).c2.at("3/2"), "from order 6 on"),
     (lambda: expand(TWO, 8).c2.at("3/2"), "over 10% of it"),
-    (lambda: expand(TWO, 1).log_force(2), "contact is 2"),
     (lambda: expand(AT_X, 1).log_force(), "X names a property of the chain"),
     (lambda: expand(Cell(["a", "b"]), 100), "takes more than .* terms"),
-    (lambda: expand(Cell([1], [Fraction(1, 10**400 + 1)]), 4), "digits"),
     (lambda: expand(Cell(["ε", 1]), 1), "ε is k - 1"),
     (
         lambda: expand(CHAIN, 2, law=Law(sp.exp(DELTA) - 1, DELTA)),
         "only a power law has a k",
     ),
-    (lambda: lwa.ExpandedWave(expand(CHAIN, 10, k="3/2"), -1), "force is -1"),
     (lambda: lwa.ExpandedWave(expand(CHAIN, 10, k="3/2"), "F"), "force is "),
-    (lambda: lwa.Material(0, 0), "E is 0"),
     (lambda: lwa.Material(1, "0.51"), "nu is '0.51'"),
-    (lambda: lwa.Material(1, 0, -1), "density is -1"),
     (lambda: lwa.Material.named("wood"), "'wood': one of steel 316, steel 440C"),
     (lambda: lwa.Sphere(1, 1, "steel"), "material is 'steel': a Material"),
-    (lambda: lwa.Sphere(1, 0, STEEL), "radius is 0"),
     (lambda: lwa.Sphere.solid(1, STEEL), "a Material with a density"),
     (lambda: stiffness(BALL, 1), "other is 1: a Sphere"),
     (lambda: Cell.of_spheres([BALL, STEEL]), "sphere is Material"),
     (lambda: Cell.of_spheres(BALL), "spheres is .*: a sequence"),
     (lambda: loaded(HERTZ, -1, 1), "must not be negative"),
     (lambda: loaded(HERTZ, 1, 0), "rise is 0"),
-    (lambda: loaded(HERTZ, "p0", 1).fwhm(), "has no value"),
-    (lambda: loaded(HERTZ, 1, 1).fwhm("colour"), "quantity"),
-    (lambda: loaded(HERTZ, 1, 1).fwhm(extent="colour"), "extent"),
-    (lambda: loaded(HERTZ, 1, 1).along(["x"]), "x is"),
-    (lambda: loaded(HERTZ, 1, 1).along(np.nan), "finite"),
     (lambda: loaded(lwa.general(), 1, 1).fwhm(), "no expression"),
-    (lambda: loaded(lwa.general(), 0, 1, Dimer(1, 1, stiffnesses=[1, 2])), "shares"),
     (lambda: lwa.loaded_wave(EQUAL, force=2, rise=1), "not by both"),
-    (lambda: lwa.loaded_wave(EQUAL, law=named("hertz2", 1, 1)), "has no value"),
-    (lambda: canonical_wave(CHAIN, 2).at_force(1, precompression=-1), "positive"),
-    (lambda: lwa.loaded_wave(BEADS, force=-1), "positive"),
     (lambda: lwa.loaded_wave(EQUAL, force=2, precompression=1, law=SOFT), "reach"),
-    (lambda: SOFT.compression(EQUAL, sp.Rational(1, 3)), "does not reach"),
     (
         lambda: homogenize(Dimer(1, 2)).pde.traveling_wave().on_background(1),
         "canonical",
     ),
     (lambda: Link(1, 1, HERTZ), "second particle"),
     (lambda: Link(0, 1, "3/2"), "no contact law"),
-    (lambda: Link(0, 1, HERTZ, -1), "must be positive"),
-    (lambda: Link(0.5, 1, HERTZ), "integer"),
-    (lambda: lwa.Resonator(0, 1, 0), "must be positive"),
     (lambda: Lattice([], [LINK]), "at least one mass"),
-    (lambda: Lattice([1], []), "at least one mass and one link"),
     (lambda: Lattice([1], [HERTZ]), "a Link is wanted"),
-    (lambda: Lattice([1], "ab"), "links is .*: a sequence"),
-    (lambda: Lattice([0], [LINK]), "must be positive"),
     (lambda: Lattice([1], [Link(1, 2, HERTZ)]), "particles 0 to 0"),
-    (lambda: Lattice([1], [LINK], [lwa.Resonator(1, 1, 1)]), "particles 0 to 0"),
     (lambda: Lattice([1, 1], [Link(0, 2, HERTZ)]), "free"),
     (lambda: Lattice([1, 1], [LINK]), "carry no load"),
-    (lambda: lwa.hexagonal(HERTZ, "up"), "direction"),
-    (lambda: Lattice([1, 1], [LINK, Link(1, 2, SOFT)]).equilibrium(1), "reach"),
     (
         lambda: Lattice([1], [Link(0, 1, SOFT), Link(0, 2, SOFT)]).equilibrium(9),
         "reach",
     ),
-    (lambda: Lattice(["m"], [LINK, Link(0, 2, HERTZ)]).equilibrium(1), "has no value"),
     (lambda: front(2, 1, law=Power(1)), "sound is as fast behind as ahead"),
     (lambda: front(1, -1), "ahead is -1: contacts of a power law only push"),
     (lambda: front(4, 1).trailing_speed, "the trailing edge holds up to 1.3"),
@@ -217,12 +153,9 @@ CALLS = [
     (lambda: front(2, 1, cell=TWO).peak, "known for equal beads only"),
     (lambda: front(2, 1, cell=TWO).trailing_speed, "known for equal beads"),
     (lambda: front(1, 2).peak, "a rarefaction has no pulse"),
-    (lambda: front(2, 1).leading_speed("el"), "rule is 'el': dispersion or"),
     (lambda: front("p", 1, law=Power("k")).kind, "kind depends on symbols"),
     (lambda: front(1, 0, law=Power(1)), "a front without load wants k > 1"),
     (lambda: front(1, 0, law=BENT), "changes its sign at the strain 0.66667"),
-    (lambda: front("1/2", 0, law=BENT).peak, "changes its sign at the strain 0.66667"),
-    (lambda: front("1/2", 0, law=BENT).leading_speed("dispersion"), "changes its sign"),
     (lambda: front(5, 1, law=WAVY), "changes its sign at the strain 3.1"),
     (lambda: front(1 + sp.Rational(1, 10**16), 1), "1e-15 of it at least"),
     (
@@ -248,8 +181,7 @@ NO_WAVES = [
     (lambda: loaded(Law(DELTA - sp.sin(DELTA)), 0, "1e-3"), "cancel"),
     *(
         (lambda n=n, B=B: loaded(named("magnetic", n, 1), 0, B), "pole")
-        for n in (3, 4)
-        for B in ("1", "1.1")  # the pole and beyond
+        for n, B in ((3, 1), (4, "1.1"))  # the pole and beyond
     ),
     (lambda: loaded(HERTZ, 0, 1).kdv, "no sound"),
     (lambda: loaded(named("polynomial", 0, 1), 0, 1).kdv, "F″ is 0"),
@@ -268,7 +200,6 @@ NO_WAVES = [
             ({"k": "8/5", "m1": 1, "m2": 1000}, "V² > 0$"),  # where G + H + I > 0
         )
     ),
-    (lambda: homogenize(Dimer(1, 1000), k="8/5").pde.traveling_wave(), "V² > 0$"),
 ]
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import sympy as sp
 
@@ -11,7 +13,7 @@ from validation.pictures import Curve, Panel
 from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
-from validation.waves.profile import ExactWave
+from validation.waves.profile import Number
 from validation.waves.solver import exact_wave
 from validation.waves.solver import resonances as special_ratios
 
@@ -23,6 +25,10 @@ _COLUMNS = (
 _NOTE = """\
 Strain and force of a contact, velocity of a bead m1. Strains scale with the peak force F as
 F^(1/k), velocities as F^((k+1)/2k), c as F^((k-1)/2k); widths do not depend on F."""
+
+_ERRORS = "residual, tail and rounding"
+_READ: dict[str, Number] = {"amplitude": "peak", "fwhm": "fwhm"}
+"""Columns, and the numbers of a wave that stand there."""
 
 
 @study(
@@ -50,44 +56,32 @@ def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
     ``amplitude_value``, ``fwhm_value``; ``rows``, the printed table.
     """
     wave = exact_wave(masses, k)
-    rows = [
-        {
-            "of": quantity,
-            "amplitude": wave.estimate("peak", quantity),
-            "fwhm": wave.estimate("fwhm", quantity),
-        }
-        for quantity in QUANTITIES
-    ]
+    data: dict[str, Any] = {
+        "k_value": wave.k,
+        "masses_value": wave.masses,
+        "half_period_value": wave.half_period,
+        "residual_value": wave.residual,
+        "solitary": wave.solitary,
+    }
+    numbers: tuple[Number, ...] = ("c2", "c", "tail")
+    for name in numbers:
+        number = wave.estimate(name)
+        data |= {f"{name}_value": number.value, f"{name}_error_value": number.error}
+    rows: list[dict[str, Any]] = [{"of": quantity} for quantity in QUANTITIES]
+    for key, name in _READ.items():
+        for row in rows:
+            row[key] = wave.estimate(name, row["of"])
+        data[f"{key}_value"] = {row["of"]: row[key].value for row in rows}
+        data[f"{key}_error_value"] = {row["of"]: row[key].error for row in rows}
+    table = Table.of(_COLUMNS, rows, "rows", note=_NOTE, errors=_ERRORS)
     return Report(
         f"masses {wave.masses[0]:.6g}, {wave.masses[1]:.6g}; k = {wave.k:g}; A = D = 1\n"
         f"c² = {wave.estimate('c2')}, c = {wave.estimate('c')}\n"
         f"solitary: tail {wave.tail:.0e} of the peak strain, residual {wave.residual:.0e}",
-        (
-            Table.of(
-                _COLUMNS, rows, "rows", note=_NOTE, errors="residual, tail and rounding"
-            ),
-        ),
+        (table,),
         panels=tuple(wave.pictured()),
-        data={
-            "k_value": wave.k,
-            "masses_value": wave.masses,
-            "half_period_value": wave.half_period,
-            "residual_value": wave.residual,
-            "solitary": wave.solitary,
-        }
-        | _numbers(wave),
+        data=data,
     )
-
-
-def _numbers(wave: ExactWave) -> dict[str, object]:
-    """The wave's numbers with their errors, as in JSON; amplitudes and widths by quantity."""
-    record = {name: wave.estimate(name) for name in ("c2", "c", "tail")}
-    for quantity in QUANTITIES:
-        record[f"amplitude.{quantity}"] = wave.estimate("peak", quantity)
-        record[f"fwhm.{quantity}"] = wave.estimate("fwhm", quantity)
-    columns = [Column(name, error=True) for name in record]
-    (document,) = Table.of(columns, [record]).document()
-    return document
 
 
 _RATIOS = (

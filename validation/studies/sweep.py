@@ -8,6 +8,7 @@ with contact force 1 at its peak, in the paper's closure and for the full closur
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from contextlib import AbstractContextManager, nullcontext
@@ -21,7 +22,7 @@ import numpy as np
 import sympy as sp
 from sympy import Rational
 
-from lwa import Dimer, canonical_wave, homogenize
+from lwa import Dimer, Estimate, canonical_wave, homogenize
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError, read_exact, shorten
 from lwa.base.progress import Progress
@@ -111,43 +112,43 @@ def report(
     return Report(
         "The steady pulse of a struck dimer chain",
         (Table.of(_COLUMNS, rows, "points", by="k", note=_NOTE, errors=_ERRORS),),
-        panels=tuple(_panels(ks, omegas, points, waves)),
+        panels=tuple(_panels(omegas, points, waves)),
         notes=("\n".join(missing),),
         data={"stretch": stretch, "missing": len(missing)},
     )
 
 
 def _panels(
-    ks: Axis, omegas: Axis, points: Sequence[Point], waves: Mapping[str, Grids]
+    omegas: Axis, points: Sequence[Point], waves: Mapping[str, Grids]
 ) -> Iterator[Panel]:
     """Yield curves of each quantity over ω, one for each k; of a single ω, over k.
 
     A single curve has the theories beside it.
     """
-    shape = (len(ks), len(omegas))
     over_k = len(omegas) == 1
-    axis, x = (ks, "k") if over_k else (omegas, _OMEGA)
-    others, name = (omegas, _OMEGA) if over_k else (ks, "k")
+    x = "k" if over_k else _OMEGA
+    groups: dict[str, list[Point]] = {}
+    for found in points:
+        name = f"{_OMEGA} = {found.omega}" if over_k else f"k = {found.k}"
+        groups.setdefault(name, []).append(found)
     for quantity, label in LABELS.items():
-        numbers = [point.numbers.get(quantity) for point in points]
-        values = np.array([getattr(n, "value", np.nan) for n in numbers])
-        errors = np.array([getattr(n, "error", np.nan) for n in numbers])
-        if quantity == "decay":  # a decay below its error is drawn as its error
-            values = np.fmax(values, errors)
-        rows = values.reshape(shape)
-        bars = errors.reshape(shape)
-        if over_k:
-            rows = rows.T
-            bars = bars.T
         curves = []
-        for other, row, bar in zip(others, rows, bars, strict=True):
-            curves.append(Curve(f"{name} = {other}", axis, row, error=bar))
-        if len(others) == 1 and quantity != "decay":
+        for name, group in groups.items():
+            numbers = [found.numbers.get(quantity, _NONE) for found in group]
+            values = np.array([number.value for number in numbers])
+            errors = np.array([number.error for number in numbers])
+            if quantity == "decay":  # a decay below its error is drawn as its error
+                values = np.fmax(values, errors)
+            axis = [found.k if over_k else found.omega for found in group]
+            curves.append(Curve(name, axis, values, error=errors))
+        if len(groups) == 1 and quantity != "decay":
             for closure, wave in waves.items():
                 line = wave[quantity].ravel()
                 curves.append(Curve(CLOSURES[closure], axis, line))
-        scale = "y" if quantity == "decay" else ""
-        yield Panel(x, label, tuple(curves), scale)
+        yield Panel(x, label, tuple(curves), "y" if quantity == "decay" else "")
+
+
+_NONE = Estimate(math.nan, math.nan)
 
 
 def theory(ks: Axis, omegas: Axis) -> dict[str, Grids]:

@@ -27,16 +27,14 @@ behind. T is 0 for a solitary wave. `SpecialRatio` imposes ``T = 0`` with one mo
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeVar
 
 import numpy as np
 import scipy
 from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
-from lwa.base.exact import InputError
 
 MOST_STEPS = 25  # of Newton's method, which takes 4 to 12 where it converges
 FEWEST = 40  # points on 0 … L
@@ -44,7 +42,6 @@ _LONGEST_STEP = 0.3  # share of an unknown's size; with full steps a far start i
 _CONVERGED = 1e-12  # step over the unknowns' sizes; Newton's next one would be rounding
 _STALLED = 1e-9  # step below which a fall of less than four means rounding
 Pair = tuple[float, float]  # m1 and m2, or their inverses
-Solution = TypeVar("Solution")
 
 
 def widening(masses: Pair) -> float:
@@ -295,42 +292,3 @@ def newton(change: Callable[[Array], Array], x: Array, sizes: Array) -> Array:
             return x
         before = size
     raise np.linalg.LinAlgError("no convergence")
-
-
-def continued(
-    solution: Solution,
-    begin: float,
-    end: float,
-    step: float,
-    solve: Callable[[float, Sequence[tuple[float, Solution]]], Solution],
-) -> Solution:
-    """Continue a solution from one value of a parameter to another, in adaptive steps.
-
-    Parameters
-    ----------
-    solution : object
-        The solution at ``begin``.
-    begin, end : float
-        The parameter's values.
-    step : float
-        Length of the first step.
-    solve : callable
-        Returns the solution at a value, given the last one or two values with their solutions; its
-        `lwa.InputError` halves the step, and is raised at a hundredth of the first step.
-    """
-    path = [(begin, solution)]
-    size = step
-    while path[-1][0] != end:
-        last = path[-1][0]
-        value = (
-            end if abs(end - last) <= size else last + math.copysign(size, end - last)
-        )
-        try:
-            path.append((value, solve(value, path[-2:])))
-        except InputError:
-            size /= 2
-            if size < step / 100:
-                raise
-        else:
-            size *= 1.5
-    return path[-1][1]

@@ -25,9 +25,7 @@ from lwa.base.words import QUANTITIES, QuantityName, one_of
 from validation.pictures import Curve, Panel, Pictured
 from validation.pulses.pulse import highest_pulse
 from validation.pulses.signals import Piecewise
-from validation.scenes.chains import carrying
 from validation.scenes.checks import between, integer
-from validation.scenes.scene import Scene
 from validation.waves import newton
 
 TOLERANCE = 1e-9  # tail and residual of a solitary wave over its peak strain, at most
@@ -172,29 +170,6 @@ class ExactWave(Pictured):
         """
         xi = np.linspace(-self.half_period, self.half_period, len(self.even) + 1)
         return highest_pulse(Piecewise(xi, self._profile(quantity))).fwhm
-
-    def launched(self, start: int, sites: int, **rest: Any) -> Scene:
-        """Return a scene of a chain that carries the wave, centered at bead ``start`` at time 0.
-
-        sites : distance to travel, with contact sensors halfway and at the end unless ``rest``,
-        further fields of the scene, has others.
-        """
-        start = integer(start, "start", 1)
-        sites = integer(sites, "sites", 1)
-        options: dict[str, Any] = {
-            "contact_sensors": (start + sites // 2, start + sites),
-            "duration": (sites + start / 2) / self.c,
-        }
-        bead = np.arange(2 * start + sites) - start
-        contact = bead[:-1] + 0.5
-        is_first = bead % 2 == 0
-        return carrying(
-            tuple(np.where(is_first, *self.masses)),
-            np.where(is_first[:-1], self.strain(contact, 0), self.strain(contact, 1)),
-            np.where(is_first, self.velocity(bead, 0), self.velocity(bead, 1)),
-            k=self.k,
-            **(options | rest),
-        )
 
     def pictured(self) -> list[Panel]:
         """Panel of strain, force and velocity as functions of ξ, each divided by its peak."""

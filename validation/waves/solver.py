@@ -268,33 +268,49 @@ def _root(wave: ExactWave) -> float:
 
 
 def _followed(wave: ExactWave, k: float) -> ExactWave:
-    """Continue a solitary wave and its special mass ratio to another exponent k."""
-    end = math.log(k - 1)
+    """Continue a solitary wave and its special mass ratio to another exponent k.
 
-    def at(e: float, path: Sequence[tuple[float, ExactWave]]) -> ExactWave:
-        """Return the wave at ln(k - 1) = e; raise `NoWave` if √(m1/m2) is far from extrapolated."""
-        last_place, last = path[-1]
-        expected = 0.0
-        bound = _CHANGE
-        if len(path) > 1:
-            place, older = path[0]
-            slope = (_root(last) - _root(older)) / (last_place - place)
-            expected = slope * (e - last_place)
-            # Beyond a fifth of the change, and 0.02 where it is small, the wave may be that of
-            # another ratio; `continued` then halves the step.
-            bound = 0.02 + 0.2 * abs(expected)
-        ratio = (_root(last) + expected) ** -2
-        # k itself at the end, without rounding
-        exponent = k if e == end else 1 + math.exp(e)
-        following = solve(SpecialRatio((1.0, ratio), exponent), last)
-        change = _root(following) - _root(last)
-        is_near = abs(change) < _CHANGE and abs(change - expected) < bound
-        if following.solitary and is_near:
-            return following
-        lost = f"on the way to k = {k:g} the special ratio is lost"
-        raise NoWave(lost, last.masses, last.k)
+    Steps of ln(k - 1) adapt: a wave that is lost, or of another ratio, halves the step.
+    """
+    path = [wave]
+    step = 0.1
+    while path[-1].k != k:
+        here = math.log(path[-1].k - 1)
+        left = math.log(k - 1) - here
+        exponent = k  # without rounding
+        if abs(left) > step:
+            exponent = 1 + math.exp(here + math.copysign(step, left))
+        try:
+            path.append(_following(path[-2:], exponent))
+            step *= 1.5
+        except NoWave:
+            step /= 2
+            if step < 1e-3:
+                raise
+    return path[-1]
 
-    return newton.continued(wave, math.log(wave.k - 1), end, 0.1, at)
+
+def _following(path: Sequence[ExactWave], k: float) -> ExactWave:
+    """Return the wave at k behind one or two waves of a path.
+
+    Raises `NoWave` if √(m1/m2) is far from extrapolated: the wave is that of another ratio.
+    """
+    last = path[-1]
+    expected = 0.0
+    bound = _CHANGE
+    if len(path) > 1:
+        before, here, there = (math.log(x - 1) for x in (path[0].k, last.k, k))
+        slope = (_root(last) - _root(path[0])) / (here - before)
+        expected = slope * (there - here)
+        # A fifth of the change, and 0.02 where it is small.
+        bound = 0.02 + 0.2 * abs(expected)
+    ratio = (_root(last) + expected) ** -2
+    following = solve(SpecialRatio((1.0, ratio), k), last)
+    change = _root(following) - _root(last)
+    is_near = abs(change) < _CHANGE and abs(change - expected) < bound
+    if following.solitary and is_near:
+        return following
+    raise NoWave("the special ratio is lost", last.masses, k)
 
 
 def _next(before: ExactWave, last: ExactWave) -> ExactWave:

@@ -163,8 +163,12 @@ def test_errors_are_nan_where_nothing_was_measured():
 CUBIC = Power(3)
 
 
-def pair(law, factor=1):
-    return Lattice([1, 1], [Link(0, 1, HERTZ), Link(1, 2, law, factor)])
+CURVED = named("polynomial", 0, 1)  # F″ = 0 at the start
+INFLECTED = named("polynomial", "-3/10", "3/10")  # F″ < 0 there
+
+
+def pair(law, first=HERTZ, factor=1):
+    return Lattice([1, 1], [Link(0, 1, first), Link(1, 2, law, factor)])
 
 
 def slow(*row):
@@ -182,11 +186,13 @@ def chain(law, second=None):
         (pair(CUBIC), 1.5, 1.0),
         slow(pair(CUBIC), 1.02, 1.0),
         slow(pair(CUBIC), 3.0, 1.0),
-        slow(pair(HERTZ, 8), 3.0, 1.0),
+        slow(pair(HERTZ, factor=8), 3.0, 1.0),
         slow(pair(Power(6)), 2.0, 1.0),
         slow(pair(Power(1)), 1.5, 1.0),
-        (pair(Power(1), 3), 1.2, 1.0),
+        (pair(Power(1), factor=3), 1.2, 1.0),
         (chain(HERTZ), 1.0, 0.0),
+        (pair(CURVED, CURVED), 0.1, 0.0),
+        (pair(INFLECTED, INFLECTED), 1.8375, 0.0),
         (chain(HERTZ), 1.5, 1.0),
         slow(chain(CUBIC), 1.0, 0.0),
         slow(chain(HERTZ, "1/4"), 1.2, 1.0),
@@ -198,7 +204,6 @@ def chain(law, second=None):
 def test_errors_cover_the_exact_wave(lattice, force, load):
     known = exact(lattice, force, load)
     wave = loaded_wave(lattice, force=force, precompression=load)
-    assert load or float(wave.sound_speed) < 1e-9
     missed = abs(float(wave.speed) - math.sqrt(known.square))
     assert missed < wave.estimate("speed").error < 30 * missed
     missed = abs(float(wave.fwhm(known.of)) - known.fwhm)

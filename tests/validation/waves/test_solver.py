@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from book.studies.accuracy import launched
 from lwa.base.words import QUANTITIES
 from validation import measure, simulate
 from validation.scenes.checks import SceneError
@@ -87,9 +88,8 @@ def test_the_equations_of_motion_hold_at_any_point(k, p0):
 
 def came_back(wave, sites=100):
     """The largest change of strain and velocity when a chain's wave is ``sites`` on; the run."""
-    scene = wave.launched(
-        20, sites, duration=sites / wave.c, contact_sensors=(60,), samples=4001
-    )
+    recorded = {"contact_sensors": (60,), "samples": 4001}
+    scene = launched(wave, 20, sites, duration=sites / wave.c, **recorded)
     run = simulate(scene, method="symplectic", rtol=1e-11)
     compression, velocity = -np.diff(scene.displacements), np.array(scene.velocities)
     strain = np.abs(-np.diff(run.displacements)[sites:] - compression[:-sites]).max()
