@@ -20,7 +20,7 @@ DEFECTS = {
     "peak_velocity": 0.034,
     "strain": 0.0135,
     "force": 0.072,
-    "velocity": 0.0021,
+    "velocity": 0.003,
     "momentum": 0.0115,
     "energy": 0.008,
 }
