@@ -17,7 +17,7 @@ from lwa import Cell, InputError, expand
 from validation.waves.solver import exact_wave
 
 WIDTHS = ("strain", "force", "velocity")
-NAMES = ("c2", "c", "momentum", "kinetic", "energy", "effective_mass")
+NAMES = ("c2", "c", "momentum", "energy", "effective_mass")
 EXPONENTS = ("1.1", "3/2", "4", "8", "20")
 
 
@@ -64,9 +64,7 @@ def lattice(k, omega=0.0, points=300):
         "c2": c2,
         "c": np.sqrt(c2),
         "momentum": (1 + omega) * integral(velocity),
-        "kinetic": kinetic,
         "energy": kinetic + elastic,
-        "peak_velocity": velocity[0],
     }
     values["effective_mass"] = values["momentum"] ** 2 / 2 / values["energy"]
     for name, spectrum in spectra.items():
