@@ -13,9 +13,7 @@ from lwa.envelopes.schrodinger import envelope as envelope
 from lwa.equation.pde import PDE as PDE
 from lwa.expansion.expand import Expansion as Expansion
 from lwa.expansion.expand import expand as expand
-from lwa.expansion.lattice_wave import ExpandedWave as ExpandedWave
 from lwa.expansion.lattice_wave import LatticeWave as LatticeWave
-from lwa.expansion.lattice_wave import best_wave as best_wave
 from lwa.expansion.lattice_wave import lattice_wave as lattice_wave
 from lwa.expansion.strike import Strike as Strike
 from lwa.expansion.strike import pulse_of_strike as pulse_of_strike

@@ -38,7 +38,7 @@ ODD = (
 # Methods by which the package's own classes speak to each other, and constructors whose objects a
 # function returns: no user calls them, and they may fail in any way.
 OWN = {
-    "CompactWave", "ExpandedWave", "InputError", "LoadedWave", "NoSolitaryWave", "SceneError",
+    "CompactWave", "LatticeWave", "InputError", "LoadedWave", "NoSolitaryWave", "SceneError",
     "MeasureError", "anew", "check_strain", "compression", "compressions",
     "latex_rows", "of_strain", "phi", "replaced",
     "ExactWave", "Pulse", "Run", "plot", "simulate_many",  # the last two take objects of others

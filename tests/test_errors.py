@@ -1,7 +1,7 @@
 """Every ± and bound that a user of `lwa` reads, beside a known deviation.
 
 Each covers the deviation and is at most `LOOSE` times as large: here of sums of the series in
-k - 1, of the force of a strike and of shocks, in tests/lwa/wave of vectorised functions and in
+k - 1 and of shocks, in tests/lwa/wave of vectorised functions and in
 tests/lwa/loaded of lattices of any links.
 """
 
@@ -21,7 +21,6 @@ from lwa import (
     Power,
     expand,
     loaded_wave,
-    pulse_of_strike,
     shock,
 )
 from lwa.expansion.sums import resum
@@ -52,7 +51,7 @@ def holds(error, deviation, doubt=0.0):
     ],
 )
 def test_the_error_of_a_sum(exponents, orders):
-    """95 % of the errors are 1 to `LOOSE` times the deviation, and under 2 % are below it."""
+    """Every error covers the deviation, and 9 of 10 are at most `LOOSE` times as large."""
     every, found = series(expand(EQUAL, max(orders))), []
     for k, order in product(map(sp.Rational, exponents), orders):
         true = lattice(float(k))[0]
@@ -63,9 +62,8 @@ def test_the_error_of_a_sum(exponents, orders):
     error, deviation = np.array(found).T
     seen = deviation > 1e-11  # the lattice's waves are good to 1e-12
     ratio = error[seen] / deviation[seen]
-    assert ratio.min() > 0.8
-    assert np.mean(ratio < 1) < 0.02
-    assert np.mean((ratio >= 1) & (ratio <= LOOSE)) >= 0.95
+    assert ratio.min() >= 1
+    assert np.mean(ratio <= LOOSE) >= 0.9
     assert np.all(deviation[~seen] <= error[~seen] + 1e-11)
 
 
@@ -88,7 +86,7 @@ def struck_dimer(law, mass, load=0.0, velocity=1.0, duration=140.0):
     ("k", "mass", "which"),
     [
         ("11/10", "3/5", (1,)), ("11/10", "7/10", (0, 1)), ("23/20", "1/2", (1,)),
-        ("23/20", "3/5", (0,)), ("6/5", "7/10", (0,)), ("6/5", "4/5", (0, 1)), ("5/4", "4/5", (1,)),
+        ("23/20", "3/5", (0,)), ("6/5", "7/10", (0,)), ("6/5", "4/5", (0, 1)), ("5/4", "9/10", (1,)),
         ("3/2", "4/5", (0,)),
     ],
 )  # fmt: skip
@@ -119,24 +117,6 @@ def test_the_errors_of_a_wave_among_unlike_beads_under_a_load(law, mass, velocit
     )
     assert holds(wave.estimate("speed").error, abs(float(wave.speed) - speed))
     assert holds(wave.estimate("fwhm").error, abs(float(wave.fwhm()) - width))
-
-
-@pytest.mark.parametrize(
-    ("k", "mass"),
-    [
-        ("5/4", 0.5), ("5/4", 1.2), ("5/4", 2), ("5/4", 8), ("3/2", 0.5), ("3/2", 0.7), ("3/2", 1),
-        ("3/2", 4), ("3/2", 8), ("5/2", 0.5), ("5/2", 1.75), ("5/2", 8),
-    ],
-)  # fmt: skip
-def test_the_error_of_a_strike(k, mass):
-    found = pulse_of_strike(EQUAL, mass, 1, k=k)
-    blow = Scene(
-        masses=(mass, *60 * (1,)), stiffnesses=60 * (1,), k=float(sp.Rational(k)), duration=80,
-        velocities=(1,), contact_sensors=(40,), samples=20001,
-    )  # fmt: skip
-    peak = simulate(blow).contact_force.max()
-    assert holds(found.force.error, abs(found.force.value - peak))
-    assert found.train == (mass > 2)
 
 
 # Law, strains behind and ahead; the results whose error is tested for being too large: a

@@ -21,7 +21,6 @@ from lwa import Cell, CompactWave, Dimer, homogenize, loaded_wave
 from lwa.base.arrays import Array
 from lwa.base.exact import number
 from lwa.base.progress import Progress
-from lwa.base.words import QuantityName
 from lwa.law import ContactLaw
 from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel

@@ -19,7 +19,6 @@ from lwa.algebra.model import Model
 from lwa.base.exact import InputError, integer, shorten, signed
 from lwa.base.frozen import QUANTITIES as QUANTITIES
 from lwa.base.frozen import Value, known_quantity
-from lwa.base.progress import Progress, announced
 from lwa.cell import Cell, exponent, read_cell, substitution
 from lwa.cell import k as symbol_k
 from lwa.expansion.observables import Observables, shares_model
@@ -29,9 +28,6 @@ from lwa.law import ContactLaw, for_cell
 
 LARGEST = 3_000_000
 """Terms of all polynomials in memory: some 800 MB (order 114 of equal beads)."""
-
-LONG = 200_000
-"""Terms from which an expansion takes more than a few seconds."""
 
 
 @dataclass(frozen=True)
@@ -54,12 +50,8 @@ class Expansion(Value):
 
     @cached_property
     def _observables(self) -> Observables:
-        """The quantities of the wave as polynomials; long derivations show their progress."""
-        model = shares_model(self.cell, self.k)
-        progress: Progress[int] = iter
-        if _terms(model, self.order) > LONG:
-            progress = announced(f"the expansion to ε^{self.order}")
-        return Observables(Recursion(model, self.order, progress))
+        """The quantities of the wave as polynomials."""
+        return Observables(Recursion(shares_model(self.cell, self.k), self.order))
 
     @cached_property
     def numeric(self) -> bool:
@@ -115,25 +107,16 @@ class Expansion(Value):
         return self._series("momentum", unit, -sp.S.Half)
 
     @cached_property
-    def kinetic(self) -> EpsilonSeries:
-        """Kinetic energy of the chain: by the virial theorem (k + 1)/(k + 3) times the energy."""
-        return self._series("kinetic", self._work, -sp.S.Half)
-
-    @cached_property
     def energy(self) -> EpsilonSeries:
         """Kinetic and elastic energy of the chain."""
-        return self._series("energy", self._work, -sp.S.Half)
+        unit = self.compliance * sp.sqrt(2 * sp.pi * self.I)  # ā ∫ e^{-Z²/2} dξ
+        return self._series("energy", unit, -sp.S.Half)
 
     @cached_property
     def effective_mass(self) -> EpsilonSeries:
         """The mass P²/(2E) of a particle with the wave's momentum P and energy E, at any force."""
         unit = sp.sqrt(2 * sp.pi * self.I) * self.cell.mass / self.cell.size
         return self._series("effective_mass", unit, -sp.S.Half)
-
-    @property
-    def _work(self) -> sp.Expr:
-        """The leading energy ā ∫ e^{-Z²/2} dξ √ε."""
-        return self.compliance * sp.sqrt(2 * sp.pi * self.I)
 
     @cached_property
     def _sound(self) -> sp.Expr:

@@ -8,13 +8,12 @@ coefficients of a series in ε, in the caller's symbols.
 from __future__ import annotations
 
 from functools import cached_property, lru_cache
-from math import factorial
 
 import sympy as sp
 from flint import fmpq, fmpq_mpoly
 
 from lwa.algebra.model import Model
-from lwa.algebra.ring import to_flint, to_sympy
+from lwa.algebra.ring import to_sympy
 from lwa.cell import Cell
 from lwa.expansion.pulse import (
     Series,
@@ -71,34 +70,10 @@ class Observables:
         return half_width(logarithm(self.wave.fields.slope[contact]))
 
     @cached_property
-    def peak_velocity(self) -> Series:
-        """Peak velocity of equal beads over the strain's peak: c times the slope, (P∂/2)/sinh(P∂/2)
-        of the mean strain, in the middle of the wave."""
-        wave = self.wave
-        center = []
-        for terms in wave.fields.means:
-            total = wave.zero
-            for m in range(0, len(terms), 2):
-                # x/sinh x = Σ_m (2^{1-m} - 1) B_m (2x)^m/m!, m even
-                weight = (fmpq(2) ** (1 - m) - 1) * to_flint(sp.bernoulli(m))
-                part = by_degree(terms[m]).get(0, wave.zero)
-                total = total + weight * fmpq(wave.P**m, factorial(m)) * part
-            center.append(total)
-        return product(self.c, center)
-
-    @cached_property
     def momentum(self) -> Series:
         """Momentum, mean mass · c · displacement behind the wave, divided by its leading term."""
         means = [terms[0] for terms in self.wave.fields.means]
         return product(self.c, moments(means, 2))
-
-    @cached_property
-    def kinetic(self) -> Series:
-        """Kinetic energy in units of ā √(2πI/ε)."""
-        wave = self.wave
-        slopes = wave.fields.slope
-        squares = self._mean_products(wave.mu, slopes, slopes)
-        return [term / 2 for term in even_product(self.c2, squares)]
 
     @cached_property
     def energy(self) -> Series:
@@ -108,29 +83,23 @@ class Observables:
         P = 2 T/c is the momentum and T the kinetic energy: E ∝ F^{(k+1)/k} and c ∝ F^{(k-1)/2k}.
         """
         wave = self.wave
-        share = [wave.zero for _ in self.c2]  # (k + 3)/2 of 1/(k + 1), per contact
+        # (k + 3)/2 of 1/(k + 1), per contact, is (1 + 1/(1 + ε/2))/(2 P)
+        share = [wave.zero for _ in self.c2]
         for n in range(0, len(share), 2):
             share[n] = (-wave.epsilon / 2) ** (n // 2) / (2 * wave.P)
         share[0] = share[0] + fmpq(1, 2 * wave.P)
-        force = [pulse.series for pulse in wave.fields.force]
-        strain = [pulse.series for pulse in wave.fields.strain]
-        return even_product(share, self._mean_products(wave.c, force, strain))
+        work = [wave.zero for _ in self.c2]  # ∫ Σ C_i f_i r_i dξ over ∫ e^{-Z²/2} dξ
+        fields = zip(wave.c, wave.fields.force, wave.fields.strain, strict=True)
+        for c, force, strain in fields:
+            for n, term in enumerate(even_product(force.series, strain.series)):
+                work[n] = work[n] + c * term
+        return even_product(share, moments(work, 1))
 
     @cached_property
     def effective_mass(self) -> Series:
         """Effective mass P²/(2E), P the momentum and E the energy, divided by its leading term."""
         square = product(self.momentum, self.momentum)
         return product(square, power(self.energy, fmpq(-1)))
-
-    def _mean_products(
-        self, weights: Series, first: list[Series], second: list[Series]
-    ) -> Series:
-        """The integral Σ weight ∫ first · second dξ of fields e^{-Z²/4} S, over ∫ e^{-Z²/2} dξ."""
-        total = [self.wave.zero for _ in first[0]]
-        for weight, a, b in zip(weights, first, second, strict=True):
-            for n, term in enumerate(even_product(a, b)):
-                total[n] = total[n] + weight * term
-        return moments(total, 1)
 
     def coefficients(self, quantity: str, contact: int = 0) -> tuple[sp.Expr, ...]:
         """Coefficients of ε^0, ε^1, … of the named quantity; of a width, at Z² = log 2.

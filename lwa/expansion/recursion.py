@@ -2,20 +2,21 @@
 
 The lattice's equations are expanded about a Gaussian. With the strain r_i and force f_i of contact
 i, and the slope s_i = -u_i' of bead i's displacement (its velocity divided by c), each as a
-function of the place ξ of its cell in the frame of the wave, and ∂ = d/dξ,
+function of the place ξ of its cell in the frame of the wave, and ∂ = d/dξ::
 
     f_i = f_{i-1} + P m̂_i γ ∂s_i,    s_{i+1} = s_i + C_i ∂r_i,    f_i = r_i^k,
     ∫_0^P s_0(ξ + x) dx = Σ C_i r_i(ξ),    γ Σ P m̂_i s_i(ξ) = ∫_0^P f_{P-1}(ξ - x) dx,
 
 where the strains are in units of their leading shares C_i and c² = γ P/(M ā), ā the mean
 compliance. The averages are series in ∂. In the stretched place Z = √(ε/I) ξ, Ω² = κ² - I κ⁴ + …
-the linear chain's dispersion (`lwa.linear.bloch`), the force of the first contact is
+the linear chain's dispersion (`lwa.linear.bloch`), the force of the first contact is::
 
     log f_0 = -Z²/4 + Σ_n q_n(Z) (ε/I)^{n/2},
 
 the q_n are polynomials over Q[m̂, C, 1/I], and each solves q'' - Z q' + q = known + γ's next term,
 a triangular system; q_n(0) = q_n'(0) = 0 makes the peak force 1, at ξ = 0. The Gaussian as the
-limit: James & Pelinovsky, Proc. R. Soc. A 470, 20130462 (2014).
+limit: James & Pelinovsky, Proc. R. Soc. A 470, 20130462 (2014); its stability in their log-KdV
+equation: Carles & Pelinovsky, Nonlinearity 27, 3185 (2014); under a load: arXiv:1405.3385.
 
 The algebra is in powers of t, (ε/I)^{1/2} = I t, so that no denominators appear.
 
@@ -32,7 +33,6 @@ from sympy import bernoulli
 
 from lwa.algebra.model import Model
 from lwa.algebra.ring import to_flint
-from lwa.base.progress import Progress
 from lwa.expansion.pulse import Series, by_degree, exp_term, last, log_term
 from lwa.linear.bloch import Bloch
 
@@ -130,9 +130,7 @@ class Recursion:
     order : highest power of ε; that of t is twice as high.
     """
 
-    def __init__(
-        self, model: Model, order: int, progress: Progress[int] = iter
-    ) -> None:
+    def __init__(self, model: Model, order: int) -> None:
         self.model = model
         self.order = order
         self.context = fmpq_mpoly_ctx.get(("Z", *model.ring.names), Ordering.lex)
@@ -149,7 +147,7 @@ class Recursion:
         self.fields = Fields(
             [Pulse() for _ in contacts], [Pulse() for _ in contacts], self.Z**2 / 4
         )
-        self._solve(2 * order, progress)
+        self._solve(2 * order)
 
     def _dispersion(self) -> fmpq_mpoly:
         """Coefficient I in the dispersion Ω² = κ² - I κ⁴ + … of the linear chain."""
@@ -165,14 +163,14 @@ class Recursion:
             return S
         return self.I * (S.derivative(0) - self._half * S)
 
-    def _solve(self, order: int, progress: Progress[int]) -> None:
+    def _solve(self, order: int) -> None:
         """Solve for γ_2 at the order of the Gaussian, then for q_n and γ_{n+2}, n = 1, 2, …"""
         fields = self.fields
         for n in range(3):
             residual = self._extend(n, self.zero)
         # γ_1 = 0: c² is even, (Z, t) and (-Z, -t) are one wave
         self.gamma += [self.zero, -residual]
-        for n in progress(range(1, order + 1)):
+        for n in range(1, order + 1):
             if n <= LINEAR:
                 fields.truncate(n)
             for m in range(len(fields.means), n + 3):

@@ -37,7 +37,7 @@ MEASURED = (sp.Rational(5, 4), sp.Integer(3))
 """Range of k in which chains were struck: 16 masses of strikers at each of six exponents."""
 
 NEAR = 0.007
-"""Largest error next to m_eff, up to 1.6 beads."""
+"""Largest error for strikers of 1.3 to 1.6 beads."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +114,8 @@ class Strike(Value):
             return 5e-4 + 0.028 * math.exp(-1.44 * epsilon) * min(1, 3 * (1 - ratio))
         # A bead before a heavy striker reaches twice the velocity: the limit of the error.
         limit = 0.45 * math.exp(-0.5 * epsilon)
-        return max(NEAR, limit * (ratio - 1) / (ratio + 14))
+        just_above = NEAR + 0.021 * math.exp(-5.5 * (epsilon - 0.25))  # one bead
+        return max(just_above, limit * (ratio - 1) / (ratio + 14))
 
     @property
     def speed(self) -> Estimate:

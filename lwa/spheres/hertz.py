@@ -1,6 +1,6 @@
 """Hertz's contact between elastic spheres, F = A δ^{3/2}, and a table of materials.
 
-Two spheres pressed together by δ repel each other with F = A δ^{3/2},
+Two spheres pressed together by δ repel each other with F = A δ^{3/2}::
 
     A = 4 E1 E2 √(R1 R2 / (R1 + R2)) / (3 [E2 (1 - ν1²) + E1 (1 - ν2²)])
 

@@ -57,7 +57,7 @@ MADE = {
     "expansion": lambda: expand(Dimer(m1, m2), 2),
     "series": lambda: expand(Cell(["m", 2]), 1).fwhm("velocity"),
     "sum": lambda: expand(Cell([1, "1/3"]), 6, k="6/5").c2.at(),
-    "expanded": lambda: lwa.ExpandedWave(expand(Cell([1], spacing=1), 2, k="6/5"), 2),
+    "lattice": lambda: lwa.lattice_wave(Dimer("m1", "m2"), force="F"),
     "sphere": lambda: lwa.Sphere.solid("R", lwa.Material.named("PTFE")),
     "loaded": lambda: LoadedChain(Dimer(m1, m2), Power("3/2"), "F0"),
 }

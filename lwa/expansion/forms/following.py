@@ -2,19 +2,22 @@
 
 Rayleigh's reduction holds the light bead midway and keeps its kinetic energy. What is left is a
 chain of heavy beads at the distance 2D with contacts of stiffness A/2^k, whose inertia depends on
-the wavenumber q per heavy bead, m1 + m2 cos²(q/2): c² r = S r^k with
+the wavenumber q per heavy bead, m1 + m2 cos²(q/2): c² r = S r^k with::
 
     S = (sin(q/2)/(q/2))² / (1 + ω cos²(q/2)),    ω = m2/m1.
 
+Small spheres between large ones as a chain of two-body collisions with other masses and contacts:
+Harbola, Rosas, Romero & Lindenberg, arXiv:1005.0852.
+
 The recursion of `lwa.expansion.recursion` runs on this chain. Its series in ε diverges early for
 ω > 0 (S has poles at cos²(q/2) = -1/ω), but its first order in ω sums well: quantities of the chain
-of heavy beads are multiplied by
+of heavy beads are multiplied by::
 
     (1 + ω)^{-e(ε)},    e = -d ln Q/dω at ω = 0,
 
-e the Padé approximant [2/2] of its exact series. Within 0.05 of e up to k = 4, and for k ≤ 3/2 as
-near to the lattice as the reduced chain itself (measured: see `lwa.expansion.best`). For spheres
-c² = 1.63992 (1 + ω)^{-0.9223}, and the width of the force is 2.82386 (1 + ω)^{-0.6754}.
+with the Padé approximant [2/2] of e's exact series, within 0.02 of e up to k = 3. For k ≤ 3/2 this
+is as near to the lattice as the reduced chain itself. Spheres: ``c² = 1.63992 (1 + ω)^{-0.9213}``,
+and the width of the force is ``2.82386 (1 + ω)^{-0.6759}`` sites.
 """
 
 from __future__ import annotations
@@ -35,7 +38,7 @@ ORDER = 4
 
 _OMEGA = sp.Symbol("omega", positive=True)
 
-_LEADING = {"c": sp.S.Half, "peak_velocity": sp.S.Half, "momentum": sp.S.One}
+_LEADING = {"c": sp.S.Half, "momentum": sp.S.One}
 """e at k = 1: c² goes as 1/(1 + ω); a quantity that is not named goes as √I, I ∝ (1 + ω)^{-3}."""
 
 

@@ -3,7 +3,7 @@
 Units: mass of a bead, A, D and the peak contact force are 1; ε = k - 1.
 
 **k → ∞.** Two beads collide at a time, and the wave of this two-body problem becomes exact: with
-a = 1/(k+1) it has
+a = 1/(k+1) it has::
 
     c₂ = 2 Γ(½ + a)/(√(π (k+1)) Γ(1 + a)),    W₂ = 2 [1 - I_x(a, ½)],
 
@@ -11,17 +11,18 @@ the momentum 2/√(k+1), the energy 2/(k+1) and a velocity as wide as a site. (T
 of the compression δ falls from v = 2/√(k+1), δ'² = v² (1 - δ^{k+1}); the next contact closes when
 this one is pressed most, so that a site takes the time ∫_0^1 dδ/δ', half of a collision. W₂ is the
 part of the two sites in which δ exceeds x^{1/(k+1)}: x = 2^{-(k+1)/k} for half of the force,
-2^{-(k+1)} for half of the strain.) The error falls as 4^{-k}. Binary collisions in chains: Rosas &
-Lindenberg, Phys. Rev. E 69, 037601 (2004).
+2^{-(k+1)} for half of the strain.) The error falls as 4^{-k}. Collisions of two beads at a time
+describe pulses of spheres, too: Harbola, Rosas, Esposito & Lindenberg, arXiv:0905.4512. The limit
+of high energies in other chains: arXiv:1511.00836.
 
 **k → 1.** The series in ε of `lwa.expansion.expand`.
 
-**Joined** by the logarithm of the part that two bodies leave out:
+**Joined** by the logarithm of the part that two bodies leave out::
 
     c = c₂ [1 + (1/c₂(1) - 1) e^{-ε φ(ε)}],    Q² = Q₂² + q e^{-ε φ(ε)}/ε,
 
-likewise the peak velocity; Q is a width, the momentum or the energy, and √(q/ε) the first term of
-its series. φ is a Padé approximant of its own series, exact in ln 2, π, ζ(3) and ψ₁(1/3).
+Q a width, the momentum or the energy, and √(q/ε) the first term of its series. φ is a Padé
+approximant of its own series, exact in ln 2, π, ζ(3) and ψ₁(1/3).
 """
 
 from __future__ import annotations
@@ -54,7 +55,6 @@ TWO_BODIES: dict[str, sp.Expr] = {
     "c": 2
     * sp.gamma(sp.S.Half + 1 / (k + 1))
     / (sp.sqrt(sp.pi * (k + 1)) * sp.gamma(1 + 1 / (k + 1))),
-    "peak_velocity": 2 / sp.sqrt(k + 1),
     "strain": _width(_STRAIN),
     "force": _width(_FORCE),
     "velocity": sp.S.One,
@@ -62,9 +62,6 @@ TWO_BODIES: dict[str, sp.Expr] = {
     "energy": 2 / (k + 1),
 }
 """Quantities of the wave in the limit k → ∞, functions of k."""
-
-RATIOS = ("c", "peak_velocity")
-"""Quantities that are 1 at k = 1; the others grow as √(q/ε)."""
 
 _SQUARED = {
     "strain": sp.log(2) * 4 / 3,
@@ -126,7 +123,7 @@ def joined(quantity: str) -> sp.Expr:
     limit = TWO_BODIES[quantity]
     epsilon = k - 1
     rest = sp.exp(-epsilon * phi(quantity).subs(EPSILON, epsilon))
-    if quantity in RATIOS:
+    if quantity == "c":
         return limit * (1 + (1 / limit.subs(k, 1) - 1) * rest)
     return sp.sqrt(limit**2 + _SQUARED[quantity] * rest / epsilon)
 
@@ -147,9 +144,9 @@ def phi_series(quantity: str, order: int) -> tuple[sp.Expr, ...]:
     series = list(equal_beads(quantity, order + 1))
     function = TWO_BODIES[quantity].subs(k, 1 + EPSILON)
     function = function.replace(sp.betainc_regularized, _arcs)
-    taylor = _taylor(function, order + (quantity in RATIOS))
+    taylor = _taylor(function, order + (quantity == "c"))
     limit = [_constant(sp.expand(term)) for term in taylor]
-    if quantity in RATIOS:
+    if quantity == "c":
         rest = product(series, reciprocal(limit))
         rest[0] -= 1
         rest = [term / rest[0] for term in rest]
@@ -170,8 +167,7 @@ def reciprocal(series: Sequence[sp.Expr]) -> list[sp.Expr]:
 def pade(series: Sequence[sp.Expr], n: int) -> sp.Expr:
     """The Padé approximant in `EPSILON` with n powers in its denominator, to all terms given.
 
-    Baker & Graves-Morris, *Padé Approximants*, 1996, chapter 1: the product of series and
-    denominator has no term of the n highest orders.
+    The product of the series and the denominator has no terms of the n highest orders.
     """
     a = list(map(_constant, series))
     top = len(a) - n
@@ -225,8 +221,8 @@ def _arcs(a: sp.Expr, b: sp.Expr, low: sp.Expr, x: sp.Expr) -> sp.Expr:
 def _moment(integrand: sp.Expr, limits: sp.Tuple) -> sp.Expr:
     """The integral of a polynomial in ln sin t of degree ≤ 2 from 0 to π/6 or π/2.
 
-    With ℓ = ln(2 sin t): ∫ ℓ = -Cl₂(π/3)/2 and ∫ ℓ² = 7π³/216 up to π/6, 0 and π³/24 up to π/2
-    (Lewin, *Polylogarithms and Associated Functions*, 1981); Clausen's Cl₂(π/3) by ψ₁(1/3).
+    With ℓ = ln(2 sin t): ∫ ℓ = -Cl₂(π/3)/2 and ∫ ℓ² = 7π³/216 up to π/6, 0 and π³/24 up to π/2;
+    Clausen's Cl₂(π/3) = (ψ₁(1/3) - 2π²/3)/(2√3). A test holds them against exact waves.
     """
     end = limits[2]
     clausen = (sp.polygamma(1, sp.Rational(1, 3)) - 2 * sp.pi**2 / 3) / (2 * sp.sqrt(3))

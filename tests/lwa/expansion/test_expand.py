@@ -4,14 +4,12 @@ from functools import cache
 from itertools import pairwise
 
 import mpmath
-import numpy as np
 import pytest
 import sympy as sp
 
-from lwa import Cell, Dimer, Dispersion
-from lwa.cell import k as symbol_k
+from lwa import Cell, Dimer, canonical_wave
 from lwa.expansion.expand import expand
-from lwa.expansion.radiation import amplitude, parameters, radiated
+from lwa.expansion.series import radiated
 from tests.identity import same
 from tests.lwa.expansion.test_exact_waves import series
 
@@ -72,16 +70,19 @@ def test_residual_of_newtons_equations_falls_as_the_order_promises(name):
     assert all(abs(s - expected) < 0.05 for s in slopes), slopes
 
 
-@pytest.mark.parametrize("name", CELLS)
-def test_virial_theorem(name):
-    """(k + 3) T = (k + 1) E. Of a family of waves scaled in amplitude dE = c dP holds for the
-    canonical momentum P = 2 T / c, and E ∝ F^{(k+1)/k}, c ∝ F^{(k-1)/2k}."""
-    expansion = wave(name)
-    T, E = expansion.kinetic.coefficients, expansion.energy.coefficients
-    assert same(expansion.kinetic.prefactor, expansion.energy.prefactor)
-    for n in range(len(E)):  # (4 + ε) T = (2 + ε) E
-        lower_T, lower_E = (T[n - 1], E[n - 1]) if n else (0, 0)
-        assert same(4 * T[n] + lower_T, 2 * E[n] + lower_E)
+@pytest.mark.parametrize("name", ["equal", "dimer"])
+def test_the_long_wave_has_the_lattice_s_momentum_as_k_tends_to_1(name):
+    """The error of the canonical wave falls as k - 1."""
+    errors = []
+    cell = Cell(CELLS[name].masses, spacing=1)
+    for k in ("1.004", "1.002"):
+        long_wave = canonical_wave(cell, k).at_force(1)
+        ours = expand(cell, 16, k=k).momentum.at()
+        errors.append(float(long_wave.momentum) / ours.value - 1)
+    assert abs(errors[0]) < 0.004
+    assert errors[1] == pytest.approx(
+        errors[0] / 2, rel=0.02
+    )  # the next order in k - 1
 
 
 @pytest.mark.parametrize("size", [2, 3])
@@ -101,20 +102,19 @@ def test_first_correction_of_a_dimer_is_a_closed_form():
     assert same(w_1.subs(OMEGA, 1 / OMEGA), w_1)
 
 
-def test_radiation_falls_exponentially_and_vanishes_for_equal_beads():
-    """log R is about linear in 1/ε while R is small: e^{-S/ε}."""
-    assert radiated(Cell([1, 1]), sp.Rational(3, 2)) == 0
-    cell = Dimer(1, sp.Rational(1, 20))
-    # the lowest optical frequency; 1/Π of a dimer
-    for each, k in (
-        (cell, symbol_k),
-        (CELLS["three"], symbol_k),
-        (CELLS["contacts"], sp.S(3)),
-    ):
-        lowest = Dispersion(each, 1 if k == symbol_k else k).bands.branches(0.0)[1]
-        assert parameters(each, k).optical == pytest.approx(lowest**2, rel=1e-13)
-    inverse = np.array([8, 7, 6, 5])
-    logs = np.log([amplitude(cell, 1 + sp.Rational(1, n)) for n in inverse.tolist()])
-    slopes = np.diff(logs) / np.diff(inverse)
-    assert np.all(slopes < -1)
-    assert np.ptp(slopes) < 0.6 * abs(slopes.mean())
+def test_unlike_contacts_have_unlike_widths():
+    """The widths of both contacts of a struck chain, contacts 1 and 6/25 at k = 11/10."""
+    wave = expand(Cell([1, 1], [1, "6/25"]), 8, k="11/10")
+    for contact, width in enumerate((5.035, 4.549)):
+        found = wave.fwhm("force", contact).at()
+        assert abs(found.value - width) <= found.error < (5.035 - 4.549) / 10
+
+
+def test_radiation_vanishes_for_equal_beads_and_near_k_of_1():
+    contrasts = [
+        radiated(Dimer(1, omega), sp.Rational(6, 5)) for omega in ("1/2", "9/10", 1)
+    ]
+    assert contrasts == sorted(contrasts, reverse=True)
+    assert contrasts[-1] == 0
+    losses = [radiated(CELLS["three"], 1 + sp.Rational(1, n)) for n in (2, 8, 32)]
+    assert losses[0] > 2 * losses[1] > 6 * losses[2] > 0

@@ -3,7 +3,7 @@
 import pytest
 import sympy as sp
 
-from lwa import Cell, Dimer, ExpandedWave, InputError, expand, pulse_of_strike
+from lwa import Cell, Dimer, InputError, expand
 from lwa.base.exact import signed
 from tests.identity import same
 
@@ -40,26 +40,20 @@ def test_a_sum_whose_terms_grow_too_soon_is_refused():
 
 
 def test_what_memory_holds_is_not_refused():
-    """The sums of these take five seconds and 600 MB at most."""
+    """The sums of these take five seconds and 600 MB at most; order 500 would take over 100 GB."""
     for masses, order in (((1, 2, 3), 12), ((1, 2, 3, 4), 10)):
         assert expand(Cell(masses), order, k="3/2").order == order
+    with pytest.raises(InputError, match="500"):
+        expand(Cell([1]), 500)
 
 
-def test_a_series_and_its_sum_show_in_a_notebook():
+def test_a_series_shows_in_a_notebook():
     widths = expand(Cell([1]), 12).fwhm("force")
     assert len(repr(widths)) < 120
-    latex = widths._repr_latex_()
-    assert (
-        r"\left(\frac{1}{10} - \frac{\log{\left(2 \right)}}{60}\right) \varepsilon"
-        in latex
-    )
-    assert r" + \dots\Bigr)" in latex
-    chain = expand(Cell([1], spacing=1), 8, k="3/2")
-    assert r"c^2 &= 1 - \frac{1}{2} \varepsilon" in chain._repr_latex_()
-    assert r"\frac{dx}{dt} &= 1.811" in ExpandedWave(chain, 64)._repr_latex_()
-    strike = pulse_of_strike(chain.cell, 1, 1)._repr_latex_()
-    assert strike.count("&=") == 3
-    assert r"F &= 0.635 \pm" in strike
+    first = r"\left(\frac{1}{10} - \frac{\log{\left(2 \right)}}{60}\right) \varepsilon"
+    assert first in widths._repr_latex_()
+    assert r" + \dots\Bigr)" in widths._repr_latex_()
+    assert r"c^2 &= 1 - \frac{1}{2} \varepsilon" in expand(Cell([1]))._repr_latex_()
 
 
 def test_at_gives_symbols_their_values():

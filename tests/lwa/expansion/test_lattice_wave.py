@@ -1,0 +1,195 @@
+"""The lattice's wave in closed form beside exact waves and struck chains; the nearest theory."""
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from lwa import Cell, Dimer, NoSolitaryWave, lattice_wave
+from lwa.cell import k as symbol_k
+from lwa.expansion.forms.following import exponent_of_light_beads
+from lwa.expansion.forms.joined import TWO_BODIES, Constant, joined, phi_series
+from tests.identity import same
+from tests.lwa.expansion.test_exact_waves import lattice
+from tests.test_errors import LOOSE, holds
+from validation.pulses.steady import point
+
+EQUAL = Cell([1], spacing=1)
+BOUNDS = dict.fromkeys(TWO_BODIES, 0.001) | {"c": 1e-5}
+RESULTS = {
+    "c": ("speed",),
+    "momentum": ("momentum",),
+    "energy": ("energy",),
+} | {name: ("fwhm", name) for name in ("strain", "force", "velocity")}
+
+
+def test_closed_forms_are_the_lattices_at_every_k():
+    """The stated bounds hold, and so does ±, which is not too large for nine numbers of ten."""
+    ratios = []
+    for k in (1 + np.geomspace(0.01, 59, 30).round(3)).tolist():
+        wave, exact = lattice_wave(EQUAL, k=k), lattice(k)[0]
+        for name, call in RESULTS.items():
+            found = wave.estimate(*call)
+            deviation = abs(found.value / exact[name] - 1)
+            assert deviation <= BOUNDS[name], (k, name)
+            assert deviation <= found.relative_error + 2e-12, (k, name)
+            if deviation > 1e-11:
+                ratios.append(found.relative_error / deviation)
+    assert np.mean(np.array(ratios) <= LOOSE) >= 0.9
+
+
+def test_the_short_form_is_right_to_two_in_a_thousand():
+    for k in (1.05, 1.5, 2, 3, 5, 10):
+        short = float(lattice_wave(EQUAL, k=k).short_speed)
+        assert short == pytest.approx(lattice(float(k))[0]["c"], rel=2e-3)
+
+
+def exact(value):
+    """An expression with the constants written out."""
+    while found := value.atoms(Constant):
+        value = value.xreplace({x: x.exact for x in found})
+    return value
+
+
+def test_the_coefficients_are_exact():
+    ln2, pi = sp.log(2), sp.pi
+    strain = 4 / (3 * ln2) - (6 - ln2) / 30 - 1
+    assert same(exact(phi_series("strain", 0)[0]), strain)
+    assert same(exact(phi_series("force", 0)[0]), strain + 1)
+    # c = 1 - ε/4 + …, c₂(1) = √8/π, c₂'/c₂ = (1 - 2 ln 2)/4 at k = 1
+    slope = -sp.Rational(1, 4) - (1 - 2 * ln2) / 4
+    assert same(exact(phi_series("c", 0)[0]), -slope / (1 - sp.sqrt(8) / pi))
+    decimals = {
+        "c": (1.5391326, -0.232933, 0.173392),
+        "force": (1.7466983, -0.103124, 0.063915),
+    }
+    for name, expected in decimals.items():
+        assert [float(x) for x in phi_series(name, 2)] == pytest.approx(
+            expected, abs=1e-6
+        )
+
+
+@pytest.mark.parametrize(
+    "name", ["c", "force", "strain", "velocity", "momentum", "energy"]
+)
+def test_light_beads_that_follow_are_exact_to_first_order(name):
+    """The exponent e of (1 + ω)^{-e} is the reduced chain's own, by its exact waves."""
+    for k, bound in ((1.1, 1e-4), (1.5, 1e-3), (2.0, 4e-3), (3.0, 0.025)):
+        low, high = (lattice(k, omega)[0][name] for omega in (-1e-3, 1e-3))
+        slope = -np.log(high / low) / 2e-3
+        e = exponent_of_light_beads(name).subs(symbol_k, sp.Rational(str(k)))
+        assert float(e) == pytest.approx(slope, abs=bound)
+
+
+def test_light_beads_that_weigh_nothing():
+    heavy = lattice_wave(Cell([3], [sp.Rational(1, 4)], 2), k=2, force=5)
+    light = lattice_wave(Dimer(3, "1e-30", spacing=1), k=2, force=5)
+    for call in RESULTS.values():
+        values = [wave.estimate(*call).value for wave in (heavy, light)]
+        assert values[1] == pytest.approx(values[0], rel=1e-12)
+
+
+STEADY = [("5/4", "1/10"), ("5/4", "1/4"), ("3/2", "1/50"), ("3/2", "1/10"), ("3/2", "41/150"),
+          ("2", "1/50"), ("2", "1/10"), ("5/2", "1/20"), ("27/20", "1/5"), ("8/5", "3/10"),
+          ("6/5", "9/10"), ("3/2", "4/5"), ("5/2", "17/20")]  # fmt: skip
+
+
+@pytest.mark.parametrize(("k", "omega"), STEADY)
+def test_the_error_of_a_dimers_wave(engine, k, omega):
+    """± covers the steady pulse of a struck chain, and two numbers of three are not too large."""
+    k, omega = sp.Rational(k), sp.Rational(omega)
+    pulse = point(k, omega, 4).numbers
+    wave = lattice_wave(Dimer(1, omega, spacing=1), k=k)
+    known = {
+        "speed": ("speed",),
+        "width": ("fwhm", "force"),
+        "strain_width": ("fwhm", "strain"),
+    }
+    tight = 0
+    for name, call in known.items():
+        found = wave.estimate(*call)
+        deviation = abs(found.value - pulse[name].value)
+        assert deviation <= found.error
+        tight += holds(found.error, deviation)
+    assert tight >= 2
+    if omega < sp.S.Half:
+        other = lattice_wave(
+            Dimer(omega, 1, spacing=1), k=k
+        )  # whichever is listed first
+        assert other.speed == wave.speed
+
+
+def test_the_nearest_theory_has_a_name():
+    for masses, k, theory in (
+        ([1], 9, "equal"),
+        ([1, 1, 1], "3/2", "equal"),
+        (["0.45", "0.123"], "3/2", "follow"),
+        (["0.123", "0.45"], "3/2", "follow"),
+        ([1, "0.6"], "1.1", "follow"),
+        ([1, "0.8"], 3, "alike"),
+    ):
+        wave = lattice_wave(Cell(masses, spacing=1), k=k)
+        assert theory in wave.theory
+        assert np.isfinite(wave.estimate("fwhm", "strain", "time").error)
+    with pytest.raises(NoSolitaryWave, match="3/5"):
+        lattice_wave(Dimer(1, "0.6", spacing=1), k=2)
+    beyond = lattice_wave(Dimer(1, "0.1", spacing=1), k=5)  # not measured
+    assert np.isnan(beyond.estimate("speed").error)
+
+
+@pytest.mark.parametrize("masses", [(1, 1), (1, "1/20"), (1, "9/10")])
+def test_units_and_forces_enter_as_dimensions_demand(masses):
+    """E ~ F δ, P ~ m δ/t with δ = (F/A)^{1/k}, t = √(m δ/F)."""
+    k, m, A, F, D = 1.1, 4.0, 8.0, 27.0, 3.0
+    delta = (F / A) ** (1 / k)
+    t = np.sqrt(m * delta / F)
+    one = lattice_wave(Cell(masses, spacing=1), k=k)
+    scaled = Cell([4 * sp.Rational(x) for x in masses], [8, 8], 3)
+    other = lattice_wave(scaled, k=k, force=27)
+    for call, unit in {
+        ("speed",): D / t,
+        ("energy",): F * delta,
+        ("momentum",): m * delta / t,
+        ("effective_mass",): m,
+        ("fwhm", "force", "length"): D,
+        ("fwhm", "strain", "time"): t,
+    }.items():
+        found, unscaled = other.estimate(*call), one.estimate(*call)
+        assert found.value == pytest.approx(unit * unscaled.value, rel=1e-12)
+        error = pytest.approx(unit * unscaled.error, rel=1e-9, nan_ok=True)
+        assert found.error == error
+
+
+def test_a_wave_of_symbols():
+    wave = lattice_wave(Cell(["m", "m"], ["A", "A"]), force="F")
+    at = wave.at(m=2, A=3, D=1, F=5, k="3/2")
+    assert at == lattice_wave(Cell([2], [3], 1), k="3/2", force=5)
+    for read in (
+        lambda w: w.speed,
+        lambda w: w.fwhm("strain", "time"),
+        lambda w: w.energy,
+    ):
+        values = dict(zip(wave.cell.symbols, (3, 1, 2), strict=True))
+        values |= {symbol_k: sp.Rational(3, 2), sp.Symbol("F", positive=True): 5}
+        assert float(read(wave).subs(values)) == pytest.approx(
+            float(read(at)), rel=1e-12
+        )
+    B = sp.Rational(1, 7)  # dx/dt is V_s times τ/t at the force A (D B)^k
+    scaled = at.at_force(3 * B ** sp.Rational(3, 2)).speed / at.cell.time_scale(at.k)
+    assert float(at.scaled_speed(B)) == pytest.approx(float(scaled), rel=1e-14)
+    assert "1.539133" in str(joined("c"))
+    assert r"\Gamma" in wave._repr_latex_()
+
+
+def test_a_program_computes_the_wave():
+    """Γ and the incomplete beta function are written out."""
+    wave = lattice_wave(Cell(["m"], ["A"]), force="F")
+    program = {}
+    exec(wave.code("numpy"), program)
+    assert "tgamma" not in wave.code("c")
+    for k in ("1.05", "3/2", 20):
+        at = wave.at(k=k, m=1, A=1, D=1, F=1)
+        speed = program["speed"](1, float(at.k), 1, 1, 1)
+        assert float(speed) == pytest.approx(float(at.speed), rel=1e-8)
+        for name in ("strain", "force", "velocity"):
+            width = program[f"fwhm_{name}"](float(at.k), 1)
+            assert float(width) == pytest.approx(float(at.fwhm(name)), rel=1e-7)
