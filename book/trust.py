@@ -18,9 +18,9 @@ from lwa import (
     Dimer,
     LatticeWave,
     NoSolitaryWave,
-    best_wave,
     canonical_wave,
     homogenize,
+    lattice_wave,
 )
 
 THEORIES = ("paper's closure", "canonical wave", "closed form")
@@ -55,7 +55,7 @@ def nearest(k: Any, omega: Any) -> LatticeWave | None:
     """The wave that is nearest to the lattice's, of masses 1 and ω; None where there is none."""
     cell = Cell([1], spacing=1) if omega == 1 else Dimer(1, omega, spacing=1)
     try:
-        return best_wave(cell, k=k)
+        return lattice_wave(cell, k=k)
     except NoSolitaryWave:
         return None
 
