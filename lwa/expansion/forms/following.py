@@ -28,9 +28,8 @@ import sympy as sp
 from flint import fmpq_mpoly
 
 from lwa.cell import Cell, k
-from lwa.expansion.forms.joined import EPSILON, pade, reciprocal
+from lwa.expansion.forms.joined import EPSILON, pade, polynomial, taylor
 from lwa.expansion.observables import Observables, shares_model
-from lwa.expansion.pulse import product
 from lwa.expansion.recursion import Fields, Recursion
 
 ORDER = 4
@@ -70,11 +69,8 @@ def following(order: int) -> Observables:
 @lru_cache(maxsize=16)
 def exponent_of_light_beads(quantity: str) -> sp.Expr:
     """The exponent e of a quantity as a function of the symbol k."""
-    base = []
-    change = []
-    for coefficient in following(ORDER).coefficients(quantity):
-        base.append(coefficient.subs(_OMEGA, 0))
-        change.append(coefficient.diff(_OMEGA).subs(_OMEGA, 0))
-    series = [-term for term in product(change, reciprocal(base))]
-    series[0] += _LEADING.get(quantity, sp.Rational(3, 2))
-    return pade([sp.expand(term) for term in series], 2).subs(EPSILON, k - 1)
+    coefficients = following(ORDER).coefficients(quantity)
+    series = polynomial(coefficients)
+    log_change = series.diff(_OMEGA) / series
+    e = _LEADING.get(quantity, sp.Rational(3, 2)) - log_change.subs(_OMEGA, 0)
+    return pade(taylor(e, ORDER), 2).subs(EPSILON, k - 1)

@@ -22,25 +22,29 @@ of high energies in other chains: arXiv:1511.00836.
     c = c₂ [1 + (1/c₂(1) - 1) e^{-ε φ(ε)}],    Q² = Q₂² + q e^{-ε φ(ε)}/ε,
 
 Q a width, the momentum or the energy, and √(q/ε) the first term of its series. φ is a Padé
-approximant of its own series, exact in ln 2, π, ζ(3) and ψ₁(1/3).
+approximant of its own series, which follows from that of the quantity. Its decimals are computed,
+so that the closed forms hold nothing that was fitted.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import lru_cache, reduce
-from typing import Any
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
 
+import mpmath
 import sympy as sp
 
 from lwa.cell import k
 from lwa.expansion.observables import equal_beads
-from lwa.expansion.pulse import logarithm, power, product
 
 EPSILON = sp.Symbol("epsilon", positive=True)
 """ε = k - 1."""
 
-_T = sp.Symbol("t", positive=True)
+DIGITS = 30
+"""Digits in which coefficients are computed."""
+
+SHOWN = 11
+"""Digits of the coefficients in a closed form: they change no quantity by more than 1e-12."""
 
 
 def _width(x: sp.Expr) -> sp.Expr:
@@ -76,161 +80,54 @@ ORDERS = {"strain": 1}
 """Highest power of ε from which φ is made, 2 unless it stands here: the strain's φ hardly changes,
 and [0/1] is within 1e-3, [1/1] within 3e-3 (a pole at k = 10)."""
 
-DIGITS = 60
-"""Digits to which constants are evaluated."""
-
-
-class Constant(sp.NumberSymbol):  # type: ignore[misc]  # untyped in SymPy
-    """An exact number, evaluated once and to no more than `DIGITS`; printed by seven digits."""
-
-    __slots__ = ("exact",)
-    is_real = True
-
-    def __new__(cls, exact: sp.Expr) -> Constant:
-        self: Constant = sp.AtomicExpr.__new__(cls)
-        self.exact = exact
-        return self
-
-    def __getnewargs__(self) -> tuple[sp.Expr]:
-        return (self.exact,)
-
-    def _hashable_content(self) -> tuple[sp.Expr]:
-        return (self.exact,)
-
-    __eq__ = sp.Basic.__eq__
-    __hash__ = sp.Basic.__hash__
-
-    def _eval_is_positive(self) -> bool:
-        return bool(_digits(self.exact) > 0)
-
-    def _as_mpf_val(self, precision: int) -> Any:
-        return _digits(self.exact)._to_mpmath(precision)._mpf_
-
-    def _sympystr(self, printer: Any) -> str:
-        return str(_digits(self.exact).evalf(7))
-
-    _latex = _sympystr
-
-
-@lru_cache(maxsize=256)
-def _digits(exact: sp.Expr) -> sp.Float:
-    return exact.evalf(DIGITS)
-
-
 @lru_cache(maxsize=16)
 def joined(quantity: str) -> sp.Expr:
     """The closed form of a quantity of `TWO_BODIES` as a function of the symbol k."""
     limit = TWO_BODIES[quantity]
     epsilon = k - 1
-    rest = sp.exp(-epsilon * phi(quantity).subs(EPSILON, epsilon))
+    terms = phi_series(quantity, ORDERS.get(quantity, 2))
+    phi = pade(terms, 1).subs(EPSILON, epsilon)
+    rest = sp.exp(-epsilon * phi)
     if quantity == "c":
         return limit * (1 + (1 / limit.subs(k, 1) - 1) * rest)
     return sp.sqrt(limit**2 + _SQUARED[quantity] * rest / epsilon)
 
 
-@lru_cache(maxsize=16)
-def phi(quantity: str) -> sp.Expr:
-    """The Padé approximant of φ, a function of `EPSILON`."""
-    return pade(phi_series(quantity, ORDERS.get(quantity, 2)), 1)
+def phi_series(quantity: str, order: int) -> list[mpmath.mpf]:
+    """Coefficients of φ up to ε^order, to `DIGITS` digits.
 
-
-@lru_cache(maxsize=32)
-def phi_series(quantity: str, order: int) -> tuple[sp.Expr, ...]:
-    """Exact coefficients of φ up to ε^order, order ≤ 2.
-
-    >>> phi_series("momentum", 0)
-    (1.259859,)
+    >>> [round(float(term), 6) for term in phi_series("momentum", 1)]
+    [1.259859, -0.064701]
     """
-    series = list(equal_beads(quantity, order + 1))
-    function = TWO_BODIES[quantity].subs(k, 1 + EPSILON)
-    function = function.replace(sp.betainc_regularized, _arcs)
-    taylor = _taylor(function, order + (quantity == "c"))
-    limit = [_constant(sp.expand(term)) for term in taylor]
+    limit = TWO_BODIES[quantity].subs(k, 1 + EPSILON)
+    whole = polynomial(equal_beads(quantity, order + 1))
     if quantity == "c":
-        rest = product(series, reciprocal(limit))
-        rest[0] -= 1
-        rest = [term / rest[0] for term in rest]
+        rest = (whole / limit - 1) / (1 / limit.subs(EPSILON, 0) - 1)
     else:
-        rest = product(series, series)
-        for n, term in enumerate(product(limit, limit)):
-            rest[n + 1] -= term / _SQUARED[quantity]
-    return tuple(_constant(-term) for term in logarithm(rest)[1:])
+        rest = whole**2 - EPSILON * limit**2 / _SQUARED[quantity]
+    return taylor(-sp.log(rest), order + 1)[1:]  # the first one is ln 1
 
 
-def reciprocal(series: Sequence[sp.Expr]) -> list[sp.Expr]:
-    """The reciprocal of a series."""
-    first = series[0]
-    scaled = [term / first for term in series]
-    return [term / first for term in power(scaled, sp.Integer(-1))]
+def polynomial(coefficients: Iterable[sp.Expr]) -> sp.Expr:
+    """The polynomial in `EPSILON` with these coefficients."""
+    return sp.Add(*(a * EPSILON**n for n, a in enumerate(coefficients)))
 
 
-def pade(series: Sequence[sp.Expr], n: int) -> sp.Expr:
-    """The Padé approximant in `EPSILON` with n powers in its denominator, to all terms given.
-
-    The product of the series and the denominator has no terms of the n highest orders.
-    """
-    a = list(map(_constant, series))
-    top = len(a) - n
-    rows = sp.Matrix(n, n, lambda i, j: a[top + i - j - 1])
-    denominator = [sp.S.One, *rows.LUsolve(-sp.Matrix(a[top:]))]
-    numerator = []
-    for i in range(top):
-        terms = [denominator[j] * a[i - j] for j in range(min(i, n) + 1)]
-        numerator.append(sp.Add(*terms))
-    return _polynomial(numerator) / _polynomial(denominator)
+def taylor(function: sp.Expr, order: int) -> list[mpmath.mpf]:
+    """Taylor coefficients at ε = 0 of a function of `EPSILON`, to `DIGITS` digits."""
+    with mpmath.workdps(DIGITS):
+        numeric = sp.lambdify(EPSILON, function, "mpmath")
+        return list(mpmath.taylor(numeric, 0, order))
 
 
-def _polynomial(coefficients: Sequence[sp.Expr]) -> sp.Expr:
-    """The polynomial in `EPSILON` with these coefficients, each a constant."""
-    return sp.Add(*(_constant(a) * EPSILON**n for n, a in enumerate(coefficients)))
+def pade(terms: Sequence[mpmath.mpf], n: int) -> sp.Expr:
+    """The Padé approximant of a series with n powers of `EPSILON` in its denominator."""
+    with mpmath.workdps(DIGITS):
+        parts = mpmath.pade(terms, len(terms) - 1 - n, n)
+        top, bottom = (map(_decimal, part) for part in parts)
+        return polynomial(top) / polynomial(bottom)
 
 
-def _constant(value: sp.Expr) -> sp.Expr:
-    """A number that is evaluated once, unless it is rational."""
-    if value.is_Rational:
-        return value
-    return Constant(value)
-
-
-def _taylor(function: sp.Expr, order: int) -> list[sp.Expr]:
-    """Taylor coefficients in ε of a function at ε = 0; of sums and products, from their parts."""
-    constant = [sp.S.One] + [sp.S.Zero] * order
-    if not function.has(EPSILON):
-        return [function * term for term in constant]
-    if function.is_Add:
-        parts = [_taylor(part, order) for part in function.args]
-        return [sp.Add(*terms) for terms in zip(*parts, strict=True)]
-    if function.is_Mul:
-        parts = [_taylor(part, order) for part in function.args]
-        return reduce(product, parts, constant)
-    terms = []
-    for n in range(order + 1):
-        slope = function.subs(EPSILON, 0).replace(sp.Integral, _moment)
-        terms.append(slope / sp.factorial(n))
-        function = function.diff(EPSILON)
-    return terms
-
-
-def _arcs(a: sp.Expr, b: sp.Expr, low: sp.Expr, x: sp.Expr) -> sp.Expr:
-    """I_x(a, ½) as a ratio of integrals of sin^{2a-1}, by t = sin²."""
-    arc = sp.sin(_T) ** sp.cancel(2 * a - 1)
-    part = sp.Integral(arc, (_T, 0, sp.asin(sp.sqrt(x))))
-    return part / sp.Integral(arc, (_T, 0, sp.pi / 2))
-
-
-def _moment(integrand: sp.Expr, limits: sp.Tuple) -> sp.Expr:
-    """The integral of a polynomial in ln sin t of degree ≤ 2 from 0 to π/6 or π/2.
-
-    With ℓ = ln(2 sin t): ∫ ℓ = -Cl₂(π/3)/2 and ∫ ℓ² = 7π³/216 up to π/6, 0 and π³/24 up to π/2;
-    Clausen's Cl₂(π/3) = (ψ₁(1/3) - 2π²/3)/(2√3). A test holds them against exact waves.
-    """
-    end = limits[2]
-    clausen = (sp.polygamma(1, sp.Rational(1, 3)) - 2 * sp.pi**2 / 3) / (2 * sp.sqrt(3))
-    moments = {
-        sp.pi / 6: (-clausen / 2, 7 * sp.pi**3 / 216),
-        sp.pi / 2: (0, sp.pi**3 / 24),
-    }
-    first, second = moments[end]
-    shifted = integrand.subs(sp.log(sp.sin(_T)), _T - sp.log(2))
-    values = {0: end, 1: first, 2: second}
-    return sp.Add(*(c * values[n] for (n,), c in sp.Poly(shifted, _T).terms()))
+def _decimal(value: mpmath.mpf) -> sp.Expr:
+    """A number rounded to `SHOWN` digits."""
+    return sp.Float(mpmath.nstr(value, SHOWN))
