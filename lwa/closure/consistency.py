@@ -8,33 +8,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import (
-    Any,
-    Literal,
-    get_args,
-)
+from typing import Any
 
 import sympy as sp
 
 from lwa.algebra.jets import Jet
-from lwa.algebra.model import BRANCHES as BRANCHES
-from lwa.algebra.model import Branch as Branch
 from lwa.algebra.model import Model
 from lwa.base import latex
 from lwa.base.exact import InputError
 from lwa.base.frozen import Value
 from lwa.base.progress import shown
+from lwa.base.words import ClosureName, FieldName
 from lwa.cell import Cell
 from lwa.closure.ansatz import linear
-from lwa.closure.slaving import FieldName as FieldName
 from lwa.closure.slaving import Solution, full
 from lwa.law import ContactLaw
-
-ClosureName = Literal["linear", "full"]
-"""The paper's linear ansatz, or the closure that satisfies every equation of motion."""
-
-CLOSURES = get_args(ClosureName)
-FIELDS = get_args(FieldName)
 
 SLOW_ORDER = 12
 """The order from which a derivation shows its progress: such a derivation may take seconds."""

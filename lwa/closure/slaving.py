@@ -21,7 +21,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from itertools import accumulate
-from typing import Literal
 
 from flint import fmpq_mpoly
 
@@ -32,13 +31,7 @@ from lwa.algebra.jets import (
 )
 from lwa.algebra.model import Model
 from lwa.base.progress import Progress
-
-FieldName = Literal["first", "center"]
-"""Unknown φ of a theory: the first particle's displacement, or the canonical field.
-
-The canonical field is the mean Σ m̂_i w_i(x - x_i D) of all fields at one point,
-x_i = C_0 + … + C_{i-1}.
-"""
+from lwa.base.words import FieldName
 
 
 class Force:
