@@ -124,7 +124,11 @@ class ContactLaw(Value):
         known = not (self.homogeneous or self.formless)
         return known and bool(self.slope().subs(self.delta, 0).is_positive)
 
-    def at(self, delta: Any, n: int = 0) -> Any:
+    def at(
+        self,
+        delta: Any,
+        n: int = 0,
+    ) -> Any:
         """The force F, or its n-th derivative, at a compression.
 
         Parameters
@@ -158,18 +162,30 @@ class ContactLaw(Value):
             return sp.S.Zero
         return self._at(delta, n)
 
-    def _at(self, delta: sp.Expr, n: int) -> sp.Expr:
+    def _at(
+        self,
+        delta: sp.Expr,
+        n: int,
+    ) -> sp.Expr:
         """The n-th derivative of F at the compression of a closed contact."""
         return self._put(self.slope(n), delta)
 
-    def _put(self, value: sp.Expr, delta: sp.Expr) -> sp.Expr:
+    def _put(
+        self,
+        value: sp.Expr,
+        delta: sp.Expr,
+    ) -> sp.Expr:
         """An expression in δ at a compression; long numbers are not written out."""
         # SymPy alone can put a value into the derivative of an unknown function.
         if self.formless:
             return value.subs(self.delta, delta)
         return replaced(value, {self.delta: delta})
 
-    def _at_array(self, delta: Any, n: int) -> Any:
+    def _at_array(
+        self,
+        delta: Any,
+        n: int,
+    ) -> Any:
         """The n-th derivative of F at an array of compressions, 0 at open contacts."""
         import numpy as np  # here: the command starts before NumPy does
 
@@ -216,7 +232,11 @@ class ContactLaw(Value):
             return self._put(self.energy, D * p) / D**2
         return self.at(D * p, n) * D ** (n - 1)
 
-    def check_strain(self, p: sp.Expr, cell: Cell) -> None:
+    def check_strain(
+        self,
+        p: sp.Expr,
+        cell: Cell,
+    ) -> None:
         """Refuse a strain at which F does not grow or before which F has a pole.
 
         Parameters
@@ -251,7 +271,11 @@ class ContactLaw(Value):
                 f"the strain is {shorten(p)}: F′ is {sp.N(slope, 4)} there, and sound needs F′ > 0"
             )
 
-    def compression(self, cell: Cell, force: sp.Expr) -> sp.Expr:
+    def compression(
+        self,
+        cell: Cell,
+        force: sp.Expr,
+    ) -> sp.Expr:
         """The mean compression of a cell's contacts that push with this force; see `inverse`."""
         # The contacts of a cell act like equal ones of this stiffness.
         return self.inverse(real(force, "force") / cell.stiffness(self.exponent))
@@ -326,7 +350,11 @@ class Power(ContactLaw):
     def phi(self, n: int) -> sp.Expr:
         return sp.ff(self.k - 1, integer(n, "n", 1) - 1)
 
-    def _at(self, delta: sp.Expr, n: int) -> sp.Expr:
+    def _at(
+        self,
+        delta: sp.Expr,
+        n: int,
+    ) -> sp.Expr:
         return sp.ff(self.k, n) * power(delta, self.k - n)
 
     def of_strain(
@@ -468,7 +496,10 @@ def named(name: str, *parameters: Any) -> ContactLaw:
     return Law(force, DELTA, name, tuple(values))
 
 
-def read_law(value: Any, name: str) -> ContactLaw:
+def read_law(
+    value: Any,
+    name: str,
+) -> ContactLaw:
     """Read a law from its name and parameters.
 
     Parameters

@@ -246,7 +246,10 @@ def homogenize(
     return Theory(Closure(model, closure, field))
 
 
-def _check_length(model: Model, closure: ClosureName) -> None:
+def _check_length(
+    model: Model,
+    closure: ClosureName,
+) -> None:
     """Raise `lwa.InputError` for a derivation of more than `MOST_TERMS` terms, by an estimate."""
     ring = model.ring
     # The φ_n of a law that is no power grow as powers of one parameter, k.

@@ -40,7 +40,7 @@ class Model(Value):
 
     @property
     def k(self) -> sp.Expr:
-        """Exponent of a power law; local exponent 1 + φ_2 = d ln(δ F′)/d ln δ of another law."""
+        """Exponent of a power law; ``1 + φ_2 = d ln(δ F′)/d ln δ`` of another law."""
         return self.law.exponent if self.law.homogeneous else 1 + phi_symbol(2)
 
     @property
@@ -66,7 +66,7 @@ class Model(Value):
             contacts = Partition(compliances, self.cell.size, "c")
         highest = 0
         if not self.law.homogeneous:
-            # D^{order-1} needs φ_{order-1}, and k = 1 + φ_2 needs φ_2.
+            # The equation to D^{k+order-1} holds φ_{order-1}, and k = 1 + φ_2 always φ_2.
             highest = max(self.order - 1, 2)
         masses = Partition(self.cell.masses, 1, "mu")
         return CoefficientRing(self.k, highest, masses, contacts)

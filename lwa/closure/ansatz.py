@@ -24,7 +24,10 @@ from lwa.closure.slaving import (
 )
 
 
-def linear(model: Model, progress: Progress[int] = iter) -> Solution:
+def linear(
+    model: Model,
+    progress: Progress[int] = iter,
+) -> Solution:
     """Solve the paper's closure to D^order in the ansatz, on the branch of the model.
 
     The cell has two particles, or on the acoustic branch one, whose equation of motion is the wave
@@ -49,7 +52,10 @@ def _applied(
     return total
 
 
-def _acoustic(model: Model, progress: Progress[int]) -> Solution:
+def _acoustic(
+    model: Model,
+    progress: Progress[int],
+) -> Solution:
     algebra = model.algebra(model.order - 1)
     mu, c = algebra.mu, algebra.c
     right = Force(algebra)  # of the contact inside the cell
@@ -82,7 +88,10 @@ def _acoustic(model: Model, progress: Progress[int]) -> Solution:
     return _solution(b, first, second)
 
 
-def _optical(model: Model, progress: Progress[int]) -> Solution:
+def _optical(
+    model: Model,
+    progress: Progress[int],
+) -> Solution:
     # Contacts here also pull: the branch belongs to the odd extension of δ^k (or to odd k).
     # w - u = -(u/m̂_1)(1 + Y) and u(x + 2D) - w = (u/m̂_1)(1 + Z); E = 1 + kε.
     algebra = model.algebra(model.order)

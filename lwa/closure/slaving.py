@@ -66,7 +66,11 @@ class Force:
             total = total + self.algebra.phi[m] * self._power(m, n)
         return total
 
-    def _term_of_power(self, m: int, n: int) -> fmpq_mpoly:
+    def _term_of_power(
+        self,
+        m: int,
+        n: int,
+    ) -> fmpq_mpoly:
         """The coefficient of D^n in X^m/m! = (1/m) X · X^{m-1}/(m-1)!, n ≥ m ≥ 1."""
         if m == 1:
             return self.X[n]
@@ -80,7 +84,11 @@ class Force:
         self.Phi.append(X_n + self.nonlinear)
         self.X.append(X_n)
 
-    def increment(self, h: int, n: int) -> fmpq_mpoly:
+    def increment(
+        self,
+        h: int,
+        n: int,
+    ) -> fmpq_mpoly:
         """Coefficient of D^n in [F(p) + p F' Φ](x + hD) - [F(p) + p F' Φ](x), divided by p F'."""
         # F(p) adds h^n/n! ∂_x^n F(p) = h^n/n! ∂_x^{n-1} (p F' r_1), r_1 = p_x/p.
         return self.Phi.increment(h, n) + self._slope.dx(0, n - 1) * taylor(h, n)
@@ -153,7 +161,11 @@ class _Slaving:
     forces : the forces of the contacts.
     """
 
-    def __init__(self, model: Model, field: FieldName) -> None:
+    def __init__(
+        self,
+        model: Model,
+        field: FieldName,
+    ) -> None:
         self.algebra = algebra = model.algebra(model.order - 1)
         self.order = model.order
         self.size = model.cell.size
@@ -183,7 +195,11 @@ class _Slaving:
         self._append_strains(n, accelerations)
         self._append_fields(n)
 
-    def _append_strains(self, n: int, accelerations: list[fmpq_mpoly]) -> None:
+    def _append_strains(
+        self,
+        n: int,
+        accelerations: list[fmpq_mpoly],
+    ) -> None:
         """Append the term X_n of each contact's strain.
 
         Φ_i - Φ_0 gives the differences of the strains, and the cell their sum.
