@@ -1,12 +1,14 @@
 """The periodic unit cell of a chain: masses, contact stiffnesses, spacing.
 
-A cell of P particles repeats with period P·D. Particle i has mass m_i; contact i joins particle i
-to the next one (the last contact joins the cell to its neighbour) and pushes with F = A_i δ^k.
-Theory and lattice both start from this object.
+A cell of P particles repeats with the period ``P·D``. Particle i has the mass ``m_i``; contact i
+joins particle i to the next particle (the last contact joins the cell to the next cell) and pushes
+with the force ``F = A_i δ^k``. Theory and lattice both start from this object.
 
-At leading order in a long wave all contact forces of a cell are equal, so that contact i takes the
-share C_i = P A_i^{-1/k} / Σ_j A_j^{-1/k} of the strain (Σ C_i = P), and the cell responds like
-a cell with P equal contacts of stiffness A_eff, A_eff^{-1/k} = (1/P) Σ A_i^{-1/k}.
+At leading order in a long wave all contact forces of a cell are equal. Contact i therefore takes
+the share ``C_i`` of the strain, and the cell responds like one of P equal contacts of the stiffness
+``A_eff``::
+
+    C_i = P A_i^{-1/k} / Σ_j A_j^{-1/k},    A_eff^{-1/k} = (1/P) Σ_j A_j^{-1/k}.
 """
 
 from __future__ import annotations
@@ -40,10 +42,10 @@ D = sp.Symbol("D", positive=True)
 """The spacing of neighbouring particles, unless the caller names another."""
 
 k = sp.Symbol("k", positive=True)
-"""The exponent of the contact law F = A δ^k, unless the caller names another."""
+"""The exponent of the contact law ``F = A δ^k``, unless the caller names another."""
 
 EXPONENTS = sp.Rational(1, 100), 1000
-"""Least and largest k; beyond them exact numbers such as A^{1/k} have too many digits to read."""
+"""Least and largest k; beyond them exact numbers such as ``A^{1/k}`` have too many digits."""
 
 MOST_PARTICLES = 1000
 """Most particles of a dimer's cell; beyond them even the simplest theory takes minutes."""
@@ -58,7 +60,7 @@ class Cell(Value):
     masses : sequence of positive numbers or symbols
         The masses of the P particles.
     stiffnesses : sequence of positive numbers or symbols, optional
-        The A_i of F = A_i δ^k, one for each contact; all 1 when not given.
+        The ``A_i`` of ``F = A_i δ^k``, one for each contact; all 1 when not given.
     spacing : positive number or symbol
         The distance D of neighbouring particles at rest, the same for all contacts.
 
@@ -100,10 +102,10 @@ class Cell(Value):
 
     @classmethod
     def of_spheres(cls, spheres: Sequence[Sphere]) -> Cell:
-        """The cell of spheres in Hertz contact (k = 3/2), in the units of the spheres, such as SI.
+        """The cell of spheres in Hertz contact (k 3/2), in the units of the spheres, such as SI.
 
-        The spacing is the mean distance of neighbours' centers, Σ 2 R_i / P. Then widths and speeds
-        are those in space, and D u_x is the mean compression of the contacts.
+        The spacing is the mean distance of neighbours' centers, ``Σ 2 R_i / P``. Then widths and
+        speeds are those in space, and ``D u_x`` is the mean compression of the contacts.
 
         Parameters
         ----------
@@ -133,9 +135,14 @@ class Cell(Value):
         return tuple(sorted(values.free_symbols, key=str))
 
     @property
+    def equal_contacts(self) -> bool:
+        """True for equal stiffnesses."""
+        return len({*self.stiffnesses}) == 1
+
+    @property
     def uniform(self) -> bool:
         """True for equal masses and equal stiffnesses."""
-        return len({*self.masses}) == len({*self.stiffnesses}) == 1
+        return self.equal_contacts and len({*self.masses}) == 1
 
     def at(self, **values: Any) -> Cell:
         """The cell with numbers (or other symbols) for the named symbols; see `substitution`.
@@ -165,19 +172,19 @@ class Cell(Value):
 
     @cached_property
     def fractions(self) -> tuple[sp.Expr, ...]:
-        """The mass fractions m̂_i = m_i / M, with the sum 1."""
+        """The mass fractions ``m̂_i = m_i / M``, with the sum 1."""
         return tuple(sp.cancel(m / self.mass) for m in self.masses)
 
     def compliances(self, k: Any = k) -> tuple[sp.Expr, ...]:
-        """The A_i^{-1/k}, the strains of the contacts up to a common factor."""
+        """The ``A_i^{-1/k}``, strains of the contacts up to a common factor."""
         # One force A_i δ_i^k for all contacts
         k = exponent(k)
         return tuple(power(A, -1 / k) for A in self.stiffnesses)
 
     def shares(self, k: Any = k) -> tuple[sp.Expr, ...]:
-        """The shares C_i = P A_i^{-1/k} / Σ A_j^{-1/k}, strain of contact i divided by the mean."""
+        """The shares ``C_i``: strain of contact i divided by the mean strain (`lwa.cell`)."""
         # Equal contacts have equal shares, whatever k is.
-        if len(set(self.stiffnesses)) == 1:
+        if self.equal_contacts:
             return (sp.Integer(1),) * self.size
         compliances = self.compliances(k)
         total = sp.Add(*compliances)
@@ -186,14 +193,18 @@ class Cell(Value):
     def stiffness(self, k: Any = k) -> sp.Expr:
         """The stiffness A_eff of P equal contacts with the same response as the cell."""
         # Equal contacts: no power is taken and undone.
-        if len(set(self.stiffnesses)) == 1:
+        if self.equal_contacts:
             return self.stiffnesses[0]
         # A_eff^{-1/k} is the mean of the A_i^{-1/k}: compressions add.
         return power(sp.Add(*self.compliances(k)) / self.size, -exponent(k))
 
     def time_scale(self, k: Any = k) -> sp.Expr:
-        """The ratio τ/t = √(P k A_eff D^{k+1} / M) of the time in u_ττ = u_x^{k-1} u_xx + …."""
-        # Force A_eff (D u_x)^k on the density M/(P D): M/(P D) u_tt = k A_eff D^k u_x^{k-1} u_xx
+        """The ratio ``τ/t = √(P k A_eff D^{k+1} / M)`` of the wave equation's time to the chain's.
+
+        The unit of τ makes the leading order ``u_ττ = u_x^{k-1} u_xx``.
+        """
+        # The force A_eff (D u_x)^k acts on the density M/(P D) of mass:
+        # M/(P D) u_tt = k A_eff D^k u_x^{k-1} u_xx.
         k = exponent(k)
         modulus = self.size * k * self.stiffness(k) * power(self.spacing, k + 1)
         return power(modulus / self.mass, sp.S.Half)
@@ -241,7 +252,7 @@ def read_cell(value: Any) -> Cell:
 
 
 def exponent(value: Any) -> sp.Expr:
-    """Read the exponent k of F = A δ^k exactly.
+    """Read the exponent k of ``F = A δ^k`` exactly.
 
     Parameters
     ----------

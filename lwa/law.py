@@ -1,16 +1,16 @@
 """Contact laws F(δ): powers, expressions, and the laws with names.
 
-A law enters the theory through dimensionless functions of the compression δ,
+A law enters the theory through dimensionless functions of the compression δ::
 
-    φ_n = δ^{n-1} F^{(n)}(δ) / F'(δ),    φ_1 = 1,
+    φ_n = δ^{n-1} F^{(n)}(δ) / F'(δ),    φ_1 = 1.
 
-which for δ^k are the numbers (k-1) … (k-n+1). The force of a contact is A F(δ), A its stiffness in
-the cell. The shares of unlike contacts in the strain are the same at every strain only for a power.
+For ``δ^k`` they are the numbers ``(k-1) … (k-n+1)``. The force of a contact is ``A F(δ)``, A its
+stiffness in the cell. Unlike contacts have the same shares at every strain only under a power.
 
 How to add a law of your own: ``Law(F, delta)`` with any SymPy expression F that grows with delta.
-To give it a name, on the command line and in files of chains too, add a line to `_NAMED`: the
-letters of its parameters, and the force as a function of them; then a line to the docstring of
-`named`. The tests of names (tests/lwa/test_law.py) take it from there.
+To give it a name, on the command line and in files of chains too, add a line to `_NAMED`, the force
+as a function of the law's parameters, and a line to the docstring of `named`. The tests of names
+(tests/lwa/test_law.py) take it from there.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from inspect import signature
 from itertools import zip_longest
 from typing import Any, ClassVar
 
@@ -35,16 +36,15 @@ from lwa.base.exact import (
     InputError,
     demand_numbers,
     integer,
-    one_of,
     positive,
     power,
     read_exact,
     real,
     replaced,
-    shorten,
     signed,
 )
 from lwa.base.frozen import Value
+from lwa.base.words import one_of, shorten
 from lwa.cell import (
     Cell,
     exponent,
@@ -70,7 +70,7 @@ class ContactLaw(Value):
     name, parameters : str, tuple
         Those of `named`; "" and () for a law without a name.
     homogeneous : bool
-        True if F(sδ) = s^k F(δ), that is for a power.
+        True if ``F(sδ) = s^k F(δ)``, that is for a power.
     """
 
     F: sp.Expr
@@ -96,35 +96,39 @@ class ContactLaw(Value):
 
     @property
     def exponent(self) -> sp.Expr:
-        """The k of A_i^{-1/k} by which unlike contacts share the strain; 1 where all are alike."""
+        """The k of the ``A_i^{-1/k}`` by which unlike contacts share the strain, if any: else 1."""
         return sp.S.One
 
     def slope(self, n: int = 1) -> sp.Expr:
-        """The n-th derivative F^{(n)}(δ)."""
+        """The n-th derivative ``F^{(n)}(δ)``."""
         return self.F.diff(self.delta, integer(n, "n", 0))
 
     @cached_property
     def energy(self) -> sp.Expr:
-        """The energy W(δ) of a contact, W′ = F."""
+        """The energy W(δ) of a contact, ``W′ = F``."""
         if self.formless:
             s = sp.Dummy("s", positive=True)
             return sp.Integral(self.F.subs(self.delta, s), (s, 0, self.delta))
         return integral(self.F, self.delta)
 
     def phi(self, n: int) -> sp.Expr:
-        """The parameter φ_n = δ^{n-1} F^{(n)}/F′ as an expression in δ."""
+        """The parameter ``φ_n = δ^{n-1} F^{(n)}/F′`` as an expression in δ."""
         # φ_0 has no meaning.
         order = integer(n, "n", 1) - 1
         return ratio(self.delta**order * self.slope(n), self.slope())
 
     @property
     def pulls(self) -> bool:
-        """True if the contact also holds where δ < 0: laws with F′(0) > 0 that are no power."""
+        """True if the contact also holds at δ < 0: a law with ``F′(0) > 0`` that is no power."""
         # δ^k is the force of a contact that opens, at k = 1 too.
         known = not (self.homogeneous or self.formless)
         return known and bool(self.slope().subs(self.delta, 0).is_positive)
 
-    def at(self, delta: Any, n: int = 0) -> Any:
+    def at(
+        self,
+        delta: Any,
+        n: int = 0,
+    ) -> Any:
         """The force F, or its n-th derivative, at a compression.
 
         Parameters
@@ -158,18 +162,30 @@ class ContactLaw(Value):
             return sp.S.Zero
         return self._at(delta, n)
 
-    def _at(self, delta: sp.Expr, n: int) -> sp.Expr:
+    def _at(
+        self,
+        delta: sp.Expr,
+        n: int,
+    ) -> sp.Expr:
         """The n-th derivative of F at the compression of a closed contact."""
         return self._put(self.slope(n), delta)
 
-    def _put(self, value: sp.Expr, delta: sp.Expr) -> sp.Expr:
+    def _put(
+        self,
+        value: sp.Expr,
+        delta: sp.Expr,
+    ) -> sp.Expr:
         """An expression in δ at a compression; long numbers are not written out."""
         # SymPy alone can put a value into the derivative of an unknown function.
         if self.formless:
             return value.subs(self.delta, delta)
         return replaced(value, {self.delta: delta})
 
-    def _at_array(self, delta: Any, n: int) -> Any:
+    def _at_array(
+        self,
+        delta: Any,
+        n: int,
+    ) -> Any:
         """The n-th derivative of F at an array of compressions, 0 at open contacts."""
         import numpy as np  # here: the command starts before NumPy does
 
@@ -195,7 +211,7 @@ class ContactLaw(Value):
         D: sp.Expr,
         n: int = 0,
     ) -> sp.Expr:
-        """The n-th derivative of F at a strain, in the units of u_ττ = F′(u_x) u_xx.
+        """The n-th derivative of F at a strain, in the units of ``u_ττ = F′(u_x) u_xx``.
 
         Parameters
         ----------
@@ -204,7 +220,7 @@ class ContactLaw(Value):
         D : expression
             The spacing.
         n : int
-            For n = 0 the result is F(Dp)/D (p^k/k for a power), for n = -1 the energy W.
+            For n 0 the result is ``F(Dp)/D`` (``p^k/k`` for a power), for n -1 the energy W.
 
         Returns
         -------
@@ -216,8 +232,12 @@ class ContactLaw(Value):
             return self._put(self.energy, D * p) / D**2
         return self.at(D * p, n) * D ** (n - 1)
 
-    def check_strain(self, p: sp.Expr, cell: Cell) -> None:
-        """Refuse a strain up to which F is not real, or at which F does not grow, F′ > 0.
+    def check_strain(
+        self,
+        p: sp.Expr,
+        cell: Cell,
+    ) -> None:
+        """Refuse a strain at which F does not grow or before which F has a pole.
 
         Parameters
         ----------
@@ -251,7 +271,11 @@ class ContactLaw(Value):
                 f"the strain is {shorten(p)}: F′ is {sp.N(slope, 4)} there, and sound needs F′ > 0"
             )
 
-    def compression(self, cell: Cell, force: sp.Expr) -> sp.Expr:
+    def compression(
+        self,
+        cell: Cell,
+        force: sp.Expr,
+    ) -> sp.Expr:
         """The mean compression of a cell's contacts that push with this force; see `inverse`."""
         # The contacts of a cell act like equal ones of this stiffness.
         return self.inverse(real(force, "force") / cell.stiffness(self.exponent))
@@ -292,7 +316,7 @@ class ContactLaw(Value):
 
 
 class Power(ContactLaw):
-    """The power law F = δ^k.
+    """The power law ``F = δ^k``.
 
     Parameters
     ----------
@@ -326,7 +350,11 @@ class Power(ContactLaw):
     def phi(self, n: int) -> sp.Expr:
         return sp.ff(self.k - 1, integer(n, "n", 1) - 1)
 
-    def _at(self, delta: sp.Expr, n: int) -> sp.Expr:
+    def _at(
+        self,
+        delta: sp.Expr,
+        n: int,
+    ) -> sp.Expr:
         return sp.ff(self.k, n) * power(delta, self.k - n)
 
     def of_strain(
@@ -399,15 +427,15 @@ def general() -> Law:
 
 
 _HERTZ = sp.Rational(3, 2)
-# Names → letters of the parameters, and the force (or the law itself) as a function of them.
-_NAMED: Mapping[str, tuple[str, Callable[..., Any]]] = {
-    "power": ("k", Power),
-    "hertz2": ("a b", lambda a, b: a * DELTA**_HERTZ + b * DELTA ** (_HERTZ + 1)),
-    "exponential": ("a", lambda a: (sp.exp(a * DELTA) - 1) / a),
-    "magnetic": ("n d", lambda n, d: (1 - DELTA / d) ** (-n) - 1),
-    "polynomial": ("a b", lambda a, b: DELTA + a * DELTA**2 + b * DELTA**3),
-    "lennard-jones": ("d", lambda d: (1 - DELTA / d) ** -13 - (1 - DELTA / d) ** -7),
-    "general": ("", general),
+# Mapping from a name to the force, or the law itself, as a function of the law's parameters.
+_NAMED: Mapping[str, Callable[..., Any]] = {
+    "power": Power,
+    "hertz2": lambda a, b: a * DELTA**_HERTZ + b * DELTA ** (_HERTZ + 1),
+    "exponential": lambda a: (sp.exp(a * DELTA) - 1) / a,
+    "magnetic": lambda n, d: (1 - DELTA / d) ** (-n) - 1,
+    "polynomial": lambda a, b: DELTA + a * DELTA**2 + b * DELTA**3,
+    "lennard-jones": lambda d: (1 - DELTA / d) ** -13 - (1 - DELTA / d) ** -7,
+    "general": general,
 }
 NAMES = tuple(_NAMED)
 """The names of laws."""
@@ -416,12 +444,12 @@ NAMES = tuple(_NAMED)
 def named(name: str, *parameters: Any) -> ContactLaw:
     """Make a law by its name.
 
-    - power: δ^k.
-    - hertz2: a δ^{3/2} + b δ^{5/2}, Hertz and its next order.
-    - exponential: (e^{aδ} - 1)/a, Toda's.
-    - magnetic: (1 - δ/d)^{-n} - 1, poles at the distance d - δ that repel with its power -n.
-    - polynomial: δ + a δ² + b δ³, of Fermi, Pasta, Ulam and Tsingou; a and b of either sign.
-    - lennard-jones: (1 - δ/d)^{-13} - (1 - δ/d)^{-7}, d the distance of rest.
+    - power: ``δ^k``.
+    - hertz2: ``a δ^{3/2} + b δ^{5/2}``, Hertz and its next order.
+    - exponential: ``(e^{aδ} - 1)/a``, Toda's.
+    - magnetic: ``(1 - δ/d)^{-n} - 1``, poles at the distance d - δ that repel with its power -n.
+    - polynomial: ``δ + a δ² + b δ³``, of Fermi, Pasta, Ulam and Tsingou; a and b of either sign.
+    - lennard-jones: ``(1 - δ/d)^{-13} - (1 - δ/d)^{-7}``, d the distance of rest.
     - general: a law without an expression (`general`).
 
     Parameters
@@ -445,9 +473,8 @@ def named(name: str, *parameters: Any) -> ContactLaw:
     >>> named("hertz2", 1, "1/10").F
     delta**(5/2)/10 + delta**(3/2)
     """
-    # An unknown name is refused with the list of the known ones.
-    letters_of, build = _NAMED[one_of(name, NAMES, "law")]
-    letters = letters_of.split()
+    build = _NAMED[one_of(name, NAMES, "law")]
+    letters = list(signature(build).parameters)
     if len(parameters) > len(letters):
         wanted = "none"
         if letters:
@@ -469,7 +496,10 @@ def named(name: str, *parameters: Any) -> ContactLaw:
     return Law(force, DELTA, name, tuple(values))
 
 
-def read_law(value: Any, name: str) -> ContactLaw:
+def read_law(
+    value: Any,
+    name: str,
+) -> ContactLaw:
     """Read a law from its name and parameters.
 
     Parameters
@@ -550,7 +580,7 @@ def for_cell(
         raise InputError(
             f"law is {shorten(law)}: Power(k), Law(F, delta) or general() is wanted"
         )
-    if len(set(read_cell(cell).stiffnesses)) > 1 and not law.homogeneous:
+    if not (read_cell(cell).equal_contacts or law.homogeneous):
         raise InputError(
             "the contacts differ in stiffness, and their shares of the strain would then depend on "
             "the strain: only a power law allows that"

@@ -10,15 +10,16 @@ from typing import Any
 import sympy as sp
 from sympy.functions.combinatorial.numbers import partition
 
-from lwa.algebra.model import (
-    BRANCHES,
-    Branch,
-    Model,
-)
+from lwa.algebra.model import Model
 from lwa.base import latex
-from lwa.base.exact import (
-    InputError,
-    integer,
+from lwa.base.exact import InputError, integer
+from lwa.base.words import (
+    BRANCHES,
+    CLOSURES,
+    FIELDS,
+    BranchName,
+    ClosureName,
+    FieldName,
     one_of,
 )
 from lwa.cell import (
@@ -27,14 +28,7 @@ from lwa.cell import (
     read_cell,
 )
 from lwa.cell import k as symbol_k
-from lwa.closure.consistency import (
-    CLOSURES,
-    FIELDS,
-    Closure,
-    ClosureName,
-    FieldName,
-    OfClosure,
-)
+from lwa.closure.consistency import Closure, OfClosure
 from lwa.equation.pde import PDE
 from lwa.equation.terms import (
     STRAIN,
@@ -69,7 +63,7 @@ class Theory(OfClosure):
 
     @property
     def ansatz(self) -> dict[int, sp.Expr]:
-        """Mapping n → b_n in w = λ (u + Σ b_n D^n ∂_x^n u); empty for a cell of one particle.
+        """Mapping from n to ``b_n`` in ``w = λ (u + Σ b_n D^n ∂_x^n u)``; {} for one particle.
 
         Here w is the field of the second particle. In the full closure w has nonlinear terms too;
         `slaved` holds all terms.
@@ -78,7 +72,10 @@ class Theory(OfClosure):
 
     @cached_property
     def slaved(self) -> dict[int, dict[int, Terms]]:
-        """Terms J_n of the particles' fields w_i = u + u_x Σ D^n J_n, by i and n (full closure)."""
+        """Fields of the particles in the full closure: mapping from i to {n: terms ``J_n``}.
+
+        The field of particle i (from 0) is ``w_i = u + u_x Σ D^n J_n``; u itself is left out.
+        """
         found = {}
         for i, series in enumerate(self.closure.solution.slaved):
             if any(not S.is_zero() for S in series):
@@ -93,7 +90,7 @@ class Theory(OfClosure):
 
     @cached_property
     def defect(self) -> dict[int, Terms]:
-        """Mapping from n to the terms of D^{k+n} (optical: D^n) in the defect.
+        """Mapping from n to the terms of ``D^{k+n}`` (optical: ``D^n``) in the defect.
 
         The defect is u_ττ from the first equation of motion minus u_ττ from the second. Orders at
         which the equations agree are left out: {} says that the ansatz satisfies both
@@ -122,9 +119,9 @@ class Theory(OfClosure):
         return str(self.pde)
 
     def latex_rows(self, most: int | None = None) -> list[str]:
-        """LaTeX of a law that is no power, of all fields, and of the equation to D^{k+most}.
+        """LaTeX of a law that is no power, of all fields, and of the equation to ``D^{k+most}``.
 
-        Fields are written to D^{most + 1}; None stands for all orders.
+        Fields are written to ``D^{most + 1}``; None stands for all orders.
         """
         return [
             *self._law_rows(),
@@ -162,7 +159,7 @@ class Theory(OfClosure):
         return latex.display(self.latex_rows(3))
 
     def at(self, **values: Any) -> Theory:
-        """The theory for these values of the named symbols, and of ω = m2/m1 by ``omega``.
+        """The theory for these values of the named symbols, and of m2/m1 by ``omega``.
 
         Raises `lwa.InputError` for a name that does not occur or a value that is not positive.
 
@@ -180,7 +177,7 @@ def homogenize(
     k: Any = symbol_k,
     law: ContactLaw | None = None,
     closure: ClosureName | None = None,
-    branch: Branch = "acoustic",
+    branch: BranchName = "acoustic",
     field: FieldName | None = None,
 ) -> Theory:
     """Derive the long-wave theory of a chain.
@@ -190,7 +187,7 @@ def homogenize(
     cell : Cell
         The periodic cell.
     order : int
-        Highest power N of D in the ansatz; the wave equation then reaches D^{k+N-1}.
+        Highest power N of D in the ansatz; the wave equation then reaches ``D^{k+N-1}``.
     k : number or symbol
         Exponent of the contact law.
     law : ContactLaw, optional
@@ -203,8 +200,9 @@ def homogenize(
         Neighbours move together, or against each other.
     field : {"first", "center"}, optional
         Unknown of the wave equation: the first particle's displacement, or the canonical field, the
-        mass-weighted mean of the sublattice fields at one point (full closure). By default
-        "center" with the full closure of the acoustic branch, else "first".
+        mass-weighted mean ``Σ m̂_i w_i(x - x_i D)`` of the particles' fields at one point, ``x_i``
+        the places of the particles (full closure). By default "center" with the full closure of
+        the acoustic branch, else "first".
 
     Returns
     -------
@@ -248,7 +246,10 @@ def homogenize(
     return Theory(Closure(model, closure, field))
 
 
-def _check_length(model: Model, closure: ClosureName) -> None:
+def _check_length(
+    model: Model,
+    closure: ClosureName,
+) -> None:
     """Raise `lwa.InputError` for a derivation of more than `MOST_TERMS` terms, by an estimate."""
     ring = model.ring
     # The φ_n of a law that is no power grow as powers of one parameter, k.

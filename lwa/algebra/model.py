@@ -4,28 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import (
-    Any,
-    Literal,
-    get_args,
-)
+from typing import Any
 
 import sympy as sp
 
 from lwa.algebra.jets import JetAlgebra
 from lwa.algebra.ring import CoefficientRing, Partition
 from lwa.base.frozen import Value
+from lwa.base.words import BranchName
 from lwa.cell import Cell
 from lwa.law import (
     ContactLaw,
     phi_symbol,
     substituted,
 )
-
-Branch = Literal["acoustic", "optical"]
-"""Neighbours move together, or against each other."""
-
-BRANCHES = get_args(Branch)
 
 
 @dataclass(frozen=True)
@@ -43,12 +35,12 @@ class Model(Value):
 
     cell: Cell
     law: ContactLaw
-    branch: Branch = "acoustic"
+    branch: BranchName = "acoustic"
     order: int = 0
 
     @property
     def k(self) -> sp.Expr:
-        """Exponent of a power law; local exponent 1 + φ_2 = d ln(δ F′)/d ln δ of another law."""
+        """Exponent of a power law; ``1 + φ_2 = d ln(δ F′)/d ln δ`` of another law."""
         return self.law.exponent if self.law.homogeneous else 1 + phi_symbol(2)
 
     @property
@@ -66,7 +58,7 @@ class Model(Value):
         stiffnesses = self.cell.stiffnesses
         if self.branch == "optical":
             contacts = Partition(stiffnesses, 1, "c")
-        elif len(set(stiffnesses)) == 1:
+        elif self.cell.equal_contacts:
             # The shares are 1 whatever the law is: no A^{-1/k} is needed.
             contacts = Partition(stiffnesses, self.cell.size, "c")
         else:
@@ -74,7 +66,7 @@ class Model(Value):
             contacts = Partition(compliances, self.cell.size, "c")
         highest = 0
         if not self.law.homogeneous:
-            # D^{order-1} needs φ_{order-1}, and k = 1 + φ_2 needs φ_2.
+            # The equation to D^{k+order-1} holds φ_{order-1}, and k = 1 + φ_2 always φ_2.
             highest = max(self.order - 1, 2)
         masses = Partition(self.cell.masses, 1, "mu")
         return CoefficientRing(self.k, highest, masses, contacts)

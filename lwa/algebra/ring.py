@@ -1,8 +1,9 @@
 """The ring of a derivation's coefficients, and its conversion to SymPy.
 
-Coefficients are polynomials in the exponent k, the mass fractions m̂_i = m_i/M and the strain
-shares C_i of the P contacts: the ring Q[k, m̂, C]. Under a law other than a power the parameters
-φ_2, φ_3, … of `lwa.law` stand in the place of k. Polynomials are python-flint's `fmpq_mpoly`.
+Coefficients are polynomials with rational coefficients in the exponent k, the mass fractions
+``m̂_i = m_i/M`` and the strain shares ``C_i`` of the P contacts. Under a law other than a power the
+parameters ``φ_2, φ_3, …`` of `lwa.law` stand in the place of k. Polynomials are python-flint's
+`fmpq_mpoly`.
 """
 
 from __future__ import annotations
@@ -38,13 +39,26 @@ def to_sympy(value: fmpq) -> sp.Rational:
     return sp.Rational(int(value.p), int(value.q))
 
 
+def generator(context: fmpq_mpoly_ctx, name: str) -> fmpq_mpoly:
+    """The generator of a ring that has this name."""
+    return context.gen(context.variable_to_index(name))
+
+
 @dataclass(frozen=True)
 class Partition(Value):
-    """Positive weights w_i, and their fractions f_i = total · w_i / Σ_j w_j in a coefficient ring.
+    """Positive weights ``w_i`` and their fractions ``total · w_i / Σ_j w_j`` in a ring.
 
     The masses of a cell are such weights (total 1), and so are the compliances of its contacts
     (total P). Rational fractions are numbers of the ring. Of other fractions each distinct one but
     the last is a generator of the ring.
+
+    Parameters
+    ----------
+    weights : tuple of expressions
+    total : int
+        The sum of the fractions.
+    letter : str
+        First letter of the generators' names.
     """
 
     weights: tuple[sp.Expr, ...]
@@ -66,8 +80,11 @@ class Partition(Value):
             ratios[weight] = factored(weight / first)
             if not ratios[weight].is_Rational:
                 return {}
-        unit = self.total / sp.Add(*(ratios[w] for w in self.weights))
-        return {weight: unit * ratio for weight, ratio in ratios.items()}
+        total = sp.Add(*(ratios[weight] for weight in self.weights))
+        fractions = {}
+        for weight, ratio in ratios.items():
+            fractions[weight] = self.total * ratio / total
+        return fractions
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -78,28 +95,34 @@ class Partition(Value):
         return tuple(f"{self.letter}{i}" for i in range(len(self.distinct) - 1))
 
     def elements(self, context: fmpq_mpoly_ctx) -> list[fmpq_mpoly]:
-        """The fractions f_0, f_1, … in a ring that has `names` among its generators."""
-        if self.rational:
-            constants = map(to_flint, map(self.rational.get, self.weights))
-            return list(map(context.constant, constants))
-        # The last fraction is what the others leave of the total.
+        """The fractions ``f_0, f_1, …`` in a ring that has `names` among its generators."""
         fractions = {}
-        rest = context.constant(self.total)
-        for weight, name in zip(self.distinct, self.names, strict=False):
-            fractions[weight] = context.gen(context.variable_to_index(name))
-            rest = rest - self.weights.count(weight) * fractions[weight]
-        last = self.distinct[-1]
-        fractions[last] = rest / self.weights.count(last)
+        for weight, value in self.rational.items():
+            fractions[weight] = context.constant(to_flint(value))
+        if not fractions:
+            # The last fraction is what the others leave of the total.
+            rest = context.constant(self.total)
+            for weight, name in zip(self.distinct, self.names, strict=False):
+                fraction = generator(context, name)
+                fractions[weight] = fraction
+                rest = rest - self.weights.count(weight) * fraction
+            last = self.distinct[-1]
+            fractions[last] = rest / self.weights.count(last)
         return [fractions[weight] for weight in self.weights]
 
 
 @dataclass(frozen=True)
 class CoefficientRing(Value):
-    """The ring Q[law, m̂, C] of a derivation's coefficients.
+    """The ring of a derivation's coefficients.
 
-    k : exponent of a power law, a number or an expression; 1 + φ_2 of another law.
-    highest : index n of the last generator φ_n; 0 for a power law.
-    masses, contacts : the mass fractions m̂_i and the shares C_i of the contacts.
+    Parameters
+    ----------
+    k : expression
+        Exponent of a power law, a number or not; ``1 + φ_2`` of another law.
+    highest : int
+        Index n of the last generator ``φ_n``; 0 for a power law.
+    masses, contacts : Partition
+        The mass fractions ``m̂_i`` and the shares ``C_i`` of the contacts.
     """
 
     k: sp.Expr
@@ -109,7 +132,7 @@ class CoefficientRing(Value):
 
     @cached_property
     def law(self) -> dict[str, sp.Expr]:
-        """Mapping from the generators of the contact law, k or φ_2, φ_3, …, to their values."""
+        """Mapping from the names of the contact law's generators, k or phi2, …, to their values."""
         # A rational k is a number of the ring.
         if self.highest:
             symbols = map(phi_symbol, range(2, self.highest + 1))
@@ -124,21 +147,37 @@ class CoefficientRing(Value):
     def exponent(self, context: fmpq_mpoly_ctx) -> fmpq_mpoly:
         """The exponent k as an element of a ring that has `names` among its generators."""
         if self.highest:
-            # d ln(δ F′)/d ln δ
-            return 1 + context.gen(context.variable_to_index("phi2"))
+            # The local exponent d ln(δ F′)/d ln δ
+            return 1 + generator(context, "phi2")
         if self.k.is_Rational:
             return context.constant(to_flint(self.k))
-        return context.gen(context.variable_to_index("k"))
+        return generator(context, "k")
 
-    def phi(self, context: fmpq_mpoly_ctx, most: int) -> list[fmpq_mpoly]:
-        """The law's parameters φ_0 = 0, φ_1 = 1, φ_2, … as elements of such a ring.
+    def phi(
+        self,
+        context: fmpq_mpoly_ctx,
+        most: int,
+    ) -> list[fmpq_mpoly]:
+        """The law's parameters ``φ_0 = 0, φ_1 = 1, φ_2, …`` as elements of a ring.
 
-        Those of a power are (k-1) … (k-n+1), given to φ_most.
+        Parameters
+        ----------
+        context : fmpq_mpoly_ctx
+            The ring, which has `names` among its generators.
+        most : int
+            Index of the last parameter of a power; of another law all generators are given.
+
+        Returns
+        -------
+        list of elements
         """
         # φ_0 has no meaning; it makes places of the list and indices agree.
         found = [context.constant(0), context.constant(1)]
         if self.highest:
-            return found + [context.gen(context.variable_to_index(n)) for n in self.law]
+            for name in self.law:
+                found.append(generator(context, name))
+            return found
+        # Those of a power are (k-1) … (k-n+1).
         k = self.exponent(context)
         for n in range(1, most):
             found.append(found[n] * (k - n))
@@ -160,76 +199,88 @@ class CoefficientRing(Value):
 class Conversion:
     """Conversion of a ring's polynomials to factored SymPy expressions in the caller's symbols.
 
-    The fractions f_i = total · w_i/Σw of a partition have one denominator. A polynomial of degree d
-    in them, made homogeneous by powers of Σf/total = 1, is therefore the polynomial of the same
-    form in total · w_i and Σw, divided by (Σw)^d. The polynomials are composed, divided and
-    factored by python-flint; SymPy takes thirty times as long.
+    The fractions ``f_i = total · w_i / S`` of a partition have one denominator, the sum S of the
+    weights. Let each term of a polynomial of degree d in them be multiplied by the power of S/S
+    that it lacks of the degree. Then the polynomial is one in ``total · w_i`` and S, over ``S^d``.
+    python-flint composes, divides and factors it; SymPy takes thirty times as long.
+
+    Parameters
+    ----------
+    ring : CoefficientRing
     """
 
     def __init__(self, ring: CoefficientRing) -> None:
-        self._partitions = [p for p in (ring.masses, ring.contacts) if p.names]
-        # Values of the generators
+        partitions = [p for p in (ring.masses, ring.contacts) if p.names]
+        # Values of the ring's generators, in the caller's symbols
         values = list(ring.law.values())
-        for partition in self._partitions:
+        for partition in partitions:
             values += partition.distinct
-        symbols = sorted(set().union(*(v.free_symbols for v in values)), key=str)
+        free = sp.Tuple(*values).free_symbols
         # Without a generator SymPy would take an irrational number for one.
-        symbols = symbols or [sp.Dummy()]
-        # An expression that is no polynomial over Q, such as A^{-1/k}, is a generator of its own.
-        letters = {}
+        symbols = sorted(free, key=str) or [sp.Dummy()]
+        # An expression that is no polynomial, such as A^{-1/k}, is a generator of its own.
+        self._letters = {}
         for value in values:
             try:
                 sp.Poly(value, *symbols, domain="QQ")
             except BasePolynomialError:
-                letters[value] = sp.Dummy()
-        self._printed = [*symbols, *letters]
+                self._letters[value] = sp.Dummy()
+        self._generators = [*symbols, *self._letters.values()]
+        # The expressions that stand for these generators in results
+        self._printed = [*symbols, *self._letters]
         self._context = _context(len(self._printed))
-
-        def element(value: sp.Expr) -> fmpq_mpoly:
-            generators = (*symbols, *letters.values())
-            polynomial = sp.Poly(letters.get(value, value), *generators, domain="QQ")
-            terms = {e: to_flint(c) for e, c in polynomial.terms()}
-            return self._context.from_dict(terms)
-
-        # Values of the polynomials' generators: those of the law, then total · w_i.
-        self._images = list(map(element, ring.law.values()))
-        # For each partition the places of its generators, and Σw
+        # Polynomials for the generators of the ring: values of the law, then total · w_i.
+        self._images = list(map(self._element, ring.law.values()))
+        # For each partition the places of its generators, and the sum of its weights
         self._blocks = []
         self._sums = []
-        for partition in self._partitions:
+        for partition in partitions:
             start = len(self._images)
             for weight in partition.distinct[:-1]:
-                self._images.append(partition.total * element(weight))
+                self._images.append(partition.total * self._element(weight))
             self._blocks.append(slice(start, len(self._images)))
-            zero = self._context.constant(0)
-            self._sums.append(sum(map(element, partition.weights), zero))
+            total = self._context.constant(0)
+            for weight in partition.weights:
+                total = total + self._element(weight)
+            self._sums.append(total)
         self._source = _context(len(self._images) + len(self._sums))
 
+    def _element(self, value: sp.Expr) -> fmpq_mpoly:
+        """The polynomial of an expression in the generators."""
+        letter = self._letters.get(value, value)
+        polynomial = sp.Poly(letter, *self._generators, domain="QQ")
+        terms = {e: to_flint(c) for e, c in polynomial.terms()}
+        return self._context.from_dict(terms)
+
     def __call__(self, terms: Sequence[Term]) -> sp.Expr:
-        """Convert a polynomial, given by its terms: exponents by the ring's names, coefficient."""
+        """Convert the polynomial that has these terms in the ring's generators."""
         # Degrees in the fractions of each partition
         degrees = []
         for block in self._blocks:
-            degrees.append(max((sum(e[block]) for e, _ in terms), default=0))
+            of_terms = [sum(exponents[block]) for exponents, _ in terms]
+            degrees.append(max(of_terms, default=0))
         homogeneous = {}
-        for e, coefficient in terms:
-            lacking = [
-                d - sum(e[b]) for d, b in zip(degrees, self._blocks, strict=True)
-            ]
-            homogeneous[(*e, *lacking)] = coefficient
+        for exponents, coefficient in terms:
+            row = list(exponents)
+            for block, degree in zip(self._blocks, degrees, strict=True):
+                row.append(degree - sum(exponents[block]))
+            homogeneous[tuple(row)] = coefficient
         numerator = self._source.from_dict(homogeneous)
         numerator = numerator.compose(*self._images, *self._sums, ctx=self._context)
         if numerator.is_zero():
             return sp.S.Zero
-        # Lowest terms
         denominator = self._context.constant(1)
         for total, degree in zip(self._sums, degrees, strict=True):
             denominator = denominator * total**degree
+        # Lowest terms
         common = numerator.gcd(denominator)
         above, factors = (numerator / common).factor()
         below, divisors = (denominator / common).factor()
-        powers = [self._sum(factor) ** int(e) for factor, e in factors]
-        powers += [self._sum(factor) ** -int(e) for factor, e in divisors]
+        powers = []
+        for factor, e in factors:
+            powers.append(self._sum(factor) ** int(e))
+        for divisor, e in divisors:
+            powers.append(self._sum(divisor) ** -int(e))
         # One product: a number times a lone sum would be multiplied out.
         return sp.Mul(to_sympy(above / below), *powers)
 
@@ -243,5 +294,6 @@ class Conversion:
 
 
 def _context(count: int) -> fmpq_mpoly_ctx:
-    """The ring Q[x_0, …] with ``count`` generators."""
-    return fmpq_mpoly_ctx.get([f"x{i}" for i in range(count)], Ordering.lex)
+    """The polynomials over the rationals in ``count`` generators."""
+    names = [f"x{i}" for i in range(count)]
+    return fmpq_mpoly_ctx.get(names, Ordering.lex)

@@ -8,36 +8,24 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import (
-    Any,
-    Literal,
-    get_args,
-)
+from typing import Any
 
 import sympy as sp
 
 from lwa.algebra.jets import Jet
-from lwa.algebra.model import BRANCHES as BRANCHES
-from lwa.algebra.model import Branch as Branch
 from lwa.algebra.model import Model
 from lwa.base import latex
 from lwa.base.exact import InputError
 from lwa.base.frozen import Value
 from lwa.base.progress import shown
+from lwa.base.words import ClosureName, FieldName
 from lwa.cell import Cell
 from lwa.closure.ansatz import linear
-from lwa.closure.slaving import FieldName as FieldName
 from lwa.closure.slaving import Solution, full
 from lwa.law import ContactLaw
 
-ClosureName = Literal["linear", "full"]
-"""The paper's linear ansatz, or the closure that satisfies every equation of motion."""
-
-CLOSURES = get_args(ClosureName)
-FIELDS = get_args(FieldName)
-
 SLOW_ORDER = 12
-"""The order from which a derivation shows its progress: such a derivation may take seconds."""
+"""The order from which a derivation shows its progress: such derivations may take seconds."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -64,7 +52,8 @@ class Closure(Value):
     field: FieldName
 
     def __post_init__(self) -> None:
-        size, branch = self.model.cell.size, self.model.branch
+        size = self.model.cell.size
+        branch = self.model.branch
         if self.name == "full" and branch == "acoustic":
             return  # covers any cell in either field
         # At k = 1 the equations of motion are linear, and so is a slaved field.
@@ -101,7 +90,7 @@ class Closure(Value):
 
     @property
     def ratio(self) -> sp.Expr:
-        """λ = w/u at order D^0: 1 on the acoustic branch, -m1/m2 on the optical one."""
+        """The ratio ``λ = w/u`` of the fields at the leading order: 1, optical -m1/m2."""
         # With s the force that w = λu puts on a contact, the equations of motion are m1 ü = 2s and
         # m2 λ ü = -2s. They agree where s = 0, that is w = u, or where m2 λ + m1 = 0.
         if self.model.branch == "acoustic":
@@ -111,16 +100,21 @@ class Closure(Value):
 
     @cached_property
     def b(self) -> dict[int, sp.Expr]:
-        """Mapping from n ≥ 1 to b_n of the ansatz."""
+        """Mapping from n, which starts at 1, to ``b_n`` of the ansatz."""
         algebra = self.solution.algebra
         found = {}
         for n, b in enumerate(self.solution.ansatz[1:], start=1):
+            # Numbers: polynomials without jets
             terms = algebra.terms(b, self.model.base)
-            found[n] = self.model.ring.expression(terms.get(Jet(()), []))
+            number = terms.get(Jet(()), [])
+            found[n] = self.model.ring.expression(number)
         return found
 
     def latex_rows(self, most: int | None = None) -> list[str]:
-        """LaTeX of the ansatz w = λ (u + b_1 D u_x + …), λ and the b_n, to D^most (None: all)."""
+        """LaTeX of the ansatz ``w = λ (u + b_1 D u_x + …)``, of λ and the ``b_n``.
+
+        Orders above ``most`` (None: no order) are dots.
+        """
         rows = [latex.row(r"\lambda", self.ratio)]
         if not self.b:
             return rows

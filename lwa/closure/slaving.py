@@ -1,19 +1,25 @@
 """The equations of motion of a cell in its fields, and the full closure, which satisfies them all.
 
-All displacement fields w_0 … w_{P-1} of a cell are taken at the position x of its first particle
-and expressed by one field φ: w_i = φ + D φ_x S_i, S_i a series in D of polynomials in the jets of
-φ (`lwa.algebra.jets`). Let m̂_i be the mass fractions, τ the time of `Cell.time_scale`, and F_i the
-force of contact i divided by A_eff D^k. The equations of motion of the P particles are
+All displacement fields ``w_0 … w_{P-1}`` of a cell are taken at the position x of its first
+particle and expressed by one field φ as ``w_i = φ + D φ_x S_i``, where ``S_i`` is a series in D of
+polynomials in the jets of φ (`lwa.algebra.jets`). Let ``m̂_i`` be the mass fractions, τ the time of
+`Cell.time_scale`, and ``F_i`` the force of contact i divided by ``A_eff D^k``. The equations of
+motion of the P particles are::
 
     P k D m̂_i ∂_ττ w_i = F_i(x) - F_{i-1}(x),    F_{-1}(x) = F_{P-1}(x - P D).
 
-In the full closure S_n is a polynomial in the jets of φ and of φ_τ. All P equations of motion can
-then be satisfied, order by order and without a system to solve:
+In the full closure the coefficient ``S_n`` of ``D^n`` in each series is a polynomial in the jets of
+φ and of its velocity. All P equations of motion can then be satisfied, order by order and without
+a system to solve:
 
-1. The sum of all equations, the balance of momentum, gives the next term E_n of the wave equation.
-2. The sum of the first i equations gives Φ_i - Φ_0, the difference of two contact forces.
-3. The force Φ_i of each contact gives the term X_n of its strain C_i φ_x (1 + Σ D^n X_n).
-4. The strains give the terms S_n of all fields, up to a shift that the definition of φ fixes.
+1. The sum of all equations, the balance of momentum, gives the next term ``E_n`` of the wave
+   equation.
+2. The sum of the first i equations gives ``Φ_i - Φ_0``, the difference of two contact forces.
+3. The force ``Φ_i`` of each contact gives the term ``X_n`` of its strain
+   ``C_i φ_x (1 + Σ D^n X_n)``.
+4. The strains give the terms ``S_n`` of all fields, up to a shift that the definition of φ fixes:
+   φ is the field of the first particle, or the canonical field, the mean
+   ``Σ m̂_i w_i(x - x_i D)`` of all fields at one point, with ``x_i = C_0 + … + C_{i-1}``.
 """
 
 from __future__ import annotations
@@ -21,7 +27,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from itertools import accumulate
-from typing import Literal
 
 from flint import fmpq_mpoly
 
@@ -32,49 +37,48 @@ from lwa.algebra.jets import (
 )
 from lwa.algebra.model import Model
 from lwa.base.progress import Progress
-
-FieldName = Literal["first", "center"]
-"""Unknown φ of a theory: the first particle's displacement, or the canonical field.
-
-The canonical field is the mean Σ m̂_i w_i(x - x_i D) of all fields at one point,
-x_i = C_0 + … + C_{i-1}.
-"""
+from lwa.base.words import FieldName
 
 
 class Force:
     """The force of a contact as a series in D, to which terms are appended order by order.
 
-    Let p be the strain of the field and p (1 + X), X = Σ_{n≥1} D^n X_n, the strain of a contact
-    divided by its share C_i. The force of the contact is
+    Let p be the strain of the field and p (1 + X), where ``X = Σ_{n≥1} D^n X_n``, the strain of a
+    contact divided by its share ``C_i``. With the parameters ``φ_m`` of the algebra's law the force
+    of the contact is::
 
-        F(p (1 + X)) = F(p) + p F'(p) Φ,    Φ = Σ_{m≥1} φ_m X^m/m! = Σ_{n≥1} D^n Φ_n,
-
-    φ_m = p^{m-1} F^{(m)}(p)/F'(p), the parameters of the algebra's law.
+        F(p (1 + X)) = F(p) + p F'(p) Φ,    Φ = Σ_{m≥1} φ_m X^m/m! = Σ_{n≥1} D^n Φ_n.
     """
 
     def __init__(self, algebra: JetAlgebra) -> None:
         self.algebra = algebra
         self.X = [algebra.zero]
         self.Phi = GradedSeries(algebra, algebra.k, [algebra.zero])
+        # The first derivative of F(p) over p F′: r_1
         self._slope = GradedSeries(algebra, algebra.k, [algebra.r[1]])
-        # Each term is computed once.
+        # Each term is computed once: the series of the powers share them.
         self._power = cache(self._term_of_power)
         self._nonlinear = cache(self._nonlinear_term)
 
     @property
     def nonlinear(self) -> fmpq_mpoly:
-        """The nonlinear part Φ_n - X_n of the next order n, known from X_1 … X_{n-1}."""
+        """The nonlinear part ``Φ_n - X_n`` of the next order n, known from ``X_1 … X_{n-1}``."""
         return self._nonlinear(len(self.X))
 
     def _nonlinear_term(self, n: int) -> fmpq_mpoly:
-        """The coefficient of D^n in Σ_{m≥2} φ_m X^m/m!."""
+        """The coefficient of ``D^n`` in ``Σ_{m≥2} φ_m X^m/m!``."""
         total = self.algebra.zero
+        # X begins at D: the power X^m reaches D^n for m ≤ n.
         for m in range(2, n + 1):
             total = total + self.algebra.phi[m] * self._power(m, n)
         return total
 
-    def _term_of_power(self, m: int, n: int) -> fmpq_mpoly:
-        """The coefficient of D^n in X^m/m! = (1/m) X · X^{m-1}/(m-1)!, n ≥ m ≥ 1."""
+    def _term_of_power(
+        self,
+        m: int,
+        n: int,
+    ) -> fmpq_mpoly:
+        """The coefficient of ``D^n`` in ``X^m/m! = (1/m) X · X^{m-1}/(m-1)!``, n ≥ m ≥ 1."""
         if m == 1:
             return self.X[n]
         total = self.algebra.zero
@@ -83,17 +87,26 @@ class Force:
         return total / m
 
     def append(self, X_n: fmpq_mpoly) -> None:
-        """Append the next term X_n to X, and Φ_n to Φ."""
+        """Append the next term ``X_n`` to X, and ``Φ_n`` to Φ."""
         self.Phi.append(X_n + self.nonlinear)
         self.X.append(X_n)
 
-    def increment(self, h: int, n: int) -> fmpq_mpoly:
-        """Coefficient of D^n in [F(p) + p F' Φ](x + hD) - [F(p) + p F' Φ](x), divided by p F'."""
+    def increment(
+        self,
+        h: int,
+        n: int,
+    ) -> fmpq_mpoly:
+        """Coefficient of ``D^n`` in the force at x + hD minus the force at x, over ``p F'``."""
         # F(p) adds h^n/n! ∂_x^n F(p) = h^n/n! ∂_x^{n-1} (p F' r_1), r_1 = p_x/p.
-        return self.Phi.increment(h, n) + self._slope.dx(0, n - 1) * taylor(h, n)
+        of_strain = self._slope.dx(0, n - 1) * taylor(h, n)
+        return self.Phi.increment(h, n) + of_strain
 
     def work(self, n: int) -> fmpq_mpoly:
-        """Coefficient of D^n in ∫ Φ dX = [W(p (1 + X)) - W(p) - p F(p) X] / (p² F'), W' = F."""
+        """Coefficient of ``D^n`` in the integral of Φ over X.
+
+        With the energy W of the contact it is ``[W(p (1 + X)) - W(p) - p F(p) X] / (p² F')``.
+        """
+        # The derivative by D is Φ ∂X/∂D, so that n times the coefficient is a sum of products.
         total = self.algebra.zero
         for j in range(1, n):
             total = total + j * self.X[j] * self.Phi[n - j]
@@ -104,12 +117,20 @@ class Force:
 class Solution:
     """Result of a closure: wave equation and displacement fields, as polynomials by order in D.
 
-    acceleration : E_n. Acoustic: φ_ττ = φ_x^k Σ_{n≥1} D^{n-1} E_n, E_1 = r_1 = φ_xx/φ_x.
-        Optical: u_ττ = -u^k Σ_{n≥0} D^n E_n, E_0 = 1, in its own time unit.
-    ansatz : b_n, n = 0 … order: the second particle's field is λ Σ b_n D^n ∂_x^n φ in the linear
-        closure, and has this linear part in the full one (polynomials in the parameters).
-    slaved : `fields`, from the full closure; else ().
-    defect : E_n from the first equation of motion minus E_n from the second, for the same ansatz.
+    Parameters
+    ----------
+    algebra : JetAlgebra
+    acceleration : tuple of elements
+        The ``E_n`` of the wave equation. On the acoustic branch it is
+        ``φ_ττ = φ_x^k Σ_{n≥1} D^{n-1} E_n``, ``E_1 = r_1``; on the optical one, in its own unit of
+        time, ``u_ττ = -u^k Σ_{n≥0} D^n E_n``, ``E_0 = 1``.
+    ansatz : tuple of elements
+        The numbers ``b_0 … b_order``. The second particle's field is ``λ Σ b_n D^n ∂_x^n φ`` in the
+        linear closure, and has this linear part in the full one.
+    slaved : tuple of tuples of elements
+        The `fields` of the full closure; else ().
+    defect : tuple of elements
+        The ``E_n`` of the first equation of motion minus those of the second.
     """
 
     algebra: JetAlgebra
@@ -120,14 +141,18 @@ class Solution:
 
     @property
     def fields(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
-        """Polynomials S_0, S_1, … of each field w_i = φ + D φ_x Σ D^n S_n (acoustic branch)."""
+        """Polynomials ``S_0, S_1, …`` of each field ``w_i = φ + D φ_x Σ D^n S_n`` (acoustic)."""
         if self.slaved:
             return self.slaved
+        # In the linear closure φ is the first particle's field.
         first = (self.algebra.zero,) * len(self.acceleration)
         if not self.ansatz:
             return (first,)
-        linear = zip(self.ansatz[1:], self.algebra.r, strict=False)
-        return first, tuple(b * r for b, r in linear)
+        second = []
+        # b_n D^n ∂_x^n φ = D φ_x (b_n D^{n-1} r_{n-1}); the algebra's last r_n belong to the rest.
+        for b, r in zip(self.ansatz[1:], self.algebra.r, strict=False):
+            second.append(b * r)
+        return first, tuple(second)
 
 
 def full(
@@ -135,7 +160,7 @@ def full(
     field: FieldName = "first",
     progress: Progress[int] = iter,
 ) -> Solution:
-    """Find the closure that satisfies all equations of motion, to D^order in all fields."""
+    """Find the closure that satisfies all equations of motion, to ``D^order`` in all fields."""
     chain = _Slaving(model, field)
     for n in progress(range(1, model.order)):
         chain.extend(n)
@@ -153,14 +178,24 @@ def full(
 class _Slaving:
     """Solver of the full closure, one order of D at a time.
 
-    x : places x_i = C_0 + … + C_{i-1} of the particles at rest.
-    weights : the g_i of the mean φ(x) = Σ g_i w_i(x - x_i D).
-    E : the terms of the wave equation.
-    S, rates : the series S and ∂_τ (D φ_x S) of each field w = φ + D φ_x S.
-    forces : the forces of the contacts.
+    Attributes
+    ----------
+    x : list of elements
+        Places ``x_i = C_0 + … + C_{i-1}`` of the particles at rest.
+    weights : list of elements
+        The weights ``g_i`` of the mean ``φ(x) = Σ g_i w_i(x - x_i D)``.
+    E : GradedSeries
+        The terms of the wave equation.
+    S, rates : lists of GradedSeries
+        The series S and ``∂_τ (D φ_x S)`` of each field ``w = φ + D φ_x S``.
+    forces : list of Force
     """
 
-    def __init__(self, model: Model, field: FieldName) -> None:
+    def __init__(
+        self,
+        model: Model,
+        field: FieldName,
+    ) -> None:
         self.algebra = algebra = model.algebra(model.order - 1)
         self.order = model.order
         self.size = model.cell.size
@@ -176,24 +211,30 @@ class _Slaving:
             self.forces.append(Force(algebra))
 
     def extend(self, n: int) -> None:
-        """Append the terms in D^n of wave equation E, strains X, forces Φ and fields S."""
+        """Append the terms in ``D^n`` of wave equation E, strains X, forces Φ and fields S."""
         accelerations = [rate.dt(self.E, n) for rate in self.rates]
         # The rates of the last order would enter the next one.
         if n + 1 < self.order:
             for rate, S in zip(self.rates, self.S, strict=True):
                 rate.append(S.dt(self.E, n))
-        # Momentum: in the sum of the equations of motion only the end forces remain.
-        E_n = -self.forces[-1].increment(-self.size, n) / self.size
+        # Momentum: in the sum of the equations of motion only the end forces remain, those of the
+        # last contact and of the same contact one cell before.
+        outside = self.forces[-1].increment(-self.size, n)
+        E_n = -outside / self.size
         for mu, acceleration in zip(self.algebra.mu, accelerations, strict=True):
             E_n = E_n - mu * acceleration
         self.E.append(E_n)
         self._append_strains(n, accelerations)
         self._append_fields(n)
 
-    def _append_strains(self, n: int, accelerations: list[fmpq_mpoly]) -> None:
-        """Append the term X_n of each contact's strain.
+    def _append_strains(
+        self,
+        n: int,
+        accelerations: list[fmpq_mpoly],
+    ) -> None:
+        """Append the term ``X_n`` of each contact's strain.
 
-        Φ_i - Φ_0 gives the differences of the strains, and the cell their sum.
+        The ``Φ_i - Φ_0`` give the differences of the strains, and the cell gives their sum.
         """
         P, c = self.size, self.algebra.c
         first = self.forces[0].nonlinear
@@ -203,6 +244,7 @@ class _Slaving:
             inertia = self.E[n] + accelerations[i]
             push = push + P * self.algebra.mu[i] * inertia
             differences.append(push + first - self.forces[i].nonlinear)
+        # The strains C_i (1 + X) sum to the difference of w_0 over a cell.
         total = self.algebra.shift(P, n) + self.S[0].increment(P, n)
         for share, difference in zip(c, differences, strict=True):
             total = total - share * difference
@@ -210,10 +252,11 @@ class _Slaving:
             force.append(total / P + difference)
 
     def _append_fields(self, n: int) -> None:
-        """Append S_n of each particle, by the definition φ(x) = Σ g_i w_i(x - x_i D)."""
+        """Append ``S_n`` of each particle, by the definition ``φ(x) = Σ g_i w_i(x - x_i D)``."""
         relative = [self.algebra.zero]  # S_n less that of the first particle
         for c, force in zip(self.algebra.c[:-1], self.forces, strict=False):
-            relative.append(relative[-1] + c * force.X[n])
+            strain = c * force.X[n]
+            relative.append(relative[-1] + strain)
         origin = self.algebra.zero
         for i, weight in enumerate(self.weights):
             h = -self.x[i]

@@ -446,7 +446,7 @@ def envelope(
     )
     number = _branch_number(branch, cell)
     # Elsewhere ω² is no rational function of masses and stiffnesses.
-    alike = len({*cell.masses}) == 1 or len({*cell.stiffnesses}) == 1
+    alike = len({*cell.masses}) == 1 or cell.equal_contacts
     edge = cell.size == 2 and (kappa.is_zero or (kappa == sp.pi and alike))
     exact = cell.size == 1 or edge
     return Envelope(cell, law, static, kappa, number, floats=not exact)

@@ -187,7 +187,10 @@ def _papers_order(jet: Jet) -> tuple[bool, int, Jet]:
     return bool(jet.t), -derivatives, jet
 
 
-def by_order(orders: Mapping[int, Terms], heading: str) -> list[str]:
+def by_order(
+    orders: Mapping[int, Terms],
+    heading: str,
+) -> list[str]:
     """Lines of text with the terms of each order n, under the heading ``heading.format(n)``."""
     lines = []
     for n, of_order in orders.items():

@@ -61,7 +61,11 @@ class Bloch:
         _, f = self._carried(none, one)
         return [a_m + f_m for a_m, f_m in zip(a, f, strict=True)]
 
-    def _carried(self, a: Polynomial, f: Polynomial) -> tuple[Polynomial, Polynomial]:
+    def _carried(
+        self,
+        a: Polynomial,
+        f: Polynomial,
+    ) -> tuple[Polynomial, Polynomial]:
         """Displacement and force (a, f) in the next cell, by the transfer matrix of a cell."""
         for mu, c in zip(self.mu, self.c, strict=True):
             shifted = [self.zero, *a[:-1]]  # Ω² a
@@ -98,7 +102,10 @@ class Bloch:
         return omega2
 
 
-def dispersion_of_chain(masses: Sequence[Any], shares: Sequence[Any]) -> Any:
+def dispersion_of_chain(
+    masses: Sequence[Any],
+    shares: Sequence[Any],
+) -> Any:
     """Coefficient I/D² in Ω² = κ² (1 - (I/D²) κ² + …) of a chain.
 
     Parameters

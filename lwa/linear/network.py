@@ -68,7 +68,11 @@ class Network(NamedTuple):
             row[bond.j % self.size] -= bond.cosine
         return rows
 
-    def acoustic(self, springs: Array, masses: Array) -> Acoustic:
+    def acoustic(
+        self,
+        springs: Array,
+        masses: Array,
+    ) -> Acoustic:
         """The acoustic branch; NaN where no particle is held.
 
         Parameters
@@ -123,7 +127,10 @@ class Network(NamedTuple):
         return parts
 
 
-def solved(matrix: Array, right: Array) -> Array:
+def solved(
+    matrix: Array,
+    right: Array,
+) -> Array:
     """Solve linear systems; NaN for a matrix that is singular or not finite.
 
     Parameters
