@@ -42,6 +42,11 @@ class Path(Protocol):
         """The ends of the steps, from 0 to the duration."""
         ...
 
+    @property
+    def motion(self) -> Motion:
+        """The equations of motion."""
+        ...
+
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]: ...
 
 
@@ -71,9 +76,9 @@ def _forces(
 
     The force of a bead is the mean of its two contacts; an end without a contact counts as 0.
     """
-    elastic = motion.stiffnesses[beads[:-1], None] * motion.contact.force(compressions)
-    damping, rate = motion.damping[beads[:-1]], v[:-1] - v[1:]
-    forces = motion.contact.damped(elastic, damping, compressions, rate)
+    contacts, rate = beads[:-1], v[:-1] - v[1:]
+    elastic = motion.force(compressions, contacts)
+    forces = motion.damped_force(elastic, compressions, rate, contacts)
     means = np.zeros(v.shape)
     means[1:] = forces
     means[:-1] += forces
@@ -153,14 +158,12 @@ class SensorSignal:
         return values
 
 
-def signal(
-    motion: Motion, path: Path, kind: str, number: int, quantity: str
-) -> SensorSignal:
+def signal(path: Path, kind: str, number: int, quantity: str) -> SensorSignal:
     """Return the signal of a quantity at a sensor of a run.
 
     Raises `SceneError` where the scene has no such sensor, or the sensor no such quantity.
     """
-    scene = motion.scene
+    motion, scene = path.motion, path.motion.scene
     one_of(kind, tuple(_QUANTITIES), "kind")
     one_of(quantity, _QUANTITIES[kind], "quantity")
     if number not in (

@@ -1,10 +1,11 @@
 """Integrals of a contact's force over a step in which the contact opens or closes.
 
-F has no derivative of order k + 1 where a contact opens or closes, and a quadrature that does not
-know the place errs by O(h^{k+1}). Over the step, x = 0 … 1, the compression is close to the quintic
-p(x) with the values of δ, δ' and δ'' at both ends. `integrals` integrates F(p, p') over the
-intervals in which the contact pushes (`find_intervals`), for unit stiffness, by Gauss's rule in u,
-x = z + (e - z) u^q, z the root of p at one end of the interval and e the other end, so that F is
+F has no derivative of order k + 1 where a contact opens or closes, and jumps there with some
+dampings and laws. A quadrature that does not know the place errs by O(h^{k+1}), or O(h). Over the
+step, x = 0 … 1, the compression is close to the quintic p(x) with the values of δ, δ' and δ'' at
+both ends. `integrals` integrates F(p, p') between the places at which the contact opens, closes,
+or begins or ceases to be damped (`find_edges`), for unit stiffness, by Gauss's rule in u,
+x = z + (e - z) u^q, z the root of p at one end of an interval and e the other end, so that F is
 smooth in u.
 
 A damped contact that is pulled open can stop pushing before it parts: the force tells, not δ.
@@ -13,68 +14,38 @@ A damped contact that is pulled open can stop pushing before it parts: the force
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
 from lwa.base.arrays import Array
-from validation.lattice.kernel.arrays import Law
-from validation.lattice.kernel.compiled import call, index, part, summed
+from validation.lattice.kernel.compiled import alone, call, index, part
+from validation.lattice.kernel.force import drag, elastic, push
 
 Quintic = tuple[float, float, float, float, float, float]
 """Coefficients c0 … c5 of p."""
 
 POINTS = 12  # of the rule: three of the machine's vectors
+ROOM = 16  # places of a step: points of the rule, or stages of a pair
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(POINTS)
 _U, _W = (1 + _NODES) / 2, _WEIGHTS / 2
 _PLACES = 8  # parts of a step at whose ends a contact is looked at
+# Each part has at most one turning point of p, and on both sides of it a contact that closes or
+# opens and begins or ceases to be damped; beside these the step's ends.
+EDGES = 4 * _PLACES + 2
+# Width at which the search for a place ends: at 1e-10 the energy lost errs by 15 times an rtol of
+# 1e-11.
+_CLOSE = 1e-13
 
 
 @part
-def elastic(law: Law, d: float) -> float:
-    """Return the elastic force F(d) at a compression d ≥ 0."""
-    if law.generated:
-        return float(call(law.force, d))
-    return float(d * np.sqrt(d) if law.k == 1.5 else (d if law.k == 1.0 else d**law.k))
-
-
-@part
-def drag(law: Law, d: float) -> float:
-    """Return the factor d^p of r dδ/dt in the damping force, at a compression d ≥ 0."""
-    if law.p == 0.0:
-        return 1.0
-    if law.p == 0.25:  # of a constant coefficient of restitution of Hertzian contacts
-        return float(np.sqrt(np.sqrt(d)))
-    return float(np.sqrt(d) if law.p == 0.5 else d**law.p)
-
-
-@part
-def push(law: Law, r: float, d: float, rate: float) -> float:
-    """Return the force at a compression d and a rate dδ/dt; contacts do not pull."""
-    if not d > 0.0:
-        return 0.0
-    return (
-        max(elastic(law, d) + r * drag(law, d) * rate, 0.0)
-        if r > 0.0
-        else elastic(law, d)
-    )
-
-
-@part
-def pushes(law: Law, r: float, d: float, rate: float) -> bool:
-    """Return True if a contact has a force at a compression d and a rate dδ/dt."""
-    return d > 0.0 and (not r > 0.0 or elastic(law, d) + r * drag(law, d) * rate > 0.0)
-
-
-@part
-def stored(law: Law, d: float) -> float:
+def stored(law: Any, d: float) -> float:
     """Return the elastic energy; 0 for d ≤ 0."""
     if not d > 0.0:
         return 0.0
-    return (
-        float(call(law.energy, d))
-        if law.generated
-        else elastic(law, d) * d / (law.k + 1.0)
-    )
+    if law.generated:
+        return float(call(law.energy, d))
+    return elastic(law, d) * d / (law.k + 1.0)
 
 
 @part
@@ -92,49 +63,108 @@ def fitted_quintic(
     c2 = a / 2
     # c3, c4 and c5 solve the conditions at x = 1, of which d, v and c2 leave r0, r1 and r2.
     r0, r1, r2 = end - d - v - c2, end_v - v - 2 * c2, end_a - 2 * c2
-    return (
-        d,
-        v,
-        c2,
-        10 * r0 - 4 * r1 + r2 / 2,
-        -15 * r0 + 7 * r1 - r2,
-        6 * r0 - 3 * r1 + r2 / 2,
-    )
+    c3 = 10 * r0 - 4 * r1 + r2 / 2
+    c4 = -15 * r0 + 7 * r1 - r2
+    c5 = 6 * r0 - 3 * r1 + r2 / 2
+    return d, v, c2, c3, c4, c5
 
 
 @part
-def _margin(law: Law, r: float, c: Quintic, h: float, x: float, closing: bool) -> float:
-    """Return a continuous function of x which is positive where the contact pushes.
+def _margin(law: Any, r: float, c: Quintic, h: float, x: float) -> float:
+    """Return a continuous function of x which is positive where a contact is damped.
 
-    closing : True for a contact that closes; otherwise the contact ends to push, or pushes again.
+    Without damping, r = 0, the function is p.
     """
     p, slope = value_and_slope(c, x)
-    if closing or not r > 0.0:
+    if not r > 0.0:
         return p
-    return (elastic(law, p) / (r * drag(law, p)) if p > 0.0 else 0.0) + slope / h
+    push_apart = max(elastic(law, p), 0.0) / (r * drag(law, p)) if p > 0.0 else 0.0
+    return push_apart + slope / h
 
 
-@part
-def change(
-    law: Law, r: float, c: Quintic, h: float, a: float, b: float, closing: bool
-) -> float:
-    """Return the place between a and b at which the contact begins or ends to push."""
-    # A contact that pushes again before it has parted does so by its force.
-    closing = closing and not value_and_slope(c, a)[0] > 0.0
-    left, right = _margin(law, r, c, h, a, closing), _margin(law, r, c, h, b, closing)
+@alone
+def _crossing(law: Any, r: float, c: Quintic, h: float, a: float, b: float) -> float:
+    """Return the place between a and b at which `_margin` changes its sign."""
+    left, right = _margin(law, r, c, h, a), _margin(law, r, c, h, b)
     for _ in range(60):  # the Illinois variant of the rule of false position
-        x = b - right * (b - a) / (right - left) if right != left else 0.5 * (a + b)
-        if (
-            abs(x - b) < 1e-13
-        ):  # at 1e-10 the energy lost errs by 15 times an rtol of 1e-11
+        x = 0.5 * (a + b)
+        if right != left:
+            x = b - right * (b - a) / (right - left)
+        if abs(x - b) < _CLOSE:
             return x
-        middle = _margin(law, r, c, h, x, closing)
+        middle = _margin(law, r, c, h, x)
         if middle * right < 0.0:
             a, left = b, right
         else:
             left *= 0.5
         b, right = x, middle
     return b
+
+
+@part
+def _turning_point(c: Quintic, a: float, b: float) -> float:
+    """Return the place between a and b at which the slope of p changes its sign."""
+    _, slope = value_and_slope(c, a)
+    for _ in range(30):
+        x = 0.5 * (a + b)
+        _, middle = value_and_slope(c, x)
+        if middle * slope > 0.0:
+            a = x
+        else:
+            b = x
+    return 0.5 * (a + b)
+
+
+@alone
+def _add_edges(
+    law: Any, r: float, c: Quintic, h: float, a: float, b: float, edges: Array, n: int
+) -> int:
+    """Add the edges between a and b, where p is monotonic; return the number of edges so far."""
+    before, _ = value_and_slope(c, a)
+    after, _ = value_and_slope(c, b)
+    closes, opens = before <= 0.0 and after > 0.0, before > 0.0 and after <= 0.0
+    root = b
+    if closes or opens:
+        root = _crossing(law, 0.0, c, h, a, b)
+    if closes:
+        edges[n] = a = root
+        n += 1
+    if r > 0.0 and max(before, after) > 0.0:
+        end = root if opens else b
+        if _margin(law, r, c, h, a) * _margin(law, r, c, h, end) < 0.0:
+            edges[n] = _crossing(law, r, c, h, a, end)
+            n += 1
+    if opens:
+        edges[n] = root
+        n += 1
+    return n
+
+
+@alone
+def find_edges(
+    law: Any, r: float, c: Quintic, h: float, edges: Array
+) -> tuple[int, float]:
+    """Return the number of intervals of a step in which F(p, p'/h) is smooth, and the greatest p.
+
+    The places between the intervals, 0 and 1 among them, go to ``edges``.
+    """
+    n, low, before, rise, top = 1, 0.0, c[0], c[1], c[0]
+    edges[0] = 0.0
+    for m in range(1, _PLACES + 1):
+        high = m / _PLACES
+        after, end_rise = value_and_slope(c, high)
+        touches = before <= 0.0 and after <= 0.0 and rise > 0.0 and end_rise < 0.0
+        parts = before > 0.0 and after > 0.0 and rise < 0.0 and end_rise > 0.0
+        if touches or parts:
+            turn = _turning_point(c, low, high)
+            n = _add_edges(law, r, c, h, low, turn, edges, n)
+            n = _add_edges(law, r, c, h, turn, high, edges, n)
+            top = max(top, value_and_slope(c, turn)[0])
+        else:
+            n = _add_edges(law, r, c, h, low, high, edges, n)
+        low, before, rise, top = high, after, end_rise, max(top, after)
+    edges[n] = 1.0
+    return n, top
 
 
 @part
@@ -158,111 +188,69 @@ def _root(c: Quintic, x: float, side: float) -> float:
     return math.nan
 
 
-@summed
-def forces_along(law: Law, r: float, c: Quintic, h: float, x: Array, f: Array) -> None:
+@part
+def forces_along(
+    law: Any, r: float, c: Quintic, h: float, x: Array, f: Array, count: int
+) -> None:
     """Compute the forces of a contact with the compression p at places x; they go to f."""
-    if law.k == 1.5 and law.p in (0.0, 0.25, 0.5) and not law.generated:  # vectorises
-        for m in range(index(len(x))):
-            p, slope = value_and_slope(c, x[m])
-            d = p if p > 0.0 else 0.0
-            root = np.sqrt(d)
-            resistance = (
-                root if law.p == 0.5 else (1.0 if law.p == 0.0 else np.sqrt(root))
-            )
-            force = d * root + r * resistance * slope / h
-            f[m] = force if (force > 0.0) & (p > 0.0) else 0.0
-    else:
-        for m in range(index(len(x))):
-            p, slope = value_and_slope(c, x[m])
-            f[m] = push(law, r, p, slope / h)
+    for m in range(index(count)):
+        p, slope = value_and_slope(c, x[m])
+        f[m] = push(law, r, p, slope / h)
 
 
 @part
-def _summit(c: Quintic, a: float, b: float) -> float:
-    """Return the place of the maximum of p between a and b, where p first rises and then falls."""
-    for _ in range(30):
-        x = 0.5 * (a + b)
-        a, b = (x, b) if value_and_slope(c, x)[1] > 0.0 else (a, x)
-    return 0.5 * (a + b)
+def _place_points(
+    q: float, zero: float, near: float, far: float, points: Array
+) -> None:
+    """Place Gauss's rule in u between near and far; x = zero + (far - zero) u^q, q = 1, 2 or 4."""
+    span = far - zero
+    start = (near - zero) / span
+    if q > 1.0:
+        start = math.sqrt(start) if q == 2.0 else math.sqrt(math.sqrt(start))
+    scale = abs(span) * (1.0 - start)
+    for m in range(index(POINTS)):
+        u = start + (1.0 - start) * _U[m]
+        pace = 1.0 if q == 1.0 else (2.0 * u if q == 2.0 else 4.0 * u * u * u)
+        points[0, m], points[1, m] = zero + span * u * pace / q, scale * _W[m] * pace
 
 
-@part
-def find_intervals(
-    law: Law, r: float, c: Quintic, h: float, points: Array
-) -> tuple[int, float]:
-    """Return the number of intervals of a step in which the contact pushes, and the greatest p.
-
-    F(p, p'/h) is the force of a contact whose compression is the quintic with coefficients c.
-    Begins, ends, and the roots at both go to rows 4 … 7 of ``points``.
-    """
-    count, start, top, before, rise = 0, 0.0, c[0], c[0], c[1]
-    pushed = pushes(law, r, before, rise / h)
-    for m in range(1, _PLACES + 1):
-        low, high = (m - 1) / _PLACES, m / _PLACES
-        p, slope = value_and_slope(c, high)
-        now = pushes(law, r, p, slope / h)
-        # A contact can close, and open or cease to push, between two places.
-        within, peak = (
-            not now and before <= 0.0 and rise > 0.0 and (p > 0.0 or slope < 0.0),
-            high,
-        )
-        if within and not p > 0.0:
-            peak = _summit(c, low, high)
-            deepest, _ = value_and_slope(c, peak)
-            within, top = deepest > 0.0, max(top, deepest)
-        if within or (now and not pushed):
-            start = change(law, r, c, h, low, peak, True)
-        opens = within or (pushed and not now)
-        if opens or (now and m == _PLACES):
-            end = 1.0
-            if opens:
-                first = low if pushed else (start if p > 0.0 else peak)
-                end = change(law, r, c, h, first, high, False)
-            points[4, count], points[5, count] = start, end
-            points[6, count] = (
-                start if start > 0.0 and not r > 0.0 else _root(c, start, -1.0)
-            )
-            points[7, count] = end if end < 1.0 and not r > 0.0 else _root(c, end, 1.0)
-            count += 1
-        pushed, before, rise, top = now, p, slope, max(top, p)
-    return count, top
-
-
-@summed
+@alone
 def integrals(
-    law: Law, r: float, c: Quintic, h: float, until: float, count: int, points: Array
+    law: Any,
+    r: float,
+    c: Quintic,
+    h: float,
+    until: float,
+    points: Array,
+    edges: Array,
+    count: int,
 ) -> tuple[float, float, float, float]:
     """Return ∫ F, ∫ (1 - x) F, ∫ (1 - x)²/2 F and ∫ F p' over a step up to x = until.
 
-    The intervals in which the contact pushes are those of `find_intervals`, ``count`` of them.
+    edges, count : the ``count`` intervals of `find_edges`.
     """
     x, w, f = points[0], points[1], points[2]
     once = twice = third = work = 0.0
     for n in range(count):
-        a, b, low, high = (
-            points[4, n],
-            min(points[5, n], until),
-            points[6, n],
-            points[7, n],
-        )
-        if not a < b:
+        a, b = edges[n], edges[n + 1]
+        p, slope = value_and_slope(c, 0.5 * (a + b))
+        if not a < min(b, until) or push(law, r, p, slope / h) == 0.0:
             continue
-        middle = b if math.isnan(high) else (a if math.isnan(low) else 0.5 * (a + b))
-        for near, far, root in ((a, middle, low), (b, middle, high)):
+        low, high, b = _root(c, a, -1.0), _root(c, b, 1.0), min(b, until)
+        middle = 0.5 * (a + b)
+        if math.isnan(high):
+            middle = b
+        elif math.isnan(low):
+            middle = a
+        for near, far, zero in ((a, middle, low), (b, middle, high)):
             if near == far:
                 continue
-            q, zero = (1.0, near) if math.isnan(root) else (law.q, root)
-            span = far - zero
-            start = (near - zero) / span
-            if q > 1.0:
-                start = np.sqrt(start) if q == 2.0 else np.sqrt(np.sqrt(start))
-            scale = abs(span) * (1.0 - start)
-            for m in range(index(len(x))):
-                u = start + (1.0 - start) * _U[m]
-                pace = 1.0 if q == 1.0 else (2.0 * u if q == 2.0 else 4.0 * u * u * u)
-                x[m], w[m] = zero + span * u * pace / q, scale * _W[m] * pace
-            forces_along(law, r, c, h, x, f)
-            for m in range(index(len(x))):
+            if math.isnan(zero):
+                _place_points(1.0, near, near, far, points)
+            else:
+                _place_points(law.q, zero, near, far, points)
+            forces_along(law, r, c, h, x, f, POINTS)
+            for m in range(index(POINTS)):
                 force, left = w[m] * f[m], 1.0 - x[m]
                 once += force
                 twice += left * force

@@ -19,11 +19,22 @@ from typing import Any
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel import kinks
-from validation.lattice.kernel.arrays import TILE, Beads, Chain, Plan
-from validation.lattice.kernel.compiled import ONE, ZERO, index, inlined, part, summed
+from validation.lattice.kernel.arrays import TILE, Beads, Chain, Plan, Sums
+from validation.lattice.kernel.compiled import (
+    ONE,
+    ZERO,
+    alone,
+    index,
+    inlined,
+    part,
+    summed,
+)
 from validation.lattice.kernel.force import (
     contact_forces,
+    drag,
     drive_motion,
+    elastic,
+    push,
     stiffness,
     tile_bounds,
 )
@@ -34,81 +45,106 @@ _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the t
 # _VERY_NEAR, as the pair's own error is smaller there. Measured: _NEAR for all takes a tenth more
 # time for equal beads, _VERY_NEAR for all a quarter more for dimers at small tolerances.
 _NEAR, _VERY_NEAR, _STRONG = 0.3, 0.03, 1e3
-_JUMP = 0.25  # least effect of a jump at which a step ends, in units of the tolerance
 # Step-size control of Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.4.
-# An error scales as h^{lower + 1}. The next step is _SAFETY times the step with an error equal to
-# the tolerance, as a rejected step costs as much as an accepted one. _GROWTH bounds the effect of
-# an error that is small by chance, _SHRINKAGE that of an error too large for the power. Measured on
+# An error scales as h^order. The next step is _SAFETY times the step with an error equal to the
+# tolerance, as a rejected step costs as much as an accepted one. _GROWTH bounds the effect of an
+# error that is small by chance, _SHRINKAGE that of an error too large for the power. Measured on
 # nine scenes at 1e-6 … 1e-10: the work for the same error is the same to 4 % for a safety of 0.8 to
 # 0.95 and a growth of 1.5 to 10; a safety of 0.7 costs 8 % more, 0.98 costs 11 % more.
 _SAFETY, _GROWTH, _SHRINKAGE = 0.9, 5.0, 0.1
-_HOPELESS = (
-    1e9  # in units of the tolerance: the power says nothing of such an error, or of NaN
-)
+# In units of the tolerance: the power says nothing of such an error, or of NaN.
+_HOPELESS = 1e9
+# A third solution of low order, where a pair has one, weighs so much in the estimate of the error
+# (Hairer, Nørsett and Wanner, II.10).
+_THIRD = 0.01
 
 
 @part
-def _add_up(
-    sums: Array,
-    q: Any,
-    force: Array,
-    row: Array,
+def _move(
+    target: Array,
+    base: Array,
+    rate: Array,
+    time: float,
     scale: float,
-    stages: int,
+    table: Sums,
+    row: int,
+    push: Array,
     lo: int,
     hi: int,
 ) -> None:
-    """Compute a weighted sum of forces, sums[q] = scale Σ_j row[j] force[j], 0 ≤ j < ``stages``."""
-    # One pass over four rows or over all nine: the weights of stages that are still to come are 0.
-    a, b, c, d = scale * row[0], scale * row[1], scale * row[2], scale * row[3]
-    if stages <= 4:
-        for i in range(index(lo) + ONE, index(hi) + ONE):
-            first = a * force[ZERO, i] + b * force[ONE, i]
-            sums[q, i] = first + (c * force[index(2), i] + d * force[index(3), i])
+    """Compute target = base + time rate + scale Σ_j weights[row, j] push[stages[row, j]].
+
+    One pass adds four stages, or nine of them: each pass reads and writes all beads.
+    """
+    stages, weights, count = table.stages[row], table.weights[row], table.counts[row]
+    if count <= 4:
+        i1, i2 = index(stages[0]), index(stages[1])
+        i3, i4 = index(stages[2]), index(stages[3])
+        w1, w2 = scale * weights[0], scale * weights[1]
+        w3, w4 = scale * weights[2], scale * weights[3]
+        for i in range(index(lo), index(hi)):
+            first = w1 * push[i1, i] + w2 * push[i2, i]
+            second = w3 * push[i3, i] + w4 * push[i4, i]
+            target[i] = base[i] + time * rate[i] + (first + second)
         return
-    e, f, g = scale * row[4], scale * row[5], scale * row[6]
-    k, m = scale * row[7], scale * row[8]
-    for i in range(index(lo) + ONE, index(hi) + ONE):
-        first = a * force[ZERO, i] + b * force[ONE, i] + c * force[index(2), i]
-        second = (
-            d * force[index(3), i] + e * force[index(4), i] + f * force[index(5), i]
-        )
-        third = g * force[index(6), i] + k * force[index(7), i] + m * force[index(8), i]
-        sums[q, i] = first + second + third
+    for j in range(0, count, 9):
+        i1, i2, i3 = index(stages[j]), index(stages[j + 1]), index(stages[j + 2])
+        i4, i5, i6 = index(stages[j + 3]), index(stages[j + 4]), index(stages[j + 5])
+        i7, i8, i9 = index(stages[j + 6]), index(stages[j + 7]), index(stages[j + 8])
+        w1, w2, w3 = scale * weights[j], scale * weights[j + 1], scale * weights[j + 2]
+        w4, w5 = scale * weights[j + 3], scale * weights[j + 4]
+        w6, w7 = scale * weights[j + 5], scale * weights[j + 6]
+        w8, w9 = scale * weights[j + 7], scale * weights[j + 8]
+        for i in range(index(lo), index(hi)):
+            first = w1 * push[i1, i] + w2 * push[i2, i] + w3 * push[i3, i]
+            second = w4 * push[i4, i] + w5 * push[i5, i] + w6 * push[i6, i]
+            third = w7 * push[i7, i] + w8 * push[i8, i] + w9 * push[i9, i]
+            target[i] = base[i] + time * rate[i] + (first + second + third)
+        base, time = target, 0.0
 
 
 @summed
-def _integral(row: Array, power: Array) -> float:
-    """Return Σ row[s] power[s] over the stages s."""
+def _integral(row: Array, values: Array) -> float:
+    """Return Σ row[s] values[s] over the stages s."""
     total = 0.0
     for s in range(index(len(row))):
-        total += row[s] * power[s]
+        total += row[s] * values[s]
     return total
 
 
-@part
-def _fitted(
-    chain: Chain, beads: Beads, h: float, last: int, i: int, opened: bool
-) -> kinks.Quintic:
-    """Return the quintic fit of contact i's compression over a step.
+@alone
+def settle(chain: Chain, beads: Beads, first: int, last: int, sign: float) -> None:
+    """Compute the forces of contacts first … last, and the accelerations, at the end of the step.
 
-    last : the stage at the step's end. opened : True for a fit without the contact's own force at
-    the end.
+    sign : 1.0 adds the power that the contacts dissipate to that of the chain, -1.0 takes it away,
+    before a correction changes it.
     """
-    y, v, f, inverse, rest = beads.y, beads.v, beads.force, chain.inverse, chain.rest
-    end = rest[i] + beads.next_y[i] - beads.next_y[i + 1]
-    end_rate = beads.next_v[i] - beads.next_v[i + 1]
-    own = (
-        0.0 if opened else chain.A[i] * kinks.push(chain.law, chain.r[i], end, end_rate)
-    )
-    own -= chain.load[i]
-    a = (f[0, i] - f[0, i + 1]) * inverse[i] - (f[0, i + 1] - f[0, i + 2]) * inverse[
-        i + 1
-    ]
-    end_a = (f[last, i] - own) * inverse[i] - (own - f[last, i + 2]) * inverse[i + 1]
+    stage, force, inverse = len(beads.push) - 1, beads.force[1], chain.inverse
+    first = max(0, first)
+    for n in range(first, last + 1):
+        law, A = chain.laws[chain.law[n]], chain.A[n]
+        d = chain.rest[n] + beads.next_y[n] - beads.next_y[n + 1]
+        rate = beads.next_v[n] - beads.next_v[n + 1]
+        total = push(law, chain.r[n], d, rate)
+        force[n + 1] = A * total - chain.load[n]
+        beads.power[0, stage] += sign * A * (total - elastic(law, d)) * rate
+    for j in range(first, last + 2):
+        beads.push[stage, j] = (force[j] - force[j + 1]) * inverse[j]
+    if chain.drive.driven:
+        beads.power[1, stage] = beads.next_v[0] * force[1]
+
+
+@part
+def _fitted(chain: Chain, beads: Beads, h: float, i: int) -> kinks.Quintic:
+    """Return the quintic fit of contact i's compression over a step."""
+    y, v, push, last = beads.y, beads.v, beads.push, len(beads.push) - 1
+    next_y, next_v = beads.next_y, beads.next_v
+    a, end_a = push[0, i] - push[0, i + 1], push[last, i] - push[last, i + 1]
     if i == 0:
         a, end_a = a + beads.given[0], end_a + beads.given[1]
-    d, rate = rest[i] + y[i] - y[i + 1], v[i] - v[i + 1]
+    d, rate = chain.rest[i] + y[i] - y[i + 1], v[i] - v[i + 1]
+    end = chain.rest[i] + next_y[i] - next_y[i + 1]
+    end_rate = next_v[i] - next_v[i + 1]
     return kinks.fitted_quintic(
         d, h * rate, h * h * a, end, h * end_rate, h * h * end_a
     )
@@ -117,136 +153,85 @@ def _fitted(
 @inlined
 def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -> None:
     """Correct a step for the pair's error at contact i, which opens or closes."""
-    pair, last, inverse = plan.scheme, len(plan.scheme.moments) - 1, chain.inverse
-    A, r, law, p = (
-        chain.A[i],
-        chain.r[i],
-        chain.law,
-        _fitted(chain, beads, h, last, i, False),
-    )
-    count, top = kinks.find_intervals(law, r, p, h, beads.points)
-    once, twice, third, work = kinks.integrals(law, r, p, h, 1.0, count, beads.points)
-    force = beads.points[2]
-    kinks.forces_along(law, r, p, h, pair.nodes, force)
-    once = A * (once - _integral(pair.impulses[last], force))
-    twice = A * (twice - _integral(pair.moments[last], force))
-    third = A * (third - _integral(pair.thirds, force))
-    error, error_once = (
-        _integral(pair.errors[0], force),
-        _integral(pair.errors[1], force),
-    )
+    pair, last, inverse = plan.scheme, len(beads.push) - 1, chain.inverse
+    A, r, law = chain.A[i], chain.r[i], chain.laws[chain.law[i]]
+    points, edges = beads.points, beads.edges
+    p = _fitted(chain, beads, h, i)
+    count, top = kinks.find_edges(law, r, p, h, edges)
+    once, twice, third, work = kinks.integrals(law, r, p, h, 1.0, points, edges, count)
+    force = points[2]
+    kinks.forces_along(law, r, p, h, pair.nodes, force, last + 1)
+    impulse = h * A * (once - _integral(pair.impulses[last], force))
+    moment = h * h * A * (twice - _integral(pair.moments[last], force))
+    third = h * h * h * A * (third - _integral(pair.thirds, force))
+    for q in range(len(pair.errors)):
+        scale = h * h * A / plan.y if q % 2 == 0 else h * A / plan.v
+        seen = scale * _integral(pair.errors[q], force)
+        beads.errors[q, i] += seen * inverse[i]
+        beads.errors[q, i + 1] -= seen * inverse[i + 1]
+    reach = 2 if chain.damped else 1  # contacts whose force the correction changes
+    settle(chain, beads, i - reach, i + reach, -1.0)
     if chain.damped:
         end, _ = kinks.value_and_slope(p, 1.0)
         heat = work - kinks.stored(law, end) + kinks.stored(law, p[0])
         for s in range(last + 1):
             d, slope = kinks.value_and_slope(p, pair.nodes[s])
-            lost = (force[s] - (kinks.elastic(law, d) if d > 0.0 else 0.0)) * slope
+            lost = (force[s] - elastic(law, d)) * slope
             heat -= pair.impulses[last, s] * lost
-            beads.corrections[1] += A * pair.errors[1, s] * lost
-        beads.corrections[0] += A * heat
-    impulse, moment = h * once, h * h * twice
+            beads.books[1] += A * pair.errors[1, s] * lost
+        beads.books[0] += A * heat
     beads.next_v[i] -= impulse * inverse[i]
     beads.next_v[i + 1] += impulse * inverse[i + 1]
     beads.next_y[i] -= moment * inverse[i]
     beads.next_y[i + 1] += moment * inverse[i + 1]
-    beads.sums[2, i + 1] -= h * h * A * error / plan.y
-    beads.sums[3, i + 1] -= h * A * error_once / plan.v
     if i == 0 and chain.drive.driven:
         # ∫ ΔF v dt with v = next_v - (1 - x) h a + (1 - x)²/2 h² da/dt, a at the step's end.
-        change = h * h * third * (beads.given[1] - beads.given[0])
-        beads.corrections[2] = (
-            impulse * beads.next_v[0] - moment * beads.given[1] + change
-        )
-        beads.corrections[3] = h * A * error_once * beads.next_v[0]
+        change = third * (beads.given[1] - beads.given[0]) / h
+        beads.books[2] = impulse * beads.next_v[0] - moment * beads.given[1] + change
+        beads.books[3] = h * A * _integral(pair.errors[1], force) * beads.next_v[0]
     for n in range(max(0, i - 1), i + 2):
         both = inverse[i] + inverse[i + 1] if n == i else -inverse[max(i, n)]
-        d = top if n == i else chain.rest[n] + beads.next_y[n] - beads.next_y[n + 1]
-        closed = n == i or beads.force[last, n + 1] + chain.load[n] > 0.0
-        if d > 0.0 and chain.A[n] > 0.0 and closed:
-            more = -chain.A[n] * stiffness(law, d) * h * h * h * third * both
-            if chain.damped:
-                more -= chain.A[n] * chain.r[n] * kinks.drag(law, d) * moment * both
+        d = chain.rest[n] + beads.next_y[n] - beads.next_y[n + 1]
+        if n == i:
+            d = top
+        closed = n == i or beads.force[1, n + 1] + chain.load[n] > 0.0
+        if d > 0.0 and closed:
+            other = chain.laws[chain.law[n]]
+            more = -chain.A[n] * stiffness(other, d) * third * both
+            if chain.r[n] > 0.0:
+                more -= chain.A[n] * chain.r[n] * drag(other, d) * moment * both
             if n != i:
                 beads.next_v[n] -= more * inverse[n]
                 beads.next_v[n + 1] += more * inverse[n + 1]
-            missed = abs(more) / plan.v
-            beads.sums[3, n + 1] += missed if beads.sums[3, n + 1] > 0.0 else -missed
-
-
-@inlined
-def place_of_jump(
-    chain: Chain, beads: Beads, plan: Plan, h: float, hi: int
-) -> tuple[float, int]:
-    """Return the share of a step up to just behind the first closing whose jump matters, or 1.
-
-    Contacts that close at the end of the step are counted, and marked in row 4 of ``beads.sums``:
-    the step sees them open throughout.
-    """
-    place, count, last = 1.0, 0, len(plan.scheme.moments) - 1
-    for i in range(hi):
-        before = chain.rest[i] + beads.y[i] - beads.y[i + 1]
-        after = chain.rest[i] + beads.next_y[i] - beads.next_y[i + 1]
-        beads.sums[4, i + 1] = 0.0
-        if before <= 0.0 and after > 0.0 and chain.A[i] > 0.0:
-            p = _fitted(chain, beads, h, last, i, True)
-            x = kinks.change(chain.law, chain.r[i], p, h, 0.0, 1.0, True)
-            _, slope = kinks.value_and_slope(p, x)
-            jump = chain.A[i] * chain.r[i] * abs(slope)  # h times the jump of the force
-            jump *= max(chain.inverse[i], chain.inverse[i + 1])
-            behind = (
-                2.0 * _JUMP * plan.v / (jump + 1e-300)
-            )  # share of a step in which it counts
-            if 1.0 - x > behind:
-                # In a step that errs the fit says little: the place is looked for once more.
-                place = min(place, max(x + 0.5 * behind, _SHRINKAGE))
-            else:
-                beads.sums[4, i + 1], beads.force[last, i + 1] = 1.0, -chain.load[i]
-                count += 1
-    return place, count
+            missed = more / plan.v
+            beads.books[4] += missed * missed * (inverse[n] ** 2 + inverse[n + 1] ** 2)
+    settle(chain, beads, i - reach, i + reach, 1.0)
 
 
 @inlined
 def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int:
     """Estimate a step's errors, and mark contacts with kinks, with a force that matters.
 
-    Returns the number of marks, which are in row 0 of ``beads.sums``.
+    Returns the number of marks, which are in ``beads.marks``.
     """
-    pair, last = plan.scheme, len(plan.scheme.moments) - 1
-    beads.corrections[:] = 0.0
-    y, v, next_y, next_v, rest = (
-        beads.y,
-        beads.v,
-        beads.next_y,
-        beads.next_v,
-        chain.rest,
-    )
-    marks, jumped, load = beads.sums[0], beads.sums[4], chain.load
-    start, end = beads.force[0], beads.force[last]
-    least = (
-        _SLIGHT * plan.v * plan.lightest / h
-    )  # a force F changes a velocity by h F/m
+    stages, still = len(beads.push), beads.still
+    y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
+    rest, load, opens, marks = chain.rest, chain.load, chain.opens, beads.marks
+    start, end = beads.force[0], beads.force[1]
+    # A force F changes a velocity by h F/m.
+    least = _SLIGHT * plan.v * plan.lightest / h
     count = 0
     for lo in range(0, hi, TILE):
         up = min(lo + TILE, hi)
-        for q in range(2):
-            scale = h * h / plan.y if q == 0 else h / plan.v
-            _add_up(
-                beads.sums,
-                index(q + 2),
-                beads.force,
-                pair.errors[q],
-                scale,
-                last + 1,
-                lo,
-                up,
+        for q in range(len(beads.errors)):
+            scale = h * h / plan.y if q % 2 == 0 else h / plan.v
+            row, sums = 2 * stages + q, plan.scheme.sums
+            _move(
+                beads.errors[q], still, still, 0.0, scale, sums, row, beads.push, lo, up
             )
-        if chain.law.pulls:
-            continue
         for i in range(index(lo), index(up)):
-            before, after = (
-                rest[i] + y[i] - y[i + ONE],
-                rest[i] + next_y[i] - next_y[i + ONE],
-            )
+            before = rest[i] + y[i] - y[i + ONE]
+            after = rest[i] + next_y[i] - next_y[i + ONE]
             rise, end_rise = h * (v[i] - v[i + ONE]), h * (next_v[i] - next_v[i + ONE])
             first, then = start[i + ONE] + load[i], end[i + ONE] + load[i]
             changed = chain.damped & ((first > 0.0) != (then > 0.0))
@@ -262,9 +247,8 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
             # ends meet at δ > 0.
             meeting = (after - end_rise) * rise - before * end_rise > 0.0
             unseen = (most <= 0.0) & (rise > 0.0) & (end_rise < 0.0) & meeting
-            kink = (strong & (near | changed)) | unseen
-            mark = kink & (chain.A[i] > 0.0) & (jumped[i + ONE] == 0.0)
-            marks[i + ONE] = 1.0 if mark else 0.0
+            mark = ((strong & (near | changed)) | unseen) & (opens[i] > 0.0)
+            marks[i] = 1.0 if mark else 0.0
             count += 1 if mark else 0
     return count
 
@@ -272,90 +256,108 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
 @inlined
 def next_mark(marks: Array, i: int) -> int:
     """Return the first marked contact from contact i on; there is one."""
-    while not marks[index(i) + ONE] > 0.0:
+    while not marks[index(i)] > 0.0:
         i += 1
     return i
 
 
 @inlined
 def evaluate_stages(
-    chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int, again: bool
+    chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int
 ) -> None:
-    """Compute the forces at all stages of a step h of the beads 0 … hi-1 at time t.
-
-    again : True for the forces at the step's end alone, after its motion was corrected.
-    """
-    pair, last = plan.scheme, len(plan.scheme.moments) - 1
+    """Compute the accelerations at all stages of a step h of the beads 0 … hi-1 at time t."""
+    pair, stages = plan.scheme, len(plan.scheme.nodes)
     y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
-    inverse, force, sums = chain.inverse, beads.force, beads.sums
-    for tile in range(0, hi + last, TILE):
-        for s in range(last if again else 1, last + 1):
+    force, push, inverse = beads.force[1], beads.push, chain.inverse
+    for tile in range(0, hi + stages, TILE):
+        for s in range(1, stages):
             lo, up, first, behind = tile_bounds(tile, s, hi)
             if lo >= up:
                 continue
             ch = pair.nodes[s] * h
-            for q in range(0 if again else (2 if chain.damped or s == last else 1)):
-                row, scale = (
-                    (pair.moments[s], h * h) if q == 0 else (pair.impulses[s], h)
-                )
-                _add_up(sums, index(q), force, row, scale, s, lo, up)
-            if not again:
-                for i in range(index(lo), index(up)):
-                    net = (sums[ZERO, i] - sums[ZERO, i + ONE]) * inverse[i]
-                    next_y[i] = y[i] + ch * v[i] + net
-                if chain.damped or s == last:
-                    for i in range(index(lo), index(up)):
-                        next_v[i] = (
-                            v[i] + (sums[ONE, i] - sums[ONE, i + ONE]) * inverse[i]
-                        )
-                if chain.drive.driven and lo == 0:
-                    given = drive_motion(chain.drive, t + h / 2, t + ch)
-                    next_y[0], next_v[0], beads.given[1] = given
+            _move(next_y, y, v, ch, h * h, pair.sums, s, push, lo, up)
+            if chain.damped or s == stages - 1:
+                _move(next_v, v, v, 0.0, h, pair.sums, stages + s, push, lo, up)
+            if chain.drive.driven and lo == 0:
+                given = drive_motion(chain.drive, t + h / 2, t + ch)
+                next_y[0], next_v[0], beads.given[1] = given
             contact_forces(chain, beads, plan, next_y, next_v, index(s), first, behind)
+            # The stages share a row of forces: the last one of a tile is kept for the next tile.
+            if first > 0:
+                force[first] = beads.border[s]
+            beads.border[s] = force[behind]
+            for i in range(index(first), index(behind)):
+                push[s, i] = (force[i] - force[i + ONE]) * inverse[i]
 
 
 @summed
-def step_error(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> float:
-    """Return the error of a step in units of the tolerance: of all beads, the heat and the work."""
-    total, sums, inverse = 0.0, beads.sums, chain.inverse
+def _squared_error(errors: Array, row: int, hi: int) -> float:
+    """Return the sum over all beads of squared errors of displacements, in a row, and velocities."""
+    total, ys, vs = 0.0, errors[row], errors[row + 1]
     for i in range(index(hi)):
-        y = (sums[index(2), i] - sums[index(2), i + ONE]) * inverse[i]
-        v = (sums[index(3), i] - sums[index(3), i + ONE]) * inverse[i]
-        total += y * y + v * v
-    for n in range(2):
-        missed = h * _integral(plan.scheme.errors[1], beads.power[n])
-        total += ((missed - beads.corrections[2 * n + 1]) / plan.energy) ** 2
-    return math.sqrt(total)
+        total += ys[i] * ys[i] + vs[i] * vs[i]
+    return total
 
 
 @inlined
-def end_step(beads: Beads, plan: Plan, now: Any, h: float, error: float) -> None:
-    """Add up a step with an error of at most 1, and plan the next step, a shorter one above 1."""
-    pair, stop, factor = plan.scheme, plan.stops[now.stop], 0.0
+def step_error(beads: Beads, plan: Plan, h: float, hi: int) -> float:
+    """Return the error of a step in units of the tolerance: of all beads, the heat and the work."""
+    weights, books, total = plan.scheme.errors, beads.books, 0.0
+    for q in range(0, len(weights), 2):
+        squared = _squared_error(beads.errors, q, hi)
+        for n in range(2):
+            missed = h * _integral(weights[q + 1], beads.power[n])
+            squared += ((missed - books[2 * n + 1]) / plan.energy) ** 2
+        if q == 0:
+            total = squared
+        elif squared > 0.0:
+            total = total * total / (total + _THIRD * squared)
+    return math.sqrt(total + books[4])
+
+
+@inlined
+def end_step(
+    beads: Beads, plan: Plan, now: Any, h: float, error: float, stopping: bool
+) -> bool:
+    """Add up a step with an error of at most 1, and plan the next step, a shorter one above 1.
+
+    stopping : True for a step that was cut to end at the next stop. Returns True for a step that
+    is made.
+    """
+    pair, factor, wanted = plan.scheme, 0.0, now.h
     if error < _HOPELESS:
-        factor = _SAFETY * max(error, 1e-9) ** (-1.0 / (pair.lower + 1))
+        factor = _SAFETY * max(error, 1e-9) ** (-1.0 / pair.order)
     now.h = h * min(_GROWTH, max(_SHRINKAGE, factor))
-    if error <= 1.0:
-        impulses = pair.impulses[len(pair.impulses) - 1]
-        now.lost += h * _integral(impulses, beads.power[0]) + beads.corrections[0]
-        now.work += h * _integral(impulses, beads.power[1]) + beads.corrections[2]
-        now.response = max(now.response, now.energy + now.work - now.lost)
-        now.h = min(plan.longest, max(now.h, now.planned))
-        stopping = now.t + h > stop - 1e-9 * h
-        now.t = stop if stopping else now.t + h
-        now.stop += 1 if stopping else 0
-        now.steps += 1
-    elif factor == 0.0:
-        beads.force[1:] = 0.0  # overflows must not last
-    now.planned = 0.0
+    if not error <= 1.0:
+        if factor == 0.0:
+            beads.push[1:] = 0.0  # overflows must not last
+        return False
+    impulses = pair.impulses[len(pair.impulses) - 1]
+    now.lost += h * _integral(impulses, beads.power[0]) + beads.books[0]
+    now.work += h * _integral(impulses, beads.power[1]) + beads.books[2]
+    now.response = max(now.response, now.energy + now.work - now.lost)
+    if stopping:
+        now.t, now.late = plan.stops[now.stop], 0.0
+        now.h = max(now.h, wanted)
+        now.stop += 1
+    else:
+        # A plain sum of many equal steps would be rounded to one side (Kahan 1965).
+        step = h - now.late
+        t = now.t + step
+        now.late = (t - now.t) - step
+        now.t = t
+    now.h = min(plan.longest, now.h)
+    now.steps += 1
+    return True
 
 
 @inlined
-def begin_step(beads: Beads, plan: Plan, hi: int) -> None:
+def begin_step(beads: Beads, hi: int) -> None:
     """Move the beads, and their forces, to the end of a step, which is the start of the next."""
-    last, power = index(len(plan.scheme.moments) - 1), beads.power
+    last, power, force, push = len(beads.push) - 1, beads.power, beads.force, beads.push
     for i in range(index(hi)):
         beads.y[i], beads.v[i] = beads.next_y[i], beads.next_v[i]
-        beads.force[ZERO, i + ONE] = beads.force[last, i + ONE]
+        force[ZERO, i + ONE] = force[ONE, i + ONE]
+        push[ZERO, i] = push[index(last), i]
     power[0, 0], power[1, 0] = power[0, last], power[1, last]
     beads.given[0] = beads.given[1]
