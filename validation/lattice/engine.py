@@ -266,7 +266,8 @@ def _chain(motion: Motion) -> Chain:
     rows = np.zeros(len(laws), LAW)
     for row, law in zip(rows, laws, strict=True):
         row["k"], row["p"], row["q"] = law.k, law.damping_power or 0.0, _exponent(law)
-        row["generated"], row["pulls"] = law.law is not None, law.pulls
+        row["generated"] = law.law is not None
+        row["pulls"], row["sticks"] = law.pulls, law.sticks
     set_addresses(rows, motion)
     if motion.scene.drive is not None:
         inverse[0] = 0.0

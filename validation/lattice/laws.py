@@ -26,6 +26,7 @@ from validation.scenes.checks import SceneError
 # Of the rest compression: the energy of a smaller change is integrated, as in the difference of two
 # energies its digits cancel. Eight points integrate any power to 1e-16 up to this change.
 _SMALL = 0.05
+_OPENS = 1e-100  # a compression at which a contact is about to open, in any units
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
@@ -51,6 +52,13 @@ class Contact:
     def pulls(self) -> bool:
         """True if the contact holds, and pulls, where δ < 0."""
         return self.law is not None and bool(self.law.at(sp.S.Zero, 1).is_positive)
+
+    @cached_property
+    def sticks(self) -> bool:
+        """True if damping may pull, as the law pulls, or attracts where the contact opens."""
+        if self.law is None:
+            return False
+        return self.pulls or float(self.force(np.array([_OPENS]))[0]) < 0
 
     def force(self, compression: Array) -> Array:
         """Return the force F at a compression δ, of any shape; [δ]_+^k for a power law."""
@@ -96,7 +104,7 @@ class Contact:
     def damped(
         self, elastic: Array, damping: Array, compression: Array, rate: Array
     ) -> Array:
-        """Return the total forces (contacts, …): damping may not pull a contact that opens.
+        """Return the total forces (contacts, …); damping may not pull unless the contact `sticks`.
 
         Parameters
         ----------
@@ -109,10 +117,9 @@ class Contact:
             return elastic
         closed = compression if self.pulls else np.maximum(compression, 0.0)
         force = elastic + (damping * (closed**self.damping_power * rate).T).T
-        if self.pulls:
-            return np.asarray(force)
-        force = np.maximum(force, np.minimum(elastic, 0.0))
-        return np.where(compression > 0.0, force, 0.0)
+        if not self.sticks:
+            force = np.maximum(force, np.minimum(elastic, 0.0))
+        return force if self.pulls else np.where(compression > 0.0, force, 0.0)
 
     def _evaluated(self, name: str, compression: Array) -> Array:
         """Evaluate a function of the law: its "force", "slope" or "energy"."""

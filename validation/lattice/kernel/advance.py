@@ -23,6 +23,7 @@ from validation.lattice.kernel.pair import (
     next_mark,
     settle,
     step_error,
+    watch_drive,
 )
 from validation.lattice.kernel.samples import store_knot
 
@@ -73,8 +74,10 @@ def advance(
         hi = moving(now)
         now.tries += 1
         evaluate_stages(chain, beads, plan, now.t, h, hi)
-        marks, i = mark_kinks(chain, beads, plan, h, hi), -1
         beads.books[:] = 0.0
+        marks, i = mark_kinks(chain, beads, plan, h, hi), -1
+        if chain.drive.driven:
+            marks += watch_drive(chain, beads, plan, now.t, h)
         for _ in range(marks):
             i = next_mark(beads.marks, i + 1)
             correct_contact(chain, beads, plan, h, i)

@@ -43,6 +43,7 @@ LAW = np.dtype(
         ("q", float),
         ("generated", bool),
         ("pulls", bool),
+        ("sticks", bool),
         ("force", np.int64),
         ("slope", np.int64),
         ("energy", np.int64),
@@ -51,8 +52,9 @@ LAW = np.dtype(
 """A contact law for unit stiffness, F(δ) + r [δ]_+^p dδ/dt.
 
 k : exponent of a power law F = [δ]_+^k. p : exponent of the damping. q : the force is smooth in u
-if δ = u^q. generated : True for any other law. pulls : True if contacts hold where δ < 0. force,
-slope, energy : addresses of the machine code of F, F′ and ∫ F dδ of another law.
+if δ = u^q. generated : True for any other law. pulls : True if contacts hold where δ < 0. sticks : True if
+damping may pull, as the law pulls, or attracts where the contact opens. force, slope, energy :
+addresses of the machine code of F, F′ and ∫ F dδ of another law.
 """
 
 

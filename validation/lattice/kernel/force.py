@@ -1,7 +1,8 @@
 """Forces of contacts, A (F(δ) + r [δ]_+^p dδ/dt), and the motion of a driven bead.
 
-A contact is open, without a force, where δ ≤ 0, unless its law pulls there. Damping may not pull:
-the force of a contact that opens is at least its elastic force, or 0 if that is more.
+A contact is open, without a force, where δ ≤ 0, unless its law pulls there. Damping may not pull,
+unless the law attracts where the contact opens: the force is at least the elastic force, or 0 if
+that is less.
 """
 
 from __future__ import annotations
@@ -77,11 +78,10 @@ def stiffness(law: Any, d: float) -> float:
 def push(law: Any, r: float, d: float, rate: float) -> float:
     """Return the force for unit stiffness at a compression d and a rate dδ/dt."""
     force = elastic(law, d)
-    if law.pulls:
-        return force + r * rate * drag(law, d)
-    if r > 0.0 and d > 0.0:
-        return max(force + r * drag(law, d) * rate, min(force, 0.0))
-    return force
+    if not r > 0.0 or not (d > 0.0 or law.pulls):
+        return force
+    total = force + r * drag(law, d) * rate
+    return total if law.sticks else max(total, min(force, 0.0))
 
 
 def _loop(value: Any) -> Any:
@@ -103,8 +103,8 @@ def _loop(value: Any) -> Any:
 def _damped_loop(value: Any, resistance: Any) -> Any:
     """Compile a loop over contacts with the force A (value + r resistance(p, d) dδ/dt).
 
-    least, none : contacts push where δ > least, and damping pulls to a force of none at most; both
-    are -∞ for contacts that pull. The loop returns the dissipated power. While a contact that has
+    least : contacts have a force where δ > least; -∞ if they pull. none : 0 if damping may not
+    pull, else -∞. The loop returns the dissipated power. While a contact that has
     stopped pushing expands, its elastic energy turns into heat.
     """
 
@@ -177,9 +177,8 @@ def contact_forces(
     f, lost, start = beads.force[1], beads.power[0, s] if lo > 0 else 0.0, lo
     while lo < hi:
         law, up = chain.laws[chain.law[lo]], min(hi, chain.alike[lo])
-        least, none = NEGLIGIBLE * plan.deepest, 0.0
-        if law.pulls:
-            least = none = -math.inf
+        least = -math.inf if law.pulls else NEGLIGIBLE * plan.deepest
+        none = -math.inf if law.sticks else 0.0
         fast = is_quarters(law.k) and not law.generated
         if chain.damped:
             if fast and law.k in (1.0, 1.5) and law.p in (0.0, 0.25, 0.5):

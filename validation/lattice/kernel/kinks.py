@@ -71,7 +71,7 @@ def fitted_quintic(
 
 @part
 def _margin(law: Any, r: float, c: Quintic, h: float, x: float) -> float:
-    """Return a continuous function of x which is positive where a contact is damped.
+    """Return a continuous function of x which is positive where damping does not pull.
 
     Without damping, r = 0, the function is p.
     """
@@ -129,7 +129,7 @@ def _add_edges(
     if closes:
         edges[n] = a = root
         n += 1
-    if r > 0.0 and max(before, after) > 0.0:
+    if r > 0.0 and not law.sticks and max(before, after) > 0.0:
         end = root if opens else b
         if _margin(law, r, c, h, a) * _margin(law, r, c, h, end) < 0.0:
             edges[n] = _crossing(law, r, c, h, a, end)

@@ -253,6 +253,31 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
     return count
 
 
+@alone
+def watch_drive(chain: Chain, beads: Beads, plan: Plan, t: float, h: float) -> int:
+    """Mark the contact of a driven bead if it closes or opens anywhere within a step.
+
+    Returns the number of new marks. The acceleration of the bead is given, so that δ can rise,
+    fall and rise again. The difference between its motion and the quintic counts as error.
+    """
+    law, A, r = chain.laws[chain.law[0]], chain.A[0], chain.r[0]
+    if not chain.opens[0] > 0.0:
+        return 0
+    p = _fitted(chain, beads, h, 0)
+    count, top = kinks.find_edges(law, r, p, h, beads.edges)
+    given, _, _ = drive_motion(chain.drive, t + h / 2, t + h / 2)
+    ends = (beads.y[0] + beads.next_y[0]) / 2 + h * h * (beads.given[0] + beads.given[1]) / 64
+    missed = abs(given - ends - 5 * h * (beads.v[0] - beads.next_v[0]) / 32)
+    if count > 1 or beads.marks[0] > 0.0 or abs(top) < missed:
+        force = elastic(law, max(top, 0.0) + missed) - elastic(law, top)
+        error = h * A * force * chain.inverse[1] / plan.v
+        beads.books[4] += error * error
+    if count > 1 and not beads.marks[0] > 0.0:
+        beads.marks[0] = 1.0
+        return 1
+    return 0
+
+
 @inlined
 def next_mark(marks: Array, i: int) -> int:
     """Return the first marked contact from contact i on; there is one."""

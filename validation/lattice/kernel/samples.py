@@ -61,7 +61,7 @@ def _rate(law: Any, r: float, d: float, v: float, a: float) -> float:
         return rate
     resistance = r * drag(law, d)
     force = elastic(law, d)
-    if not (law.pulls or force + resistance * v > min(force, 0.0)):
+    if not (law.sticks or force + resistance * v > min(force, 0.0)):
         return rate if force < 0.0 else 0.0  # the damping, which may not pull, is idle
     rate += resistance * a
     if law.p > 0.0:
