@@ -218,8 +218,8 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
     y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
     rest, load, opens, marks = chain.rest, chain.load, chain.opens, beads.marks
     start, end = beads.force[0], beads.force[1]
-    # A force F changes a velocity by h F/m.
-    least = _SLIGHT * plan.v * plan.lightest / h
+    # A force F changes a velocity by h F/m; the errors of all beads add up.
+    least = _SLIGHT * plan.v * plan.lightest / (h * math.sqrt(hi))
     count = 0
     for lo in range(0, hi, TILE):
         up = min(lo + TILE, hi)
