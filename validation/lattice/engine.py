@@ -213,11 +213,7 @@ def _pair_plan(motion: Motion, rtol: float, longest: float) -> tuple[Plan, int]:
     pair = RKN86 if scene.damping is None else RK853
     stops = {end}
     if scene.drive is not None:
-        # Beside a wall no motion has an error that would bound the step, and the work's estimate
-        # does not see the quintic's error, h^6, at a kink: 1/8 left 11 rtol in the work, 1/16 one.
-        longest = min(
-            longest, scene.drive.longest_step / (16 if motion.size == 1 else 2)
-        )
+        longest = min(longest, scene.drive.longest_step / 2)
         stops |= {t for t in (scene.drive.ramp, *scene.drive.time) if 0 < t < end}
     most = step_limit(scene, "RKN86", end / min(time, longest))
     h = min(_FIRST * rtol ** (1 / pair.order) * time, longest, end / 100)

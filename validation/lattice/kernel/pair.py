@@ -270,8 +270,9 @@ def watch_drive(chain: Chain, beads: Beads, plan: Plan, t: float, h: float) -> i
     missed = abs(given - ends - 5 * h * (beads.v[0] - beads.next_v[0]) / 32)
     if count > 1 or beads.marks[0] > 0.0 or abs(top) < missed:
         force = elastic(law, max(top, 0.0) + missed) - elastic(law, top)
-        error = h * A * force * chain.inverse[1] / plan.v
-        beads.books[4] += error * error
+        impulse = h * A * force
+        moved, work = impulse * chain.inverse[1] / plan.v, impulse * beads.v[0] / plan.energy
+        beads.books[4] += moved * moved + work * work
     if count > 1 and not beads.marks[0] > 0.0:
         beads.marks[0] = 1.0
         return 1
