@@ -19,11 +19,12 @@ from typing import Any
 import numpy as np
 
 from lwa.base.arrays import Array
+from validation.lattice.kernel.arrays import Pair
 from validation.lattice.kernel.compiled import alone, call, index, part
 from validation.lattice.kernel.force import drag, elastic, push
 
-Quintic = tuple[float, float, float, float, float, float]
-"""Coefficients c0 … c5 of p."""
+Curve = tuple[float, float, float, float, float, float, float, float]
+"""Coefficients c0 … c5 of p, and e and s of a bend, s [x - e]_+^2/2, that p has besides."""
 
 POINTS = 12  # of the rule: three of the machine's vectors
 ROOM = 16  # places of a step: points of the rule, or stages of a pair
@@ -36,6 +37,7 @@ EDGES = 4 * _PLACES + 2
 # Width at which the search for a place ends: at 1e-10 the energy lost errs by 15 times an rtol of
 # 1e-11.
 _CLOSE = 1e-13
+_OPENS = 1e-100  # a compression at which a contact is about to open, in any units
 
 
 @part
@@ -49,28 +51,35 @@ def stored(law: Any, d: float) -> float:
 
 
 @part
-def value_and_slope(c: Quintic, x: float) -> tuple[float, float]:
+def value_and_slope(c: Curve, x: float) -> tuple[float, float]:
     """Return p(x) and p'(x)."""
     p = c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))))
-    return p, c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5])))
+    slope = c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5])))
+    late = max(x - c[6], 0.0)
+    return p + 0.5 * c[7] * late * late, slope + c[7] * late
 
 
 @part
-def fitted_quintic(
-    d: float, v: float, a: float, end: float, end_v: float, end_a: float
-) -> Quintic:
-    """Return the quintic of value d, slope v, second derivative a at 0; end, end_v, end_a at 1."""
-    c2 = a / 2
-    # c3, c4 and c5 solve the conditions at x = 1, of which d, v and c2 leave r0, r1 and r2.
-    r0, r1, r2 = end - d - v - c2, end_v - v - 2 * c2, end_a - 2 * c2
+def fitted_curve(
+    start: tuple[float, float, float],
+    end: tuple[float, float, float],
+    bent: tuple[float, float],
+) -> Curve:
+    """Return the quintic with p, p' and p'' at both ends of the step, with a bend (e, s)."""
+    d, v, c2 = start[0], start[1], start[2] / 2
+    late = 1.0 - bent[0]
+    # c3, c4 and c5 solve the conditions at x = 1, of which the bend, d, v and c2 leave r0, r1, r2.
+    r0 = end[0] - 0.5 * bent[1] * late * late - d - v - c2
+    r1 = end[1] - bent[1] * late - v - 2 * c2
+    r2 = end[2] - bent[1] - 2 * c2
     c3 = 10 * r0 - 4 * r1 + r2 / 2
     c4 = -15 * r0 + 7 * r1 - r2
     c5 = 6 * r0 - 3 * r1 + r2 / 2
-    return d, v, c2, c3, c4, c5
+    return d, v, c2, c3, c4, c5, bent[0], bent[1]
 
 
 @part
-def _margin(law: Any, r: float, c: Quintic, h: float, x: float) -> float:
+def _margin(law: Any, r: float, c: Curve, h: float, x: float) -> float:
     """Return a continuous function of x which is positive where damping does not pull.
 
     Without damping, r = 0, the function is p.
@@ -83,7 +92,7 @@ def _margin(law: Any, r: float, c: Quintic, h: float, x: float) -> float:
 
 
 @alone
-def _crossing(law: Any, r: float, c: Quintic, h: float, a: float, b: float) -> float:
+def _crossing(law: Any, r: float, c: Curve, h: float, a: float, b: float) -> float:
     """Return the place between a and b at which `_margin` changes its sign."""
     left, right = _margin(law, r, c, h, a), _margin(law, r, c, h, b)
     for _ in range(60):  # the Illinois variant of the rule of false position
@@ -102,7 +111,7 @@ def _crossing(law: Any, r: float, c: Quintic, h: float, a: float, b: float) -> f
 
 
 @part
-def _turning_point(c: Quintic, a: float, b: float) -> float:
+def _turning_point(c: Curve, a: float, b: float) -> float:
     """Return the place between a and b at which the slope of p changes its sign."""
     _, slope = value_and_slope(c, a)
     for _ in range(30):
@@ -117,7 +126,7 @@ def _turning_point(c: Quintic, a: float, b: float) -> float:
 
 @alone
 def _add_edges(
-    law: Any, r: float, c: Quintic, h: float, a: float, b: float, edges: Array, n: int
+    law: Any, r: float, c: Curve, h: float, a: float, b: float, edges: Array, n: int
 ) -> int:
     """Add the edges between a and b, where p is monotonic; return the number of edges so far."""
     before, _ = value_and_slope(c, a)
@@ -142,7 +151,7 @@ def _add_edges(
 
 @alone
 def find_edges(
-    law: Any, r: float, c: Quintic, h: float, edges: Array
+    law: Any, r: float, c: Curve, h: float, edges: Array
 ) -> tuple[int, float]:
     """Return the number of intervals of a step in which F(p, p'/h) is smooth, and the greatest p.
 
@@ -168,7 +177,49 @@ def find_edges(
 
 
 @part
-def _root(c: Quintic, x: float, side: float) -> float:
+def _find_jump(
+    law: Any, r: float, c: Curve, h: float, edges: Array, count: int
+) -> tuple[float, float]:
+    """Return the last place at which the force jumps, and by how much; (1, 0) for none."""
+    place, jump = 1.0, 0.0
+    for n in range(1, count):
+        p, slope = value_and_slope(c, edges[n])
+        if abs(p) < 1e-9 * abs(slope):
+            force = push(law, r, _OPENS, slope / h)
+            place, jump = edges[n], force if slope > 0.0 else -force
+    return place, jump
+
+
+@alone
+def resolved(
+    law: Any,
+    r: float,
+    start: tuple[float, float, float],
+    end: tuple[float, float, float],
+    h: float,
+    bend: float,
+    edges: Array,
+) -> tuple[Curve, int, float, float]:
+    """Return a contact's curve over a step, the results of `find_edges`, and a jump of the force.
+
+    start, end : p, p' and p'' at both ends. bend : of p'' by a force of 1. A jump bends the curve
+    where it is, and where it is depends on the curve: two refinements leave no more than the
+    quintic's own error.
+    """
+    c = fitted_curve(start, end, (1.0, 0.0))
+    count, top = find_edges(law, r, c, h, edges)
+    place, jump = _find_jump(law, r, c, h, edges, count)
+    if abs(bend * jump) < 1e-12 * abs(start[1]):
+        return c, count, top, 0.0
+    for _ in range(2):
+        c = fitted_curve(start, end, (place, bend * jump))
+        count, top = find_edges(law, r, c, h, edges)
+        place, jump = _find_jump(law, r, c, h, edges, count)
+    return c, count, top, jump
+
+
+@part
+def _root(c: Curve, x: float, side: float) -> float:
     """Return the root of p near an end x of an interval, on its outer side (±1); NaN without one.
 
     The root shapes the substitution alone: two steps of Newton's method are enough.
@@ -188,14 +239,36 @@ def _root(c: Quintic, x: float, side: float) -> float:
     return math.nan
 
 
-@part
-def forces_along(
-    law: Any, r: float, c: Quintic, h: float, x: Array, f: Array, count: int
+@alone
+def stage_forces(
+    law: Any,
+    r: float,
+    c: Curve,
+    h: float,
+    pair: Pair,
+    bend: float,
+    jump: float,
+    points: Array,
 ) -> None:
-    """Compute the forces of a contact with the compression p at places x; they go to f."""
-    for m in range(index(count)):
-        p, slope = value_and_slope(c, x[m])
-        f[m] = push(law, r, p, slope / h)
+    """Compute compressions, slopes and forces at the stages of a pair; they go to ``points``.
+
+    A stage's motion has the pair's own error for a force that jumps at c's bend. bend : of p'' by a
+    force of 1.
+    """
+    closes = value_and_slope(c, c[6])[1] > 0.0
+    for s in range(len(pair.nodes)):
+        p, slope = value_and_slope(c, pair.nodes[s])
+        if jump != 0.0:
+            late = max(pair.nodes[s] - c[6], 0.0)
+            moment, impulse = 0.5 * late * late, late
+            for j in range(s):
+                if (points[0, j] > 0.0) == closes:
+                    moment -= pair.moments[s, j]
+                    impulse -= pair.impulses[s, j]
+            p -= bend * jump * moment
+            slope -= bend * jump * impulse
+        points[0, s], points[1, s] = p, slope
+        points[2, s] = push(law, r, p, slope / h)
 
 
 @part
@@ -218,7 +291,7 @@ def _place_points(
 def integrals(
     law: Any,
     r: float,
-    c: Quintic,
+    c: Curve,
     h: float,
     until: float,
     points: Array,
@@ -229,7 +302,7 @@ def integrals(
 
     edges, count : the ``count`` intervals of `find_edges`.
     """
-    x, w, f = points[0], points[1], points[2]
+    x, w = points[0], points[1]
     once = twice = third = work = 0.0
     for n in range(count):
         a, b = edges[n], edges[n + 1]
@@ -249,11 +322,11 @@ def integrals(
                 _place_points(1.0, near, near, far, points)
             else:
                 _place_points(law.q, zero, near, far, points)
-            forces_along(law, r, c, h, x, f, POINTS)
             for m in range(index(POINTS)):
-                force, left = w[m] * f[m], 1.0 - x[m]
+                p, slope = value_and_slope(c, x[m])
+                force, left = w[m] * push(law, r, p, slope / h), 1.0 - x[m]
                 once += force
                 twice += left * force
                 third += 0.5 * left * left * force
-                work += value_and_slope(c, x[m])[1] * force
+                work += slope * force
     return once, twice, third, work

@@ -40,11 +40,13 @@ from validation.lattice.kernel.force import (
 )
 
 _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the tolerance
+_ROUNDS = 4  # corrections of a contact whose force jumps
 # A contact is nearly open at a step's one end if δ there is less than _NEAR times δ at the other. A
 # weak contact, whose force is less than _STRONG times the least that counts, is nearly open below
 # _VERY_NEAR, as the pair's own error is smaller there. Measured: _NEAR for all takes a tenth more
 # time for equal beads, _VERY_NEAR for all a quarter more for dimers at small tolerances.
-_NEAR, _VERY_NEAR, _STRONG = 0.3, 0.03, 1e3
+# The singularity of damping, δ^{1/4} say, is felt farther away.
+_NEAR, _VERY_NEAR, _NEAR_DAMPED, _STRONG = 0.3, 0.03, 0.6, 1e3
 # Step-size control of Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.4.
 # An error scales as h^order. The next step is _SAFETY times the step with an error equal to the
 # tolerance, as a rejected step costs as much as an accepted one. _GROWTH bounds the effect of an
@@ -135,18 +137,21 @@ def settle(chain: Chain, beads: Beads, first: int, last: int, sign: float) -> No
 
 
 @part
-def _fitted(chain: Chain, beads: Beads, h: float, i: int) -> kinks.Quintic:
-    """Return the quintic fit of contact i's compression over a step."""
+def _ends(
+    chain: Chain, beads: Beads, h: float, i: int
+) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    """Return δ, δ' and δ'' of contact i at both ends of a step, in units of the step."""
     y, v, push, last = beads.y, beads.v, beads.push, len(beads.push) - 1
     next_y, next_v = beads.next_y, beads.next_v
     a, end_a = push[0, i] - push[0, i + 1], push[last, i] - push[last, i + 1]
     if i == 0:
         a, end_a = a + beads.given[0], end_a + beads.given[1]
-    d, rate = chain.rest[i] + y[i] - y[i + 1], v[i] - v[i + 1]
-    end = chain.rest[i] + next_y[i] - next_y[i + 1]
-    end_rate = next_v[i] - next_v[i + 1]
-    return kinks.fitted_quintic(
-        d, h * rate, h * h * a, end, h * end_rate, h * h * end_a
+    d, end = y[i] - y[i + 1], next_y[i] - next_y[i + 1]
+    start = chain.rest[i] + d, h * (v[i] - v[i + 1]), h * h * a
+    return start, (
+        chain.rest[i] + end,
+        h * (next_v[i] - next_v[i + 1]),
+        h * h * end_a,
     )
 
 
@@ -155,14 +160,25 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
     """Correct a step for the pair's error at contact i, which opens or closes."""
     pair, last, inverse = plan.scheme, len(beads.push) - 1, chain.inverse
     A, r, law = chain.A[i], chain.r[i], chain.laws[chain.law[i]]
-    points, edges = beads.points, beads.edges
-    p = _fitted(chain, beads, h, i)
-    count, top = kinks.find_edges(law, r, p, h, edges)
-    once, twice, third, work = kinks.integrals(law, r, p, h, 1.0, points, edges, count)
-    force = points[2]
-    kinks.forces_along(law, r, p, h, pair.nodes, force, last + 1)
-    impulse = h * A * (once - _integral(pair.impulses[last], force))
-    moment = h * h * A * (twice - _integral(pair.moments[last], force))
+    points, edges, both = beads.points, beads.edges, inverse[i] + inverse[i + 1]
+    start, end = _ends(chain, beads, h, i)
+    force, bend = points[2], -A * h * h * both
+    impulse = moment = 0.0
+    # A force that jumps also depends on the corrected end, all the more the later it jumps.
+    for _ in range(_ROUNDS):
+        d, rise = end[0] - both * moment, end[1] - both * h * impulse
+        own = push(law, r, d, rise / h) - push(law, r, end[0], end[1] / h)
+        corrected = d, rise, end[2] + bend * own
+        p, count, top, jump = kinks.resolved(law, r, start, corrected, h, bend, edges)
+        once, twice, third, work = kinks.integrals(
+            law, r, p, h, 1.0, points, edges, count
+        )
+        kinks.stage_forces(law, r, p, h, pair, bend, jump, points)
+        before = impulse
+        impulse = h * A * (once - _integral(pair.impulses[last], force))
+        moment = h * h * A * (twice - _integral(pair.moments[last], force))
+        if jump == 0.0:
+            break
     third = h * h * h * A * (third - _integral(pair.thirds, force))
     for q in range(len(pair.errors)):
         scale = h * h * A / plan.y if q % 2 == 0 else h * A / plan.v
@@ -172,11 +188,9 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
     reach = 2 if chain.damped else 1  # contacts whose force the correction changes
     settle(chain, beads, i - reach, i + reach, -1.0)
     if chain.damped:
-        end, _ = kinks.value_and_slope(p, 1.0)
-        heat = work - kinks.stored(law, end) + kinks.stored(law, p[0])
+        heat = work - kinks.stored(law, corrected[0]) + kinks.stored(law, p[0])
         for s in range(last + 1):
-            d, slope = kinks.value_and_slope(p, pair.nodes[s])
-            lost = (force[s] - elastic(law, d)) * slope
+            lost = (force[s] - elastic(law, points[0, s])) * points[1, s]
             heat -= pair.impulses[last, s] * lost
             beads.books[1] += A * pair.errors[1, s] * lost
         beads.books[0] += A * heat
@@ -190,21 +204,25 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
         beads.books[2] = impulse * beads.next_v[0] - moment * beads.given[1] + change
         beads.books[3] = h * A * _integral(pair.errors[1], force) * beads.next_v[0]
     for n in range(max(0, i - 1), i + 2):
-        both = inverse[i] + inverse[i + 1] if n == i else -inverse[max(i, n)]
+        share = both if n == i else -inverse[max(i, n)]
         d = chain.rest[n] + beads.next_y[n] - beads.next_y[n + 1]
         if n == i:
             d = top
         closed = n == i or beads.force[1, n + 1] + chain.load[n] > 0.0
-        if d > 0.0 and closed:
-            other = chain.laws[chain.law[n]]
-            more = -chain.A[n] * stiffness(other, d) * third * both
-            if chain.r[n] > 0.0:
-                more -= chain.A[n] * chain.r[n] * drag(other, d) * moment * both
-            if n != i:
-                beads.next_v[n] -= more * inverse[n]
-                beads.next_v[n + 1] += more * inverse[n + 1]
-            missed = more / plan.v
-            beads.books[4] += missed * missed * (inverse[n] ** 2 + inverse[n + 1] ** 2)
+        if not (d > 0.0 and closed):
+            continue
+        other = chain.laws[chain.law[n]]
+        more = -chain.A[n] * stiffness(other, d) * third * share
+        if chain.r[n] > 0.0:
+            more -= chain.A[n] * chain.r[n] * drag(other, d) * moment * share
+        if n != i:
+            beads.next_v[n] -= more * inverse[n]
+            beads.next_v[n + 1] += more * inverse[n + 1]
+        elif jump != 0.0:
+            feedback = bend * (r * drag(law, d) / h + stiffness(law, d))
+            more = abs(impulse - before) + abs(more * feedback)
+        missed = more / plan.v
+        beads.books[4] += missed * missed * (inverse[n] ** 2 + inverse[n + 1] ** 2)
     settle(chain, beads, i - reach, i + reach, 1.0)
 
 
@@ -221,6 +239,9 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
     # A force F changes a velocity by h F/m; the errors of all beads add up.
     least = _SLIGHT * plan.v * plan.lightest / (h * math.sqrt(hi))
     count = 0
+    nearly, very_nearly = _NEAR, _VERY_NEAR
+    if chain.damped:
+        nearly, very_nearly = _NEAR_DAMPED, _NEAR
     for lo in range(0, hi, TILE):
         up = min(lo + TILE, hi)
         for q in range(len(beads.errors)):
@@ -233,15 +254,15 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
             before = rest[i] + y[i] - y[i + ONE]
             after = rest[i] + next_y[i] - next_y[i + ONE]
             rise, end_rise = h * (v[i] - v[i + ONE]), h * (next_v[i] - next_v[i + ONE])
-            first, then = start[i + ONE] + load[i], end[i + ONE] + load[i]
+            first, then = abs(start[i + ONE] + load[i]), abs(end[i + ONE] + load[i])
             changed = chain.damped & ((first > 0.0) != (then > 0.0))
             force, most = max(first, then), max(before, after)
             strong = (force > least) | (
                 chain.damped & ((before > 0.0) != (after > 0.0))
             )
             low, near = min(before, after), (most > 0.0) & (force > _STRONG * least)
-            near = (near & (low < _NEAR * most)) | (
-                (most > 0.0) & (low < _VERY_NEAR * most)
+            near = (near & (low < nearly * most)) | (
+                (most > 0.0) & (low < very_nearly * most)
             )
             # A contact that is open at both ends can close in between where the tangents at the
             # ends meet at δ > 0.
@@ -263,15 +284,21 @@ def watch_drive(chain: Chain, beads: Beads, plan: Plan, t: float, h: float) -> i
     law, A, r = chain.laws[chain.law[0]], chain.A[0], chain.r[0]
     if not chain.opens[0] > 0.0:
         return 0
-    p = _fitted(chain, beads, h, 0)
+    start, end = _ends(chain, beads, h, 0)
+    p = kinks.fitted_curve(start, end, (1.0, 0.0))
     count, top = kinks.find_edges(law, r, p, h, beads.edges)
     given, _, _ = drive_motion(chain.drive, t + h / 2, t + h / 2)
-    ends = (beads.y[0] + beads.next_y[0]) / 2 + h * h * (beads.given[0] + beads.given[1]) / 64
+    ends = (beads.y[0] + beads.next_y[0]) / 2 + h * h * (
+        beads.given[0] + beads.given[1]
+    ) / 64
     missed = abs(given - ends - 5 * h * (beads.v[0] - beads.next_v[0]) / 32)
     if count > 1 or beads.marks[0] > 0.0 or abs(top) < missed:
         force = elastic(law, max(top, 0.0) + missed) - elastic(law, top)
         impulse = h * A * force
-        moved, work = impulse * chain.inverse[1] / plan.v, impulse * beads.v[0] / plan.energy
+        moved, work = (
+            impulse * chain.inverse[1] / plan.v,
+            impulse * beads.v[0] / plan.energy,
+        )
         beads.books[4] += moved * moved + work * work
     if count > 1 and not beads.marks[0] > 0.0:
         beads.marks[0] = 1.0

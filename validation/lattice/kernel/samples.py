@@ -18,7 +18,7 @@ from validation.lattice.kernel import kinks
 from validation.lattice.kernel.arrays import Beads, Chain, Knots, Numbers
 from validation.lattice.kernel.compiled import cached, part
 from validation.lattice.kernel.force import drag, elastic, push, stiffness
-from validation.lattice.kernel.kinks import Quintic, fitted_quintic, value_and_slope
+from validation.lattice.kernel.kinks import Curve, value_and_slope
 
 
 @part
@@ -46,14 +46,6 @@ def _compression(
 
 
 @part
-def _quintic(knots: Knots, n: int, q: int, rest: float, h: float) -> Quintic:
-    """Return the quintic of the contact between the beads of rows q and q + 1 in step n."""
-    d, v, a = _compression(knots, n, q, rest)
-    end, end_v, end_a = _compression(knots, n + 1, q, rest)
-    return fitted_quintic(d, h * v, h * h * a, end, h * end_v, h * h * end_a)
-
-
-@part
 def _rate(law: Any, r: float, d: float, v: float, a: float) -> float:
     """Return dF/dt of a contact of unit stiffness from δ, δ' and δ''."""
     rate = stiffness(law, d) * v
@@ -70,10 +62,10 @@ def _rate(law: Any, r: float, d: float, v: float, a: float) -> float:
 
 
 @part
-def _septic(a: Array, b: Array) -> tuple[Quintic, float, float]:
+def _septic(a: Array, b: Array) -> tuple[Curve, float, float]:
     """Return the coefficients c0 … c5, c6 and c7 of y from y … y''' at x = 0 (a) and at x = 1 (b).
 
-    The coefficients c0 … c5 are a tuple.
+    The coefficients c0 … c5 are a curve without a bend.
     """
     c2, c3 = a[2] / 2, a[3] / 6
     # c4 … c7 solve the four conditions at x = 1, of which c0 … c3 leave the remainders r0 … r3.
@@ -84,7 +76,7 @@ def _septic(a: Array, b: Array) -> tuple[Quintic, float, float]:
     c5 = -84 * r0 + 39 * r1 - 7 * r2 + r3 / 2
     c6 = 70 * r0 - 34 * r1 + 6.5 * r2 - r3 / 2
     c7 = -20 * r0 + 10 * r1 - 2 * r2 + r3 / 6
-    return (a[0], a[1], c2, c3, c4, c5), c6, c7
+    return (a[0], a[1], c2, c3, c4, c5, 1.0, 0.0), c6, c7
 
 
 @part
@@ -111,8 +103,10 @@ def _take_kink_away(
     i = knots.watched[q]
     law, ratio, scale = chain.laws[chain.law[i]], chain.r[i], h * h * chain.A[i]
     near, far = scale * chain.inverse[i], scale * chain.inverse[i + 1]
-    p = _quintic(knots, n, q, chain.rest[i], h)
-    count, _ = kinks.find_edges(law, ratio, p, h, edges)
+    d, u, a = _compression(knots, n, q, chain.rest[i])
+    end, end_u, end_a = _compression(knots, n + 1, q, chain.rest[i])
+    begin, over = (d, h * u, h * h * a), (end, h * end_u, h * h * end_a)
+    p, count, _, _ = kinks.resolved(law, ratio, begin, over, h, -near - far, edges)
     for s in range(first, last + 1):
         x = (time[s] - knots.time[n]) / h if s < last else 1.0
         once, twice, _, _ = kinks.integrals(law, ratio, p, h, x, points, edges, count)
