@@ -53,7 +53,7 @@ from validation.lattice.kernel.arrays import (
 )
 from validation.lattice.kernel.kinks import EDGES, ROOM
 from validation.lattice.kernel.symplectic import advance_split
-from validation.lattice.knots import Recorder, set_addresses
+from validation.lattice.knots import Recorder
 from validation.lattice.laws import Contact
 from validation.lattice.result import Run, finished
 from validation.lattice.schemes import BLANES_MOAN, RK853, RKN86
@@ -80,6 +80,7 @@ _NUMBERS = 16
 # Beyond a free end nothing presses, but 0 times the force of another law, or of so high a power, may
 # be no number.
 _UNBOUNDED = 5.0
+_FREE = Drive(np.zeros(1), np.zeros((1, 4)), 0.0, 0.0, 0.0, False)
 _ANY_POWER = 0.25  # a general law may begin with δ^{1/4}
 
 
@@ -236,57 +237,54 @@ def _splitting_plan(motion: Motion, rtol: float, step: float) -> tuple[Plan, int
 
 def _chain(motion: Motion) -> Chain:
     """Build the kernel's chain, padded by beads of infinite mass; the first of them is the wall."""
-    n, contacts, A, c = (
-        motion.size,
-        len(motion.rest),
-        motion.stiffnesses,
-        motion.damping,
-    )
+    n, contacts = motion.size, len(motion.rest)
     padded = n + 2 * SHORTEST
-    inverse, stiffnesses, r, rest, load, opens = _lines(6, padded, 0)
+    inverse, A, r, rest, load, opens = _lines(6, padded, 0)
     inverse[:n] = 1 / motion.masses
-    stiffnesses[:contacts], rest[:contacts] = A, motion.rest
-    load[:contacts] = motion.load
-    r[:contacts] = np.divide(c, A, 0 * c, where=c > 0)
+    if motion.scene.drive is not None:
+        inverse[0] = 0.0
+    A[:contacts] = motion.stiffnesses
+    r[:contacts] = motion.damping / motion.stiffnesses
+    rest[:contacts], load[:contacts] = motion.rest, motion.load
+    opens[:contacts] = 1.0
     laws = list(motion.laws)
-    beyond = motion.law_of[-1] if contacts else 0
+    beyond = int(motion.law_of[-1]) if contacts else 0
     if laws[beyond].law is not None or laws[beyond].k >= _UNBOUNDED:
         beyond = len(laws)
         laws.append(Contact(1.0))
-    law_of = np.full(padded, beyond)
+    law_of, alike = np.full(padded, beyond), np.full(padded, padded)
     law_of[:contacts] = motion.law_of
-    opens[:contacts] = np.array([not law.pulls for law in laws])[motion.law_of]
-    # For each contact the number of the next one with another law.
-    others = np.append(np.flatnonzero(np.diff(law_of)) + 1, padded)
-    alike = others[np.searchsorted(others, np.arange(padded), side="right")]
-    rows = np.zeros(len(laws), LAW)
-    for row, law in zip(rows, laws, strict=True):
-        row["k"], row["p"], row["q"] = law.k, law.damping_power or 0.0, _exponent(law)
-        row["generated"] = law.law is not None
-        row["pulls"], row["sticks"] = law.pulls, law.sticks
-    set_addresses(rows, motion)
-    if motion.scene.drive is not None:
-        inverse[0] = 0.0
+    if len(laws) > 1:
+        places = np.append(np.flatnonzero(np.diff(law_of)) + 1, padded)
+        alike = places[np.searchsorted(places, np.arange(padded), side="right")]
+        opens[[laws[number].pulls for number in law_of]] = 0.0
     return Chain(
         inverse=inverse,
-        A=stiffnesses,
+        A=A,
         r=r,
         rest=rest,
         load=load,
         opens=opens,
         damped=motion.scene.damping is not None,
-        laws=records(rows),
+        laws=records(np.array([_record(law) for law in laws], LAW)),
         law=law_of,
         alike=alike,
         drive=_drive(motion),
     )
 
 
+def _record(law: Contact) -> tuple[Any, ...]:
+    """Return a law as a record of `LAW`."""
+    kinds = law.law is not None, law.pulls, law.sticks
+    numbers = law.k, law.damping_power or 0.0, _exponent(law)
+    return (*numbers, *kinds, *law.addresses.values())
+
+
 def _drive(motion: Motion) -> Drive:
     """Build the kernel's drive."""
     drive = motion.scene.drive
     if drive is None:
-        return Drive(np.zeros(1), np.zeros((1, 4)), 0.0, 0.0, 0.0, False)
+        return _FREE
     amplitude, w = drive.oscillation
     return Drive(*drive.cubics, float(amplitude), w, float(drive.ramp), True)
 
@@ -319,8 +317,8 @@ def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
     """Build the kernel's initial state, arrays with room for ``padded`` + 1 beads."""
     n, stages, estimates = motion.size, 1, 0
     if isinstance(scheme, Pair):
-        estimates, stages = scheme.errors.shape
-    rows = _lines(8 + estimates + stages, padded + 1, 1)
+        estimates, stages = len(scheme.errors), len(scheme.nodes)
+    rows = _lines(8 + estimates + 18, padded + 1, 1)
     y, v, next_y, next_v, still, marks = rows[:6]
     y[:n] = next_y[:n] = motion.start[:n]
     v[:n] = next_v[:n] = motion.start[n : 2 * n]
@@ -338,7 +336,7 @@ def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
         push=rows[8 + estimates :],
         errors=rows[8 : 8 + estimates],
         marks=marks,
-        power=np.zeros((2, stages)),
+        power=np.zeros((2, 18)),
         given=given,
         books=np.zeros(5),
         points=np.zeros((3, ROOM)),

@@ -203,9 +203,14 @@ class Motion:
         return float(kinetic.sum() + stored.sum())
 
     @cached_property
+    def initial_energies(self) -> tuple[Array, Array]:
+        """The `energies` of the initial state."""
+        return self.energies(self.start)
+
+    @property
     def initial_energy(self) -> float:
         """Energy of the initial state."""
-        return self.energy(self.start)
+        return float(sum(energies.sum() for energies in self.initial_energies))
 
     @property
     def free_energy(self) -> float:
@@ -220,10 +225,16 @@ class Motion:
             return None
         moving = slice(self.size, 2 * self.size)
         before, after = self.start[moving], end[moving]
-        total = np.sum(
-            self.masses * np.abs(after)
-        )  # no BLAS: its threads cost more than they gain
+        # No scalar product: BLAS starts threads, which cost more than they gain.
+        total = np.sum(self.masses * np.abs(after))
         return float(np.sum(self.masses * (after - before)) / total) if total else 0.0
+
+    @property
+    def _moves(self) -> bool:
+        """True if a bead has a velocity, or a contact is pressed more than in equilibrium."""
+        n, at_rest = self.size, self.rest.max(initial=0.0)
+        pressed = self.compression(self.start[:n]).max(initial=0.0)
+        return bool(self.start[n : 2 * n].any() or pressed > at_rest)
 
     @cached_property
     @np.errstate(all="ignore")
@@ -232,23 +243,22 @@ class Motion:
         energy, n, A = self.response, self.size, self.stiffnesses
         if energy is None:
             fastest = 0.0 if self.scene.drive is None else self.scene.drive.fastest
-            kinetic, stored = self.energies(self.start)
+            kinetic, stored = self.initial_energies
             # Where contacts attract each other, their energy may be negative.
             energy = float(kinetic.sum() + np.abs(stored).sum())
             energy += float(self.masses.mean() * fastest * fastest)
         at_rest = self.rest.max(initial=0.0)
-        pressed = self.compression(self.start[:n]).max(initial=0.0) > at_rest
-        if not math.isfinite(energy) or (
-            energy == 0 and (pressed or self.start[n : 2 * n].any())
-        ):
+        if not 0 < energy < math.inf and (energy != 0 or self._moves):
             _check_range("energy", energy)
         deepest = stiffest = 0.0
-        springs = np.zeros(
-            n + 1
-        )  # F′ of the two contacts of each bead; the last is a wall's
+        # F′ of the two contacts of each bead; the last one's is a wall's.
+        springs = np.zeros(n + 1)
         for number, law in enumerate(self.laws if len(A) else ()):
-            own = np.flatnonzero(self.law_of == number)
-            static, largest = self.rest[own].max(), A[own].max()
+            own, ahead = slice(0, len(A)), slice(1, len(A) + 1)
+            if len(self.laws) > 1:
+                own = np.flatnonzero(self.law_of == number)
+                ahead = own + 1
+            static, largest = float(self.rest[own].max()), float(A[own].max())
             depth = static
             if energy > 0:
                 depth = max(depth, law.reached_by(energy / largest, static))
@@ -256,11 +266,12 @@ class Motion:
                 continue
             deepest = max(deepest, depth)
             # F′ = k A δ^{k-1}; the factor k counts in the time alone.
-            slope = law.stiffness(np.array([static, depth])).max() / law.k
+            slope = law.steepest(static, depth)
             _check_range("stiffest spring", largest * slope)
             stiffest = max(stiffest, largest * slope)
-            springs[own] += law.k * slope * A[own]
-            springs[own + 1] += law.k * slope * A[own]
+            stiff = law.k * slope * A[own]
+            springs[own] += stiff
+            springs[ahead] += stiff
         if not deepest:
             return Scales(energy, 0.0, 1.0, 1.0, math.inf)
         time = 1 / np.sqrt((springs[:n] / self.masses).max())

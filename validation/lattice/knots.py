@@ -84,9 +84,8 @@ class Recorder:
     ) -> None:
         self.motion, self.chain, self.needed, self.time = motion, chain, needed, time
         watched = _with_neighbours(needed)
-        most = 2 + BUFFER // (
-            4 * len(watched) + 1
-        )  # a knot: four numbers a bead, and its time
+        # A knot: four numbers a bead, and its time.
+        most = 2 + (BUFFER // (4 * len(watched) + 1) if len(watched) else 0)
         self.knots = Knots(np.empty(most), np.empty((most, len(watched), 4)), watched)
         self.y, self.v = np.empty((2, len(needed), len(time)))
         self.parts: list[tuple[Array, Array]] = []

@@ -146,13 +146,18 @@ class Contact:
     def reached_by(self, energy: float, start: float) -> float:
         """Return a scale of the compression that an energy reaches from ``start``."""
         if self.law is None:
-            # of δ^{k+1}/(k+1) = energy
-            return float(np.float64(energy) ** (1 / (self.k + 1)))
+            return float(energy ** (1 / (self.k + 1)))  # of δ^{k+1}/(k+1) = energy
         # The first of many places at which the energy is reached, or a pole; else a barrier.
         change = np.geomspace(1e-15, 1e15, 7000)
         work = self.energy_above(np.full(change.shape, start), change)
         reached = np.flatnonzero(~(work < energy))
         return float(start + change[reached[0] if len(reached) else np.argmax(work)])
+
+    def steepest(self, start: float, depth: float) -> float:
+        """Return the greater stiffness at two compressions, over k."""
+        if self.law is None:
+            return float(np.float64(depth) ** (self.k - 1))
+        return float(self.stiffness(np.array([start, depth])).max())
 
     @property
     def addresses(self) -> dict[str, int]:

@@ -148,9 +148,8 @@ def finished(
     dissipated, work = map(float, end[2 * n :])
     drift = motion.energy(end) - motion.initial_energy + dissipated - work
     step = motion.scene.duration / steps
-    if not math.isfinite(
-        drift + sum(float(row.sum()) for row in arrays.values() if row.size)
-    ):
+    sums = [float(row.sum()) for row in arrays.values() if row.size]
+    if not math.isfinite(drift + sum(sums)):
         raise IntegrationError(
             f"the motion overflows: choose other units, or a step of {step:g} is too long"
         )

@@ -26,6 +26,13 @@ _QUANTITIES = {
     "bead": ("force", "displacement", "velocity"),
 }
 
+_RECORDS = (
+    "contact_force",
+    "compression",
+    "bead_force",
+    "bead_displacement",
+    "bead_velocity",
+)
 Beads = Sequence[int] | NDArray[np.int_]
 """Numbers of beads."""
 
@@ -94,17 +101,15 @@ def recorded(
     The forces of all contacts are computed at once: of 76 sensors, one after the other, they took
     ten times as long as the integration.
     """
+    if not len(beads):
+        return dict.fromkeys(_RECORDS, y)
     compressions = _compressions(motion, beads, y)
     forces, means = _forces(motion, beads, compressions, v)
     at_contacts = np.searchsorted(beads, motion.scene.contact_sensors)
     at_beads = np.searchsorted(beads, motion.scene.bead_sensors)
-    return {
-        "contact_force": _rows(forces, at_contacts),
-        "compression": _rows(compressions, at_contacts),
-        "bead_force": _rows(means, at_beads),
-        "bead_displacement": _rows(y, at_beads),
-        "bead_velocity": _rows(v, at_beads),
-    }
+    rows = (forces, at_contacts), (compressions, at_contacts)
+    rows += (means, at_beads), (y, at_beads), (v, at_beads)
+    return {name: _rows(*row) for name, row in zip(_RECORDS, rows, strict=True)}
 
 
 def _rows(values: Array, numbers: NDArray[np.int_]) -> Array:

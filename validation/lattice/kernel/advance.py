@@ -21,7 +21,6 @@ from validation.lattice.kernel.pair import (
     evaluate_stages,
     mark_kinks,
     next_mark,
-    settle,
     step_error,
     watch_drive,
 )
@@ -54,11 +53,13 @@ def advance(
     Returns the time that is reached. The integration also stops at a time to which no step can
     be added, and where the response is greater than ``plan.most``.
     """
-    until, hi, made = now.tries + tries, plan.size, now.tries == 0
-    if made:
-        settle(chain, beads, 0, plan.size - 1, 1.0)
+    until, hi, stages = now.tries + tries, plan.size, len(plan.scheme.nodes)
+    made = corrected = now.tries == 0
+    first = min(1, stages)  # no literal, for which numba compiles once more
     while True:
         if made:
+            if corrected:
+                evaluate_stages(chain, beads, plan, now.t, 0.0, hi, stages)
             begin_step(beads, hi)
             advance_front(beads, plan, now)
             store_knot(chain, beads, knots, now)
@@ -73,7 +74,7 @@ def advance(
             return float(now.t)
         hi = moving(now)
         now.tries += 1
-        evaluate_stages(chain, beads, plan, now.t, h, hi)
+        evaluate_stages(chain, beads, plan, now.t, h, hi, first)
         beads.books[:] = 0.0
         marks, i = mark_kinks(chain, beads, plan, h, hi), -1
         if chain.drive.driven:
@@ -82,4 +83,4 @@ def advance(
             i = next_mark(beads.marks, i + 1)
             correct_contact(chain, beads, plan, h, i)
         error = step_error(beads, plan, h, hi)
-        made = end_step(beads, plan, now, h, error, stopping)
+        made, corrected = end_step(beads, plan, now, h, error, stopping), marks > 0

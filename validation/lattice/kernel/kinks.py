@@ -27,7 +27,7 @@ Curve = tuple[float, float, float, float, float, float, float, float]
 """Coefficients c0 … c5 of p, and e and s of a bend, s [x - e]_+^2/2, that p has besides."""
 
 POINTS = 12  # of the rule: three of the machine's vectors
-ROOM = 16  # places of a step: points of the rule, or stages of a pair
+ROOM = 18  # places of a step: points of the rule, or stages of a pair
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(POINTS)
 _U, _W = (1 + _NODES) / 2, _WEIGHTS / 2
 _PLACES = 8  # parts of a step at whose ends a contact is looked at
@@ -124,25 +124,49 @@ def _turning_point(c: Curve, a: float, b: float) -> float:
     return 0.5 * (a + b)
 
 
+@part
+def _state(
+    law: Any, r: float, c: Curve, h: float, x: float
+) -> tuple[float, float, float]:
+    """Return p, p' and, for a damped contact that does not stick, the margin at a place."""
+    p, slope = value_and_slope(c, x)
+    margin = 1.0
+    if r > 0.0 and not law.sticks and p > 0.0:
+        margin = _margin(law, r, c, h, x)
+    return p, slope, margin
+
+
 @alone
 def _add_edges(
-    law: Any, r: float, c: Curve, h: float, a: float, b: float, edges: Array, n: int
+    law: Any,
+    r: float,
+    c: Curve,
+    h: float,
+    a: float,
+    b: float,
+    first: tuple[float, float, float],
+    last: tuple[float, float, float],
+    edges: Array,
+    n: int,
 ) -> int:
-    """Add the edges between a and b, where p is monotonic; return the number of edges so far."""
-    before, _ = value_and_slope(c, a)
-    after, _ = value_and_slope(c, b)
-    closes, opens = before <= 0.0 and after > 0.0, before > 0.0 and after <= 0.0
-    root = b
+    """Add the edges between a and b, where p is monotonic; return the number of edges so far.
+
+    first, last : the contact's states at a and b.
+    """
+    closes = first[0] <= 0.0 and last[0] > 0.0
+    opens = first[0] > 0.0 and last[0] <= 0.0
+    root, margin, end_margin = b, first[2], last[2]
     if closes or opens:
         root = _crossing(law, 0.0, c, h, a, b)
     if closes:
         edges[n] = a = root
         n += 1
-    if r > 0.0 and not law.sticks and max(before, after) > 0.0:
-        end = root if opens else b
-        if _margin(law, r, c, h, a) * _margin(law, r, c, h, end) < 0.0:
-            edges[n] = _crossing(law, r, c, h, a, end)
-            n += 1
+        margin = 1.0  # δ rises
+    if opens and r > 0.0 and not law.sticks:
+        end_margin = -1.0  # δ falls
+    if margin * end_margin < 0.0:
+        edges[n] = _crossing(law, r, c, h, a, root if opens else b)
+        n += 1
     if opens:
         edges[n] = root
         n += 1
@@ -157,21 +181,22 @@ def find_edges(
 
     The places between the intervals, 0 and 1 among them, go to ``edges``.
     """
-    n, low, before, rise, top = 1, 0.0, c[0], c[1], c[0]
+    n, low, before, top = 1, 0.0, _state(law, r, c, h, 0.0), c[0]
     edges[0] = 0.0
     for m in range(1, _PLACES + 1):
         high = m / _PLACES
-        after, end_rise = value_and_slope(c, high)
-        touches = before <= 0.0 and after <= 0.0 and rise > 0.0 and end_rise < 0.0
-        parts = before > 0.0 and after > 0.0 and rise < 0.0 and end_rise > 0.0
-        if touches or parts:
+        after = _state(law, r, c, h, high)
+        same = (before[0] > 0.0) == (after[0] > 0.0)
+        sign = 1.0 if before[0] > 0.0 else -1.0
+        # A contact may open, or close, between two places.
+        if same and sign * before[1] < 0.0 and sign * after[1] > 0.0:
             turn = _turning_point(c, low, high)
-            n = _add_edges(law, r, c, h, low, turn, edges, n)
-            n = _add_edges(law, r, c, h, turn, high, edges, n)
-            top = max(top, value_and_slope(c, turn)[0])
-        else:
-            n = _add_edges(law, r, c, h, low, high, edges, n)
-        low, before, rise, top = high, after, end_rise, max(top, after)
+            middle = _state(law, r, c, h, turn)
+            n = _add_edges(law, r, c, h, low, turn, before, middle, edges, n)
+            low, before, top = turn, middle, max(top, middle[0])
+        if before[0] > 0.0 or after[0] > 0.0:
+            n = _add_edges(law, r, c, h, low, high, before, after, edges, n)
+        low, before, top = high, after, max(top, after[0])
     edges[n] = 1.0
     return n, top
 

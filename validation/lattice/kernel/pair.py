@@ -68,39 +68,35 @@ def _move(
     rate: Array,
     time: float,
     scale: float,
-    table: Sums,
-    row: int,
+    weights: Array,
+    count: int,
     push: Array,
     lo: int,
     hi: int,
 ) -> None:
-    """Compute target = base + time rate + scale Σ_j weights[row, j] push[stages[row, j]].
+    """Compute target = base + time rate + scale Σ_s weights[s] push[s] over ``count`` stages.
 
-    One pass adds four stages, or nine of them: each pass reads and writes all beads.
+    One pass adds four stages, or nine of them: each pass reads and writes all beads. The weights of
+    stages that are still to come are 0.
     """
-    stages, weights, count = table.stages[row], table.weights[row], table.counts[row]
     if count <= 4:
-        i1, i2 = index(stages[0]), index(stages[1])
-        i3, i4 = index(stages[2]), index(stages[3])
-        w1, w2 = scale * weights[0], scale * weights[1]
-        w3, w4 = scale * weights[2], scale * weights[3]
+        a, b = scale * weights[0], scale * weights[1]
+        c, d = scale * weights[2], scale * weights[3]
         for i in range(index(lo), index(hi)):
-            first = w1 * push[i1, i] + w2 * push[i2, i]
-            second = w3 * push[i3, i] + w4 * push[i4, i]
+            first = a * push[ZERO, i] + b * push[ONE, i]
+            second = c * push[index(2), i] + d * push[index(3), i]
             target[i] = base[i] + time * rate[i] + (first + second)
         return
-    for j in range(0, count, 9):
-        i1, i2, i3 = index(stages[j]), index(stages[j + 1]), index(stages[j + 2])
-        i4, i5, i6 = index(stages[j + 3]), index(stages[j + 4]), index(stages[j + 5])
-        i7, i8, i9 = index(stages[j + 6]), index(stages[j + 7]), index(stages[j + 8])
-        w1, w2, w3 = scale * weights[j], scale * weights[j + 1], scale * weights[j + 2]
-        w4, w5 = scale * weights[j + 3], scale * weights[j + 4]
-        w6, w7 = scale * weights[j + 5], scale * weights[j + 6]
-        w8, w9 = scale * weights[j + 7], scale * weights[j + 8]
+    for s in range(0, count, 9):
+        a, b, c = scale * weights[s], scale * weights[s + 1], scale * weights[s + 2]
+        d, e, f = scale * weights[s + 3], scale * weights[s + 4], scale * weights[s + 5]
+        g, m, n = scale * weights[s + 6], scale * weights[s + 7], scale * weights[s + 8]
+        rows = push[s : s + 9]
         for i in range(index(lo), index(hi)):
-            first = w1 * push[i1, i] + w2 * push[i2, i] + w3 * push[i3, i]
-            second = w4 * push[i4, i] + w5 * push[i5, i] + w6 * push[i6, i]
-            third = w7 * push[i7, i] + w8 * push[i8, i] + w9 * push[i9, i]
+            first = a * rows[ZERO, i] + b * rows[ONE, i] + c * rows[index(2), i]
+            second = d * rows[index(3), i] + e * rows[index(4), i]
+            second += f * rows[index(5), i]
+            third = g * rows[index(6), i] + m * rows[index(7), i] + n * rows[index(8), i]
             target[i] = base[i] + time * rate[i] + (first + second + third)
         base, time = target, 0.0
 
@@ -114,34 +110,12 @@ def _integral(row: Array, values: Array) -> float:
     return total
 
 
-@alone
-def settle(chain: Chain, beads: Beads, first: int, last: int, sign: float) -> None:
-    """Compute the forces of contacts first … last, and the accelerations, at the end of the step.
-
-    sign : 1.0 adds the power that the contacts dissipate to that of the chain, -1.0 takes it away,
-    before a correction changes it.
-    """
-    stage, force, inverse = len(beads.push) - 1, beads.force[1], chain.inverse
-    first = max(0, first)
-    for n in range(first, last + 1):
-        law, A = chain.laws[chain.law[n]], chain.A[n]
-        d = chain.rest[n] + beads.next_y[n] - beads.next_y[n + 1]
-        rate = beads.next_v[n] - beads.next_v[n + 1]
-        total = push(law, chain.r[n], d, rate)
-        force[n + 1] = A * total - chain.load[n]
-        beads.power[0, stage] += sign * A * (total - elastic(law, d)) * rate
-    for j in range(first, last + 2):
-        beads.push[stage, j] = (force[j] - force[j + 1]) * inverse[j]
-    if chain.drive.driven:
-        beads.power[1, stage] = beads.next_v[0] * force[1]
-
-
 @part
 def _ends(
     chain: Chain, beads: Beads, h: float, i: int
 ) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
     """Return δ, δ' and δ'' of contact i at both ends of a step, in units of the step."""
-    y, v, push, last = beads.y, beads.v, beads.push, len(beads.push) - 1
+    y, v, push, last = beads.y, beads.v, beads.push, len(beads.border) - 1
     next_y, next_v = beads.next_y, beads.next_v
     a, end_a = push[0, i] - push[0, i + 1], push[last, i] - push[last, i + 1]
     if i == 0:
@@ -158,7 +132,7 @@ def _ends(
 @inlined
 def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -> None:
     """Correct a step for the pair's error at contact i, which opens or closes."""
-    pair, last, inverse = plan.scheme, len(beads.push) - 1, chain.inverse
+    pair, last, inverse = plan.scheme, len(beads.border) - 1, chain.inverse
     A, r, law = chain.A[i], chain.r[i], chain.laws[chain.law[i]]
     points, edges, both = beads.points, beads.edges, inverse[i] + inverse[i + 1]
     start, end = _ends(chain, beads, h, i)
@@ -185,8 +159,6 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
         seen = scale * _integral(pair.errors[q], force)
         beads.errors[q, i] += seen * inverse[i]
         beads.errors[q, i + 1] -= seen * inverse[i + 1]
-    reach = 2 if chain.damped else 1  # contacts whose force the correction changes
-    settle(chain, beads, i - reach, i + reach, -1.0)
     if chain.damped:
         heat = work - kinks.stored(law, corrected[0]) + kinks.stored(law, p[0])
         for s in range(last + 1):
@@ -223,7 +195,6 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
             more = abs(impulse - before) + abs(more * feedback)
         missed = more / plan.v
         beads.books[4] += missed * missed * (inverse[n] ** 2 + inverse[n + 1] ** 2)
-    settle(chain, beads, i - reach, i + reach, 1.0)
 
 
 @inlined
@@ -232,7 +203,7 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
 
     Returns the number of marks, which are in ``beads.marks``.
     """
-    stages, still = len(beads.push), beads.still
+    stages, still, push = len(plan.scheme.nodes), beads.still, beads.push
     y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
     rest, load, opens, marks = chain.rest, chain.load, chain.opens, beads.marks
     start, end = beads.force[0], beads.force[1]
@@ -246,10 +217,8 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
         up = min(lo + TILE, hi)
         for q in range(len(beads.errors)):
             scale = h * h / plan.y if q % 2 == 0 else h / plan.v
-            row, sums = 2 * stages + q, plan.scheme.sums
-            _move(
-                beads.errors[q], still, still, 0.0, scale, sums, row, beads.push, lo, up
-            )
+            weights, errors = plan.scheme.errors[q], beads.errors[q]
+            _move(errors, still, still, 0.0, scale, weights, stages, push, lo, up)
         for i in range(index(lo), index(up)):
             before = rest[i] + y[i] - y[i + ONE]
             after = rest[i] + next_y[i] - next_y[i + ONE]
@@ -314,33 +283,39 @@ def next_mark(marks: Array, i: int) -> int:
     return i
 
 
-@inlined
+@alone
 def evaluate_stages(
-    chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int
+    chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int, first: int
 ) -> None:
-    """Compute the accelerations at all stages of a step h of the beads 0 … hi-1 at time t."""
+    """Compute the accelerations at the stages of a step h of the beads 0 … hi-1 at time t.
+
+    first : first stage, 1; or the number of stages, for the forces at the step's end alone, whose
+    motion is known.
+    """
     pair, stages = plan.scheme, len(plan.scheme.nodes)
     y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
     force, push, inverse = beads.force[1], beads.push, chain.inverse
     for tile in range(0, hi + stages, TILE):
-        for s in range(1, stages):
-            lo, up, first, behind = tile_bounds(tile, s, hi)
+        for s in range(first, max(stages, first + 1)):
+            lo, up, begin, behind = tile_bounds(tile, s, hi)
             if lo >= up:
                 continue
-            ch = pair.nodes[s] * h
-            _move(next_y, y, v, ch, h * h, pair.sums, s, push, lo, up)
-            if chain.damped or s == stages - 1:
-                _move(next_v, v, v, 0.0, h, pair.sums, stages + s, push, lo, up)
-            if chain.drive.driven and lo == 0:
-                given = drive_motion(chain.drive, t + h / 2, t + ch)
-                next_y[0], next_v[0], beads.given[1] = given
-            contact_forces(chain, beads, plan, next_y, next_v, index(s), first, behind)
+            row = min(s, stages - 1)
+            if s < stages:
+                ch = pair.nodes[s] * h
+                _move(next_y, y, v, ch, h * h, pair.moments[s], s, push, lo, up)
+                if chain.damped or row == stages - 1:
+                    _move(next_v, v, v, 0.0, h, pair.impulses[s], s, push, lo, up)
+                if chain.drive.driven and lo == 0:
+                    given = drive_motion(chain.drive, t + h / 2, t + ch)
+                    next_y[0], next_v[0], beads.given[1] = given
+            contact_forces(chain, beads, plan, next_y, next_v, row, begin, behind)
             # The stages share a row of forces: the last one of a tile is kept for the next tile.
-            if first > 0:
-                force[first] = beads.border[s]
-            beads.border[s] = force[behind]
-            for i in range(index(first), index(behind)):
-                push[s, i] = (force[i] - force[i + ONE]) * inverse[i]
+            if begin > 0:
+                force[begin] = beads.border[row]
+            beads.border[row] = force[behind]
+            for i in range(index(begin), index(behind)):
+                push[row, i] = (force[i] - force[i + ONE]) * inverse[i]
 
 
 @summed
@@ -407,7 +382,7 @@ def end_step(
 @inlined
 def begin_step(beads: Beads, hi: int) -> None:
     """Move the beads, and their forces, to the end of a step, which is the start of the next."""
-    last, power, force, push = len(beads.push) - 1, beads.power, beads.force, beads.push
+    last, power, force, push = len(beads.border) - 1, beads.power, beads.force, beads.push
     for i in range(index(hi)):
         beads.y[i], beads.v[i] = beads.next_y[i], beads.next_v[i]
         force[ZERO, i + ONE] = force[ONE, i + ONE]
