@@ -257,7 +257,9 @@ def _chain(motion: Motion) -> Chain:
     if len(laws) > 1:
         places = np.append(np.flatnonzero(np.diff(law_of)) + 1, padded)
         alike = places[np.searchsorted(places, np.arange(padded), side="right")]
-        opens[[laws[number].pulls for number in law_of]] = 0.0
+    for number, law in enumerate(laws):
+        if law.pulls:
+            opens[:padded][law_of == number] = 0.0
     return Chain(
         inverse=inverse,
         A=A,

@@ -73,8 +73,11 @@ def _pair(
 ) -> Pair:
     """Build a pair from exact coefficients; nodes are floats."""
     a, b, e, thirds = (x.astype(float) for x in (moments, impulses, errors, thirds))
-    n=len(nodes); pad=lambda x: np.pad(x,((0,0),(0,18-x.shape[1])))
-    return Pair(nodes, pad(a), pad(b), pad(e), thirds, order, _sums(np.concatenate((a, b, e))))
+    n = len(nodes)
+    pad = lambda x: np.pad(x, ((0, 0), (0, 18 - x.shape[1])))
+    return Pair(
+        nodes, pad(a), pad(b), pad(e), thirds, order, _sums(np.concatenate((a, b, e)))
+    )
 
 
 def _nystrom(table: str, order: int) -> Pair:

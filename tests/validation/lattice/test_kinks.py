@@ -28,7 +28,7 @@ def force(contact, quintic, h, x):
         d, slope = d * x + coefficient, slope * x + d
     if d <= 0:
         return 0.0
-    return max(d ** law['k'] + r * d ** law['p'] * slope / h, 0.0)
+    return max(d ** law["k"] + r * d ** law["p"] * slope / h, 0.0)
 
 
 def kinks(contact, quintic, h):

@@ -96,7 +96,9 @@ def _move(
             first = a * rows[ZERO, i] + b * rows[ONE, i] + c * rows[index(2), i]
             second = d * rows[index(3), i] + e * rows[index(4), i]
             second += f * rows[index(5), i]
-            third = g * rows[index(6), i] + m * rows[index(7), i] + n * rows[index(8), i]
+            third = (
+                g * rows[index(6), i] + m * rows[index(7), i] + n * rows[index(8), i]
+            )
             target[i] = base[i] + time * rate[i] + (first + second + third)
         base, time = target, 0.0
 
@@ -382,7 +384,12 @@ def end_step(
 @inlined
 def begin_step(beads: Beads, hi: int) -> None:
     """Move the beads, and their forces, to the end of a step, which is the start of the next."""
-    last, power, force, push = len(beads.border) - 1, beads.power, beads.force, beads.push
+    last, power, force, push = (
+        len(beads.border) - 1,
+        beads.power,
+        beads.force,
+        beads.push,
+    )
     for i in range(index(hi)):
         beads.y[i], beads.v[i] = beads.next_y[i], beads.next_v[i]
         force[ZERO, i + ONE] = force[ONE, i + ONE]
