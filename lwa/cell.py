@@ -11,7 +11,11 @@ a cell with P equal contacts of stiffness A_eff, A_eff^{-1/k} = (1/P) Σ A_i^{-1
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import (
+    Iterable,
+    Mapping,
+    Sequence,
+)
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -49,11 +53,19 @@ MOST_PARTICLES = 1000
 class Cell(Value):
     """A periodic cell of P particles.
 
-    masses : P numbers or symbols, positive.
-    stiffnesses : P numbers or symbols, the A_i of F = A_i δ^k; all 1 when not given.
-    spacing : distance D of neighbouring particles at rest (the same for all contacts).
+    Parameters
+    ----------
+    masses : sequence of positive numbers or symbols
+        The masses of the P particles.
+    stiffnesses : sequence of positive numbers or symbols, optional
+        The A_i of F = A_i δ^k, one for each contact; all 1 when not given.
+    spacing : positive number or symbol
+        The distance D of neighbouring particles at rest, the same for all contacts.
 
-    Raises `lwa.InputError` when a value is not positive and finite, or the counts differ.
+    Raises
+    ------
+    InputError
+        When a value is not positive and finite, or the counts differ.
     """
 
     masses: tuple[sp.Expr, ...]
@@ -70,20 +82,21 @@ class Cell(Value):
         stiffnesses = _quantities(stiffnesses, "stiffnesses", "stiffness")
         if not masses:
             raise InputError("a cell needs at least one mass")
-        if len(stiffnesses) not in (0, len(masses)):
+        if not stiffnesses:
+            stiffnesses = (sp.S.One,) * len(masses)
+        if len(stiffnesses) != len(masses):
             raise InputError(
                 f"{len(stiffnesses)} stiffnesses for {len(masses)} masses: a periodic cell has as "
                 "many contacts as particles"
             )
+        # A frozen dataclass sets its own fields in this way.
         object.__setattr__(self, "masses", masses)
-        object.__setattr__(
-            self, "stiffnesses", stiffnesses or (sp.S.One,) * len(masses)
-        )
+        object.__setattr__(self, "stiffnesses", stiffnesses)
         object.__setattr__(self, "spacing", positive(spacing, "spacing"))
 
     def latex_rows(self) -> list[str]:
-        m, A = sp.Tuple(*self.masses), sp.Tuple(*self.stiffnesses)
-        return latex.rows({"m": m, "A": A, "D": self.spacing})
+        masses, stiffnesses = sp.Tuple(*self.masses), sp.Tuple(*self.stiffnesses)
+        return latex.rows({"m": masses, "A": stiffnesses, "D": self.spacing})
 
     @classmethod
     def of_spheres(cls, spheres: Sequence[Sphere]) -> Cell:
@@ -91,21 +104,33 @@ class Cell(Value):
 
         The spacing is the mean distance of neighbours' centers, Σ 2 R_i / P. Then widths and speeds
         are those in space, and D u_x is the mean compression of the contacts.
+
+        Parameters
+        ----------
+        spheres : sequence of Sphere
+            The spheres of one period; the last one touches the first one of the next period.
+
+        Returns
+        -------
+        Cell
         """
         row = items(spheres, "spheres")
-        contacts = tuple(
-            stiffness(a, b) for a, b in zip(row, row[1:] + row[:1], strict=True)
-        )
-        spacing = (
-            sp.Add(*(2 * sphere.radius for sphere in row)) / len(row) if row else D
-        )
-        return cls(tuple(sphere.mass for sphere in row), contacts, spacing)
+        masses = []
+        contacts = []
+        length = sp.S.Zero
+        # The last sphere touches the first one of the next period.
+        for sphere, following in zip(row, row[1:] + row[:1], strict=True):
+            contacts.append(stiffness(sphere, following))
+            masses.append(sphere.mass)
+            length += 2 * sphere.radius
+        # Without spheres the cell itself says what it needs.
+        return cls(masses, contacts, length / len(row) if row else D)
 
     @cached_property
     def symbols(self) -> tuple[sp.Symbol, ...]:
         """The symbols of masses, stiffnesses and spacing, by name."""
-        values = (*self.masses, *self.stiffnesses, self.spacing)
-        return tuple(sorted(set().union(*(x.free_symbols for x in values)), key=str))
+        values = sp.Tuple(*self.masses, *self.stiffnesses, self.spacing)
+        return tuple(sorted(values.free_symbols, key=str))
 
     @property
     def uniform(self) -> bool:
@@ -115,6 +140,8 @@ class Cell(Value):
     def at(self, **values: Any) -> Cell:
         """The cell with numbers (or other symbols) for the named symbols; see `substitution`.
 
+        Examples
+        --------
         >>> Cell(["m1", "m1", "m2"]).at(omega="1/3").masses
         (m1, m1, m1/3)
         """
@@ -122,8 +149,8 @@ class Cell(Value):
 
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Cell:
         """The cell with expressions in place of some of its symbols."""
-        rows = self.masses, self.stiffnesses
-        masses, stiffnesses = ([x.xreplace(new) for x in row] for row in rows)
+        masses = [mass.xreplace(new) for mass in self.masses]
+        stiffnesses = [A.xreplace(new) for A in self.stiffnesses]
         return Cell(masses, stiffnesses, self.spacing.xreplace(new))
 
     @property
@@ -143,19 +170,22 @@ class Cell(Value):
 
     def compliances(self, k: Any = k) -> tuple[sp.Expr, ...]:
         """The A_i^{-1/k}, the strains of the contacts up to a common factor."""
-        k = exponent(k)  # one force A_i δ_i^k for all contacts
+        # One force A_i δ_i^k for all contacts
+        k = exponent(k)
         return tuple(power(A, -1 / k) for A in self.stiffnesses)
 
     def shares(self, k: Any = k) -> tuple[sp.Expr, ...]:
         """The shares C_i = P A_i^{-1/k} / Σ A_j^{-1/k}, strain of contact i divided by the mean."""
+        # Equal contacts have equal shares, whatever k is.
         if len(set(self.stiffnesses)) == 1:
             return (sp.Integer(1),) * self.size
         compliances = self.compliances(k)
         total = sp.Add(*compliances)
-        return tuple(self.size * a / total for a in compliances)
+        return tuple(self.size * compliance / total for compliance in compliances)
 
     def stiffness(self, k: Any = k) -> sp.Expr:
         """The stiffness A_eff of P equal contacts with the same response as the cell."""
+        # Equal contacts: no power is taken and undone.
         if len(set(self.stiffnesses)) == 1:
             return self.stiffnesses[0]
         # A_eff^{-1/k} is the mean of the A_i^{-1/k}: compressions add.
@@ -165,17 +195,35 @@ class Cell(Value):
         """The ratio τ/t = √(P k A_eff D^{k+1} / M) of the time in u_ττ = u_x^{k-1} u_xx + …."""
         # Force A_eff (D u_x)^k on the density M/(P D): M/(P D) u_tt = k A_eff D^k u_x^{k-1} u_xx
         k = exponent(k)
-        square = (
-            self.size * k * self.stiffness(k) * power(self.spacing, k + 1) / self.mass
-        )
-        return power(square, sp.S.Half)
+        modulus = self.size * k * self.stiffness(k) * power(self.spacing, k + 1)
+        return power(modulus / self.mass, sp.S.Half)
 
 
 def Dimer(
-    m1: Any, m2: Any, N: int = 1, *, stiffnesses: Sequence[Any] = (), spacing: Any = D
+    m1: Any,
+    m2: Any,
+    N: int = 1,
+    *,
+    stiffnesses: Sequence[Any] = (),
+    spacing: Any = D,
 ) -> Cell:
-    """The paper's N:1 dimer: N particles m1 (u is the field of the first) and one m2.
+    """The paper's N:1 dimer.
 
+    Parameters
+    ----------
+    m1, m2 : positive numbers or symbols
+        Masses of the particles; u is the field of the first one, of mass m1.
+    N : int
+        Number of particles m1 before the one particle m2.
+    stiffnesses, spacing
+        As those of `Cell`.
+
+    Returns
+    -------
+    Cell
+
+    Examples
+    --------
     >>> Dimer("m1", "m2", N=2).masses
     (m1, m1, m2)
     """
@@ -195,10 +243,22 @@ def read_cell(value: Any) -> Cell:
 def exponent(value: Any) -> sp.Expr:
     """Read the exponent k of F = A δ^k exactly.
 
-    Raises `lwa.InputError` for numbers outside of `EXPONENTS`.
+    Parameters
+    ----------
+    value : number or symbol
+
+    Returns
+    -------
+    expression
+
+    Raises
+    ------
+    InputError
+        For numbers outside of `EXPONENTS`.
     """
     least, largest = EXPONENTS
     result = read_exact(value, "k")
+    # A symbol may stand for any number.
     if result.is_number and not least <= result <= largest:
         raise InputError(
             f"k is {shorten(result)}: exponents from {least} to {largest} are taken"
@@ -214,46 +274,83 @@ def substitution(
 ) -> dict[sp.Symbol, sp.Expr]:
     """Map symbols of a cell, of its exponent and more to the values given for their names.
 
-    Unless a symbol has this name, ``omega`` is the ratio m2/m1 of the cell's two masses.
+    Parameters
+    ----------
+    values : mapping
+        Values by the names of symbols. Unless a symbol has this name, ``omega`` is the ratio m2/m1
+        of the cell's two masses.
+    cell : Cell
+    k : expression
+        Exponent of the contact law.
+    more : sequence of symbols
+        Further symbols, of values of either sign.
 
-    Raises `lwa.InputError` for a name that does not occur or that two symbols have, and a value of
-    the cell or the exponent that is not positive.
+    Returns
+    -------
+    dict
+        Mapping from symbols to expressions.
+
+    Raises
+    ------
+    InputError
+        For a name that does not occur or that two symbols have, and a value of the cell or the
+        exponent that is not positive.
     """
     symbols = dict.fromkeys((*cell.symbols, *sorted(k.free_symbols, key=str), *more))
-    known = {s.name: s for s in symbols}
-    if len(known) < len(symbols):
-        twice = min(s.name for s in symbols if known[s.name] != s)
-        raise InputError(
-            f"{twice!r} names two symbols, with different assumptions: use one"
-        )
-    given = dict(values)
-    omega = given.pop("omega", None) if "omega" not in known else None
-    for name in given:
-        if name not in known:
+    known: dict[str, sp.Symbol] = {}
+    # SymPy tells symbols of one name and different assumptions apart; a caller's keyword cannot.
+    for symbol in symbols:
+        if symbol.name in known:
+            raise InputError(
+                f"{symbol.name!r} names two symbols, with different assumptions: use one"
+            )
+        known[symbol.name] = symbol
+    # The values, by symbol
+    new = {}
+    for name, value in values.items():
+        if name in known:
+            # Masses, stiffnesses, lengths and k are positive; a law's parameters need not be.
+            read = read_exact if known[name] in more else positive
+            new[known[name]] = read(value, name)
+        elif name != "omega":
             names = ", ".join(known) or "there are none"
             raise InputError(f"{shorten(name)} is not among the symbols: {names}")
-    new = {
-        known[name]: (read_exact if known[name] in more else positive)(value, name)
-        for name, value in given.items()
-    }
-    if omega is None:
-        return new
+    if "omega" in values and "omega" not in known:
+        mass, value = _by_ratio(cell, positive(values["omega"], "omega"), new)
+        new[mass] = value
+    return new
+
+
+def _by_ratio(
+    cell: Cell,
+    omega: sp.Expr,
+    known: Mapping[sp.Symbol, sp.Expr],
+) -> tuple[sp.Symbol, sp.Expr]:
+    """The mass that a ratio ω = m2/m1 replaces, where others have known values, and its value."""
     masses = tuple(dict.fromkeys(cell.masses))
     if len(masses) != 2:
         raise InputError(
             f"omega is m2/m1 of a cell with two masses; this one has {len(masses)}"
         )
-    ratio = positive(omega, "omega")
     # m2 becomes ω m1 or, where m2 is no free symbol, m1 becomes m2/ω.
-    for mass, other, factor in ((masses[1], masses[0], ratio), (*masses, 1 / ratio)):
-        if mass.is_Symbol and mass not in new and mass not in other.free_symbols:
-            return new | {mass: factor * other.xreplace(new)}
+    m1, m2 = masses
+    choices = (
+        (m2, m1, omega),
+        (m1, m2, 1 / omega),
+    )
+    for mass, other, ratio in choices:
+        if mass.is_Symbol and mass not in known and mass not in other.free_symbols:
+            return mass, ratio * other.xreplace(known)
     raise InputError(
         "omega is m2/m1: one of the masses must be a symbol without another value"
     )
 
 
-def _quantities(values: Any, name: str, singular: str) -> tuple[sp.Expr, ...]:
+def _quantities(
+    values: Any,
+    name: str,
+    singular: str,
+) -> tuple[sp.Expr, ...]:
     """Read a sequence of positive numbers or symbols."""
     numbered = enumerate(items(values, name), start=1)
     return tuple(positive(x, f"{singular} {i}") for i, x in numbered)

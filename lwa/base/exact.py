@@ -11,13 +11,15 @@ import keyword
 import math
 import operator
 import re
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Mapping
 from fractions import Fraction
 from typing import Any
 
 import sympy as sp
 
 from lwa.base import InputError as InputError
+from lwa.base.words import one_of as one_of
+from lwa.base.words import shorten as shorten
 
 Quantity = int | float | str | Fraction | sp.Expr
 """Accepted types of an exponent, a mass, a stiffness or a length."""
@@ -35,18 +37,16 @@ DIGITS = 330
 MOST_CANCELLED = 20_000
 """Digits that the terms of an exact number may cancel before it is evaluated in vain."""
 
-# Bits that a power is written out to: about 1000 digits. A square root, of bits (1 + 2), is of less
-# than 1024 bits then, beyond which SymPy's search for factors fails with an OverflowError.
-_POWER_BITS = 3000
+_FINEST_ROOT = 12
+"""Greatest q of powers x^{p/q} that are rearranged as polynomials in x^{1/q}."""
 
+_POWER_BITS = 300
+"""Most bits of a number, times the larger part of an exponent, of powers that are written out.
 
-def shorten(value: object) -> str:
-    """The ``repr`` of an offending value, cut to one short line for a message."""
-    try:
-        text = repr(value)
-    except ValueError:  # Python writes no integer of more than some thousand digits
-        return "a number of thousands of digits"
-    return text if len(text) <= 60 else text[:57] + "..."
+SymPy takes whole powers out of roots, and joins the roots of a product: (6/5)^(97/197) becomes a
+root of 6^97 · 5^100. Its search for factors of a number fails with an `OverflowError` beyond the
+1024 bits of a double. The roots of three numbers of this length join to less.
+"""
 
 
 def read_exact(value: Any, name: str) -> sp.Expr:
@@ -83,7 +83,9 @@ def read_exact(value: Any, name: str) -> sp.Expr:
 
 
 def _from_number(value: Any, name: str) -> sp.Rational:
-    if hasattr(value, "item") and getattr(value, "size", 1) == 1:  # NumPy's scalars
+    # NumPy's scalars; the item of a masked one would be the number behind its mask.
+    scalar = hasattr(value, "item") and getattr(value, "size", 1) == 1
+    if scalar and not hasattr(value, "mask"):
         value = value.item()
     if isinstance(value, bool) or not isinstance(value, int | float | Fraction):
         raise InputError(f"{name} is {shorten(value)}: a number or a symbol is wanted")
@@ -157,18 +159,28 @@ def integer(value: Any, name: str, low: int, high: int = 2**63 - 1) -> int:
     return number
 
 
-def one_of(value: Any, known: Collection[str], name: str) -> str:
-    """Return a word; raise `InputError` unless it is among the known words."""
-    if not isinstance(value, str) or value not in known:
-        wanted = " or ".join(known) if len(known) == 2 else f"one of {', '.join(known)}"
-        raise InputError(f"{name} is {shorten(value)}: {wanted} is wanted")
-    return value
-
-
 def demand_numbers(free: Collection[sp.Symbol], why: str) -> None:
     """Raise `InputError` if any symbol is left; ``why`` ends the message."""
     if free:
         raise InputError(f"{min(map(str, free))!r} has no value: {why}")
+
+
+def demand_distinct(**parts: Collection[sp.Symbol]) -> None:
+    """Raise `InputError` if quantities of two parts have symbols of one name.
+
+    >>> demand_distinct(cell=[sp.Symbol("q")], wavenumber=[sp.Symbol("q", real=True)])
+    Traceback (most recent call last):
+        ...
+    lwa.base.InputError: 'q' names a symbol of the cell and the wavenumber: choose another
+    """
+    owners: dict[str, str] = {}
+    for part, symbols in parts.items():
+        for symbol in symbols:
+            owner = owners.setdefault(symbol.name, part)
+            if owner != part:
+                raise InputError(
+                    f"{symbol.name!r} names a symbol of the {owner} and the {part}: choose another"
+                )
 
 
 def number(value: sp.Expr) -> float:
@@ -187,6 +199,17 @@ def evaluated(value: sp.Expr, digits: int) -> sp.Expr:
     return sp.N(value, digits, maxn=MOST_CANCELLED)
 
 
+def brief(value: sp.Expr) -> str:
+    """Six digits of an exact number, or the short text of an expression, for a ``repr``.
+
+    >>> brief(sp.pi / 7), brief(sp.Symbol("x") / 3)
+    ('0.448799', 'x/3')
+    """
+    if value.free_symbols:
+        return shorten(value)
+    return f"{number(value):.6g}"
+
+
 class Unmultiplied(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymPy
     """A number that SymPy does not multiply out in a power; it prints and evaluates as usual."""
 
@@ -198,16 +221,52 @@ class Unmultiplied(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymP
 
 
 def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
-    """The power base^exponent without numbers of more than a thousand digits.
+    """The power base^exponent; that of a long number or a long exponent is not written out.
 
     >>> power(sp.Rational(9, 4), sp.Rational(3, 2)), power(sp.Rational(9, 4), sp.Rational(1, 9999))
     (27/8, (9/4)**(1/9999))
     """
-    factor = base.as_coeff_Mul()[0]
-    if factor not in (0, 1) and factor.is_Rational and exponent.is_Rational:
-        # SymPy takes whole powers out of roots: (1/3)^(1 + 1/99999) = 3^(99998/99999)/3^2 passes
-        # through 3^99999.
-        bits = int(factor.p).bit_length() + int(factor.q).bit_length()
-        if bits * (abs(int(exponent.p)) + int(exponent.q)) > _POWER_BITS:
-            base = Unmultiplied(base)
+    number, rest = base.as_coeff_Mul()
+    if number not in (0, 1) and number.is_Rational and exponent.is_Rational:
+        bits = int(number.p).bit_length() + int(number.q).bit_length()
+        if bits * max(abs(int(exponent.p)), int(exponent.q)) > _POWER_BITS:
+            base = Unmultiplied(number) * rest
     return base**exponent
+
+
+def replaced(value: sp.Expr, new: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
+    """Substitute for symbols, with powers by `power`: SymPy writes long numbers out.
+
+    >>> x = sp.Symbol("x", positive=True)
+    >>> replaced(x**2 + x**sp.Rational(1, 9999), {x: sp.Rational(9, 4)})
+    (9/4)**(1/9999) + 81/16
+    """
+    if value.free_symbols.isdisjoint(new):
+        return value
+    if value.is_Symbol:
+        return new[value]
+    parts = [replaced(part, new) for part in value.args]
+    return power(*parts) if value.is_Pow else value.func(*parts)
+
+
+def factored(value: sp.Expr) -> sp.Expr:
+    """The expression in lowest terms, factored; see `rearranged`."""
+    return rearranged(sp.factor, value)
+
+
+def rearranged(method: Callable[[sp.Expr], sp.Expr], value: sp.Expr) -> sp.Expr:
+    """Apply SymPy's `factor` or `cancel`; powers with long exponents are taken for symbols.
+
+    SymPy takes x^{p/q} for the power p of x^{1/q}. Polynomials of such a degree fill the memory
+    where an exponent comes from a decimal such as 1.2345.
+
+    >>> x = sp.Symbol("x", positive=True)
+    >>> [rearranged(sp.factor, x ** sp.Rational(2, q) - 1) for q in (5, 13)]
+    [(x**(1/5) - 1)*(x**(1/5) + 1), x**(2/13) - 1]
+    """
+    letters = {}
+    for part in value.atoms(sp.Pow):
+        if part.exp.is_Rational and part.exp.q > _FINEST_ROOT:
+            letters[part] = sp.Dummy(positive=True)
+    back = {letter: part for part, letter in letters.items()}
+    return method(value.xreplace(letters)).xreplace(back)

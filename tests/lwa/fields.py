@@ -3,6 +3,8 @@
 import sympy as sp
 from flint import fmpq
 
+from lwa.law import phi_symbol
+
 
 def rational(value):
     """A SymPy rational as FLINT's."""
@@ -11,18 +13,17 @@ def rational(value):
 
 def at_compression(law, value, delta):
     """The value of an expression in φ_2, φ_3, … at a compression."""
-    known = {s.name: s for s in value.free_symbols if s.name.startswith("phi")}
-    return value.xreplace(
-        {s: law.phi(int(n[3:])).subs(law.delta, delta) for n, s in known.items()}
-    )
+    for n in range(2, 9):
+        value = value.xreplace({phi_symbol(n): law.phi(n).subs(law.delta, delta)})
+    return value
 
 
 def of_fields(pde, terms, u, x, velocity=sp.S.Zero):
     """The sum Σ coefficient · base^{a + bk} · jet for fields u(x) and u_τ(x)."""
-    base, law, D = (u.diff(x) if pde.acoustic else u), pde.law, pde.cell.spacing
+    base, law, D = u.diff(x), pde.law, pde.cell.spacing
     total = sp.S.Zero
     for jet, coefficient in terms.items():
-        a, b = map(sp.Rational, jet.base_power(terms.power))
+        a, b = map(sp.Rational, terms.power.beside(jet))
         factors = [u.diff(x, i) ** e for i, e in jet.x]
         factors += [velocity.diff(x, i) ** e for i, e in jet.t]
         if law.homogeneous:
@@ -35,19 +36,18 @@ def of_fields(pde, terms, u, x, velocity=sp.S.Zero):
 
 
 def right_side(pde, u, x, velocity=sp.S.Zero):
-    """The right-hand side of u_ττ."""
-    D, law, base = pde.cell.spacing, pde.law, int(pde.acoustic)
-    leading = (
-        law.of_strain(u.diff(x), D, 1) * u.diff(x, 2) if base else -(u**law.exponent)
-    )
-    orders = pde.coefficients.items()
-    return leading + sum(
-        D ** (n - base) * of_fields(pde, e, u, x, velocity) for n, e in orders
-    )
+    """The right-hand side of u_ττ on the acoustic branch."""
+    D, p = pde.cell.spacing, u.diff(x)
+    total = pde.law.of_strain(p, D, 1) * p.diff(x)
+    for n, terms in pde.coefficients.items():
+        total += D ** (n - 1) * of_fields(pde, terms, u, x, velocity)
+    return total
 
 
 def energy_density(pde, u, x, velocity=sp.S.Zero):
     """The density of the conserved energy, with the contacts' W(u_x)."""
     D, law = pde.cell.spacing, pde.law
-    total = sum(D**n * of_fields(pde, e, u, x, velocity) for n, e in pde.energy.items())
-    return total if law.homogeneous else total + law.of_strain(u.diff(x), D, -1)
+    total = law.of_strain(u.diff(x), D, -1)
+    for n, terms in pde.energy.items():
+        total += D**n * of_fields(pde, terms, u, x, velocity)
+    return total
