@@ -24,7 +24,7 @@ def force(contact, quintic, h, x):
     laws, r = contact
     law = laws[0]
     d = slope = 0.0
-    for coefficient in reversed(quintic):
+    for coefficient in reversed(quintic[:6]):
         d, slope = d * x + coefficient, slope * x + d
     if d <= 0:
         return 0.0
@@ -80,6 +80,7 @@ def contact(k, r, p):
     return laws, r
 
 
+STRAIGHT = 1.0, 0.0  # a curve without a bend
 # Exponents and damping (k, r, p), and the error over the greatest impulse: δ^{1/4} wants u^4, of
 # which ten points resolve less.
 LAWS = {
@@ -107,6 +108,7 @@ def test_a_contact_that_closes_or_opens(law, ends, rises, opening):
         rise + end_rise - 2 * jump,
         0.0,
         0.0,
+        *STRAIGHT,
     )
     check(law, curve, LAWS[law])
 
@@ -118,7 +120,7 @@ def test_a_contact_that_closes_and_opens(law, depth, place, bend):
     """Parabolas of a greatest compression ``depth``, at a place of the step."""
     check(
         law,
-        (depth - bend * place**2, 2 * bend * place, -bend, 0.0, 0.0, 0.0),
+        (depth - bend * place**2, 2 * bend * place, -bend, 0.0, 0.0, 0.0, *STRAIGHT),
         LAWS[law],
     )
 
