@@ -25,6 +25,7 @@ from __future__ import annotations
 
 import math
 import sys
+from typing import Any
 
 import numpy as np
 
@@ -38,40 +39,49 @@ from validation.lattice.cost import (
 from validation.lattice.equations import Motion
 from validation.lattice.kernel.advance import advance
 from validation.lattice.kernel.arrays import (
+    LAW,
     MARGIN,
     SHORTEST,
-    WIDTH,
     Beads,
     Chain,
     Drive,
-    Law,
     Pair,
     Plan,
+    Splitting,
     initial_progress,
+    records,
 )
-from validation.lattice.kernel.kinks import POINTS
+from validation.lattice.kernel.kinks import EDGES, ROOM
 from validation.lattice.kernel.symplectic import advance_split
 from validation.lattice.knots import Recorder
 from validation.lattice.laws import Contact
 from validation.lattice.result import Run, finished
-from validation.lattice.schemes import SCHEMES, VERNER65
+from validation.lattice.schemes import BLANES_MOAN, RK853, RKN86
 from validation.lattice.signal import recorded, sampled
 
-_WEAK = (
-    0.1  # least energy of the response in units of the energy that sets the tolerance
-)
-_NOISE = (
-    sys.float_info.epsilon
-)  # in units of the greatest value: a bead that moves less is still
-_BETWEEN_REPORTS = (
-    5e7  # bead evaluations between two reports of progress: some tenths of a second
-)
+# The response of a drive is guessed: a run is made again where its energy turns out less than _WEAK
+# times, or more than _STRONG times, the energy that sets the tolerance, and no more than _GUESSES
+# times.
+_WEAK, _STRONG, _GUESSES = 0.1, 10.0, 8
+_HIDDEN = 0.1  # rounding in units of the tolerance: more of it hides the motion
+# In units of the greatest value: a bead that moves less is still.
+_NOISE = sys.float_info.epsilon
+# Bead evaluations between two reports of progress: some tenths of a second.
+_BETWEEN_REPORTS = 5e7
 # The splitting's step per stage is (rtol/0.01)^0.4 in units of the scene's shortest time, measured
 # on a Hertz dimer of 560 beads; at 0.2 it is still stable.
 _KINKS, _COARSEST = 0.01, 0.2
-_FIRST = (
-    4.0  # first step of a pair over rtol^(1/7), in units of the scene's shortest time
-)
+# First step of a pair over rtol^(1/order), in units of the scene's shortest time: a step with about
+# this error at the greatest compression.
+_FIRST = 4.0
+# Numbers of a sample that a run holds at a time: motion of a bead and its two neighbours, forces
+# and compressions, and the copies that NumPy makes of them.
+_NUMBERS = 16
+# Beyond a free end nothing presses, but 0 times the force of another law, or of so high a power, may
+# be no number.
+_UNBOUNDED = 5.0
+_FREE = Drive(np.zeros(1), np.zeros((1, 4)), 0.0, 0.0, 0.0, False)
+_ANY_POWER = 0.25  # a general law may begin with δ^{1/4}
 
 
 def integrate(
@@ -80,125 +90,205 @@ def integrate(
     """Integrate a scene by a method of `SCHEMES`, in steps of at most ``longest``.
 
     A splitting's steps have this length, unless it is infinite. A run whose tolerance is set by a
-    drive, and whose response turns out far weaker, is made again.
+    drive, and whose response turns out far weaker or stronger, is made again.
     """
-    while True:
-        run, response = _integrated(motion, method, rtol, longest, progress)
-        least = 8 * _NOISE * motion.scales.energy  # rounding of the energy
-        if not least < response < _WEAK * motion.scales.energy:
-            return run
+    end = motion.scene.duration
+    for _ in range(_GUESSES):
+        run = _Integration(motion, method, rtol, longest)
+        run.advance(progress)
+        energy, response = motion.scales.energy, float(run.now["response"])
+        if run.now["t"] < end:
+            # The work of a piston grows in proportion to the time.
+            response *= end / run.now["t"]
+        elif motion.scene.drive is None:
+            return run.finished()
+        elif not 8 * _NOISE * energy < response < _WEAK * energy:  # less is rounding
+            return run.finished()
         motion = Motion(motion.scene, response)
-
-
-def _integrated(
-    motion: Motion, method: str, rtol: float, longest: float, progress: RunProgress
-) -> tuple[Run, float]:
-    """Return a run, and the greatest energy of its contacts and free beads."""
-    plan, most = _plan(motion, method, rtol, longest)
-    n, end = motion.size, motion.scene.duration
-    chain = _chain(motion)
-    beads = _start(motion, len(chain.A))
-    time, needed = sampled(motion)
-    recorder = Recorder(motion, chain, needed, time)
-    now = initial_progress(plan, _front(motion), motion.free_energy)
-    glance = 1 + int(
-        _BETWEEN_REPORTS / (10 * max(n, SHORTEST))
-    )  # a step has some ten stages
-    go = advance if isinstance(plan.scheme, Pair) else advance_split
-    t = 0.0
-    with progress() as display:
-        while t < end:
-            display(t / end)
-            t, _ = go(chain, beads, plan, recorder.knots, now, glance)
-            if t < end and now["tries"] > most:
-                raise IntegrationError(
-                    f"{now['tries']} steps of {method} reach t = {t:g} of {end:g}: rounding hides "
-                    "the motion, or rtol is too small for it"
-                )
-            if t == end or now["stored"] == len(recorder.knots.time):
-                now["stored"] = recorder.take(int(now["stored"]))
-    accelerating = motion.masses[0] * (beads.v[0] ** 2 - motion.start[n] ** 2) / 2
-    work = now["work"] + accelerating if motion.scene.drive else 0.0
-    state = np.concatenate((beads.y[:n], beads.v[:n], (now["lost"], work)))
-    run = finished(
-        motion,
-        state,
-        {"time": time} | recorded(motion, needed, recorder.y, recorder.v),
-        steps=int(now["steps"]),
-        path=recorder.path(),
+    raise IntegrationError(
+        f"the drive's work, {response:.1g} at last, is no scale of the tolerance in "
+        f"{_GUESSES} runs: choose another drive, or a shorter duration"
     )
-    return run, float(now["response"])
 
 
-def _plan(motion: Motion, method: str, rtol: float, longest: float) -> tuple[Plan, int]:
-    """Return the integration plan, and the greatest number of steps."""
-    scales, end = motion.scales, float(motion.scene.duration)
-    damped = motion.scene.damping is not None
-    scheme = VERNER65 if damped and method == "RKN86" else SCHEMES[method]
-    drive, stops = motion.scene.drive, [end]
-    if drive is not None:
-        # Beside a wall no motion has an error that would bound the step, and the work's estimate
-        # does not see the quintic's error, h^6, at a kink: 1/8 left 11 rtol in the work, 1/16 one.
-        longest = min(longest, drive.longest_step / (16 if motion.size == 1 else 2))
-        stops += [t for t in (drive.ramp, *drive.time) if 0 < t < end]
-    if isinstance(scheme, Pair):
-        most = step_limit(motion.scene, method, end / min(scales.time, longest))
-        h = min(_FIRST * rtol ** (1 / 7) * scales.time, longest, end / 100)
-    else:
-        natural = min((rtol / _KINKS) ** 0.4, _COARSEST) * len(scheme.drifts)
-        mean = natural * min(scales.time, end) if math.isinf(longest) else longest
-        most = step_limit(motion.scene, method, end / mean)
-        h = end / math.ceil(end / mean)
-    check_memory(motion.scene, method, 16)
-    plan = Plan(
+class _Integration:
+    """A run of the compiled loops: their records, and how far they have come."""
+
+    def __init__(
+        self, motion: Motion, method: str, rtol: float, longest: float
+    ) -> None:
+        self.motion, self.method = motion, method
+        check_memory(motion.scene, method, _NUMBERS)
+        if method == "symplectic":
+            self.plan, self.most = _splitting_plan(motion, rtol, longest)
+        else:
+            self.plan, self.most = _pair_plan(motion, rtol, longest)
+        self.chain = _chain(motion)
+        self.beads = _start(motion, len(self.chain.A), self.plan.scheme)
+        self.time, self.needed = sampled(motion)
+        self.recorder = Recorder(motion, self.chain, self.needed, self.time)
+        self.now = initial_progress(self.plan, _front(motion), motion.free_energy)
+
+    def advance(self, progress: RunProgress) -> None:
+        """Integrate to the end, or until the response is too strong for its tolerance."""
+        now, end, knots = self.now, self.plan.end, self.recorder.knots
+        # A step has some ten stages.
+        glance = 1 + int(_BETWEEN_REPORTS / (10 * max(self.plan.size, SHORTEST)))
+        go = advance if isinstance(self.plan.scheme, Pair) else advance_split
+        t = 0.0
+        with progress() as display:
+            while t < end:
+                display(t / end)
+                t = go(self.chain, self.beads, self.plan, knots, now, glance)
+                if now["response"] > self.plan.most:
+                    return
+                if t == end or now["stored"] == len(knots.time):
+                    now["stored"] = self.recorder.take(int(now["stored"]))
+                if t < end and (now["tries"] > self.most or t + now["h"] == t):
+                    raise IntegrationError(self._failure())
+
+    def _failure(self) -> str:
+        """Say why the run does not come to its end."""
+        now, end = self.now, self.plan.end
+        where = f"t = {now['t']:g} of {end:g}"
+        if not np.isfinite(self.beads.force[1:]).all() or now["h"] == 0:
+            return f"a force is not a number near {where}: no step is short enough for the law"
+        if now["t"] + now["h"] == now["t"]:
+            return f"no step is left at {where}: its length, {now['h']:.1g}, is rounding of the time"
+        rounding = self.motion.scales.rounding
+        if rounding * self.motion.scales.displacement > _HIDDEN * self.plan.y:
+            cause = (
+                f"rounding of the static compression, {rounding:.1g} of the motion, hides the "
+                "motion at this rtol"
+            )
+        else:
+            cause = (
+                "contacts open and close too often, or rtol is too small for the motion"
+            )
+        return f"{now['tries']} steps of {self.method} reach {where}: {cause}"
+
+    def finished(self) -> Run:
+        """Return the finished run."""
+        motion, beads, now, n = self.motion, self.beads, self.now, self.motion.size
+        work = 0.0
+        if motion.scene.drive is not None:
+            # The drive also accelerates its bead.
+            gained = motion.masses[0] * (beads.v[0] ** 2 - motion.start[n] ** 2) / 2
+            work = now["work"] + gained
+        records = recorded(motion, self.needed, self.recorder.y, self.recorder.v)
+        return finished(
+            motion,
+            np.concatenate((beads.y[:n], beads.v[:n], (now["lost"], work))),
+            {"time": self.time} | records,
+            steps=int(now["steps"]),
+            path=self.recorder.path(),
+        )
+
+
+def _plan(motion: Motion, scheme: Pair | Splitting, rtol: float, **steps: Any) -> Plan:
+    """Build the integration plan of a scene.
+
+    steps : the fields h, longest and stops of a `Plan`.
+    """
+    scales = motion.scales
+    most = math.inf
+    if motion.scene.drive is not None and scales.energy > 0:
+        most = _STRONG * scales.energy
+    return Plan(
         scheme=scheme,
         y=rtol * scales.displacement,
         v=rtol * scales.velocity,
         energy=rtol * (scales.energy or 1.0),
-        h=h,
-        longest=longest,
-        end=end,
+        end=float(motion.scene.duration),
         deepest=scales.compression,
         lightest=float(motion.masses.min()),
         size=motion.size,
-        stops=np.array(sorted({*stops}), float),
-        jumps=damped and motion.contact.damping_power == 0 and not motion.contact.pulls,
+        most=most,
+        **steps,
     )
+
+
+def _pair_plan(motion: Motion, rtol: float, longest: float) -> tuple[Plan, int]:
+    """Return the plan of an embedded pair, and the greatest number of steps."""
+    scene, time, end = motion.scene, motion.scales.time, float(motion.scene.duration)
+    pair = RKN86 if scene.damping is None else RK853
+    stops = {end}
+    if scene.drive is not None:
+        longest = min(longest, scene.drive.longest_step / 2)
+        stops |= {t for t in (scene.drive.ramp, *scene.drive.time) if 0 < t < end}
+    most = step_limit(scene, "RKN86", end / min(time, longest))
+    h = min(_FIRST * rtol ** (1 / pair.order) * time, longest, end / 100)
+    times = np.array(sorted(stops), float)
+    plan = _plan(motion, pair, rtol, h=h, longest=longest, stops=times)
+    return plan, most
+
+
+def _splitting_plan(motion: Motion, rtol: float, step: float) -> tuple[Plan, int]:
+    """Return the plan of the splitting, and the greatest number of steps."""
+    end = float(motion.scene.duration)
+    if math.isinf(step):
+        stage = min((rtol / _KINKS) ** 0.4, _COARSEST)
+        step = stage * len(BLANES_MOAN.drifts) * min(motion.scales.time, end)
+    most = step_limit(motion.scene, "symplectic", end / step)
+    h = end / math.ceil(end / step)
+    plan = _plan(motion, BLANES_MOAN, rtol, h=h, longest=h, stops=np.array([end]))
     return plan, most
 
 
 def _chain(motion: Motion) -> Chain:
     """Build the kernel's chain, padded by beads of infinite mass; the first of them is the wall."""
-    rows = _lines(5, motion.size + 2 * SHORTEST, 0)
-    c, A = motion.damping, motion.stiffnesses
-    given = (
-        1 / motion.masses,
-        A,
-        np.divide(c, A, 0 * c, where=c > 0),
-        motion.rest,
-        motion.load,
-    )
-    for row, values in zip(rows, given, strict=True):
-        row[: len(values)] = values
-    drive, contact = motion.scene.drive, motion.contact
-    driven = Drive(np.zeros(1), np.zeros((1, 4)), 0.0, 0.0, 0.0, False)
-    if drive is not None:
-        rows[0, 0] = 0.0
-        amplitude, w = drive.oscillation
-        driven = Drive(*drive.cubics, float(amplitude), w, float(drive.ramp), True)
-    law = Law(
-        # A whole number would be another type, for which numba compiles the engine again.
-        k=float(motion.k),
-        p=float(contact.damping_power or 0),
-        q=_exponent(contact),
-        generated=contact.law is not None,
-        pulls=contact.pulls,
-        **contact.addresses,
-    )
-    inverse, A, r, rest, load = rows
+    n, contacts = motion.size, len(motion.rest)
+    padded = n + 2 * SHORTEST
+    inverse, A, r, rest, load, opens = _lines(6, padded, 0)
+    inverse[:n] = 1 / motion.masses
+    if motion.scene.drive is not None:
+        inverse[0] = 0.0
+    A[:contacts] = motion.stiffnesses
+    r[:contacts] = motion.damping / motion.stiffnesses
+    rest[:contacts], load[:contacts] = motion.rest, motion.load
+    opens[:contacts] = 1.0
+    laws = list(motion.laws)
+    beyond = int(motion.law_of[-1]) if contacts else 0
+    if laws[beyond].law is not None or laws[beyond].k >= _UNBOUNDED:
+        beyond = len(laws)
+        laws.append(Contact(1.0))
+    law_of, alike = np.full(padded, beyond), np.full(padded, padded)
+    law_of[:contacts] = motion.law_of
+    if len(laws) > 1:
+        places = np.append(np.flatnonzero(np.diff(law_of)) + 1, padded)
+        alike = places[np.searchsorted(places, np.arange(padded), side="right")]
+    for number, law in enumerate(laws):
+        if law.pulls:
+            opens[:padded][law_of == number] = 0.0
     return Chain(
-        inverse, A, r, rest, load, motion.scene.damping is not None, law, driven
+        inverse=inverse,
+        A=A,
+        r=r,
+        rest=rest,
+        load=load,
+        opens=opens,
+        damped=motion.scene.damping is not None,
+        laws=records(np.array([_record(law) for law in laws], LAW)),
+        law=law_of,
+        alike=alike,
+        drive=_drive(motion),
     )
+
+
+def _record(law: Contact) -> tuple[Any, ...]:
+    """Return a law as a record of `LAW`."""
+    kinds = law.law is not None, law.pulls, law.sticks
+    numbers = law.k, law.damping_power or 0.0, _exponent(law)
+    return (*numbers, *kinds, *law.addresses.values())
+
+
+def _drive(motion: Motion) -> Drive:
+    """Build the kernel's drive."""
+    drive = motion.scene.drive
+    if drive is None:
+        return _FREE
+    amplitude, w = drive.oscillation
+    return Drive(*drive.cubics, float(amplitude), w, float(drive.ramp), True)
 
 
 def _exponent(law: Contact) -> float:
@@ -206,43 +296,53 @@ def _exponent(law: Contact) -> float:
 
     F is a series in powers of δ^k, δ^p and δ. For q = 4 weak singularities may be left.
     """
-    powers = law.k if law.law is None else 0.25, law.damping_power or 0.0
-    return next(
-        (q for q in (1.0, 2.0) if all((q * power).is_integer() for power in powers)),
-        4.0,
-    )
+    powers = [law.k if law.law is None else _ANY_POWER]
+    if law.damping_power:
+        powers.append(law.damping_power)
+    for q in (1.0, 2.0):
+        if all((q * power).is_integer() for power in powers):
+            return q
+    return 4.0
 
 
 def _front(motion: Motion) -> int:
     """Return the number of the first bead at rest, plus a margin."""
     y, v = np.abs(motion.start[: 2 * motion.size].reshape(2, motion.size))
-    moving = np.flatnonzero((y > _NOISE * y.max()) | (v > _NOISE * v.max()))
-    first = (
-        max([-1, *moving[-1:]] if motion.scene.drive is None else [0, *moving[-1:]]) + 1
-    )
-    return min(motion.size, MARGIN + int(first))
+    moves = (y > _NOISE * y.max()) | (v > _NOISE * v.max())
+    if motion.scene.drive is not None:
+        moves[0] = True
+    first = moves.size - int(np.argmax(moves[::-1])) if moves.any() else 0
+    return min(motion.size, MARGIN + first)
 
 
-def _start(motion: Motion, padded: int) -> Beads:
+def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
     """Build the kernel's initial state, arrays with room for ``padded`` + 1 beads."""
-    n = motion.size
-    rows = _lines(9 + WIDTH, padded + 1, 1)
-    y, v, next_y, next_v = rows[:4]
-    y[:n], v[:n] = next_y[:n], next_v[:n] = motion.start[:n], motion.start[n : 2 * n]
-    power, given = np.zeros((2, WIDTH)), np.zeros(2)
+    n, stages, estimates = motion.size, 1, 0
+    if isinstance(scheme, Pair):
+        estimates, stages = len(scheme.errors), len(scheme.nodes)
+    rows = _lines(8 + estimates + 18, padded + 1, 1)
+    y, v, next_y, next_v, still, marks = rows[:6]
+    y[:n] = next_y[:n] = motion.start[:n]
+    v[:n] = next_v[:n] = motion.start[n : 2 * n]
+    given = np.zeros(2)
     if motion.scene.drive is not None:
         given[:] = motion.scene.drive.at(0.0)[2]
     return Beads(
-        y,
-        v,
-        next_y,
-        next_v,
-        rows[9:],
-        rows[4:9],
-        power,
-        given,
-        np.zeros(4),
-        np.zeros((8, POINTS)),
+        y=y,
+        v=v,
+        next_y=next_y,
+        next_v=next_v,
+        still=still,
+        force=rows[6:8],
+        border=np.zeros(stages),
+        push=rows[8 + estimates :],
+        errors=rows[8 : 8 + estimates],
+        marks=marks,
+        power=np.zeros((2, 18)),
+        given=given,
+        books=np.zeros(5),
+        points=np.zeros((3, ROOM)),
+        edges=np.zeros(EDGES),
     )
 
 

@@ -11,8 +11,10 @@ velocities, and a drive makes the motion of bead 0 depend on time.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -48,19 +50,34 @@ class Motion:
 
     The state is (y_0 … y_{n-1}, v_0 … v_{n-1}, dissipated energy, work of the drive).
 
-    start : initial state. loaded : True with gravity or precompression. rest, load : static
-    compressions and forces of the contacts. contact : law of the contacts. response : greatest
-    energy of the motion, if it is known; by default the initial energy and an estimate of the
-    energy that a drive gives.
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    response : float, optional
+        Greatest energy of the motion, if it is known; by default the initial energy and an estimate
+        of the energy that a drive gives.
+
+    Attributes
+    ----------
+    start : array
+        Initial state.
+    loaded : bool
+        True with gravity or precompression.
+    rest, load : array, (contacts,)
+        Static compressions and forces.
+    laws : tuple of Contact
+        The different laws of the contacts, for unit stiffness.
+    law_of : array of int, (contacts,)
+        Number of each contact's law.
+    damping : array, (contacts,)
+        Damping coefficients.
     """
 
     def __init__(self, scene: Scene, response: float | None = None) -> None:
-        n, damping, self.response = scene.size, scene.damping, response
-        several = isinstance(damping and damping.value, tuple)
-        if isinstance(scene.k, tuple) or isinstance(scene.law, tuple) or several:
-            raise SceneError("contacts with laws of their own are not simulated yet")
+        n = scene.size
+        self.scene, self.size, self.response = scene, n, response
         wall = () if scene.wall is None else (scene.wall,)
-        self.scene, self.size, self.k = scene, n, float(scene.k)
         rows = (
             scene.masses,
             scene.stiffnesses + wall,
@@ -72,21 +89,13 @@ class Motion:
             np.fromiter(row, float, len(row)) for row in rows
         )
         contacts = len(self.stiffnesses)
-        damping_power = None if damping is None else damping.power(scene.k)
-        self.contact = Contact(scene.k, scene.law, damping_power)
-        self.damping = self.rest = self.load = np.zeros(contacts)
-        if damping is not None:
-            ahead = np.append(self.masses[1:], math.inf)[
-                :contacts
-            ]  # a wall has infinite mass
-            reduced = 1 / (1 / self.masses[:contacts] + 1 / ahead)
-            self.damping = damping.coefficients(self.k, self.stiffnesses, reduced)
+        self.rest = self.load = np.zeros(contacts)
+        self._read_laws()
         self.loaded = bool(scene.gravity or scene.precompression)
         if self.loaded:
+            forces = np.array(scene.load) / self.stiffnesses
             with np.errstate(over="ignore", invalid="ignore"):
-                self.rest = self.contact.compressed_by(
-                    np.array(scene.load) / self.stiffnesses
-                )
+                self.rest = self._each(..., Contact.compressed_by, forces)
                 # The load from the rest compressions, so that equilibrium is an exact zero.
                 self.load = self.force(self.rest)
             for name, values in (("compression", self.rest), ("force", self.load)):
@@ -96,20 +105,66 @@ class Motion:
         if scene.drive is not None:
             self.start[0], self.start[n], _ = scene.drive.at(0.0)
 
+    def _read_laws(self) -> None:
+        """Read the laws of the contacts and their damping."""
+        scene, contacts = self.scene, len(self.stiffnesses)
+        damping, k = scene.damping, scene.k
+        self.law_of, self.damping = np.zeros(contacts, int), np.zeros(contacts)
+        if isinstance(k, tuple) or isinstance(scene.law, tuple):
+            laws = scene.contact_laws
+            numbers = {law: n for n, law in enumerate(dict.fromkeys(laws))}
+            self.law_of = np.array([numbers[law] for law in laws], int)
+            k = np.array([exponent for exponent, _ in laws])
+        else:
+            numbers = {(k, scene.law): 0}
+        # A wall has infinite mass.
+        if damping is not None:
+            ahead = np.append(self.masses[1:], math.inf)[:contacts]
+            reduced = 1 / (1 / self.masses[:contacts] + 1 / ahead)
+            self.damping = damping.coefficients(k, self.stiffnesses, reduced)
+        self.laws = tuple(
+            Contact(exponent, law, damping and damping.power(exponent))
+            for exponent, law in numbers
+        )
+
+    def _each(
+        self, contacts: Any, evaluate: Callable[..., Array], *rows: Array
+    ) -> Array:
+        """Evaluate a method of `Contact` for the rows of some contacts, law by law."""
+        if len(self.laws) == 1:
+            return evaluate(self.laws[0], *rows)
+        numbers = self.law_of[contacts]
+        result = np.empty(rows[0].shape)
+        for n, law in enumerate(self.laws):
+            own = numbers == n
+            result[own] = evaluate(law, *(row[own] for row in rows))
+        return result
+
     def rate(self, v: Array) -> Array:
         """Return the rates dδ_i/dt of the compressions at velocities of shape (n,) or (n, S)."""
-        wall = np.zeros_like(v[:1])
-        row = np.concatenate((v, wall)) if len(self.rest) == len(v) else v
-        return np.asarray(row[:-1] - row[1:])
+        rates = v[:-1] - v[1:]
+        if len(self.rest) < len(v):
+            return np.asarray(rates)
+        return np.concatenate((rates, v[-1:]))  # against a wall
 
     def compression(self, y: Array) -> Array:
         """Return the compressions δ_i at displacements of shape (n,) or (n, S)."""
         dynamic = self.rate(y)
         return np.asarray((self.rest + dynamic.T).T) if self.loaded else dynamic
 
-    def force(self, compression: Array) -> Array:
-        """Return the elastic forces A_i F(δ_i); A_i [δ_i]_+^k for a power law."""
-        return np.asarray((self.stiffnesses * self.contact.force(compression).T).T)
+    def force(self, compression: Array, contacts: Any = ...) -> Array:
+        """Return the elastic forces A_i F(δ_i) of all contacts, or of some."""
+        forces = self._each(contacts, Contact.force, compression)
+        return np.asarray((self.stiffnesses[contacts] * forces.T).T)
+
+    def damped_force(
+        self, elastic: Array, compression: Array, rate: Array, contacts: Any = ...
+    ) -> Array:
+        """Return the total forces of all contacts, or of some, at rates dδ/dt."""
+        if self.scene.damping is None:
+            return elastic
+        rows = elastic, self.damping[contacts], compression, rate
+        return self._each(contacts, Contact.damped, *rows)
 
     def __call__(self, time: float, state: Array) -> Array:
         """Return the time derivative of a state, which ``scipy.integrate`` takes as it is."""
@@ -119,7 +174,7 @@ class Motion:
             y[0], v[0], given = drive.at(time)
         compression, rate = self.compression(y), self.rate(v)
         elastic = self.force(compression)
-        force = self.contact.damped(elastic, self.damping, compression, rate)
+        force = self.damped_force(elastic, compression, rate)
         push = np.zeros(n)
         push[: len(force)] = self.load - force
         push[1:] += (force - self.load)[: n - 1]
@@ -127,26 +182,35 @@ class Motion:
         if drive is not None:
             acceleration[0] = given
             work = v[0] * (self.masses[0] * given - push[0])
-        return np.concatenate(
-            (v, acceleration, (((force - elastic) * rate).sum(), work))
-        )
+        lost = ((force - elastic) * rate).sum()
+        return np.concatenate((v, acceleration, (lost, work)))
+
+    def energies(self, state: Array) -> tuple[Array, Array]:
+        """Return kinetic energies, (n,), and elastic ones less the static forces' work, (contacts,).
+
+        All are 0 in equilibrium. Small ones have all digits.
+        """
+        change, v = self.rate(state[: self.size]), state[self.size : 2 * self.size]
+        if self.loaded:
+            stored = self._each(..., Contact.energy_above, self.rest, change)
+        else:
+            stored = self._each(..., Contact.energy, change)
+        return self.masses * v * v / 2, self.stiffnesses * stored
 
     def energy(self, state: Array) -> float:
         """Return kinetic and elastic energy less the static forces' work; 0 in equilibrium."""
-        compression, v = (
-            self.compression(state[: self.size]),
-            state[self.size : 2 * self.size],
-        )
-        stored = self.stiffnesses * self.contact.energy(compression)
-        if self.loaded:
-            stored -= self.stiffnesses * self.contact.energy(self.rest)
-            stored -= self.load * (compression - self.rest)
-        return float(np.sum(self.masses * v * v) / 2 + stored.sum())
+        kinetic, stored = self.energies(state)
+        return float(kinetic.sum() + stored.sum())
 
     @cached_property
+    def initial_energies(self) -> tuple[Array, Array]:
+        """The `energies` of the initial state."""
+        return self.energies(self.start)
+
+    @property
     def initial_energy(self) -> float:
         """Energy of the initial state."""
-        return self.energy(self.start)
+        return float(sum(energies.sum() for energies in self.initial_energies))
 
     @property
     def free_energy(self) -> float:
@@ -161,10 +225,16 @@ class Motion:
             return None
         moving = slice(self.size, 2 * self.size)
         before, after = self.start[moving], end[moving]
-        total = np.sum(
-            self.masses * np.abs(after)
-        )  # no BLAS: its threads cost more than they gain
+        # No scalar product: BLAS starts threads, which cost more than they gain.
+        total = np.sum(self.masses * np.abs(after))
         return float(np.sum(self.masses * (after - before)) / total) if total else 0.0
+
+    @property
+    def _moves(self) -> bool:
+        """True if a bead has a velocity, or a contact is pressed more than in equilibrium."""
+        n, at_rest = self.size, self.rest.max(initial=0.0)
+        pressed = self.compression(self.start[:n]).max(initial=0.0)
+        return bool(self.start[n : 2 * n].any() or pressed > at_rest)
 
     @cached_property
     @np.errstate(all="ignore")
@@ -173,33 +243,43 @@ class Motion:
         energy, n, A = self.response, self.size, self.stiffnesses
         if energy is None:
             fastest = 0.0 if self.scene.drive is None else self.scene.drive.fastest
-            energy = self.initial_energy + float(self.masses.mean() * fastest * fastest)
-        deepest = at_rest = self.rest.max(initial=0.0) if self.loaded else 0.0
-        stiffest = A.max(initial=0.0)
-        pressed = self.compression(self.start[:n]).max(initial=0.0) > deepest
-        if not math.isfinite(energy) or (
-            energy == 0 and (pressed or self.start[n : 2 * n].any())
-        ):
+            kinetic, stored = self.initial_energies
+            # Where contacts attract each other, their energy may be negative.
+            energy = float(kinetic.sum() + np.abs(stored).sum())
+            energy += float(self.masses.mean() * fastest * fastest)
+        at_rest = self.rest.max(initial=0.0)
+        if not 0 < energy < math.inf and (energy != 0 or self._moves):
             _check_range("energy", energy)
-        if energy > 0 and len(A):
-            deepest = max(deepest, self.contact.reached_by(energy / stiffest, deepest))
+        deepest = stiffest = 0.0
+        # F′ of the two contacts of each bead; the last one's is a wall's.
+        springs = np.zeros(n + 1)
+        for number, law in enumerate(self.laws if len(A) else ()):
+            own, ahead = slice(0, len(A)), slice(1, len(A) + 1)
+            if len(self.laws) > 1:
+                own = np.flatnonzero(self.law_of == number)
+                ahead = own + 1
+            static, largest = float(self.rest[own].max()), float(A[own].max())
+            depth = static
+            if energy > 0:
+                depth = max(depth, law.reached_by(energy / largest, static))
+            if not depth:
+                continue
+            deepest = max(deepest, depth)
+            # F′ = k A δ^{k-1}; the factor k counts in the time alone.
+            slope = law.steepest(static, depth)
+            _check_range("stiffest spring", largest * slope)
+            stiffest = max(stiffest, largest * slope)
+            stiff = law.k * slope * A[own]
+            springs[own] += stiff
+            springs[ahead] += stiff
         if not deepest:
             return Scales(energy, 0.0, 1.0, 1.0, math.inf)
-        stiffening = deepest ** (
-            self.k - 1
-        )  # F′ = k A δ^{k-1}; the factor k follows in ``time``
-        if self.contact.law is not None:  # k is 1
-            stiffening = self.contact.stiffness(np.array([at_rest, deepest])).max()
-        springs = np.zeros(n)  # of the two contacts of each bead
-        springs[: len(A)] = A
-        springs[1:] += A[: n - 1]
-        time = 1 / np.sqrt((springs / self.masses).max() * self.k * stiffening)
-        _check_range("stiffest spring", stiffest * stiffening)
+        time = 1 / np.sqrt((springs[:n] / self.masses).max())
         _check_range("shortest time", time)
         y, v, rounding = deepest, deepest / time, 0.0
         if energy > 0:
             # energy = F′ y² and m v², up to factors of order 1, with the mean mass
-            y = np.sqrt(energy / (stiffest * stiffening))
+            y = np.sqrt(energy / stiffest)
             v = np.sqrt(energy / (self.masses.sum() / n))
             _check_range("displacement", y)
             _check_range("velocity", v)

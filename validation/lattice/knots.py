@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from lwa.base.arrays import Array
 from validation.lattice.equations import Motion
 from validation.lattice.kernel.arrays import Chain, Knots
-from validation.lattice.kernel.kinks import POINTS
+from validation.lattice.kernel.kinks import EDGES, ROOM
 from validation.lattice.kernel.samples import interpolate
 from validation.lattice.signal import Beads
 
@@ -29,6 +29,13 @@ def _with_neighbours(beads: Beads) -> NDArray[np.int_]:
     near = np.zeros(numbers.max(initial=-2) + 3, bool)  # of beads -1, 0, 1, …
     near[numbers] = near[numbers + 1] = near[numbers + 2] = True
     return np.flatnonzero(near[1:])
+
+
+def set_addresses(laws: Any, motion: Motion) -> None:
+    """Write the addresses of the laws' machine code, which differ in each process."""
+    for row, law in zip(laws, motion.laws, strict=False):
+        for name, address in law.addresses.items():
+            row[name] = address
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,9 +53,8 @@ class KnotPath:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Restore a pickled path: a law's machine code has another address in each process."""
-        chain = state["chain"]
-        law = chain.law._replace(**state["motion"].contact.addresses)
-        self.__dict__.update(state | {"chain": chain._replace(law=law)})
+        self.__dict__.update(state)
+        set_addresses(self.chain.laws, self.motion)
 
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]:
         """Return displacements and velocities (beads, S) at times (S,) within the run."""
@@ -56,9 +62,9 @@ class KnotPath:
         near = _with_neighbours(beads)
         rows = np.searchsorted(self.knots.watched, near)
         step = np.searchsorted(self.time[1:-1], time, side="right")
-        ends, points = np.empty((2, len(rows), 4)), np.empty((8, POINTS))
         y, v = np.empty((2, len(rows), len(time)))
-        interpolate(self.chain, self.knots, rows, time, step, y, v, ends, points)
+        working = np.empty((2, len(rows), 4)), np.empty((3, ROOM)), np.empty(EDGES)
+        interpolate(self.chain, self.knots, rows, time, step, y, v, *working)
         own = np.searchsorted(near, beads)
         y, v = y[own], v[own]
         if self.motion.scene.drive is not None and 0 in beads:
@@ -78,9 +84,8 @@ class Recorder:
     ) -> None:
         self.motion, self.chain, self.needed, self.time = motion, chain, needed, time
         watched = _with_neighbours(needed)
-        most = 2 + BUFFER // (
-            4 * len(watched) + 1
-        )  # a knot: four numbers a bead, and its time
+        # A knot: four numbers a bead, and its time.
+        most = 2 + (BUFFER // (4 * len(watched) + 1) if len(watched) else 0)
         self.knots = Knots(np.empty(most), np.empty((most, len(watched), 4)), watched)
         self.y, self.v = np.empty((2, len(needed), len(time)))
         self.parts: list[tuple[Array, Array]] = []

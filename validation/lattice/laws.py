@@ -23,11 +23,25 @@ from lwa.law import ContactLaw
 from validation.scenes.checks import SceneError
 
 
+# Of the rest compression: the energy of a smaller change is integrated, as in the difference of two
+# energies its digits cancel. Eight points integrate any power to 1e-16 up to this change.
+_SMALL = 0.05
+_OPENS = 1e-100  # a compression at which a contact is about to open, in any units
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
+
+
 @dataclass(frozen=True)
 class Contact:
-    """The force F(δ) of a contact of unit stiffness, for a `ContactLaw` or for the power δ^k.
+    """The force F(δ) of a contact of unit stiffness.
 
-    damping_power : exponent p of the damping force ~ δ^p dδ/dt; None without damping.
+    Parameters
+    ----------
+    k : float
+        Exponent of the power law F = [δ]_+^k.
+    law : ContactLaw, optional
+        Any other law, without symbols, in place of the power.
+    damping_power : float, optional
+        Exponent p of the damping force ~ δ^p dδ/dt; None without damping.
     """
 
     k: float
@@ -39,51 +53,86 @@ class Contact:
         """True if the contact holds, and pulls, where δ < 0."""
         return self.law is not None and bool(self.law.at(sp.S.Zero, 1).is_positive)
 
+    @cached_property
+    def sticks(self) -> bool:
+        """True if damping may pull, as the law pulls, or attracts where the contact opens."""
+        if self.law is None:
+            return False
+        return self.pulls or float(self.force(np.array([_OPENS]))[0]) < 0
+
     def force(self, compression: Array) -> Array:
         """Return the force F at a compression δ, of any shape; [δ]_+^k for a power law."""
         if self.law is not None:
-            return self._evaluated(0, compression)
+            return self._evaluated("force", compression)
         pressed = np.maximum(compression, 0.0)
-        return np.asarray(
-            pressed * np.sqrt(pressed) if self.k == 1.5 else pressed**self.k
-        )
+        if self.k == 1.5:
+            return np.asarray(pressed * np.sqrt(pressed))
+        return np.asarray(pressed**self.k)
 
     def stiffness(self, compression: Array) -> Array:
         """Return the stiffness F′ = dF/dδ at a compression δ, of any shape."""
         if self.law is not None:
-            return self._evaluated(1, compression)
+            return self._evaluated("slope", compression)
         return np.asarray(self.k * np.maximum(compression, 0.0) ** (self.k - 1))
 
     def energy(self, compression: Array) -> Array:
         """Return the elastic energy ∫ F dδ, from 0 to the compression."""
         if self.law is not None:
-            return self._evaluated(2, compression)
+            return self._evaluated("energy", compression)
         return np.asarray(self.force(compression) * compression / (self.k + 1))
+
+    def energy_above(self, rest: Array, change: Array) -> Array:
+        """Return the energy of a change of the compression less the work of the static force.
+
+        Parameters
+        ----------
+        rest, change : array
+            Static compressions, and the changes from there, of equal shape.
+        """
+        energy = self.energy(rest + change) - self.energy(rest)
+        energy -= self.force(rest) * change
+        small = np.abs(change) <= _SMALL * rest
+        if small.any():
+            x, r = change[small], rest[small]
+            # ∫ (x - s) F′(r + s) ds, s = 0 … x
+            total = np.zeros(x.shape)
+            for node, weight in zip((1 + _NODES) / 2, _WEIGHTS / 2, strict=True):
+                total += weight * (1 - node) * self.stiffness(r + node * x)
+            energy[small] = x * x * total
+        return energy
 
     def damped(
         self, elastic: Array, damping: Array, compression: Array, rate: Array
     ) -> Array:
-        """Return the total forces (contacts, …); damping : coefficients, rate : dδ/dt."""
+        """Return the total forces (contacts, …); damping may not pull unless the contact `sticks`.
+
+        Parameters
+        ----------
+        elastic, compression, rate : array
+            Elastic forces, compressions δ and rates dδ/dt.
+        damping : array, (contacts,)
+            Factors of δ^p dδ/dt.
+        """
         if self.damping_power is None:
             return elastic
         closed = compression if self.pulls else np.maximum(compression, 0.0)
-        force = np.asarray(
-            elastic + (damping * (closed**self.damping_power * rate).T).T
-        )
-        return (
-            force
-            if self.pulls
-            else np.where(compression > 0.0, np.maximum(force, 0.0), 0.0)
-        )
+        force = elastic + (damping * (closed**self.damping_power * rate).T).T
+        if not self.sticks:
+            force = np.maximum(force, np.minimum(elastic, 0.0))
+        return force if self.pulls else np.where(compression > 0.0, force, 0.0)
 
-    def _evaluated(self, order: int, compression: Array) -> Array:
-        function = _functions(self.law)[order]
-        closed = compression if self.pulls else np.maximum(compression, 0.0)
+    def _evaluated(self, name: str, compression: Array) -> Array:
+        """Evaluate a function of the law: its "force", "slope" or "energy"."""
+        function = _functions(self.law)[name]
         with np.errstate(all="ignore"):  # beyond a singular law's reach: inf or NaN
-            values = np.broadcast_to(function(closed), compression.shape)
-        return np.asarray(
-            values if self.pulls else np.where(compression > 0, values, 0.0)
-        )
+            if self.pulls:
+                return np.array(
+                    np.broadcast_to(function(compression), compression.shape)
+                )
+            values = np.zeros(compression.shape)
+            closed = compression > 0.0
+            values[closed] = function(compression[closed])
+        return values
 
     def compressed_by(self, forces: Array) -> Array:
         """Return static compressions at given forces; `lwa.InputError` for unattainable forces."""
@@ -91,66 +140,71 @@ class Contact:
             return np.asarray(forces ** (1 / self.k))
         different, place = np.unique(forces, return_inverse=True)
         law, cell = self.law, Cell((1,))
-        return np.array(
-            [float(law.compression(cell, sp.Float(F, 40))) for F in different]
-        )[place]
+        found = [float(law.compression(cell, sp.Float(F, 40))) for F in different]
+        return np.array(found)[place]
 
     def reached_by(self, energy: float, start: float) -> float:
         """Return a scale of the compression that an energy reaches from ``start``."""
         if self.law is None:
-            return float(
-                np.float64(energy) ** (1 / (self.k + 1))
-            )  # of δ^{k+1}/(k+1) = energy
-
+            return float(energy ** (1 / (self.k + 1)))  # of δ^{k+1}/(k+1) = energy
         # The first of many places at which the energy is reached, or a pole; else a barrier.
-        d = start + np.geomspace(1e-15, 1e15, 7000)
-        at_start = np.array(start)
-        work = (
-            self.energy(d) - self.energy(at_start) - self.force(at_start) * (d - start)
-        )
+        change = np.geomspace(1e-15, 1e15, 7000)
+        work = self.energy_above(np.full(change.shape, start), change)
         reached = np.flatnonzero(~(work < energy))
-        return float(d[reached[0] if len(reached) else np.argmax(work)])
+        return float(start + change[reached[0] if len(reached) else np.argmax(work)])
+
+    def steepest(self, start: float, depth: float) -> float:
+        """Return the greater stiffness at two compressions, over k."""
+        if self.law is None:
+            return float(np.float64(depth) ** (self.k - 1))
+        return float(self.stiffness(np.array([start, depth])).max())
 
     @property
     def addresses(self) -> dict[str, int]:
-        """Addresses of the machine code of F, F′ and the energy by name; 0 for a power."""
-        code = (
-            [0, 0, 0]
-            if self.law is None
-            else [f.address for f in _machine_code(self.law)]
-        )
-        return dict(zip(("force", "slope", "energy"), code, strict=True))
+        """Addresses of the machine code of the force, its slope and the energy; 0 for a power."""
+        if self.law is None:
+            return dict.fromkeys(_NAMES, 0)
+        return {name: f.address for name, f in _machine_code(self.law).items()}
 
 
-def _expressions(law: ContactLaw) -> tuple[sp.Expr, ...]:
-    """Return F, F′ and the energy, with float coefficients and e^x - 1 as expm1(x)."""
+_NAMES = ("force", "slope", "energy")
+
+
+def _expressions(law: ContactLaw) -> dict[str, sp.Expr]:
+    """Return F, F′ and the energy by name, with float coefficients and e^x - 1 as expm1(x)."""
     energy = law.energy
     at_rest = sp.limit(energy, law.delta, 0, "+")
-    rows = law.F, law.slope(), energy - at_rest
-    return tuple(optimize(sp.N(sp.sympify(row), 20), [expm1_opt]) for row in rows)
+    rows = zip(_NAMES, (law.F, law.slope(), energy - at_rest), strict=True)
+    return {
+        name: optimize(sp.N(sp.sympify(row), 20), [expm1_opt]) for name, row in rows
+    }
 
 
 @lru_cache
-def _functions(law: ContactLaw | None) -> tuple[Callable[[Array], Any], ...]:
-    """Return F, F′ and the energy of a law as functions of arrays."""
+def _functions(law: ContactLaw | None) -> dict[str, Callable[[Array], Any]]:
+    """Return F, F′ and the energy of a law as functions of arrays, by name."""
     assert law is not None
     with _evaluated(law):
-        functions = tuple(
-            sp.lambdify(law.delta, row, "numpy") for row in _expressions(law)
-        )
-        for function in functions:
+        functions = {
+            name: sp.lambdify(law.delta, row, "numpy")
+            for name, row in _expressions(law).items()
+        }
+        for function in functions.values():
             function(np.ones(2))
         return functions
 
 
 @lru_cache
-def _machine_code(law: ContactLaw) -> tuple[Any, ...]:
-    """Return compiled F, F′ and energy of a law as functions of one float."""
+def _machine_code(law: ContactLaw) -> dict[str, Any]:
+    """Return compiled F, F′ and energy of a law as functions of one float, by name."""
     from numba import cfunc  # start-up
 
+    compiled = cfunc("f8(f8)", error_model="numpy")
     with _evaluated(law):
-        rows = [sp.lambdify(law.delta, row, "math") for row in _expressions(law)]
-        return tuple(cfunc("f8(f8)", error_model="numpy")(row) for row in rows)
+        return {
+            name: compiled(sp.lambdify(law.delta, row, "math"))
+            for name, row in _expressions(law).items()
+        }
 
 
 @contextmanager

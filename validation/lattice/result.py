@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -80,11 +79,6 @@ class Run(Pictured):
             else quantity
         )
 
-    @cached_property
-    def _motion(self) -> Motion:
-        """The scene's equations of motion."""
-        return Motion(self.scene)
-
     def columns(self) -> dict[str, Array]:
         """Return time and all records, each (S,), by names such as "bead 15 force (N)"."""
         scene = self.scene
@@ -138,7 +132,7 @@ class Run(Pictured):
             raise SceneError(
                 "the run has too many steps to keep the motion: read its samples"
             )
-        return signal(self._motion, self.path, kind, number, quantity)
+        return signal(self.path, kind, number, quantity)
 
 
 def finished(
@@ -154,9 +148,8 @@ def finished(
     dissipated, work = map(float, end[2 * n :])
     drift = motion.energy(end) - motion.initial_energy + dissipated - work
     step = motion.scene.duration / steps
-    if not math.isfinite(
-        drift + sum(float(row.sum()) for row in arrays.values() if row.size)
-    ):
+    sums = [float(row.sum()) for row in arrays.values() if row.size]
+    if not math.isfinite(drift + sum(sums)):
         raise IntegrationError(
             f"the motion overflows: choose other units, or a step of {step:g} is too long"
         )

@@ -1,18 +1,32 @@
 """Coefficients of the compiled integrators.
 
 `RKN86`, an embedded Runge–Kutta–Nyström pair for y'' = f(y), is the default where forces depend on
-displacements alone. `VERNER65` takes damped contacts, y'' = f(y, y'). It is an explicit
-Runge–Kutta pair in Nyström form: stage s evaluates f at y + c_s h v + h² Σ (A²)_sj f_j and
-v + h Σ A_sj f_j, A the pair's matrix. The last stage of both pairs is at the step's end, and is the
-first stage of the next step.
+displacements alone. `RK853` takes damped contacts, y'' = f(y, y'). It is an explicit Runge–Kutta
+pair in Nyström form: stage s evaluates f at y + c_s h v + h² Σ (A²)_sj f_j and v + h Σ A_sj f_j, A
+the pair's matrix. The last stage of both pairs is at the step's end, and is the first stage of the
+next step.
 
 `BLANES_MOAN` is a symmetric splitting of y'' = F(y)/m, for long runs in which all beads move. A
 step of h applies kick 0, drift 0, kick 1, drift 1, …, and a last kick: a kick adds b h F(y)/m to v,
 a drift adds a h v to y. It is symplectic and time-reversible, and keeps the momentum to rounding.
 
-Sources: Dormand, El-Mikkawy and Prince 1987, IMA J. Numer. Anal. 7, 423: RKN8(6)9FM. Verner 2010,
-Numer. Algorithms 53, 383: "most efficient" pair of orders 6 and 5, from the author's tables. Blanes
-and Moan 2002, J. Comput. Appl. Math. 142, 313: SRKN_6^b, of order 4, as printed, to all digits.
+To add a pair, write its table, with a source, as a text of fractions or decimals, a row a line, and
+read it:
+
+1. for y'' = f(y), `_nystrom`: the rows of a, of which the last are the weights of the displacement
+   and whose stage is at the step's end; the weights of the velocity; both weights of the less
+   accurate solution;
+2. for y'' = f(y, y'), `_explicit`: the rows of a Runge–Kutta matrix, the last of them its weights;
+   then the differences to the weights of one or two less accurate solutions;
+3. name the power of h to which the estimated error is proportional, 1 + the less accurate order.
+
+The number of stages is the table's, at most `validation.lattice.kernel.kinks.ROOM`.
+`validation.lattice.engine` chooses the pair of a scene.
+
+Sources: Dormand, El-Mikkawy and Prince 1987, IMA J. Numer. Anal. 7, 423: RKN8(6)9FM. Hairer,
+Nørsett and Wanner, Solving Ordinary Differential Equations I, II.10: the pair of order 8 by Dormand
+and Prince with errors of orders 5 and 3, with the digits of SciPy's DOP853. Blanes and Moan 2002,
+J. Comput. Appl. Math. 142, 313: SRKN_6^b, of order 4, as printed, to all digits.
 """
 
 from __future__ import annotations
@@ -22,7 +36,10 @@ from fractions import Fraction
 import numpy as np
 
 from lwa.base.arrays import Array
-from validation.lattice.kernel.arrays import Pair, Splitting
+from validation.lattice.kernel.arrays import Pair, Splitting, Sums
+
+
+_ROUNDING = 1e-25  # of a table with thirty digits
 
 
 def _rows(table: str) -> Array:
@@ -32,28 +49,60 @@ def _rows(table: str) -> Array:
     return np.array([row + [Fraction(0)] * (size - len(row)) for row in rows])
 
 
-def _nystrom(table: str) -> Pair:
-    """Read the rows of a, then b', b and b' of lower order; b is the last row of a."""
+def _sums(rows: Array) -> Sums:
+    """Leave out the stages whose weight is 0, up to the rounding of the tables."""
+    rows = np.where(np.abs(rows) < _ROUNDING, 0.0, rows)
+    counts = np.count_nonzero(rows, axis=1)
+    # `pair._move` reads the weights in nines; missing ones are 0.
+    stages = np.zeros((len(rows), 9 * -(-int(counts.max()) // 9)), int)
+    weights = np.zeros(stages.shape)
+    for row, values in enumerate(rows):
+        used = np.flatnonzero(values)
+        stages[row, : len(used)] = used
+        weights[row, : len(used)] = values[used]
+    return Sums(counts, stages, weights)
+
+
+def _pair(
+    nodes: Array,
+    moments: Array,
+    impulses: Array,
+    errors: Array,
+    thirds: Array,
+    order: int,
+) -> Pair:
+    """Build a pair from exact coefficients; nodes are floats."""
+    a, b, e, thirds = (x.astype(float) for x in (moments, impulses, errors, thirds))
+    n = len(nodes)
+    pad = lambda x: np.pad(x, ((0, 0), (0, 18 - x.shape[1])))
+    return Pair(
+        nodes, pad(a), pad(b), pad(e), thirds, order, _sums(np.concatenate((a, b, e)))
+    )
+
+
+def _nystrom(table: str, order: int) -> Pair:
+    """Read a pair for y'' = f(y)."""
     rows = _rows(table)
     a, (speeds, low, low_speeds) = rows[:-3], rows[-3:]
     impulses = np.zeros_like(a)
     impulses[-1] = speeds
     errors = np.array((a[-1] - low, speeds - low_speeds))
-    nodes = np.sqrt(2 * a.sum(axis=1).astype(float))
-    a, impulses, errors, thirds = (
-        x.astype(float) for x in (a, impulses, errors, speeds @ a)
-    )
-    return Pair(nodes, a, impulses, errors, thirds, 6)
+    nodes = np.sqrt(2 * a.sum(axis=1).astype(float))  # Σ_j a_sj = c_s²/2
+    return _pair(nodes, a, impulses, errors, speeds @ a, order)
 
 
-def _explicit(table: str) -> Pair:
-    """Read the rows of A, the last of them b, then b of lower order."""
+def _explicit(table: str, order: int) -> Pair:
+    """Read a pair for y'' = f(y, y')."""
     rows = _rows(table)
-    a, low = rows[:-1], rows[-1]
-    errors = np.array(((a[-1] - low) @ a, a[-1] - low))
-    exact = a.sum(axis=1), a @ a, a, errors, a[-1] @ a @ a
-    nodes, moments, a, errors, thirds = (x.astype(float) for x in exact)
-    return Pair(nodes, moments, a, errors, thirds, 5)
+    stages = rows.shape[1] + 1
+    a = np.zeros((stages, stages), object) + Fraction(0)
+    a[:, :-1] = rows[:stages]
+    errors = []
+    for difference in rows[stages:]:
+        full = np.append(difference, Fraction(0))
+        errors += [full @ a, full]
+    nodes = a.sum(axis=1).astype(float)
+    return _pair(nodes, a @ a, a, np.array(errors), a[-1] @ a @ a, order)
 
 
 RKN86 = _nystrom(
@@ -68,20 +117,27 @@ RKN86 = _nystrom(
     223/7938 0 1175/8064 925/6048 41/448 925/14112 1175/72576 0 0
     223/7938 0 5875/36288 4625/21168 41/224 4625/21168 5875/36288 223/7938 0
     7987313/109941300 0 1610737/44674560 10023263/33505920 -497221/12409600 10023263/78180480 1610737/402071040
-    7987313/109941300 0 1610737/40207104 10023263/23454144 -497221/6204800 10023263/23454144 1610737/40207104 -4251941/54970650 3/20"""  # noqa: E501
+    7987313/109941300 0 1610737/40207104 10023263/23454144 -497221/6204800 10023263/23454144 1610737/40207104 -4251941/54970650 3/20""",  # noqa: E501
+    order=7,
 )
 
-VERNER65 = _explicit(
+RK853 = _explicit(
     """0
-    0.06
-    0.019239962962962962962962962962 0.07669337037037037037037037037
-    0.035975 0 0.107925
-    1.318683415233148260919747276431 0 -5.042058063628562225427761634715 4.220674648395413964508014358283
-    -41.872591664327514618037577806443 0 159.432562163137491770036566907034 -122.119213565010030920251620338924 5.531743066200053768252631238332
-    -54.430156935316504332506420512941 0 207.06725136501846442736571738665 -158.610813784589999182874242436505 6.991816585950242321992597280791 -0.018597231062203233977651717995
-    -54.663741787281976802412156480503 0 207.952806255389373451582481669983 -159.288957474499507150895980587142 7.018743740796944434698170760964 -0.018338785905045723064727820051 -0.000511948499788209907787543249
-    0.034389578683570360092788201247 0 0 0.258262455563350340465955809858 0.420937118967353715064255151406 4.405396469669310170148836816197 -176.4831190242986576151740942499 172.36413340141507302940225827119
-    0.049099676483824897309068549279 0 0 0.225111222951652415340139532053 0.469468225302956203943194852504 0.806579224998886770763416180899 0 -0.607119489177795979767295146525 0.056861139440475692411476031787"""  # noqa: E501
+    0.0526001519587677318785587544488
+    0.0197250569845378994544595329183 0.0591751709536136983633785987549
+    0.0295875854768068491816892993775 0 0.0887627564304205475450678981324
+    0.241365134159266685502369798665 0 -0.884549479328286085344864962717 0.924834003261792003115737966543
+    0.037037037037037037037037037037 0 0 0.170828608729473871279604482173 0.125467687566822425016691814123
+    0.037109375 0 0 0.170252211019544039314978060272 0.0602165389804559606850219397283 -0.017578125
+    0.0370920001185047927108779319836 0 0 0.170383925712239993810214054705 0.107262030446373284651809199168 -0.0153194377486244017527936158236 0.00827378916381402288758473766002
+    0.624110958716075717114429577812 0 0 -3.36089262944694129406857109825 -0.868219346841726006818189891453 27.5920996994467083049415600797 20.1540675504778934086186788979 -43.4898841810699588477366255144
+    0.477662536438264365890433908527 0 0 -2.48811461997166764192642586468 -0.590290826836842996371446475743 21.2300514481811942347288949897 15.2792336328824235832596922938 -33.2882109689848629194453265587 -0.0203312017085086261358222928593
+    -0.93714243008598732571704021658 0 0 5.18637242884406370830023853209 1.09143734899672957818500254654 -8.14978701074692612513997267357 -18.5200656599969598641566180701 22.7394870993505042818970056734 2.49360555267965238987089396762 -3.0467644718982195003823669022
+    2.27331014751653820792359768449 0 0 -10.5344954667372501984066689879 -2.00087205822486249909675718444 -17.9589318631187989172765950534 27.9488845294199600508499808837 -2.85899827713502369474065508674 -8.87285693353062954433549289258 12.3605671757943030647266201528 0.643392746015763530355970484046
+    0.0542937341165687622380535766363 0 0 0 0 4.45031289275240888144113950566 1.89151789931450038304281599044 -5.8012039600105847814672114227 0.31116436695781989440891606237 -0.152160949662516078556178806805 0.201365400804030348374776537501 0.0447106157277725905176885569043
+    0.01312004499419488073250102996 0 0 0 0 -1.225156446376204440720569753 -0.4957589496572501915214079952 1.664377182454986536961530415 -0.350328848749973681688648729 0.3341791187130174790297318841 0.08192320648511571246570742613 -0.02235530786388629525884427845
+    -0.1898007540724076157147023288757 0 0 0 0 4.45031289275240888144113950566 1.89151789931450038304281599044 -5.8012039600105847814672114227 -0.422682321323791962932445679177 -0.152160949662516078556178806805 0.201365400804030348374776537501 0.0226517921983608258118062039631""",  # noqa: E501
+    order=8,
 )
 
 _KICKS = 0.0829844064174052, 0.396309801498368, -0.0390563049223486

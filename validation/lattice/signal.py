@@ -26,6 +26,13 @@ _QUANTITIES = {
     "bead": ("force", "displacement", "velocity"),
 }
 
+_RECORDS = (
+    "contact_force",
+    "compression",
+    "bead_force",
+    "bead_displacement",
+    "bead_velocity",
+)
 Beads = Sequence[int] | NDArray[np.int_]
 """Numbers of beads."""
 
@@ -40,6 +47,11 @@ class Path(Protocol):
     @property
     def time(self) -> Array:
         """The ends of the steps, from 0 to the duration."""
+        ...
+
+    @property
+    def motion(self) -> Motion:
+        """The equations of motion."""
         ...
 
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]: ...
@@ -71,9 +83,9 @@ def _forces(
 
     The force of a bead is the mean of its two contacts; an end without a contact counts as 0.
     """
-    elastic = motion.stiffnesses[beads[:-1], None] * motion.contact.force(compressions)
-    damping, rate = motion.damping[beads[:-1]], v[:-1] - v[1:]
-    forces = motion.contact.damped(elastic, damping, compressions, rate)
+    contacts, rate = beads[:-1], v[:-1] - v[1:]
+    elastic = motion.force(compressions, contacts)
+    forces = motion.damped_force(elastic, compressions, rate, contacts)
     means = np.zeros(v.shape)
     means[1:] = forces
     means[:-1] += forces
@@ -89,17 +101,15 @@ def recorded(
     The forces of all contacts are computed at once: of 76 sensors, one after the other, they took
     ten times as long as the integration.
     """
+    if not len(beads):
+        return dict.fromkeys(_RECORDS, y)
     compressions = _compressions(motion, beads, y)
     forces, means = _forces(motion, beads, compressions, v)
     at_contacts = np.searchsorted(beads, motion.scene.contact_sensors)
     at_beads = np.searchsorted(beads, motion.scene.bead_sensors)
-    return {
-        "contact_force": _rows(forces, at_contacts),
-        "compression": _rows(compressions, at_contacts),
-        "bead_force": _rows(means, at_beads),
-        "bead_displacement": _rows(y, at_beads),
-        "bead_velocity": _rows(v, at_beads),
-    }
+    rows = (forces, at_contacts), (compressions, at_contacts)
+    rows += (means, at_beads), (y, at_beads), (v, at_beads)
+    return {name: _rows(*row) for name, row in zip(_RECORDS, rows, strict=True)}
 
 
 def _rows(values: Array, numbers: NDArray[np.int_]) -> Array:
@@ -153,14 +163,12 @@ class SensorSignal:
         return values
 
 
-def signal(
-    motion: Motion, path: Path, kind: str, number: int, quantity: str
-) -> SensorSignal:
+def signal(path: Path, kind: str, number: int, quantity: str) -> SensorSignal:
     """Return the signal of a quantity at a sensor of a run.
 
     Raises `SceneError` where the scene has no such sensor, or the sensor no such quantity.
     """
-    scene = motion.scene
+    motion, scene = path.motion, path.motion.scene
     one_of(kind, tuple(_QUANTITIES), "kind")
     one_of(quantity, _QUANTITIES[kind], "quantity")
     if number not in (

@@ -20,10 +20,10 @@ METHODS = ("DOP853", "RK45", "RK23", "LSODA", "Radau", "BDF")
 
 @dataclass(frozen=True, eq=False)
 class DensePath:
-    """Dense output of `solve_ivp` for the states of n beads; a `signal.Path`."""
+    """Dense output of `solve_ivp`; a `signal.Path`."""
 
+    motion: Motion
     solution: Any
-    n: int
 
     @property
     def time(self) -> Array:
@@ -32,9 +32,10 @@ class DensePath:
 
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]:
         """Return displacements and velocities (beads, S) at times (S,) within the run."""
-        states = np.zeros((2, self.n + 1, len(time)))  # the last row is a wall's
+        n = self.motion.size
+        states = np.zeros((2, n + 1, len(time)))  # the last row is a wall's
         if len(time):  # SciPy has no value at no time
-            states[:, :-1] = self.solution(time)[: 2 * self.n].reshape(2, self.n, -1)
+            states[:, :-1] = self.solution(time)[: 2 * n].reshape(2, n, -1)
         y, v = states[:, np.asarray(beads)]
         return y, v
 
@@ -71,6 +72,6 @@ def integrate(motion: Motion, method: str, rtol: float, longest: float) -> Run:
             f"integration stopped at t = {found.t[-1]:g}: {found.message}"
         )
     time, beads = sampled(motion)
-    path = DensePath(found.sol, n)
+    path = DensePath(motion, found.sol)
     records = {"time": time} | recorded(motion, beads, *path(beads, time))
     return finished(motion, found.y[:, -1], records, steps=len(found.t) - 1, path=path)

@@ -110,6 +110,24 @@ def damping_ratio(share: float) -> float:
     )
 
 
+def oscillation(t: Any, amplitude: float, w: float, ramp: float) -> tuple[Any, Any, Any]:
+    """Return amplitude r(t) sin(wt) and its first and second derivative at times t of any shape.
+
+    r grows from 0 to 1 within ``ramp``; r = 1 for a ramp of 0. The engine compiles this function.
+    """
+    s, pace = 1.0, 0.0
+    if ramp > 0.0:
+        s, pace = np.minimum(t / ramp, 1.0), 1 / ramp
+    # s³ (10 - 15 s + 6 s²) has two derivatives that vanish at both ends
+    r = s * s * s * (10 - 15 * s + 6 * s * s)
+    dr = 30 * s * s * (1 - s) * (1 - s) * pace
+    ddr = 60 * s * (1 - s) * (1 - 2 * s) * pace * pace
+    sin, cos = np.sin(w * t), np.cos(w * t)
+    v = dr * sin + r * w * cos
+    a = ddr * sin + 2 * dr * w * cos - r * w * w * sin
+    return amplitude * r * sin, amplitude * v, amplitude * a
+
+
 @dataclass(frozen=True, kw_only=True)
 class Drive:
     """Prescribed motion of the first bead, of exactly one of three kinds.
@@ -190,16 +208,7 @@ class Drive:
             return self.velocity * t, self.velocity + 0 * t, 0 * t
         if self.time:
             return tuple(self._spline(t, order) for order in range(3))
-        amplitude, w = self.oscillation
-        s = np.minimum(t / self.ramp, 1.0) if self.ramp else 1.0
-        pace = np.where(s < 1, 1 / self.ramp, 0.0) if self.ramp else 0.0
-        # s³ (10 - 15 s + 6 s²) has two derivatives that vanish at both ends
-        r, dr = s**3 * (10 - 15 * s + 6 * s * s), 30 * s * s * (1 - s) ** 2 * pace
-        ddr = 60 * s * (1 - s) * (1 - 2 * s) * pace * pace
-        sin, cos = np.sin(w * t), np.cos(w * t)
-        y, v = r * sin, dr * sin + r * w * cos
-        a = ddr * sin + 2 * dr * w * cos - r * w * w * sin
-        return amplitude * y, amplitude * v, amplitude * a
+        return oscillation(t, *self.oscillation, self.ramp)
 
     @property
     def cubics(self) -> tuple[Array, Array]:

@@ -8,30 +8,27 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from validation.lattice.kernel.compiled import SOURCES, cached
-from validation.lattice.kernel.kinks import POINTS, Law, find_intervals, integrals
+from validation.lattice.kernel.arrays import LAW
+from validation.lattice.kernel.compiled import cached
+from validation.lattice.kernel.kinks import EDGES, ROOM, find_edges, integrals
 
 
-def tied(sources):
-    @cached
-    def compiled(law, r, quintic, h, points):
-        count, _ = find_intervals(law, r, quintic, h, points)
-        return integrals(law, r, quintic, h, 1.0, count, points), sources
-
-    return compiled
-
-
-compiled = tied(SOURCES)  # an edit of the kernel compiles it again
+@cached
+def compiled(laws, r, quintic, h, points, edges):
+    law = laws[0]
+    count, _ = find_edges(law, r, quintic, h, edges)
+    return integrals(law, r, quintic, h, 1.0, points, edges, count)
 
 
 def force(contact, quintic, h, x):
-    law, r = contact
+    laws, r = contact
+    law = laws[0]
     d = slope = 0.0
-    for coefficient in reversed(quintic):
+    for coefficient in reversed(quintic[:6]):
         d, slope = d * x + coefficient, slope * x + d
     if d <= 0:
         return 0.0
-    return max(d**law.k + r * d**law.p * slope / h, 0.0)
+    return max(d ** law["k"] + r * d ** law["p"] * slope / h, 0.0)
 
 
 def kinks(contact, quintic, h):
@@ -75,12 +72,15 @@ def expected(contact, quintic, h):
 
 def contact(k, r, p):
     """With the least q = 1, 2 or 4 for which q k and q p are whole, as `_exponent` has it."""
-    q = next(
-        (q for q in (1.0, 2.0) if (q * k).is_integer() and (q * p).is_integer()), 4.0
-    )
-    return Law(k, p, q, False, 0, 0, 0, False), r
+    laws = np.zeros(1, LAW)
+    laws["k"], laws["p"], laws["q"] = k, p, 4.0
+    for q in (2.0, 1.0):
+        if (q * k).is_integer() and (q * p).is_integer():
+            laws["q"] = q
+    return laws, r
 
 
+STRAIGHT = 1.0, 0.0  # a curve without a bend
 # Exponents and damping (k, r, p), and the error over the greatest impulse: δ^{1/4} wants u^4, of
 # which ten points resolve less.
 LAWS = {
@@ -108,6 +108,7 @@ def test_a_contact_that_closes_or_opens(law, ends, rises, opening):
         rise + end_rise - 2 * jump,
         0.0,
         0.0,
+        *STRAIGHT,
     )
     check(law, curve, LAWS[law])
 
@@ -119,13 +120,13 @@ def test_a_contact_that_closes_and_opens(law, depth, place, bend):
     """Parabolas of a greatest compression ``depth``, at a place of the step."""
     check(
         law,
-        (depth - bend * place**2, 2 * bend * place, -bend, 0.0, 0.0, 0.0),
+        (depth - bend * place**2, 2 * bend * place, -bend, 0.0, 0.0, 0.0, *STRAIGHT),
         LAWS[law],
     )
 
 
 def check(law, curve, bound):
     touching = contact(*law)
-    found, _ = compiled(*touching, curve, 1.0, np.empty((8, POINTS)))
+    found = compiled(*touching, curve, 1.0, np.empty((3, ROOM)), np.empty(EDGES))
     wanted = expected(touching, curve, 1.0)
     assert np.abs(found[:3] - wanted).max() <= bound * wanted[0] + 1e-16

@@ -65,10 +65,10 @@ def test_the_law_of_a_pickled_run_is_at_its_new_address(monkeypatch):
     run = simulate(TODA)
     stored, elsewhere = (
         pickle.dumps(run),
-        {**run.path.motion.contact.addresses, "force": 7},
+        {**run.path.motion.laws[0].addresses, "force": 7},
     )
     monkeypatch.setattr(Contact, "addresses", elsewhere)
-    assert pickle.loads(stored).path.chain.law.force == 7
+    assert pickle.loads(stored).path.chain.laws["force"][0] == 7
     monkeypatch.undo()
     assert (
         pickle.loads(stored).signal("contact", 0)(0.5)

@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
 
+Numbers = NDArray[np.int_]
+
 MARGIN = 4  # still beads that are moved ahead of the front
 SHORTEST = 32  # beads below which the vector loops take no less time
 BLOCK = 8  # doubles in the widest vector register; the number of moved beads is a multiple of BLOCK
 # Beads whose memory stays in the processor's cache throughout a step. Measured for 20,000 beads:
 # 128 and 256 take the same time, 512 a tenth more, 1,024 a fifth more.
 TILE = 256
-WIDTH = 9  # stages of both embedded pairs
 
 
 class Drive(NamedTuple):
@@ -35,30 +36,36 @@ class Drive(NamedTuple):
     driven: bool
 
 
-class Law(NamedTuple):
-    """The law that all contacts share, for unit stiffness: F(δ) + r [δ]_+^p dδ/dt.
+LAW = np.dtype(
+    [
+        ("k", float),
+        ("p", float),
+        ("q", float),
+        ("generated", bool),
+        ("pulls", bool),
+        ("sticks", bool),
+        ("force", np.int64),
+        ("slope", np.int64),
+        ("energy", np.int64),
+    ]
+)
+"""A contact law for unit stiffness, F(δ) + r [δ]_+^p dδ/dt.
 
-    k : exponent of a power law F = [δ]_+^k. p : exponent of the damping. q : the force is smooth in
-    u if δ = u^q. generated : True for any other law. force, slope, energy : addresses of the
-    machine code of F, F′ and ∫ F dδ of another law. pulls : True if contacts hold where δ < 0.
-    """
-
-    k: float
-    p: float
-    q: float
-    generated: bool
-    force: int
-    slope: int
-    energy: int
-    pulls: bool
+k : exponent of a power law F = [δ]_+^k. p : exponent of the damping. q : the force is smooth in u
+if δ = u^q. generated : True for any other law. pulls : True if contacts hold where δ < 0. sticks : True if
+damping may pull, as the law pulls, or attracts where the contact opens. force, slope, energy :
+addresses of the machine code of F, F′ and ∫ F dδ of another law.
+"""
 
 
 class Chain(NamedTuple):
     """A chain, padded by beads of infinite mass, of which the first is the wall.
 
     inverse : inverse masses. A, r, rest, load : stiffnesses, damping coefficients over stiffnesses,
-    static compressions and static forces of the contacts. damped : True with damping. law : law of
-    all contacts. drive : motion of a first bead that is driven; its inverse mass is 0.
+    static compressions and static forces of the contacts. opens : 1 for contacts that open, 0 for
+    those that pull and for the padding. damped : True with damping. laws : (L,), records of `LAW`.
+    law : number of each contact's law. alike : for each contact the number of the next contact with
+    another law. drive : motion of a first bead that is driven; its inverse mass is 0.
     """
 
     inverse: Array
@@ -66,8 +73,11 @@ class Chain(NamedTuple):
     r: Array
     rest: Array
     load: Array
+    opens: Array
     damped: bool
-    law: Law
+    laws: Any
+    law: Numbers
+    alike: Numbers
     drive: Drive
 
 
@@ -75,27 +85,37 @@ class Beads(NamedTuple):
     """The state of the beads, and the working memory of a step.
 
     y, v : displacements and velocities. next_y, next_v : those after the step that is tried.
-    force : (stages, padded + 1), force on each bead from behind, less the static force, by stage.
-    sums : (5, padded + 1), sums over stages. Row 0: moments, then 1 for each contact with a kink.
-        Row 1: impulse of each contact in a step. Rows 2 and 3: error estimates of each contact's
-        moment and impulse. Row 4: 1 for each contact that closes at the step's end.
+    still : zeros.
+    force : (2, padded + 1), force on each bead from behind, less the static force, at the start of
+        the step and at the stage that was computed last.
+    border : (stages,), force on the bead at which a tile begins, by stage.
+    push : (stages, padded + 1), acceleration of each bead by the two contacts, by stage.
+    errors : (2 or 4, padded + 1), the pair's estimates of each bead's error in displacement and
+        velocity, in units of the tolerance.
+    marks : 1 for each contact with a kink.
     power : (2, stages), power that all contacts dissipate, and power of the drive.
     given : (2,), accelerations of a driven bead at the step's ends.
-    corrections : (4,), at kinks, of the heat and its error, and of the drive's work and its error.
-    points : (8, `POINTS`), places of a quadrature, their weights and the forces there, a free row,
-        and the intervals of a contact (`validation.lattice.kernel.kinks.find_intervals`).
+    books : (5,), corrections at kinks: heat and its error, work of the drive and its error, and the
+        sum of the squared errors of the corrections themselves, in units of the tolerance.
+    points : (3, `kinks.ROOM`), places in a step, their weights, and the forces there.
+    edges : (`kinks.EDGES`,), places between which the force of a contact is smooth.
     """
 
     y: Array
     v: Array
     next_y: Array
     next_v: Array
+    still: Array
     force: Array
-    sums: Array
+    border: Array
+    push: Array
+    errors: Array
+    marks: Array
     power: Array
     given: Array
-    corrections: Array
+    books: Array
     points: Array
+    edges: Array
 
 
 class Knots(NamedTuple):
@@ -108,7 +128,19 @@ class Knots(NamedTuple):
 
     time: Array
     state: Array
-    watched: NDArray[np.int_]
+    watched: Numbers
+
+
+class Sums(NamedTuple):
+    """Weighted sums over stages, one a row, without the stages whose weight is 0.
+
+    counts : (rows,), numbers of weights. stages : (rows, most), numbers of the stages. weights :
+    (rows, most).
+    """
+
+    counts: Numbers
+    stages: Numbers
+    weights: Array
 
 
 class Pair(NamedTuple):
@@ -117,10 +149,11 @@ class Pair(NamedTuple):
     Stage s moves a bead by h c_s v + h² Σ_j moments[s, j] f_j, and changes its velocity by
     h Σ_j impulses[s, j] f_j.
 
-    nodes : (WIDTH,), c. moments, impulses : (WIDTH, WIDTH); of `impulses` only the last row counts
-    if forces do not depend on velocities. errors : (2, WIDTH), differences of the two solutions, in
-    displacement and velocity. thirds : (WIDTH,), weights of ∫ (1 - x)²/2 f(x) dx. lower : order of
-    the second solution.
+    nodes : (stages,), c. moments, impulses : (stages, stages); of `impulses` only the last row
+    counts if forces do not depend on velocities. errors : (2 or 4, stages), differences of the two
+    solutions, in displacement and velocity; two more rows for a third solution of lower order.
+    thirds : (stages,), weights of ∫ (1 - x)²/2 f(x) dx. order : the error of a step is estimated in
+    proportion to h^order. sums : rows 0 … stages - 1 the moments, then the impulses, then `errors`.
     """
 
     nodes: Array
@@ -128,7 +161,8 @@ class Pair(NamedTuple):
     impulses: Array
     errors: Array
     thirds: Array
-    lower: int
+    order: int
+    sums: Sums
 
 
 class Splitting(NamedTuple):
@@ -144,8 +178,8 @@ class Plan(NamedTuple):
     y, v, energy : tolerances, the errors of displacement, velocity and work allowed in a step.
     h : first step of an embedded pair, fixed step of a splitting. longest : greatest step of an
     embedded pair. end : duration. deepest : greatest compression. lightest : least mass. size :
-    number of beads. stops : times at which steps end, the duration the last of them. jumps :
-    True if forces jump where contacts close, as damping forces c dδ/dt do.
+    number of beads. stops : times at which steps end, the duration the last of them. most :
+    energy of the response at which the run ends, as its tolerances were those of a smaller one.
     """
 
     scheme: Any
@@ -159,29 +193,32 @@ class Plan(NamedTuple):
     lightest: float
     size: int
     stops: Array
-    jumps: bool
+    most: float
 
 
 _COUNTS = ("steps", "tries", "front", "stored", "stop")
-_REALS = ("t", "h", "planned", "energy", "work", "lost", "response")
+_REALS = ("t", "late", "h", "energy", "work", "lost", "response")
 _PROGRESS = np.dtype(
     [(name, int) for name in _COUNTS] + [(name, float) for name in _REALS]
 )
+
+
+def records(rows: Any) -> Any:
+    """Return an array of records whose fields are attributes, in uncompiled code as well."""
+    uncompiled = config.DISABLE_JIT  # type: ignore[attr-defined]
+    return rows.view(np.recarray) if uncompiled else rows
 
 
 def initial_progress(plan: Plan, front: int, energy: float) -> Any:
     """Return the record of an integration at time 0, which `advance` updates.
 
     front : number of the first bead that is still. energy : initial energy of the contacts and of
-    the free beads. Fields: t, h : time, next step. planned : step that was tried before it was
-    cut short. steps, tries : numbers of steps made and tried. front : first bead ahead of the
-    motion. stored : number of stored knots. stop : number of the next of ``plan.stops``. work,
-    lost : ∫ v (F - static force) dt of a driven bead, and dissipated energy. response :
-    greatest of the values of ``energy`` on the way.
+    the free beads. Fields: t, late : time, and its rounding error. h : next step. steps, tries :
+    numbers of steps made and tried. front : first bead ahead of the motion. stored : number of
+    stored knots. stop : number of the next of ``plan.stops``. work, lost : ∫ v (F - static force)
+    dt of a driven bead, and dissipated energy. response : greatest of the values of ``energy`` on
+    the way.
     """
-    rows = np.zeros(1, _PROGRESS)
-    # Fields of a plain record are attributes in compiled code alone.
-    uncompiled = config.DISABLE_JIT  # type: ignore[attr-defined]
-    now = (rows.view(np.recarray) if uncompiled else rows)[0]
+    now = records(np.zeros(1, _PROGRESS))[0]
     now["front"], now["h"], now["energy"] = front, plan.h, energy
     return now

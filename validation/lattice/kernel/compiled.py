@@ -1,7 +1,7 @@
 """Numba's options for the kernel, and a cache of machine code that is tied to all its files.
 
-Numba compiles a cached function again if the function's own file changes or a value in its closure,
-not if a function that it calls changes. So every cached function has `SOURCES` in its closure.
+Numba compiles a cached function again if the function's own file changes, not if a function that it
+calls changes. So the stamp of every cached function is that of all files of the kernel, `SOURCES`.
 """
 
 from __future__ import annotations
@@ -18,17 +18,15 @@ from numba import njit, types
 from numba.core.event import Event, Listener, register
 from numba.extending import intrinsic
 
+from validation.scenes import forcing
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-SOURCES = int.from_bytes(
-    hashlib.blake2b(
-        b"".join(
-            file.read_bytes() for file in sorted(Path(__file__).parent.glob("*.py"))
-        ),
-        digest_size=7,
-    ).digest()
-)
-"""A hash of all files of the kernel."""
+_FILES = sorted(Path(__file__).parent.glob("*.py")), [Path(forcing.__file__)]
+SOURCES = hashlib.blake2b(
+    b"".join(file.read_bytes() for files in _FILES for file in files)
+).hexdigest()
+"""A hash of all files with compiled functions."""
 
 # Without "reassoc" sums keep their order, so that rounding is reproducible; without "nnan" and
 # "ninf" an overflow is detected. In numba's own error model a division by zero raises an exception,
@@ -47,6 +45,10 @@ _INNER: Any = _OUTER | {"no_cpython_wrapper": True}
 # compiled apart is optimised and translated twice, by itself and in its caller, which took a fifth
 # of the compilation.
 inlined: Callable[[Function], Function] = njit(inline="always", **_INNER)
+# Functions that stay apart: long ones, with more callers than one.
+alone: Callable[[Function], Function] = njit(**_INNER)
+# Long functions with several callers, which stay apart.
+alone: Callable[[Function], Function] = njit(**_INNER)
 # Small functions with many callers, inlined by LLVM, as the calls would take a quarter of a run's
 # time. Inlining by numba gives the same code, but takes three times as long to compile.
 part: Callable[[Function], Function] = njit(forceinline=True, **_INNER)
@@ -85,6 +87,12 @@ def cached(function: Function) -> Function:
     if compiled is function:  # NUMBA_DISABLE_JIT
         return function
     cache = compiled._cache
+    cache._cache_file._source_stamp = (
+        SOURCES  # in place of the time and size of one file
+    )
+    cache._cache_file._source_stamp = (
+        SOURCES  # in place of the time and size of one file
+    )
     known, keep = cache.load_overload, cache.save_overload
 
     def load_if_possible(signature: Any, context: Any) -> Any:

@@ -1,4 +1,9 @@
-"""Forces of all contacts, A (F(δ) + r [δ]_+^p dδ/dt) ≥ 0, and a driven bead's motion."""
+"""Forces of contacts, A (F(δ) + r [δ]_+^p dδ/dt), and the motion of a driven bead.
+
+A contact is open, without a force, where δ ≤ 0, unless its law pulls there. Damping may not pull,
+unless the law attracts where the contact opens: the force is at least the elastic force, or 0 if
+that is less.
+"""
 
 from __future__ import annotations
 
@@ -8,39 +13,107 @@ from typing import Any
 import numpy as np
 
 from lwa.base.arrays import Array
-from validation.lattice.kernel.arrays import TILE, Beads, Chain, Drive, Law, Plan
+from validation.lattice.kernel.arrays import TILE, Beads, Chain, Drive, Plan
 from validation.lattice.kernel.compiled import ONE, call, index, part, summed
+from validation.scenes.forcing import oscillation
 
-NEGLIGIBLE = (
-    1e-60  # in units of the greatest compression: less is 0, so that no denormals arise
-)
+# In units of the greatest compression: less counts as 0, so that no denormals arise.
+NEGLIGIBLE = 1e-60
+
+_oscillation = part(oscillation)
+
+
+@part
+def is_quarters(x: float) -> bool:
+    """Return True for an exponent that `quarters` knows."""
+    return bool(x < 5.0 and 4.0 * x == int(4.0 * x))
+
+
+@part
+def quarters(x: float, d: float) -> float:
+    """Return d^x for a multiple x of 1/4, 0 ≤ x < 5, as a product that vectorises.
+
+    The binary digits of x are the exponents of d^{1/4}, d^{1/2}, d, d² and d⁴; the factor of a
+    digit 0 is 1.
+    """
+    n, root = int(4.0 * x), np.sqrt(d)
+    a, b, c = float(n & 1), float(n >> 1 & 1), float(n >> 2 & 1)
+    e, g = float(n >> 3 & 1), float(n >> 4 & 1)
+    low = (1.0 - a + a * np.sqrt(root)) * (1.0 - b + b * root)
+    high = (1.0 - e + e * d * d) * (1.0 - g + g * d * d * d * d)
+    return float(low * (1.0 - c + c * d) * high)
+
+
+@part
+def power(x: float, d: float) -> float:
+    """Return d^x; products and roots take a tenth of the time."""
+    if x == 1.5:
+        return float(d * np.sqrt(d))
+    if x == 0.0:
+        return 1.0  # where a contact pulls, too, at d < 0
+    return quarters(x, d) if is_quarters(x) else float(d**x)
+
+
+@part
+def elastic(law: Any, d: float) -> float:
+    """Return the elastic force F(d) for unit stiffness; 0 for an open contact."""
+    if not (d > 0.0 or law.pulls):
+        return 0.0
+    return float(call(law.force, d)) if law.generated else power(law.k, d)
+
+
+@part
+def drag(law: Any, d: float) -> float:
+    """Return the factor d^p of r dδ/dt in the damping force."""
+    return power(law.p, d)
+
+
+@part
+def stiffness(law: Any, d: float) -> float:
+    """Return F′(d) for unit stiffness, k d^{k-1} for a power law; 0 for an open contact."""
+    if not (d > 0.0 or law.pulls):
+        return 0.0
+    return float(call(law.slope, d) if law.generated else law.k * power(law.k - 1.0, d))
+
+
+@part
+def push(law: Any, r: float, d: float, rate: float) -> float:
+    """Return the force for unit stiffness at a compression d and a rate dδ/dt."""
+    force = elastic(law, d)
+    if not r > 0.0 or not (d > 0.0 or law.pulls):
+        return force
+    total = force + r * drag(law, d) * rate
+    return total if law.sticks else max(total, min(force, 0.0))
 
 
 def _loop(value: Any) -> Any:
-    """Compile a loop over contacts with the force A value(d, k), d ≥ 0 the compression."""
+    """Compile a loop over contacts with the force A value(law, k, d)."""
 
     @part
-    def loop(chain: Chain, y: Array, f: Array, lo: int, hi: int, least: float) -> None:
-        A, rest, load, k = chain.A, chain.rest, chain.load, chain.law.k
+    def loop(
+        chain: Chain, law: Any, y: Array, f: Array, lo: int, hi: int, least: float
+    ) -> None:
+        A, rest, load, k = chain.A, chain.rest, chain.load, law.k
         for i in range(index(lo), index(hi)):
             d = rest[i] + y[i] - y[i + ONE]
             d = d if d > least else 0.0
-            f[i + ONE] = A[i] * value(d, k) - load[i]
+            f[i + ONE] = A[i] * value(law, k, d) - load[i]
 
     return loop
 
 
 def _damped_loop(value: Any, resistance: Any) -> Any:
-    """Compile a loop over contacts with the force A (value(law, d) + r resistance(d, p) dδ/dt).
+    """Compile a loop over contacts with the force A (value + r resistance(p, d) dδ/dt).
 
-    least, none : contacts push where δ > least and F > none; both are -∞ for contacts that pull.
-    The loop returns the dissipated power. While a contact that has stopped pushing expands, its
-    elastic energy turns into heat.
+    least : contacts have a force where δ > least; -∞ if they pull. none : 0 if damping may not
+    pull, else -∞. The loop returns the dissipated power. While a contact that has
+    stopped pushing expands, its elastic energy turns into heat.
     """
 
     @summed
     def loop(
         chain: Chain,
+        law: Any,
         y: Array,
         v: Array,
         f: Array,
@@ -49,55 +122,37 @@ def _damped_loop(value: Any, resistance: Any) -> Any:
         least: float,
         none: float,
     ) -> float:
-        A, rest, load, r, law, lost = (
-            chain.A,
-            chain.rest,
-            chain.load,
-            chain.r,
-            chain.law,
-            0.0,
-        )
+        A, rest, load, r = chain.A, chain.rest, chain.load, chain.r
+        k, p, lost = law.k, law.p, 0.0
         for i in range(index(lo), index(hi)):
             x, rate = rest[i] + y[i] - y[i + ONE], v[i] - v[i + ONE]
             d = x if x > least else 0.0
-            elastic = value(law, d)
-            force = elastic + r[i] * resistance(d, law.p) * rate
-            force = force if (force > none) & (x > least) else 0.0
-            f[i + ONE] = A[i] * force - load[i]
-            lost += A[i] * (force - elastic) * rate
+            force = value(law, k, d)
+            lowest = force if force < none else none
+            total = force + r[i] * resistance(p, d) * rate
+            total = total if total > lowest else lowest
+            total = total if x > least else 0.0
+            f[i + ONE] = A[i] * total - load[i]
+            lost += A[i] * (total - force) * rate
         return lost
 
     return loop
 
 
-@part
-def _of_quarters(d: float, k: float) -> float:
-    """Return d^k for a multiple k of 1/4, 1 ≤ k < 5, as a product that vectorises.
-
-    k - 1 = a/4 + b/2 + c + 2 e with binary digits a, b, c and e, and the factor of a digit 0 is 1.
-    """
-    n, root = int(4.0 * (k - 1.0)), np.sqrt(d)
-    a, b, c, e = float(n & 1), float(n >> 1 & 1), float(n >> 2 & 1), float(n >> 3 & 1)
-    low = (1.0 - a + a * np.sqrt(root)) * (1.0 - b + b * root)
-    return float(d * low * (1.0 - c + c * d) * (1.0 - e + e * d * d))
-
-
-# d^k itself takes ten times as long as products and roots.
-_hertz = _loop(part(lambda d, k: d * np.sqrt(d)))
-_quarters = _loop(_of_quarters)
-_power = _loop(part(lambda d, k: d**k))
+_hertz = _loop(part(lambda law, k, d: d * np.sqrt(d)))
+_quarters = _loop(part(lambda law, k, d: quarters(k, d)))
+_other = _loop(part(lambda law, k, d: elastic(law, d)))
+# For k = 1 or 3/2 and p = 0, 1/4 or 1/2, a third of the time of other multiples of 1/4.
 _damped_hertz = _damped_loop(
-    part(lambda law, d: d * (np.sqrt(d) if law.k == 1.5 else 1.0)),
+    part(lambda law, k, d: d * (np.sqrt(d) if k == 1.5 else 1.0)),
     part(
-        lambda d, p: (
+        lambda p, d: (
             np.sqrt(d) if p == 0.5 else (1.0 if p == 0.0 else np.sqrt(np.sqrt(d)))
         )
     ),
 )
-_damped = _damped_loop(
-    part(lambda law, d: call(law.force, d) if law.generated else d**law.k),
-    part(lambda d, p: 1.0 if p == 0.0 else d**p),
-)
+_damped_quarters = _damped_loop(part(lambda law, k, d: quarters(k, d)), quarters)
+_damped_other = _damped_loop(part(lambda law, k, d: elastic(law, d)), power)
 
 
 @part
@@ -117,46 +172,33 @@ def contact_forces(
 ) -> None:
     """Compute the forces of the contacts ahead of beads lo … hi-1, less the static forces.
 
-    y, v : displacements and velocities. The forces go to row s (stage) of ``beads.force``, in
+    y, v : displacements and velocities. s : the stage. The forces go to row 1 of ``beads.force``, in
     column i + 1 for the contact ahead of bead i; the dissipated power and the power of the drive go
     to ``beads.power``.
     """
-    f, least, law, k = beads.force[s], NEGLIGIBLE * plan.deepest, chain.law, chain.law.k
-    if chain.damped:
-        none = 0.0
-        if law.pulls:
-            least = none = -math.inf
-        simple = (k == 1.5 and law.p in (0.0, 0.25, 0.5)) or (k == 1.0 and law.p == 0.0)
-        if simple and not law.generated:
-            lost = _damped_hertz(chain, y, v, f, lo, hi, least, none)
+    f, lost, start = beads.force[1], beads.power[0, s] if lo > 0 else 0.0, lo
+    while lo < hi:
+        law, up = chain.laws[chain.law[lo]], min(hi, chain.alike[lo])
+        least = -math.inf if law.pulls else NEGLIGIBLE * plan.deepest
+        none = -math.inf if law.sticks else 0.0
+        fast = is_quarters(law.k) and not law.generated
+        if chain.damped:
+            if fast and law.k in (1.0, 1.5) and law.p in (0.0, 0.25, 0.5):
+                lost += _damped_hertz(chain, law, y, v, f, lo, up, least, none)
+            elif fast and is_quarters(law.p):
+                lost += _damped_quarters(chain, law, y, v, f, lo, up, least, none)
+            else:
+                lost += _damped_other(chain, law, y, v, f, lo, up, least, none)
+        elif fast and law.k == 1.5:
+            _hertz(chain, law, y, f, lo, up, least)
+        elif fast:
+            _quarters(chain, law, y, f, lo, up, least)
         else:
-            lost = _damped(chain, y, v, f, lo, hi, least, none)
-        beads.power[0, s] = lost + (beads.power[0, s] if lo > 0 else 0.0)
-    elif law.generated:
-        for i in range(index(lo), index(hi)):
-            d = chain.rest[i] + y[i] - y[i + ONE]
-            closed = chain.A[i] > 0.0 and (law.pulls or d > 0.0)
-            f[i + ONE] = (
-                chain.A[i] * call(law.force, d) if closed else 0.0
-            ) - chain.load[i]
-    elif k == 1.5:
-        _hertz(chain, y, f, lo, hi, least)
-    elif k < 5.0 and 4.0 * k == int(4.0 * k):
-        _quarters(chain, y, f, lo, hi, least)
-    else:
-        _power(chain, y, f, lo, hi, least)
-    if chain.drive.driven and lo == 0:
+            _other(chain, law, y, f, lo, up, least)
+        lo = up
+    beads.power[0, s] = lost
+    if chain.drive.driven and start == 0:
         beads.power[1, s] = v[0] * f[1]
-
-
-@part
-def stiffness(law: Law, d: float) -> float:
-    """Return F′(d) of a contact of unit stiffness, k [d]_+^{k-1} for a power law."""
-    if law.generated:
-        return float(call(law.slope, d) if law.pulls or d > 0.0 else 0.0)
-    if not d > 0.0:
-        return 0.0
-    return float(law.k * (np.sqrt(d) if law.k == 1.5 else d ** (law.k - 1.0)))
 
 
 @part
@@ -170,21 +212,8 @@ def drive_motion(drive: Drive, middle: float, t: float) -> tuple[float, float, f
         n = (low + high) // 2
         low, high = (n, high) if drive.times[n] <= middle else (low, n)
     s, c = t - drive.times[low], drive.cubics[low]
-    y = c[0] + s * (c[1] + s * (c[2] + s * c[3]))
-    v, a = c[1] + s * (2.0 * c[2] + s * 3.0 * c[3]), 2.0 * c[2] + s * 6.0 * c[3]
-    if drive.amplitude != 0.0:
-        r, dr, ddr = 1.0, 0.0, 0.0
-        if (
-            t < drive.ramp
-        ):  # x³ (10 - 15 x + 6 x²) has two derivatives that vanish at both ends
-            x, pace = t / drive.ramp, 1.0 / drive.ramp
-            r, dr = (
-                x * x * x * (10 - 15 * x + 6 * x * x),
-                30 * x * x * (1 - x) * (1 - x) * pace,
-            )
-            ddr = 60 * x * (1 - x) * (1 - 2 * x) * pace * pace
-        w, sin, cos = drive.w, math.sin(drive.w * t), math.cos(drive.w * t)
-        y += drive.amplitude * r * sin
-        v += drive.amplitude * (dr * sin + r * w * cos)
-        a += drive.amplitude * (ddr * sin + 2 * dr * w * cos - r * w * w * sin)
+    y, v, a = _oscillation(t, drive.amplitude, drive.w, drive.ramp)
+    y += c[0] + s * (c[1] + s * (c[2] + s * c[3]))
+    v += c[1] + s * (2.0 * c[2] + s * 3.0 * c[3])
+    a += 2.0 * c[2] + s * 6.0 * c[3]
     return y, v, a

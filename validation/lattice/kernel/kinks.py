@@ -1,10 +1,11 @@
 """Integrals of a contact's force over a step in which the contact opens or closes.
 
-F has no derivative of order k + 1 where a contact opens or closes, and a quadrature that does not
-know the place errs by O(h^{k+1}). Over the step, x = 0 … 1, the compression is close to the quintic
-p(x) with the values of δ, δ' and δ'' at both ends. `integrals` integrates F(p, p') over the
-intervals in which the contact pushes (`find_intervals`), for unit stiffness, by Gauss's rule in u,
-x = z + (e - z) u^q, z the root of p at one end of the interval and e the other end, so that F is
+F has no derivative of order k + 1 where a contact opens or closes, and jumps there with some
+dampings and laws. A quadrature that does not know the place errs by O(h^{k+1}), or O(h). Over the
+step, x = 0 … 1, the compression is close to the quintic p(x) with the values of δ, δ' and δ'' at
+both ends. `integrals` integrates F(p, p') between the places at which the contact opens, closes,
+or begins or ceases to be damped (`find_edges`), for unit stiffness, by Gauss's rule in u,
+x = z + (e - z) u^q, z the root of p at one end of an interval and e the other end, so that F is
 smooth in u.
 
 A damped contact that is pulled open can stop pushing before it parts: the force tells, not δ.
@@ -13,122 +14,94 @@ A damped contact that is pulled open can stop pushing before it parts: the force
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
 from lwa.base.arrays import Array
-from validation.lattice.kernel.arrays import Law
-from validation.lattice.kernel.compiled import call, index, part, summed
+from validation.lattice.kernel.arrays import Pair
+from validation.lattice.kernel.compiled import alone, call, index, part
+from validation.lattice.kernel.force import drag, elastic, push
 
-Quintic = tuple[float, float, float, float, float, float]
-"""Coefficients c0 … c5 of p."""
+Curve = tuple[float, float, float, float, float, float, float, float]
+"""Coefficients c0 … c5 of p, and e and s of a bend, s [x - e]_+^2/2, that p has besides."""
 
 POINTS = 12  # of the rule: three of the machine's vectors
+ROOM = 18  # places of a step: points of the rule, or stages of a pair
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(POINTS)
 _U, _W = (1 + _NODES) / 2, _WEIGHTS / 2
 _PLACES = 8  # parts of a step at whose ends a contact is looked at
+# Each part has at most one turning point of p, and on both sides of it a contact that closes or
+# opens and begins or ceases to be damped; beside these the step's ends.
+EDGES = 4 * _PLACES + 2
+# Width at which the search for a place ends: at 1e-10 the energy lost errs by 15 times an rtol of
+# 1e-11.
+_CLOSE = 1e-13
+_OPENS = 1e-100  # a compression at which a contact is about to open, in any units
 
 
 @part
-def elastic(law: Law, d: float) -> float:
-    """Return the elastic force F(d) at a compression d ≥ 0."""
-    if law.generated:
-        return float(call(law.force, d))
-    return float(d * np.sqrt(d) if law.k == 1.5 else (d if law.k == 1.0 else d**law.k))
-
-
-@part
-def drag(law: Law, d: float) -> float:
-    """Return the factor d^p of r dδ/dt in the damping force, at a compression d ≥ 0."""
-    if law.p == 0.0:
-        return 1.0
-    if law.p == 0.25:  # of a constant coefficient of restitution of Hertzian contacts
-        return float(np.sqrt(np.sqrt(d)))
-    return float(np.sqrt(d) if law.p == 0.5 else d**law.p)
-
-
-@part
-def push(law: Law, r: float, d: float, rate: float) -> float:
-    """Return the force at a compression d and a rate dδ/dt; contacts do not pull."""
-    if not d > 0.0:
-        return 0.0
-    return (
-        max(elastic(law, d) + r * drag(law, d) * rate, 0.0)
-        if r > 0.0
-        else elastic(law, d)
-    )
-
-
-@part
-def pushes(law: Law, r: float, d: float, rate: float) -> bool:
-    """Return True if a contact has a force at a compression d and a rate dδ/dt."""
-    return d > 0.0 and (not r > 0.0 or elastic(law, d) + r * drag(law, d) * rate > 0.0)
-
-
-@part
-def stored(law: Law, d: float) -> float:
+def stored(law: Any, d: float) -> float:
     """Return the elastic energy; 0 for d ≤ 0."""
     if not d > 0.0:
         return 0.0
-    return (
-        float(call(law.energy, d))
-        if law.generated
-        else elastic(law, d) * d / (law.k + 1.0)
-    )
+    if law.generated:
+        return float(call(law.energy, d))
+    return elastic(law, d) * d / (law.k + 1.0)
 
 
 @part
-def value_and_slope(c: Quintic, x: float) -> tuple[float, float]:
+def value_and_slope(c: Curve, x: float) -> tuple[float, float]:
     """Return p(x) and p'(x)."""
     p = c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))))
-    return p, c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5])))
+    slope = c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5])))
+    late = max(x - c[6], 0.0)
+    return p + 0.5 * c[7] * late * late, slope + c[7] * late
 
 
 @part
-def fitted_quintic(
-    d: float, v: float, a: float, end: float, end_v: float, end_a: float
-) -> Quintic:
-    """Return the quintic of value d, slope v, second derivative a at 0; end, end_v, end_a at 1."""
-    c2 = a / 2
-    # c3, c4 and c5 solve the conditions at x = 1, of which d, v and c2 leave r0, r1 and r2.
-    r0, r1, r2 = end - d - v - c2, end_v - v - 2 * c2, end_a - 2 * c2
-    return (
-        d,
-        v,
-        c2,
-        10 * r0 - 4 * r1 + r2 / 2,
-        -15 * r0 + 7 * r1 - r2,
-        6 * r0 - 3 * r1 + r2 / 2,
-    )
+def fitted_curve(
+    start: tuple[float, float, float],
+    end: tuple[float, float, float],
+    bent: tuple[float, float],
+) -> Curve:
+    """Return the quintic with p, p' and p'' at both ends of the step, with a bend (e, s)."""
+    d, v, c2 = start[0], start[1], start[2] / 2
+    late = 1.0 - bent[0]
+    # c3, c4 and c5 solve the conditions at x = 1, of which the bend, d, v and c2 leave r0, r1, r2.
+    r0 = end[0] - 0.5 * bent[1] * late * late - d - v - c2
+    r1 = end[1] - bent[1] * late - v - 2 * c2
+    r2 = end[2] - bent[1] - 2 * c2
+    c3 = 10 * r0 - 4 * r1 + r2 / 2
+    c4 = -15 * r0 + 7 * r1 - r2
+    c5 = 6 * r0 - 3 * r1 + r2 / 2
+    return d, v, c2, c3, c4, c5, bent[0], bent[1]
 
 
 @part
-def _margin(law: Law, r: float, c: Quintic, h: float, x: float, closing: bool) -> float:
-    """Return a continuous function of x which is positive where the contact pushes.
+def _margin(law: Any, r: float, c: Curve, h: float, x: float) -> float:
+    """Return a continuous function of x which is positive where damping does not pull.
 
-    closing : True for a contact that closes; otherwise the contact ends to push, or pushes again.
+    Without damping, r = 0, the function is p.
     """
     p, slope = value_and_slope(c, x)
-    if closing or not r > 0.0:
+    if not r > 0.0:
         return p
-    return (elastic(law, p) / (r * drag(law, p)) if p > 0.0 else 0.0) + slope / h
+    push_apart = max(elastic(law, p), 0.0) / (r * drag(law, p)) if p > 0.0 else 0.0
+    return push_apart + slope / h
 
 
-@part
-def change(
-    law: Law, r: float, c: Quintic, h: float, a: float, b: float, closing: bool
-) -> float:
-    """Return the place between a and b at which the contact begins or ends to push."""
-    # A contact that pushes again before it has parted does so by its force.
-    closing = closing and not value_and_slope(c, a)[0] > 0.0
-    left, right = _margin(law, r, c, h, a, closing), _margin(law, r, c, h, b, closing)
+@alone
+def _crossing(law: Any, r: float, c: Curve, h: float, a: float, b: float) -> float:
+    """Return the place between a and b at which `_margin` changes its sign."""
+    left, right = _margin(law, r, c, h, a), _margin(law, r, c, h, b)
     for _ in range(60):  # the Illinois variant of the rule of false position
-        x = b - right * (b - a) / (right - left) if right != left else 0.5 * (a + b)
-        if (
-            abs(x - b) < 1e-13
-        ):  # at 1e-10 the energy lost errs by 15 times an rtol of 1e-11
+        x = 0.5 * (a + b)
+        if right != left:
+            x = b - right * (b - a) / (right - left)
+        if abs(x - b) < _CLOSE:
             return x
-        middle = _margin(law, r, c, h, x, closing)
+        middle = _margin(law, r, c, h, x)
         if middle * right < 0.0:
             a, left = b, right
         else:
@@ -138,7 +111,140 @@ def change(
 
 
 @part
-def _root(c: Quintic, x: float, side: float) -> float:
+def _turning_point(c: Curve, a: float, b: float) -> float:
+    """Return the place between a and b at which the slope of p changes its sign."""
+    _, slope = value_and_slope(c, a)
+    for _ in range(30):
+        x = 0.5 * (a + b)
+        _, middle = value_and_slope(c, x)
+        if middle * slope > 0.0:
+            a = x
+        else:
+            b = x
+    return 0.5 * (a + b)
+
+
+@part
+def _state(
+    law: Any, r: float, c: Curve, h: float, x: float
+) -> tuple[float, float, float]:
+    """Return p, p' and, for a damped contact that does not stick, the margin at a place."""
+    p, slope = value_and_slope(c, x)
+    margin = 1.0
+    if r > 0.0 and not law.sticks and p > 0.0:
+        margin = _margin(law, r, c, h, x)
+    return p, slope, margin
+
+
+@alone
+def _add_edges(
+    law: Any,
+    r: float,
+    c: Curve,
+    h: float,
+    a: float,
+    b: float,
+    first: tuple[float, float, float],
+    last: tuple[float, float, float],
+    edges: Array,
+    n: int,
+) -> int:
+    """Add the edges between a and b, where p is monotonic; return the number of edges so far.
+
+    first, last : the contact's states at a and b.
+    """
+    closes = first[0] <= 0.0 and last[0] > 0.0
+    opens = first[0] > 0.0 and last[0] <= 0.0
+    root, margin, end_margin = b, first[2], last[2]
+    if closes or opens:
+        root = _crossing(law, 0.0, c, h, a, b)
+    if closes:
+        edges[n] = a = root
+        n += 1
+        margin = 1.0  # δ rises
+    if opens and r > 0.0 and not law.sticks:
+        end_margin = -1.0  # δ falls
+    if margin * end_margin < 0.0:
+        edges[n] = _crossing(law, r, c, h, a, root if opens else b)
+        n += 1
+    if opens:
+        edges[n] = root
+        n += 1
+    return n
+
+
+@alone
+def find_edges(
+    law: Any, r: float, c: Curve, h: float, edges: Array
+) -> tuple[int, float]:
+    """Return the number of intervals of a step in which F(p, p'/h) is smooth, and the greatest p.
+
+    The places between the intervals, 0 and 1 among them, go to ``edges``.
+    """
+    n, low, before, top = 1, 0.0, _state(law, r, c, h, 0.0), c[0]
+    edges[0] = 0.0
+    for m in range(1, _PLACES + 1):
+        high = m / _PLACES
+        after = _state(law, r, c, h, high)
+        same = (before[0] > 0.0) == (after[0] > 0.0)
+        sign = 1.0 if before[0] > 0.0 else -1.0
+        # A contact may open, or close, between two places.
+        if same and sign * before[1] < 0.0 and sign * after[1] > 0.0:
+            turn = _turning_point(c, low, high)
+            middle = _state(law, r, c, h, turn)
+            n = _add_edges(law, r, c, h, low, turn, before, middle, edges, n)
+            low, before, top = turn, middle, max(top, middle[0])
+        if before[0] > 0.0 or after[0] > 0.0:
+            n = _add_edges(law, r, c, h, low, high, before, after, edges, n)
+        low, before, top = high, after, max(top, after[0])
+    edges[n] = 1.0
+    return n, top
+
+
+@part
+def _find_jump(
+    law: Any, r: float, c: Curve, h: float, edges: Array, count: int
+) -> tuple[float, float]:
+    """Return the last place at which the force jumps, and by how much; (1, 0) for none."""
+    place, jump = 1.0, 0.0
+    for n in range(1, count):
+        p, slope = value_and_slope(c, edges[n])
+        if abs(p) < 1e-9 * abs(slope):
+            force = push(law, r, _OPENS, slope / h)
+            place, jump = edges[n], force if slope > 0.0 else -force
+    return place, jump
+
+
+@alone
+def resolved(
+    law: Any,
+    r: float,
+    start: tuple[float, float, float],
+    end: tuple[float, float, float],
+    h: float,
+    bend: float,
+    edges: Array,
+) -> tuple[Curve, int, float, float]:
+    """Return a contact's curve over a step, the results of `find_edges`, and a jump of the force.
+
+    start, end : p, p' and p'' at both ends. bend : of p'' by a force of 1. A jump bends the curve
+    where it is, and where it is depends on the curve: two refinements leave no more than the
+    quintic's own error.
+    """
+    c = fitted_curve(start, end, (1.0, 0.0))
+    count, top = find_edges(law, r, c, h, edges)
+    place, jump = _find_jump(law, r, c, h, edges, count)
+    if abs(bend * jump) < 1e-12 * abs(start[1]):
+        return c, count, top, 0.0
+    for _ in range(2):
+        c = fitted_curve(start, end, (place, bend * jump))
+        count, top = find_edges(law, r, c, h, edges)
+        place, jump = _find_jump(law, r, c, h, edges, count)
+    return c, count, top, jump
+
+
+@part
+def _root(c: Curve, x: float, side: float) -> float:
     """Return the root of p near an end x of an interval, on its outer side (±1); NaN without one.
 
     The root shapes the substitution alone: two steps of Newton's method are enough.
@@ -158,114 +264,94 @@ def _root(c: Quintic, x: float, side: float) -> float:
     return math.nan
 
 
-@summed
-def forces_along(law: Law, r: float, c: Quintic, h: float, x: Array, f: Array) -> None:
-    """Compute the forces of a contact with the compression p at places x; they go to f."""
-    if law.k == 1.5 and law.p in (0.0, 0.25, 0.5) and not law.generated:  # vectorises
-        for m in range(index(len(x))):
-            p, slope = value_and_slope(c, x[m])
-            d = p if p > 0.0 else 0.0
-            root = np.sqrt(d)
-            resistance = (
-                root if law.p == 0.5 else (1.0 if law.p == 0.0 else np.sqrt(root))
-            )
-            force = d * root + r * resistance * slope / h
-            f[m] = force if (force > 0.0) & (p > 0.0) else 0.0
-    else:
-        for m in range(index(len(x))):
-            p, slope = value_and_slope(c, x[m])
-            f[m] = push(law, r, p, slope / h)
+@alone
+def stage_forces(
+    law: Any,
+    r: float,
+    c: Curve,
+    h: float,
+    pair: Pair,
+    bend: float,
+    jump: float,
+    points: Array,
+) -> None:
+    """Compute compressions, slopes and forces at the stages of a pair; they go to ``points``.
 
-
-@part
-def _summit(c: Quintic, a: float, b: float) -> float:
-    """Return the place of the maximum of p between a and b, where p first rises and then falls."""
-    for _ in range(30):
-        x = 0.5 * (a + b)
-        a, b = (x, b) if value_and_slope(c, x)[1] > 0.0 else (a, x)
-    return 0.5 * (a + b)
-
-
-@part
-def find_intervals(
-    law: Law, r: float, c: Quintic, h: float, points: Array
-) -> tuple[int, float]:
-    """Return the number of intervals of a step in which the contact pushes, and the greatest p.
-
-    F(p, p'/h) is the force of a contact whose compression is the quintic with coefficients c.
-    Begins, ends, and the roots at both go to rows 4 … 7 of ``points``.
+    A stage's motion has the pair's own error for a force that jumps at c's bend. bend : of p'' by a
+    force of 1.
     """
-    count, start, top, before, rise = 0, 0.0, c[0], c[0], c[1]
-    pushed = pushes(law, r, before, rise / h)
-    for m in range(1, _PLACES + 1):
-        low, high = (m - 1) / _PLACES, m / _PLACES
-        p, slope = value_and_slope(c, high)
-        now = pushes(law, r, p, slope / h)
-        # A contact can close, and open or cease to push, between two places.
-        within, peak = (
-            not now and before <= 0.0 and rise > 0.0 and (p > 0.0 or slope < 0.0),
-            high,
-        )
-        if within and not p > 0.0:
-            peak = _summit(c, low, high)
-            deepest, _ = value_and_slope(c, peak)
-            within, top = deepest > 0.0, max(top, deepest)
-        if within or (now and not pushed):
-            start = change(law, r, c, h, low, peak, True)
-        opens = within or (pushed and not now)
-        if opens or (now and m == _PLACES):
-            end = 1.0
-            if opens:
-                first = low if pushed else (start if p > 0.0 else peak)
-                end = change(law, r, c, h, first, high, False)
-            points[4, count], points[5, count] = start, end
-            points[6, count] = (
-                start if start > 0.0 and not r > 0.0 else _root(c, start, -1.0)
-            )
-            points[7, count] = end if end < 1.0 and not r > 0.0 else _root(c, end, 1.0)
-            count += 1
-        pushed, before, rise, top = now, p, slope, max(top, p)
-    return count, top
+    closes = value_and_slope(c, c[6])[1] > 0.0
+    for s in range(len(pair.nodes)):
+        p, slope = value_and_slope(c, pair.nodes[s])
+        if jump != 0.0:
+            late = max(pair.nodes[s] - c[6], 0.0)
+            moment, impulse = 0.5 * late * late, late
+            for j in range(s):
+                if (points[0, j] > 0.0) == closes:
+                    moment -= pair.moments[s, j]
+                    impulse -= pair.impulses[s, j]
+            p -= bend * jump * moment
+            slope -= bend * jump * impulse
+        points[0, s], points[1, s] = p, slope
+        points[2, s] = push(law, r, p, slope / h)
 
 
-@summed
+@part
+def _place_points(
+    q: float, zero: float, near: float, far: float, points: Array
+) -> None:
+    """Place Gauss's rule in u between near and far; x = zero + (far - zero) u^q, q = 1, 2 or 4."""
+    span = far - zero
+    start = (near - zero) / span
+    if q > 1.0:
+        start = math.sqrt(start) if q == 2.0 else math.sqrt(math.sqrt(start))
+    scale = abs(span) * (1.0 - start)
+    for m in range(index(POINTS)):
+        u = start + (1.0 - start) * _U[m]
+        pace = 1.0 if q == 1.0 else (2.0 * u if q == 2.0 else 4.0 * u * u * u)
+        points[0, m], points[1, m] = zero + span * u * pace / q, scale * _W[m] * pace
+
+
+@alone
 def integrals(
-    law: Law, r: float, c: Quintic, h: float, until: float, count: int, points: Array
+    law: Any,
+    r: float,
+    c: Curve,
+    h: float,
+    until: float,
+    points: Array,
+    edges: Array,
+    count: int,
 ) -> tuple[float, float, float, float]:
     """Return ∫ F, ∫ (1 - x) F, ∫ (1 - x)²/2 F and ∫ F p' over a step up to x = until.
 
-    The intervals in which the contact pushes are those of `find_intervals`, ``count`` of them.
+    edges, count : the ``count`` intervals of `find_edges`.
     """
-    x, w, f = points[0], points[1], points[2]
+    x, w = points[0], points[1]
     once = twice = third = work = 0.0
     for n in range(count):
-        a, b, low, high = (
-            points[4, n],
-            min(points[5, n], until),
-            points[6, n],
-            points[7, n],
-        )
-        if not a < b:
+        a, b = edges[n], edges[n + 1]
+        p, slope = value_and_slope(c, 0.5 * (a + b))
+        if not a < min(b, until) or push(law, r, p, slope / h) == 0.0:
             continue
-        middle = b if math.isnan(high) else (a if math.isnan(low) else 0.5 * (a + b))
-        for near, far, root in ((a, middle, low), (b, middle, high)):
+        low, high, b = _root(c, a, -1.0), _root(c, b, 1.0), min(b, until)
+        middle = 0.5 * (a + b)
+        if math.isnan(high):
+            middle = b
+        elif math.isnan(low):
+            middle = a
+        for near, far, zero in ((a, middle, low), (b, middle, high)):
             if near == far:
                 continue
-            q, zero = (1.0, near) if math.isnan(root) else (law.q, root)
-            span = far - zero
-            start = (near - zero) / span
-            if q > 1.0:
-                start = np.sqrt(start) if q == 2.0 else np.sqrt(np.sqrt(start))
-            scale = abs(span) * (1.0 - start)
-            for m in range(index(len(x))):
-                u = start + (1.0 - start) * _U[m]
-                pace = 1.0 if q == 1.0 else (2.0 * u if q == 2.0 else 4.0 * u * u * u)
-                x[m], w[m] = zero + span * u * pace / q, scale * _W[m] * pace
-            forces_along(law, r, c, h, x, f)
-            for m in range(index(len(x))):
-                force, left = w[m] * f[m], 1.0 - x[m]
+            if math.isnan(zero):
+                _place_points(1.0, near, near, far, points)
+            else:
+                _place_points(law.q, zero, near, far, points)
+            for m in range(index(POINTS)):
+                p, slope = value_and_slope(c, x[m])
+                force, left = w[m] * push(law, r, p, slope / h), 1.0 - x[m]
                 once += force
                 twice += left * force
                 third += 0.5 * left * left * force
-                work += value_and_slope(c, x[m])[1] * force
+                work += slope * force
     return once, twice, third, work

@@ -19,343 +19,380 @@ from typing import Any
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel import kinks
-from validation.lattice.kernel.arrays import TILE, Beads, Chain, Plan
-from validation.lattice.kernel.compiled import ONE, ZERO, index, inlined, part, summed
+from validation.lattice.kernel.arrays import TILE, Beads, Chain, Plan, Sums
+from validation.lattice.kernel.compiled import (
+    ONE,
+    ZERO,
+    alone,
+    index,
+    inlined,
+    part,
+    summed,
+)
 from validation.lattice.kernel.force import (
     contact_forces,
+    drag,
     drive_motion,
+    elastic,
+    push,
     stiffness,
     tile_bounds,
 )
 
 _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the tolerance
+_ROUNDS = 4  # corrections of a contact whose force jumps
 # A contact is nearly open at a step's one end if δ there is less than _NEAR times δ at the other. A
 # weak contact, whose force is less than _STRONG times the least that counts, is nearly open below
 # _VERY_NEAR, as the pair's own error is smaller there. Measured: _NEAR for all takes a tenth more
 # time for equal beads, _VERY_NEAR for all a quarter more for dimers at small tolerances.
-_NEAR, _VERY_NEAR, _STRONG = 0.3, 0.03, 1e3
-_JUMP = 0.25  # least effect of a jump at which a step ends, in units of the tolerance
+# The singularity of damping, δ^{1/4} say, is felt farther away.
+_NEAR, _VERY_NEAR, _NEAR_DAMPED, _STRONG = 0.3, 0.03, 0.6, 1e3
 # Step-size control of Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.4.
-# An error scales as h^{lower + 1}. The next step is _SAFETY times the step with an error equal to
-# the tolerance, as a rejected step costs as much as an accepted one. _GROWTH bounds the effect of
-# an error that is small by chance, _SHRINKAGE that of an error too large for the power. Measured on
+# An error scales as h^order. The next step is _SAFETY times the step with an error equal to the
+# tolerance, as a rejected step costs as much as an accepted one. _GROWTH bounds the effect of an
+# error that is small by chance, _SHRINKAGE that of an error too large for the power. Measured on
 # nine scenes at 1e-6 … 1e-10: the work for the same error is the same to 4 % for a safety of 0.8 to
 # 0.95 and a growth of 1.5 to 10; a safety of 0.7 costs 8 % more, 0.98 costs 11 % more.
 _SAFETY, _GROWTH, _SHRINKAGE = 0.9, 5.0, 0.1
-_HOPELESS = (
-    1e9  # in units of the tolerance: the power says nothing of such an error, or of NaN
-)
+# In units of the tolerance: the power says nothing of such an error, or of NaN.
+_HOPELESS = 1e9
+# A third solution of low order, where a pair has one, weighs so much in the estimate of the error
+# (Hairer, Nørsett and Wanner, II.10).
+_THIRD = 0.01
 
 
 @part
-def _add_up(
-    sums: Array,
-    q: Any,
-    force: Array,
-    row: Array,
+def _move(
+    target: Array,
+    base: Array,
+    rate: Array,
+    time: float,
     scale: float,
-    stages: int,
+    weights: Array,
+    count: int,
+    push: Array,
     lo: int,
     hi: int,
 ) -> None:
-    """Compute a weighted sum of forces, sums[q] = scale Σ_j row[j] force[j], 0 ≤ j < ``stages``."""
-    # One pass over four rows or over all nine: the weights of stages that are still to come are 0.
-    a, b, c, d = scale * row[0], scale * row[1], scale * row[2], scale * row[3]
-    if stages <= 4:
-        for i in range(index(lo) + ONE, index(hi) + ONE):
-            first = a * force[ZERO, i] + b * force[ONE, i]
-            sums[q, i] = first + (c * force[index(2), i] + d * force[index(3), i])
+    """Compute target = base + time rate + scale Σ_s weights[s] push[s] over ``count`` stages.
+
+    One pass adds four stages, or nine of them: each pass reads and writes all beads. The weights of
+    stages that are still to come are 0.
+    """
+    if count <= 4:
+        a, b = scale * weights[0], scale * weights[1]
+        c, d = scale * weights[2], scale * weights[3]
+        for i in range(index(lo), index(hi)):
+            first = a * push[ZERO, i] + b * push[ONE, i]
+            second = c * push[index(2), i] + d * push[index(3), i]
+            target[i] = base[i] + time * rate[i] + (first + second)
         return
-    e, f, g = scale * row[4], scale * row[5], scale * row[6]
-    k, m = scale * row[7], scale * row[8]
-    for i in range(index(lo) + ONE, index(hi) + ONE):
-        first = a * force[ZERO, i] + b * force[ONE, i] + c * force[index(2), i]
-        second = (
-            d * force[index(3), i] + e * force[index(4), i] + f * force[index(5), i]
-        )
-        third = g * force[index(6), i] + k * force[index(7), i] + m * force[index(8), i]
-        sums[q, i] = first + second + third
+    for s in range(0, count, 9):
+        a, b, c = scale * weights[s], scale * weights[s + 1], scale * weights[s + 2]
+        d, e, f = scale * weights[s + 3], scale * weights[s + 4], scale * weights[s + 5]
+        g, m, n = scale * weights[s + 6], scale * weights[s + 7], scale * weights[s + 8]
+        rows = push[s : s + 9]
+        for i in range(index(lo), index(hi)):
+            first = a * rows[ZERO, i] + b * rows[ONE, i] + c * rows[index(2), i]
+            second = d * rows[index(3), i] + e * rows[index(4), i]
+            second += f * rows[index(5), i]
+            third = (
+                g * rows[index(6), i] + m * rows[index(7), i] + n * rows[index(8), i]
+            )
+            target[i] = base[i] + time * rate[i] + (first + second + third)
+        base, time = target, 0.0
 
 
 @summed
-def _integral(row: Array, power: Array) -> float:
-    """Return Σ row[s] power[s] over the stages s."""
+def _integral(row: Array, values: Array) -> float:
+    """Return Σ row[s] values[s] over the stages s."""
     total = 0.0
     for s in range(index(len(row))):
-        total += row[s] * power[s]
+        total += row[s] * values[s]
     return total
 
 
 @part
-def _fitted(
-    chain: Chain, beads: Beads, h: float, last: int, i: int, opened: bool
-) -> kinks.Quintic:
-    """Return the quintic fit of contact i's compression over a step.
-
-    last : the stage at the step's end. opened : True for a fit without the contact's own force at
-    the end.
-    """
-    y, v, f, inverse, rest = beads.y, beads.v, beads.force, chain.inverse, chain.rest
-    end = rest[i] + beads.next_y[i] - beads.next_y[i + 1]
-    end_rate = beads.next_v[i] - beads.next_v[i + 1]
-    own = (
-        0.0 if opened else chain.A[i] * kinks.push(chain.law, chain.r[i], end, end_rate)
-    )
-    own -= chain.load[i]
-    a = (f[0, i] - f[0, i + 1]) * inverse[i] - (f[0, i + 1] - f[0, i + 2]) * inverse[
-        i + 1
-    ]
-    end_a = (f[last, i] - own) * inverse[i] - (own - f[last, i + 2]) * inverse[i + 1]
+def _ends(
+    chain: Chain, beads: Beads, h: float, i: int
+) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    """Return δ, δ' and δ'' of contact i at both ends of a step, in units of the step."""
+    y, v, push, last = beads.y, beads.v, beads.push, len(beads.border) - 1
+    next_y, next_v = beads.next_y, beads.next_v
+    a, end_a = push[0, i] - push[0, i + 1], push[last, i] - push[last, i + 1]
     if i == 0:
         a, end_a = a + beads.given[0], end_a + beads.given[1]
-    d, rate = rest[i] + y[i] - y[i + 1], v[i] - v[i + 1]
-    return kinks.fitted_quintic(
-        d, h * rate, h * h * a, end, h * end_rate, h * h * end_a
+    d, end = y[i] - y[i + 1], next_y[i] - next_y[i + 1]
+    start = chain.rest[i] + d, h * (v[i] - v[i + 1]), h * h * a
+    return start, (
+        chain.rest[i] + end,
+        h * (next_v[i] - next_v[i + 1]),
+        h * h * end_a,
     )
 
 
 @inlined
 def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -> None:
     """Correct a step for the pair's error at contact i, which opens or closes."""
-    pair, last, inverse = plan.scheme, len(plan.scheme.moments) - 1, chain.inverse
-    A, r, law, p = (
-        chain.A[i],
-        chain.r[i],
-        chain.law,
-        _fitted(chain, beads, h, last, i, False),
-    )
-    count, top = kinks.find_intervals(law, r, p, h, beads.points)
-    once, twice, third, work = kinks.integrals(law, r, p, h, 1.0, count, beads.points)
-    force = beads.points[2]
-    kinks.forces_along(law, r, p, h, pair.nodes, force)
-    once = A * (once - _integral(pair.impulses[last], force))
-    twice = A * (twice - _integral(pair.moments[last], force))
-    third = A * (third - _integral(pair.thirds, force))
-    error, error_once = (
-        _integral(pair.errors[0], force),
-        _integral(pair.errors[1], force),
-    )
+    pair, last, inverse = plan.scheme, len(beads.border) - 1, chain.inverse
+    A, r, law = chain.A[i], chain.r[i], chain.laws[chain.law[i]]
+    points, edges, both = beads.points, beads.edges, inverse[i] + inverse[i + 1]
+    start, end = _ends(chain, beads, h, i)
+    force, bend = points[2], -A * h * h * both
+    impulse = moment = 0.0
+    # A force that jumps also depends on the corrected end, all the more the later it jumps.
+    for _ in range(_ROUNDS):
+        d, rise = end[0] - both * moment, end[1] - both * h * impulse
+        own = push(law, r, d, rise / h) - push(law, r, end[0], end[1] / h)
+        corrected = d, rise, end[2] + bend * own
+        p, count, top, jump = kinks.resolved(law, r, start, corrected, h, bend, edges)
+        once, twice, third, work = kinks.integrals(
+            law, r, p, h, 1.0, points, edges, count
+        )
+        kinks.stage_forces(law, r, p, h, pair, bend, jump, points)
+        before = impulse
+        impulse = h * A * (once - _integral(pair.impulses[last], force))
+        moment = h * h * A * (twice - _integral(pair.moments[last], force))
+        if jump == 0.0:
+            break
+    third = h * h * h * A * (third - _integral(pair.thirds, force))
+    for q in range(len(pair.errors)):
+        scale = h * h * A / plan.y if q % 2 == 0 else h * A / plan.v
+        seen = scale * _integral(pair.errors[q], force)
+        beads.errors[q, i] += seen * inverse[i]
+        beads.errors[q, i + 1] -= seen * inverse[i + 1]
     if chain.damped:
-        end, _ = kinks.value_and_slope(p, 1.0)
-        heat = work - kinks.stored(law, end) + kinks.stored(law, p[0])
+        heat = work - kinks.stored(law, corrected[0]) + kinks.stored(law, p[0])
         for s in range(last + 1):
-            d, slope = kinks.value_and_slope(p, pair.nodes[s])
-            lost = (force[s] - (kinks.elastic(law, d) if d > 0.0 else 0.0)) * slope
+            lost = (force[s] - elastic(law, points[0, s])) * points[1, s]
             heat -= pair.impulses[last, s] * lost
-            beads.corrections[1] += A * pair.errors[1, s] * lost
-        beads.corrections[0] += A * heat
-    impulse, moment = h * once, h * h * twice
+            beads.books[1] += A * pair.errors[1, s] * lost
+        beads.books[0] += A * heat
     beads.next_v[i] -= impulse * inverse[i]
     beads.next_v[i + 1] += impulse * inverse[i + 1]
     beads.next_y[i] -= moment * inverse[i]
     beads.next_y[i + 1] += moment * inverse[i + 1]
-    beads.sums[2, i + 1] -= h * h * A * error / plan.y
-    beads.sums[3, i + 1] -= h * A * error_once / plan.v
     if i == 0 and chain.drive.driven:
         # ∫ ΔF v dt with v = next_v - (1 - x) h a + (1 - x)²/2 h² da/dt, a at the step's end.
-        change = h * h * third * (beads.given[1] - beads.given[0])
-        beads.corrections[2] = (
-            impulse * beads.next_v[0] - moment * beads.given[1] + change
-        )
-        beads.corrections[3] = h * A * error_once * beads.next_v[0]
+        change = third * (beads.given[1] - beads.given[0]) / h
+        beads.books[2] = impulse * beads.next_v[0] - moment * beads.given[1] + change
+        beads.books[3] = h * A * _integral(pair.errors[1], force) * beads.next_v[0]
     for n in range(max(0, i - 1), i + 2):
-        both = inverse[i] + inverse[i + 1] if n == i else -inverse[max(i, n)]
-        d = top if n == i else chain.rest[n] + beads.next_y[n] - beads.next_y[n + 1]
-        closed = n == i or beads.force[last, n + 1] + chain.load[n] > 0.0
-        if d > 0.0 and chain.A[n] > 0.0 and closed:
-            more = -chain.A[n] * stiffness(law, d) * h * h * h * third * both
-            if chain.damped:
-                more -= chain.A[n] * chain.r[n] * kinks.drag(law, d) * moment * both
-            if n != i:
-                beads.next_v[n] -= more * inverse[n]
-                beads.next_v[n + 1] += more * inverse[n + 1]
-            missed = abs(more) / plan.v
-            beads.sums[3, n + 1] += missed if beads.sums[3, n + 1] > 0.0 else -missed
-
-
-@inlined
-def place_of_jump(
-    chain: Chain, beads: Beads, plan: Plan, h: float, hi: int
-) -> tuple[float, int]:
-    """Return the share of a step up to just behind the first closing whose jump matters, or 1.
-
-    Contacts that close at the end of the step are counted, and marked in row 4 of ``beads.sums``:
-    the step sees them open throughout.
-    """
-    place, count, last = 1.0, 0, len(plan.scheme.moments) - 1
-    for i in range(hi):
-        before = chain.rest[i] + beads.y[i] - beads.y[i + 1]
-        after = chain.rest[i] + beads.next_y[i] - beads.next_y[i + 1]
-        beads.sums[4, i + 1] = 0.0
-        if before <= 0.0 and after > 0.0 and chain.A[i] > 0.0:
-            p = _fitted(chain, beads, h, last, i, True)
-            x = kinks.change(chain.law, chain.r[i], p, h, 0.0, 1.0, True)
-            _, slope = kinks.value_and_slope(p, x)
-            jump = chain.A[i] * chain.r[i] * abs(slope)  # h times the jump of the force
-            jump *= max(chain.inverse[i], chain.inverse[i + 1])
-            behind = (
-                2.0 * _JUMP * plan.v / (jump + 1e-300)
-            )  # share of a step in which it counts
-            if 1.0 - x > behind:
-                # In a step that errs the fit says little: the place is looked for once more.
-                place = min(place, max(x + 0.5 * behind, _SHRINKAGE))
-            else:
-                beads.sums[4, i + 1], beads.force[last, i + 1] = 1.0, -chain.load[i]
-                count += 1
-    return place, count
+        share = both if n == i else -inverse[max(i, n)]
+        d = chain.rest[n] + beads.next_y[n] - beads.next_y[n + 1]
+        if n == i:
+            d = top
+        closed = n == i or beads.force[1, n + 1] + chain.load[n] > 0.0
+        if not (d > 0.0 and closed):
+            continue
+        other = chain.laws[chain.law[n]]
+        more = -chain.A[n] * stiffness(other, d) * third * share
+        if chain.r[n] > 0.0:
+            more -= chain.A[n] * chain.r[n] * drag(other, d) * moment * share
+        if n != i:
+            beads.next_v[n] -= more * inverse[n]
+            beads.next_v[n + 1] += more * inverse[n + 1]
+        elif jump != 0.0:
+            feedback = bend * (r * drag(law, d) / h + stiffness(law, d))
+            more = abs(impulse - before) + abs(more * feedback)
+        missed = more / plan.v
+        beads.books[4] += missed * missed * (inverse[n] ** 2 + inverse[n + 1] ** 2)
 
 
 @inlined
 def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int:
     """Estimate a step's errors, and mark contacts with kinks, with a force that matters.
 
-    Returns the number of marks, which are in row 0 of ``beads.sums``.
+    Returns the number of marks, which are in ``beads.marks``.
     """
-    pair, last = plan.scheme, len(plan.scheme.moments) - 1
-    beads.corrections[:] = 0.0
-    y, v, next_y, next_v, rest = (
-        beads.y,
-        beads.v,
-        beads.next_y,
-        beads.next_v,
-        chain.rest,
-    )
-    marks, jumped, load = beads.sums[0], beads.sums[4], chain.load
-    start, end = beads.force[0], beads.force[last]
-    least = (
-        _SLIGHT * plan.v * plan.lightest / h
-    )  # a force F changes a velocity by h F/m
+    stages, still, push = len(plan.scheme.nodes), beads.still, beads.push
+    y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
+    rest, load, opens, marks = chain.rest, chain.load, chain.opens, beads.marks
+    start, end = beads.force[0], beads.force[1]
+    # A force F changes a velocity by h F/m; the errors of all beads add up.
+    least = _SLIGHT * plan.v * plan.lightest / (h * math.sqrt(hi))
     count = 0
+    nearly, very_nearly = _NEAR, _VERY_NEAR
+    if chain.damped:
+        nearly, very_nearly = _NEAR_DAMPED, _NEAR
     for lo in range(0, hi, TILE):
         up = min(lo + TILE, hi)
-        for q in range(2):
-            scale = h * h / plan.y if q == 0 else h / plan.v
-            _add_up(
-                beads.sums,
-                index(q + 2),
-                beads.force,
-                pair.errors[q],
-                scale,
-                last + 1,
-                lo,
-                up,
-            )
-        if chain.law.pulls:
-            continue
+        for q in range(len(beads.errors)):
+            scale = h * h / plan.y if q % 2 == 0 else h / plan.v
+            weights, errors = plan.scheme.errors[q], beads.errors[q]
+            _move(errors, still, still, 0.0, scale, weights, stages, push, lo, up)
         for i in range(index(lo), index(up)):
-            before, after = (
-                rest[i] + y[i] - y[i + ONE],
-                rest[i] + next_y[i] - next_y[i + ONE],
-            )
+            before = rest[i] + y[i] - y[i + ONE]
+            after = rest[i] + next_y[i] - next_y[i + ONE]
             rise, end_rise = h * (v[i] - v[i + ONE]), h * (next_v[i] - next_v[i + ONE])
-            first, then = start[i + ONE] + load[i], end[i + ONE] + load[i]
+            first, then = abs(start[i + ONE] + load[i]), abs(end[i + ONE] + load[i])
             changed = chain.damped & ((first > 0.0) != (then > 0.0))
             force, most = max(first, then), max(before, after)
             strong = (force > least) | (
                 chain.damped & ((before > 0.0) != (after > 0.0))
             )
             low, near = min(before, after), (most > 0.0) & (force > _STRONG * least)
-            near = (near & (low < _NEAR * most)) | (
-                (most > 0.0) & (low < _VERY_NEAR * most)
+            near = (near & (low < nearly * most)) | (
+                (most > 0.0) & (low < very_nearly * most)
             )
             # A contact that is open at both ends can close in between where the tangents at the
             # ends meet at δ > 0.
             meeting = (after - end_rise) * rise - before * end_rise > 0.0
             unseen = (most <= 0.0) & (rise > 0.0) & (end_rise < 0.0) & meeting
-            kink = (strong & (near | changed)) | unseen
-            mark = kink & (chain.A[i] > 0.0) & (jumped[i + ONE] == 0.0)
-            marks[i + ONE] = 1.0 if mark else 0.0
+            mark = ((strong & (near | changed)) | unseen) & (opens[i] > 0.0)
+            marks[i] = 1.0 if mark else 0.0
             count += 1 if mark else 0
     return count
+
+
+@alone
+def watch_drive(chain: Chain, beads: Beads, plan: Plan, t: float, h: float) -> int:
+    """Mark the contact of a driven bead if it closes or opens anywhere within a step.
+
+    Returns the number of new marks. The acceleration of the bead is given, so that δ can rise,
+    fall and rise again. The difference between its motion and the quintic counts as error.
+    """
+    law, A, r = chain.laws[chain.law[0]], chain.A[0], chain.r[0]
+    if not chain.opens[0] > 0.0:
+        return 0
+    start, end = _ends(chain, beads, h, 0)
+    p = kinks.fitted_curve(start, end, (1.0, 0.0))
+    count, top = kinks.find_edges(law, r, p, h, beads.edges)
+    given, _, _ = drive_motion(chain.drive, t + h / 2, t + h / 2)
+    ends = (beads.y[0] + beads.next_y[0]) / 2 + h * h * (
+        beads.given[0] + beads.given[1]
+    ) / 64
+    missed = abs(given - ends - 5 * h * (beads.v[0] - beads.next_v[0]) / 32)
+    if count > 1 or beads.marks[0] > 0.0 or abs(top) < missed:
+        force = elastic(law, max(top, 0.0) + missed) - elastic(law, top)
+        impulse = h * A * force
+        moved, work = (
+            impulse * chain.inverse[1] / plan.v,
+            impulse * beads.v[0] / plan.energy,
+        )
+        beads.books[4] += moved * moved + work * work
+    if count > 1 and not beads.marks[0] > 0.0:
+        beads.marks[0] = 1.0
+        return 1
+    return 0
 
 
 @inlined
 def next_mark(marks: Array, i: int) -> int:
     """Return the first marked contact from contact i on; there is one."""
-    while not marks[index(i) + ONE] > 0.0:
+    while not marks[index(i)] > 0.0:
         i += 1
     return i
 
 
-@inlined
+@alone
 def evaluate_stages(
-    chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int, again: bool
+    chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int, first: int
 ) -> None:
-    """Compute the forces at all stages of a step h of the beads 0 … hi-1 at time t.
+    """Compute the accelerations at the stages of a step h of the beads 0 … hi-1 at time t.
 
-    again : True for the forces at the step's end alone, after its motion was corrected.
+    first : first stage, 1; or the number of stages, for the forces at the step's end alone, whose
+    motion is known.
     """
-    pair, last = plan.scheme, len(plan.scheme.moments) - 1
+    pair, stages = plan.scheme, len(plan.scheme.nodes)
     y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
-    inverse, force, sums = chain.inverse, beads.force, beads.sums
-    for tile in range(0, hi + last, TILE):
-        for s in range(last if again else 1, last + 1):
-            lo, up, first, behind = tile_bounds(tile, s, hi)
+    force, push, inverse = beads.force[1], beads.push, chain.inverse
+    for tile in range(0, hi + stages, TILE):
+        for s in range(first, max(stages, first + 1)):
+            lo, up, begin, behind = tile_bounds(tile, s, hi)
             if lo >= up:
                 continue
-            ch = pair.nodes[s] * h
-            for q in range(0 if again else (2 if chain.damped or s == last else 1)):
-                row, scale = (
-                    (pair.moments[s], h * h) if q == 0 else (pair.impulses[s], h)
-                )
-                _add_up(sums, index(q), force, row, scale, s, lo, up)
-            if not again:
-                for i in range(index(lo), index(up)):
-                    net = (sums[ZERO, i] - sums[ZERO, i + ONE]) * inverse[i]
-                    next_y[i] = y[i] + ch * v[i] + net
-                if chain.damped or s == last:
-                    for i in range(index(lo), index(up)):
-                        next_v[i] = (
-                            v[i] + (sums[ONE, i] - sums[ONE, i + ONE]) * inverse[i]
-                        )
+            row = min(s, stages - 1)
+            if s < stages:
+                ch = pair.nodes[s] * h
+                _move(next_y, y, v, ch, h * h, pair.moments[s], s, push, lo, up)
+                if chain.damped or row == stages - 1:
+                    _move(next_v, v, v, 0.0, h, pair.impulses[s], s, push, lo, up)
                 if chain.drive.driven and lo == 0:
                     given = drive_motion(chain.drive, t + h / 2, t + ch)
                     next_y[0], next_v[0], beads.given[1] = given
-            contact_forces(chain, beads, plan, next_y, next_v, index(s), first, behind)
+            contact_forces(chain, beads, plan, next_y, next_v, row, begin, behind)
+            # The stages share a row of forces: the last one of a tile is kept for the next tile.
+            if begin > 0:
+                force[begin] = beads.border[row]
+            beads.border[row] = force[behind]
+            for i in range(index(begin), index(behind)):
+                push[row, i] = (force[i] - force[i + ONE]) * inverse[i]
 
 
 @summed
-def step_error(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> float:
-    """Return the error of a step in units of the tolerance: of all beads, the heat and the work."""
-    total, sums, inverse = 0.0, beads.sums, chain.inverse
+def _squared_error(errors: Array, row: int, hi: int) -> float:
+    """Return the sum over all beads of squared errors of displacements, in a row, and velocities."""
+    total, ys, vs = 0.0, errors[row], errors[row + 1]
     for i in range(index(hi)):
-        y = (sums[index(2), i] - sums[index(2), i + ONE]) * inverse[i]
-        v = (sums[index(3), i] - sums[index(3), i + ONE]) * inverse[i]
-        total += y * y + v * v
-    for n in range(2):
-        missed = h * _integral(plan.scheme.errors[1], beads.power[n])
-        total += ((missed - beads.corrections[2 * n + 1]) / plan.energy) ** 2
-    return math.sqrt(total)
+        total += ys[i] * ys[i] + vs[i] * vs[i]
+    return total
 
 
 @inlined
-def end_step(beads: Beads, plan: Plan, now: Any, h: float, error: float) -> None:
-    """Add up a step with an error of at most 1, and plan the next step, a shorter one above 1."""
-    pair, stop, factor = plan.scheme, plan.stops[now.stop], 0.0
+def step_error(beads: Beads, plan: Plan, h: float, hi: int) -> float:
+    """Return the error of a step in units of the tolerance: of all beads, the heat and the work."""
+    weights, books, total = plan.scheme.errors, beads.books, 0.0
+    for q in range(0, len(weights), 2):
+        squared = _squared_error(beads.errors, q, hi)
+        for n in range(2):
+            missed = h * _integral(weights[q + 1], beads.power[n])
+            squared += ((missed - books[2 * n + 1]) / plan.energy) ** 2
+        if q == 0:
+            total = squared
+        elif squared > 0.0:
+            total = total * total / (total + _THIRD * squared)
+    return math.sqrt(total + books[4])
+
+
+@inlined
+def end_step(
+    beads: Beads, plan: Plan, now: Any, h: float, error: float, stopping: bool
+) -> bool:
+    """Add up a step with an error of at most 1, and plan the next step, a shorter one above 1.
+
+    stopping : True for a step that was cut to end at the next stop. Returns True for a step that
+    is made.
+    """
+    pair, factor, wanted = plan.scheme, 0.0, now.h
     if error < _HOPELESS:
-        factor = _SAFETY * max(error, 1e-9) ** (-1.0 / (pair.lower + 1))
+        factor = _SAFETY * max(error, 1e-9) ** (-1.0 / pair.order)
     now.h = h * min(_GROWTH, max(_SHRINKAGE, factor))
-    if error <= 1.0:
-        impulses = pair.impulses[len(pair.impulses) - 1]
-        now.lost += h * _integral(impulses, beads.power[0]) + beads.corrections[0]
-        now.work += h * _integral(impulses, beads.power[1]) + beads.corrections[2]
-        now.response = max(now.response, now.energy + now.work - now.lost)
-        now.h = min(plan.longest, max(now.h, now.planned))
-        stopping = now.t + h > stop - 1e-9 * h
-        now.t = stop if stopping else now.t + h
-        now.stop += 1 if stopping else 0
-        now.steps += 1
-    elif factor == 0.0:
-        beads.force[1:] = 0.0  # overflows must not last
-    now.planned = 0.0
+    if not error <= 1.0:
+        if factor == 0.0:
+            beads.push[1:] = 0.0  # overflows must not last
+        return False
+    impulses = pair.impulses[len(pair.impulses) - 1]
+    now.lost += h * _integral(impulses, beads.power[0]) + beads.books[0]
+    now.work += h * _integral(impulses, beads.power[1]) + beads.books[2]
+    now.response = max(now.response, now.energy + now.work - now.lost)
+    if stopping:
+        now.t, now.late = plan.stops[now.stop], 0.0
+        now.h = max(now.h, wanted)
+        now.stop += 1
+    else:
+        # A plain sum of many equal steps would be rounded to one side (Kahan 1965).
+        step = h - now.late
+        t = now.t + step
+        now.late = (t - now.t) - step
+        now.t = t
+    now.h = min(plan.longest, now.h)
+    now.steps += 1
+    return True
 
 
 @inlined
-def begin_step(beads: Beads, plan: Plan, hi: int) -> None:
+def begin_step(beads: Beads, hi: int) -> None:
     """Move the beads, and their forces, to the end of a step, which is the start of the next."""
-    last, power = index(len(plan.scheme.moments) - 1), beads.power
+    last, power, force, push = (
+        len(beads.border) - 1,
+        beads.power,
+        beads.force,
+        beads.push,
+    )
     for i in range(index(hi)):
         beads.y[i], beads.v[i] = beads.next_y[i], beads.next_v[i]
-        beads.force[ZERO, i + ONE] = beads.force[last, i + ONE]
+        force[ZERO, i + ONE] = force[ONE, i + ONE]
+        push[ZERO, i] = push[index(last), i]
     power[0, 0], power[1, 0] = power[0, last], power[1, last]
     beads.given[0] = beads.given[1]

@@ -13,15 +13,12 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from lwa.base.arrays import Array
 from validation.lattice.kernel import kinks
-from validation.lattice.kernel.arrays import Beads, Chain, Knots, Law
-from validation.lattice.kernel.compiled import SOURCES, cached, part
-from validation.lattice.kernel.force import stiffness
-from validation.lattice.kernel.kinks import Quintic, fitted_quintic, value_and_slope
+from validation.lattice.kernel.arrays import Beads, Chain, Knots, Numbers
+from validation.lattice.kernel.compiled import cached, part
+from validation.lattice.kernel.force import drag, elastic, push, stiffness
+from validation.lattice.kernel.kinks import Curve, value_and_slope
 
 
 @part
@@ -32,11 +29,10 @@ def store_knot(chain: Chain, beads: Beads, knots: Knots, now: Any) -> None:
     knots.time[now.stored] = now.t
     for q in range(len(knots.watched)):
         j, state = knots.watched[q], knots.state[now.stored, q]
-        force = beads.force[0, j] - beads.force[0, j + 1]
-        state[0], state[1], state[2] = beads.y[j], beads.v[j], force * chain.inverse[j]
+        state[0], state[1], state[2] = beads.y[j], beads.v[j], beads.push[0, j]
         if j == 0 and chain.drive.driven:
             state[2] = beads.given[0]
-        state[3] = 0.0 if chain.law.pulls else beads.sums[0, j + 1]
+        state[3] = beads.marks[j]
     now.stored += 1
 
 
@@ -50,130 +46,160 @@ def _compression(
 
 
 @part
-def _quintic(knots: Knots, n: int, q: int, rest: float) -> Quintic:
-    """Return the quintic of the contact between the beads of rows q and q + 1 in step n."""
-    h = knots.time[n + 1] - knots.time[n]
-    d, v, a = _compression(knots, n, q, rest)
-    end, end_v, end_a = _compression(knots, n + 1, q, rest)
-    return fitted_quintic(d, h * v, h * h * a, end, h * end_v, h * h * end_a)
-
-
-@part
-def _rate(law: Law, r: float, d: float, v: float, a: float) -> float:
+def _rate(law: Any, r: float, d: float, v: float, a: float) -> float:
     """Return dF/dt of a contact of unit stiffness from δ, δ' and δ''."""
     rate = stiffness(law, d) * v
-    if r > 0.0:
-        if not (law.pulls or kinks.pushes(law, r, d, v)):
-            return 0.0
-        resistance = r * kinks.drag(law, d)
-        rate += resistance * a
-        if law.p > 0.0:
-            rate += law.p * resistance / d * v * v
-    return float(rate)
+    if not r > 0.0 or not (d > 0.0 or law.pulls):
+        return rate
+    resistance = r * drag(law, d)
+    force = elastic(law, d)
+    if not (law.sticks or force + resistance * v > min(force, 0.0)):
+        return rate if force < 0.0 else 0.0  # the damping, which may not pull, is idle
+    rate += resistance * a
+    if law.p > 0.0:
+        rate += law.p * resistance / d * v * v
+    return rate
 
 
 @part
-def _septic(a: Array, b: Array) -> tuple[Quintic, float, float]:
+def _septic(a: Array, b: Array) -> tuple[Curve, float, float]:
     """Return the coefficients c0 … c5, c6 and c7 of y from y … y''' at x = 0 (a) and at x = 1 (b).
 
-    The coefficients c0 … c5 are a tuple.
+    The coefficients c0 … c5 are a curve without a bend.
     """
     c2, c3 = a[2] / 2, a[3] / 6
     # c4 … c7 solve the four conditions at x = 1, of which c0 … c3 leave the remainders r0 … r3.
-    r0, r1 = b[0] - a[0] - a[1] - c2 - c3, b[1] - a[1] - 2 * c2 - 3 * c3
+    r0 = b[0] - a[0] - a[1] - c2 - c3
+    r1 = b[1] - a[1] - 2 * c2 - 3 * c3
     r2, r3 = b[2] - 2 * c2 - 6 * c3, b[3] - 6 * c3
-    c4, c5 = 35 * r0 - 15 * r1 + 2.5 * r2 - r3 / 6, -84 * r0 + 39 * r1 - 7 * r2 + r3 / 2
-    c6, c7 = 70 * r0 - 34 * r1 + 6.5 * r2 - r3 / 2, -20 * r0 + 10 * r1 - 2 * r2 + r3 / 6
-    return (a[0], a[1], c2, c3, c4, c5), c6, c7
+    c4 = 35 * r0 - 15 * r1 + 2.5 * r2 - r3 / 6
+    c5 = -84 * r0 + 39 * r1 - 7 * r2 + r3 / 2
+    c6 = 70 * r0 - 34 * r1 + 6.5 * r2 - r3 / 2
+    c7 = -20 * r0 + 10 * r1 - 2 * r2 + r3 / 6
+    return (a[0], a[1], c2, c3, c4, c5, 1.0, 0.0), c6, c7
 
 
-def _built(sources: int) -> Any:
-    """Compile `interpolate`; its cache is for source code with the hash ``sources``."""
+@part
+def _take_kink_away(
+    chain: Chain,
+    knots: Knots,
+    n: int,
+    q: int,
+    r: int,
+    h: float,
+    ends: Array,
+    time: Array,
+    first: int,
+    last: int,
+    y: Array,
+    v: Array,
+    points: Array,
+    edges: Array,
+) -> None:
+    """Move the effect of a contact's force from the motion at a step's ends to its samples.
 
-    @cached
-    def interpolate(
-        chain: Chain,
-        knots: Knots,
-        rows: NDArray[np.int_],
-        time: Array,
-        step: NDArray[np.int_],
-        y: Array,
-        v: Array,
-        ends: Array,
-        points: Array,
-    ) -> int:
-        """Compute displacements and velocities of watched beads; they go to y and v, both (R, S).
-
-        rows : (R,), rows q of the beads; only beads between two others of them come out right.
-        time : (S,). step : (S,), number of the step that holds each time. ends : (2, R, 4), working
-        memory. points : as in `Beads`. Returns ``sources``.
-        """
-        law, last = chain.law, 0
-        while last < len(time):
-            first, n = last, step[last]
-            while last < len(time) and step[last] == n:
-                last += 1
-            start, h = knots.time[n], knots.time[n + 1] - knots.time[n]
-            for r in range(len(rows)):
-                for end in range(2):
-                    state, row = knots.state[n + end, rows[r]], ends[end, r]
-                    row[0], row[1], row[2], row[3] = (
-                        state[0],
-                        h * state[1],
-                        h * h * state[2],
-                        0.0,
-                    )
-                for s in range(first, last):
-                    y[r, s] = v[r, s] = 0.0
-            for r in range(len(rows) - 1):
-                q, i = rows[r], knots.watched[rows[r]]
-                scale, rest, ratio = h * h * chain.A[i], chain.rest[i], chain.r[i]
-                near, far = scale * chain.inverse[i], scale * chain.inverse[i + 1]
-                if knots.state[n + 1, q, 3] > 0.0:
-                    p = _quintic(knots, n, q, rest)
-                    count, _ = kinks.find_intervals(law, ratio, p, h, points)
-                    whole = 0.0, 0.0
-                    # Backwards: first the end of the step, whose integrals are those of all
-                    # samples behind the last interval.
-                    for s in range(last, first - 1, -1):
-                        x = (time[s] - start) / h if s < last else 1.0
-                        once, twice = whole
-                        if s == last or x < points[5, count - 1]:
-                            once, twice, _, _ = kinks.integrals(
-                                law, ratio, p, h, x, count, points
-                            )
-                        moment = twice - (1.0 - x) * once  # ∫ (x - s) F(s) ds
-                        if s < last:
-                            y[r, s] -= near * moment
-                            y[r + 1, s] += far * moment
-                            v[r, s] -= near * once / h
-                            v[r + 1, s] += far * once / h
-                        else:
-                            whole = once, twice
-                            for end in range(2):
-                                delta, slope = value_and_slope(p, float(end))
-                                push = kinks.push(law, ratio, delta, slope / h)
-                                changes = end * moment, end * once, push
-                                for m in range(3):
-                                    ends[end, r, m] += near * changes[m]
-                                    ends[end, r + 1, m] -= far * changes[m]
-                else:
-                    for end in range(2):
-                        d, speed, a = _compression(knots, n + end, q, rest)
-                        rate = h * _rate(law, ratio, d, speed, a)
-                        ends[end, r, 3] -= near * rate
-                        ends[end, r + 1, 3] += far * rate
-            for r in range(len(rows)):
-                low, c6, c7 = _septic(ends[0, r], ends[1, r])
-                for s in range(first, last):
-                    x = (time[s] - start) / h
-                    smooth, slope = value_and_slope(low, x)
-                    x5 = x * x * x * x * x
-                    y[r, s] += smooth + x5 * x * (c6 + x * c7)
-                    v[r, s] += (slope + x5 * (6 * c6 + x * 7 * c7)) / h
-        return sources
-
-    return interpolate
+    The contact is ahead of the bead of row q, which is row r of ``ends``, y and v.
+    """
+    i = knots.watched[q]
+    law, ratio, scale = chain.laws[chain.law[i]], chain.r[i], h * h * chain.A[i]
+    near, far = scale * chain.inverse[i], scale * chain.inverse[i + 1]
+    d, u, a = _compression(knots, n, q, chain.rest[i])
+    end, end_u, end_a = _compression(knots, n + 1, q, chain.rest[i])
+    begin, over = (d, h * u, h * h * a), (end, h * end_u, h * h * end_a)
+    p, count, _, _ = kinks.resolved(law, ratio, begin, over, h, -near - far, edges)
+    for s in range(first, last + 1):
+        x = (time[s] - knots.time[n]) / h if s < last else 1.0
+        once, twice, _, _ = kinks.integrals(law, ratio, p, h, x, points, edges, count)
+        moment = twice - (1.0 - x) * once  # ∫ (x - s) F(s) ds
+        if s < last:
+            y[r, s] -= near * moment
+            y[r + 1, s] += far * moment
+            v[r, s] -= near * once / h
+            v[r + 1, s] += far * once / h
+        else:
+            ends[1, r, 0] += near * moment
+            ends[1, r, 1] += near * once
+            ends[1, r + 1, 0] -= far * moment
+            ends[1, r + 1, 1] -= far * once
+    for end in range(2):
+        delta, slope = value_and_slope(p, float(end))
+        force = push(law, ratio, delta, slope / h)
+        ends[end, r, 2] += near * force
+        ends[end, r + 1, 2] -= far * force
 
 
-interpolate = _built(SOURCES)
+@part
+def _add_rates(
+    chain: Chain, knots: Knots, n: int, q: int, r: int, h: float, ends: Array
+) -> None:
+    """Add the rate of a contact's force to y''' at a step's ends."""
+    i = knots.watched[q]
+    scale = h * h * h * chain.A[i]
+    for end in range(2):
+        d, speed, a = _compression(knots, n + end, q, chain.rest[i])
+        rate = scale * _rate(chain.laws[chain.law[i]], chain.r[i], d, speed, a)
+        ends[end, r, 3] -= chain.inverse[i] * rate
+        ends[end, r + 1, 3] += chain.inverse[i + 1] * rate
+
+
+@cached
+def interpolate(
+    chain: Chain,
+    knots: Knots,
+    rows: Numbers,
+    time: Array,
+    step: Numbers,
+    y: Array,
+    v: Array,
+    ends: Array,
+    points: Array,
+    edges: Array,
+) -> None:
+    """Compute displacements and velocities of watched beads; they go to y and v, both (R, S).
+
+    rows : (R,), rows q of the beads; only beads between two others of them come out right.
+    time : (S,), increasing. step : (S,), number of the step that holds each time. ends : (2, R, 4),
+    working memory. points, edges : as in `Beads`.
+    """
+    last = 0
+    while last < len(time):
+        first, n = last, step[last]
+        while last < len(time) and step[last] == n:
+            last += 1
+        start, h = knots.time[n], knots.time[n + 1] - knots.time[n]
+        for r in range(len(rows)):
+            for end in range(2):
+                state, row = knots.state[n + end, rows[r]], ends[end, r]
+                row[0], row[1], row[2] = state[0], h * state[1], h * h * state[2]
+                row[3] = 0.0
+            for s in range(first, last):
+                y[r, s] = v[r, s] = 0.0
+        for r in range(len(rows) - 1):
+            q = rows[r]
+            if knots.state[n + 1, q, 3] > 0.0:
+                _take_kink_away(
+                    chain,
+                    knots,
+                    n,
+                    q,
+                    r,
+                    h,
+                    ends,
+                    time,
+                    first,
+                    last,
+                    y,
+                    v,
+                    points,
+                    edges,
+                )
+            else:
+                _add_rates(chain, knots, n, q, r, h, ends)
+        for r in range(len(rows)):
+            low, c6, c7 = _septic(ends[0, r], ends[1, r])
+            for s in range(first, last):
+                x = (time[s] - start) / h
+                smooth, slope = value_and_slope(low, x)
+                x5 = x * x * x * x * x
+                y[r, s] += smooth + x5 * x * (c6 + x * c7)
+                v[r, s] += (slope + x5 * (6 * c6 + x * 7 * c7)) / h
