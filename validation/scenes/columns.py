@@ -1,252 +1,319 @@
-"""Columns of measured files, each with its unit.
+"""Columns of measured files: names and units, of the file and of the user.
 
-A file is text in UTF-8 or Latin-1, as oscilloscopes write it. The header is the first line that
-names the wanted columns, and the lines before the header are skipped. A header with a tab is
-separated by tabs, another one with a semicolon by semicolons, any other by commas; with tabs or
-semicolons numbers may have decimal commas. Blank entries end a column.
+A column is named by its header, in whatever line the header stands, or by its number, from 1. A
+record is the wanted columns in the rows where all of them are numbers; preambles, rows of units,
+footers and blank ends are not.
 
-Units are stated, never guessed: in the header, as in "Force (mN)" or "force [mN]"; in a row without
-numbers under the header; or by the user, who may also give a calibration per unit of the file, as
-in "12.5 N/V". Values are returned in SI. A file in which no unit is stated at all is
-in the scene's own numbers; if one unit is stated, every column that is used needs one.
+Units are stated, never guessed: by the user (`validation.scenes.units`), whose word stands above
+the file's, in brackets behind a header, as in "Force (mN)", or in a row of units. Values are in SI.
+A file whose named columns have no unit at all is in the scene's own numbers; if one has a unit,
+each that is used needs one.
 """
 
 from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
+from typing import TypedDict, Unpack
 
 import numpy as np
 
-from lwa.base import files
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
+from lwa.base.files import reason
+from validation.scenes import units
+from validation.scenes.cells import Cells, longest, runs
 from validation.scenes.checks import SceneError
 
-_SECOND = dict.fromkeys(("s", "sec", "second", "seconds"), 1.0)
-_UNITS = {
-    "time": _SECOND | {"ms": 1e-3, "µs": 1e-6, "us": 1e-6, "ns": 1e-9},
-    "displacement": {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "um": 1e-6},
-    "force": {"N": 1.0, "mN": 1e-3, "kN": 1e3, "Newton": 1.0},
-    "speed": {"m/s": 1.0, "km/s": 1e3, "mm/s": 1e-3},
-}  # by the last word of a column's name
-_UNITS |= {f"{name}_error": _UNITS[name] for name in ("force", "speed")}
-_SENSOR = re.compile(r"(?:(bead|contact) )?(?:([1-9]\d{0,8}) )?(?:dynamic )?force")
-_HEADER = re.compile(r"^(.*?) ?(?:[([] ?([^][()]*?) ?[])])?$")  # name, (unit) or [unit]
-_CALIBRATION = re.compile(
-    r"([-+.\deE]+)\s*(\S+)/(\w+)"
-)  # number, unit, unit of the file
+# Name and unit: "Force (N)", "Force [N]", "Force in N"
+_HEADER = re.compile(r"^(.*?) ?(?:[([] ?([^][()\s]*) ?[])]|\bin (\S+))?$")
+_SENSOR = re.compile(
+    r"(?!contact.*velocity)(?:(bead|contact) )?(?:([1-9]\d{0,8}) )?(force|velocity)"
+)
+_OTHERS = ("time", "displacement", "speed", "force_error", "speed_error")
+_FEW = 0.1  # rows of numbers in a preamble, at most, over the rows of the record
+_LONGEST = 295  # characters of a message
+
+
+class Stated(TypedDict, total=False):
+    """Statements of the user about a measured file.
+
+    columns : headers, with or without their units, or numbers of columns, by the names "time",
+        "bead 8 force", "bead 8 velocity", "contact 8 force", "force", "speed", ….
+    units : statements (`validation.scenes.units`) by name, header or number of a column.
+    step : time from each sample to the next, as a statement, in place of a column.
+    """
+
+    columns: Mapping[str, str]
+    units: Mapping[str, str]
+    step: str | None
 
 
 @dataclass(frozen=True, eq=False)
-class MeasuredFile:
-    """Names, units and entries of the columns of a file; `read` makes one.
+class Record:
+    """Samples of a signal at a sensor.
 
-    names : of the columns, in the order of the file; names in lower case. units : of each column,
-    by the file and by the user, who may give a calibration; "" for none.
+    kind : "bead" or "contact". number : of the bead or contact, from 1; None if the file has no
+    other sensor and does not say it. quantity : "force" or "velocity". time, values : (S,).
+    inverted : option of the command line that changes the signal's sign.
     """
 
-    path: Path
-    names: Sequence[str]
-    units: Sequence[tuple[str, str]]
-    lines: Sequence[
-        tuple[int, list[str]]
-    ]  # number of the line in the file, and its entries
-    decimal: str  # the decimal separator
+    kind: str
+    number: int | None
+    quantity: str
+    time: Array
+    values: Array
+    inverted: str
 
-    @classmethod
-    def read(
-        cls,
-        path: str | Path,
-        *wanted: str,
-        renamed: Mapping[str, str] | None = None,
-        units: Mapping[str, str] | None = None,
-    ) -> MeasuredFile:
-        """Read a file. Its header is the first line with all wanted columns (the force of any
-        sensor is "force") and with all that are renamed.
 
-        renamed : headers as they stand in the file, with or without their unit, by the new names;
-        upper and lower case of other names are alike. units : by names, new or old, units
-        of columns without one, or calibrations, such as "12.5 N/V".
+class MeasuredFile:
+    """The named columns of a file.
 
-        Raises `SceneError`, in one line, for a file that cannot be read or has no such header, for
-        an unknown new name, and for a unit of a column that the file does not have.
-        """
-        for name in renamed or {}:
-            if name.lower() not in _UNITS and not _SENSOR.fullmatch(name.lower()):
-                known = "time, bead 8 force, contact 8 force, speed, displacement"
-                raise SceneError(
-                    f"column is {shorten(name)}: a name such as {known} is wanted"
-                )
-        renamed = {name.lower(): header for name, header in (renamed or {}).items()}
-        given = {
-            name.lower(): unit.replace("μ", "µ") for name, unit in (units or {}).items()
-        }
-        new = {header: name for name, header in renamed.items()}
+    Parameters
+    ----------
+    path : str or Path
+        Name of the file; "-" is standard input.
+    *wanted : str
+        Names of columns that must be there; "force" stands for the signal of any sensor.
+    **stated
+        Statements of the user, see `Stated`.
+
+    Raises
+    ------
+    SceneError
+        In one line, for a file that cannot be read or has no such columns, and for statements on
+        columns that the file does not have.
+    """
+
+    def __init__(
+        self, path: str | Path, *wanted: str, **stated: Unpack[Stated]
+    ) -> None:
+        self.path = path
+        self._step = stated.get("step")
         try:
-            lines = _text(Path(path)).split("\n")
-            for start, line in enumerate(lines, start=1):  # noqa: B007
-                mark = next((mark for mark in "\t;" if mark in line), ",")
-                header = [
-                    " ".join(x.split())
-                    for x in next(csv.reader([line], delimiter=mark))
-                ]
-                old = [_HEADER.sub(r"\1", cell) for cell in header]
-                names = []
-                for cell, name in zip(header, old, strict=True):
-                    other = "" if name.lower() in renamed else name.lower()
-                    names.append(new.get(cell, new.get(name, other)))
-                if {*wanted} <= {_SENSOR.sub("force", n) for n in names} and {
-                    *renamed
-                } <= {*names}:
-                    break
-            else:
-                columns = ", ".join((*wanted, *renamed.values()))
+            self._cells = Cells.read(path)
+        except (OSError, SceneError, csv.Error) as error:
+            raise SceneError(f"{path}: {reason(error)}") from None
+        self.names: dict[int, str] = {}
+        self._name_columns(stated.get("columns") or {})
+        kinds = {name.split()[-1] for name in self.names.values()}
+        kinds |= {"time"} if self._step else kinds & {"velocity"} and {"force"}
+        for name in wanted:
+            if name not in kinds:
+                raise self._fault(f"no column {name}", *wanted)
+        self._given: dict[int, str] = {}
+        for key, statement in (stated.get("units") or {}).items():
+            places = [i for i, name in self.names.items() if name == _name(key)]
+            places = places or self._places(key)
+            if not places:
+                raise self._fault(f"unit is of {shorten(key)}, which is no column", key)
+            self._given |= dict.fromkeys(places, str(statement))
+
+    def _name_columns(self, stated: Mapping[str, str]) -> None:
+        """Name the columns that the user states, and those whose headers are such names."""
+        for name, column in stated.items():
+            if not _is_name(_name(name)):
+                known = "time, bead 8 force, bead 8 velocity, contact 8 force, speed"
                 raise SceneError(
-                    f"no line names {columns}: --column NAME=HEADER names a column"
+                    f"column is {shorten(name)}: such as {known} is wanted"
                 )
-            reader = csv.reader(lines[start:], delimiter=mark)
-            rows = [
-                (start + reader.line_num, row)
-                for row in reader
-                if any(map(str.strip, row))
-            ]
-        except (OSError, TypeError, ValueError, csv.Error) as error:
-            raise SceneError(f"{path}: {files.reason(error)}") from None
-        decimal = "." if mark == "," else ","
-        stated = [_HEADER.sub(r"\2", cell) for cell in header]
-        if rows and np.isnan([_number(cell, decimal) for cell in rows[0][1]]).all():
-            below = [cell.strip(" ()[]") for cell in rows.pop(0)[1]] + [""] * len(names)
-            stated = [unit or under for unit, under in zip(stated, below, strict=False)]
-        low = [name.lower() for name in old]
-        if unknown := [
-            name for name in units or {} if name.lower() not in (*names, *low)
-        ]:
-            wrong = (
-                f"unit is of {shorten(unknown[0])}: the header has {shorten(header)}"
-            )
-            raise SceneError(f"{path}: {wrong}")
-        added = [
-            given.get(name) or given.get(n, "")
-            for name, n in zip(names, low, strict=True)
-        ]
-        return cls(Path(path), names, [*zip(stated, added, strict=True)], rows, decimal)
+            places = self._places(str(column))
+            if len(places) != 1:
+                raise self._fault(f"{len(places)} columns are {shorten(column)}", name)
+            self.names[places[0]] = _name(name)
+        for row in reversed(self._cells.head):  # the lowest header counts
+            taken = {*self.names.values()}
+            for place, cell in enumerate(row):
+                if _is_name(_name(cell)) and _name(cell) not in taken:
+                    self.names.setdefault(place, _name(cell))
+        self.names = dict(sorted(self.names.items()))
+
+    def _places(self, column: str) -> list[int]:
+        """Return the places of the columns of a number or a header, that of the lowest line."""
+        if re.fullmatch(r"[1-9]\d{0,5}", column):
+            return [int(column) - 1]
+        for row in reversed(self._cells.head):
+            headers = [(_name(cell), cell.lower()) for cell in row]
+            places = [i for i, own in enumerate(headers) if column.lower() in own]
+            if places:
+                return places
+        return []
+
+    def _fault(self, words: str, *names: str) -> SceneError:
+        """Return an error that lists the columns, and ends in options that name some of them."""
+        paste = " ".join(f"--column '{name}={i}'" for i, name in enumerate(names, 1))
+        found = []
+        for place, entry in enumerate(self._cells.first):
+            above = [row[place] for row in self._cells.head[-2:] if place < len(row)]
+            found.append(f"{place + 1} {' '.join(above)[:20]!r} {entry[:12]}")
+        room = _LONGEST - len(f"{self.path}: {words}: found : {paste}")
+        listed = ", ".join(found)[:room] or "no numbers"
+        return SceneError(f"{self.path}: {words}: found {listed}: {paste}")
+
+    @cached_property
+    def si(self) -> bool:
+        """Whether a unit is stated, by the file or by the user; values are in SI then."""
+        stated = " ".join((*self._given.values(), self._step or ""))
+        # A number alone is a factor.
+        return bool(re.search(r"[^-+.\deE ]", stated)) or any(
+            map(self._unit, self.names)
+        )
 
     @property
-    def has_units(self) -> bool:
-        """Whether a unit is stated, by the file or by the user; values are in SI then."""
-        return any(map(any, self.units))
+    def notes(self) -> list[str]:
+        """Lines on units that the user states otherwise than the file."""
+        lines = []
+        for place, statement in self._given.items():
+            _, unit = units.read_statement(statement, self.names[place].split()[-1])
+            own = self._unit(place)
+            if unit and own and not units.same(unit, own):
+                name = self.names[place]
+                lines.append(f"{name}: {statement} is stated, the file says {own}.")
+        return lines
 
-    def column(self, name: str) -> Array:
-        """Return the values of a column, (N,), in SI if the file has units.
+    def rows(self, *names: str) -> Array:
+        """Return the record of columns, (rows, columns), in SI if a unit is stated.
 
-        Raises `SceneError`, in one line, unless there is one such column, its unit is one of this
-        quantity's, and its entries are finite numbers.
+        Raises `SceneError`, in one line, for two columns of one name, for a gap in the record, for
+        a value beyond the recorder's range, and for a unit of another quantity.
         """
-        if self.names.count(name) != 1:
-            wanted = f"one column {name} is wanted (see --column)"
-            raise SceneError(
-                f"{self.path}: {wanted}, the header has {shorten([*self.names])}"
-            )
-        return self._values(self.names.index(name))
+        places = []
+        for name in names:
+            own = [place for place, known in self.names.items() if known == name]
+            if len(own) != 1:
+                raise self._fault(f"{len(own)} columns are {name}", name)
+            places += own
+        return self._record(places)
 
-    def sensors(
-        self, of: str = "contact"
-    ) -> dict[tuple[str, int | None], tuple[int, int]]:
-        """Return the places of time and force in the header, by kind and number of the sensor.
+    def records(self, of: str = "contact") -> list[Record]:
+        """Return the records of all sensors, those of beads first.
 
-        The kind is "bead" (these come first) or "contact". Numbers count from 1; the only sensor of
-        a file may have none. One column "time" is that of all sensors; of several columns the first
-        is that of the first force, and so on.
+        One column "time" is that of all sensors; of several columns the first is that of the first
+        sensor, and so on. The velocity of a bead whose force is there is left out.
 
         of : kind of the sensors whose names do not say it.
 
-        Raises `SceneError` for two columns of one sensor, for several sensors of which one has no
-        number, and for several columns of time that are not as many as the forces.
+        Raises `SceneError` as `rows` does, for two columns of one sensor, for several sensors of
+        which one has no number, and for columns of time that are not as many as the sensors.
         """
-        times = [i for i, name in enumerate(self.names) if name == "time"]
-        forces = {
-            i: m for i, name in enumerate(self.names) if (m := _SENSOR.fullmatch(name))
-        }
-        if len(times) not in (1, len(forces)):
-            found = f"{len(times)} columns time and {len(forces)} of forces"
-            raise SceneError(
-                f"{self.path}: {found}: one time for all or one for each is wanted"
-            )
-        sensors = {
-            (m[1] or of, int(m[2]) if m[2] else None): (time, force)
-            for time, (force, m) in zip(
-                times * len(forces), forces.items(), strict=False
-            )
-        }
-        if len(sensors) < len(forces) or (
-            len(sensors) > 1 and None in [n for _, n in sensors]
-        ):
-            names = shorten([self.names[force] for force in forces])
-            raise SceneError(
-                f"{self.path}: {names}: each sensor is wanted once, with its number"
-            )
-        return dict(sorted(sensors.items(), key=lambda sensor: sensor[0][0]))
+        times: list[list[int]] = [[]] if self._step else []
+        signals = []
+        for place, name in self.names.items():
+            sensor = _SENSOR.fullmatch(name)
+            if sensor:
+                signals.append((place, *sensor.groups()))
+            elif name == "time" and not self._step:
+                times.append([place])
+        if len(times) not in (1, len(signals)):
+            wanted = f"{len(times)} columns time and {len(signals)} of sensors"
+            raise self._fault(f"{wanted}: one for all, or one for each, is wanted")
+        found: dict[tuple[str, int | None], tuple[str, list[int]]] = {}
+        for i, (place, kind, number, quantity) in enumerate(signals):
+            usual = "bead" if quantity == "velocity" else of
+            key = (kind or usual, int(number) if number else None)
+            other, _ = found.get(key, ("", []))
+            if other == quantity:
+                raise SceneError(f"{self.path}: two columns are {self.names[place]}")
+            if other != "force":
+                found[key] = (quantity, [*times[i % len(times)], place])
+        if len(found) > 1 and None in [number for _, number in found]:
+            raise SceneError(f"{self.path}: each of several sensors needs its number")
+        ordered = sorted(found.items(), key=lambda sensor: sensor[0][0])
+        return [self._signal(*sensor, *columns) for sensor, columns in ordered]
 
-    def record(self, time: int, force: int) -> tuple[Array, Array]:
-        """Return times and forces, each (N,), from their places in the header, as `column` does."""
-        t, f = self._values(time), self._values(force)
-        if len(t) < len(f):
+    def _signal(
+        self, kind: str, number: int | None, quantity: str, places: list[int]
+    ) -> Record:
+        """Return the record of a sensor from the places of its time, if any, and signal."""
+        *time, values = self._record(places).T
+        if self._step:
+            step, _ = units.read_statement(self._step, "time")
+            time = [step * np.arange(len(values))]
+        (t,) = time
+        if np.any(np.diff(t) == 0):
+            step = np.ptp(t) / (len(t) - 1)
             raise SceneError(
-                f"{self.path}: {self.names[force]} has more samples than times"
+                f"{self.path}: times repeat, as rounded ones do: --step '{step:.6g} s' states them"
             )
-        return t[: len(f)], f
+        place = places[-1]
+        given = self._given.get(place) or self._unit(place)
+        turned = given[1:] if given.startswith("-") else f"-{given}"
+        if not re.match(r"-?[\d.]", turned):
+            turned = f"-1 {given}"
+        option = f"--unit '{self.names[place]}={turned.strip()}'"
+        return Record(kind, number, quantity, t, values, option)
 
-    def _values(self, at: int) -> Array:
-        """Return the values of the column at a place of the header."""
-        cells = [
-            (line, row[at].strip() if at < len(row) else "") for line, row in self.lines
-        ]
-        while cells and not cells[-1][1]:
-            del cells[-1]
-        values = self._size(at) * np.array(
-            [_number(cell, self.decimal) for _, cell in cells]
-        )
-        for i in np.flatnonzero(~np.isfinite(values))[:1]:
-            line, cell = cells[i]
-            fault = f"column {self.names[at]}, line {line}: {shorten(cell)} is no finite number"
-            raise SceneError(f"{self.path}: {fault}")
-        return values
+    def _record(self, places: list[int]) -> Array:
+        """Return columns, (rows, columns), in the rows where all of them are numbers."""
+        kept = list(self.names)
+        table = self._table[:, [kept.index(place) for place in places]]
+        numbers = ~np.isnan(table)
+        complete = numbers.all(axis=1).tolist()
+        start, end = longest(complete)
+        if not end:
+            named = " and ".join(self.names[place] for place in places)
+            raise self._fault(f"no row has numbers in {named}", *self.names.values())
+        for first, last in runs(complete):
+            # A preamble may hold rows of numbers, few, with lines without any behind them.
+            gap = slice(last, start) if last <= start else slice(end, first)
+            large = last - first > _FEW * (end - start)
+            if first != start and (large or numbers[gap].any()):
+                line = self._cells.line_number(gap.start)
+                raise SceneError(f"{self.path}: line {line} is a gap in the record")
+        record = table[start:end]
+        beyond = np.flatnonzero(np.isinf(record).any(axis=1))
+        if len(beyond):
+            line = self._cells.line_number(start + int(beyond[0]))
+            raise SceneError(
+                f"{self.path}: line {line} holds ∞, the signal is clipped: a larger range of the "
+                "recorder is wanted"
+            )
+        return record * [self._size(place) for place in places]
 
-    def _size(self, at: int) -> float:
-        """Return the number in SI of one unit of a column, 1 in a file without units."""
-        if not self.has_units:
-            return 1.0
-        name, (unit, given) = self.names[at], self.units[at]
-        known, match = _UNITS[name.split()[-1]], _CALIBRATION.fullmatch(given)
-        number, to, of = (
-            match.groups() if match else ("1", given or unit, given or unit)
-        )
-        size = _number(number, ".") * known.get(to, np.nan)
-        if unit not in ("", of) or not np.isfinite(size):
-            says = f"the unit {shorten(unit)}" if unit else "no unit"
-            says += f" and is given {shorten(given)}" if given else ""
-            wanted = f"--unit states one of {', '.join(known)}, or such as 12.5 N/{unit or 'V'}"
-            raise SceneError(f"{self.path}: column {name} has {says}: {wanted}")
+    @cached_property
+    def _table(self) -> Array:
+        """Columns of all lines, with NaN where a cell is no number."""
+        try:
+            return self._cells.numbers(list(self.names))
+        except (ValueError, csv.Error) as error:
+            raise SceneError(f"{self.path}: {shorten(str(error))}") from None
+
+    def _unit(self, place: int) -> str:
+        """Return the unit that the file states for a column, "" for none."""
+        cells = [row[place] for row in reversed(self._cells.head) if place < len(row)]
+        for cell in cells:
+            header = _HEADER.fullmatch(cell)
+            if header and (header[2] or header[3]):
+                return str(header[2] or header[3])
+        return next(filter(units.same, cells), "")
+
+    def _size(self, place: int) -> float:
+        """Return the value in SI of an entry 1 of a column, 1 in a file without units."""
+        name = self.names[place]
+        quantity = name.split()[-1]
+        if place in self._given:
+            return units.read_statement(self._given[place], quantity)[0]
+        unit = self._unit(place)
+        size = units.in_si(unit, units.BASES[quantity]) if self.si else 1.0
+        if size is None:
+            says = f"has the unit {shorten(unit)}" if unit else "has no unit"
+            base = units.BASES[quantity]
+            raise SceneError(
+                f"{self.path}: column {name} {says}: --unit '{name}={base}', or as a calibration "
+                f"--unit '{name}=12.5 {base}/{unit or 'V'}'"
+            )
         return size
 
 
-def _text(path: Path) -> str:
-    """Return the text of a file in UTF-8 or Latin-1, with one of Unicode's two signs for micro."""
-    content = files.content(path)
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = content.decode("latin-1")
-    return text.replace("μ", "µ")
+def _name(header: str) -> str:
+    """Return a header without its unit as it is compared."""
+    return _HEADER.sub(r"\1", header).lower().replace("dynamic ", "").strip("#% ")
 
 
-def _number(cell: str, decimal: str) -> float:
-    """Return the number in a cell, NaN if it holds none."""
-    try:
-        return float(cell.replace(decimal, "."))
-    except ValueError:
-        return np.nan
+def _is_name(name: str) -> bool:
+    """Whether a header is the name of a quantity that can be read."""
+    return name in _OTHERS or _SENSOR.fullmatch(name) is not None

@@ -215,14 +215,14 @@ def _drive(given: Table, units: str, folder: Path) -> Drive:
             raise SceneError(
                 f"drive.file is {shorten(name)}: the name of a CSV file is wanted"
             )
-        file = MeasuredFile.read(folder / name, "time", "displacement")
+        file = MeasuredFile(folder / name, "time", "displacement")
         check_units(file, units)
-        motion |= {name: file.column(name) for name in ("time", "displacement")}
+        motion["time"], motion["displacement"] = file.rows("time", "displacement").T
     return Drive(**motion)
 
 
 def check_units(file: MeasuredFile, units: str) -> None:
     """Refuse a measured file that states its units beside a scene that does not."""
-    if file.has_units and not units:
+    if file.si and not units:
         wanted = "its units are stated, the scene's are not: units = 'SI' is wanted"
         raise SceneError(f"{file.path}: {wanted}")
