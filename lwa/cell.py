@@ -49,11 +49,19 @@ MOST_PARTICLES = 1000
 class Cell(Value):
     """A periodic cell of P particles.
 
-    masses : P numbers or symbols, positive.
-    stiffnesses : P numbers or symbols, the A_i of F = A_i δ^k; all 1 when not given.
-    spacing : distance D of neighbouring particles at rest (the same for all contacts).
+    Parameters
+    ----------
+    masses : sequence of positive numbers or symbols
+        The masses of the P particles.
+    stiffnesses : sequence of positive numbers or symbols, optional
+        The A_i of F = A_i δ^k, one for each contact; all 1 when not given.
+    spacing : positive number or symbol
+        The distance D of neighbouring particles at rest, the same for all contacts.
 
-    Raises `lwa.InputError` when a value is not positive and finite, or the counts differ.
+    Raises
+    ------
+    InputError
+        When a value is not positive and finite, or the counts differ.
     """
 
     masses: tuple[sp.Expr, ...]
@@ -70,20 +78,20 @@ class Cell(Value):
         stiffnesses = _quantities(stiffnesses, "stiffnesses", "stiffness")
         if not masses:
             raise InputError("a cell needs at least one mass")
-        if len(stiffnesses) not in (0, len(masses)):
+        if not stiffnesses:
+            stiffnesses = (sp.S.One,) * len(masses)
+        if len(stiffnesses) != len(masses):
             raise InputError(
                 f"{len(stiffnesses)} stiffnesses for {len(masses)} masses: a periodic cell has as "
                 "many contacts as particles"
             )
         object.__setattr__(self, "masses", masses)
-        object.__setattr__(
-            self, "stiffnesses", stiffnesses or (sp.S.One,) * len(masses)
-        )
+        object.__setattr__(self, "stiffnesses", stiffnesses)
         object.__setattr__(self, "spacing", positive(spacing, "spacing"))
 
     def latex_rows(self) -> list[str]:
-        m, A = sp.Tuple(*self.masses), sp.Tuple(*self.stiffnesses)
-        return latex.rows({"m": m, "A": A, "D": self.spacing})
+        masses, stiffnesses = sp.Tuple(*self.masses), sp.Tuple(*self.stiffnesses)
+        return latex.rows({"m": masses, "A": stiffnesses, "D": self.spacing})
 
     @classmethod
     def of_spheres(cls, spheres: Sequence[Sphere]) -> Cell:
@@ -91,21 +99,31 @@ class Cell(Value):
 
         The spacing is the mean distance of neighbours' centers, Σ 2 R_i / P. Then widths and speeds
         are those in space, and D u_x is the mean compression of the contacts.
+
+        Parameters
+        ----------
+        spheres : sequence of Sphere
+            The spheres of one period; the last one touches the first one of the next period.
+
+        Returns
+        -------
+        Cell
         """
         row = items(spheres, "spheres")
-        contacts = tuple(
-            stiffness(a, b) for a, b in zip(row, row[1:] + row[:1], strict=True)
-        )
-        spacing = (
-            sp.Add(*(2 * sphere.radius for sphere in row)) / len(row) if row else D
-        )
-        return cls(tuple(sphere.mass for sphere in row), contacts, spacing)
+        masses = []
+        contacts = []
+        length = sp.S.Zero
+        for sphere, following in zip(row, row[1:] + row[:1], strict=True):
+            contacts.append(stiffness(sphere, following))
+            masses.append(sphere.mass)
+            length += 2 * sphere.radius
+        return cls(masses, contacts, length / len(row) if row else D)
 
     @cached_property
     def symbols(self) -> tuple[sp.Symbol, ...]:
         """The symbols of masses, stiffnesses and spacing, by name."""
-        values = (*self.masses, *self.stiffnesses, self.spacing)
-        return tuple(sorted(set().union(*(x.free_symbols for x in values)), key=str))
+        values = sp.Tuple(*self.masses, *self.stiffnesses, self.spacing)
+        return tuple(sorted(values.free_symbols, key=str))
 
     @property
     def uniform(self) -> bool:
@@ -122,8 +140,8 @@ class Cell(Value):
 
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Cell:
         """The cell with expressions in place of some of its symbols."""
-        rows = self.masses, self.stiffnesses
-        masses, stiffnesses = ([x.xreplace(new) for x in row] for row in rows)
+        masses = [mass.xreplace(new) for mass in self.masses]
+        stiffnesses = [A.xreplace(new) for A in self.stiffnesses]
         return Cell(masses, stiffnesses, self.spacing.xreplace(new))
 
     @property
@@ -152,7 +170,7 @@ class Cell(Value):
             return (sp.Integer(1),) * self.size
         compliances = self.compliances(k)
         total = sp.Add(*compliances)
-        return tuple(self.size * a / total for a in compliances)
+        return tuple(self.size * compliance / total for compliance in compliances)
 
     def stiffness(self, k: Any = k) -> sp.Expr:
         """The stiffness A_eff of P equal contacts with the same response as the cell."""
@@ -165,17 +183,30 @@ class Cell(Value):
         """The ratio τ/t = √(P k A_eff D^{k+1} / M) of the time in u_ττ = u_x^{k-1} u_xx + …."""
         # Force A_eff (D u_x)^k on the density M/(P D): M/(P D) u_tt = k A_eff D^k u_x^{k-1} u_xx
         k = exponent(k)
-        square = (
-            self.size * k * self.stiffness(k) * power(self.spacing, k + 1) / self.mass
-        )
-        return power(square, sp.S.Half)
+        stiffness = self.size * k * self.stiffness(k) * power(self.spacing, k + 1)
+        return power(stiffness / self.mass, sp.S.Half)
 
 
 def Dimer(
     m1: Any, m2: Any, N: int = 1, *, stiffnesses: Sequence[Any] = (), spacing: Any = D
 ) -> Cell:
-    """The paper's N:1 dimer: N particles m1 (u is the field of the first) and one m2.
+    """The paper's N:1 dimer.
 
+    Parameters
+    ----------
+    m1, m2 : positive numbers or symbols
+        Masses of the particles; u is the field of the first one, of mass m1.
+    N : int
+        Number of particles m1 before the one particle m2.
+    stiffnesses, spacing
+        As those of `Cell`.
+
+    Returns
+    -------
+    Cell
+
+    Examples
+    --------
     >>> Dimer("m1", "m2", N=2).masses
     (m1, m1, m2)
     """
@@ -220,34 +251,41 @@ def substitution(
     the cell or the exponent that is not positive.
     """
     symbols = dict.fromkeys((*cell.symbols, *sorted(k.free_symbols, key=str), *more))
-    known = {s.name: s for s in symbols}
-    if len(known) < len(symbols):
-        twice = min(s.name for s in symbols if known[s.name] != s)
-        raise InputError(
-            f"{twice!r} names two symbols, with different assumptions: use one"
-        )
-    given = dict(values)
-    omega = given.pop("omega", None) if "omega" not in known else None
-    for name in given:
-        if name not in known:
+    known: dict[str, sp.Symbol] = {}
+    for symbol in symbols:
+        if symbol.name in known:
+            raise InputError(
+                f"{symbol.name!r} names two symbols, with different assumptions: use one"
+            )
+        known[symbol.name] = symbol
+    new = {}
+    for name, value in values.items():
+        if name in known:
+            read = read_exact if known[name] in more else positive
+            new[known[name]] = read(value, name)
+        elif name != "omega":
             names = ", ".join(known) or "there are none"
             raise InputError(f"{shorten(name)} is not among the symbols: {names}")
-    new = {
-        known[name]: (read_exact if known[name] in more else positive)(value, name)
-        for name, value in given.items()
-    }
-    if omega is None:
-        return new
+    if "omega" in values and "omega" not in known:
+        mass, value = _by_ratio(cell, positive(values["omega"], "omega"), new)
+        new[mass] = value
+    return new
+
+
+def _by_ratio(
+    cell: Cell, omega: sp.Expr, known: Mapping[sp.Symbol, sp.Expr]
+) -> tuple[sp.Symbol, sp.Expr]:
+    """The mass that a ratio ω = m2/m1 replaces, where others have known values, and its value."""
     masses = tuple(dict.fromkeys(cell.masses))
     if len(masses) != 2:
         raise InputError(
             f"omega is m2/m1 of a cell with two masses; this one has {len(masses)}"
         )
-    ratio = positive(omega, "omega")
     # m2 becomes ω m1 or, where m2 is no free symbol, m1 becomes m2/ω.
-    for mass, other, factor in ((masses[1], masses[0], ratio), (*masses, 1 / ratio)):
-        if mass.is_Symbol and mass not in new and mass not in other.free_symbols:
-            return new | {mass: factor * other.xreplace(new)}
+    m1, m2 = masses
+    for mass, other, ratio in ((m2, m1, omega), (m1, m2, 1 / omega)):
+        if mass.is_Symbol and mass not in known and mass not in other.free_symbols:
+            return mass, ratio * other.xreplace(known)
     raise InputError(
         "omega is m2/m1: one of the masses must be a symbol without another value"
     )

@@ -6,6 +6,11 @@ A law enters the theory through dimensionless functions of the compression δ,
 
 which for δ^k are the numbers (k-1) … (k-n+1). The force of a contact is A F(δ), A its stiffness in
 the cell. The shares of unlike contacts in the strain are the same at every strain only for a power.
+
+How to add a law of your own: ``Law(F, delta)`` with any SymPy expression F that grows with delta.
+To give it a name, on the command line and in files of chains too, add a line to `_NAMED`: the
+letters of its parameters, and the force as a function of them; then a line to the docstring of
+`named`. The tests of names (tests/lwa/test_law.py) take it from there.
 """
 
 from __future__ import annotations
@@ -42,16 +47,26 @@ DELTA = sp.Symbol("delta", positive=True)
 """δ, the compression of a contact, unless the caller names another symbol."""
 
 
+@dataclass(frozen=True, repr=False)
 class ContactLaw(Value):
-    """A contact force F(δ): base of `Power` and `Law`; ``homogeneous`` if F(sδ) = s^k F(δ).
+    """A contact force F(δ): base of `Power` and `Law`.
 
-    name, parameters : those of `named`; "" and () for a law without a name.
+    Attributes
+    ----------
+    F : expression
+        The force as a function of `delta`.
+    delta : symbol
+        The compression δ.
+    name, parameters : str, tuple
+        Those of `named`; "" and () for a law without a name.
+    homogeneous : bool
+        True if F(sδ) = s^k F(δ), that is for a power.
     """
 
     F: sp.Expr
-    delta: sp.Symbol
-    name: str
-    parameters: tuple[sp.Expr, ...]
+    delta: sp.Symbol = DELTA
+    name: str = field(default="", compare=False)
+    parameters: tuple[sp.Expr, ...] = field(default=(), compare=False)
     homogeneous: ClassVar[bool] = False
 
     @property
@@ -87,9 +102,8 @@ class ContactLaw(Value):
 
     def phi(self, n: int) -> sp.Expr:
         """The parameter φ_n = δ^{n-1} F^{(n)}/F′ as an expression in δ."""
-        return ratio(
-            self.delta ** (integer(n, "n", 1) - 1) * self.slope(n), self.slope()
-        )
+        power = integer(n, "n", 1) - 1
+        return ratio(self.delta**power * self.slope(n), self.slope())
 
     @property
     def pulls(self) -> bool:
@@ -98,30 +112,56 @@ class ContactLaw(Value):
         return known and bool(self.slope().subs(self.delta, 0).is_positive)
 
     def at(self, delta: Any, n: int = 0) -> Any:
-        """The force F, or its n-th derivative, at a compression: a number, an expression, an array.
+        """The force F, or its n-th derivative, at a compression.
 
-        The force is 0 where δ < 0, unless the law `pulls`. Raises `lwa.InputError` for text, NaN,
-        infinities and complex numbers.
+        Parameters
+        ----------
+        delta : number, expression or array
+            The compression. The force is 0 where it is negative, unless the law `pulls`.
+        n : int
+            Number of derivatives.
 
+        Returns
+        -------
+        expression or ndarray
+            An exact expression for a number or an expression, an array of floats for an array.
+
+        Raises
+        ------
+        InputError
+            For text, NaN, infinities and complex numbers.
+
+        Examples
+        --------
         >>> Power("3/2").at(4), Power("3/2").at(-1), Power("3/2").at([-1, 4])
         (8, 0, array([0., 8.]))
         """
-        value = self.slope(n)
-        if not isinstance(delta, list | tuple) and getattr(delta, "ndim", 0) == 0:
-            delta = real(delta, "delta")
-            closed = self.pulls or not delta.is_negative
-            return value.subs(self.delta, delta) if closed else sp.S.Zero
+        n = integer(n, "n", 0)
+        if isinstance(delta, list | tuple) or getattr(delta, "ndim", 0) > 0:
+            return self._at_array(delta, n)
+        delta = real(delta, "delta")
+        if delta.is_negative and not self.pulls:
+            return sp.S.Zero
+        return self._at(delta, n)
 
+    def _at(self, delta: sp.Expr, n: int) -> sp.Expr:
+        """The n-th derivative of F at the compression of a closed contact."""
+        return self.slope(n).subs(self.delta, delta)
+
+    def _at_array(self, delta: Any, n: int) -> Any:
+        """The n-th derivative of F at an array of compressions, 0 at open contacts."""
         import numpy as np  # here: the command starts before NumPy does
 
         from lwa.base.arrays import finite, function_of
 
         demand_numbers(self.symbols, "an array of forces needs numbers for the law")
         compressions = finite(delta, "delta")
-        pushed = compressions if self.pulls else np.maximum(compressions, 0.0)
+        slope = function_of(self.delta, self.slope(n))
+        if self.pulls:
+            return slope(compressions)
         with np.errstate(divide="ignore"):  # derivatives of powers at 0
-            forces = function_of(self.delta, value)(pushed)
-        return np.where(compressions < pushed, 0.0, forces)
+            forces = slope(np.maximum(compressions, 0.0))
+        return np.where(compressions < 0, 0.0, forces)
 
     @property
     def formless(self) -> bool:
@@ -139,17 +179,20 @@ class ContactLaw(Value):
             return self.energy.subs(self.delta, D * p) / D**2
         return self.at(D * p, n) * D ** (n - 1)
 
-    def check_strain(self, p: sp.Expr, cell: Cell, sound: bool = False) -> None:
+    def check_strain(self, p: sp.Expr, cell: Cell) -> None:
         """Raise `lwa.InputError` unless F is real up to the strain p and grows there, F′ > 0.
 
-        Symbols are accepted, a spacing as 1; F′(0) = 0 is accepted unless ``sound`` is wanted.
+        Symbols are accepted, a spacing as 1.
         """
-        D = cell.spacing
-        delta = (D * real(p, "p")).xreplace({D: sp.S.One} if D.is_Symbol else {})
-        if self.homogeneous or self.formless or (delta.is_zero and not sound):
+        if self.homogeneous or self.formless:
             return
+        D = cell.spacing
+        delta = D * real(p, "p")
+        if D.is_Symbol:
+            delta = delta.subs(D, 1)
         for factor in self.F.atoms(sp.Pow):
-            start, end = (factor.base.subs(self.delta, x) for x in (0, delta))
+            start = factor.base.subs(self.delta, 0)
+            end = factor.base.subs(self.delta, delta)
             if factor.exp.is_negative and (start * end).is_nonpositive:
                 raise InputError(
                     f"the strain is {shorten(p)}: the law has a pole before it"
@@ -161,7 +204,11 @@ class ContactLaw(Value):
             )
 
     def compression(self, cell: Cell, force: sp.Expr) -> sp.Expr:
-        """The mean compression of a cell's contacts that push with this force, to 35 digits.
+        """The mean compression of a cell's contacts that push with this force; see `inverse`."""
+        return self.inverse(real(force, "force") / cell.stiffness(self.exponent))
+
+    def inverse(self, force: sp.Expr) -> sp.Expr:
+        """The compression at which F is this force, to 35 digits.
 
         Raises `lwa.InputError` for a force beyond the law's reach, and for symbols.
         """
@@ -169,13 +216,11 @@ class ContactLaw(Value):
             raise InputError(
                 f"law is {self.text}: the strain under a force needs an expression"
             )
-        needed = (
-            real(force, "force") / cell.stiffnesses[0]
-        )  # F(δ) of a contact of unit stiffness
-        free = needed.free_symbols | self.F.free_symbols - {self.delta}
-        demand_numbers(free, f"the load under the law {self.text} needs numbers")
+        difference = self.F - real(force, "force")
+        unknown = difference.free_symbols - {self.delta}
+        demand_numbers(unknown, f"the load under the law {self.text} needs numbers")
         with mpmath.workdps(50):
-            root = growing_root(self.F - needed, self.delta)
+            root = growing_root(difference, self.delta)
             if root is None:
                 raise InputError(
                     f"force is {shorten(force)}: the law does not reach it"
@@ -185,24 +230,35 @@ class ContactLaw(Value):
 
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> ContactLaw:
         """The law with the values that `lwa.cell.substitution` gives for its symbols."""
-        raise NotImplementedError
+        if self.name:
+            return named(self.name, *(x.xreplace(new) for x in self.parameters))
+        for symbol in self.symbols:
+            _check_parameter(new.get(symbol, symbol), str(symbol), self.delta)
+        return Law(self.F.xreplace(new), self.delta)
 
 
-@dataclass(frozen=True)
 class Power(ContactLaw):
-    """The power law F = δ^k, k > 0 a number or a symbol."""
+    """The power law F = δ^k.
 
-    k: sp.Expr
-    F: sp.Expr = field(init=False, repr=False)
-    delta: sp.Symbol = field(init=False, repr=False, default=DELTA)
-    name: str = field(init=False, repr=False, default="power")
-    parameters: tuple[sp.Expr, ...] = field(init=False, repr=False)
+    Parameters
+    ----------
+    k : positive number or symbol
+        The exponent, 3/2 for spheres.
+    """
+
     homogeneous: ClassVar[bool] = True
 
-    def __post_init__(self) -> None:
-        k = exponent(self.k)
-        for name, value in (("k", k), ("F", DELTA**k), ("parameters", (k,))):
-            object.__setattr__(self, name, value)
+    def __init__(self, k: Any) -> None:
+        k = exponent(k)
+        super().__init__(DELTA**k, name="power", parameters=(k,))
+
+    def __repr__(self) -> str:
+        return f"Power(k={self.k})"
+
+    @property
+    def k(self) -> sp.Expr:
+        """The exponent."""
+        return self.parameters[0]
 
     @property
     def exponent(self) -> sp.Expr:
@@ -213,38 +269,44 @@ class Power(ContactLaw):
         return self.delta ** (self.k + 1) / (self.k + 1)
 
     def phi(self, n: int) -> sp.Expr:
-        return sp.Mul(*(self.k - j for j in range(1, n)))
+        return sp.ff(self.k - 1, integer(n, "n", 1) - 1)
+
+    def _at(self, delta: sp.Expr, n: int) -> sp.Expr:
+        return sp.ff(self.k, n) * power(delta, self.k - n)
 
     def of_strain(self, p: sp.Expr, D: sp.Expr, n: int = 0) -> sp.Expr:
-        p = real(p, "p")
-        # p^k/k derived n times: (k-1) … (k-n+1) p^{k-n}; n = -1: p^{k+1}/(k (k+1))
-        up, down = (
-            sp.Mul(*(self.k - j for j in r)) for r in (range(1, n), range(n, 1))
-        )
-        return up / down * p ** (self.k - n)
+        n = integer(n, "n", -1)
+        # p^k/k derived n times; for n = -1 the falling factorial is 1/(k + 1).
+        return sp.ff(self.k, n) / self.k * power(real(p, "p"), self.k - n)
 
-    def compression(self, cell: Cell, force: sp.Expr) -> sp.Expr:
-        return power(real(force, "force") / cell.stiffness(self.k), 1 / self.k)
-
-    def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Power:
-        return Power(self.k.xreplace(new))
+    def inverse(self, force: sp.Expr) -> sp.Expr:
+        return power(real(force, "force"), 1 / self.k)
 
 
 @dataclass(frozen=True, repr=False)
 class Law(ContactLaw):
-    """A law F(δ) given by a SymPy expression and its symbol ``delta`` of the compression.
+    """A law F(δ) given by an expression. Laws of one F are equal, whatever their names.
 
-    Laws of one F are equal, whatever their names. Raises `lwa.InputError` if F′ = 0, and for text.
+    Parameters
+    ----------
+    F : SymPy expression
+        The force.
+    delta : symbol
+        The symbol of the compression in F.
+    name, parameters : str, tuple
+        Those of `named`.
 
+    Raises
+    ------
+    InputError
+        For a force that does not depend on δ, and for text.
+
+    Examples
+    --------
     >>> x = sp.Symbol("x", positive=True)
     >>> Law(x + x**2, x).phi(2)
     2*x/(2*x + 1)
     """
-
-    F: sp.Expr
-    delta: sp.Symbol = DELTA
-    name: str = field(default="", compare=False)
-    parameters: tuple[sp.Expr, ...] = field(default=(), compare=False)
 
     def __repr__(self) -> str:
         if self.name:
@@ -264,13 +326,6 @@ class Law(ContactLaw):
             raise InputError(
                 f"F is {shorten(self.F)}: a force that depends on δ is wanted"
             )
-
-    def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> ContactLaw:
-        if self.name:
-            return named(self.name, *(x.xreplace(new) for x in self.parameters))
-        for symbol in self.symbols:
-            _check_parameter(new.get(symbol, symbol), str(symbol), self.delta)
-        return Law(self.F.xreplace(new), self.delta)
 
 
 def general() -> Law:
@@ -298,7 +353,7 @@ NAMES = tuple(_NAMED)
 
 
 def named(name: str, *parameters: Any) -> ContactLaw:
-    """Make a law by its name; parameters that are not given are symbols.
+    """Make a law by its name.
 
     - power: δ^k.
     - hertz2: a δ^{3/2} + b δ^{5/2}, Hertz and its next order.
@@ -308,27 +363,42 @@ def named(name: str, *parameters: Any) -> ContactLaw:
     - lennard-jones: (1 - δ/d)^{-13} - (1 - δ/d)^{-7}, d the distance of rest.
     - general: a law without an expression (`general`).
 
-    Raises `lwa.InputError` for other names, too many parameters, and bad values.
+    Parameters
+    ----------
+    name : str
+        One of these names.
+    *parameters : numbers or symbols
+        In the order of the formula (magnetic: n, d); those that are not given are symbols.
 
+    Returns
+    -------
+    ContactLaw
+
+    Raises
+    ------
+    InputError
+        For other names, too many parameters, and bad values.
+
+    Examples
+    --------
     >>> named("hertz2", 1, "1/10").F
     delta**(5/2)/10 + delta**(3/2)
     """
-    text, build = _NAMED[one_of(name, NAMES, "law")]
-    letters = text.split()
+    letters_of, build = _NAMED[one_of(name, NAMES, "law")]
+    letters = letters_of.split()
     if len(parameters) > len(letters):
-        wanted = f"at most {len(letters)} ({', '.join(letters)})" if letters else "none"
+        wanted = "none"
+        if letters:
+            wanted = f"at most {len(letters)} ({', '.join(letters)})"
         raise InputError(
             f"law {name} has {len(parameters)} parameters: {wanted} are wanted"
         )
     read = signed if name == "polynomial" else positive
     values = []
-    for letter, value in zip_longest(letters, parameters):
+    for letter, given in zip_longest(letters, parameters):
         place = f"{name}'s {letter}"
-        values.append(
-            _check_parameter(
-                read(letter if value is None else value, place), place, DELTA
-            )
-        )
+        value = read(letter if given is None else given, place)
+        values.append(_check_parameter(value, place, DELTA))
     force = build(*values)
     if isinstance(force, ContactLaw):
         return force
@@ -365,13 +435,13 @@ def for_cell(law: Any, cell: Cell, k: Any = symbol_k) -> ContactLaw:
     Raises `lwa.InputError` for anything but a law or None, for a law besides an exponent, and for
     unlike contacts under a law that is no power.
     """
-    if law is not None and (
-        not isinstance(k, sp.Symbol) or k != symbol_k
-    ):  # k may be an array
+    # `k != symbol_k` alone would be an array if k is one.
+    if law is not None and (not isinstance(k, sp.Symbol) or k != symbol_k):
         raise InputError(
             f"k is {shorten(k)} and law {shorten(law)}: one of them is wanted"
         )
-    law = Power(k) if law is None else law
+    if law is None:
+        law = Power(k)
     if not isinstance(law, ContactLaw):
         raise InputError(
             f"law is {shorten(law)}: Power(k), Law(F, delta) or general() is wanted"
@@ -388,13 +458,7 @@ def substituted(
     values: Mapping[str, Any], cell: Cell, law: ContactLaw, *expressions: sp.Expr
 ) -> tuple[Any, ...]:
     """Substitute values in a cell, a law and expressions, as `lwa.cell.substitution`."""
-    others = set().union(*(x.free_symbols for x in expressions)) - {
-        *cell.symbols,
-        *law.symbols,
-    }
-    new = substitution(values, cell, more=(*law.symbols, *sorted(others, key=str)))
-    return (
-        cell.replaced(new),
-        law.replaced(new),
-        *(x.xreplace(new) for x in expressions),
-    )
+    others = sp.Tuple(*law.symbols, *expressions).free_symbols - {*cell.symbols}
+    new = substitution(values, cell, more=sorted(others, key=str))
+    replaced = [expression.xreplace(new) for expression in expressions]
+    return cell.replaced(new), law.replaced(new), *replaced

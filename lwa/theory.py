@@ -10,19 +10,22 @@ from typing import Any
 import sympy as sp
 from sympy.functions.combinatorial.numbers import partition
 
-from lwa.algebra.model import Model
+from lwa.algebra.model import BRANCHES, Branch, Model
 from lwa.base import latex
 from lwa.base.exact import InputError, integer, one_of
-from lwa.base.progress import shown
 from lwa.cell import Cell, exponent, read_cell
 from lwa.cell import k as symbol_k
-from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS, OfClosure, solve
+from lwa.closure.consistency import (
+    CLOSURES,
+    FIELDS,
+    Closure,
+    ClosureName,
+    FieldName,
+    OfClosure,
+)
 from lwa.equation.pde import PDE
-from lwa.equation.terms import STRAIN, Terms, terms
+from lwa.equation.terms import STRAIN, Terms, latex_by_order, terms
 from lwa.law import ContactLaw, for_cell
-
-SLOW_ORDER = 12
-"""The order from which a derivation shows its progress."""
 
 MOST_TERMS = 600_000
 """Estimated terms beyond which a derivation is refused.
@@ -33,14 +36,14 @@ two masses, order 24).
 """
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Theory(OfClosure):
-    """The long-wave theory of a chain (see `homogenize`)."""
+    """The long-wave theory of a chain (see `homogenize`); it is derived on first use."""
 
     @property
     def order(self) -> int:
         """The highest power of D in the ansatz."""
-        return self.closure.order
+        return self.closure.model.order
 
     @property
     def amplitude_ratio(self) -> sp.Expr:
@@ -59,13 +62,12 @@ class Theory(OfClosure):
     @cached_property
     def slaved(self) -> dict[int, dict[int, Terms]]:
         """Terms J_n of the particles' fields w_i = u + u_x Σ D^n J_n, by i and n (full closure)."""
-        return {
-            i: {
-                n: terms(self.closure, S, STRAIN) for n, S in enumerate(series, start=1)
-            }
-            for i, series in enumerate(self.closure.slaved)
-            if any(not S.is_zero() for S in series)
-        }
+        found = {}
+        for i, series in enumerate(self.closure.solution.slaved):
+            if any(not S.is_zero() for S in series):
+                orders = enumerate(series, start=1)
+                found[i] = {n: terms(self.closure, S, STRAIN) for n, S in orders}
+        return found
 
     @cached_property
     def pde(self) -> PDE:
@@ -80,37 +82,58 @@ class Theory(OfClosure):
         which the equations agree are left out: {} says that the ansatz satisfies both
         equations of motion to the order derived.
         """
-        sign = 1 if self.pde.acoustic else -1  # u_ττ = -u^k E there
-        defect = enumerate(self.closure.defect)
-        return {n: terms(self.closure, sign * d) for n, d in defect if not d.is_zero()}
-
-    def __str__(self) -> str:
-        return str(self.pde)
+        sign = 1 if self.pde.acoustic else -1  # u_ττ = -u^k E on the optical branch
+        found = {}
+        for n, defect in enumerate(self.closure.solution.defect):
+            if not defect.is_zero():
+                found[n] = terms(self.closure, sign * defect)
+        return found
 
     @property
     def phi(self) -> dict[int, sp.Expr]:
         """Mapping from n to φ_n in the compression; {} for powers and laws without expression."""
-        law = self.law
-        known = not (law.homogeneous or law.formless)
-        return {n: law.phi(n) for n in range(2, max(self.order, 3))} if known else {}
+        if self.law.homogeneous or self.law.formless:
+            return {}
+        return {n: self.law.phi(n) for n in range(2, max(self.order, 3))}
+
+    def __repr__(self) -> str:
+        return f"Theory({self.closure!r}: {self.pde.line()})"
+
+    def __str__(self) -> str:
+        return str(self.pde)
 
     def latex_rows(self, most: int | None = None) -> list[str]:
-        """LaTeX of ansatz and equation to D^{k+most} (None: all), and of a law that is no power."""
-        rows = [*self.closure.latex_rows(most and most + 1), *self.pde.latex_rows(most)]
-        if self.law.homogeneous:
-            return rows
-        delta = sp.latex(self.law.delta)
+        """LaTeX of a law that is no power, of all fields, and of the equation to D^{k+most}.
+
+        Fields are written to D^{most + 1}; None stands for all orders.
+        """
+        return [
+            *self._law_rows(),
+            *self._field_rows(most and most + 1),
+            *self.pde.latex_rows(most),
+        ]
+
+    def _law_rows(self) -> list[str]:
+        """LaTeX of a law that is no power and of its φ_n."""
+        law = self.law
+        if law.homogeneous:
+            return []
+        delta = sp.latex(law.delta)
         definition = rf"\frac{{{delta}^{{n-1}} F^{{(n)}}({delta})}}{{F'({delta})}}"
         place = rf"{delta} = {sp.latex(self.cell.spacing)} u_{{x}}"
-        law = [] if self.law.formless else self.law.latex_rows()
-        law.append(
-            rf"\phi_{{n}} = {definition} \quad \text{{and}}\ F'({delta})\ \text{{at}}\ {place}"
-        )
-        return [
-            *law,
-            *latex.rows({rf"\phi_{{{n}}}": x for n, x in self.phi.items()}),
-            *rows,
-        ]
+        phi = rf"\phi_{{n}} = {definition} \quad \text{{and}}\ F'({delta})\ \text{{at}}\ {place}"
+        rows = [phi, *latex.rows({rf"\phi_{{{n}}}": x for n, x in self.phi.items()})]
+        return rows if law.formless else [*law.latex_rows(), *rows]
+
+    def _field_rows(self, most: int | None) -> list[str]:
+        """LaTeX of the particles' fields to D^most."""
+        if self.closure.name == "linear":
+            return self.closure.latex_rows(most)
+        rows = []
+        for i, orders in self.slaved.items():
+            parts = latex_by_order(orders, self.cell.spacing, 0, most)
+            rows.append(f"w_{{{i + 1}}} = {' + '.join(['u', *parts])}")
+        return rows
 
     def _repr_latex_(self) -> str:
         return latex.display(self.latex_rows(3))
@@ -133,27 +156,45 @@ def homogenize(
     *,
     k: Any = symbol_k,
     law: ContactLaw | None = None,
-    closure: str = "linear",
-    branch: str = "acoustic",
-    field: str = "first",
+    closure: ClosureName | None = None,
+    branch: Branch = "acoustic",
+    field: FieldName | None = None,
 ) -> Theory:
     """Derive the long-wave theory of a chain.
 
     Parameters
     ----------
-    cell : the periodic cell.
-    order : highest power N of D in the ansatz; the wave equation then reaches D^{k+N-1}.
-    k : exponent of the contact law, a number or a symbol.
-    law : the contact law, by default `lwa.Power(k)`; see `lwa.law`. Under a law that is no power
+    cell : Cell
+        The periodic cell.
+    order : int
+        Highest power N of D in the ansatz; the wave equation then reaches D^{k+N-1}.
+    k : number or symbol
+        Exponent of the contact law.
+    law : ContactLaw, optional
+        The contact law, by default ``Power(k)``; see `lwa.law`. Under a law that is no power
         the contacts of a cell must be alike, and results hold its φ_n as phi2, phi3, ….
-    closure : "linear", the paper's, or "full", which satisfies every equation of motion.
-    branch : "acoustic" (neighbours move together) or "optical" (against each other).
-    field : unknown of the wave equation: "first", the first particle's displacement, or
-        "center", the canonical field, the mass-weighted mean of the sublattice fields at one point
-        (full closure).
+    closure : {"linear", "full"}, optional
+        "linear" is the paper's, "full" satisfies every equation of motion. By default "linear" for
+        cells of one or two particles, and "full" for others, which the paper's does not cover.
+    branch : {"acoustic", "optical"}
+        Neighbours move together, or against each other.
+    field : {"first", "center"}, optional
+        Unknown of the wave equation: the first particle's displacement, or the canonical field, the
+        mass-weighted mean of the sublattice fields at one point (full closure). By default
+        "center" with the full closure of the acoustic branch, else "first".
 
-    Raises `lwa.InputError` for values that make no sense or that the closure does not cover.
+    Returns
+    -------
+    Theory
+        Its ``repr`` names the closure and the field.
 
+    Raises
+    ------
+    InputError
+        For values that make no sense or that the closure does not cover.
+
+    Examples
+    --------
     >>> m1, m2 = sp.symbols("m1 m2", positive=True)
     >>> from lwa import Dimer
     >>> theory = homogenize(Dimer(m1, m2), order=4)
@@ -163,34 +204,40 @@ def homogenize(
     D**2*(k - 1)*(2*m1 - m2)/(3*(m1 + m2))
     """
     read_cell(cell)
-    order = integer(order, "order", 1)
-    one_of(closure, CLOSURES, "closure")
-    one_of(branch, BRANCHES, "branch")
-    one_of(field, FIELDS, "field")
     law = for_cell(law, cell, exponent(k) if law is None else k)
+    one_of(branch, BRANCHES, "branch")
+    if closure is None:
+        closure = "linear" if cell.size <= 2 or branch == "optical" else "full"
+    one_of(closure, CLOSURES, "closure")
+    if field is None:
+        field = "center" if (closure, branch) == ("full", "acoustic") else "first"
+    one_of(field, FIELDS, "field")
     if not law.homogeneous and branch != "acoustic":
         raise InputError(
             f"branch is {branch!r}: its contacts also pull, and its unit of time is that of a "
             "power law; a law given for compression has the acoustic branch"
         )
-    model = Model(cell, law, branch).replaced({}, order)
+    model = Model(cell, law, branch, integer(order, "order", 1))
+    _check_length(model, closure)
+    return Theory(Closure(model, closure, field))
+
+
+def _check_length(model: Model, closure: ClosureName) -> None:
+    """Raise `lwa.InputError` for a derivation of more than `MOST_TERMS` terms, by an estimate."""
     ring = model.ring
-    parameters = len(ring.names) - max(
-        len(ring.variables) - 1, 0
-    )  # the φ_n grow as powers of k
+    # The φ_n of a law that is no power grow as powers of one parameter, k.
+    parameters = (
+        min(len(ring.law), 1) + len(ring.masses.names) + len(ring.contacts.names)
+    )
     # The order D^{k+n} has at most one monomial per partition of n; its coefficient, of degree n in
     # P free parameters, has at most C(n + P, P) terms. The jets of the velocity multiply the total
     # by about n.
-    n = min(order, 100)
-    terms = int(partition(n)) * math.comb(n + parameters, parameters)
-    terms *= order if closure == "full" else 1
-    if terms > MOST_TERMS:
+    n = min(model.order, 100)  # every larger order is refused
+    count = int(partition(n)) * math.comb(n + parameters, parameters)
+    if closure == "full":
+        count *= model.order
+    if count > MOST_TERMS:
         raise InputError(
-            f"order is {order}: about {terms:.0e} terms, which may take more than 2 GB; give "
+            f"order is {model.order}: about {count:.0e} terms, which may take more than 2 GB; give "
             "numbers for the exponent and the cell, or a lower order"
         )
-    return Theory(
-        solve(
-            model, order, closure, field, progress=iter if order < SLOW_ORDER else shown
-        )
-    )

@@ -10,43 +10,38 @@
 1.4119
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from functools import cache
+from typing import Any
 
-if TYPE_CHECKING:
-    from validation.lattice.cost import IntegrationError as IntegrationError
-    from validation.lattice.result import Run as Run
-    from validation.lattice.simulate import simulate as simulate
-    from validation.lattice.simulate import simulate_many as simulate_many
-    from validation.pulses.pulse import MeasureError as MeasureError
-    from validation.pulses.pulse import Pulse as Pulse
-    from validation.pulses.pulse import measure as measure
-    from validation.scenes.forcing import Damping as Damping
-    from validation.scenes.forcing import Drive as Drive
-    from validation.scenes.scene import Scene as Scene
-    from validation.scenes.scene import SceneError as SceneError
-    from validation.scenes.scenefile import read_scene as read_scene
-    from validation.waves.profile import ExactWave as ExactWave
-    from validation.waves.solver import exact_wave as exact_wave
 
-# Public names by their module, each loaded on its first use (PEP 562).
-_HOMES = {
-    "validation.lattice.cost": "IntegrationError",
-    "validation.lattice.result": "Run",
-    "validation.lattice.simulate": "simulate simulate_many",
-    "validation.pulses.pulse": "MeasureError Pulse measure",
-    "validation.scenes.forcing": "Damping Drive",
-    "validation.scenes.scene": "Scene SceneError",
-    "validation.scenes.scenefile": "read_scene",
-    "validation.waves.profile": "ExactWave",
-    "validation.waves.solver": "exact_wave",
-}
-_HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
-__all__ = sorted(_HOME)
+@cache
+def _modules() -> dict[str, str]:
+    """Modules of the public names, which the stub beside this file lists."""
+    import ast
+    from pathlib import Path
+
+    stub = Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8")
+    modules = {}
+    for node in ast.parse(stub).body:
+        if isinstance(node, ast.ImportFrom) and node.module:
+            for name in node.names:
+                modules[name.name] = node.module
+    return modules
 
 
 def __getattr__(name: str) -> Any:
-    """Load a public name on its first use."""
-    if name not in _HOME:
+    """Load a public name on its first use (PEP 562): the command starts before NumPy does."""
+    if name == "__version__":
+        from lwa import __version__
+
+        return __version__
+    if name == "__all__":
+        return sorted(_modules())
+    if name not in _modules():
         raise AttributeError(f"module 'validation' has no attribute {name!r}")
-    return getattr(import_module(_HOME[name]), name)
+    return getattr(__import__(_modules()[name], fromlist=[name]), name)
+
+
+def __dir__() -> list[str]:
+    """Names that editors and shells complete, loaded or not."""
+    return sorted({*globals(), *_modules()})

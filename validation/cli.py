@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 
 import click
@@ -23,6 +24,7 @@ STUDIES = {
         "limits",
         "The theory's limits: equal masses, m1 ≫ m2, k → 1 (a few seconds).",
     ),
+    "materials": ("materials", "Names and constants of the materials of beads."),
     "paper": (
         "paper",
         "The steel:PTFE chain of the paper: speed, peak force and FWHM.",
@@ -40,18 +42,41 @@ STUDIES = {
 }
 """Module and summary of each study, by the name of its function and command."""
 
+HELP_TEXT = """\
+Simulate chains with contacts F = A δ^k and compare them with the long-wave theory.
+
+The exit status is 1 if a comparison fails, and 2 for bad input."""
+
+EXAMPLES = """\b
+Examples:
+  lwa-validate paper
+  lwa-validate run --example > scene.toml
+  lwa-validate run scene.toml --plot forces.svg
+
+In the book: reference.html"""
+
+_ENVIRONMENT = {
+    # Figures go to files: a display, or a notebook's shell, has no part in them.
+    "MPLBACKEND": "agg",
+    # Runs are parallel by Python's threads; numba refuses to load for a number below 1.
+    "NUMBA_NUM_THREADS": "1",
+}
+
 
 @click.group(
-    cls=Commands, package="validation.studies", table=STUDIES, context_settings=HELP
+    cls=Commands,
+    package="validation.studies",
+    table=STUDIES,
+    context_settings=HELP,
+    help=HELP_TEXT,
+    epilog=EXAMPLES,
 )
 @version
 def validate() -> None:
-    """Simulate chains with contacts F = A δ^k and compare them with the long-wave theory.
-
-    The exit status is 1 if a comparison fails, and 2 for bad input.
-    """
+    """The command `lwa-validate`."""
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point of the command `lwa-validate`."""
+    os.environ |= _ENVIRONMENT
     run(validate, "lwa-validate", arguments)

@@ -1,4 +1,8 @@
-"""Panels of curves or colour maps, drawn by Matplotlib without a display."""
+"""Panels of curves or colour maps, drawn by Matplotlib without a display.
+
+A label that ends in an SI unit, such as "time (s)", is printed with the prefix that suits the
+axis; the data stay in SI.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +19,7 @@ from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError
+from lwa.spheres.units import Unit, labelled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,20 +27,35 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SUFFIXES = (".pdf", ".png", ".svg")
+"""Endings of a picture's file."""
+
 _STYLES = ("o-", "s--", "^:", "D-.", "v-", "x--", "P:", "*-.")
 _FEW = 40  # points of a curve; markers at more of them would cover the curve
 _ACROSS = 3  # names in a row of a legend above the panel
+_SIZE = (
+    6.0,
+    4.2,
+)  # inches of a panel, with text that a page at full width keeps readable
+# Six digits of a tick's label do not tell two ticks apart on an axis that is shorter, relative to
+# its largest value. Matplotlib then prints an offset, which needs the data's own unit.
+_SHORTEST = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
 class Curve:
     """Points joined by a line.
 
-    label : name in the legend; empty for a curve that the legend leaves out.
-    x, y : coordinates, both (N,).
-    style : Matplotlib's format, such as "C0o--". By default each curve of a panel has its own
-        colour, dashes and markers; curves of many points have no markers.
-    error : half length of the error bar at each point, (N,).
+    Parameters
+    ----------
+    label : str
+        Name in the legend; empty for a curve that the legend leaves out.
+    x, y : array_like, shape (N,)
+        Coordinates.
+    style : str
+        Matplotlib's format, such as "C0o--". By default each curve of a panel has a colour, dashes
+        and markers of its own; curves of many points have no markers.
+    error : array_like, shape (N,), optional
+        Half length of the error bar at each point.
     """
 
     label: str
@@ -49,8 +69,14 @@ class Curve:
 class Map:
     """Values over two axes, shown as colours; cells without a value (NaN) are hatched.
 
-    label : label of the colour bar.
-    x, y, values : equidistant coordinates (X,) and (Y,), and values (Y, X).
+    Parameters
+    ----------
+    label : str
+        Label of the colour bar.
+    x, y : ndarray, shapes (X,) and (Y,)
+        Equidistant coordinates.
+    values : ndarray, shape (Y, X)
+        Values.
     """
 
     label: str
@@ -63,9 +89,20 @@ class Map:
 class Panel:
     """One pair of axes with curves or a map.
 
-    x, y : labels of the axes.
-    scale : logarithmic axes: "", "x", "y" or "xy".
-    legend_above : True for a legend above the panel, where it covers no curve.
+    Parameters
+    ----------
+    x, y : str
+        Labels of the axes.
+    curves : tuple of Curve
+        Curves.
+    scale : {"", "x", "y", "xy"}
+        Logarithmic axes.
+    title : str
+        Title above the axes.
+    map : Map, optional
+        A map in place of curves.
+    legend_above : bool
+        True for a legend above the panel, where the legend covers no curve.
     """
 
     x: str
@@ -82,16 +119,35 @@ class Pictured(ABC):
 
     @abstractmethod
     def pictured(self) -> Sequence[Panel]:
-        """The panels of the picture, none for a result without a picture."""
+        """Panels of the picture; none for a result without a picture."""
 
     def figure(self) -> Figure:
-        """Return all panels in one Matplotlib figure; `lwa.InputError` without panels."""
+        """Draw all panels in one Matplotlib figure.
+
+        Raises
+        ------
+        InputError
+            For a result without panels.
+        """
         return figure(self._panels())
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the first panel into Matplotlib's axes ``ax``, by default new ones.
+        """Draw the first panel into Matplotlib's axes, by default new ones.
 
-        Returns the axes. Raises `lwa.InputError` without panels.
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            The axes.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes with the panel.
+
+        Raises
+        ------
+        InputError
+            For a result without panels.
         """
         first = self._panels()[0]
         if ax is None:
@@ -102,9 +158,11 @@ class Pictured(ABC):
         return ax
 
     def _panels(self) -> Sequence[Panel]:
-        if panels := self.pictured():
-            return panels
-        raise InputError("plot is asked for: this result has no picture")
+        """Panels of the picture, at least one."""
+        panels = self.pictured()
+        if not panels:
+            raise InputError("plot is asked for: this result has no picture")
+        return panels
 
     def _repr_html_(self) -> str:
         """The one-line description and the picture, for a notebook."""
@@ -124,11 +182,14 @@ def svg(panels: Sequence[Panel]) -> str:
 
 def figure(panels: Sequence[Panel]) -> Figure:
     """Return a figure of all panels, two in a row."""
-    from matplotlib.figure import Figure  # here: loading Matplotlib takes half a second
+    # Not by pyplot, which would need the user's display. Loading Matplotlib takes half a second.
+    from matplotlib.figure import Figure
 
     columns = min(2, len(panels))
     rows = math.ceil(len(panels) / columns)
-    size = 6.5 if columns == 1 else 6 * columns, 4.2 * rows
+    width, height = _SIZE
+    margin = 0.5 if columns == 1 else 0.0  # labels take more of a single panel's width
+    size = (width * columns + margin, height * rows)
     picture = Figure(figsize=size, layout="constrained")
     plots = picture.subplots(rows, columns, squeeze=False).ravel()
     for plot, panel in zip(plots, panels, strict=False):
@@ -140,56 +201,91 @@ def figure(panels: Sequence[Panel]) -> Figure:
 
 def draw(plot: Axes, panel: Panel) -> None:
     """Draw one panel into Matplotlib's axes."""
-    scales = {f"{axis}scale": "log" for axis in panel.scale}
-    plot.set(xlabel=panel.x, ylabel=panel.y, title=panel.title, **scales)
+    plot.set(xlabel=panel.x, ylabel=panel.y, title=panel.title)
+    if "x" in panel.scale:
+        plot.set_xscale("log")
+    if "y" in panel.scale:
+        plot.set_yscale("log")
     if panel.map is not None:
         _draw_map(plot, panel.map)
     for i, curve in enumerate(panel.curves):
-        x, y = np.asarray(curve.x, float), np.asarray(curve.y, float)
-        error = None if curve.error is None else np.asarray(curve.error, float)
-        default = _STYLES[i % len(_STYLES)]
-        style = curve.style or f"C{i}{default if len(x) <= _FEW else default[1:]}"
-        # hollow marks show the curves below
-        plot.errorbar(
-            x, y, error, fmt=style, ms=4, mfc="none", label=curve.label or None
-        )
-    for axis in panel.scale:
-        _label_plainly(getattr(plot, f"{axis}axis"))
-    if any(curve.label for curve in panel.curves):
-        above = {
-            "loc": "lower left",
-            "bbox_to_anchor": (0, 1),
-            "ncols": _ACROSS,
-            "frameon": False,
-        }
+        _draw_curve(plot, curve, i)
+    _label(plot.xaxis, panel.x, "x" in panel.scale)
+    _label(plot.yaxis, panel.y, "y" in panel.scale)
+    if not any(curve.label for curve in panel.curves):
+        return
+    if panel.legend_above:
+        corner = (0, 1)  # the upper left one
         plot.legend(
-            fontsize="small", **(above if panel.legend_above else {"loc": "best"})
+            fontsize="small",
+            frameon=False,
+            loc="lower left",
+            bbox_to_anchor=corner,
+            ncols=_ACROSS,
         )
+    else:
+        plot.legend(fontsize="small", loc="best")
 
 
-def _label_plainly(axis: Axis) -> None:
-    """Set plain tick labels on a logarithmic axis of few decades, where powers of ten overlap."""
-    from matplotlib.ticker import (
-        LogLocator,
-        NullFormatter,
-    )  # loaded as late as Matplotlib
-
-    low, high = sorted(axis.get_view_interval())
-    if low >= 1e-3 and high <= 1e5 and high < 1e3 * low:
-        subs = (1, 1.5, 2, 3, 4, 6, 8) if high < 10 * low else (1, 2, 5)
-        axis.set_major_locator(LogLocator(subs=subs))
-        axis.set_major_formatter("{x:g}")
-        axis.set_minor_formatter(NullFormatter())
+def _draw_curve(plot: Axes, curve: Curve, number: int) -> None:
+    """Draw the curve of a number in its panel, from 0, which chooses its style."""
+    x = np.asarray(curve.x, float)
+    y = np.asarray(curve.y, float)
+    error = None if curve.error is None else np.asarray(curve.error, float)
+    style = curve.style
+    if not style:
+        style = _STYLES[number % len(_STYLES)]
+        if len(x) > _FEW:
+            style = style[1:]  # without the marker
+        style = f"C{number}{style}"
+    name = curve.label or None
+    # Hollow marks show the curves below.
+    plot.errorbar(x, y, error, fmt=style, ms=4, mfc="none", label=name)
 
 
 def _draw_map(plot: Axes, colours: Map) -> None:
     """Draw a map into Matplotlib's axes."""
-    # Pixels in a PDF, too: viewers are slow with one rectangle for each value.
     values = np.ma.masked_invalid(colours.values)
+    # Pixels in a PDF, too: viewers are slow with one rectangle for each value.
     image = plot.pcolormesh(
         colours.x, colours.y, values, shading="nearest", rasterized=True
     )
-    plot.figure.colorbar(image, ax=plot, label=colours.label)
-    plot.patch.set(
-        facecolor="w", edgecolor="0.4", hatch="xxx"
-    )  # unlike any colour of a map
+    bar = plot.figure.colorbar(image, ax=plot, label=colours.label)
+    _label(bar.ax.yaxis, colours.label, logarithmic=False)
+    # A hatch is unlike any colour of a map.
+    plot.patch.set(facecolor="w", edgecolor="0.4", hatch="xxx")
+
+
+def _label(axis: Axis, label: str, logarithmic: bool) -> None:
+    """Label an axis and its ticks, in a unit with a prefix where plain numbers stand there."""
+    low, high = sorted(axis.get_view_interval())
+    largest = max(abs(low), abs(high))
+    unit = labelled(label, largest)
+    if logarithmic:
+        if not _is_short(low / unit.size, high / unit.size):
+            return  # Matplotlib's powers of ten, in the data's own unit
+        _set_plain_ticks(axis, low, high)
+    elif high - low < _SHORTEST * largest:
+        return
+    if logarithmic or unit.size != 1:
+        axis.set_label_text(unit.name)
+        axis.set_major_formatter(lambda value, _: _in_unit(value, unit))
+
+
+def _in_unit(value: float, unit: Unit) -> str:
+    """The label of a tick: a value of the data in another unit."""
+    return f"{value / unit.size:g}".replace("-", "\N{MINUS SIGN}")
+
+
+def _is_short(low: float, high: float) -> bool:
+    """Whether a logarithmic axis has few decades of plain numbers, where powers of ten overlap."""
+    return low >= 1e-3 and high <= 1e5 and high < 1e3 * low
+
+
+def _set_plain_ticks(axis: Axis, low: float, high: float) -> None:
+    """Put ticks on a logarithmic axis of few decades where plain numbers do not overlap."""
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    subs = (1, 1.5, 2, 3, 4, 6, 8) if high < 10 * low else (1, 2, 5)
+    axis.set_major_locator(LogLocator(subs=subs))
+    axis.set_minor_formatter(NullFormatter())

@@ -46,7 +46,7 @@ from validation.scenes.checks import one_of
 from validation.scenes.scene import Scene
 from validation.studies.limits import theory_at
 from validation.studies.paper import recorded_chain
-from validation.waves.solver import exact_wave, measured
+from validation.waves.solver import exact_wave
 
 WANTED = (1e-4, 1e-6, 1e-8, 1e-10)
 """Relative errors of the peak force at which costs are compared."""
@@ -273,10 +273,9 @@ def place(k: sp.Rational, omega: sp.Rational, kind: str = SOLITARY) -> Place:
     Raises `MeasureError` where the struck chain's pulse is not steady.
     """
     if kind == SOLITARY:
-        wave = measured(
-            exact_wave((1.0,) if omega == 1 else (1.0, float(omega)), float(k))
-        )
-        truth = [wave[name] for name in ("fwhm force", "fwhm strain", "c")]
+        wave = exact_wave((1.0,) if omega == 1 else (1.0, float(omega)), float(k))
+        widths = [wave.estimate("fwhm", name) for name in ("force", "strain")]
+        truth = [*widths, wave.estimate("c")]
     else:
         pulse = point(k, omega, STRETCH)
         if pulse.missing:

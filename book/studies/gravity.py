@@ -284,9 +284,9 @@ _STRONG = (
     Column("blow_value", "blow", format="g"),
     Column("site_value", "site", format=".0f"),
     Column("ratio_value", "F/F0", format=".3g"),
-    Column("width_value", "FWHM", "sites", format=".2f"),
-    Column("solitary_value", "solitary", "sites", format=".2f"),
-    Column("front_value", "front", "sites", format=".2f"),
+    Column("width_value", "FWHM (sites)", format=".2f"),
+    Column("solitary_value", "solitary (sites)", format=".2f"),
+    Column("front_value", "front (sites)", format=".2f"),
 )
 
 _WEAK_NOTE = f"""\

@@ -17,7 +17,7 @@ import mpmath as mp
 import numpy as np
 import sympy as sp
 
-from lwa import Cell, Dimer, TravelingWave, homogenize, loaded_wave
+from lwa import Cell, CompactWave, Dimer, homogenize, loaded_wave
 from lwa.base.arrays import Array
 from lwa.base.exact import number
 from lwa.base.progress import Progress
@@ -54,7 +54,7 @@ LOADS = 10.0 ** np.arange(-12, 12.5, 0.5)  # p0/B
 
 CLOSURES: Mapping[str, Mapping[str, Any]] = {
     "paper's closure": {},
-    "full closure": {"closure": "full"},
+    "full closure": {"closure": "full", "field": "first"},
     "canonical field": {"closure": "full", "field": "center"},
 }
 """Waves that are compared, as options of `lwa.homogenize`."""
@@ -73,14 +73,14 @@ FORMS: Mapping[str, tuple[Any, ...]] = {
 """Closed forms: names of a wave's attribute, and its arguments."""
 
 
-def closed_wave(closure: str) -> TravelingWave:
+def closed_wave(closure: str) -> CompactWave:
     """Return the wave of one of `CLOSURES`, D = 1, with k, m1, m2 as symbols."""
     return homogenize(
         Dimer("m1", "m2", spacing=1), **CLOSURES[closure]
     ).pde.traveling_wave()
 
 
-def form(wave: TravelingWave, name: str, *arguments: Any) -> sp.Expr:
+def form(wave: CompactWave, name: str, *arguments: Any) -> sp.Expr:
     """Return the exact expression of one of `FORMS`: a wave's attribute and its arguments."""
     # V² = V²(B = 1) B^{k-1}, V²(B = 1) being the wave's speed_factor.
     if name == "log_amplitude":
@@ -89,9 +89,7 @@ def form(wave: TravelingWave, name: str, *arguments: Any) -> sp.Expr:
     return value(*arguments) if arguments else value
 
 
-def true_values(
-    wave: TravelingWave, expression: sp.Expr, k: Array, omega: Array
-) -> Any:
+def true_values(wave: CompactWave, expression: sp.Expr, k: Array, omega: Array) -> Any:
     """Evaluate an expression of a `closed_wave` by mpmath, to `REFERENCE_DIGITS` digits.
 
     k, omega : arrays of one shape. Returns an array of mpmath numbers, None where there is no wave.

@@ -297,7 +297,7 @@ _COLUMNS = {
     "speed theory": Column("theory_value", "theory", format=".5f"),
     "speed off": Column("error_value", "off", format=percent),
     "exact": Column("exact_value"),
-    "fwhm": Column("fwhm", "FWHM", "sites", error=True),
+    "fwhm": Column("fwhm", "FWHM (sites)", error=True),
     "fwhm theory": Column("fwhm_theory_value", "theory", format=".3f"),
     "fwhm off": Column("fwhm_off_value", "off", format=percent),
     "peak": Column("peak", "bead velocity", error=True),

@@ -238,18 +238,15 @@ def own_wave(chain: Shock) -> Pair:
     )
     if not ahead:  # the speed of the beads scales as the strain to the power (k + 1)/2
         wave = exact_wave([1], k)
-        factor = (fastest / wave.peak("velocity")[1]) ** (2 / (k + 1))
-        return math.sqrt(wave.c2) * factor ** ((k - 1) / 2), wave.peak("strain")[
-            1
-        ] * factor
+        factor = (fastest / wave.peak("velocity")) ** (2 / (k + 1))
+        speed = wave.c * factor ** ((k - 1) / 2)
+        return speed, wave.peak("strain") * factor
 
     def scaled(share: float) -> tuple[float, float, float]:
         """Speed, peak strain and bead velocity of the wave with background strain share · peak."""
         wave, factor = exact_wave([1], k, background=share), ahead / share
         pace = factor ** ((k - 1) / 2)
-        strain, velocity = (
-            wave.peak(name)[1] * factor for name in ("strain", "velocity")
-        )
+        strain, velocity = (wave.peak(name) * factor for name in ("strain", "velocity"))
         return math.sqrt(wave.c2) * pace, ahead + strain, velocity * pace
 
     guess = ahead / float(chain.peak)
@@ -318,7 +315,6 @@ def _theory_columns(name: str, label: str, *quantities: str) -> list[Column]:
             Column(
                 f"{name}_error_value.{quantity}",
                 f"{label} {_LETTERS[quantity]}",
-                "",
                 _PERCENT,
             ),
         )

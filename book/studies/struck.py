@@ -333,7 +333,7 @@ _COLUMNS = {
     "force": Column("force_value"),
     "strain": Column("strain_value", "strain", format=".3g"),
     "tuning": Column("tuning_value", "ω0/(2πV)", format=".3f"),
-    "speed": Column("speed_value", "V", "sites", format=".6f"),
+    "speed": Column("speed_value", "V (sites)", format=".6f"),
     "speed theory": Column("speed_theory_value"),
     "speed error": Column("speed_error_value", "off", format=percent),
     "of": Column("of", "FWHM of"),

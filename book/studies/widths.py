@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from lwa import TravelingWave, canonical_wave, homogenize
+from lwa import CompactWave, canonical_wave, homogenize
 from lwa.base.frozen import Estimate
 from validation.lattice.result import Run
 from validation.lattice.simulate import twice
@@ -203,7 +203,7 @@ def _numbers(run: Run) -> dict[str, float]:
     }
 
 
-def _waves() -> dict[str, list[TravelingWave]]:
+def _waves() -> dict[str, list[CompactWave]]:
     """Waves by closure, for the chain's contacts and the masses of `STATED`."""
     cells = cells_of_lines()
     return {
@@ -212,11 +212,11 @@ def _waves() -> dict[str, list[TravelingWave]]:
     }
 
 
-def _width(wave: TravelingWave, quantity: str, force: float, in_time: bool) -> float:
+def _width(wave: CompactWave, quantity: str, force: float, in_time: bool) -> float:
     """The theory's FWHM of a quantity whose peak is ``force``, in s or sites."""
     bead = quantity == "bead force"
     physical = wave.at_force(force, of="bead" if bead else "contact")
-    width = bead_fwhm(wave) if bead else float(physical.fwhm("force"))
+    width = bead_fwhm(physical) if bead else float(physical.fwhm("force"))
     return width / (float(physical.speed) if in_time else float(wave.D))
 
 

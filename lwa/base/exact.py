@@ -35,9 +35,13 @@ DIGITS = 330
 MOST_CANCELLED = 20_000
 """Digits that the terms of an exact number may cancel before it is evaluated in vain."""
 
-# Bits that a power is written out to: about 1000 digits. A square root, of bits (1 + 2), is of less
-# than 1024 bits then, beyond which SymPy's search for factors fails with an OverflowError.
-_POWER_BITS = 3000
+_POWER_BITS = 300
+"""Most bits of a number, times the larger part of an exponent, of powers that are written out.
+
+SymPy takes whole powers out of roots, and joins the roots of a product: (6/5)^(97/197) becomes a
+root of 6^97 · 5^100. Its search for factors of a number fails with an `OverflowError` beyond the
+1024 bits of a double. The roots of three numbers of this length join to less.
+"""
 
 
 def shorten(value: object) -> str:
@@ -187,6 +191,17 @@ def evaluated(value: sp.Expr, digits: int) -> sp.Expr:
     return sp.N(value, digits, maxn=MOST_CANCELLED)
 
 
+def brief(value: sp.Expr) -> str:
+    """Six digits of an exact number, or the short text of an expression, for a ``repr``.
+
+    >>> brief(sp.pi / 7), brief(sp.Symbol("x") / 3)
+    ('0.448799', 'x/3')
+    """
+    if value.free_symbols:
+        return shorten(value)
+    return f"{number(value):.6g}"
+
+
 class Unmultiplied(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymPy
     """A number that SymPy does not multiply out in a power; it prints and evaluates as usual."""
 
@@ -198,16 +213,14 @@ class Unmultiplied(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymP
 
 
 def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
-    """The power base^exponent without numbers of more than a thousand digits.
+    """The power base^exponent; that of a long number or a long exponent is not written out.
 
     >>> power(sp.Rational(9, 4), sp.Rational(3, 2)), power(sp.Rational(9, 4), sp.Rational(1, 9999))
     (27/8, (9/4)**(1/9999))
     """
-    factor = base.as_coeff_Mul()[0]
-    if factor not in (0, 1) and factor.is_Rational and exponent.is_Rational:
-        # SymPy takes whole powers out of roots: (1/3)^(1 + 1/99999) = 3^(99998/99999)/3^2 passes
-        # through 3^99999.
-        bits = int(factor.p).bit_length() + int(factor.q).bit_length()
-        if bits * (abs(int(exponent.p)) + int(exponent.q)) > _POWER_BITS:
-            base = Unmultiplied(base)
+    number, rest = base.as_coeff_Mul()
+    if number not in (0, 1) and number.is_Rational and exponent.is_Rational:
+        bits = int(number.p).bit_length() + int(number.q).bit_length()
+        if bits * max(abs(int(exponent.p)), int(exponent.q)) > _POWER_BITS:
+            base = Unmultiplied(number) * rest
     return base**exponent

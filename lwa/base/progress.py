@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from importlib import import_module
 from typing import Any, TypeVar
 
 EVERY = 30.0
 """Seconds to the first bar, and between two, where standard error is no terminal."""
+
+QUIET = 10.0
+"""Seconds of a terminal without a sign of life."""
 
 T = TypeVar("T")
 Progress = Callable[[Iterable[T]], Iterable[T]]
@@ -37,3 +43,39 @@ def bar(label: str, **settings: Any) -> Any:
     if closed or not sys.stderr.isatty():
         settings |= {"delay": EVERY, "mininterval": EVERY, "disable": closed}
     return tqdm(desc=label, leave=False, file=sys.stderr, **settings)
+
+
+@contextmanager
+def alive(name: str) -> Iterator[None]:
+    """Show on standard error, from time to time, that a command still computes.
+
+    Compilers, SciPy's methods and SymPy's printers tell nobody how far they are. A line has the
+    time so far, every `QUIET` seconds on a terminal and every `EVERY` seconds elsewhere; a bar that
+    is there already is drawn again instead.
+    """
+    if sys.stderr is None:
+        yield
+        return
+    ended = threading.Event()
+    watch = threading.Thread(target=_show_time, args=(name, ended), daemon=True)
+    watch.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        watch.join()
+
+
+def _show_time(name: str, ended: threading.Event) -> None:
+    """Show the time of a command until the command has ended."""
+    start = time.monotonic()
+    while not ended.wait(QUIET if sys.stderr.isatty() else EVERY):
+        from tqdm import tqdm  # most commands end before
+
+        bars = list(tqdm._instances)
+        for one in bars:
+            one.refresh()
+        if not bars:
+            minutes, seconds = divmod(round(time.monotonic() - start), 60)
+            # A line of its own: the result may be the next thing on the terminal.
+            print(f"{name}: still computing, {minutes}:{seconds:02}", file=sys.stderr)

@@ -6,40 +6,75 @@ equations of `lwa.closure.slaving` in one algebra, `lwa.algebra.jets`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal, get_args
 
 import sympy as sp
 
-from lwa.algebra.jets import Monomial
+from lwa.algebra.jets import Jet
+from lwa.algebra.model import BRANCHES as BRANCHES
+from lwa.algebra.model import Branch as Branch
 from lwa.algebra.model import Model
 from lwa.base import latex
 from lwa.base.exact import InputError
-from lwa.base.frozen import Shown, Value
-from lwa.base.progress import Progress
+from lwa.base.frozen import Value
+from lwa.base.progress import shown
 from lwa.cell import Cell
 from lwa.closure.ansatz import linear
+from lwa.closure.slaving import FieldName as FieldName
 from lwa.closure.slaving import Solution, full
 from lwa.law import ContactLaw
 
-BRANCHES = ("acoustic", "optical")
-CLOSURES = ("linear", "full")
-FIELDS = ("first", "center")
+ClosureName = Literal["linear", "full"]
+"""The paper's linear ansatz, or the closure that satisfies every equation of motion."""
+
+CLOSURES = get_args(ClosureName)
+FIELDS = get_args(FieldName)
+
+SLOW_ORDER = 12
+"""The order from which a derivation shows its progress: such a derivation may take seconds."""
 
 
-@dataclass(frozen=True, repr=False, kw_only=True)
-class Closure(Shown, Solution):
-    """The solved consistency condition of a model, as polynomials.
+@dataclass(frozen=True, repr=False)
+class Closure(Value):
+    """The consistency condition of a model, solved on first use.
 
-    Equality, hash and pickle go by model, order, closure and field; a copy is derived again.
+    Raises `lwa.InputError` for the combinations that have no solution.
     """
 
     model: Model
-    order: int
-    name: str
-    field: str
+    name: ClosureName
+    field: FieldName
+
+    def __post_init__(self) -> None:
+        size, branch = self.model.cell.size, self.model.branch
+        if self.name == "linear" and self.field != "first":
+            raise InputError(
+                f"field is {self.field!r}: the linear closure has the field 'first', as in the "
+                'paper; closure="full" (--closure full) has both'
+            )
+        one_field = size == 1 and branch == "acoustic"
+        if (self.name, branch) != ("full", "acoustic") and not (size == 2 or one_field):
+            raise InputError(
+                f"the cell has {size} masses: the linear closure's {branch} branch wants two; "
+                'closure="full" (--closure full) covers the acoustic branch of any cell'
+            )
+        # At k = 1 the equations of motion are linear, and so is the slaved field.
+        exact = self.model.k == 1 and self.field == "first"
+        if self.name == "full" and branch == "optical" and not exact:
+            raise InputError(
+                "the optical branch oscillates at order D^0 and slaves no field algebraically "
+                "unless k = 1: use the linear closure, or k = 1 with the field 'first'"
+            )
+
+    @cached_property
+    def solution(self) -> Solution:
+        """Wave equation and fields as polynomials."""
+        progress = iter if self.model.order < SLOW_ORDER else shown
+        if self.name == "full" and self.model.branch == "acoustic":
+            return full(self.model, self.field, progress)
+        return linear(self.model, progress)
 
     @property
     def ratio(self) -> sp.Expr:
@@ -51,53 +86,46 @@ class Closure(Shown, Solution):
         m1, m2 = self.model.cell.masses
         return -sp.cancel(m1 / m2)
 
-    def __reduce__(self) -> tuple[Callable[..., Closure], tuple[Any, ...]]:
-        return solve, (self.model, self.order, self.name, self.field)
-
-    def __repr__(self) -> str:
-        return (
-            f"Closure({self.model.cell!r}, order={self.order}, k={self.model.k}, "
-            f"closure={self.name!r}, branch={self.model.branch!r}, field={self.field!r})"
-        )
-
-    def latex_rows(self, most: int | None = None) -> list[str]:
-        """LaTeX of the ansatz w = λ (u + b_1 D u_x + …), λ and the b_n, to D^most (None: all)."""
-        if not self.ansatz:
-            return []
-        last = min(len(self.ansatz) - 1, most or len(self.ansatz))
-        D = self.model.cell.spacing
-        parts = [
-            f"b_{{{n}}} {latex.power(D, n)} {latex.derivative(n)}"
-            for n in range(1, last + 1)
-        ]
-        if self.name == "full" or last < len(self.ansatz) - 1:
-            parts.append(r"\cdots")
-        first = rf"w = \lambda \left(u + {' + '.join(parts)}\right)"
-        values = [latex.row(f"b_{{{n}}}", self.b[n]) for n in range(1, last + 1)]
-        return [first, latex.row(r"\lambda", self.ratio), *values]
-
-    def _repr_latex_(self) -> str:
-        return latex.display(self.latex_rows(4) or [latex.row(r"\lambda", self.ratio)])
-
     @cached_property
     def b(self) -> dict[int, sp.Expr]:
         """Mapping from n ≥ 1 to b_n of the ansatz."""
-        return {
-            n: self.model.ring.expression(self.algebra.terms(b).get(Monomial(()), []))
-            for n, b in enumerate(self.ansatz)
-            if n > 0
-        }
+        algebra = self.solution.algebra
+        found = {}
+        for n, b in enumerate(self.solution.ansatz[1:], start=1):
+            terms = algebra.terms(b, self.model.base)
+            found[n] = self.model.ring.expression(terms.get(Jet(()), []))
+        return found
+
+    def latex_rows(self, most: int | None = None) -> list[str]:
+        """LaTeX of the ansatz w = λ (u + b_1 D u_x + …), λ and the b_n, to D^most (None: all)."""
+        rows = [latex.row(r"\lambda", self.ratio)]
+        if not self.b:
+            return rows
+        parts = ["u"]
+        for n, b in self.b.items():
+            if most is not None and n > most:
+                parts.append(r"\cdots")
+                break
+            D = latex.power(self.model.cell.spacing, n)
+            parts.append(f"b_{{{n}}} {D} {latex.derivative(n)}")
+            rows.append(latex.row(f"b_{{{n}}}", b))
+        if self.name == "full":
+            parts.append(r"\cdots")
+        return [rf"w = \lambda \left({' + '.join(parts)}\right)", *rows]
+
+    def _repr_latex_(self) -> str:
+        return latex.display(self.latex_rows(4))
+
+    def __repr__(self) -> str:
+        model = self.model
+        return (
+            f"Closure({model.cell!r}, order={model.order}, k={model.k}, closure={self.name!r}, "
+            f"branch={model.branch!r}, field={self.field!r})"
+        )
 
     def at(self, **values: Any) -> Closure:
         """The closure for these values of the named symbols; see `lwa.cell.substitution`."""
-        return self.anew(self.model.substitution(values))
-
-    def anew(
-        self, new: Mapping[sp.Symbol, sp.Expr] | None = None, order: int | None = None
-    ) -> Closure:
-        """Derive the closure again, with values of its symbols or to another order."""
-        new, order = new or {}, order or self.order
-        return solve(self.model.replaced(new, order), order, self.name, self.field)
+        return replace(self, model=self.model.at(**values))
 
 
 @dataclass(frozen=True)
@@ -120,32 +148,3 @@ class OfClosure(Value):
     def law(self) -> ContactLaw:
         """The contact law."""
         return self.closure.model.law
-
-
-def solve(
-    model: Model,
-    order: int,
-    closure: str,
-    field: str,
-    progress: Progress[int] = iter,
-) -> Closure:
-    """Solve the consistency condition by the named closure, for the named field.
-
-    Raises `lwa.InputError` for the combinations that have no solution.
-    """
-    if closure == "linear" and field != "first":
-        raise InputError(
-            f"field is {field!r}: with the linear closure it is 'first', as in the paper"
-        )
-    if closure == "full" and model.branch == "acoustic":
-        solution = full(model, order, field, progress)
-    elif closure == "linear" or (model.k == 1 and field == "first"):
-        solution = linear(model, order, progress)  # at k = 1 it leaves no defect
-    else:
-        raise InputError(
-            "the optical branch oscillates at order D^0 and slaves no field algebraically unless "
-            "k = 1: use the linear closure, or k = 1 with the field 'first'"
-        )
-    return Closure(
-        **vars(solution), model=model, order=order, name=closure, field=field
-    )

@@ -18,17 +18,23 @@ then be satisfied, order by order and without a system to solve:
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from itertools import accumulate
-from math import factorial
-from operator import mul
+from typing import Literal
 
-from flint import fmpq, fmpq_mpoly
+from flint import fmpq_mpoly
 
-from lwa.algebra.jets import GradedSeries, JetAlgebra
+from lwa.algebra.jets import GradedSeries, JetAlgebra, taylor
 from lwa.algebra.model import Model
 from lwa.base.progress import Progress
+
+FieldName = Literal["first", "center"]
+"""Unknown φ of a theory: the first particle's displacement, or the canonical field.
+
+The canonical field is the mean Σ m̂_i w_i(x - x_i D) of all fields at one point,
+x_i = C_0 + … + C_{i-1}.
+"""
 
 
 class Force:
@@ -39,64 +45,58 @@ class Force:
 
         F(p (1 + X)) = F(p) + p F'(p) Φ,    Φ = Σ_{m≥1} φ_m X^m/m! = Σ_{n≥1} D^n Φ_n,
 
-    φ_m = p^{m-1} F^{(m)}(p)/F'(p).
-
-    The law is that of the algebra, with its parameters φ_m, or else the power p^k, whose φ_m are
-    (k-1) … (k-m+1).
+    φ_m = p^{m-1} F^{(m)}(p)/F'(p), the parameters of the algebra's law.
     """
 
-    def __init__(self, algebra: JetAlgebra, k: fmpq_mpoly) -> None:
-        factors = (k - j for j in range(1, algebra.weight + 1))
-        self.phi = algebra.phi or [
-            algebra.zero,
-            *accumulate(factors, mul, initial=algebra.one),
-        ]
-        self.X: list[fmpq_mpoly] = [algebra.zero]
-        self.Phi = GradedSeries(algebra, k, [algebra.zero])
-        self._slope = GradedSeries(algebra, k, [algebra.r[1]])
-        self._power_term = cache(self._term_of_power)
-        self._nonlinear: fmpq_mpoly | None = None
+    def __init__(self, algebra: JetAlgebra) -> None:
+        self.algebra = algebra
+        self.X = [algebra.zero]
+        self.Phi = GradedSeries(algebra, algebra.k, [algebra.zero])
+        self._slope = GradedSeries(algebra, algebra.k, [algebra.r[1]])
+        # Each term is computed once.
+        self._power = cache(self._term_of_power)
+        self._nonlinear = cache(self._nonlinear_term)
 
     @property
     def nonlinear(self) -> fmpq_mpoly:
         """The nonlinear part Φ_n - X_n of the next order n, known from X_1 … X_{n-1}."""
-        if self._nonlinear is None:
-            n = len(self.X)
-            terms = (self.phi[m] * self._power_term(m, n) for m in range(2, n + 1))
-            self._nonlinear = sum(terms, self.X[0])
-        return self._nonlinear
+        return self._nonlinear(len(self.X))
+
+    def _nonlinear_term(self, n: int) -> fmpq_mpoly:
+        """The coefficient of D^n in Σ_{m≥2} φ_m X^m/m!."""
+        total = self.algebra.zero
+        for m in range(2, n + 1):
+            total = total + self.algebra.phi[m] * self._power(m, n)
+        return total
 
     def _term_of_power(self, m: int, n: int) -> fmpq_mpoly:
         """The coefficient of D^n in X^m/m! = (1/m) X · X^{m-1}/(m-1)!, n ≥ m ≥ 1."""
         if m == 1:
             return self.X[n]
-        parts = (
-            self.X[j] * self._power_term(m - 1, n - j) for j in range(1, n - m + 2)
-        )
-        return sum(parts, self.X[0]) / m  # X_0 = 0
+        total = self.algebra.zero
+        for j in range(1, n - m + 2):
+            total = total + self.X[j] * self._power(m - 1, n - j)
+        return total / m
 
     def append(self, X_n: fmpq_mpoly) -> None:
         """Append the next term X_n to X, and Φ_n to Φ."""
         self.Phi.append(X_n + self.nonlinear)
         self.X.append(X_n)
-        self._nonlinear = None
 
     def increment(self, h: int, n: int) -> fmpq_mpoly:
         """Coefficient of D^n in [F(p) + p F' Φ](x + hD) - [F(p) + p F' Φ](x), divided by p F'."""
         # F(p) adds h^n/n! ∂_x^n F(p) = h^n/n! ∂_x^{n-1} (p F' r_1), r_1 = p_x/p.
-        return self.Phi.increment(h, n) + self._slope.dx(0, n - 1) * fmpq(
-            h**n, factorial(n)
-        )
+        return self.Phi.increment(h, n) + self._slope.dx(0, n - 1) * taylor(h, n)
 
     def work(self, n: int) -> fmpq_mpoly:
         """Coefficient of D^n in ∫ Φ dX = [W(p (1 + X)) - W(p) - p F(p) X] / (p² F'), W' = F."""
-        total = self.Phi[0]
+        total = self.algebra.zero
         for j in range(1, n):
             total = total + j * self.X[j] * self.Phi[n - j]
         return total / n
 
 
-@dataclass(frozen=True, repr=False, kw_only=True)
+@dataclass(frozen=True)
 class Solution:
     """Result of a closure: wave equation and displacement fields, as polynomials by order in D.
 
@@ -108,52 +108,44 @@ class Solution:
     defect : E_n from the first equation of motion minus E_n from the second, for the same ansatz.
     """
 
-    algebra: JetAlgebra = field(compare=False)
-    acceleration: tuple[fmpq_mpoly, ...] = field(compare=False)
-    ansatz: tuple[fmpq_mpoly, ...] = field(compare=False, default=())
-    slaved: tuple[tuple[fmpq_mpoly, ...], ...] = field(compare=False, default=())
-    defect: tuple[fmpq_mpoly, ...] = field(compare=False, default=())
+    algebra: JetAlgebra
+    acceleration: tuple[fmpq_mpoly, ...]
+    ansatz: tuple[fmpq_mpoly, ...] = ()
+    slaved: tuple[tuple[fmpq_mpoly, ...], ...] = ()
+    defect: tuple[fmpq_mpoly, ...] = ()
 
     @property
     def fields(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
         """Polynomials S_0, S_1, … of each field w_i = φ + D φ_x Σ D^n S_n (acoustic branch)."""
         if self.slaved:
             return self.slaved
-        first = tuple(self.algebra.zero for _ in self.acceleration)
-        second = tuple(
-            b * r for b, r in zip(self.ansatz[1:], self.algebra.r, strict=False)
-        )
-        return (first, second) if self.ansatz else (first,)
+        first = (self.algebra.zero,) * len(self.acceleration)
+        if not self.ansatz:
+            return (first,)
+        linear = zip(self.ansatz[1:], self.algebra.r, strict=False)
+        return first, tuple(b * r for b, r in linear)
 
 
 def full(
-    model: Model, order: int, field: str = "first", progress: Progress[int] = iter
+    model: Model, field: FieldName = "first", progress: Progress[int] = iter
 ) -> Solution:
-    """Find the closure that satisfies all equations of motion, to D^order in all fields.
-
-    field : the φ of the theory, "first", the displacement of the first particle, or "center", the
-        mean Σ m̂_i w_i(x - x_i D) of all fields at one point, x_i = C_0 + … + C_{i-1}.
-    """
-    chain = _Slaving(model, order, field)
-    for n in progress(range(1, order)):
+    """Find the closure that satisfies all equations of motion, to D^order in all fields."""
+    chain = _Slaving(model, field)
+    for n in progress(range(1, model.order)):
         chain.extend(n)
-    algebra, fields = chain.algebra, tuple(tuple(S)[:order] for S in chain.S)
-    ansatz: tuple[fmpq_mpoly, ...] = ()
+    algebra = chain.algebra
+    fields = tuple(tuple(S)[: model.order] for S in chain.S)
+    ansatz = []
     if len(fields) > 1:
-        slopes = (algebra.slope(S_n, n) for n, S_n in enumerate(fields[1]) if n)
-        ansatz = (algebra.one, fields[1][0], *slopes)
-    return Solution(
-        algebra=algebra,
-        acceleration=tuple(chain.E)[:order],
-        ansatz=ansatz,
-        slaved=fields,
-    )
+        ansatz = [algebra.one, fields[1][0]]
+        for n in range(1, len(fields[1])):
+            ansatz.append(algebra.slope(fields[1][n], n))
+    return Solution(algebra, tuple(chain.E)[: model.order], tuple(ansatz), fields)
 
 
 class _Slaving:
     """Solver of the full closure, one order of D at a time.
 
-    mu, c : mass fractions m̂_i of the particles, strain shares C_i of the contacts behind them.
     x : places x_i = C_0 + … + C_{i-1} of the particles at rest.
     weights : the g_i of the mean φ(x) = Σ g_i w_i(x - x_i D).
     E : the terms of the wave equation.
@@ -161,67 +153,63 @@ class _Slaving:
     forces : the forces of the contacts.
     """
 
-    def __init__(self, model: Model, order: int, field: str) -> None:
-        self.algebra = algebra = model.algebra(max(order - 1, 1), velocity=True)
-        self.order = order
-        k, self.mu, self.c = model.elements(algebra)
-        self.x = list(accumulate(self.c[:-1], initial=algebra.zero))
-        self.weights = self.mu if field == "center" else [algebra.one]
-        self.E = GradedSeries(algebra, k, [algebra.zero])
-        self.S = [GradedSeries(algebra, algebra.one, [x]) for x in self.x]
-        self.rates = [
-            GradedSeries(algebra, algebra.half, [algebra.zero]) for _ in self.x
-        ]
-        self.forces = [Force(algebra, k) for _ in self.x]
+    def __init__(self, model: Model, field: FieldName) -> None:
+        self.algebra = algebra = model.algebra(model.order - 1)
+        self.order = model.order
+        self.size = model.cell.size
+        self.x = list(accumulate(algebra.c[:-1], initial=algebra.zero))
+        self.weights = algebra.mu if field == "center" else [algebra.one]
+        self.E = GradedSeries(algebra, algebra.k, [algebra.zero])
+        self.S = []
+        self.rates = []
+        self.forces = []
+        for x in self.x:
+            self.S.append(GradedSeries(algebra, algebra.one, [x]))
+            self.rates.append(GradedSeries(algebra, algebra.half, [algebra.zero]))
+            self.forces.append(Force(algebra))
 
     def extend(self, n: int) -> None:
         """Append the terms in D^n of wave equation E, strains X, forces Φ and fields S."""
-        accelerations = [self.algebra.dt(rate, self.E, n) for rate in self.rates]
+        accelerations = [rate.dt(self.E, n) for rate in self.rates]
         if n + 1 < self.order:
             for rate, S in zip(self.rates, self.S, strict=True):
-                rate.append(self.algebra.dt(S, self.E, n))
+                rate.append(S.dt(self.E, n))
         # Momentum: in the sum of the equations of motion only the end forces remain.
-        P = len(self.x)
-        inertia = (mu * a for mu, a in zip(self.mu, accelerations, strict=True))
-        self.E.append(
-            -self.forces[-1].increment(-P, n) / P - sum(inertia, self.algebra.zero)
-        )
-        self._strains(n, accelerations)
-        self._origin(n)
+        E_n = -self.forces[-1].increment(-self.size, n) / self.size
+        for mu, acceleration in zip(self.algebra.mu, accelerations, strict=True):
+            E_n = E_n - mu * acceleration
+        self.E.append(E_n)
+        self._append_strains(n, accelerations)
+        self._append_fields(n)
 
-    def _strains(self, n: int, accelerations: list[fmpq_mpoly]) -> None:
+    def _append_strains(self, n: int, accelerations: list[fmpq_mpoly]) -> None:
         """Append the term X_n of each contact's strain.
 
         Φ_i - Φ_0 gives the differences of the strains, and the cell their sum.
         """
-        P, first = len(self.x), self.forces[0]
-        total = self._shift(n) * P ** (n + 1) + self.S[0].increment(P, n)
-        push, differences = (
-            self.algebra.zero,
-            [],
-        )  # Φ_i - Φ_0, and X_i - X_0 of the strains
-        for i, force in enumerate(self.forces):
-            if i:
-                push = push + P * self.mu[i] * (self.E[n] + accelerations[i])
-            difference = push + first.nonlinear - force.nonlinear
-            differences.append(difference)
-            total = total - self.c[i] * difference
+        P, c = self.size, self.algebra.c
+        first = self.forces[0].nonlinear
+        push = self.algebra.zero  # Φ_i - Φ_0
+        differences = [push]  # X_i - X_0
+        for i in range(1, P):
+            inertia = self.E[n] + accelerations[i]
+            push = push + P * self.algebra.mu[i] * inertia
+            differences.append(push + first - self.forces[i].nonlinear)
+        total = self.algebra.shift(P, n) + self.S[0].increment(P, n)
+        for share, difference in zip(c, differences, strict=True):
+            total = total - share * difference
         for force, difference in zip(self.forces, differences, strict=True):
             force.append(total / P + difference)
 
-    def _origin(self, n: int) -> None:
+    def _append_fields(self, n: int) -> None:
         """Append S_n of each particle, by the definition φ(x) = Σ g_i w_i(x - x_i D)."""
-        strains = (
-            c * force.X[n] for c, force in zip(self.c[:-1], self.forces, strict=False)
-        )
-        relative = list(accumulate(strains, initial=self.algebra.zero))
+        relative = [self.algebra.zero]  # S_n less that of the first particle
+        for c, force in zip(self.algebra.c[:-1], self.forces, strict=False):
+            relative.append(relative[-1] + c * force.X[n])
         origin = self.algebra.zero
-        for g, x, S, d in zip(self.weights, self.x, self.S, relative, strict=False):
-            moved = (-x) ** (n + 1) * self._shift(n) + S.increment(-x, n)
-            origin = origin - g * (d + moved)
-        for S, d in zip(self.S, relative, strict=True):
-            S.append(origin + d)
-
-    def _shift(self, n: int) -> fmpq_mpoly:
-        """Coefficient of D^{n+1} in (φ(x + D) - φ(x)) / φ_x."""
-        return self.algebra.r[n] * fmpq(1, factorial(n + 1))
+        for i, weight in enumerate(self.weights):
+            h = -self.x[i]
+            moved = self.algebra.shift(h, n) + self.S[i].increment(h, n)
+            origin = origin - weight * (relative[i] + moved)
+        for S, difference in zip(self.S, relative, strict=True):
+            S.append(origin + difference)

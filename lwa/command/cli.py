@@ -13,6 +13,7 @@ from typing import Any
 import click
 
 from lwa.base import INTERRUPTED, InputError, NoSolitaryWave
+from lwa.base.progress import alive
 
 HELP = {"help_option_names": ["-h", "--help"]}
 """Settings of a command: both ways to ask for help."""
@@ -83,7 +84,8 @@ def _status(command: click.Command, name: str, arguments: Sequence[str] | None) 
     try:
         if output is None:
             raise OSError(errno.EBADF, "it is closed")
-        result = command.main(arguments, prog_name=name, standalone_mode=False)
+        with alive(name):
+            result = command.main(arguments, prog_name=name, standalone_mode=False)
         return result if isinstance(result, int) else 0
     except click.exceptions.NoArgsIsHelpError as help_text:
         click.echo(help_text.format_message(), err=True)
@@ -92,8 +94,11 @@ def _status(command: click.Command, name: str, arguments: Sequence[str] | None) 
         fault = error.format_message()
     except (InputError, NoSolitaryWave) as error:
         fault = str(error)
-    except (click.Abort, KeyboardInterrupt):
-        status, fault = INTERRUPTED, "interrupted"
+    except (click.Abort, KeyboardInterrupt) as error:
+        status = INTERRUPTED
+        interrupt = error.__cause__ or error  # click puts an Abort around it
+        # A command may say how to go on.
+        fault = ": ".join(["interrupted", *map(str, interrupt.args)])
     except (OSError, SystemExit) as error:
         if isinstance(error, SystemExit) and sys.stdout is output:
             raise

@@ -88,7 +88,9 @@ def derive(style: str, **options: Any) -> None:
         ]
     for i, series in theory.slaved.items():
         # the linear part of the second particle's field w is the ansatz
-        if lines := by_order(series, "D^{}", linear=i != 1):
+        if i == 1:
+            series = {n: found.nonlinear for n, found in series.items()}
+        if lines := by_order(series, "D^{}"):
             name = (
                 "nonlinear terms of w"
                 if i == 1

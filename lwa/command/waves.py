@@ -24,9 +24,8 @@ from lwa.command.options import (
 from lwa.command.rows import PRINTED_DIGITS, Answer, Row, attempt
 from lwa.spheres.hertz import EXPONENT
 from lwa.theory import Theory, homogenize
-from lwa.wave.physical import PhysicalWave
+from lwa.wave.compact import CompactWave, PhysicalWave, canonical_wave
 from lwa.wave.source import LANGUAGES
-from lwa.wave.traveling import TravelingWave, canonical_wave
 
 if TYPE_CHECKING:
     from lwa.loaded.background import Background
@@ -139,7 +138,7 @@ def hertz_note(chain: ChainInput, force: sp.Expr) -> list[str]:
     ]
 
 
-def _compact(chain: ChainInput, theory: Theory, wave: TravelingWave) -> Answer:
+def _compact(chain: ChainInput, theory: Theory, wave: CompactWave) -> Answer:
     """Rows of the compact wave of any amplitude: speed V_s by peak strain B, and B by V_s."""
     reduction = wave.reduction()
     rows: list[Row | str] = [

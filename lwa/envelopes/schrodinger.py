@@ -27,6 +27,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
+from lwa.algebra.model import BRANCHES
 from lwa.base import latex
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError, integer, one_of, positive, shorten, signed
@@ -36,7 +37,6 @@ from lwa.cell import k as symbol_k
 from lwa.envelopes.modes import cell_mode
 from lwa.envelopes.response import Mode
 from lwa.law import ContactLaw, for_cell, substituted
-from lwa.linear.bloch import BRANCHES
 
 LONG = 400  # operations in a result that from there on would take minutes to factor
 # Greatest q of powers x^{p/q} that are factored, as polynomials in x^{1/q}: a decimal k such as
@@ -343,7 +343,7 @@ def envelope(
     else:
         read = positive if law.homogeneous else signed  # powers only push
         static = cell.spacing * read(background, "background")
-        law.check_strain(static / cell.spacing, cell, sound=True)
+        law.check_strain(static / cell.spacing, cell)
     kappa = signed(wavenumber, "wavenumber")
     if kappa.is_number and not 0 <= kappa <= sp.pi:
         raise InputError(f"wavenumber is {shorten(kappa)}: 0 … pi per cell is wanted")

@@ -29,13 +29,11 @@ G = I(k-1)(k-2)/2, H = 2I(k-1), and I is the coefficient in the linear chain's d
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from itertools import pairwise
-from math import factorial
 
-from flint import fmpq, fmpq_mpoly
+from flint import fmpq_mpoly
 
-from lwa.algebra.jets import GradedSeries, JetAlgebra
+from lwa.algebra.jets import GradedSeries, taylor
 from lwa.base.exact import InputError
 from lwa.closure.consistency import Closure
 from lwa.closure.slaving import Force
@@ -43,15 +41,13 @@ from lwa.closure.slaving import Force
 
 def conservative(closure: Closure) -> bool:
     """True if every order n ≥ 2 has a flux F_n, u_x^k E_n = ∂_x (u_x^k F_n)."""
-    algebra = closure.algebra
-    k = closure.model.ring.exponent(algebra.context)
-    return all(
-        algebra.antiderivative(E, k) is not None for E in closure.acceleration[2:]
-    )
+    algebra = closure.solution.algebra
+    orders = closure.solution.acceleration[2:]
+    return all(algebra.antiderivative(E, algebra.k) is not None for E in orders)
 
 
-def energy(closure: Closure) -> tuple[JetAlgebra, list[fmpq_mpoly]]:
-    """The terms of (e - W(u_x)) / (u_x² F′(u_x)) to D^{order-2}, and their algebra (with s_0).
+def energy(closure: Closure) -> list[fmpq_mpoly]:
+    """The terms of (e - W(u_x)) / (u_x² F′(u_x)) to D^{order-2}.
 
     Raises `lwa.InputError` on the optical branch, and for a closure that leaves a defect.
     """
@@ -59,69 +55,73 @@ def energy(closure: Closure) -> tuple[JetAlgebra, list[fmpq_mpoly]]:
         raise InputError(
             "the energy in the slaved fields is that of the acoustic branch"
         )
-    if any(not d.is_zero() for d in closure.defect):
+    if any(not d.is_zero() for d in closure.solution.defect):
         raise InputError(
             "the linear closure does not satisfy both equations of motion (see the defect), so "
             'that no energy is conserved: closure="full" has one'
         )
     fields = _Fields(closure)
-    sums = (fields.kinetic(n) + fields.elastic(n) for n in range(closure.order - 1))
-    return fields.algebra, [fields.algebra.by_parts(e, fields.k + 1) for e in sums]
+    algebra = closure.solution.algebra
+    densities = []
+    for n in range(closure.model.order - 1):
+        density = fields.kinetic(n) + fields.elastic(n)
+        densities.append(algebra.by_parts(density, algebra.k + 1))
+    return densities
 
 
 class _Fields:
-    """Velocities and strains of a closure as series, in an algebra with s_0 = u_τ/p^{(k+1)/2}."""
+    """Velocities and strains of a closure as series in D.
+
+    S : the series of each field w_i = φ + D φ_x S_i.
+    velocities : the terms of each ∂_τ w_i, divided by p^{(k+1)/2}.
+    forces : the forces of the contacts.
+    """
 
     def __init__(self, closure: Closure) -> None:
-        model, old = closure.model, closure.algebra
-        self.algebra = algebra = model.algebra(old.weight, velocity=True, rest=True)
-        self.k, self.mu, self.c = model.elements(algebra)
-
-        def series(terms: Iterable[fmpq_mpoly], exponent: fmpq_mpoly) -> GradedSeries:
-            return GradedSeries(
-                algebra, exponent, [algebra.embed(term, old) for term in terms]
-            )
-
-        E = series(closure.acceleration, self.k)
-        self.S = [series(row, algebra.one) for row in closure.fields]
-        orders = range(1, closure.order - 1)
-        # ∂_τ w_i = φ_τ + D ∂_τ (φ_x S_i)
-        self.velocities = [
-            [algebra.s[0], *(algebra.dt(row, E, n) for n in orders)] for row in self.S
-        ]
-        self.forces = [Force(algebra, self.k) for _ in self.S]
+        solution = closure.solution
+        self.algebra = algebra = solution.algebra
+        E = GradedSeries(algebra, algebra.k, solution.acceleration)
+        self.S = []
+        self.velocities = []
+        self.forces = []
+        orders = range(1, closure.model.order - 1)
+        for terms in solution.fields:
+            S = GradedSeries(algebra, algebra.one, terms)
+            self.S.append(S)
+            # ∂_τ w_i = φ_τ + D ∂_τ (φ_x S_i)
+            self.velocities.append([algebra.s[0], *(S.dt(E, n) for n in orders)])
+            self.forces.append(Force(algebra))
         for n in orders:
-            for force, share, strain in zip(
-                self.forces, self.c, self._strains(n), strict=True
-            ):
+            strains = zip(self.forces, algebra.c, self._strains(n), strict=True)
+            for force, share, strain in strains:
                 force.append(strain / share)  # without a remainder
 
     def _strains(self, n: int) -> list[fmpq_mpoly]:
         """Coefficients of D^n in (w_{i+1} - w_i)/(D p), i < P; w_P is w_0 of the next cell."""
         S, P = self.S, len(self.S)
-        jet = self.algebra.r[n] * fmpq(P ** (n + 1), factorial(n + 1))
-        last = jet + S[0].increment(P, n) + S[0][n] - S[-1][n]
-        return [*(after[n] - before[n] for before, after in pairwise(S)), last]
+        strains = [after[n] - before[n] for before, after in pairwise(S)]
+        next_cell = S[0][n] + self.algebra.shift(P, n) + S[0].increment(P, n)
+        return [*strains, next_cell - S[-1][n]]
 
     def kinetic(self, n: int) -> fmpq_mpoly:
         """Coefficient of D^n in the kinetic energy ½ Σ m̂_i (∂_τ w_i)², divided by p² F′."""
         total = self.algebra.zero
-        for mu, row in zip(self.mu, self.velocities, strict=True):
+        for mu, velocity in zip(self.algebra.mu, self.velocities, strict=True):
             for j in range(n + 1):
-                total = total + mu * row[j] * row[n - j] / 2
+                total = total + mu * velocity[j] * velocity[n - j] / 2
         return total
 
     def elastic(self, n: int) -> fmpq_mpoly:
         """Coefficient of D^n in Σ C_i W(p (1 + X_i)) / P, divided by p² F′; 0 for n = 0."""
-        if n == 0:
-            return self.algebra.zero
         total = self.algebra.zero
-        for c, force in zip(self.c, self.forces, strict=True):
+        if n == 0:
+            return total
+        for c, force in zip(self.algebra.c, self.forces, strict=True):
             total = total + c * force.work(n)
-        # The rest of `work` is F(p) Σ C_i p X_i / P = F(p) ∂_x Y, by parts -p F′ r_1 Y, with
-        # Y = Σ_j (PD∂_x)^j/(j+1)! w_0 - φ.
-        P, r = len(self.c), self.algebra.r
-        Y = r[n - 1] * fmpq(P**n, factorial(n + 1))
+        # The rest of `work` is F(p) Σ C_i p X_i / P = F(p) ∂_x Y / P, by parts -p F′ r_1 Y / P,
+        # with Y = Σ_j P (PD∂_x)^j/(j+1)! w_0 - Pφ.
+        P, r = len(self.S), self.algebra.r
+        Y = r[n - 1] * taylor(P, n + 1)
         for j in range(n):
-            Y = Y + self.S[0].dx(n - 1 - j, j) * fmpq(P**j, factorial(j + 1))
-        return total / P - r[1] * Y
+            Y = Y + self.S[0].dx(n - 1 - j, j) * taylor(P, j + 1)
+        return (total - r[1] * Y) / P

@@ -14,28 +14,29 @@ replaces u_x^{k-1}, and coefficients hold φ_2, φ_3, … (`lwa.law`). Optical b
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar
 
 import sympy as sp
 
+from lwa.algebra.jets import Jet
 from lwa.base import latex
-from lwa.base.exact import InputError, power
+from lwa.base.exact import InputError, power, shorten
 from lwa.closure.consistency import OfClosure
 from lwa.equation.energy import conservative, energy
-from lwa.equation.terms import ENERGY, Jet, Terms, by_order, terms
-from lwa.wave.traveling import TravelingWave
-
-_POWER_LAW = (
-    "u_x^(k-1) u_xx",
-    "G u_x^(k-3) u_xx^3 + H u_x^(k-2) u_xx u_xxx + I u_x^(k-1) u_4x",
+from lwa.equation.terms import (
+    ENERGY,
+    Terms,
+    by_order,
+    latex_by_order,
+    terms,
 )
-_OTHER_LAW = "F' u_xx", "G F' u_x^-2 u_xx^3 + H F' u_x^-1 u_xx u_xxx + I F' u_4x"
+from lwa.wave.compact import CompactWave
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class PDE(OfClosure):
     """The wave equation of a closure (`lwa.equation.pde` states its form)."""
 
@@ -52,7 +53,7 @@ class PDE(OfClosure):
         # w = λu strains each contact by (λ - 1)u, and 1 - λ = M/m2.
         m1, m2 = self.cell.masses
         stretch = power(self.cell.mass / m2, self.k)
-        return sp.sqrt(sp.Add(*self.cell.stiffnesses) * stretch / m1)
+        return power(sp.Add(*self.cell.stiffnesses) * stretch / m1, sp.S.Half)
 
     @cached_property
     def coefficients(self) -> Mapping[int, Terms]:
@@ -61,9 +62,12 @@ class PDE(OfClosure):
         The leading term u_x^{k-1} u_xx (or -u^k) is left out.
         """
         base = self.closure.model.base
-        sign = 1 if base else -1
-        acceleration = enumerate(self.closure.acceleration)
-        return {n: terms(self.closure, sign * E) for n, E in acceleration if n > base}
+        sign = 1 if self.acoustic else -1
+        acceleration = self.closure.solution.acceleration
+        found = {}
+        for n in range(base + 1, len(acceleration)):
+            found[n] = terms(self.closure, sign * acceleration[n])
+        return found
 
     LETTERS: ClassVar[Mapping[str, Jet]] = {
         "G": Jet(((2, 3),)),
@@ -75,97 +79,36 @@ class PDE(OfClosure):
     @property
     def third_order(self) -> dict[str, sp.Expr]:
         """Mapping from "G", "H", "I" to their values; {} below order 4 or on the optical branch."""
-        known = self.acoustic and self.closure.order >= 4
-        return (
-            {letter: self._at_third_order(letter) for letter in self.LETTERS}
-            if known
-            else {}
-        )
+        if not self.acoustic or self.closure.model.order < 4:
+            return {}
+        values = {}
+        for letter, jet in self.LETTERS.items():
+            coefficient = self.coefficients[3].get(jet, sp.S.Zero)
+            values[letter] = coefficient * self.cell.spacing**2
+        return values
 
     def _at_third_order(self, letter: str) -> sp.Expr:
-        if not self.acoustic or self.closure.order < 4:
+        if not self.third_order:
             raise InputError(
-                f"order is {self.closure.order}: G, H and I stand at D^(k+3), from order 4 on, on "
-                "the acoustic branch"
+                f"order is {self.closure.model.order}: G, H and I stand at D^(k+3), from order 4 "
+                "on, on the acoustic branch"
             )
-        return (
-            self.coefficients[3].get(self.LETTERS[letter], sp.Integer(0))
-            * self.cell.spacing**2
-        )
+        return self.third_order[letter]
 
-    @cached_property
+    @property
     def G(self) -> sp.Expr:
         """The coefficient of u_x^{k-3} u_xx^3, D² included."""
         return self._at_third_order("G")
 
-    @cached_property
+    @property
     def H(self) -> sp.Expr:
         """The coefficient of u_x^{k-2} u_xx u_xxx, D² included."""
         return self._at_third_order("H")
 
-    @cached_property
+    @property
     def I(self) -> sp.Expr:
         """The coefficient of u_x^{k-1} u_xxxx, D² included."""
         return self._at_third_order("I")
-
-    def latex_rows(self, most: int | None = None) -> list[str]:
-        """LaTeX of the equation to D^{k+most} (all orders if None), and of G, H, I."""
-        letters = self.third_order
-        leading = "u_{x}^{k-1}" if self.law.homogeneous else "F'"
-        parts = [f"{leading} u_{{xx}}" if self.acoustic else "-u^{k}"]
-        for n, of_order in self.coefficients.items():
-            if n == 3 and letters:
-                parts += [
-                    f"{name} {of_order.latex(jet)}"
-                    for name, jet in self.LETTERS.items()
-                ]
-            elif of_order and most is not None and n > most:
-                parts.append(r"\cdots")
-                break
-            elif of_order:
-                D = latex.power(self.cell.spacing, n - self.closure.model.base)
-                parts.append(rf"{D} \Bigl({of_order.latex_rows()[0]}\Bigr)")
-        rows = [latex.row(letter, value) for letter, value in letters.items()]
-        return [rf"u_{{\tau\tau}} = {' + '.join(parts)}", *rows]
-
-    def _repr_latex_(self) -> str:
-        return latex.display(self.latex_rows(3))
-
-    @property
-    def heading(self) -> str:
-        """Format string for the heading of an order n, such as D^(k+{})."""
-        if not self.law.homogeneous:
-            return "order {}"
-        return "D^(k+{})" if self.acoustic else "D^{}"
-
-    def __str__(self) -> str:
-        """The equation as text, with G, H, I and the terms of the other orders below it."""
-        third, order = self.third_order, self.closure.order
-        if not self.acoustic:
-            lines = [
-                "u_ττ = -u^k + …   (contacts that also pull: the odd law |δ|^(k-1) δ)"
-            ]
-        elif order == 1:
-            lines = [
-                "the wave equation starts at D^(k+1), that is at order 2 of the ansatz"
-            ]
-        else:
-            parts = list(
-                (_POWER_LAW if self.law.homogeneous else _OTHER_LAW)[
-                    : 2 if third else 1
-                ]
-            )
-            parts += ["…"] * (order > (4 if third else 2))
-            lines = [f"u_ττ = {' + '.join(parts)}"]
-            lines += [f"  {letter} = {value}" for letter, value in third.items()]
-        lines += by_order(
-            {n: c for n, c in self.coefficients.items() if not (third and n == 3)},
-            self.heading,
-        )
-        vanishing = ", ".join(map(self.heading.format, self.vanishing))
-        return "\n".join(
-            [*lines, *[f"  vanishing identically: {vanishing}"] * bool(vanishing)]
-        )
 
     @property
     def vanishing(self) -> tuple[int, ...]:
@@ -177,30 +120,87 @@ class PDE(OfClosure):
         """True if all orders, D^{k+3} at least, are ∂_x of a flux: ∫ u_τ dx is conserved."""
         if not self.acoustic:
             return False
-        return conservative(
-            self.closure if self.closure.order >= 4 else self.closure.anew(order=4)
-        )
+        model = self.closure.model
+        longer = replace(model, order=max(model.order, 4))
+        return conservative(replace(self.closure, model=longer))
 
     @cached_property
     def energy(self) -> Mapping[int, Terms]:
-        """Mapping from n ≤ order - 2 to the terms e_n / u_x^{k+1} of the energy density Σ D^n e_n.
+        """Mapping from n ≤ order - 2 to the terms e_n of the conserved energy density.
 
-        This is the energy of the chain in the slaved fields (`lwa.equation.energy`). To the order
-        of the closure it is conserved, in every field. e_0 = u_τ²/2 + u_x^{k+1}/(k(k+1)). For a
-        law that is no power the terms are e_n / (u_x² F′), and e_0 lacks W(u_x), W′ = F.
+        The density is W(u_x) + Σ D^n e_n, where W′ = F(u_x) in the units of the equation:
+        W = u_x^{k+1}/(k(k+1)) for a power, e_0 = u_τ²/2. It is the energy of the chain in the
+        slaved fields (`lwa.equation.energy`), conserved to the order of the closure in every field.
+        Coefficients are those of u_x² F′(u_x) times a jet.
 
         Raises `lwa.InputError` on the optical branch, and for a closure that leaves a defect.
         """
-        algebra, densities = energy(self.closure)
-        rows = {
-            n: terms(self.closure, e, ENERGY, algebra=algebra)
-            for n, e in enumerate(densities)
-        }
-        if densities and self.law.homogeneous:
-            k = self.closure.model.ring.exponent(algebra.context)
-            first = k * (k + 1) * densities[0] + 1
-            rows[0] = terms(self.closure, first, ENERGY, self.k * (self.k + 1), algebra)
-        return rows
+        densities = energy(self.closure)
+        return {n: terms(self.closure, e, ENERGY) for n, e in enumerate(densities)}
+
+    def _summands(self, write: Callable[[Terms, Jet], str]) -> list[str]:
+        """The leading term and those of G, H, I, written by `Terms.text` or `Terms.latex`."""
+        notation = Terms(self.closure.model, {})
+        if not self.acoustic:
+            return [f"-{write(notation, Jet(()))}"]
+        summands = [write(notation, Jet(((2, 1),)))]
+        for letter in self.third_order:
+            summands.append(f"{letter} {write(notation, self.LETTERS[letter])}")
+        return summands
+
+    @property
+    def _without_letters(self) -> dict[int, Terms]:
+        """The terms by their orders, but for those of G, H and I."""
+        rest = dict(self.coefficients)
+        if self.third_order:
+            del rest[3]
+        return rest
+
+    def line(self) -> str:
+        """The equation as one line of text, and G, H, I, cut if they are long."""
+        summands = self._summands(Terms.text)
+        if any(self._without_letters.values()):
+            summands.append("…")
+        values = [f"{name} = {shorten(x)}" for name, x in self.third_order.items()]
+        return "; ".join([f"u_ττ = {' + '.join(summands)}", *values])
+
+    def __repr__(self) -> str:
+        return f"PDE({self.closure!r}: {self.line()})"
+
+    @property
+    def heading(self) -> str:
+        """Format string for the heading of an order n, such as D^(k+{})."""
+        if not self.law.homogeneous:
+            return "order {}"
+        return "D^(k+{})" if self.acoustic else "D^{}"
+
+    def __str__(self) -> str:
+        """The equation as text, with G, H, I and the terms of the other orders below it."""
+        lines = [f"u_ττ = {' + '.join(self._summands(Terms.text))}"]
+        if any(self._without_letters.values()):
+            lines[0] += " + …"
+        if not self.acoustic:
+            lines.append("  (contacts that also pull: the odd law |δ|^(k-1) δ)")
+        lines += [f"  {letter} = {value}" for letter, value in self.third_order.items()]
+        lines += by_order(self._without_letters, self.heading)
+        if self.vanishing:
+            orders = ", ".join(map(self.heading.format, self.vanishing))
+            lines.append(f"  vanishing identically: {orders}")
+        return "\n".join(lines)
+
+    def latex_rows(self, most: int | None = None) -> list[str]:
+        """LaTeX of the equation to D^{k+most} (all orders if None), of τ, and of G, H, I."""
+        base = self.closure.model.base
+        summands = self._summands(Terms.latex)
+        summands += latex_by_order(self._without_letters, self.cell.spacing, base, most)
+        return [
+            rf"u_{{\tau\tau}} = {' + '.join(summands)}",
+            rf"\tau = {latex.expression(self.time_scale)} \, t",
+            *latex.rows(self.third_order),
+        ]
+
+    def _repr_latex_(self) -> str:
+        return latex.display(self.latex_rows(3))
 
     def at(self, **values: Any) -> PDE:
         """The equation for these values of the named symbols, and of ω = m2/m1 by ``omega``.
@@ -209,7 +209,7 @@ class PDE(OfClosure):
         """
         return PDE(self.closure.at(**values))
 
-    def traveling_wave(self) -> TravelingWave:
+    def traveling_wave(self) -> CompactWave:
         """The compact wave of the equation truncated at D^{k+3}, in closed form.
 
         Raises `lwa.NoSolitaryWave` for numbers without a wave, and `lwa.InputError` if the closed
@@ -221,7 +221,7 @@ class PDE(OfClosure):
                 "the compact wave in closed form belongs to a power law: `lwa.loaded_wave` "
                 "(--background P0) has the waves of any law"
             )
-        wave = TravelingWave(cell=self.cell, k=self.k, G=self.G, H=self.H, I=self.I)
+        wave = CompactWave(cell=self.cell, k=self.k, G=self.G, H=self.H, I=self.I)
         if 2 not in self.vanishing:
             raise InputError(
                 "unequal stiffnesses leave a term at D^(k+2): no wave in closed form"

@@ -16,7 +16,7 @@ import sympy as sp
 from flint import fmpq, fmpq_mpoly
 
 from lwa.algebra.model import Model
-from lwa.algebra.rational import to_flint, to_sympy
+from lwa.algebra.ring import to_flint, to_sympy
 from lwa.base.progress import Progress
 from lwa.cell import Cell
 from lwa.expansion.pulse import (

@@ -31,7 +31,7 @@ from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from sympy import bernoulli
 
 from lwa.algebra.model import Model
-from lwa.algebra.rational import to_flint
+from lwa.algebra.ring import to_flint
 from lwa.base.progress import Progress
 from lwa.expansion.pulse import Series, by_degree, exp_term, log_term
 from lwa.linear.bloch import Bloch

@@ -21,8 +21,6 @@ from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from lwa.algebra.model import Model
 
-BRANCHES = ("acoustic", "optical")
-
 Polynomial = list[fmpq_mpoly]
 """Coefficients of a truncated polynomial in Ω²."""
 
@@ -31,11 +29,13 @@ class Bloch:
     """The dispersion relation of a cell and the series of its branches, over a ring Q[k, m̂, C]."""
 
     def __init__(self, model: Model) -> None:
-        context = fmpq_mpoly_ctx.get(model.ring.names, Ordering.degrevlex)
+        ring = model.ring
+        context = fmpq_mpoly_ctx.get(ring.names, Ordering.degrevlex)
         self.P = model.cell.size
-        self.mu = model.ring.masses.elements(context)
-        self.c = model.ring.contacts.elements(context)
-        self.one, self.zero = context.constant(1), context.constant(0)
+        self.mu = ring.masses.elements(context)
+        self.c = ring.contacts.elements(context)
+        self.one = context.constant(1)
+        self.zero = context.constant(0)
 
     def trace(self, most: int) -> Polynomial:
         """Coefficients t_0 … t_P (or t_most) of the trace Σ t_m Ω^{2m} of a cell's matrix.
@@ -43,9 +43,8 @@ class Bloch:
         The matrix maps (a, f) of a cell to the next cell's; its diagonal is a of (1, 0) and f of
         (0, 1), polynomials in Ω² as lists of coefficients.
         """
-        powers = range(min(self.P, most) + 1)
-        one = [self.one, *(self.zero for _ in powers[1:])]
-        none = [self.zero for _ in powers]
+        none = [self.zero] * (min(self.P, most) + 1)
+        one = [self.one, *none[1:]]
         a, _ = self._carried(one, none)
         _, f = self._carried(none, one)
         return [a_m + f_m for a_m, f_m in zip(a, f, strict=True)]
@@ -53,8 +52,8 @@ class Bloch:
     def _carried(self, a: Polynomial, f: Polynomial) -> tuple[Polynomial, Polynomial]:
         """Displacement and force (a, f) in the next cell, by the transfer matrix of a cell."""
         for mu, c in zip(self.mu, self.c, strict=True):
-            inertia = [self.zero, *(self.P * mu * a_m for a_m in a[:-1])]
-            f = [f_m - i_m for f_m, i_m in zip(f, inertia, strict=True)]
+            shifted = [self.zero, *a[:-1]]  # Ω² a
+            f = [f_m - self.P * mu * a_m for f_m, a_m in zip(f, shifted, strict=True)]
             a = [a_m + c * f_m for a_m, f_m in zip(a, f, strict=True)]
         return a, f
 
@@ -72,20 +71,17 @@ class Bloch:
         P = self.P
         trace = self.trace(order)
         omega2 = [self.zero]
-        powers = [
-            [],
-            omega2,
-            *([self.zero] for _ in trace[2:]),
-        ]  # powers[m] is that of Ω^{2m}
+        powers = {1: omega2}  # powers[m] is that of Ω^{2m}
         for n in range(1, order + 1):
             # (2 - 2 cos Pκ)/P² = Σ -2 (-1)^n P^{2n-2} κ^{2n}/(2n)!
-            following = self.one * fmpq(
-                -2 * (-1) ** n * P ** (2 * n - 2), factorial(2 * n)
-            )
+            cosine = fmpq(-2 * (-1) ** n * P ** (2 * n - 2), factorial(2 * n))
+            following = self.one * cosine
             for m in range(2, len(trace)):
-                products = (omega2[j] * powers[m - 1][n - j] for j in range(1, n))
-                powers[m].append(sum(products, self.zero))
-                following = following + trace[m] * powers[m][n] / P**2
+                product = self.zero
+                for j in range(1, n):
+                    product = product + omega2[j] * powers[m - 1][n - j]
+                powers.setdefault(m, [self.zero]).append(product)
+                following = following + trace[m] * product / P**2
             omega2.append(following)
         return omega2
 

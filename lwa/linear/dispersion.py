@@ -12,7 +12,8 @@ relation and series, `lwa.linear.bands` computes frequencies and group velocitie
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import comb
 from typing import TYPE_CHECKING, Any
@@ -22,7 +23,7 @@ from flint import fmpq_mpoly
 
 from lwa.algebra.model import Model
 from lwa.base import latex
-from lwa.base.exact import InputError, demand_numbers, integer, positive
+from lwa.base.exact import InputError, demand_numbers, integer, positive, shorten
 from lwa.base.frozen import Value
 from lwa.cell import Cell, exponent, read_cell, substitution
 from lwa.law import ContactLaw, Power, for_cell
@@ -37,16 +38,22 @@ MOST_TERMS = 200_000
 """Terms of the longest series (estimate of `Dispersion._length`); it takes about half a minute."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Dispersion(Value):
     """The dispersion relation Ω(κ) of the linear chain with a cell's masses and strain shares.
 
     Ω is the frequency in τ times D and κ the wavenumber times D. In time t the frequency is
     Ω/D · `Cell.time_scale`, times p^{(k-1)/2} under a mean strain p.
 
-    k : exponent of the contact law, which matters for unequal contacts only; 1 makes the
+    Parameters
+    ----------
+    cell : Cell
+    k : number or symbol
+        Exponent of the contact law, which matters for unequal contacts only; 1 makes the
         stiffnesses spring constants.
 
+    Examples
+    --------
     >>> m1, m2 = sp.symbols("m1 m2", positive=True)
     >>> Dispersion(Cell((m1, m2))).acoustic(4)
     {2: 1, 4: -(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)}
@@ -59,6 +66,12 @@ class Dispersion(Value):
         read_cell(self.cell)
         object.__setattr__(self, "k", exponent(self.k))
 
+    def __repr__(self) -> str:
+        relation = "Ω² = κ² + …"
+        with suppress(InputError):  # too many symbols for a term at κ⁴
+            relation = f"Ω² = κ² + ({shorten(self.acoustic(4)[4])}) κ⁴ + …"
+        return f"Dispersion({self.cell!r}, k={self.k}: {relation})"
+
     def at(self, **values: Any) -> Dispersion:
         """Substitute values for symbols, and for ω = m2/m1, as `lwa.Cell.at`."""
         new = substitution(values, self.cell, self.k)
@@ -68,9 +81,9 @@ class Dispersion(Value):
         """LaTeX of Ω²(κ) to κ^order, of the acoustic and of a dimer's optical branch."""
         rows = []
         for branch, series in self.series(order).items():
-            terms = (
-                (c, latex.power(_KAPPA, n) if n else "") for n, c in series.items()
-            )
+            terms = []
+            for n, coefficient in series.items():
+                terms.append((coefficient, latex.power(_KAPPA, n) if n else ""))
             letter = rf"\Omega_{{\mathrm{{{branch}}}}}^{{2}}"
             rows.append(rf"{letter} = {latex.total(terms)} + \cdots")
         return rows
@@ -78,17 +91,15 @@ class Dispersion(Value):
     def series(self, order: int = 4) -> dict[str, dict[int, sp.Expr]]:
         """Mapping from "acoustic", and for dimers "optical", to the coefficients of Ω²(κ)."""
         series = {"acoustic": self.acoustic(order)}
-        return series | (
-            {"optical": self.optical(order)} if self.cell.size == 2 else {}
-        )
+        if self.cell.size == 2:
+            series["optical"] = self.optical(order)
+        return series
 
     @cached_property
     def trace(self) -> dict[int, sp.Expr]:
         """Mapping m → t_m, m = 0 … P, in the dispersion relation 2 cos(Pκ) = Σ t_m Ω^{2m}."""
-        return {
-            m: self._expression(t)
-            for m, t in enumerate(self._bloch.trace(self.cell.size))
-        }
+        trace = self._bloch.trace(self.cell.size)
+        return {m: self._expression(t) for m, t in enumerate(trace)}
 
     def acoustic(self, order: int = 4) -> dict[int, sp.Expr]:
         """Mapping from n = 2, 4, … ≤ ``order`` to the coefficient of κ^n in the acoustic Ω²."""
@@ -101,10 +112,11 @@ class Dispersion(Value):
             raise InputError(
                 f"the optical series needs a cell of 2 masses, not {self.cell.size}"
             )
-        acoustic = self.acoustic(order)
-        return {0: 1 / self._expression(self._bloch.Pi)} | {
-            n: -c for n, c in acoustic.items()
-        }
+        # The two roots have the sum 1/Π.
+        series = {0: 1 / self._expression(self._bloch.Pi)}
+        for n, coefficient in self.acoustic(order).items():
+            series[n] = -coefficient
+        return series
 
     @cached_property
     def I(self) -> sp.Expr:
@@ -123,11 +135,8 @@ class Dispersion(Value):
         return Bloch(self._model)
 
     def _expression(self, polynomial: fmpq_mpoly) -> sp.Expr:
-        count = len(self._model.ring.names)
-        terms = [(tuple(map(int, e[:count])), c) for e, c in polynomial.terms()]
-        return sp.together(
-            self._model.ring.expression(terms)
-        )  # compliances enter as 1/A
+        expression = self._model.ring.expression(list(polynomial.terms()))
+        return sp.together(expression)  # compliances enter as 1/A
 
     def _length(self, order: Any) -> int:
         """Return the number of powers of κ² up to κ^order; raise `lwa.InputError` for too many.
@@ -135,14 +144,13 @@ class Dispersion(Value):
         The coefficient of κ^{2n} has the degree 2n - 2 in the masses and in the compliances, and
         comes from about n² products.
         """
-        highest = integer(order, "order", 1)
-        n = highest // 2
+        n = integer(order, "order", 1) // 2
         terms = n * n
         for part in (self._model.ring.masses, self._model.ring.contacts):
             terms *= comb(2 * max(n, 1) - 2 + len(part.names), len(part.names))
         if terms > MOST_TERMS:
             raise InputError(
-                f"order is {highest}: give numbers for the cell, or a lower order"
+                f"order is {order}: give numbers for the cell, or a lower order"
             )
         return n
 
@@ -153,11 +161,9 @@ class Dispersion(Value):
 
         from lwa.linear.bands import Bands
 
-        weights = (*self.cell.fractions, *self.cell.shares(self.k))
-        demand_numbers(
-            set().union(*(w.free_symbols for w in weights)), "bands want numbers"
-        )
-        fractions, shares = np.array([float(w) for w in weights]).reshape(2, -1)
+        weights = sp.Tuple(*self.cell.fractions, *self.cell.shares(self.k))
+        demand_numbers(weights.free_symbols, "bands want numbers")
+        fractions, shares = np.array(list(map(float, weights))).reshape(2, -1)
         if not (np.all(fractions > 0) and np.all(shares > 0)):
             raise InputError(
                 "masses or compliances differ by more than the range of a float"
@@ -165,7 +171,7 @@ class Dispersion(Value):
         return Bands(fractions, shares)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class LoadedChain(Value):
     """The linear chain about a static load, the same force F0 in all contacts.
 
@@ -173,8 +179,17 @@ class LoadedChain(Value):
     is a spring of the constant A_i F′(δ_i), A_i F(δ_i) = F0; for A δ^k that is
     k A_i^{1/k} F0^{(k-1)/k}.
 
-    Raises `lwa.InputError` unless the load is positive, and for unlike contacts under a law that
-    is no power.
+    Parameters
+    ----------
+    cell : Cell
+    law : ContactLaw
+    precompression : positive number or symbol
+        The force F0.
+
+    Raises
+    ------
+    InputError
+        Unless the load is positive, and for unlike contacts under a law that is no power.
     """
 
     cell: Cell
@@ -186,50 +201,42 @@ class LoadedChain(Value):
         load = positive(self.precompression, "precompression")
         object.__setattr__(self, "precompression", load)
 
-    def latex_rows(self) -> list[str]:
-        constants = {
-            f"K_{{{i}}}": K for i, K in enumerate(self.spring_constants, start=1)
-        }
-        return latex.rows(
-            {"F_{0}": self.precompression} | constants | {"c_{0}": self.sound_speed}
+    def __repr__(self) -> str:
+        return (
+            f"LoadedChain({self.cell!r}, {self.law!r}, precompression={self.precompression}: "
+            f"sound_speed={shorten(self.sound_speed)})"
         )
+
+    def latex_rows(self) -> list[str]:
+        values = {"F_{0}": self.precompression}
+        for i, K in enumerate(self.spring_constants, start=1):
+            values[f"K_{{{i}}}"] = K
+        return latex.rows(values | {"c_{0}": self.sound_speed})
 
     @cached_property
     def spring_constants(self) -> tuple[sp.Expr, ...]:
         """The spring constants A_i F′(δ_i)."""
         constants = {}
-        for A in self.cell.stiffnesses:
-            if A not in constants:
-                delta = self.law.compression(Cell([1], [A]), self.precompression)
-                constants[A] = sp.powsimp(A * self.law.at(delta, 1))
+        for A in set(self.cell.stiffnesses):
+            delta = self.law.inverse(self.precompression / A)
+            constants[A] = sp.powsimp(A * self.law.at(delta, 1))
         return tuple(constants[A] for A in self.cell.stiffnesses)
 
     @cached_property
     def springs(self) -> Dispersion:
         """The dispersion of the chain of these springs, Ω(κ) in the theory's units."""
-        constants = (
-            sp.nsimplify(K, rational=True) if K.has(sp.Float) else K
-            for K in self.spring_constants
-        )
-        return Dispersion(Cell(self.cell.masses, tuple(constants), self.cell.spacing))
+        return Dispersion(replace(self.cell, stiffnesses=self.spring_constants))
 
     @cached_property
     def sound_speed(self) -> sp.Expr:
         """The speed dω/dq of long waves."""
-        return self.cell.spacing * self._rate
-
-    @property
-    def _rate(self) -> sp.Expr:
-        """The ratio ω/Ω, in s⁻¹ for a cell in SI."""
-        springs = self.springs.cell
-        return springs.time_scale(1) / springs.spacing
+        return self.springs.cell.time_scale(1)
 
     @cached_property
     def bands(self) -> Bands:
         """The bands in floats, in the units of the cell; raises `lwa.InputError` for symbols."""
         D = self.cell.spacing
+        rate = self.sound_speed / D  # ω/Ω, in s⁻¹ for a cell in SI
         length = sp.S.One if D.is_Symbol else D
-        demand_numbers(
-            self._rate.free_symbols | length.free_symbols, "bands want numbers"
-        )
-        return self.springs.bands._replace(rate=float(self._rate), length=float(length))
+        demand_numbers(rate.free_symbols | length.free_symbols, "bands want numbers")
+        return replace(self.springs.bands, rate=float(rate), length=float(length))

@@ -51,7 +51,8 @@ class Background(Value):
             raise InputError(
                 f"background is {shorten(self.p0)}: under a power law it must not be negative"
             )
-        self.law.check_strain(self.p0, self.cell)
+        if not self.p0.is_zero:
+            self.law.check_strain(self.p0, self.cell)
 
     def latex_rows(self) -> list[str]:
         energy = "V_{s}^{2} v^{2} - 2 [W(p_{0} + v) - W(p_{0}) - F(p_{0}) v]"

@@ -37,7 +37,7 @@ from lwa.base.files import items
 from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.law import ContactLaw, Power, for_cell
-from lwa.linear.bands import Network
+from lwa.linear.network import Bond, Network
 from lwa.loaded.statics import Statics
 
 _NO_LOAD = (
@@ -81,7 +81,7 @@ class Link(Value):
         """The compression δ at which the link pushes with this force along the lattice."""
         if force.is_zero:
             return sp.S.Zero
-        return self.law.compression(Cell((1,)), force / (self.factor * self.cosine))
+        return self.law.inverse(force / (self.factor * self.cosine))
 
 
 @dataclass(frozen=True)
@@ -256,14 +256,14 @@ class Lattice(Value):
         compiled = (tuple(function_of(x, f) for f in triple) for triple in forces)
         masses = np.array([float(m) for m in self.masses])
         network = Network(
-            self.size, tuple((x.i, x.j, float(x.cosine)) for x in self.links)
+            self.size, tuple(Bond(x.i, x.j, float(x.cosine)) for x in self.links)
         )
         return Statics(network, masses, tuple(compiled))
 
     @cached_property
     def _network(self) -> Network:
         """The links without their angles."""
-        return Network(self.size, tuple((x.i, x.j, 1.0) for x in self.links))
+        return Network(self.size, tuple(Bond(x.i, x.j) for x in self.links))
 
     def _check_paths(self) -> None:
         """Raise `lwa.InputError` unless the links join all particles and carry a load."""

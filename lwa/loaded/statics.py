@@ -13,8 +13,8 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError
-from lwa.linear.bands import Network, solved
 from lwa.linear.bloch import dispersion_of_chain
+from lwa.linear.network import Network, solved
 
 _MOST = 100  # steps of Newton's method; strongly unlike links take ten
 _ROUNDING = 1e-14  # of the mean compression: the step after the last one is exact

@@ -152,7 +152,7 @@ class LoadedWave(Ends):
         return [*laws, *latex.rows(rows | {"B": self.strain, latex.SPEED: self.speed})]
 
     def at(self, **values: Any) -> LoadedWave:
-        """Substitute values for symbols of a chain, as `lwa.TravelingWave.at`."""
+        """Substitute values for symbols of a chain, as `lwa.CompactWave.at`."""
         if isinstance(self.chain, Lattice):
             raise InputError("the symbols of a lattice are given where it is made")
         chain, law, ahead, peak = substituted(

@@ -1,11 +1,11 @@
 """The compact wave's closed forms in float64: NumPy functions of arrays of k and ω = m2/m1.
 
-Letters as in `lwa.wave.closed`; lengths are in units of D. The rational functions (G+H+I)/D² and
-(V²/B^{k-1} - 1)/(k-1) of k and the masses are compiled with coefficients of the masses that are
-factored in k, so that a coefficient vanishes where it should. The masses are scaled by a power of
-two: no power overflows, and nothing is rounded. Logarithms and powers near k = 1 come by log1p and
-expm1. Measured over random k and ω, relative errors are below 1e-11; next to the edge of the domain
-of waves, where G + H + I or V² vanishes, the last digit of k or ω changes the results by more.
+Letters as in `lwa.wave.compact`; lengths are in units of D. The rational functions (G+H+I)/D² and
+(V²/B^{k-1} - 1)/(k-1) of k and the masses are compiled as polynomials in the masses, with
+coefficients that are factored in k, so that a coefficient vanishes where it should. Logarithms and
+powers near k = 1 come by log1p and expm1. Relative errors are below 1e-11; next to the edge of the
+domain of waves, where G + H + I or V² vanishes, the last digit of k or ω changes the results by
+more.
 """
 
 from __future__ import annotations
@@ -13,94 +13,130 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from lwa.algebra.rational import factored
 from lwa.base.arrays import Array, finite
 from lwa.base.exact import InputError, one_of
 from lwa.base.frozen import NoSolitaryWave, Value, strain_power
-from lwa.wave.closed import CompactWave
 
 LARGEST = 1e150
 """Largest mass ratio: V² holds the square of its reciprocal, the least that a double has."""
+
+Missing = Literal["raise", "nan"]
+"""What is done where there is no wave: raise `lwa.NoSolitaryWave`, or return NaN there."""
+
+MISSING: tuple[Missing, ...] = get_args(Missing)
+
+# |V²/B^{k-1} - 1| up to which log1p of this difference has more digits than the logarithm
+_NEAR_ONE = 0.5
+
+
+class Domain(NamedTuple):
+    """Values of the closed forms at points (k, ω), NaN where there is no wave.
+
+    Parameters
+    ----------
+    k : Array
+        The exponents.
+    coefficient_sum : Array
+        (G + H + I)/D².
+    speed_factor : Array
+        V²/B^{k-1}.
+    excess : Array
+        (V²/B^{k-1} - 1)/(k - 1).
+    """
+
+    k: Array
+    coefficient_sum: Array
+    speed_factor: Array
+    excess: Array
 
 
 @dataclass(frozen=True)
 class NumericWave(Value):
     """β, width, FWHM, speed and amplitude of an N:1 dimer's wave, for arrays of k and ω.
 
-    wave : a wave with the symbol k for its exponent and two symbols m1, m2 for its masses.
-    missing : "raise" `lwa.NoSolitaryWave`, with the first such point, where there is no wave
-        (k ≤ 1, G + H + I ≤ 0, V² ≤ 0), or return "nan" at these points.
+    The arguments k and ω of the methods broadcast against each other.
 
-    k and ω broadcast against each other. Raises `lwa.InputError` for any other wave, and for ω
-    beyond 1e±150.
+    Parameters
+    ----------
+    k : Symbol
+        The exponent.
+    masses : tuple of Symbol
+        Masses of the cell, two different symbols.
+    coefficient_sum, speed_factor : Expr
+        (G + H + I)/D² and V²/B^{k-1}, rational functions of k and the masses.
+    missing : {"raise", "nan"}
+        Raise `lwa.NoSolitaryWave` with the first point without a wave (k ≤ 1, G + H + I ≤ 0,
+        V² ≤ 0), or return NaN at these points.
 
+    Raises
+    ------
+    InputError
+        For another wave, and for ω beyond 1e±150.
+
+    Examples
+    --------
     >>> from lwa import Dimer, homogenize
     >>> homogenize(Dimer("m1", "m2")).pde.traveling_wave().numeric().width(1.5, [1.0, 0.2733])
     array([4.96729413, 7.59281573])
     """
 
-    wave: CompactWave
-    missing: Literal["raise", "nan"] = "raise"
+    k: sp.Expr
+    masses: tuple[sp.Expr, ...]
+    coefficient_sum: sp.Expr
+    speed_factor: sp.Expr
+    missing: Missing = "raise"
 
     def __post_init__(self) -> None:
-        one_of(self.missing, ("raise", "nan"), "missing")
-        free = self._symbols
-        given = set(
-            self.wave.coefficient_sum.free_symbols | self.wave.speed_factor.free_symbols
-        )
-        if (
-            len(set(free)) != 3
-            or not all(x.is_Symbol for x in free)
-            or not given <= set(free)
-        ):
+        one_of(self.missing, MISSING, "missing")
+        symbols = {self.k, *self.masses}
+        held = self.coefficient_sum.free_symbols | self.speed_factor.free_symbols
+        named = all(x.is_Symbol for x in symbols)
+        if len(symbols) != 3 or not named or not held <= symbols:
             raise InputError(
                 "functions of (k, ω) need a symbol k and a cell of two masses that are symbols, "
                 "m1 and m2, with equal contacts"
             )
 
-    @property
-    def _symbols(self) -> tuple[sp.Expr, ...]:
-        """The symbol k and the distinct masses, in their order."""
-        return (self.wave.k, *dict.fromkeys(self.wave.cell.masses))
-
     @cached_property
     def _compiled(self) -> Callable[..., Any]:
         """(G+H+I)/D², V²/B^{k-1} and (V²/B^{k-1} - 1)/(k - 1) as functions of k and the masses."""
-        factor = self.wave.speed_factor
-        excess = factored((factor - 1) / (self.wave.k - 1))
-        masses = self._symbols[1:]
+        masses = tuple(dict.fromkeys(self.masses))
 
-        def by_masses(part: sp.Expr) -> sp.Expr:
-            terms = sp.Poly(part, *masses).terms()
-            return sp.Add(
-                *(sp.factor(c) * sp.prod(map(sp.Pow, masses, e)) for e, c in terms)
-            )
+        def by_masses(polynomial: sp.Expr) -> sp.Expr:
+            """The polynomial in the masses, with coefficients factored in k."""
+            total = sp.S.Zero
+            for powers, coefficient in sp.Poly(polynomial, *masses).terms():
+                monomial = sp.prod(map(sp.Pow, masses, powers))
+                total += sp.factor(coefficient) * monomial
+            return total
 
-        forms = [
-            by_masses(top) / by_masses(bottom)
-            for top, bottom in map(
-                sp.fraction, (self.wave.coefficient_sum, factor, excess)
-            )
-        ]
-        return sp.lambdify(self._symbols, forms, "numpy", cse=True)  # type: ignore[no-any-return]
+        forms = []
+        excess = sp.factor((self.speed_factor - 1) / (self.k - 1))
+        for value in (self.coefficient_sum, self.speed_factor, excess):
+            numerator, denominator = sp.fraction(value)
+            forms.append(by_masses(numerator) / by_masses(denominator))
+        compiled: Callable[..., Any] = sp.lambdify(
+            (self.k, *masses), forms, "numpy", cse=True
+        )
+        return compiled
 
     def beta(self, k: ArrayLike, omega: ArrayLike) -> Array:
         """The wavenumber β D = (k-1) / (2 √((G+H+I)/D²))."""
-        k, coefficient_sum, *_ = self._wave(k, omega)
-        return np.asarray((k - 1) / (2 * np.sqrt(coefficient_sum)))
+        at = self._domain(k, omega)
+        return np.asarray((at.k - 1) / (2 * np.sqrt(at.coefficient_sum)))
 
     def width(self, k: ArrayLike, omega: ArrayLike) -> Array:
         """The number π/(βD) of sites under the wave."""
         return np.pi / self.beta(k, omega)
 
     def fwhm(self, k: ArrayLike, omega: ArrayLike, quantity: str = "strain") -> Array:
-        """FWHM of strain, contact force or velocity in units of D (`lwa.TravelingWave.fwhm`)."""
+        """FWHM of strain, contact force or velocity in units of D (`lwa.CompactWave.fwhm`)."""
         beta = self.beta(k, omega)
         k = np.asarray(k, np.float64)
         # arccos(2^-x) = arctan √(4^x - 1), which keeps its digits as x → 0
@@ -109,57 +145,51 @@ class NumericWave(Value):
 
     def speed(self, k: ArrayLike, omega: ArrayLike, B: ArrayLike = 1.0) -> Array:
         """Speed V = dx/dτ of the wave whose strain peaks at B."""
-        k, _, factor, _ = self._wave(k, omega)
-        return np.asarray(np.sqrt(factor) * _positive(B, "B") ** ((k - 1) / 2))
+        at = self._domain(k, omega)
+        growth = _positive(B, "B") ** ((at.k - 1) / 2)
+        return np.asarray(np.sqrt(at.speed_factor) * growth)
 
     def log_amplitude(
         self, k: ArrayLike, omega: ArrayLike, V: ArrayLike = 1.0
     ) -> Array:
         """Logarithm of the peak strain B of the wave of speed V, finite where B is out of range."""
-        k, _, factor, excess = self._wave(k, omega)
-        less_one = (k - 1) * excess  # V²/B^{k-1} - 1
-        near = (
-            np.abs(less_one) < 0.5
-        )  # log1p keeps the digits that V²/B^{k-1} loses at k → 1
+        at = self._domain(k, omega)
+        less_one = (at.k - 1) * at.excess
+        near = np.abs(less_one) < _NEAR_ONE
         log_factor = np.where(
-            near, np.log1p(np.where(near, less_one, 0.0)), np.log(factor)
+            near, np.log1p(np.where(near, less_one, 0.0)), np.log(at.speed_factor)
         )
-        return np.asarray((2 * np.log(_positive(V, "V")) - log_factor) / (k - 1))
+        return np.asarray((2 * np.log(_positive(V, "V")) - log_factor) / (at.k - 1))
 
-    def _wave(
-        self, k: ArrayLike, omega: ArrayLike
-    ) -> tuple[Array, Array, Array, Array]:
-        """Return k, (G+H+I)/D², V²/B^{k-1} and (V²/B^{k-1} - 1)/(k - 1), broadcast.
-
-        At points without a wave all are NaN, or `lwa.NoSolitaryWave` is raised (``missing``).
-        """
+    def _domain(self, k: ArrayLike, omega: ArrayLike) -> Domain:
+        """Evaluate the closed forms; treat points without a wave as ``missing`` says."""
         k, omega = np.broadcast_arrays(finite(k, "k"), _positive(omega, "ω = m2/m1"))
         if not np.all((omega >= 1 / LARGEST) & (omega <= LARGEST)):
             raise InputError(
                 f"ω = m2/m1 is not between {1 / LARGEST:g} and {LARGEST:g}"
             )
         with np.errstate(all="ignore"):  # outside the domain of waves
-            coefficient_sum, factor, excess = self._compiled(k, 1.0, omega)
-            conditions = {
-                "k > 1": k > 1,
-                "G+H+I > 0": coefficient_sum > 0,
-                "V² > 0": factor > 0,
-            }
-            exists = np.logical_and.reduce(np.broadcast_arrays(*conditions.values()))
+            coefficient_sum, factor, excess = np.broadcast_arrays(
+                *self._compiled(k, 1.0, omega), k
+            )[:3]
+        conditions = {
+            "k > 1": k > 1,
+            "G+H+I > 0": coefficient_sum > 0,
+            "V² > 0": factor > 0,
+        }
+        exists = np.logical_and.reduce([*conditions.values()])
         if self.missing == "raise" and not np.all(exists):
             first = np.argmin(exists)
-            missed = next(
-                name
-                for name, holds in conditions.items()
-                if not np.broadcast_to(holds, k.shape).flat[first]
-            )
             at = f"k = {float(k.flat[first])}, ω = {float(omega.flat[first])}"
-            raise NoSolitaryWave(f"{at}: a compact wave needs {missed}")
+            for name, holds in conditions.items():
+                if not holds.flat[first]:
+                    raise NoSolitaryWave(f"{at}: a compact wave needs {name}")
         nan = np.where(exists, 0.0, np.nan)
-        return k + nan, coefficient_sum + nan, factor + nan, excess + nan
+        return Domain(k + nan, coefficient_sum + nan, factor + nan, excess + nan)
 
 
 def _positive(value: ArrayLike, name: str) -> Array:
+    """Read an array of positive numbers."""
     array = finite(value, name)
     if not np.all(array > 0):
         raise InputError(f"{name} is {array.min()}: it must be positive")

@@ -21,8 +21,8 @@ from sympy.printing.numpy import NumPyPrinter
 
 from lwa.base.exact import InputError, one_of, shorten
 from lwa.base.frozen import QUANTITIES, strain_power
+from lwa.cell import Cell
 from lwa.law import Power
-from lwa.wave.closed import CompactWave
 
 Local = tuple[tuple[sp.Symbol, sp.Expr], ...]
 """Variables and their values."""
@@ -30,7 +30,19 @@ Local = tuple[tuple[sp.Symbol, sp.Expr], ...]
 
 @dataclass(frozen=True)
 class Function:
-    """A function: its value as an expression in its arguments and in ``local`` variables."""
+    """A function of a program.
+
+    Parameters
+    ----------
+    name, doc : str
+        Name, and one line that says what the function returns.
+    arguments : tuple of Symbol
+        Arguments in their order.
+    value : Basic
+        The value, an expression in the arguments and in local variables.
+    local : tuple of (Symbol, Expr)
+        Local variables, each an expression in the arguments and in variables before it.
+    """
 
     name: str
     doc: str
@@ -41,13 +53,30 @@ class Function:
 
 @dataclass(frozen=True)
 class Language:
-    """A language: SymPy's printer, and the lines of a module and of a function.
+    """A programming language: SymPy's printer, and the lines of a module and of a function.
 
-    opening, closing : lines of a function, with the fields name, doc and arguments.
-    entry : line after the opening of a function that has arguments. argument : an argument in the
-        opening. statement, result : lines of a variable and of the value.
-    reserved : names that a symbol may not have, besides those that the printer knows.
-    settings : settings of the printer.
+    A new language is an entry of `LANGUAGES`, and a word of `lwa.base.words.LanguageName`.
+
+    Parameters
+    ----------
+    printer : type
+        SymPy's printer of expressions.
+    comment : str
+        Beginning of a comment.
+    head : tuple of str
+        First lines of a module.
+    opening, closing : tuple of str
+        Lines around a function's body, with the fields ``name``, ``doc`` and ``arguments``.
+    entry : str
+        Line after the opening of a function that has arguments.
+    argument : str
+        An argument in the opening.
+    statement, result : str
+        Lines of a variable and of the value that is returned.
+    reserved : frozenset of str
+        Names that a symbol may not have, besides those that the printer knows.
+    settings : mapping
+        Settings of the printer.
     """
 
     printer: Any
@@ -104,31 +133,75 @@ LANGUAGES: Mapping[str, Language] = {
         },
     ),
 }
-"""Language by the name that `lwa.TravelingWave.code` takes."""
+"""Language by the name that `lwa.CompactWave.code` takes."""
 
 _EXACT = 2**53  # a double holds integers up to this one
 
 
 def module(functions: Sequence[Function], language: str, title: Sequence[str]) -> str:
-    """The source text of functions in one of the `LANGUAGES`, under a comment ``title``.
+    """Write the source text of functions.
 
     Symbols keep their names, with underscores behind those that have another meaning.
 
-    Raises `lwa.InputError` for other languages, and for symbols that are no names.
+    Parameters
+    ----------
+    functions : sequence of Function
+        The functions; each may call those before it.
+    language : {"numpy", "c", "javascript"}
+        A key of `LANGUAGES`.
+    title : sequence of str
+        Lines of the comment at the top.
+
+    Raises
+    ------
+    InputError
+        For other languages, and for symbols that are no names.
     """
     words = LANGUAGES[one_of(language, LANGUAGES, "language")]
     calls = {f.name: f.name for f in functions}
     known = words.settings.get("user_functions", {})
     printer = words.printer({**words.settings, "user_functions": {**known, **calls}})
-    taken = {*calls, *words.reserved, *printer.reserved_words}
-    names: dict[sp.Symbol, sp.Symbol] = {}
-    arguments = (s for f in functions for s in f.arguments)
-    local = (s for f in functions for s, _ in f.local)
-    # The name of a symbol of the chain yields to those of ξ, B, V_s and F.
-    ordered = sorted(
-        dict.fromkeys(arguments), key=lambda symbol: symbol not in _ARGUMENTS
-    )
-    for symbol in ordered + list(dict.fromkeys(local)):
+    names = _names(functions, {*calls, *words.reserved, *printer.reserved_words})
+
+    def text(value: sp.Basic) -> str:
+        new: dict[sp.Basic, sp.Basic] = {**names}
+        for number in value.atoms(sp.Rational, sp.NumberSymbol):
+            if number.is_NumberSymbol or max(abs(number.p), number.q) > _EXACT:
+                new[number] = sp.Float(number, 17)
+        written = str(printer.doprint(value.xreplace(new)))
+        return written.replace("numpy.", "np.")
+
+    lines = [f"{words.comment} {line}" for line in title]
+    if words.head:
+        lines += ["", *words.head]
+    for f in functions:
+        listed = ", ".join(words.argument.format(names[s]) for s in f.arguments)
+        opening = words.opening
+        if listed and words.entry:
+            opening += (words.entry,)
+        lines += [
+            line.format(name=f.name, doc=f.doc, arguments=listed) for line in opening
+        ]
+        for symbol, value in f.local:
+            lines.append(words.statement.format(names[symbol], text(value)))
+        lines.append(words.result.format(text(f.value)))
+        lines += [line.format() for line in words.closing]
+    return "\n".join(lines)
+
+
+def _names(
+    functions: Sequence[Function], taken: set[str]
+) -> dict[sp.Symbol, sp.Symbol]:
+    """Different names for the symbols of functions; a name in ``taken`` gets underscores."""
+    arguments: dict[sp.Symbol, None] = {}
+    variables: dict[sp.Symbol, None] = {}
+    for f in functions:
+        arguments |= dict.fromkeys(f.arguments)
+        variables |= dict.fromkeys(symbol for symbol, _ in f.local)
+    # ξ, B, V_s and F keep their names: a symbol of the chain that has one of these yields.
+    ordered = sorted(arguments, key=lambda symbol: symbol not in _ARGUMENTS)
+    names = {}
+    for symbol in [*ordered, *variables]:
         name = symbol.name
         if not name.isidentifier():
             raise InputError(f"{shorten(name)} is no name of a variable in a program")
@@ -136,38 +209,19 @@ def module(functions: Sequence[Function], language: str, title: Sequence[str]) -
             name += "_"
         taken.add(name)
         names[symbol] = sp.Symbol(name)
-
-    def text(value: sp.Basic) -> str:
-        numbers = {
-            q: sp.Float(q, 17)
-            for q in value.atoms(sp.Rational, sp.NumberSymbol)
-            if q.is_NumberSymbol or max(abs(q.p), q.q) > _EXACT
-        }
-        return str(printer.doprint(value.xreplace({**numbers, **names}))).replace(
-            "numpy.", "np."
-        )
-
-    lines = [f"{words.comment} {line}" for line in title] + ["", *words.head] * bool(
-        words.head
-    )
-    for f in functions:
-        listed = ", ".join(words.argument.format(names[s]) for s in f.arguments)
-        fields = {"name": f.name, "doc": f.doc, "arguments": listed}
-        entry = (words.entry,) * bool(listed and words.entry)
-        lines += [line.format(**fields) for line in (*words.opening, *entry)]
-        lines += [words.statement.format(names[s], text(value)) for s, value in f.local]
-        lines += [
-            words.result.format(text(f.value)),
-            *(x.format() for x in words.closing),
-        ]
-    return "\n".join(lines)
+    return names
 
 
 _XI = sp.Dummy("xi", real=True)
-_B, _V, _F = (sp.Dummy(name, positive=True) for name in ("B", "V_s", "F"))
-_ARGUMENTS = (_XI, _B, _V, _F)  # that are no symbols of the chain
+_B = sp.Dummy("B", positive=True)
+_V = sp.Dummy("V_s", positive=True)
+_F = sp.Dummy("F", positive=True)
+_ARGUMENTS = (_XI, _B, _V, _F)  # arguments that are no symbols of the chain
 
-_SHIFT, _INSIDE = (sp.Dummy(name, real=True) for name in ("k_2", "h"))
+_SHIFT = sp.Dummy("k_2", real=True)  # k - 2
+_INSIDE = sp.Dummy(
+    "h", real=True
+)  # distance of the phase βξ from the end of the support
 
 TITLE = (
     "The compact traveling wave v = u_x = B cos^m(beta xi), m = 2/(k - 1),",
@@ -180,85 +234,121 @@ class Functions(dict[str, Function]):
     """Functions by name, whose arguments are ξ, B, V_s, F and the symbols of the given parts.
 
     Arguments stand in this order, those of a part by name, each where it is used.
+
+    Parameters
+    ----------
+    *parts : Expr
+        Expressions whose symbols are arguments.
     """
 
     def __init__(self, *parts: sp.Expr) -> None:
         super().__init__()
-        ordered = (s for part in parts for s in sorted(part.free_symbols, key=str))
-        self.symbols = tuple(dict.fromkeys(ordered))
+        ordered: dict[sp.Symbol, None] = {}
+        for part in parts:
+            ordered |= dict.fromkeys(sorted(part.free_symbols, key=str))
+        self.symbols = tuple(ordered)
 
     def define(
         self, name: str, doc: str, value: sp.Basic, local: Local = ()
     ) -> sp.Expr:
         """Add a function and return a call of it; ``local`` has variables that it may use."""
         used = value.free_symbols
-        for symbol, part in reversed(local):
-            used |= part.free_symbols if symbol in used else set()
+        needed: Local = ()
+        for symbol, part in reversed(local):  # each uses variables before it
+            if symbol in used:
+                used |= part.free_symbols
+                needed = ((symbol, part), *needed)
         arguments = tuple(s for s in (*_ARGUMENTS, *self.symbols) if s in used)
-        local = tuple(row for row in local if row[0] in used)
-        self[name] = Function(name, doc, arguments, value, local)
+        self[name] = Function(name, doc, arguments, value, needed)
         return sp.Function(name)(*arguments)
 
 
-def wave_functions(wave: CompactWave) -> Functions:
-    """Functions for β, width, FWHM, speed, amplitude and profile.
+def wave_functions(
+    k: sp.Expr, cell: Cell, coefficient_sum: sp.Expr, speed_factor: sp.Expr
+) -> Functions:
+    """Functions for β, width, FWHM, speed, amplitude and profile of a compact wave.
 
-    Arguments: ξ, B, V_s, F, the symbols of k, of the masses, of the stiffnesses and of the spacing.
+    The arguments of the functions are ξ, B, V_s, F and the symbols of k, of the masses, of the
+    stiffnesses and of the spacing.
+
+    Parameters
+    ----------
+    k : Expr
+        Exponent of the contact law.
+    cell : Cell
+        The chain.
+    coefficient_sum, speed_factor : Expr
+        (G + H + I)/D² and V²/B^{k-1}, rational functions of k and the masses.
     """
-    k, cell, factor = wave.k, wave.cell, wave.speed_factor
-    functions = Functions(
-        k, *cell.masses, *cell.stiffnesses, wave.D, wave.coefficient_sum
-    )
+    D = cell.spacing
+    functions = Functions(k, *cell.masses, *cell.stiffnesses, D, coefficient_sum)
     define = functions.define
-    local = {k - 2: _SHIFT}  # value → variable
-    S, excess, f = (
-        _stable(value, k, local)
-        for value in (wave.coefficient_sum, sp.factor(sp.cancel(factor - 1)), factor)
+    variables = {k - 2: _SHIFT}  # value → variable
+    total = _stable(coefficient_sum, k, variables)
+    excess = _stable(sp.factor(sp.cancel(speed_factor - 1)), k, variables)
+    factor = _stable(speed_factor, k, variables)
+    local = tuple((symbol, value) for value, symbol in variables.items())
+
+    beta = define(
+        "beta",
+        "beta = (k - 1)/(2 sqrt(G + H + I))",
+        (k - 1) / (2 * D * sp.sqrt(total)),
+        local,
     )
-    variables = tuple((symbol, value) for value, symbol in local.items())
-    value = (k - 1) / (2 * wave.D * sp.sqrt(S))
-    beta = define("beta", "beta = (k - 1)/(2 sqrt(G + H + I))", value, variables)
     define("width", "Length of the support, pi/beta", sp.pi / beta)
     for quantity in QUANTITIES:
         # arccos(2^-x) = arctan √(4^x - 1), in a form that keeps its digits as x → 0
         x = (k - 1) / (2 * strain_power(quantity, k))
-        width = 2 * sp.atan(sp.sqrt(2 ** (x + 1) * sp.sinh(x * sp.log(2)))) / beta
-        define(
-            f"fwhm_{quantity}", f"Full width at half maximum of the {quantity}", width
-        )
-    value = sp.sqrt(f) * _B ** ((k - 1) / 2)
+        angle = sp.atan(sp.sqrt(2 ** (x + 1) * sp.sinh(x * sp.log(2))))
+        doc = f"Full width at half maximum of the {quantity}"
+        define(f"fwhm_{quantity}", doc, 2 * angle / beta)
     speed = define(
-        "speed", "V_s = dx/dtau of the wave whose strain peaks at B", value, variables
+        "speed",
+        "V_s = dx/dtau of the wave whose strain peaks at B",
+        sp.sqrt(factor) * _B ** ((k - 1) / 2),
+        local,
     )
     # ln f = 2 arsinh((f-1)/(2√f)) keeps its digits as f → 1, that is as k → 1
-    value = _V ** (2 / (k - 1)) * sp.exp(
-        -2 * sp.asinh(excess / (2 * sp.sqrt(f))) / (k - 1)
+    log_factor = 2 * sp.asinh(excess / (2 * sp.sqrt(factor)))
+    define(
+        "amplitude",
+        "B, the peak strain of the wave of speed V_s",
+        _V ** (2 / (k - 1)) * sp.exp(-log_factor / (k - 1)),
+        local,
     )
-    define("amplitude", "B, the peak strain of the wave of speed V_s", value, variables)
     # cos(βξ) on the support and 0 outside of it is sin((h + |h|)/2), h = π/2 - |βξ|
-    value = _B * sp.sin((_INSIDE + sp.Abs(_INSIDE)) / 2) ** (2 / (k - 1))
-    inside = ((_INSIDE, sp.pi / 2 - sp.Abs(beta * _XI)),)
-    define("profile", "v at xi, 0 outside of the support", value, inside)
+    define(
+        "profile",
+        "v at xi, 0 outside of the support",
+        _B * sp.sin((_INSIDE + sp.Abs(_INSIDE)) / 2) ** (2 / (k - 1)),
+        ((_INSIDE, sp.pi / 2 - sp.Abs(beta * _XI)),),
+    )
     scale = define("time_scale", "tau/t: dx/dt = V_s tau/t", cell.time_scale(k))
-    value = Power(k).compression(cell, _F) / cell.spacing
-    strain = define("strain", "B of the wave whose contact force peaks at F", value)
-    doc = "dx/dt, in m/s for a chain in SI, of the wave whose force peaks at F"
-    define("speed_at_force", doc, speed.subs(_B, strain) * scale)
+    strain = define(
+        "strain",
+        "B of the wave whose contact force peaks at F",
+        Power(k).compression(cell, _F) / D,
+    )
+    define(
+        "speed_at_force",
+        "dx/dt, in m/s for a chain in SI, of the wave whose force peaks at F",
+        speed.subs(_B, strain) * scale,
+    )
     return functions
 
 
-def _stable(ratio: sp.Expr, k: sp.Expr, local: dict[sp.Expr, sp.Symbol]) -> sp.Expr:
+def _stable(ratio: sp.Expr, k: sp.Expr, variables: dict[sp.Expr, sp.Symbol]) -> sp.Expr:
     """Rewrite the sums of a rational expression in powers of k - 2, in which less cancels.
 
-    New variables for powers A^{1/k} are added to ``local``.
+    Powers A^{1/k} become new entries of ``variables``.
     """
     if not k.is_Symbol:
         return ratio
 
     def root(power: sp.Pow) -> sp.Expr:
         n, _ = (power.exp * k).as_coeff_Mul()
-        symbol = sp.Dummy(f"r_{len(local)}", positive=True)
-        return local.setdefault(power.base ** (power.exp / n), symbol) ** n
+        symbol = sp.Dummy(f"r_{len(variables)}", positive=True)
+        return variables.setdefault(power.base ** (power.exp / n), symbol) ** n
 
     def about_two(total: sp.Expr) -> sp.Expr:
         terms = sp.Poly(total.subs(k, _SHIFT + 2), _SHIFT).terms()

@@ -432,17 +432,20 @@ def test_decay_by_restitution():
 def test_what_integration_costs():
     width = float(canonical_wave(UNIFORM, "1.001").fwhm("force"))
     assert told(
-        "reference", "the pulse is # sites wide, and $B \\propto V_s^{#}$", width, 2000
+        "integration",
+        "the pulse is # sites wide, and $B \\propto V_s^{#}$",
+        width,
+        2000,
     )
     limit = (
         2 * exact_wave([1], 1.5).c * 2 ** (-1.5 / 3)
     )  # two contacts in series: A_eff = A 2^-k
     pulse = trust("3/2", "1/1000").pulse
     below = 100 * (1 - pulse.speed / pulse.force ** (1 / 6) / limit)
-    assert told("reference", "it is # % below at $\\omega = 10^{#}$", below, -3)
+    assert told("integration", "it is # % below at $\\omega = 10^{#}$", below, -3)
     chains = (struck((1.0, w), 40, duration=20.0, samples=2) for w in (1e-2, 1e-4))
     steps = [simulate(chain).step for chain in chains]
     assert 5.5 < steps[0] / steps[1] < 6.5  # "a sixth"
     drift = abs(simulate(three_beads(False, 1500.0), rtol=1e-5).energy_drift) / 1500
     words = "at `rtol=1e-5` by $#\\cdot10^{-8}$ per unit of time"
-    assert told("reference", words, 1e8 * drift)
+    assert told("integration", words, 1e8 * drift)

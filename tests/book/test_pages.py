@@ -70,7 +70,7 @@ def test_mathematics_pictures_and_addresses(visit):
 
 def test_every_public_name_is_documented_and_no_private_one():
     """No type of a progress function, no text of Python about a type, no mark left unrendered."""
-    text = (HTML / "reference.html").read_text()
+    text = (HTML / "python.html").read_text()
     names = re.findall(r'<dt class="sig[^>]* id="([^"]*)"', text)
     assert not [name for name in names if re.search(r"\._", name)]
     documented = {name.rpartition(".")[2] for name in names}

@@ -13,7 +13,7 @@ PROSE = {page: CELL.sub("", text) for page, text in TEXTS.items()}
 PARTS = (BOOK / "_toc.yml").read_text().split("caption:")[1:4]
 CHAPTERS = [page for part in PARTS for page in re.findall(r"file: (\w+)", part)]
 
-NEW, LINES = 13, 3300
+NEW, LINES = 13, 3400
 COLUMN = 85
 """Results that were looked up and not found, lines of Markdown, and characters of visible code."""
 

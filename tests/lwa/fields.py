@@ -22,7 +22,7 @@ def of_fields(pde, terms, u, x, velocity=sp.S.Zero):
     base, law, D = (u.diff(x) if pde.acoustic else u), pde.law, pde.cell.spacing
     total = sp.S.Zero
     for jet, coefficient in terms.items():
-        a, b = map(sp.Rational, jet.base_power(terms.power))
+        a, b = map(sp.Rational, terms.power.beside(jet))
         factors = [u.diff(x, i) ** e for i, e in jet.x]
         factors += [velocity.diff(x, i) ** e for i, e in jet.t]
         if law.homogeneous:
@@ -49,5 +49,7 @@ def right_side(pde, u, x, velocity=sp.S.Zero):
 def energy_density(pde, u, x, velocity=sp.S.Zero):
     """The density of the conserved energy, with the contacts' W(u_x)."""
     D, law = pde.cell.spacing, pde.law
-    total = sum(D**n * of_fields(pde, e, u, x, velocity) for n, e in pde.energy.items())
-    return total if law.homogeneous else total + law.of_strain(u.diff(x), D, -1)
+    total = law.of_strain(u.diff(x), D, -1)
+    for n, terms in pde.energy.items():
+        total += D**n * of_fields(pde, terms, u, x, velocity)
+    return total

@@ -33,9 +33,9 @@ MADE = {
     "full": lambda: theory(6, closure="full", field="center"),
     "optical": lambda: theory(branch="optical"),
     "pde": lambda: theory().pde,
-    "closure": lambda: theory(5, closure="full").closure,
+    "closure": lambda: theory(5, closure="full", field="first").closure,
     "terms": lambda: theory().pde.coefficients[3],
-    "energy": lambda: theory(closure="full").pde.energy[2],
+    "energy": lambda: theory(closure="full", field="first").pde.energy[2],
     "wave": lambda: theory().pde.traveling_wave(),
     "physical": lambda: theory().pde.traveling_wave().at_force("F"),
     "reduction": lambda: theory().pde.traveling_wave().reduction(),
@@ -43,7 +43,7 @@ MADE = {
     "dispersion": lambda: Dispersion(Dimer(m1, m2)),
     "law": lambda: lwa.general(),
     "power": lambda: Power("k"),
-    "of a law": lambda: theory(5, law=lwa.general(), closure="full"),
+    "of a law": lambda: theory(5, law=lwa.general(), closure="full", field="first"),
     "background": lambda: loaded_wave(Dimer(m1, m2), background="p0"),
     "kdv": lambda: loaded_wave(Dimer(m1, m2), background="p0").kdv,
     "precompressed": lambda: canonical_wave(Dimer(m1, m2)).at_force(
@@ -86,7 +86,12 @@ def test_equal_derivations_are_equal_pickle_and_show_in_a_notebook(name):
 
 
 def test_other_derivations_differ():
-    kinds = {}, {"k": "3/2"}, {"closure": "full"}, {"branch": "optical"}
+    kinds = (
+        {},
+        {"k": "3/2"},
+        {"closure": "full", "field": "first"},
+        {"branch": "optical"},
+    )
     found = [
         theory(**kind) for kind in (*kinds, {"closure": "full", "field": "center"})
     ]
@@ -109,7 +114,7 @@ def test_other_derivations_differ():
 
 @pytest.mark.parametrize("order", [4, 9])
 def test_repr_is_one_short_line(order):
-    found = homogenize(Dimer(m1, m2), order, closure="full")
+    found = homogenize(Dimer(m1, m2), order, closure="full", field="first")
     wave = canonical_wave(Cell(sp.symbols("a1:7")))
     pieces = [found, found.pde, found.closure, found.pde.coefficients[order - 1], wave]
     for piece in (*pieces, wave.at(k="3/2", a1=1, a2=2, a3=3, a4=4, a5=5, a6=6)):

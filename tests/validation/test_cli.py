@@ -89,7 +89,7 @@ def test_force_is_total_in_every_output(capsys, folder):
         loaded.replace("= 30", "= 12")
     )  # before the echo
     _, text, _ = run(capsys, "run", "scene.toml", "--out", "o.csv")
-    assert "peak dynamic force (N)" in text
+    assert "peak dynamic force (mN)" in text
     options = ("--out", "o.json", "--plot", "o.svg", "--format", "json")
     status, out, _ = run(capsys, "run", "scene.toml", *options)
     assert status == 0
@@ -100,7 +100,7 @@ def test_force_is_total_in_every_output(capsys, folder):
     for i, force in zip((4, 12), records, strict=True):
         np.testing.assert_array_equal(columns[f"contact_{i}_force_(N)"], force)
         assert force[0] == pytest.approx(load, rel=1e-12)
-    assert "force (N)" in Path("o.svg").read_text()
+    assert "force (mN)" in Path("o.svg").read_text()
     for sensor in json.loads(out)["sensors"]:
         force = columns[f"{sensor['kind']}_{sensor['number']}_force_(N)"]
         assert sensor["static_force_value"] == load
@@ -134,7 +134,7 @@ def test_every_example_runs_and_names_its_units(capsys, folder, name):
     )
     assert (status, err) == (0, "")
     header = re.compile(
-        r"sensor +arrival \(s\) +peak (dynamic )?force \(N\) +FWHM \(s\)"
+        r"sensor +arrival \([mµ]s\) +peak (dynamic )?force \(N\) +FWHM \(µs\)"
     )
     assert header.search(out)
     assert re.search(r"speed +sites/s +m/s", out)

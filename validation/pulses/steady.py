@@ -120,9 +120,10 @@ def _measured(
     predicted = fine[-1, :, 1] * math.exp(values[3] * (near[-1] - far))
     higher = float(np.mean(rough[-1, :, 5] / predicted))
     if not abs(higher - 1) <= STEADY:
+        found = "a higher pulse has overtaken, or follows" if higher > 1 else "it fades"
         raise MeasureError(
-            f"not steady: at {far} sites the highest pulse has {higher:.3g} times the force that "
-            f"the leading pulse's decay at {place} sites predicts"
+            f"not steady: at {far} sites {found}, with {higher:.3g} times the force that the "
+            f"leading pulse's decay at {place} sites predicts"
         )
     measured = map(Estimate, values.tolist(), errors[:, best].tolist())
     sites = place, place + chain.sites
@@ -231,6 +232,13 @@ class PointFile:
                 data.execute("begin exclusive")
                 (version,) = data.execute("pragma user_version").fetchone()
                 own = 1000 * VERSION + self.stretch
+                (tables,) = data.execute(
+                    "select count(*) from sqlite_master"
+                ).fetchone()
+                if tables and not version:
+                    raise InputError(
+                        f"file is {self.path}: a database, but not a sweep's; choose another name"
+                    )
                 if version not in (0, own):
                     raise InputError(
                         f"file is {self.path}: its points have another stretch or definition; "

@@ -17,11 +17,28 @@ from typing import Any
 from lwa.base.exact import InputError
 from lwa.base.files import reason
 from validation.pictures import Panel, Pictured, svg
-from validation.report.table import Finding, Table, findings_table, plain, wrap
+from validation.report.table import WIDTH, Finding, Table, findings_table, plain, wrap
+
+_LONGEST = 120  # characters of a path in a message
 
 
 def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
-    """Return a path, ``name`` in messages, if its suffix is allowed and a file can be written."""
+    """Return the path of an output file that can be written.
+
+    Parameters
+    ----------
+    name : str
+        Name of the option in messages.
+    path : str
+        The path.
+    suffixes : sequence of str
+        Endings that are allowed, such as ".json".
+
+    Raises
+    ------
+    InputError
+        For another ending, and where no file can be written.
+    """
     file = Path(path)
     try:
         if file.suffix.lower() not in suffixes:
@@ -33,7 +50,7 @@ def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
                 return file
     except (OSError, ValueError, RuntimeError) as error:  # a null byte, a loop of links
         fault = f"it cannot be written, {reason(error)}"
-    raise InputError(f"{name} is {path[:120]}: {fault}")
+    raise InputError(f"{name} is {path[:_LONGEST]}: {fault}")
 
 
 @contextmanager
@@ -45,7 +62,8 @@ def replacing(file: Path) -> Iterator[Path]:
     target = file.resolve()
     try:
         with tempfile.TemporaryDirectory(prefix=".", dir=target.parent) as folder:
-            yield (new := Path(folder, "new"))
+            new = Path(folder, "new")
+            yield new
             if target.exists():
                 new.chmod(target.stat().st_mode)
             new.replace(target)
@@ -57,12 +75,21 @@ def replacing(file: Path) -> Iterator[Path]:
 class Report(Pictured):
     """Result of a study.
 
-    title : what was computed, in one or a few lines.
-    tables : tables; text shows those with column labels, JSON those with a key.
-    findings : numbers with bounds. In a report with tables, text shows only the findings that fail.
-    panels : panels of the picture.
-    notes : explanations below the tables.
-    data : entries that go to JSON unchanged.
+    Parameters
+    ----------
+    title : str
+        What was computed, in one or a few lines.
+    tables : tuple of Table
+        Tables; text shows those with column labels. JSON has a table under its key, and tables
+        without a key in the list ``tables``.
+    findings : tuple of Finding
+        Numbers with bounds. In a report with tables, text shows only the findings that fail.
+    panels : tuple of Panel
+        Panels of the picture.
+    notes : tuple of str
+        Explanations below the tables.
+    data : mapping
+        Entries that go to JSON unchanged.
 
     >>> from validation.report.table import Column
     >>> row = Table((Column("n", "sites"), Column("c_value", "speed", format=".3f")), ((8, 1.25),))
@@ -92,59 +119,71 @@ class Report(Pictured):
         >>> Report("", findings=(Finding("order", 2.4, 2.0, 3.0),)).verdict
         '1 check: all hold'
         """
-        count, failed = (
-            len(self.findings),
-            sum(not finding.ok for finding in self.findings),
-        )
-        checks = f"{count} check{'s' * (count != 1)}: "
-        return (
-            checks + (f"{failed} of {count} fail" if failed else "all hold")
-            if count
-            else ""
-        )
+        count = len(self.findings)
+        if not count:
+            return ""
+        failed = [finding for finding in self.findings if not finding.ok]
+        outcome = f"{len(failed)} of {count} fail" if failed else "all hold"
+        return f"{count} check{'s' * (count > 1)}: {outcome}"
 
-    def text(self) -> str:
-        """The report as plain text: beside other printed tables only the findings that fail."""
-        tables = [table.text() for table in self.tables]
-        printed = [
-            finding for finding in self.findings if not (any(tables) and finding.ok)
-        ]
-        title, *notes = (wrap(text) for text in (self.title, *self.notes))
-        texts = title, *tables, findings_table(printed).text(), *notes, self.verdict
-        return "\n\n".join(filter(None, texts))
+    def text(self, width: int = WIDTH) -> str:
+        """The report as plain text: beside other printed tables only the findings that fail.
+
+        Parameters
+        ----------
+        width : int
+            Characters of a line, at most.
+        """
+        parts = [wrap(self.title, width)]
+        parts += [table.text(width) for table in self.tables]
+        printed = [finding for finding in self.findings if not finding.ok]
+        if not any(parts[1:]):
+            printed = list(self.findings)
+        parts.append(findings_table(printed).text(width))
+        parts += [wrap(note, width) for note in self.notes]
+        parts.append(self.verdict)
+        return "\n\n".join(filter(None, parts))
 
     def _repr_html_(self) -> str:
         """The text and the picture, for a notebook."""
         return f"<pre>{escape(self.text())}</pre>{svg(self.panels)}"
 
     def document(self) -> dict[str, Any]:
-        """The report for JSON: ``data``, each table under its key, and the findings.
+        """The report for JSON: ``data``, the tables, and the findings.
 
         With findings: ``ok``, ``findings``, and KEY_value of each finding that has a key.
         """
         result: dict[str, Any] = dict(plain(self.data))
-        result |= {table.key: table.document() for table in self.tables if table.key}
+        unnamed = []
+        for table in self.tables:
+            if table.key:
+                result[table.key] = table.document()
+            else:
+                unnamed.append(table.document())
+        if unnamed:
+            result["tables"] = unnamed
+        for finding in self.findings:
+            if finding.key:
+                result[f"{finding.key}_value"] = plain(finding.value)
         if self.findings:
-            result |= {f"{f.key}_value": plain(f.value) for f in self.findings if f.key}
-            result |= {
-                "findings": findings_table(self.findings).document(),
-                "ok": self.ok,
-            }
+            result["findings"] = findings_table(self.findings).document()
+            result["ok"] = self.ok
         return result
 
     def csv(self) -> str:
-        """Return the first table with keys as CSV; tables without rows come last.
+        """Return the first table that has rows as CSV.
 
-        Raises `lwa.InputError` if no table has keys.
+        Raises
+        ------
+        InputError
+            For a report without tables.
         """
-        tables = [
-            table
-            for table in self.tables
-            if any(column.key for column in table.columns)
-        ]
-        if not tables:
+        if not self.tables:
             raise InputError("format is csv: this result has no table")
-        return next((table for table in tables if table.rows), tables[0]).csv()
+        for table in self.tables:
+            if table.rows:
+                return table.csv()
+        return self.tables[0].csv()
 
     def pictured(self) -> tuple[Panel, ...]:
         """The panels, curves and maps, of which a picture of the result is made."""
@@ -152,9 +191,8 @@ class Report(Pictured):
 
     def save(self, file: Path) -> None:
         """Draw the picture into a file; an old file is replaced only by a complete picture."""
-        drawn = (
-            io.BytesIO()
-        )  # Matplotlib prints a traceback for a file that cannot be closed
+        # In memory first: Matplotlib prints a traceback for a file that cannot be closed.
+        drawn = io.BytesIO()
         self.figure().savefig(drawn, dpi=150, format=file.suffix[1:].lower())
         with replacing(file) as new:
             new.write_bytes(drawn.getvalue())

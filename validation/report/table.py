@@ -6,7 +6,7 @@ import csv
 import io
 import json
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from textwrap import fill
 from typing import Any
@@ -14,80 +14,138 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from lwa.base.frozen import Estimate
+from lwa.spheres.units import Unit, labelled
+
 WIDTH = 100
-"""Characters of a printed line, at most."""
+"""Characters of a printed line, at most, where the terminal's width is not known."""
+
+Row = Sequence[Any]
+"""Cells of a table, one for each column."""
 
 Lines = Sequence[Sequence[str]]
-"""Lines of cells, the first of them the column labels."""
+"""Lines of cells as texts, the first of them the column labels."""
 
 
 @dataclass(frozen=True)
 class Column:
     """Column of a table.
 
-    key : JSON name, with a dot for an entry of a mapping, as in "theory_value.speed"; empty for a
+    Parameters
+    ----------
+    key : str
+        JSON name, with a dot for an entry of a mapping, as in "theory_value.speed"; empty for a
         column that is only printed.
-    label, unit : printed above the column; without a label the column is not printed.
-    format : format of printed cells, a format specification such as ".1e" or a function.
-    error : True for cells that are `lwa.Estimate` (or None): in JSON two
-        numbers, KEY_value and KEY_error_value.
+    label : str
+        Text above the printed column; empty for a column that is not printed. A label that ends in
+        an SI unit, as in "arrival (s)", is printed with the prefix that suits the largest cell.
+    format : str or callable
+        Format of printed cells: a format specification such as ".1e", or a function of the cell.
+    error : bool
+        True for cells that are `lwa.Estimate` (or None): in JSON two numbers, KEY_value and
+        KEY_error_value.
     """
 
     key: str = ""
     label: str = ""
-    unit: str = ""
     format: str | Callable[[Any], str] = ""
     error: bool = False
 
-    def text(self, cell: Any) -> str:
-        """Format one cell; ``-`` for None, NaN and ∞, as JSON has null."""
-        if plain(cell) is None:
+    def text(self, cell: Any, size: float = 1.0) -> str:
+        """Format one cell, in a unit of a size; ``-`` for None, NaN and ∞, as JSON has null."""
+        number = cell.value if isinstance(cell, Estimate) else cell
+        if plain(number) is None:
             return "-"
         if callable(self.format):
             return self.format(cell)
         if isinstance(cell, bool):
             return "ok" if cell else "FAILS"
-        form = self.format or (".6g" if isinstance(cell, float) else "")
-        return format(cell, form) if form else str(cell)
+        if size != 1:
+            cell = cell * (1 / size)
+        digits = ".6g" if isinstance(cell, float) else ""
+        return format(cell, self.format or digits)
 
-    def values(self, cell: Any) -> Iterator[tuple[str, Any]]:
-        """Yield the JSON names and values of a cell.
+    def values(self, name: str, cell: Any) -> dict[str, Any]:
+        """Return the JSON names and values of a cell.
 
-        >>> from lwa import Estimate
-        >>> dict(Column("speed.m1", error=True).values(Estimate(2.0, 0.25)))
+        >>> Column(error=True).values("speed.m1", Estimate(2.0, 0.25))
         {'speed_value.m1': 2.0, 'speed_error_value.m1': 0.25}
         """
         if not self.error:
-            yield self.key, plain(cell)
-            return
-        name, dot, rest = self.key.partition(".")
-        for ending, part in (("value", "value"), ("error_value", "error")):
-            yield f"{name}_{ending}{dot}{rest}", plain(getattr(cell, part, None))
+            return {name: plain(cell)}
+        head, dot, entry = name.partition(".")
+        return {
+            f"{head}_value{dot}{entry}": plain(getattr(cell, "value", None)),
+            f"{head}_error_value{dot}{entry}": plain(getattr(cell, "error", None)),
+        }
 
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """Table of a report: rows of cells, one cell for each column.
+    """Table of a report.
 
-    key : JSON name of the table; the first table with keys is the CSV of a report.
-    title, note : printed above and below the table.
-    by : key of a column by whose values the printed table is divided; its text heads each part.
+    Parameters
+    ----------
+    columns : tuple of Column
+        Columns. If no column has a key, the labels are the names in JSON and CSV.
+    rows : tuple of sequences
+        Cells, one for each column.
+    key : str
+        JSON name of the table.
+    title, note : str
+        Text above and below the printed table.
+    errors : str
+        Meaning of ±, printed below the table.
+    by : str
+        Key of a column by whose values the printed table is divided; its text heads each part.
     """
 
     columns: tuple[Column, ...]
-    rows: tuple[tuple[Any, ...], ...]
+    rows: tuple[Row, ...]
     key: str = ""
     title: str = ""
     note: str = ""
+    errors: str = ""
     by: str = ""
 
-    def records(self) -> list[dict[str, Any]]:
-        """Return JSON names (with their dots) and values of each row, in the order of columns."""
-        keyed = [(i, column) for i, column in enumerate(self.columns) if column.key]
-        return [
-            dict(pair for i, column in keyed for pair in column.values(row[i]))
-            for row in self.rows
-        ]
+    @classmethod
+    def of(
+        cls,
+        columns: Sequence[Column],
+        records: Iterable[Mapping[str, Any]],
+        key: str = "",
+        **texts: str,
+    ) -> Table:
+        """Make a table of rows that are mappings.
+
+        Parameters
+        ----------
+        columns : sequence of Column
+            Columns.
+        records : iterable of mappings
+            Cells by the column's key, or by its label if it has no key. A cell that is missing is
+            None.
+        key, **texts
+            Further fields of the table.
+
+        >>> cubes = Table.of((Column("n", "n"), Column("", "n³")), [{"n": 2, "n³": 8}])
+        >>> cubes.rows
+        ((2, 8),)
+        """
+        names = [column.key or column.label for column in columns]
+        rows = [tuple(map(record.get, names)) for record in records]
+        return cls(tuple(columns), tuple(rows), key, **texts)
+
+    def _record(self, row: Row) -> dict[str, Any]:
+        """The JSON names (with their dots) and values of a row, in the order of columns."""
+        names = [column.key for column in self.columns]
+        if not any(names):
+            names = [column.label for column in self.columns]
+        record: dict[str, Any] = {}
+        for name, column, cell in zip(names, self.columns, row, strict=True):
+            if name:
+                record |= column.values(name, cell)
+        return record
 
     def document(self) -> list[dict[str, Any]]:
         """The rows for JSON.
@@ -95,20 +153,20 @@ class Table:
         >>> Table((Column("k"), Column("a_value.x"), Column("a_value.y")), ((2, 3, 4),)).document()
         [{'k': 2, 'a_value': {'x': 3, 'y': 4}}]
         """
-        rows = []
-        for record in self.records():
-            row: dict[str, Any] = {}
-            for name, value in record.items():
+        documents = []
+        for row in self.rows:
+            document: dict[str, Any] = {}
+            for name, value in self._record(row).items():
                 *path, last = name.split(".")
-                place = row
+                place = document
                 for part in path:
                     place = place.setdefault(part, {})
                 place[last] = value
-            rows.append(row)
-        return rows
+            documents.append(document)
+        return documents
 
     def csv(self) -> str:
-        """The table as CSV: a header of keys and a line for each row, with empty cells for None.
+        """The table as CSV: a header of names and a line for each row, with empty cells for None.
 
         >>> print(Table((Column("k"), Column("c", error=True)), ((2, None),)).csv(), end="")
         k,c_value,c_error_value
@@ -116,42 +174,82 @@ class Table:
         """
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(
-            name for c in self.columns if c.key for name, _ in c.values(None)
-        )
-        for record in self.records():
-            cells = record.values()
-            writer.writerow(
-                json.dumps(x) if isinstance(x, list | dict) else x for x in cells
-            )
+        writer.writerow(self._record([None] * len(self.columns)))
+        for row in self.rows:
+            cells = []
+            for value in self._record(row).values():
+                is_nested = isinstance(value, list | dict)
+                cells.append(json.dumps(value) if is_nested else value)
+            writer.writerow(cells)
         return text.getvalue()
 
-    def text(self) -> str:
-        """The table as text, a part for each value of the column ``by``; empty without labels."""
-        printed = [(i, column) for i, column in enumerate(self.columns) if column.label]
-        header = [f"{c.label} ({c.unit})" if c.unit else c.label for _, c in printed]
-        keys = [column.key for column in self.columns]
-        parts: dict[str, list[Sequence[str]]] = {}
-        for row in self.rows if printed else ():
-            at = keys.index(self.by) if self.by else 0
-            lines = parts.setdefault(
-                self.columns[at].text(row[at]) if self.by else "", [header]
-            )
-            lines.append([column.text(row[i]) for i, column in printed])
-        blocks = (
-            f"{head}\n{aligned(lines)}".lstrip("\n") for head, lines in parts.items()
-        )
-        texts = wrap(self.title), "\n\n".join(blocks), wrap(self.note)
-        return "\n".join(filter(None, texts)) if parts else ""
+    def text(self, width: int = WIDTH) -> str:
+        """The table as text, a part for each value of the column ``by``; empty without labels.
+
+        Parameters
+        ----------
+        width : int
+            Characters of a line, at most; columns beyond it follow in a block of their own.
+        """
+        shown = [place for place, column in enumerate(self.columns) if column.label]
+        if not (shown and self.rows):
+            return ""
+        parts: dict[str, list[Row]] = {}
+        for row in self.rows:
+            parts.setdefault(self._heading(row), []).append(row)
+        units = [self._unit(place) for place in range(len(self.columns))]
+        blocks = []
+        for heading, rows in parts.items():
+            lines = [[units[place].name for place in shown]]
+            for row in rows:
+                cells = []
+                for place in shown:
+                    column = self.columns[place]
+                    cells.append(column.text(row[place], units[place].size))
+                lines.append(cells)
+            block = aligned(lines, width)
+            blocks.append(f"{heading}\n{block}" if heading else block)
+        about = ""
+        if self.errors:
+            about = f"±: {self.errors}; at least one in the last digit shown."
+        notes = wrap(f"{self.note}\n{about}".strip(), width)
+        texts = wrap(self.title, width), "\n\n".join(blocks), notes
+        return "\n".join(filter(None, texts))
+
+    def _heading(self, row: Row) -> str:
+        """The heading of the part of the printed table in which a row stands."""
+        for column, cell in zip(self.columns, row, strict=True):
+            if self.by and column.key == self.by:
+                return column.text(cell)
+        return ""
+
+    def _unit(self, place: int) -> Unit:
+        """The label of a column in text, with its unit fitted to the largest cell."""
+        largest = 0.0
+        for row in self.rows:
+            cell = row[place]
+            number = cell.value if isinstance(cell, Estimate) else cell
+            if isinstance(number, float) and math.isfinite(number):
+                largest = max(largest, abs(number))
+        return labelled(self.columns[place].label, largest)
 
 
 @dataclass(frozen=True)
 class Finding:
     """A number and the bounds within which it is expected.
 
-    low, high : bounds of the value, its error included; by default every number holds.
-    error : error of the value; None if the value is exact, or itself an error.
-    key : JSON name, KEY_value; by default none.
+    Parameters
+    ----------
+    quantity : str
+        Name of the number.
+    value : float
+        The number.
+    low, high : float
+        Bounds of the value, its error included; by default every number holds.
+    error : float, optional
+        Error of the value; None if the value is exact, or itself an error.
+    key : str
+        JSON name, KEY_value; by default the finding stands in the list of findings alone.
 
     >>> Finding("order", 2.4, 2.0, 3.0, error=0.1).ok
     True
@@ -174,30 +272,38 @@ class Finding:
 
 
 FINDING_COLUMNS = (
-    *(Column("quantity", "measured"), Column("", "value"), Column("", "expected")),
-    *map(Column, ("measured_value", "error_value", "least_value", "most_value")),
+    Column("quantity", "measured"),
+    Column("", "value"),
+    Column("", "expected"),
+    Column("measured_value"),
+    Column("error_value"),
+    Column("least_value"),
+    Column("most_value"),
     Column("ok", "holds"),
 )
 """Columns of findings: value and bounds as text, the numbers in JSON."""
 
 
 def findings_table(findings: Iterable[Finding]) -> Table:
-    """Table of findings."""
-    rows = []
-    for f in findings:
-        value = f"{f.value:.6g}" + ("" if f.error is None else f" ± {f.error:.0e}")
-        row = (
-            f.quantity,
-            value,
-            bounds(f.low, f.high),
-            f.value,
-            f.error,
-            f.low,
-            f.high,
-            f.ok,
+    """Return the table of findings."""
+    records = []
+    for finding in findings:
+        value = f"{finding.value:.6g}"
+        if finding.error is not None:
+            value += f" ± {finding.error:.0e}"
+        records.append(
+            {
+                "quantity": finding.quantity,
+                "value": value,
+                "expected": bounds(finding.low, finding.high),
+                "measured_value": finding.value,
+                "error_value": finding.error,
+                "least_value": finding.low,
+                "most_value": finding.high,
+                "ok": finding.ok,
+            }
         )
-        rows.append(row)
-    return Table(FINDING_COLUMNS, tuple(rows))
+    return Table.of(FINDING_COLUMNS, records)
 
 
 def plain(value: Any) -> Any:
@@ -215,7 +321,7 @@ def plain(value: Any) -> Any:
     return value
 
 
-def aligned(lines: Lines, width: float = WIDTH) -> str:
+def aligned(lines: Lines, width: int = WIDTH) -> str:
     """Align columns of text: the first one left, the others right.
 
     Columns beyond the width of a line follow in a block of their own, after the first column.
@@ -226,31 +332,28 @@ def aligned(lines: Lines, width: float = WIDTH) -> str:
     second  12.25
     """
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-    blocks, used = [[0]], widths[0]
-    for i, own in enumerate(widths[1:], start=1):
-        if used + 2 + own > width and len(blocks[-1]) > 1:
-            blocks.append([0])
+    blocks: list[list[int]] = []
+    used = width
+    for place in range(1, len(widths)):
+        if not blocks or used + 2 + widths[place] > width:
+            blocks.append([])
             used = widths[0]
-        blocks[-1].append(i)
-        used += 2 + own
+        blocks[-1].append(place)
+        used += 2 + widths[place]
     texts = []
-    for first, *others in blocks:
-        cells = (
-            (
-                line[first].ljust(widths[first]),
-                *(line[i].rjust(widths[i]) for i in others),
-            )
-            for line in lines
-        )
-        texts.append("\n".join("  ".join(row).rstrip() for row in cells))
-    return "\n\n".join(texts)
+    for block in blocks or [[]]:  # a single column has no other one
+        for line in lines:
+            cells = [line[0].ljust(widths[0])]
+            cells += [line[place].rjust(widths[place]) for place in block]
+            texts.append("  ".join(cells).rstrip())
+        texts.append("")
+    return "\n".join(texts[:-1])
 
 
-def wrap(text: str) -> str:
-    """Break the lines of a text that are longer than `WIDTH`."""
-    return "\n".join(
-        fill(line, WIDTH, break_long_words=False) for line in text.splitlines()
-    )
+def wrap(text: str, width: int = WIDTH) -> str:
+    """Break the lines of a text that are longer than a width."""
+    lines = (fill(line, width, break_long_words=False) for line in text.splitlines())
+    return "\n".join(lines)
 
 
 def bounds(low: float, high: float) -> str:
@@ -261,11 +364,11 @@ def bounds(low: float, high: float) -> str:
     """
     if low == high:
         return f"{low:g}"
-    if low == -high:
-        return f"± {high:g}" if math.isfinite(high) else "-"
+    if math.isinf(low):
+        return "-" if math.isinf(high) else f"≤ {high:g}"
     if math.isinf(high):
         return f"≥ {low:g}"
-    return f"≤ {high:g}" if math.isinf(low) else f"{low:g} … {high:g}"
+    return f"± {high:g}" if low == -high else f"{low:g} … {high:g}"
 
 
 def percent(share: float) -> str:

@@ -11,18 +11,18 @@ from validation.pictures import Curve, Panel
 from validation.report.command import EXPONENT, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
-from validation.waves.solver import exact_wave, measured
+from validation.waves.profile import ExactWave
+from validation.waves.solver import exact_wave
 from validation.waves.solver import resonances as special_ratios
 
 _COLUMNS = (
     Column("of", "of"),
     Column("amplitude", "amplitude", error=True),
-    Column("fwhm", "FWHM", "D", error=True),
+    Column("fwhm", "FWHM (D)", error=True),
 )
 _NOTE = """\
 Strain and force of a contact, velocity of a bead m1. Strains scale with the peak force F as
-F^(1/k), velocities as F^((k+1)/2k), c as F^((k-1)/2k); widths do not depend on F.
-Errors: residual, tail and rounding."""
+F^(1/k), velocities as F^((k+1)/2k), c as F^((k-1)/2k); widths do not depend on F."""
 
 
 @study(
@@ -33,6 +33,11 @@ Errors: residual, tail and rounding."""
         default="1",
         says="Mass of all beads, or two in turn.",
     ),
+    page="exact",
+    examples=(
+        "lwa-validate exact --k 5/2",
+        "lwa-validate exact --masses 1,0.3428457811 --plot wave.svg",
+    ),
 )
 def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
     """Exact solitary wave of the lattice: speed, widths and amplitudes.
@@ -42,21 +47,26 @@ def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
 
     ``k_value``, ``masses_value``, ``half_period_value``, ``residual_value``, ``solitary``;
     with errors, as ``c2_error_value``: ``c2_value``, ``c_value``, ``tail_value`` and by quantity
-    ``amplitude_value``, ``fwhm_value``.
+    ``amplitude_value``, ``fwhm_value``; ``rows``, the printed table.
     """
     wave = exact_wave(masses, k)
-    numbers = measured(wave)
-    rows = tuple(
-        (q, numbers[f"amplitude {q}"], numbers[f"fwhm {q}"]) for q in QUANTITIES
-    )
-    # One row of all numbers; "fwhm force" becomes an entry of fwhm_value.
-    columns = tuple(Column(name.replace(" ", "."), error=True) for name in numbers)
-    (values,) = Table(columns, (tuple(numbers.values()),)).document()
+    rows = [
+        {
+            "of": quantity,
+            "amplitude": wave.estimate("peak", quantity),
+            "fwhm": wave.estimate("fwhm", quantity),
+        }
+        for quantity in QUANTITIES
+    ]
     return Report(
         f"masses {wave.masses[0]:.6g}, {wave.masses[1]:.6g}; k = {wave.k:g}; A = D = 1\n"
-        f"c² = {numbers['c2']}, c = {numbers['c']}\n"
+        f"c² = {wave.estimate('c2')}, c = {wave.estimate('c')}\n"
         f"solitary: tail {wave.tail:.0e} of the peak strain, residual {wave.residual:.0e}",
-        (Table(_COLUMNS, rows, note=_NOTE),),
+        (
+            Table.of(
+                _COLUMNS, rows, "rows", note=_NOTE, errors="residual, tail and rounding"
+            ),
+        ),
         panels=tuple(wave.pictured()),
         data={
             "k_value": wave.k,
@@ -64,13 +74,24 @@ def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
             "half_period_value": wave.half_period,
             "residual_value": wave.residual,
             "solitary": wave.solitary,
-            **values,
-        },
+        }
+        | _numbers(wave),
     )
 
 
+def _numbers(wave: ExactWave) -> dict[str, object]:
+    """The wave's numbers with their errors, as in JSON; amplitudes and widths by quantity."""
+    record = {name: wave.estimate(name) for name in ("c2", "c", "tail")}
+    for quantity in QUANTITIES:
+        record[f"amplitude.{quantity}"] = wave.estimate("peak", quantity)
+        record[f"fwhm.{quantity}"] = wave.estimate("fwhm", quantity)
+    columns = [Column(name, error=True) for name in record]
+    (document,) = Table.of(columns, [record]).document()
+    return document
+
+
 _RATIOS = (
-    Column("mass_ratios", "m2/m1", format=".6g"),
+    Column("mass_ratio_value", "m2/m1", format=".6g"),
     Column("c2_value", "c² at peak force 1", format=".6g"),
     Column("tail_value", "tail", format=".0e"),
     Column("residual_value", "residual", format=".0e"),
@@ -80,23 +101,31 @@ _RATIOS = (
 @study(
     EXPONENT,
     option("--count", default=3, says="Number of mass ratios, from the largest down."),
+    page="exact",
+    examples=("lwa-validate resonances --count 1 --plot waves.svg",),
 )
 def resonances(k: float, count: int) -> Report:
     """Mass ratios m2/m1 < 1 of the dimers with a solitary wave.
 
     ``k_value`` and, in falling order, ``mass_ratios``, ``c2_value``, ``tail_value``,
-    ``residual_value``.
+    ``residual_value``; ``rows``, the printed table.
     """
-    waves, xi = special_ratios(k, count), np.linspace(-5, 5, 1001)
-    rows = tuple((wave.omega, wave.c2, wave.tail, wave.residual) for wave in waves)
-    curves = (Curve(f"m2/m1 = {w.omega:.4f}", xi, w.force(xi), "-") for w in waves)
+    waves = special_ratios(k, count)
+    xi = np.linspace(-5, 5, 1001)
+    rows = []
+    curves = []
+    for wave in waves:
+        rows.append((wave.omega, wave.c2, wave.tail, wave.residual))
+        curves.append(Curve(f"m2/m1 = {wave.omega:.4f}", xi, wave.force(xi), "-"))
     return Report(
         f"k = {waves[0].k:g}: dimers with a solitary wave",
-        (Table(_RATIOS, rows),),
+        (Table(_RATIOS, tuple(rows), "rows"),),
         panels=(Panel("ξ / D", "force of a contact", tuple(curves)),),
-        data={"k_value": waves[0].k}
-        | {
-            c.key: values
-            for c, values in zip(_RATIOS, zip(*rows, strict=True), strict=True)
+        data={
+            "k_value": waves[0].k,
+            "mass_ratios": [wave.omega for wave in waves],
+            "c2_value": [wave.c2 for wave in waves],
+            "tail_value": [wave.tail for wave in waves],
+            "residual_value": [wave.residual for wave in waves],
         },
     )

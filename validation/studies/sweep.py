@@ -48,14 +48,35 @@ Axis = Sequence[Rational]
 Grids = Mapping[str, Array]  # quantity → (len(ks), len(omegas)); NaN where missing
 
 _OMEGA = "ω = m2/m1"
+_COLUMNS = (
+    Column("k", format="k = {}".format),
+    Column("omega", _OMEGA),
+    Column("width", "width", error=True),
+    Column("error.linear.width_value", "linear", format=percent),
+    Column("error.canonical.width_value", "canonical", format=percent),
+    Column("speed", "speed", error=True),
+    Column("error.linear.speed_value", "linear", format=percent),
+    Column("error.canonical.speed_value", "canonical", format=percent),
+    Column("decay", "decay per site", error=True),
+    Column("sites", "sites", format="{0[0]} … {0[1]}".format),
+    Column("strain_width", error=True),
+    Column("missing"),
+    *(
+        Column(f"theory.{closure}.{quantity}_value")
+        for closure in CLOSURES
+        for quantity in ("width", "strain_width", "speed")
+    ),
+)
 _NOTE = """\
 Width: FWHM of a contact's force, in sites. Speed: sites over time at contact force 1, with A = D =
 m1 = 1. Decay: of the logarithm of the peak force. Sites: places of the measurement, from the struck
-bead. ±: the largest change over a stretch, from a less accurate run, or twice that to 40 stretches.
-Not steady: by then a higher pulse has overtaken or follows. linear, canonical: theory/lattice - 1
-for the paper's closure and for the full closure's canonical field. From m2/m1 = 0.2 to 0.7 a
-contact's force may have several humps, that of the theory has one: the width, of the highest hump,
-is no measure of the theory's error."""
+bead. linear, canonical: theory/lattice - 1 for the paper's closure and for the full closure's
+canonical field. From m2/m1 = 0.2 to 0.7 a contact's force may have several humps, that of the
+theory has one: the width, of the highest hump, is no measure of the theory's error."""
+_ERRORS = (
+    "the largest change over a stretch, from a less accurate run, or twice that to 40 "
+    "stretches"
+)
 
 
 def report(
@@ -65,84 +86,71 @@ def report(
 
     Table ``points`` has the missing values' reasons.
     """
-    waves, numbers = (
-        theory(ks, omegas),
-        {q: [p.numbers.get(q) for p in points] for q in LABELS},
-    )
-    value, error = (
-        {
-            name: np.reshape(
-                [getattr(x, part, np.nan) for x in row], (len(ks), len(omegas))
-            )
-            for name, row in numbers.items()
+    waves = theory(ks, omegas)
+    rows = []
+    missing = []
+    for place, measured in zip(np.ndindex(len(ks), len(omegas)), points, strict=True):
+        row: dict[str, Any] = {
+            "k": measured.k,
+            "omega": measured.omega,
+            "sites": measured.sites,
+            "missing": measured.missing,
         }
-        for part in ("value", "error")
-    )
-    cells: list[tuple[Column, Iterable[Any]]] = [
-        (Column("k", format="k = {}".format), [p.k for p in points]),
-        (Column("omega", _OMEGA), [p.omega for p in points]),
-    ]
-    for name in ("width", "speed"):
-        cells.append((Column(name, name, error=True), numbers[name]))
+        row |= measured.numbers
         for closure, wave in waves.items():
-            off = (wave[name] / value[name] - 1).ravel()
-            cells.append((Column("", closure, format=percent), off))
-    cells += [
-        (Column("decay", "decay per site", error=True), numbers["decay"]),
-        (
-            Column("sites", "sites", format="{0[0]} … {0[1]}".format),
-            [p.sites for p in points],
-        ),
-        (Column("strain_width", error=True), numbers["strain_width"]),
-        (Column("missing"), [p.missing for p in points]),
-    ]
-    for closure, wave in waves.items():
-        cells += [
-            (Column(f"theory.{closure}.{q}_value"), x.ravel()) for q, x in wave.items()
-        ]
-    columns, values = zip(*cells, strict=True)
-    missing = [
-        f"k = {p.k}, ω = {p.omega}: {p.missing}"
-        for p in points
-        if p.missing is not None
-    ]
+            for quantity, grid in wave.items():
+                value = grid[place]
+                row[f"theory.{closure}.{quantity}_value"] = value
+                if quantity in measured.numbers:
+                    error = value / measured.numbers[quantity].value - 1
+                    row[f"error.{closure}.{quantity}_value"] = error
+        rows.append(row)
+        if measured.missing is not None:
+            name = f"k = {measured.k}, ω = {measured.omega}"
+            missing.append(f"{name}: {measured.missing}")
     return Report(
         "The steady pulse of a struck dimer chain",
-        (Table(columns, tuple(zip(*values, strict=True)), "points", by="k"),),
-        panels=tuple(_panels(ks, omegas, value, error, waves)),
-        notes=("\n".join(missing), _NOTE),
+        (Table.of(_COLUMNS, rows, "points", by="k", note=_NOTE, errors=_ERRORS),),
+        panels=tuple(_panels(ks, omegas, points, waves)),
+        notes=("\n".join(missing),),
         data={"stretch": stretch, "missing": len(missing)},
     )
 
 
 def _panels(
-    ks: Axis, omegas: Axis, value: Grids, error: Grids, waves: Mapping[str, Grids]
+    ks: Axis, omegas: Axis, points: Sequence[Point], waves: Mapping[str, Grids]
 ) -> Iterator[Panel]:
     """Yield curves of each quantity over ω, one for each k; of a single ω, over k.
 
     A single curve has the theories beside it.
     """
+    shape = (len(ks), len(omegas))
     over_k = len(omegas) == 1
-    axis, others, x, name = (
-        (ks, omegas, "k", _OMEGA) if over_k else (omegas, ks, _OMEGA, "k")
-    )
+    axis, x = (ks, "k") if over_k else (omegas, _OMEGA)
+    others, name = (omegas, _OMEGA) if over_k else (ks, "k")
     for quantity, label in LABELS.items():
-        rows, bars = (
-            grid[quantity].T if over_k else grid[quantity] for grid in (value, error)
-        )
-        if log := quantity == "decay":  # a decay below its error is drawn as its error
-            rows = np.fmax(rows, bars)
-        curves = [
-            Curve(f"{name} = {other}", axis, row, error=bar)
-            for other, row, bar in zip(others, rows, bars, strict=True)
-        ]
-        for closure, wave in waves.items() if len(others) == 1 else ():
-            if quantity in wave:
-                curves.append(Curve(CLOSURES[closure], axis, wave[quantity].ravel()))
-        yield Panel(x, label, tuple(curves), "y" * log)
+        numbers = [point.numbers.get(quantity) for point in points]
+        values = np.array([getattr(n, "value", np.nan) for n in numbers])
+        errors = np.array([getattr(n, "error", np.nan) for n in numbers])
+        if quantity == "decay":  # a decay below its error is drawn as its error
+            values = np.fmax(values, errors)
+        rows = values.reshape(shape)
+        bars = errors.reshape(shape)
+        if over_k:
+            rows = rows.T
+            bars = bars.T
+        curves = []
+        for other, row, bar in zip(others, rows, bars, strict=True):
+            curves.append(Curve(f"{name} = {other}", axis, row, error=bar))
+        if len(others) == 1 and quantity != "decay":
+            for closure, wave in waves.items():
+                line = wave[quantity].ravel()
+                curves.append(Curve(CLOSURES[closure], axis, line))
+        scale = "y" if quantity == "decay" else ""
+        yield Panel(x, label, tuple(curves), scale)
 
 
-def theory(ks: Axis, omegas: Axis) -> dict[str, dict[str, Array]]:
+def theory(ks: Axis, omegas: Axis) -> dict[str, Grids]:
     """Return widths and speed of the compact waves at contact force 1, by closure and quantity."""
     k, omega = np.meshgrid(np.array(ks, float), np.array(omegas, float), indexing="ij")
     scale = np.sqrt(2 * k / (1 + omega))  # τ/t, for A = D = m1 = 1
@@ -151,43 +159,42 @@ def theory(ks: Axis, omegas: Axis) -> dict[str, dict[str, Array]]:
         "linear": homogenize(cell).pde.traveling_wave(),
         "canonical": canonical_wave(cell),
     }
-    functions = {
-        closure: wave.numeric(missing="nan") for closure, wave in waves.items()
-    }
-    return {
-        closure: {
+    grids: dict[str, Grids] = {}
+    for closure, exact in waves.items():
+        wave = exact.numeric(missing="nan")
+        grids[closure] = {
             "width": wave.fwhm(k, omega, "force"),
             "strain_width": wave.fwhm(k, omega, "strain"),
             "speed": wave.speed(k, omega) * scale,
         }
-        for closure, wave in functions.items()
-    }
+    return grids
 
 
 def _axis(text: str, name: str) -> Iterator[sp.Expr]:
     """Yield the exact values of a text with numbers and ranges start:stop:count."""
     for part in text.split(","):
         numbers = [read_exact(number, name) for number in part.split(":")]
-        if len(numbers) not in (1, 3):
+        if len(numbers) == 1:
+            yield numbers[0]
+        elif len(numbers) == 3:
+            start, stop, given = numbers
+            count = integer(given, f"the count of {name}", 2, _MOST)
+            for i in range(count):
+                yield start + (stop - start) * i / (count - 1)
+        else:
             raise SceneError(f"{name} is {shorten(part)}: a range is start:stop:count")
-        first, *others = numbers
-        yield first
-        if others:
-            count = integer(others[1], f"the count of {name}", 2, _MOST)
-            yield from (
-                first + (others[0] - first) * i / (count - 1) for i in range(1, count)
-            )
 
 
 def _values(given: str | Iterable[Any], name: str) -> tuple[Rational, ...]:
     """Read the exact values of an axis, in rising order."""
-    given = _axis(given, name) if isinstance(given, str) else items(given, name)
-    values = {read_exact(value, name) for value in given}
     least, most = RANGES[name]
-    for value in values:
+    values = set()
+    for part in _axis(given, name) if isinstance(given, str) else items(given, name):
+        value = read_exact(part, name)
         if not (value.is_Rational and least <= value <= most):
             wanted = f"a number from {least} to {most} is wanted"
             raise SceneError(f"{name} is {shorten(value)}: {wanted}")
+        values.add(value)
     if not 0 < len(values) <= _MOST:
         raise SceneError(f"{name} has {len(values)} values: 1 to {_MOST} are wanted")
     return tuple(sorted(values))
@@ -202,30 +209,42 @@ def measured(
     progress: Progress[Key],
 ) -> list[Point]:
     """Measure the points of a grid that are not yet in the file, by the executor of ``workers``."""
-    unkept: tuple[dict[Key, Point], Callable[[Point], None]] = {}, lambda _: None
-    with (
-        workers as executor,
-        file.opened() if file else nullcontext(unkept) as (points, keep),
-    ):
+    with workers as executor, file.opened() if file else _memory() as (points, keep):
         missing = [key for key in product(ks, omegas) if key not in points]
-        waiting, done = iter(missing), SimpleQueue[Future[Point]]()
+        waiting = iter(missing)
         ahead: set[Future[Point]] = set()
+        done = SimpleQueue[Future[Point]]()
         try:
             for _ in progress(missing):
                 for key in islice(waiting, AHEAD - len(ahead)):
-                    ahead.add(future := executor.submit(point, *key, stretch))
+                    future = executor.submit(point, *key, stretch)
+                    ahead.add(future)
                     future.add_done_callback(done.put)
-                ahead.remove(future := done.get())
+                future = done.get()
+                ahead.remove(future)
                 new = future.result()
                 points[new.k, new.omega] = new
                 keep(new)
         except (BrokenExecutor, CancelledError) as error:
             gone = "the workers are gone before the sweep is done: killed, or out of memory?"
             raise Failure(gone) from error
+        except KeyboardInterrupt:
+            kept = f"the same line goes on from {file.path}" if file else _LOST
+            raise KeyboardInterrupt(kept) from None
         finally:
             for future in ahead:
                 future.cancel()
     return [points[key] for key in product(ks, omegas)]
+
+
+_LOST = "--file points.sqlite keeps finished points, from which the same line goes on"
+
+
+def _memory() -> AbstractContextManager[
+    tuple[dict[Key, Point], Callable[[Point], None]]
+]:
+    """Open a sweep without a file, as `PointFile.opened` opens one with a file."""
+    return nullcontext(({}, lambda point: None))
 
 
 _RANGES = "values and ranges start:stop:count, separated by commas."
@@ -254,6 +273,11 @@ _RANGES = "values and ranges start:stop:count, separated by commas."
         metavar="ADDRESS",
         says="Dask scheduler, in place of threads.",
     ),
+    page="recipes",
+    examples=(
+        "lwa-validate sweep --k 3/2,2 --omega 1/4:1:4 --file points.sqlite",
+        "lwa-validate sweep --k 3/2,2 --omega 1/4:1:4 --file points.sqlite --plot map.svg",
+    ),
 )
 def sweep(
     ks: str | Iterable[Any],
@@ -267,13 +291,27 @@ def sweep(
     """Width, speed and decay of a struck chain's pulse over k and m2/m1. The 160 points of the
     default grid take half a minute.
 
-    ks, omegas: texts such as "5/4:3:8, 4", or exact numbers; floats count as their decimals.
-    stretch: cells between places of measurement at k ≥ 3/2, see `validation.pulses.steady`.
-    file: file of finished points (.sqlite), which are not computed again.
-    jobs, address: number of threads, by default one a core; scheduler of a Dask cluster instead.
+    Parameters
+    ----------
+    ks, omegas : str or iterable of numbers
+        Texts such as "5/4:3:8, 4", or exact numbers; floats count as their decimals.
+    stretch : int
+        Cells between places of measurement; more below k of 3/2, see `validation.pulses.steady`.
+    file : path, optional
+        File of finished points (.sqlite), which are not computed again.
+    jobs : int, optional
+        Number of threads; by default one a core.
+    address : str, optional
+        Scheduler of a Dask cluster, in place of threads.
+    progress : Progress
+        Display of the number of points that are done.
 
-    Raises `lwa.InputError` for numbers outside `RANGES` or an unfit file, and `Failure` when a
-    worker fails; the file keeps finished points.
+    Raises
+    ------
+    InputError
+        For numbers outside `RANGES`, and for an unfit file.
+    Failure
+        When a worker fails; the file keeps finished points.
 
     >>> round(sweep(["3/2"], [1]).document()["points"][0]["width_value"], 4)
     1.4119
@@ -282,7 +320,8 @@ def sweep(
     stretch = integer(stretch, "stretch", 2, 100)
     if address is not None and jobs is not None:
         raise InputError(f"jobs is {jobs}: a cluster has workers of its own")
-    path = None if file is None else output_file("file", str(file), (".sqlite",))
-    points = None if path is None else PointFile(path, stretch)
+    points = None
+    if file is not None:
+        points = PointFile(output_file("file", str(file), (".sqlite",)), stretch)
     workers = threads(jobs, "jobs") if address is None else cluster(address)
     return report(*grid, measured(*grid, stretch, points, workers, progress), stretch)

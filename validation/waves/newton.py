@@ -1,32 +1,34 @@
 """Traveling waves of the lattice, solved by Newton's method with Fourier coefficients.
 
-Beads of masses m1 and m2 alternate at distance 1, contacts push with F = r_+^k (A = D = 1). In a
-wave of speed c all quantities depend on ξ = x - ct alone. With a(ξ) the strain of the contacts
-behind beads m1, b(ξ) the strain of the other contacts, F_a = a_+^k and F_b = b_+^k, the equations
-of motion are
+Beads of masses m1 and m2 alternate at distance 1, and contacts push with ``F = r_+^k``
+(``A = D = 1``). In a wave of speed c all quantities depend on ``ξ = x - ct`` alone. a(ξ) is the
+strain of the contacts behind beads m1, b(ξ) the strain of the other contacts, ``F_a = a_+^k`` and
+``F_b = b_+^k``. The equations of motion are::
 
     c² a'' = -Σ F_a(ξ) + F_b(ξ-1)/m1 + F_b(ξ+1)/m2,      Σ = 1/m1 + 1/m2,
 
-and the same for b with a ↔ b, m1 ↔ m2. Sought are mirror symmetric waves, b(ξ) = a(-ξ). Then
-a = e + o with e even and o odd, likewise F_a = E + O. With Δ = 1/m2 - 1/m1 the Fourier coefficients
-(of cos qξ for e and E, of sin qξ for o and O; q is the wavenumber) satisfy
+and the same for b with a and b, m1 and m2 exchanged. Sought are mirror symmetric waves,
+``b(ξ) = a(-ξ)``. Then ``a = e + o`` with e even and o odd, likewise ``F_a = E + O``. With
+``Δ = 1/m2 - 1/m1`` the Fourier coefficients (of cos qξ for e and E, of sin qξ for o and O; q is the
+wavenumber) satisfy the equations (1)::
 
-    c² q² e = Σ (1 - cos q) E + Δ sin q O,      c² q² o = Δ sin q E + Σ (1 + cos q) O.     (*)
+    c² q² e = Σ (1 - cos q) E + Δ sin q O,      c² q² o = Δ sin q E + Σ (1 + cos q) O.
 
-Profiles are trigonometric polynomials of period 2L, |ξ| ≤ L (L is the half period), spectrally
-accurate.
+Profiles are trigonometric polynomials of period 2L, ``-L ≤ ξ ≤ L`` (L is the half period),
+spectrally accurate.
 
-**The tail.** At q → 0 the second line of (*) has a pole: forces that end leave strains o = ±T
-behind. T is 0 for a solitary wave. `Problem.wave` can impose T = 0 with one more unknown, m2.
+**The tail.** At q → 0 the second equation has a pole: forces that end leave strains ``o = ±T``
+behind. T is 0 for a solitary wave. `SpecialRatio` imposes ``T = 0`` with one more unknown, m2.
 
 **Under a load.** On a background strain p0, a and b are the additional strains, r → 0 far away, and
-F = (p0 + r)_+^k - p0^k; (*) stays.
+``F = (p0 + r)_+^k - p0^k``; equations (1) stay.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
@@ -36,29 +38,35 @@ from numpy.typing import NDArray
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError
 
-MOST_STEPS = 25  # of Newton's method
+MOST_STEPS = 25  # of Newton's method, which takes 4 to 12 where it converges
 FEWEST = 40  # points on 0 … L
+_LONGEST_STEP = 0.3  # share of an unknown's size; with full steps a far start is lost
+_CONVERGED = 1e-12  # step over the unknowns' sizes; Newton's next one would be rounding
+_STALLED = 1e-9  # step below which a fall of less than four means rounding
 Pair = tuple[float, float]  # m1 and m2, or their inverses
 Solution = TypeVar("Solution")
 
 
 def widening(masses: Pair) -> float:
-    """Return the canonical wave's width divided by its width at equal masses, √(12 I/D²)."""
+    """Return the canonical wave's width divided by its width at equal masses, ``√(12 I/D²)``."""
     m1, m2 = masses
     return 2 * math.sqrt(m1 * m1 - m1 * m2 + m2 * m2) / (m1 + m2)
 
 
 def ample_half_period(masses: Pair, k: float) -> float:
     """Return a half period L: a pulse of equal masses ends within L, a dimer's within 0.6 L."""
-    # The strain divided by its peak falls like exp(-3 (k-1) ξ²) near k = 1, like exp(-k^ξ) above.
-    length = 1 + 3.7 / math.sqrt(k - 1 if k < 2 else math.log2(k))
-    return (
-        length if masses[0] == masses[1] else max(8.0, 1.15 * length * widening(masses))
-    )
+    # The strain divided by its peak falls like exp(-3 (k-1) ξ²) near k = 1, like exp(-k^ξ) above:
+    # at 3.7 of these lengths it is below 1e-17.
+    steepness = k - 1 if k < 2 else math.log2(k)
+    length = 1 + 3.7 / math.sqrt(steepness)
+    if masses[0] == masses[1]:
+        return length
+    # The oscillations behind a dimer's pulse need some sites to be seen.
+    return max(8.0, 1.15 * length * widening(masses))
 
 
 def points_needed(masses: Pair, k: float, half_period: float) -> int:
-    """Return a number of points on 0 … L = ``half_period`` that resolves the wave to rounding."""
+    """Return a number of points on 0 … L, L the half period, that resolves the wave to rounding."""
     # Points per site, in this order: for the pulse's width as k grows, for its steeper flanks at
     # large k, for the oscillation of light beads.
     beads = math.sqrt(sum(masses) / min(masses) - 1)
@@ -67,7 +75,7 @@ def points_needed(masses: Pair, k: float, half_period: float) -> int:
 
 
 def rise(strain: Array, k: float, p0: float) -> Array:
-    """Return (p0 + r)_+^k - p0^k, r the strain: force less static force, without cancellation."""
+    """Return ``(p0 + r)_+^k - p0^k``, r the strain: the dynamic force, without cancellation."""
     if not p0:
         return np.asarray(np.maximum(strain, 0) ** k)
     with np.errstate(divide="ignore"):  # an open contact
@@ -77,9 +85,10 @@ def rise(strain: Array, k: float, p0: float) -> Array:
 def respond(
     force: NDArray[np.complex128], inverse: Pair, half_period: float
 ) -> NDArray[np.complex128]:
-    """Return the Fourier coefficients of c² a from those of F_a by (*); e^{iqξ}, q = 0 … πn/L.
+    """Return the Fourier coefficients of c² a from those of F_a by equations (1).
 
-    inverse : (1/m1, 1/m2). The mean of a is set to 0.
+    Coefficients are those of ``e^{iqξ}``, ``q = 0 … πn/L``; the mean of a is set to 0. ``inverse``
+    holds 1/m1 and 1/m2.
     """
     q = np.pi * np.arange(len(force)) / half_period
     mirrored = inverse[0] * np.expm1(-1j * q) + inverse[1] * np.expm1(1j * q)
@@ -98,16 +107,46 @@ def coefficients(force: Array) -> tuple[Array, Array]:
 
 def periodic_grid(half_period: float, n: int) -> Array:
     """Return the 2n grid points ξ of a period: 0 … L, then from -L to 0."""
-    return np.asarray(
-        half_period / n * np.append(np.arange(n + 1), np.arange(1 - n, 0))
-    )
+    places = np.append(np.arange(n + 1), np.arange(1 - n, 0))
+    return np.asarray(half_period / n * places)
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """A solution: the forces F_a at the grid points, c² and the masses."""
+
+    force: Array
+    c2: float
+    masses: Pair
+
+
+@dataclass(eq=False)
+class Border:
+    """Conditions on a wave beside its equation, and the unknowns beside the forces."""
+
+    faults: list[float]  # by how much each condition is missed
+    rows: list[Array]  # derivatives of each condition by the forces
+    columns: list[Array]  # derivatives of the equation by each further unknown
+    corner: Array  # derivatives of the conditions by the further unknowns
 
 
 class Problem:
-    """The wave equations on a periodic grid: F_a = `rise` of the strain a, and a from F_a by (*).
+    """The wave equations on a periodic grid.
 
-    masses, k : (m1, m2) and the exponent. half_period, points : L, by default `ample_half_period`,
-    and the number of points on 0 … L, by default `points_needed`. p0 : background strain.
+    F_a is the `rise` of the strain a, and a follows from F_a by equations (1).
+
+    Parameters
+    ----------
+    masses : (float, float)
+        m1 and m2.
+    k : float
+        Exponent.
+    half_period : float, optional
+        L; by default `ample_half_period`.
+    points : int, optional
+        Number of points on 0 … L; by default `points_needed`.
+    p0 : float
+        Background strain.
     """
 
     # F_a(0) = 1 - p0^k fixes c². The unknowns are c² and the forces F_a at ``count`` grid points:
@@ -121,110 +160,143 @@ class Problem:
         points: int | None = None,
         p0: float = 0.0,
     ) -> None:
-        self.masses, self.k, self.p0 = masses, k, p0
+        self.masses = masses
+        self.inverse = (1 / masses[0], 1 / masses[1])
+        self.uniform = masses[0] == masses[1]
+        self.k = k
+        self.p0 = p0
+        self.height = -math.expm1(k * math.log(p0)) if p0 else 1.0
         self.L = half_period or ample_half_period(masses, k)
         self.n = points or points_needed(masses, k, self.L)
-        self.height = -math.expm1(k * math.log(p0)) if p0 else 1.0
-        self.uniform = masses[0] == masses[1]
         self.count = self.n + 1 if self.uniform else 2 * self.n
         self.xi = periodic_grid(self.L, self.n)[: self.count]
-        self.inverse = 1 / masses[0], 1 / masses[1]
 
-    def forces(self, z: Array) -> Array:
-        """Return F_a at all grid points, (2 points,), from the unknown forces z, (count,)."""
+    def wave(self, force: Array, c2: float) -> Found:
+        """Solve for the wave near a force on the grid and a squared speed.
+
+        Raises `numpy.linalg.LinAlgError` if Newton's method does not converge.
+        """
+        scaled = force[: self.count] * (self.height / force[0])
+        further = [c2, *self._further()]
+        largest = np.full(self.count, 2 * self.height)
+        # m2 is an unknown of its own size; c² may be 0 at a bad start.
+        sizes = np.append(largest, [abs(x) or 1.0 for x in further])
+        x = newton(self._step, np.append(scaled, further), sizes)
+        masses = (self.masses[0], 1 / self._inverse(x)[1])
+        return Found(self._everywhere(x[: self.count]), float(x[self.count]), masses)
+
+    def _further(self) -> list[float]:
+        """Unknowns beside the forces and c²."""
+        return []
+
+    def _inverse(self, x: Array) -> Pair:
+        """1/m1 and 1/m2 at the unknowns x."""
+        return self.inverse
+
+    def _everywhere(self, z: Array) -> Array:
+        """F_a at all grid points, (2n,), from the unknown forces z, (count,)."""
         return np.append(z, z[self.n - 1 : 0 : -1]) if self.uniform else z
 
     def strains(self, z: Array, inverse: Pair) -> Array:
         """Return c² a, shifted to 0 at L, at the first ``count`` grid points, from the forces z."""
-        force = scipy.fft.rfft(self.forces(z))
-        # Of equal masses the imaginary part is rounding, which 1/q² would enlarge.
-        force = np.asarray(force.real if self.uniform else force, complex)
+        force = scipy.fft.rfft(self._everywhere(z))
+        if self.uniform:  # the imaginary part is rounding, which 1/q² would enlarge
+            force = force.real.astype(complex)
         a = scipy.fft.irfft(respond(force, inverse, self.L), 2 * self.n)
         return np.asarray(a - a[self.n])[: self.count]
 
     def responses(self, at: NDArray[np.int_], inverse: Pair) -> Array:
         """Return the rows and columns ``at`` (grid points) of the Jacobian of `strains`."""
         n = self.n
-        plus, minus = (
-            respond(np.full(n + 1, f, complex), inverse, self.L) for f in (1, 1j)
-        )
-        minus = 1j * minus
         # Strain due to a force at one place and due to a force at its mirror image, as functions
         # of the difference and of the sum of two places; two periods, as the sum exceeds one.
-        both = (
-            (plus, 0 * plus)
-            if self.uniform
-            else ((plus - minus) / 2, (plus + minus) / 2)
-        )
-        near, mirrored = (np.tile(scipy.fft.irfft(row, 2 * n), 2) for row in both)
+        real = respond(np.full(n + 1, 1, complex), inverse, self.L)
+        imaginary = 1j * respond(np.full(n + 1, 1j), inverse, self.L)
+        if self.uniform:
+            near = np.tile(scipy.fft.irfft(real, 2 * n), 2)
+            mirrored = np.zeros_like(near)
+        else:
+            near = np.tile(scipy.fft.irfft((real - imaginary) / 2, 2 * n), 2)
+            mirrored = np.tile(scipy.fft.irfft((real + imaginary) / 2, 2 * n), 2)
 
         def to(j: NDArray[np.int_]) -> Array:
-            row = near[n - j] + mirrored[n + j]
-            return np.asarray(near[at[:, None] - j] + mirrored[at[:, None] + j] - row)
+            """The strains at the places ``at``, less that at L, due to forces at the places j."""
+            at_end = near[n - j] + mirrored[n + j]
+            i = at[:, np.newaxis]
+            return np.asarray(near[i - j] + mirrored[i + j] - at_end)
 
         if not self.uniform:
             return to(at)
+        # A force stands at its mirror image, too; 0 and L are their own.
         return np.asarray((to(at) + to(-at)) * np.where(at % n == 0, 0.5, 1.0))
 
-    def wave(
-        self, z: Array, c2: float, free: bool = False
-    ) -> tuple[Array, float, float]:
-        """Solve for the wave near the forces ``z`` and squared speed ``c2``.
+    def _border(self, z: Array, slope: Array, a: Array, inverse: Pair) -> Border:
+        """The condition of the peak force, and the derivative by c²."""
+        at_peak = np.eye(1, self.count)[0]
+        return Border([z[0] - self.height], [at_peak], [slope * a], np.zeros((1, 1)))
 
-        free : True to impose T = 0 with one more unknown, m2.
-        Returns the forces, c² and 1/m2.
-        Raises `numpy.linalg.LinAlgError` if Newton's method does not converge.
-        """
-        last = (self.inverse[1],) if free else ()
-        size = np.append(
-            np.full(self.count, 2 * self.height), [abs(x) or 1.0 for x in (c2, *last)]
-        )
-        start = np.append(z[: self.count] * (self.height / z[0]), (c2, *last))
-        x = newton(lambda x: self._step(x, free), start, size)
-        return (
-            x[: self.count],
-            float(x[self.count]),
-            float(x[-1]) if free else self.inverse[1],
-        )
-
-    def _step(self, x: Array, free: bool) -> Array:
+    def _step(self, x: Array) -> Array:
         """Return the Newton step to be subtracted from the unknowns x."""
-        count, xi = self.count, self.xi
-        z, c2 = x[:count], x[count]
-        inverse = self.inverse[0], x[-1] if free else self.inverse[1]
+        z = x[: self.count]
+        c2 = x[self.count]
+        inverse = self._inverse(x)
         a = self.strains(z, inverse) / c2
         slope = self.k * np.maximum(self.p0 + a, 0) ** (self.k - 1) / c2
         fault = z - rise(a, self.k, self.p0)
-        columns, rows, faults = [slope * a], [np.eye(1, count)[0]], [z[0] - self.height]
-        corner = np.zeros((1 + free,) * 2)
-        if free:
-            # c² T = Δ ∫_0^∞ E dξ + 2Σ ∫_0^∞ ξ O dξ = ∫ [(ξ - 1/2)/m1 + (ξ + 1/2)/m2] F_a dξ, and
-            # its derivative by 1/m2.
-            one, two = (self.L / self.n * (xi * (xi < self.L) + s / 2) for s in (-1, 1))
-            tail = inverse[0] * one + inverse[1] * two
-            rows, faults = [*rows, tail], [*faults, tail @ z]
-            columns.append(-slope * self.strains(z, (0, 1)))
-            corner[1, 1] = two @ z
+        border = self._border(z, slope, a, inverse)
         # The force of an open contact is known: it leaves the linear system.
         on = slope != 0
         known = np.where(on, 0, fault)
         right = (fault + slope * self.strains(known, inverse))[on]
         at = np.flatnonzero(on)
         matrix = np.eye(len(at)) - slope[at][:, None] * self.responses(at, inverse)
-        border = np.array(rows)
+        rows = np.array(border.rows)
+        columns = np.array(border.columns).T
         solved = np.linalg.solve(
-            np.block([[matrix, np.array(columns).T[on]], [border[:, on], corner]]),
-            np.append(right, faults - border @ known),
+            np.block([[matrix, columns[on]], [rows[:, on], border.corner]]),
+            np.append(right, border.faults - rows @ known),
         )
         known[on] = solved[: len(at)]
         return np.append(known, solved[len(at) :])
+
+
+class SpecialRatio(Problem):
+    """The wave equations with m2 as one more unknown, and the condition ``T = 0``."""
+
+    def _further(self) -> list[float]:
+        return [self.inverse[1]]
+
+    def _inverse(self, x: Array) -> Pair:
+        return (self.inverse[0], float(x[-1]))
+
+    def _border(self, z: Array, slope: Array, a: Array, inverse: Pair) -> Border:
+        """Both conditions, and the derivatives by c² and by 1/m2."""
+        border = super()._border(z, slope, a, inverse)
+        # c² T = Δ ∫_0^∞ E dξ + 2Σ ∫_0^∞ ξ O dξ = ∫ [(ξ - 1/2)/m1 + (ξ + 1/2)/m2] F_a dξ, and
+        # its derivative by 1/m2. The force at the grid's end ξ = L is 0.
+        places = np.where(self.xi < self.L, self.xi, 0)
+        step = self.L / self.n
+        by_second = step * (places + 1 / 2)
+        tail = inverse[0] * step * (places - 1 / 2) + inverse[1] * by_second
+        border.faults.append(float(tail @ z))
+        border.rows.append(tail)
+        border.columns.append(-slope * self.strains(z, (0, 1)))
+        border.corner = np.array([[0, 0], [0, by_second @ z]])
+        return border
 
 
 @np.errstate(all="ignore")  # an overflow or c² < 0 does not converge
 def newton(change: Callable[[Array], Array], x: Array, sizes: Array) -> Array:
     """Return a root near x, found by damped Newton steps; `LinAlgError` without convergence.
 
-    change : the full Newton step at x, to be subtracted. sizes : typical sizes of the unknowns.
+    Parameters
+    ----------
+    change : callable
+        The full Newton step at x, to be subtracted.
+    x : ndarray, shape (N,)
+        The start.
+    sizes : ndarray, shape (N,)
+        Typical sizes of the unknowns.
     """
     before = math.inf
     for _ in range(MOST_STEPS):
@@ -232,9 +304,11 @@ def newton(change: Callable[[Array], Array], x: Array, sizes: Array) -> Array:
         size = float(np.max(np.abs(step) / sizes))
         if not math.isfinite(size):
             break
-        x = x - step * (min(1.0, 0.3 / size) if size > 0 else 1.0)
-        # Rounding stops the fall of the steps.
-        if size < 1e-12 or (size < 1e-9 and size > before / 4):
+        if size > _LONGEST_STEP:
+            step *= _LONGEST_STEP / size
+        x = x - step
+        stalled = size < _STALLED and size > before / 4
+        if size < _CONVERGED or stalled:
             return x
         before = size
     raise np.linalg.LinAlgError("no convergence")
@@ -249,14 +323,25 @@ def continued(
 ) -> Solution:
     """Continue a solution from one value of a parameter to another, in adaptive steps.
 
-    begin, end : the parameter's values. step : length of the first step.
-    solve : returns the solution at a value, given the last one or two values with their solutions;
-        its `lwa.InputError` halves the step, and is raised at a hundredth of the first step.
+    Parameters
+    ----------
+    solution : object
+        The solution at ``begin``.
+    begin, end : float
+        The parameter's values.
+    step : float
+        Length of the first step.
+    solve : callable
+        Returns the solution at a value, given the last one or two values with their solutions; its
+        `lwa.InputError` halves the step, and is raised at a hundredth of the first step.
     """
-    path, size = [(begin, solution)], step
+    path = [(begin, solution)]
+    size = step
     while path[-1][0] != end:
-        left = end - path[-1][0]
-        value = end if abs(left) <= size else path[-1][0] + math.copysign(size, left)
+        last = path[-1][0]
+        value = (
+            end if abs(end - last) <= size else last + math.copysign(size, end - last)
+        )
         try:
             path.append((value, solve(value, path[-2:])))
         except InputError:

@@ -1,10 +1,10 @@
 """Profiles of traveling waves of the lattice: strains, forces, velocities, peaks, widths, tails.
 
-A = D = 1. A contact's strain is a(ξ) or b(ξ) = a(-ξ), ξ = x - ct (`validation.waves.newton`). The
-contact law r_+^k has no scale of its own, so that multiples of a wave are waves: r → s r with
-c² → s^{k-1} c². Waves are found at peak contact force 1; `ExactWave.times` gives the others. On a
-background p0, which is multiplied by s too, strains and forces are those added to p0 and p0^k, and
-the force of peak 1 is the sum.
+``A = D = 1``. A contact's strain is a(ξ) or ``b(ξ) = a(-ξ)``, ``ξ = x - ct``
+(`validation.waves.newton`). The contact law ``r_+^k`` has no scale of its own, so that multiples of
+a wave are waves: s times the strain with ``s^{k-1}`` times c². Waves are found at peak contact
+force 1; `ExactWave.times` gives the others. On a background p0, which is multiplied by s too,
+strains and forces are those added to p0 and ``p0^k``, and the force of peak 1 is the sum.
 """
 
 from __future__ import annotations
@@ -13,14 +13,15 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from lwa.base.arrays import Array, finite
-from lwa.base.frozen import QUANTITIES, strain_power
+from lwa.base.exact import one_of
+from lwa.base.frozen import QUANTITIES, Estimate, known_quantity
 from validation.pictures import Curve, Panel, Pictured
 from validation.pulses.pulse import highest_pulse
 from validation.pulses.signals import Piecewise
@@ -30,22 +31,42 @@ from validation.scenes.scene import Scene
 from validation.waves import newton
 
 TOLERANCE = 1e-9  # tail and residual of a solitary wave over its peak strain, at most
-_ROW = 16  # Fourier coefficients that are summed up together
+# Relative error of a solitary wave's numbers by rounding: between grids they differ by 2e-14 at
+# most (k = 1.02 … 60).
+ROUNDING = 1e-13
 OUTSIDE = 0.6  # share of the half period at which a dimer's pulse has ended and its tail begins
+
+Number = Literal["c2", "c", "tail", "peak", "fwhm"]
+"""Numbers of an exact wave that have errors."""
+
+_NUMBERS = ("c2", "c", "tail", "peak", "fwhm")
 
 
 @dataclass(frozen=True, eq=False)
 class ExactWave(Pictured):
-    """A traveling wave of the lattice as a function of ξ = x - ct, accurate to rounding; A = D = 1.
+    """A traveling wave of the lattice as a function of ``ξ = x - ct``, accurate to rounding.
 
-    masses : (m1, m2). k : exponent. c2 : c², the square of the speed dx/dt.
-    half_period : L; profiles have the period 2L, and a solitary wave ends before L.
-    even, odd : coefficients of cos(πjξ/L) in E, the even part of F_a, and of sin(πjξ/L) in O, its
-        odd part, j = 0 … n.
-    tail : largest |o|, the odd part of a, outside the pulse, divided by the peak strain.
-    residual : largest error in the twice integrated equations of motion divided by the peak strain,
-        on a grid twice as fine as the solution's.
-    background : p0, the strain far from the wave.
+    Stiffness and spacing are 1.
+
+    Parameters
+    ----------
+    masses : (float, float)
+        m1 and m2.
+    k : float
+        Exponent.
+    c2 : float
+        c², the square of the speed dx/dt.
+    half_period : float
+        L; profiles have the period 2L, and a solitary wave ends before L.
+    even, odd : ndarray, shape (n + 1,)
+        Coefficients of cos(πjξ/L) in E, the even part of F_a, and of sin(πjξ/L) in O, its odd part.
+    tail : float
+        Largest ``|o|``, the odd part of a, outside the pulse, divided by the peak strain.
+    residual : float
+        Largest error in the twice integrated equations of motion divided by the peak strain, on a
+        grid twice as fine as the solution's.
+    background : float
+        p0, the strain far from the wave.
     """
 
     masses: newton.Pair
@@ -72,7 +93,7 @@ class ExactWave(Pictured):
 
     @property
     def omega(self) -> float:
-        """Mass ratio ω = m2/m1."""
+        """Mass ratio m2/m1."""
         return self.masses[1] / self.masses[0]
 
     @property
@@ -80,21 +101,44 @@ class ExactWave(Pictured):
         """True if tail and residual are below `TOLERANCE`."""
         return max(self.tail, self.residual) < TOLERANCE
 
+    def estimate(self, name: Number, *arguments: Any) -> Estimate:
+        """Return a number of a solitary wave with its error, from residual, tail and rounding.
+
+        Parameters
+        ----------
+        name : {"c2", "c", "tail", "peak", "fwhm"}
+            Name of an attribute or a method.
+        *arguments
+            Arguments of the method, as in ``wave.estimate("fwhm", "force")``.
+
+        >>> from validation import exact_wave
+        >>> print(exact_wave([1], 1.5).estimate("fwhm", "force"))
+        1.41193 ± 1e-05
+        """
+        value = getattr(self, one_of(name, _NUMBERS, "name"))
+        if callable(value):
+            value = value(*arguments)
+        # On a background rounding is that of the whole strain, of which the wave is a part.
+        error = ROUNDING / (1 - self.background) + self.residual + self.tail
+        return Estimate(value, error if name == "tail" else error * value)
+
     def times(self, s: float) -> ExactWave:
-        """Return the wave with all strains, the background's too, multiplied by s; c² ~ s^{k-1}."""
+        """Return the wave with all strains, the background's too, multiplied by s."""
         s = between(s, "s", 1e-30, 1e30)
-        c2, force, p0 = (
-            float(self.c2 * s ** (self.k - 1)),
-            s**self.k,
-            s * self.background,
-        )
+        force = s**self.k
         return replace(
-            self, c2=c2, even=self.even * force, odd=self.odd * force, background=p0
+            self,
+            c2=float(self.c2 * s ** (self.k - 1)),
+            even=self.even * force,
+            odd=self.odd * force,
+            background=s * self.background,
         )
 
     def strain(self, xi: ArrayLike, contact: int = 0) -> Array:
         """Strain a(ξ) of the contacts behind beads m1 (contact 0), or b(ξ) of the others (1)."""
-        at = finite(xi, "xi") * (-1 if integer(contact, "contact", 0) % 2 else 1)
+        at = finite(xi, "xi")
+        if integer(contact, "contact", 0) % 2:
+            at = -at
         return np.where(self._ended(at), 0.0, self._sum(at, *self._strains))
 
     def force(self, xi: ArrayLike, contact: int = 0) -> Array:
@@ -103,20 +147,21 @@ class ExactWave(Pictured):
 
     def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
         """Velocity of beads m1 (bead 0) or m2 (bead 1) at ξ; a cell far away has no momentum."""
-        at, bead = finite(xi, "xi"), integer(bead, "bead", 0)
-        one, two = (
-            float(self._velocity(np.array(self.half_period), i)) for i in (0, 1)
-        )
-        mean = (one + self.omega * two) / (1 + self.omega)
-        return np.where(self._ended(at), 0.0, self._velocity(at, bead) - mean)
+        at = finite(xi, "xi")
+        end = np.array(self.half_period)
+        first, second = self._velocity(end, 0), self._velocity(end, 1)
+        mean = float((first + self.omega * second) / (1 + self.omega))
+        moving = self._velocity(at, integer(bead, "bead", 0)) - mean
+        return np.where(self._ended(at), 0.0, moving)
 
-    def peak(self, name: str) -> tuple[float, float]:
-        """Return place ξ and value of the maximum of "strain", "force" or "velocity".
+    def peak(self, name: str) -> float:
+        """Return the maximum of "strain", "force" or "velocity".
 
         Strain and force are those of contact 0, the velocity is that of bead 0.
         """
         xi = np.linspace(-self.half_period, self.half_period, 4 * len(self.even) + 1)
-        return summit(self._quantity(name), xi)
+        _, peak = summit(self._quantity(name), xi)
+        return peak
 
     def fwhm(self, name: str = "strain") -> float:
         """Full width at half maximum of a quantity's highest hump, a length; name as in `peak`.
@@ -132,44 +177,46 @@ class ExactWave(Pictured):
         sites : distance to travel, with contact sensors halfway and at the end unless ``rest``,
         further fields of the scene, has others.
         """
-        start, sites = integer(start, "start", 1), integer(sites, "sites", 1)
+        start = integer(start, "start", 1)
+        sites = integer(sites, "sites", 1)
+        options: dict[str, Any] = {
+            "contact_sensors": (start + sites // 2, start + sites),
+            "duration": (sites + start / 2) / self.c,
+        }
         bead = np.arange(2 * start + sites) - start
-        at, even = bead[:-1] + 0.5, bead % 2 == 0
-        sensors = {"contact_sensors": (start + sites // 2, start + sites)}
-        options = sensors | {"duration": (sites + start / 2) / self.c} | rest
-        strain = np.where(even[:-1], self.strain(at, 0), self.strain(at, 1))
-        velocity = np.where(even, self.velocity(bead, 0), self.velocity(bead, 1))
-        masses = tuple(np.where(even, *self.masses))
-        return carrying(masses, strain, velocity, k=self.k, **options)
+        contact = bead[:-1] + 0.5
+        is_first = bead % 2 == 0
+        return carrying(
+            tuple(np.where(is_first, *self.masses)),
+            np.where(is_first[:-1], self.strain(contact, 0), self.strain(contact, 1)),
+            np.where(is_first, self.velocity(bead, 0), self.velocity(bead, 1)),
+            k=self.k,
+            **(options | rest),
+        )
 
     def pictured(self) -> list[Panel]:
         """Panel of strain, force and velocity as functions of ξ, each divided by its peak."""
-        xi, styles = (
-            np.linspace(-self.half_period, self.half_period, 2001),
-            ("-", "--", ":"),
-        )
-        curves = (
-            Curve(name, xi, self._quantity(name)(xi) / self.peak(name)[1], style)
-            for name, style in zip(QUANTITIES, styles, strict=True)
-        )
+        xi = np.linspace(-self.half_period, self.half_period, 2001)
+        curves = []
+        for name, style in zip(QUANTITIES, ("-", "--", ":"), strict=True):
+            curves.append(
+                Curve(name, xi, self._quantity(name)(xi) / self.peak(name), style)
+            )
         return [Panel("ξ / D", "over its peak", tuple(curves))]
 
     def _quantity(self, name: str) -> Callable[[ArrayLike], Array]:
-        strain_power(name, self.k)  # refuses other names
-        quantity: Callable[[ArrayLike], Array] = getattr(self, name)
+        """The method of a quantity's name."""
+        quantity: Callable[[ArrayLike], Array] = getattr(self, known_quantity(name))
         return quantity
 
     @cached_property
     def _strains(self) -> tuple[Array, Array]:
         """Fourier coefficients of e and o."""
         m1, m2 = self.masses
-        odd = (
-            self.odd if m1 != m2 else 0 * self.odd
-        )  # it is rounding, which 1/q² would enlarge
-        strain = (
-            newton.respond(self.even - 1j * odd, (1 / m1, 1 / m2), self.half_period)
-            / self.c2
-        )
+        force = self.even - 1j * self.odd
+        if m1 == m2:  # the odd part is rounding, which 1/q² would enlarge
+            force = self.even.astype(complex)
+        strain = newton.respond(force, (1 / m1, 1 / m2), self.half_period) / self.c2
         e, o = strain.real, -strain.imag
         e[0] = e[1::2].sum() - e[2::2].sum()  # the strain is 0 at L
         o[-1] = 0
@@ -177,47 +224,40 @@ class ExactWave(Pictured):
 
     def _velocity(self, xi: ArrayLike, bead: int) -> Array:
         """Velocity up to a constant: the integral of v' = (force ahead - force behind)/(m c)."""
-        sign, q = (
-            (-1 if bead % 2 else 1),
-            np.pi / self.half_period * np.arange(1, len(self.even)),
-        )
-        push = (
-            -2 * np.sin(q / 2) * self.even[1:] + sign * 2 * np.cos(q / 2) * self.odd[1:]
-        )
-        row = np.append(0.0, -push / q) / (self.masses[bead % 2] * self.c)
-        return self._sum(xi, row, 0 * row)
+        second = bead % 2
+        q = np.pi / self.half_period * np.arange(1, len(self.even))
+        odd = (
+            2 * np.cos(q / 2) * self.odd[1:]
+        )  # of the opposite sign in the force on m2
+        push = -2 * np.sin(q / 2) * self.even[1:] + (-odd if second else odd)
+        row = np.append(0.0, -push / q) / (self.masses[second] * self.c)
+        return self._sum(xi, row, np.zeros_like(row))
 
     def _sum(self, xi: ArrayLike, even: Array, odd: Array) -> Array:
         """Evaluate the Fourier sum Σ even_j cos(q_j ξ) + odd_j sin(q_j ξ) at any ξ."""
-        rows = np.append(even - 1j * odd, np.zeros(-len(self.even) % _ROW)).reshape(
-            -1, _ROW
-        )
-        q = np.pi / self.half_period * np.arange(rows.size)
-        # e^{iqξ} of every q as a product of two, of the first 16 q and of every 16th q: special
-        # ratios are found in a tenth less time than with a sine and a cosine for every q.
-        first, every = (
-            np.exp(1j * np.multiply.outer(xi, part)) for part in (q[:_ROW], q[::_ROW])
-        )
-        return np.asarray(((first @ rows.T) * every).real.sum(axis=-1))
+        phase = np.multiply.outer(xi, np.pi / self.half_period * np.arange(len(even)))
+        return np.asarray(np.cos(phase) @ even + np.sin(phase) @ odd)
 
     def _ended(self, xi: ArrayLike) -> NDArray[np.bool_]:
-        """True where |ξ| > L for a solitary wave: there the wave is 0, the Fourier sum periodic."""
+        """True beyond L for a solitary wave: there the wave is 0, the Fourier sum periodic."""
         return np.asarray((np.abs(xi) >= self.half_period) & self.solitary)
 
 
-def at_unit_force(
-    masses: newton.Pair, problem: newton.Problem, forces: Array, c2: float
-) -> ExactWave:
-    """Return the solution of a problem, scaled to peak force 1, with its tail and residual."""
-    even, odd = newton.coefficients(problem.forces(forces))
-    wave = ExactWave(masses, problem.k, c2, problem.L, even, odd, 0.0, 0.0, problem.p0)
-    wave = wave.times(1 / (problem.p0 + wave.peak("strain")[1]))
+def at_unit_force(problem: newton.Problem, found: newton.Found) -> ExactWave:
+    """Return the wave of a solution, scaled to peak contact force 1, with tail and residual."""
+    even, odd = newton.coefficients(found.force)
+    wave = ExactWave(
+        found.masses, problem.k, found.c2, problem.L, even, odd, 0.0, 0.0, problem.p0
+    )
+    wave = wave.times(1 / (problem.p0 + wave.peak("strain")))
     tail = 0.0
     if not problem.uniform:
+
+        def odd_part(x: Any) -> Array:
+            return np.abs(wave.strain(x) - wave.strain(-x)) / 2
+
         outside = np.linspace(OUTSIDE * problem.L, problem.L, 2 * len(wave.even))
-        _, tail = summit(
-            lambda x: np.abs(wave.strain(x) - wave.strain(-x)) / 2, outside
-        )
+        _, tail = summit(odd_part, outside)
     xi = newton.periodic_grid(wave.half_period, 2 * problem.n)
     even, odd = newton.coefficients(wave.force(xi))
     again = replace(wave, even=even, odd=odd)
@@ -233,5 +273,6 @@ def summit(f: Callable[[Any], Array], xi: Array) -> tuple[float, float]:
     top = scipy.optimize.minimize_scalar(
         lambda x: -float(f(x)), bounds=bounds, method="bounded", options={"xatol": 1e-9}
     )
-    peak, place = max((value[i], xi[i]), (-top.fun, top.x))
-    return float(place), float(peak)
+    if -top.fun > value[i]:
+        return float(top.x), float(-top.fun)
+    return float(xi[i]), float(value[i])

@@ -4,13 +4,16 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lwa.algebra.jets import JetAlgebra
+from lwa import Cell, Power
+from lwa.algebra.model import Model
+
+MODEL = Model(Cell([1]), Power("k"))
 
 
 @given(st.integers(2, 5), st.data())
 def test_antiderivative_undoes_dx(weight, data):
-    algebra = JetAlgebra(("k",), weight + 1)
-    k = algebra.context.gens()[0]
+    algebra = MODEL.algebra(weight + 1)
+    k = algebra.k
     f = algebra.zero
     for partition in sp.utilities.iterables.partitions(weight):
         term = algebra.one * data.draw(st.integers(-5, 5))
@@ -21,8 +24,8 @@ def test_antiderivative_undoes_dx(weight, data):
 
 
 def test_other_expressions_have_no_antiderivative():
-    algebra = JetAlgebra(("k",), weight=4)
-    k, r = algebra.context.gens()[0], algebra.r
+    algebra = MODEL.algebra(4)
+    k, r = algebra.k, algebra.r
     assert algebra.antiderivative(r[2] ** 2, k) is None
     assert algebra.antiderivative(r[1] ** 3, k) is None
     assert (

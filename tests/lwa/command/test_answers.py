@@ -162,9 +162,9 @@ TEXTS = {
         "  G = D**2*m1**2*(k - 2)*(k - 1)/(6*(m1 + m2)**2)\n",
         "  vanishing identically: D^(k+2)\n", "does not conserve momentum",
     ),
-    "derive --closure full --order 6": ("u_x^(-1) u_2xτ u_3xτ", "see --field center"),
+    "derive --closure full --order 6": ("u_x^(-1) u_xxτ u_xxxτ", "see --field center"),
     "derive --law hertz2:1,1/2": (
-        "phi2 = (15*delta + 6)/(10*delta + 12)", "F' u_xx + G F' u_x^-2 u_xx^3",
+        "phi2 = (15*delta + 6)/(10*delta + 12)", "F' u_xx + G F' u_x^(-2) u_xx^3",
     ),
     "derive --law exponential --format latex": (r"F' u_{xx} + G F' u_{x}^{-2} u_{xx}^{3}",),
     "wave --k 3/2 --masses m --force f": ("peak contact force F = f\n",),

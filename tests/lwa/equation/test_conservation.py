@@ -18,7 +18,7 @@ from lwa.law import named
 from tests.lwa.fields import energy_density, right_side
 
 x, s = sp.symbols("x s")
-FULL = {"closure": "full"}
+FULL = {"closure": "full", "field": "first"}
 CANONICAL = FULL | {"field": "center"}
 
 

@@ -12,6 +12,7 @@ from validation.pulses.pulse import leading_pulses
 from validation.pulses.signals import spline
 from validation.pulses.steady import LABELS, STRETCH, point
 from validation.scenes.scene import Scene
+from validation.waves.newton import SpecialRatio
 from validation.waves.solver import exact_wave, solve
 
 R = sp.Rational
@@ -35,7 +36,7 @@ def test_a_solitary_wave_agrees_with_newtons_method(k, omega):
     wave = (
         exact_wave([1], float(R(k)))
         if omega == 1
-        else solve((1, float(omega)), 1.5, free=True)
+        else solve(SpecialRatio((1, float(omega)), 1.5))
     )
     numbers = at(k, omega)
     exact = wave.fwhm("force"), wave.fwhm("strain"), wave.c, 0.0

@@ -18,7 +18,7 @@ TABLE = Table(
     (
         Column("k", "k"),
         Column("chain", format=lambda name: f"chain {name}"),
-        Column("speed", "speed", "m/s", error=True),
+        Column("speed", "speed (m/s)", error=True),
         Column("error_value.F_m", "by F_m", format="+.1%"),
         Column("", "unit"),
     ),

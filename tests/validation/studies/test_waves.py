@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
@@ -40,17 +39,17 @@ def test_momentum_is_the_integral_of_mass_and_velocity(wave):
 
 
 @pytest.mark.parametrize("wave", WAVES.values(), ids=WAVES)
-def test_the_width_inside_a_bead_is_where_its_force_is_half(wave):
-    """The mean over a spacing widens the pulse, by less than the spacing."""
-    physical = wave.at_force(2)
-    V, width = float(physical.speed), bead_fwhm(wave)
-    half = physical.curve(np.array([-width, width]) / 2 / V, of="bead")
-    assert half == pytest.approx(float(physical.bead_force) / 2, rel=1e-11)
-    assert (
-        float(wave.fwhm("force"))
-        < width
-        < float(wave.fwhm("force") + sp.Rational(1, 2))
-    )
+def test_the_width_inside_a_bead_is_where_both_arches_are_half_of_their_peak(wave):
+    """The sum of two arches of a contact, cos^p(β(x ± D/2)), at half of its value at 0."""
+    width = bead_fwhm(wave.at_force(2))
+    beta, power, D = (float(x) for x in (wave.beta, 2 * wave.k / (wave.k - 1), wave.D))
+
+    def force(x):
+        phases = beta * (x + np.array([-D / 2, D / 2]))
+        return (np.cos(phases[np.abs(phases) < np.pi / 2]) ** power).sum()
+
+    assert force(width / 2) == pytest.approx(force(0) / 2, rel=1e-11)
+    assert float(wave.fwhm("force")) < width < float(wave.fwhm("force")) + D
 
 
 def test_bad_amounts():

@@ -1,0 +1,149 @@
+"""Docstrings are valid reStructuredText in numpydoc's form, formulas in literals.
+
+Sphinx reads them in the book, editors and `help()` elsewhere. The rooms are being rewritten, and
+this file is run by its path: ``python -m pytest tests/book/docstrings.py -k lwa/wave``.
+"""
+
+import ast
+import importlib
+import inspect
+import io
+import re
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.optional("sphinx")
+
+ROOT = Path(__file__).parents[2]
+FILES = [
+    str(path.relative_to(ROOT))
+    for package in ("lwa", "validation")
+    for path in sorted((ROOT / package).rglob("*.py"))
+]
+DOCUMENTED = ast.ClassDef, ast.FunctionDef
+ASSIGNED = ast.Assign, ast.AnnAssign
+HEAD = ".. default-role:: literal\n\n"
+
+# Characters and signs between blanks that only formulas have. Public docstrings are set as a page.
+FORMULA = re.compile(r"[\^∂∫√∑Σ′″]| [=≤≥≈] ")
+# The form before numpydoc's, `name : description`. A type has no full stop.
+UNTYPED = re.compile(r"^(\w[\w, ]*) : .*(\.|\. .*)$", re.MULTILINE)
+
+
+def docstrings(path):
+    """Names, nodes and docstrings of a file: of the module, classes, functions and attributes."""
+
+    def walk(node, name):
+        if text := ast.get_docstring(node):
+            yield name, node, text
+        before = None
+        for child in node.body:
+            if isinstance(child, DOCUMENTED):
+                yield from walk(child, f"{name}.{child.name}")
+            described = isinstance(before, ASSIGNED) and isinstance(child, ast.Expr)
+            if described and isinstance(child.value, ast.Constant):
+                yield (
+                    f"{name}:{child.lineno}",
+                    child,
+                    inspect.cleandoc(child.value.value),
+                )
+            before = child
+
+    yield from walk(ast.parse((ROOT / path).read_text(encoding="utf-8")), path)
+
+
+def converted(text):
+    """The text as Sphinx's napoleon gives it to docutils."""
+    from sphinx.ext.napoleon import Config, NumpyDocstring
+
+    config = Config(napoleon_use_ivar=True, napoleon_use_rtype=False)
+    return str(NumpyDocstring(text, config, what="function"))
+
+
+def parsed(text):
+    """A docstring's document, and what docutils reports about it."""
+    from docutils.core import publish_doctree
+    from docutils.utils import Reporter
+
+    heard = io.StringIO()
+    settings = {"report_level": Reporter.WARNING_LEVEL, "warning_stream": heard}
+    document = publish_doctree(HEAD + converted(text), settings_overrides=settings)
+    return document, heard.getvalue().splitlines()
+
+
+def prose(document):
+    """The texts of a document without its literals."""
+    from docutils import nodes
+
+    apart = (
+        nodes.literal,
+        nodes.literal_block,
+        nodes.doctest_block,
+        nodes.title_reference,  # a name in single backticks
+        nodes.field_name,  # of a parameter, with its type
+    )
+    for text in document.findall(nodes.Text):
+        above = text.parent
+        while above is not None and not isinstance(above, apart):
+            above = above.parent
+        if above is None:
+            yield text.astext()
+
+
+def public(name):
+    """Whether no part of a dotted name is private."""
+    return not re.search(r"[./]_(?!_)", name)
+
+
+@pytest.mark.parametrize("path", FILES)
+def test_docstrings_are_valid(path):
+    faults = []
+    for name, _, text in docstrings(path):
+        document, messages = parsed(text)
+        faults += [f"{name}: {message}" for message in messages]
+        if public(name):
+            faults += [
+                f"{name}: a formula outside of a literal: {part!r}"
+                for part in prose(document)
+                if FORMULA.search(part)
+            ]
+            faults += [
+                f"{name}: in numpydoc's form a type follows `name :`, the text below: {entry[0]!r}"
+                for entry in UNTYPED.finditer(text)
+            ]
+    assert not faults, "\n".join(faults)
+
+
+@pytest.mark.parametrize("path", FILES)
+def test_documented_parameters_are_those_of_the_signature(path):
+    """A section "Parameters" of a function, public or not, names its parameters in their order."""
+    wrong = []
+    for name, node, text in docstrings(path):
+        documented = re.search(
+            r"^Parameters\n-+\n(.*?)(?:\n\n\S+\n--|\Z)", text, re.DOTALL | re.MULTILINE
+        )
+        if documented and isinstance(node, ast.FunctionDef):
+            listed = re.findall(
+                r"^\*{0,2}(\w[\w, *]*?)(?: :.*)?$", documented[1], re.MULTILINE
+            )
+            listed = [x.strip(" *") for line in listed for x in line.split(",")]
+            a = node.args
+            own = [
+                x.arg
+                for x in (*a.posonlyargs, *a.args, a.vararg, *a.kwonlyargs, a.kwarg)
+                if x
+            ]
+            if listed != [x for x in own if x in listed]:
+                wrong.append(f"{name}: {listed} of {own}")
+    assert not wrong, "\n".join(wrong)
+
+
+@pytest.mark.parametrize("package", ["lwa", "validation"])
+def test_exported_functions_list_all_their_parameters(package):
+    module = importlib.import_module(package)
+    for name in module.__all__:
+        thing = getattr(module, name)
+        if inspect.isfunction(thing):
+            section = re.search(r"^ *Parameters\n *-+\n", thing.__doc__, re.MULTILINE)
+            assert section or not inspect.signature(thing).parameters, name
