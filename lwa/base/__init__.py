@@ -7,10 +7,54 @@ import signal
 INTERRUPTED = 128 + signal.SIGINT
 """Exit status of a command after Ctrl-C, as in shells."""
 
+LONGEST_MESSAGE = 300
+"""Characters of a message, about four lines of a terminal; a longer one is not read."""
 
-class InputError(ValueError):
+
+def cut(text: str, longest: int = LONGEST_MESSAGE) -> str:
+    """Return the text on one line, without its middle where it is longer than ``longest``.
+
+    >>> cut("the first and the last word are the ones that tell", 20)
+    'the first … at tell'
+    """
+    line = " ".join(text.split())
+    if len(line) <= longest:
+        return line
+    head = longest // 2
+    tail = longest - head - 3
+    return f"{line[:head].rstrip()} … {line[-tail:].lstrip()}"
+
+
+class Refusal(ValueError):
+    """Base of the errors that a user reads: one line of at most `LONGEST_MESSAGE` characters.
+
+    Parameters
+    ----------
+    reason : str
+        The value that is refused, and which values are valid.
+    **change : object
+        Arguments by name that make the call valid, such as ``closure="full"``; None for an
+        argument that is to be left out. The message ends with them, as keywords in Python and as
+        the whole line to paste in the command `lwa`.
+
+    Examples
+    --------
+    >>> raise InputError("three masses: the linear closure is that of two", closure="full")
+    Traceback (most recent call last):
+        ...
+    lwa.base.InputError: three masses: the linear closure is that of two; try closure='full'
+    """
+
+    def __init__(self, reason: str, **change: object) -> None:
+        self.reason = cut(reason)
+        self.change = change
+        keywords = ", ".join(f"{name}={value!r}" for name, value in change.items())
+        super().__init__(cut(f"{reason}; try {keywords}" if change else reason))
+
+
+class InputError(Refusal):
     """Invalid argument; the message names the argument and says which values are valid."""
 
 
-class NoSolitaryWave(ValueError):
+class NoSolitaryWave(Refusal):
     """Parameters without a solitary wave in the theory; the message says why."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Literal
 
 import numpy as np
 import sympy as sp
@@ -18,21 +19,37 @@ Array = NDArray[np.float64]
 def finite(values: ArrayLike, name: str) -> Array:
     """Read an array of finite real numbers.
 
-    Raises `lwa.InputError` for anything else; ``name`` names the array in the message.
+    Parameters
+    ----------
+    values : array_like
+        Numbers of any kind that a float holds.
+    name : str
+        Name of the array in messages.
+
+    Raises
+    ------
+    InputError
+        For other values, NaN and infinities, and masked arrays, whose masks NumPy would drop.
     """
+    if isinstance(values, np.ma.MaskedArray):
+        raise InputError(
+            f"{name} is a masked array: give its numbers without the masked ones, "
+            f"{name}.compressed()"
+        )
     try:
         array = np.asarray(values)
-        array = array.astype(
-            float, casting="unsafe" if array.dtype.kind == "O" else "safe"
-        )
+        # Objects such as SymPy's numbers become floats one by one; a complex number must not.
+        casting: Literal["unsafe", "safe"] = "safe"
+        if array.dtype.kind == "O":
+            casting = "unsafe"
+        array = array.astype(float, casting=casting)
     except (TypeError, ValueError, OverflowError):
         raise InputError(
             f"{name} is {shorten(values)}: real numbers are wanted"
         ) from None
-    if not np.all(np.isfinite(array)):
-        raise InputError(
-            f"{name} is {array[~np.isfinite(array)].flat[0]}: finite numbers are wanted"
-        )
+    infinite = array[~np.isfinite(array)]
+    if infinite.size:
+        raise InputError(f"{name} is {infinite.flat[0]}: finite numbers are wanted")
     return array
 
 

@@ -18,6 +18,8 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import InputError as InputError
+from lwa.base.words import one_of as one_of
+from lwa.base.words import shorten as shorten
 
 Quantity = int | float | str | Fraction | sp.Expr
 """Accepted types of an exponent, a mass, a stiffness or a length."""
@@ -42,15 +44,6 @@ SymPy takes whole powers out of roots, and joins the roots of a product: (6/5)^(
 root of 6^97 · 5^100. Its search for factors of a number fails with an `OverflowError` beyond the
 1024 bits of a double. The roots of three numbers of this length join to less.
 """
-
-
-def shorten(value: object) -> str:
-    """The ``repr`` of an offending value, cut to one short line for a message."""
-    try:
-        text = repr(value)
-    except ValueError:  # Python writes no integer of more than some thousand digits
-        return "a number of thousands of digits"
-    return text if len(text) <= 60 else text[:57] + "..."
 
 
 def read_exact(value: Any, name: str) -> sp.Expr:
@@ -87,7 +80,9 @@ def read_exact(value: Any, name: str) -> sp.Expr:
 
 
 def _from_number(value: Any, name: str) -> sp.Rational:
-    if hasattr(value, "item") and getattr(value, "size", 1) == 1:  # NumPy's scalars
+    # NumPy's scalars; the item of a masked one would be the number behind its mask.
+    scalar = hasattr(value, "item") and getattr(value, "size", 1) == 1
+    if scalar and not hasattr(value, "mask"):
         value = value.item()
     if isinstance(value, bool) or not isinstance(value, int | float | Fraction):
         raise InputError(f"{name} is {shorten(value)}: a number or a symbol is wanted")
@@ -159,14 +154,6 @@ def integer(value: Any, name: str, low: int, high: int = 2**63 - 1) -> int:
         wanted = f"from {low} on" if high == 2**63 - 1 else f"from {low} to {high}"
         raise InputError(f"{name} is {shorten(value)}: an integer {wanted} is wanted")
     return number
-
-
-def one_of(value: Any, known: Collection[str], name: str) -> str:
-    """Return a word; raise `InputError` unless it is among the known words."""
-    if not isinstance(value, str) or value not in known:
-        wanted = " or ".join(known) if len(known) == 2 else f"one of {', '.join(known)}"
-        raise InputError(f"{name} is {shorten(value)}: {wanted} is wanted")
-    return value
 
 
 def demand_numbers(free: Collection[sp.Symbol], why: str) -> None:

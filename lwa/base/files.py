@@ -11,14 +11,14 @@ import json
 import math
 import sys
 import tomllib
-from collections.abc import Callable, Collection, Mapping, Sequence, Set
+from collections.abc import Callable, Mapping, Sequence, Set
 from contextlib import suppress
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, TypeVar
 
 from lwa.base.exact import InputError, shorten
 from lwa.base.exact import integer as integer
+from lwa.base.words import suggestion
 
 T = TypeVar("T")
 Reader = Callable[[Any, str], Any]
@@ -83,7 +83,8 @@ def reason(error: Exception) -> str:
 def finite(value: Any, name: str) -> float:
     """Read one finite number."""
     number = None
-    if not isinstance(value, str | bytes | bool):
+    # A masked array's float is NaN, or the number behind the mask.
+    if not isinstance(value, str | bytes | bool) and not hasattr(value, "mask"):
         with suppress(TypeError, ValueError, OverflowError):
             number = float(value)
     if number is None:
@@ -119,7 +120,7 @@ class Table:
         for key in self.entries:
             if key not in known:
                 raise InputError(
-                    f"{self.path(key)} is unknown: {_suggestion(key, known)}"
+                    f"{self.path(key)} is unknown: {suggestion(key, known)}"
                 )
 
     def __contains__(self, key: str) -> bool:
@@ -198,9 +199,7 @@ def among(values: Mapping[str, Any]) -> Reader:
 
     def read(value: Any, name: str) -> Any:
         if not isinstance(value, str) or value not in values:
-            raise InputError(
-                f"{name} is {shorten(value)}: {_suggestion(value, values)}"
-            )
+            raise InputError(f"{name} is {shorten(value)}: {suggestion(value, values)}")
         return values[value]
 
     return read
@@ -231,13 +230,3 @@ def places(count: int) -> Reader:
 
 def _plain(key: str) -> str:
     return key if key.isidentifier() and len(key) < 60 else shorten(key)
-
-
-def _suggestion(value: Any, known: Collection[str]) -> str:
-    if close := get_close_matches(str(value)[:60], known, 1):
-        return f"did you mean {close[0]}?"
-    return (
-        f"one of {', '.join(list(known)[:12])} is wanted"
-        if known
-        else "none is defined"
-    )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import Field, dataclass, fields, replace
 from typing import Any, ClassVar, Self
 
@@ -10,7 +11,9 @@ import sympy as sp
 
 from lwa.base import NoSolitaryWave as NoSolitaryWave
 from lwa.base import latex
-from lwa.base.exact import one_of
+from lwa.base.words import EXTENTS as EXTENTS
+from lwa.base.words import QUANTITIES as QUANTITIES
+from lwa.base.words import ExtentName, QuantityName, one_of
 
 RISE = sp.Symbol("B", positive=True)
 """B, the peak strain of a wave, unless the caller gives another."""
@@ -21,12 +24,6 @@ FALL = sp.Symbol("B", negative=True)
 SPEED = sp.Symbol("V_s", positive=True)
 """V_s = dx/dτ, the speed of a wave, unless the caller gives another."""
 
-QUANTITIES = ("strain", "force", "velocity")
-"""The quantities of a wave that have a width."""
-
-EXTENTS = ("length", "time")
-"""The kinds of a width: an extent in space, or the time of passage."""
-
 
 def strain_power(quantity: str, k: Any) -> Any:
     """The exponent q of a quantity that scales as strain^q: k for the force, else 1.
@@ -36,14 +33,30 @@ def strain_power(quantity: str, k: Any) -> Any:
     return k if known_quantity(quantity) == "force" else 1
 
 
-def known_quantity(quantity: str) -> str:
+def known_quantity(quantity: Any) -> QuantityName:
     """Return the quantity; raise `lwa.InputError` unless it is among `QUANTITIES`."""
     return one_of(quantity, QUANTITIES, "quantity")
 
 
-def known_extent(extent: str) -> str:
+def known_extent(extent: Any) -> ExtentName:
     """Return the extent; raise `lwa.InputError` unless it is among `EXTENTS`."""
     return one_of(extent, EXTENTS, "extent")
+
+
+EXACT_DIGITS = 15
+"""Significant digits of a printed float without an error; the sixteenth is rounding."""
+
+TABLE_DIGITS = 6
+"""Significant digits of a number in a table of text, at most."""
+
+PLAIN = -5, 5
+"""Powers of ten of the first digit of a number that is printed without a power of ten."""
+
+LEAST_PLAIN = 1e-3
+"""The least error that is printed without a power of ten."""
+
+UNKNOWN_DIGITS = 4
+"""Significant digits of a printed number whose error nobody knows."""
 
 
 class Shown:
@@ -73,9 +86,24 @@ class Value(Shown):
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Estimate(Value):
-    """A value and a bound or an estimate of its absolute error, NaN if unknown."""
+    """A value with the absolute error of that value.
+
+    Parameters
+    ----------
+    value : float
+        The number; `float` gives it, too.
+    error : float
+        A bound or an estimate of the absolute error; NaN if unknown, 0 for an exact number.
+
+    Examples
+    --------
+    >>> Estimate(1.4119284, 3e-6)
+    1.411928 ± 3e-06
+    >>> Estimate(1.4119284, 3e-6) / Estimate(-2, 0.01)
+    -0.706 ± 0.004
+    """
 
     value: float
     error: float
@@ -85,47 +113,90 @@ class Estimate(Value):
         """Return a value whose error is the difference from a less accurate value."""
         return cls(value, abs(value - rough))
 
-    @property
-    def relative_error(self) -> float:
-        """The error over the value."""
-        return self.error / abs(self.value)
+    def __float__(self) -> float:
+        return float(self.value)
+
+    def __repr__(self) -> str:
+        return self.text()
 
     def __str__(self) -> str:
-        """The value to the digits that its error leaves, six at most; ± covers those left out.
+        return self.text(TABLE_DIGITS)
 
-        >>> print(Estimate(4859925635.0, 99925635.0))
-        4.86e+09 ± 1e+08
+    def text(self, most: int = EXACT_DIGITS) -> str:
+        """The value to the digits that its error leaves, and the error.
+
+        Parameters
+        ----------
+        most : int
+            Significant digits of the value at most; ± then covers the digits that are left out.
+
+        Notes
+        -----
+        The error is rounded up to one digit, or to two where the first one is 1. The last digit
+        of the value stands at the place of that digit, so that ± is never below the last digit.
+
+        Examples
+        --------
+        >>> print(Estimate(4859925635.0, 99925635.0), Estimate(1.4119284, 3e-6))
+        4.86e+09 ± 1e+08 1.41193 ± 1e-05
         """
-        short = f"{self.value:.6g}"
-        if not self.value or not self.error < math.inf:
-            return f"{short} ± {self.error:.0e}"
-        if not self.error and float(short) == self.value:
-            return f"{short} ± 0"
-        # Powers of ten of the first digit and of the last that is shown
-        first = math.floor(math.log10(abs(self.value)))
-        last = first - 5 if not self.error else math.floor(math.log10(self.error))
-        last = min(max(last, first - 5), first)
-        error = self.error if self.error >= 10.0**last / 2 else 10.0**last
-        if last > 4 or not -12 < first < 16:
-            return f"{self.value:.{first - last}e} ± {error:.0e}"
-        return f"{round(self.value, -last):.{max(0, -last)}f} ± {error:.0e}"
+        if not math.isfinite(self.value + self.error):
+            return f"{self.value:.{UNKNOWN_DIGITS}g}, error unknown"
+        first = _place(self.value)
+        last = first - most + 1
+        if not self.error:
+            short = f"{self.value:.{most}g}"
+            if most == EXACT_DIGITS or float(short) == self.value:
+                return short
+        elif not self.value:
+            return f"0 ± {self.error:.2g}"
+        else:
+            own = _place(self.error)
+            if self.error < 2 * 10.0**own:
+                own -= 1
+            last = min(max(own, last), first)
+        unit = 10.0**last
+        # An error of 3e-06 is 3.0000000000000004 units of 1e-06 in floats: no reason for 4e-06.
+        error = max(math.ceil(self.error / unit * (1 - 1e-12)), 1) * unit
+        if not PLAIN[0] <= first <= PLAIN[1]:
+            return f"{self.value:.{first - last}e} ± {error:.2g}"
+        decimals = max(0, -last)
+        width = f"{error:.{decimals}f}" if error >= LEAST_PLAIN else f"{error:.2g}"
+        return f"{round(self.value, -last):.{decimals}f} ± {width}"
+
+    @property
+    def relative_error(self) -> float:
+        """The error divided by the magnitude of the value."""
+        return self.error / abs(self.value)
 
     def __mul__(self, factor: float) -> Self:
         return replace(self, value=factor * self.value, error=abs(factor) * self.error)
 
     def __truediv__(self, other: Estimate) -> Self:
         """The quotient, with the sum of the relative errors."""
-        return (self * (1 / other.value)).widened(other.error / other.value)
+        return (self * (1 / other.value)).widened(other.relative_error)
 
     def widened(self, relative: float) -> Self:
         """Return an estimate of this value with a further error, relative to the value."""
         return replace(self, error=self.error + abs(self.value) * relative)
 
     def latex(self) -> str:
-        """The value and its error, if known, such as 1.411928 ± 3.0 · 10^{-6}."""
-        parts = ((self.value, 10), (self.error, 2))
-        known = ((x, digits) for x, digits in parts if not math.isnan(x))
-        return r" \pm ".join(str(sp.latex(sp.Float(x, digits))) for x, digits in known)
+        """The value and its error, if known, such as 1.411928 ± 3 · 10^{-6}."""
+        return re.sub(
+            r"e([+-])0*(\d+)", _power_of_ten, repr(self).partition(",")[0]
+        ).replace("±", r"\pm")
 
     def _repr_latex_(self) -> str:
         return f"${self.latex()}$"
+
+
+def _place(value: float) -> int:
+    """The power of ten of the first digit of a number; 0 for 0."""
+    if not value:
+        return 0
+    return math.floor(math.log10(abs(value)))
+
+
+def _power_of_ten(found: re.Match[str]) -> str:
+    sign = found[1].replace("+", "")
+    return rf" \cdot 10^{{{sign}{found[2]}}}"

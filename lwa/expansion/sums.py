@@ -57,7 +57,7 @@ TERM_DIGITS = 60
 """Decimal digits of the terms of a sum: the binomial coefficients cancel some."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Resummed(Estimate):
     """A series summed at one k, with an estimate of the absolute error.
 

@@ -16,7 +16,7 @@ import sympy as sp
 
 from book.studies import disorder, gravity, precompressed, widths
 from lwa import Cell, Estimate, Power
-from lwa.base.frozen import QUANTITIES
+from lwa.base.words import QUANTITIES
 from validation.pulses import steady
 from validation.pulses.pulse import exponent
 from validation.pulses.sensors import record

@@ -85,7 +85,7 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike) -> NoisyPulse:
     >>> t = np.linspace(-4, 3, 701)
     >>> noise = 0.01 * np.random.default_rng(0).normal(size=701)
     >>> print(noisy_pulse(t, np.exp(-9 * t**2) + noise).numbers["fwhm"])  # √(4 ln 2)/3
-    0.557 ± 3e-03
+    0.557 ± 0.004
     """
     return next(noisy_pulses(time, values))
 

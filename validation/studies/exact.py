@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import sympy as sp
 
-from lwa.base.frozen import QUANTITIES
+from lwa.base.words import QUANTITIES
 from lwa.command.options import quantities
 from validation.pictures import Curve, Panel
 from validation.report.command import EXPONENT, option, study

@@ -275,8 +275,8 @@ _RANGES = "values and ranges start:stop:count, separated by commas."
     ),
     page="recipes",
     examples=(
-        "lwa-validate sweep --k 3/2,2 --omega 1/4:1:4 --file points.sqlite",
-        "lwa-validate sweep --k 3/2,2 --omega 1/4:1:4 --file points.sqlite --plot map.svg",
+        "lwa-validate sweep --k 3/2,2 --omega 1/4:1:4 --file p.sqlite",
+        "lwa-validate sweep --k 3/2,2 --omega 1/4:1:4 --file p.sqlite --plot p.svg",
     ),
 )
 def sweep(

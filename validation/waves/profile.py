@@ -13,15 +13,15 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from lwa.base.arrays import Array, finite
-from lwa.base.exact import one_of
-from lwa.base.frozen import QUANTITIES, Estimate, known_quantity
+from lwa.base.frozen import Estimate
+from lwa.base.words import QUANTITIES, QuantityName, one_of
 from validation.pictures import Curve, Panel, Pictured
 from validation.pulses.pulse import highest_pulse
 from validation.pulses.signals import Piecewise
@@ -39,7 +39,7 @@ OUTSIDE = 0.6  # share of the half period at which a dimer's pulse has ended and
 Number = Literal["c2", "c", "tail", "peak", "fwhm"]
 """Numbers of an exact wave that have errors."""
 
-_NUMBERS = ("c2", "c", "tail", "peak", "fwhm")
+_NUMBERS: tuple[Number, ...] = get_args(Number)
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,22 +154,22 @@ class ExactWave(Pictured):
         moving = self._velocity(at, integer(bead, "bead", 0)) - mean
         return np.where(self._ended(at), 0.0, moving)
 
-    def peak(self, name: str) -> float:
-        """Return the maximum of "strain", "force" or "velocity".
+    def peak(self, quantity: QuantityName) -> float:
+        """Return the maximum of a quantity.
 
         Strain and force are those of contact 0, the velocity is that of bead 0.
         """
         xi = np.linspace(-self.half_period, self.half_period, 4 * len(self.even) + 1)
-        _, peak = summit(self._quantity(name), xi)
+        _, peak = summit(self._profile(quantity), xi)
         return peak
 
-    def fwhm(self, name: str = "strain") -> float:
-        """Full width at half maximum of a quantity's highest hump, a length; name as in `peak`.
+    def fwhm(self, quantity: QuantityName = "strain") -> float:
+        """Full width at half maximum of a quantity's highest hump, a length; see `peak`.
 
         Raises `MeasureError` for a hump that does not fall to half its peak.
         """
         xi = np.linspace(-self.half_period, self.half_period, len(self.even) + 1)
-        return highest_pulse(Piecewise(xi, self._quantity(name))).fwhm
+        return highest_pulse(Piecewise(xi, self._profile(quantity))).fwhm
 
     def launched(self, start: int, sites: int, **rest: Any) -> Scene:
         """Return a scene of a chain that carries the wave, centered at bead ``start`` at time 0.
@@ -200,14 +200,15 @@ class ExactWave(Pictured):
         curves = []
         for name, style in zip(QUANTITIES, ("-", "--", ":"), strict=True):
             curves.append(
-                Curve(name, xi, self._quantity(name)(xi) / self.peak(name), style)
+                Curve(name, xi, self._profile(name)(xi) / self.peak(name), style)
             )
         return [Panel("ξ / D", "over its peak", tuple(curves))]
 
-    def _quantity(self, name: str) -> Callable[[ArrayLike], Array]:
-        """The method of a quantity's name."""
-        quantity: Callable[[ArrayLike], Array] = getattr(self, known_quantity(name))
-        return quantity
+    def _profile(self, quantity: QuantityName) -> Callable[[ArrayLike], Array]:
+        """The method of a quantity."""
+        profile: Callable[[ArrayLike], Array]
+        profile = getattr(self, one_of(quantity, QUANTITIES, "quantity"))
+        return profile
 
     @cached_property
     def _strains(self) -> tuple[Array, Array]:

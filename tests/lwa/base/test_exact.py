@@ -31,6 +31,7 @@ def test_other_numbers():
         "nan", "oo", "", "1/0", "3/2/1", "1.2/3", "2*m", "__import__('os')", "I", "pi", "lambda",
         "1_000", "0x10", "١", "m1 m2", "1e99999", float("nan"), float("inf"), 1j,
         None, True, [1], 10**400, 1 + Fraction(1, 10**400), np.array([1.0, 2.0]), sp.oo, sp.I,
+        np.ma.masked, np.ma.array([1.0]),
     ],
 )  # fmt: skip
 def test_other_values_are_refused_in_one_line(value):

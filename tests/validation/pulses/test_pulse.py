@@ -132,11 +132,11 @@ def test_a_measured_number_carries_its_error():
     assert (product.value, product.error) == pytest.approx((10.0, 0.1 * 5 + 0.2 * 2))
     assert a.relative_error == pytest.approx(0.05)
     assert str(Estimate(1.41192847, 1.6e-7)) == "1.41193 ± 1e-05"
-    assert str(Estimate(16300.0, 700.0)) == "16300 ± 7e+02"
-    assert str(Estimate(1.5, 0.0)) == "1.5 ± 0"
+    assert str(Estimate(16300.0, 700.0)) == "16300 ± 700"
+    assert str(Estimate(1.5, 0.0)) == "1.5"
     assert str(Estimate(4.350971956738e-4, 2.3e-13)) == "0.000435097 ± 1e-09"
     assert str(Estimate(0.0, 1e-20)) == "0 ± 1e-20"
-    assert str(Estimate(0.03, 0.5)) == "0.03 ± 5e-01"
+    assert str(Estimate(0.03, 0.5)) == "0.03 ± 0.50"
 
 
 @pytest.mark.parametrize(

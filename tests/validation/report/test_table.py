@@ -1,4 +1,4 @@
-"""Tables hold the same numbers as text, JSON, CSV and HTML; findings hold or fail."""
+"""Tables hold the same numbers as text, JSON and CSV; findings hold or fail."""
 
 import csv
 import io
@@ -18,50 +18,47 @@ TABLE = Table(
     (
         Column("k", "k"),
         Column("chain", format=lambda name: f"chain {name}"),
-        Column("speed", "speed (m/s)", error=True),
+        Column("time", "arrival (s)", error=True),
         Column("error_value.F_m", "by F_m", format="+.1%"),
         Column("", "unit"),
     ),
     (
-        (sp.Rational(3, 2), "a", Estimate(2.0, 0.25), 0.25, "m/s"),
+        (sp.Rational(3, 2), "a", Estimate(2e-5, 0.25e-5), 0.25, "m/s"),
         (sp.Integer(2), "b", None, -0.5, "<m/s>"),
-        (sp.Integer(3), "a", Estimate(4.0, 0.5), None, "m/s"),
+        (sp.Integer(3), "a", Estimate(4e-4, 0.5e-5), None, "m/s"),
     ),
     "rows",
+    errors="a deviation",
     by="chain",
 )
 
 
 def test_the_rows_of_a_document_and_of_a_csv():
-    names = "k", "chain", "speed_value", "speed_error_value", "error_value.F_m"
+    """In SI with all digits."""
+    names = "k", "chain", "time_value", "time_error_value", "error_value.F_m"
     cells = (
-        ("3/2", "a", 2.0, 0.25, 0.25),
-        ("2", "b", *[None] * 2, -0.5),
-        ("3", "a", 4.0, 0.5, None),
+        ("3/2", "a", 2e-5, 0.25e-5, 0.25),
+        ("2", "b", None, None, -0.5),
+        ("3", "a", 4e-4, 0.5e-5, None),
     )
     rows = [dict(zip(names, row, strict=True)) for row in cells]
-    found = csv.DictReader(io.StringIO(TABLE.csv()))
-    assert [*found] == [
-        {name: "" if x is None else str(x) for name, x in r.items()} for r in rows
-    ]
-    for row in rows:
+    for row, found in zip(rows, csv.DictReader(io.StringIO(TABLE.csv())), strict=True):
+        assert found == {name: "" if x is None else str(x) for name, x in row.items()}
         row["error_value"] = {"F_m": row.pop("error_value.F_m")}
     assert json.loads(json.dumps(TABLE.document(), allow_nan=False)) == rows
 
 
-def test_text_falls_into_parts():
+def test_text_falls_into_parts_and_has_one_prefix_a_column():
     first, second = TABLE.text().split("\n\n")
-    assert [line.split() for line in first.splitlines()] == [
-        ["chain", "a"],
-        ["k", "speed", "(m/s)", "by", "F_m", "unit"],
-        ["3/2", "2.0", "±", "2e-01", "+25.0%", "m/s"],
-        ["3", "4.0", "±", "5e-01", "-", "m/s"],
-    ]
-    assert [line.split() for line in second.splitlines()] == [
-        ["chain", "b"],
-        ["k", "speed", "(m/s)", "by", "F_m", "unit"],
-        ["2", "-", "-50.0%", "<m/s>"],
-    ]
+    heading, names, *lines = first.splitlines()
+    assert heading == "chain a"
+    assert names.split() == ["k", "arrival", "(µs)", "by", "F_m", "unit"]
+    assert [line.split()[:2] for line in lines] == [["3/2", "20"], ["3", "400"]]
+    assert "+25.0%" in lines[0]
+    assert second.splitlines()[2].split() == ["2", "-", "-50.0%", "<m/s>"]
+    assert second.splitlines()[-1].startswith(
+        "±: a deviation; at least one in the last"
+    )
 
 
 def test_a_table_without_labels_is_for_programs():
@@ -77,46 +74,30 @@ CELLS = st.lists(
 @given(CELLS, st.integers(20, 60))
 def test_columns_beyond_a_line_follow_in_blocks(lines, width):
     """No line is too long, no cell is lost, and each block begins with the first column."""
-    shown = [
-        [line.split() for line in block.splitlines()]
-        for block in aligned(lines, width).split("\n\n")
+    text = aligned(lines, width)
+    assert max(map(len, text.splitlines())) <= width
+    blocks = [
+        [line.split() for line in block.splitlines()] for block in text.split("\n\n")
     ]
-    assert max(map(len, aligned(lines, width).splitlines())) <= width
     for i, line in enumerate(lines):
-        assert all(block[i][0] == line[0] for block in shown)
-        assert [cell for block in shown for cell in block[i][1:]] == line[1:]
-
-
-@given(st.floats(-1e5, 1e5), st.floats(1e-15, 10))
-def test_a_printed_number_covers_what_it_leaves_out(value, error):
-    number = Estimate(value, error)
-    shown, about = map(float, str(number).split(" ± "))
-    assert abs(shown - value) + number.error <= 2 * about
-    assert len(f"{shown:.12g}".replace("-", "").replace(".", "").lstrip("0")) <= 6
+        assert all(block[i][0] == line[0] for block in blocks)
+        assert [cell for block in blocks for cell in block[i][1:]] == line[1:]
 
 
 def test_numbers_of_numpy_and_sympy_become_plain():
-    held = {
-        "a": np.arange(3),
-        "b": np.float64(0.5),
-        "c": (sp.sqrt(2), np.inf),
-        "d": np.bool_(True),
-    }
-    assert plain(held) == {"a": [0, 1, 2], "b": 0.5, "c": ["sqrt(2)", None], "d": True}
+    held = {"a": np.arange(3), "b": (sp.sqrt(2), np.inf), "d": np.bool_(True)}
+    assert plain(held) == {"a": [0, 1, 2], "b": ["sqrt(2)", None], "d": True}
 
 
 @pytest.mark.parametrize(
     ("value", "low", "high", "error", "ok"),
     [
-        (1.0, 0.0, 2.0, None, True),
         (1.0, 1.0, 1.0, None, True),
         (3.0, 0.0, 2.0, None, False),
-        (1.0, 1.1, math.inf, None, False),
         (1.9, 0.0, 2.0, 0.2, False),
         (1.9, 0.0, 2.0, 0.05, True),
         (0.1, 0.0, 2.0, 0.2, False),
         (math.nan, -math.inf, math.inf, None, False),
-        (math.inf, 0.0, math.inf, None, True),
     ],
 )
 def test_a_finding_holds_with_its_error(value, low, high, error, ok):
