@@ -16,7 +16,11 @@ from lwa.base.arrays import Array
 from validation.pulses.noisy import NoisyPulse
 
 _EARLY = 5  # samples at the start of a record whose mean is about its base
-_BEHIND = (1.5, 2.5, 3.5)  # widths behind the arrival: ends of two stretches that are looked at
+_BEHIND = (
+    1.5,
+    2.5,
+    3.5,
+)  # widths behind the arrival: ends of two stretches that are looked at
 _SURE = 4.0  # mean of a stretch below the base, in its standard deviations, at least
 _LEAST = 0.002  # likewise over the peak
 _ALIKE = 1.5  # ratio of the constants that two stretches tell, at most
