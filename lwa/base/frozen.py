@@ -122,6 +122,10 @@ class Estimate(Value):
     def __str__(self) -> str:
         return self.text(TABLE_DIGITS)
 
+    def __format__(self, most: str) -> str:
+        """The text with a number of digits at most, as in f"{estimate:9}"."""
+        return self.text(int(most)) if most else str(self)
+
     def text(self, most: int = EXACT_DIGITS) -> str:
         """The value to the digits that its error leaves, and the error.
 

@@ -44,7 +44,7 @@ class Fit:
     def of(cls, x: Array, f: Array, terms: Sequence[int]) -> Fit:
         """Fit terms to samples f, (B,) or (B, draws), at times x in widths from the rise."""
         columns = _columns(x, terms)
-        sizes = np.linalg.lstsq(columns, f)[0]
+        sizes = np.asarray(np.linalg.lstsq(columns, f)[0], float)
         return cls(terms, sizes, f - columns @ sizes)
 
     def at(self, x: Array) -> Array:

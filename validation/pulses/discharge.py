@@ -13,7 +13,7 @@ import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
 from lwa.base.arrays import Array
-from validation.pulses.noisy import NoisyPulse
+from validation.pulses.noisy import NoisyPulse, in_unit
 
 _EARLY = 5  # samples at the start of a record whose mean is about its base
 _BEHIND = (
@@ -35,10 +35,10 @@ def corrected(t: Array, signal: Array, constant: float) -> Array:
     return np.asarray(signal + cumulative_trapezoid(swing, t, initial=0) / constant)
 
 
-def suggested(t: Array, signal: Array, pulse: NoisyPulse) -> float | None:
-    """Return the time constant that an undershoot behind a pulse tells; None without any.
+def suggested(t: Array, signal: Array, pulse: NoisyPulse, unit: str) -> str:
+    """Return a line on an undershoot behind a pulse, with the time constant; "" without any.
 
-    Waves behind a pulse rarely swing alike in both stretches.
+    Waves behind a pulse rarely swing alike in both stretches. unit : of the times.
     """
     arrival = pulse.numbers["arrival"].value
     width = pulse.numbers["fwhm"].value
@@ -49,10 +49,15 @@ def suggested(t: Array, signal: Array, pulse: NoisyPulse) -> float | None:
         inside = (t > arrival + start * width) & (t < arrival + end * width)
         below = -swing[inside]
         if len(below) < _EARLY:
-            return None
+            return ""
         error = below.std() / math.sqrt(len(below))
         if below.mean() < max(_SURE * error, _LEAST * swing.max()):
-            return None
+            return ""
         constants.append(float(charge[inside].mean() / below.mean()))
     near, far = constants
-    return near if 1 / _ALIKE < near / far < _ALIKE else None
+    if not 1 / _ALIKE < near / far < _ALIKE:
+        return ""
+    return (
+        "the signal falls below its base behind the pulse, as that of a sensor that loses its "
+        f"charge: --time-constant '{in_unit(near, unit)}' corrects it"
+    )

@@ -21,6 +21,7 @@ from scipy.signal import find_peaks
 
 from lwa.base.arrays import Array
 from lwa.base.frozen import Estimate
+from lwa.spheres.units import fitting
 from validation.pulses.base import FEWEST, Base
 from validation.pulses.fitted import fitted
 from validation.pulses.pulse import (
@@ -46,6 +47,10 @@ _EQUAL = 1e-6  # of the record's range: samples that differ less are equal
 _EXACT = 1e-4  # noise over the peak of a record without noise
 
 
+class InvertedError(MeasureError):
+    """A record whose pulses are negative."""
+
+
 @dataclass(frozen=True)
 class NoisyPulse:
     """A pulse of a record.
@@ -60,13 +65,19 @@ class NoisyPulse:
     missing: str | None = None
 
 
-def noisy_pulse(time: ArrayLike, values: ArrayLike) -> NoisyPulse:
+def noisy_pulse(
+    time: ArrayLike, values: ArrayLike, unit: str = "", turned: str = ""
+) -> NoisyPulse:
     """Measure the first pulse of a record.
 
     Parameters
     ----------
     time, values : array_like
         Times and values of the samples, (S,).
+    unit : str
+        Unit of the times, for messages.
+    turned : str
+        What changes the sign of the values, for the message on an inverted record.
 
     Returns
     -------
@@ -87,10 +98,12 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike) -> NoisyPulse:
     >>> print(noisy_pulse(t, np.exp(-9 * t**2) + noise).numbers["fwhm"])  # √(4 ln 2)/3
     0.557 ± 0.004
     """
-    return next(noisy_pulses(time, values))
+    return next(noisy_pulses(time, values, unit, turned))
 
 
-def noisy_pulses(time: ArrayLike, values: ArrayLike) -> Iterator[NoisyPulse]:
+def noisy_pulses(
+    time: ArrayLike, values: ArrayLike, unit: str = "", turned: str = ""
+) -> Iterator[NoisyPulse]:
     """Measure the pulses of a record one after the other, as `noisy_pulse` does the first.
 
     All have the base and the noise of the record before the first pulse. Raises `MeasureError`
@@ -99,7 +112,10 @@ def noisy_pulses(time: ArrayLike, values: ArrayLike) -> Iterator[NoisyPulse]:
     t, f = checked(time, values)
     size = float(np.abs(f).max()) or 1.0  # so that squares neither over- nor underflow
     f = f / size
-    rise, fall = _place(t, f - f[:_EARLY].mean())
+    try:
+        rise, fall = _place(t, f - f[:_EARLY].mean())
+    except InvertedError as error:
+        raise MeasureError(f"{error}: {turned}".rstrip(": ")) from None
     early = f[t < t[0] + (rise - t[0]) / 4]
     step = _step(f)
     noise = np.ptp(early) if len(early) >= _EARLY else _neighbours(f)
@@ -116,8 +132,8 @@ def noisy_pulses(time: ArrayLike, values: ArrayLike) -> Iterator[NoisyPulse]:
         base = Base.guessed(means, _neighbours(means))
         wanted = max(2 * (fall - rise), FEWEST * float(np.median(np.diff(t))))
         missing = (
-            f"no peak: the record starts {rise - t[0]:.3g} before the pulse, and {wanted:.3g} are "
-            "wanted for its base"
+            f"no peak: the record starts {in_unit(rise - t[0], unit)} before the pulse, and "
+            f"{in_unit(wanted, unit)} are wanted for its base"
         )
     # Noise of half a level or more spreads the samples over the levels and tells their rounding.
     rounding = step if base.best.variance < (step / 2) ** 2 else 0.0
@@ -161,6 +177,12 @@ def _exact(t: Array, f: Array, size: float, early: int) -> Iterator[NoisyPulse]:
         yield NoisyPulse(numbers, level * size)
 
 
+def in_unit(time: float, unit: str) -> str:
+    """Return a time with the prefix of its unit that suits it."""
+    suited = fitting(unit, time)
+    return f"{time / suited.size:.3g} {suited.name}".strip()
+
+
 def _neighbours(f: Array) -> float:
     """Return the standard deviation of the noise between neighbouring samples."""
     # Fourth differences of a smooth pulse are small; those of white noise have the variance 70 σ².
@@ -189,7 +211,7 @@ def _place(t: Array, f: Array) -> tuple[float, float]:
     count = math.ceil(min(max(1.0, samples), len(f)))
     g = np.convolve(f, np.full(count, 1 / count), "same")
     if -g.min() > max(g.max(), 0):
-        raise MeasureError(
+        raise InvertedError(
             "the signal falls farther below its start than it rises: it is inverted, or begins "
             "in a pulse"
         )

@@ -129,7 +129,7 @@ def record(
     method: str = COMPILED[0],
     rtol: Any = TOLERANCE,
     every: bool = False,
-    velocities: Container[int] = (),
+    velocities: Container[str] = (),
     progress: RunProgress = silent,
 ) -> Recording:
     """Simulate a scene and measure the pulses at its sensors.
@@ -144,8 +144,8 @@ def record(
         Relative tolerance, from 1e-13 to 1e-5.
     every : bool
         True for all pulses at each sensor instead of the first.
-    velocities : container of int
-        Bead sensors, counted from 1, whose velocity is measured in place of the force.
+    velocities : container of str
+        Names of bead sensors, such as "bead 15", whose velocity is measured, not the force.
 
     Raises
     ------
@@ -201,7 +201,7 @@ def _time_of_a_site(motion: Motion, contacts: slice, force: float) -> float:
 
 
 def tracks(
-    run: Run, velocities: Container[int] = (), every: int = 1
+    run: Run, velocities: Container[str] = (), every: int = 1
 ) -> tuple[Track, ...]:
     """Return the dynamic forces at the sensors of a run; beads first.
 
@@ -209,8 +209,8 @@ def tracks(
     ----------
     run : Run
         The run.
-    velocities : container of int
-        Bead sensors, counted from 1, whose velocity is returned in place of the force.
+    velocities : container of str
+        Names of bead sensors, such as "bead 15", whose velocity is returned, not the force.
     every : int
         Samples that count, each one or each second one, where the motion takes too much memory
         to be kept and the signals are splines through the samples.
@@ -224,7 +224,7 @@ def tracks(
         for row, i in enumerate(getattr(scene, f"{kind}_sensors")):
             quantity = "force"
             static = at_rest[f"{kind} {i + 1}"]
-            if kind == "bead" and i + 1 in velocities:
+            if f"{kind} {i + 1}" in velocities:
                 quantity = "velocity"
                 static = 0.0
             if run.path is None:

@@ -36,7 +36,6 @@ _SENSOR = re.compile(
 )
 _OTHERS = ("time", "displacement", "speed", "force_error", "speed_error")
 _FEW = 0.1  # rows of numbers in a preamble, at most, over the rows of the record
-_LONGEST = 295  # characters of a message
 
 
 class Stated(TypedDict, total=False):
@@ -92,12 +91,12 @@ class MeasuredFile:
     def __init__(
         self, path: str | Path, *wanted: str, **stated: Unpack[Stated]
     ) -> None:
-        self.path = path
+        self.path = "standard input" if str(path) == "-" else path
         self._step = stated.get("step")
         try:
             self._cells = Cells.read(path)
         except (OSError, SceneError, csv.Error) as error:
-            raise SceneError(f"{path}: {reason(error)}") from None
+            raise SceneError(f"{self.path}: {reason(error)}") from None
         self.names: dict[int, str] = {}
         self._name_columns(stated.get("columns") or {})
         kinds = {name.split()[-1] for name in self.names.values()}
@@ -150,8 +149,7 @@ class MeasuredFile:
         for place, entry in enumerate(self._cells.first):
             above = [row[place] for row in self._cells.head[-2:] if place < len(row)]
             found.append(f"{place + 1} {' '.join(above)[:20]!r} {entry[:12]}")
-        room = _LONGEST - len(f"{self.path}: {words}: found : {paste}")
-        listed = ", ".join(found)[:room] or "no numbers"
+        listed = ", ".join(found) or "no numbers"
         return SceneError(f"{self.path}: {words}: found {listed}: {paste}")
 
     @cached_property
@@ -201,18 +199,19 @@ class MeasuredFile:
         which one has no number, and for columns of time that are not as many as the sensors.
         """
         times: list[list[int]] = [[]] if self._step else []
-        signals = []
+        signals: list[tuple[int, re.Match[str]]] = []
         for place, name in self.names.items():
             sensor = _SENSOR.fullmatch(name)
             if sensor:
-                signals.append((place, *sensor.groups()))
+                signals.append((place, sensor))
             elif name == "time" and not self._step:
                 times.append([place])
         if len(times) not in (1, len(signals)):
             wanted = f"{len(times)} columns time and {len(signals)} of sensors"
             raise self._fault(f"{wanted}: one for all, or one for each, is wanted")
         found: dict[tuple[str, int | None], tuple[str, list[int]]] = {}
-        for i, (place, kind, number, quantity) in enumerate(signals):
+        for i, (place, sensor) in enumerate(signals):
+            kind, number, quantity = sensor.groups()
             usual = "bead" if quantity == "velocity" else of
             key = (kind or usual, int(number) if number else None)
             other, _ = found.get(key, ("", []))
@@ -252,7 +251,7 @@ class MeasuredFile:
         kept = list(self.names)
         table = self._table[:, [kept.index(place) for place in places]]
         numbers = ~np.isnan(table)
-        complete = numbers.all(axis=1).tolist()
+        complete = [*map(bool, np.all(numbers, axis=1))]
         start, end = longest(complete)
         if not end:
             named = " and ".join(self.names[place] for place in places)

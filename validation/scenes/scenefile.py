@@ -216,13 +216,14 @@ def _drive(given: Table, units: str, folder: Path) -> Drive:
                 f"drive.file is {shorten(name)}: the name of a CSV file is wanted"
             )
         file = MeasuredFile(folder / name, "time", "displacement")
-        check_units(file, units)
+        check_units(file.si, units, file.path)
         motion["time"], motion["displacement"] = file.rows("time", "displacement").T
     return Drive(**motion)
 
 
-def check_units(file: MeasuredFile, units: str) -> None:
+def check_units(si: bool, units: str, name: Any) -> None:
     """Refuse a measured file that states its units beside a scene that does not."""
-    if file.si and not units:
-        wanted = "its units are stated, the scene's are not: units = 'SI' is wanted"
-        raise SceneError(f"{file.path}: {wanted}")
+    if si and not units:
+        raise SceneError(
+            f"{name}: it states units, the scene does not: units = 'SI' is wanted"
+        )

@@ -17,10 +17,10 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from typing import Any, Unpack
 
 import click
 import numpy as np
@@ -34,11 +34,12 @@ from lwa.base.frozen import Estimate
 from lwa.command.options import quantities, quantity
 from lwa.spheres.beads import spheres as read_spheres
 from validation.pictures import Curve, Panel
-from validation.report.command import column_options, option, study
+from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError
-from validation.scenes.columns import MeasuredFile
+from validation.scenes.columns import MeasuredFile, Stated
+from validation.studies.records import column_options
 from validation.waves.solver import exact_wave
 
 _DRAWS = 1000  # of the coefficients of ln V, for the errors
@@ -81,8 +82,7 @@ def law(
     spacing: Any = None,
     spheres: str | None = None,
     material: str | None = None,
-    renamed: Mapping[str, str] | None = None,
-    units: Mapping[str, str] | None = None,
+    **stated: Unpack[Stated],
 ) -> Report:
     """Contact law from pulses. DATA, a CSV file, has the columns force (peak force) and speed.
     Columns force_error and speed_error, if both are there, are standard deviations that weight the
@@ -93,7 +93,7 @@ def law(
     an unknown material, ``E_value``, with their errors; ``correlation_value`` of k and ln A;
     ``residual_value`` of ln V; ``one_power``.
     """
-    force, speed, weight = _pulses(data, renamed, units)
+    force, speed, weight = _pulses(data, stated)
     content: dict[str, Any] = {}
     if spheres is None:
         cell = Cell(masses or (1,), spacing=1 if spacing is None else spacing)
@@ -135,17 +135,12 @@ def law(
     )
 
 
-def _pulses(
-    data: str, renamed: Mapping[str, str] | None, units: Mapping[str, str] | None
-) -> tuple[Array, Array, Array | None]:
+def _pulses(data: str, stated: Stated) -> tuple[Array, Array, Array | None]:
     """Read `_FEWEST` or more pulses; return rising forces, speeds and weights (None if none)."""
-    file = MeasuredFile.read(data, "force", "speed", renamed=renamed, units=units)
-    errors = (name for name in ("force_error", "speed_error") if name in file.names)
-    read = [file.column(name) for name in ("force", "speed", *errors)]
-    if len({*map(len, read)}) > 1:
-        raise SceneError(
-            f"{data}: columns of one length are wanted, not of {[*map(len, read)]}"
-        )
+    file = MeasuredFile(data, "force", "speed", **stated)
+    names = file.names.values()
+    errors = (name for name in ("force_error", "speed_error") if name in names)
+    read = file.rows("force", "speed", *errors).T
     order = np.argsort(read[0])
     force, speed, *deviations = (values[order] for values in read)
     if len(force) < _FEWEST or not (force[0] > 0 and speed.min() > 0):

@@ -34,8 +34,8 @@ Paths = str | Path | Sequence[str | Path]
 _KINDS = ("bead", "contact")
 _PULSES = (
     "First pulse at each sensor, in {} units; forces are counted from the static force, the base "
-    "before the pulse. ±: one standard deviation by the noise before the pulse; of a record without "
-    "noise, the difference to every second sample."
+    "before the pulse. ±: one standard deviation by the noise before the pulse; without noise, the "
+    "difference to every second sample."
 )
 _UNIT = (
     "Unit of a column, as in --unit time=us, --unit 'time=0.04 us' (of an entry 1), --unit "
@@ -75,7 +75,10 @@ def column_options(function: Any) -> Any:
 def record_options(function: Any) -> Any:
     """Give a study that reads records the options --step, --time-constant, --column and --unit."""
     for name, says in (
-        ("--time-constant", "Time in which sensors lose their charge, which is corrected"),
+        (
+            "--time-constant",
+            "Time in which sensors lose their charge, which is corrected",
+        ),
         ("--step", "Time from sample to sample, in place of a column"),
     ):
         says += f", as in {name} '0.4 ms'."
@@ -115,7 +118,9 @@ class Measured:
         signals: dict[tuple[str, int | None], Record] = {}
         for place, file in enumerate(files, start=1):
             if file.si != files[0].si:
-                raise SceneError(f"{file.path}: it has units, {names[0]} not, or the reverse")
+                raise SceneError(
+                    f"{file.path}: it has units, {names[0]} not, or the reverse"
+                )
             for signal in file.records(of):
                 if len(files) > 1:
                     signal = replace(signal, number=signal.number or place)
@@ -125,7 +130,9 @@ class Measured:
                     signal = replace(signal, values=values)
                 sensor = (signal.kind, signal.number)
                 if sensor in signals:
-                    raise SceneError(f"{file.path}: {signal.kind} {signal.number} is in two files")
+                    raise SceneError(
+                        f"{file.path}: {signal.kind} {signal.number} is in two files"
+                    )
                 signals[sensor] = signal
         notes = [note for file in files for note in file.notes]
         return cls([*signals.values()], files[0].si, notes)
@@ -166,11 +173,11 @@ def pulses(
     time_constant: str | None = None,
     **stated: Unpack[Stated],
 ) -> Report:
-    """Pulses at sensors, and the speeds between them. RECORDS, files of any recorder or program (- is
-    standard input), have the columns time and, for each sensor, such as "bead 15 force", "15 force",
-    "bead 15 velocity" or, of a single sensor, "force"; --column names others by header or number.
-    Beads and contacts are counted from 1; sensors of several files that have no number, in the order
-    of the files. Units are stated in the file or by --unit: results are then in SI, as is a
+    """Pulses at sensors, and the speeds between them. RECORDS, files of any recorder or program (-
+    is standard input), have the columns time and, for each sensor, such as "bead 15 force", "15
+    force", "bead 15 velocity" or, of a single sensor, "force"; --column names others by header or
+    number. Beads and contacts are counted from 1; sensors of several files without a number, in the
+    order of the files. Units are stated in the file or by --unit: results are then in SI, as is a
     distance; without any they are in the file's own units. One column time serves all sensors; or
     the first serves the first one, the next the next.
 
@@ -195,7 +202,9 @@ def pulses(
             places[-1]["speed"] = apart * site
         place = 1
         try:
-            for pulse in noisy_pulses(signal.time, signal.values, read.unit, signal.inverted):
+            for pulse in noisy_pulses(
+                signal.time, signal.values, read.unit, signal.inverted
+            ):
                 reading = replace(blank, numbers=pulse.numbers, missing=pulse.missing)
                 found.append(replace(reading, static=pulse.base, pulse=place))
                 hint = suggested(signal.time, signal.values, pulse, read.unit)
@@ -206,7 +215,9 @@ def pulses(
             found.append(replace(blank, missing=str(error), pulse=place))
     firsts = [reading for reading in found if reading.pulse == 1]
     if not any(first.numbers for first in firsts):
-        raise MeasureError(f"no sensor has a pulse: {found[0].name}: {found[0].missing}")
+        raise MeasureError(
+            f"no sensor has a pulse: {found[0].name}: {found[0].missing}"
+        )
     # The noise of two sensors is independent.
     speeds = speeds_between(firsts, places, math.hypot)
     tables, missing = reading_tables(found, speeds, "peak", read.si, math.hypot)
@@ -262,7 +273,7 @@ def compare(
     read = Measured.read(measured, "contact", time_constant, stated)
     check_units(read.si, chain.units, "the measured file")
     found = _first_pulses(read, [*static_forces(chain)])
-    velocities = [s.number for s, _ in found.values() if s.quantity == "velocity"]
+    velocities = [name for name, (s, _) in found.items() if s.quantity == "velocity"]
     simulation = record(chain, velocities=velocities, progress=run_progress)
     run = simulation.run
     rows: list[dict[str, Any]] = []
@@ -286,7 +297,11 @@ def compare(
         else:
             error = math.hypot(arrival.error, shift.error)
         theirs["arrival"] = Estimate(arrival.value + shift.value, error)
-        labels = {"arrival": "arrival", "peak": f"peak dynamic {track.quantity}", "fwhm": "FWHM"}
+        labels = {
+            "arrival": "arrival",
+            "peak": f"peak dynamic {track.quantity}",
+            "fwhm": "FWHM",
+        }
         for quantity, number_read in theirs.items():
             ours = reading.numbers[quantity]
             rows.append(
@@ -304,8 +319,18 @@ def compare(
             )
         color = f"C{len(curves) // 2}"
         curves += [
-            Curve(f"{reading.name}, simulated", run.time, track.force(run.time), f"{color}-"),
-            Curve("measured", signal.time + shift.value, signal.values - pulse.base, f"{color}."),
+            Curve(
+                f"{reading.name}, simulated",
+                run.time,
+                track.force(run.time),
+                f"{color}-",
+            ),
+            Curve(
+                "measured",
+                signal.time + shift.value,
+                signal.values - pulse.base,
+                f"{color}.",
+            ),
         ]
     assert shift is not None
     shown = f"{shift.value:.6g} {chain.units and 's'}".strip()
@@ -329,11 +354,16 @@ def _first_pulses(
             (name,) = sensors
         if name in sensors:
             try:
-                pulse = noisy_pulse(signal.time, signal.values, read.unit, signal.inverted)
+                pulse = noisy_pulse(
+                    signal.time, signal.values, read.unit, signal.inverted
+                )
             except MeasureError as error:
                 raise MeasureError(f"{name}: {error}") from None
             found[name] = (signal, pulse)
     if not found:
-        wanted = " or ".join(f"{name} force" for name in sensors[:5]) or "wanted: the scene has none"
+        wanted = (
+            " or ".join(f"{name} force" for name in sensors[:5])
+            or "wanted: the scene has none"
+        )
         raise SceneError(f"no measured sensor is {wanted}")
     return found

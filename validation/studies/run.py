@@ -158,7 +158,7 @@ def reading_tables(
         if every or reading.pulse == 1:
             rows.append(_row("sensor", reading, before if reading.pulse == 1 else {}))
     legs = [
-        Column("", "speed"),
+        Column("", "between"),
         kind,
         Column("from"),
         Column("to"),
@@ -168,7 +168,7 @@ def reading_tables(
     ]
     tables = [
         Table.of(columns, rows, "sensors"),
-        Table.of(legs, [_row("speed", leg) for leg in speeds], "speeds"),
+        Table.of(legs, [_row("between", leg) for leg in speeds], "speeds"),
     ]
     later = [
         _row("later pulse", reading, {"reflected": back})
@@ -193,11 +193,14 @@ def reading_tables(
     return tuple(tables), "\n".join(lines)
 
 
-def _row(label: str, reading: Reading, more: Mapping[str, Any] = {}) -> dict[str, Any]:
+def _row(
+    label: str, reading: Reading, more: Mapping[str, Any] | None = None
+) -> dict[str, Any]:
     """Return the cells of a reading by the keys of columns, and by the label of its name."""
     places = ("number",) if len(reading.places) == 1 else ("from", "to")
-    row = dict(zip(places, reading.places, strict=True))
-    row |= {
+    row: dict[str, Any] = dict(zip(places, reading.places, strict=True))
+    row |= dict(reading.numbers) | dict(more or {})
+    return row | {
         label: reading.name,
         "kind": reading.kind,
         "signal": reading.quantity,
@@ -205,15 +208,16 @@ def _row(label: str, reading: Reading, more: Mapping[str, Any] = {}) -> dict[str
         "static_force_value": reading.static,
         "missing": reading.missing,
     }
-    return row | reading.numbers | more
 
 
 def _digits(sensors: Sequence[Reading]) -> str:
-    """Return the number of digits of arrivals; late ones have digits for a ten-thousandth of a width."""
+    """Return the most digits of arrivals: of late ones to a ten-thousandth of their width."""
     late = 1.0
     for reading in sensors:
         if "fwhm" in reading.numbers:
-            arrival, width = (reading.numbers[name].value for name in ("arrival", "fwhm"))
+            arrival, width = (
+                reading.numbers[name].value for name in ("arrival", "fwhm")
+            )
             late = max(late, abs(arrival) / width)
     return str(max(6, math.ceil(math.log10(late)) + 4))
 
