@@ -256,7 +256,7 @@ def _check_top(
             f"{few} samples lie above half the pulse's peak: at least {fewest} are wanted"
         )
     top, low = f[inside].max(), f[inside].min()
-    start, end = longest((f[inside] >= top - _EQUAL * np.ptp(f)).tolist())
+    start, end = longest(f[inside] >= top - _EQUAL * np.ptp(f))
     # A smooth pulse 1 - e (t/width)², e ≈ 2.7, stays within a step of its top as long as
     # 2 width √(step/(e peak)); twice as long, and three samples, are no top.
     if end - start > 3 + 4 * few * math.sqrt(step / (2.7 * 2 * (top - low))):

@@ -38,7 +38,7 @@ class Signal(Protocol):
 def checked(time: ArrayLike, values: ArrayLike) -> tuple[Array, Array]:
     """Return sample times and values as arrays (S,), at least four; `MeasureError` for others."""
     try:
-        t, f = np.array(time, float), np.array(values, float)
+        t, f = np.asarray(time, float), np.asarray(values, float)
         if f.size < 4 or not f.shape == t.shape == (f.size,):
             raise ValueError(f"the shapes are {t.shape} and {f.shape}")
     except (TypeError, ValueError, OverflowError) as reason:

@@ -15,15 +15,17 @@ from itertools import chain, islice, repeat
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from lwa.base import files
 from lwa.base.arrays import Array
 
 _LINE = re.compile(r"[^\r\n]*\S[^\r\n]*")  # a line that is not blank
 # Signs with several codes, and the sign of recorders for a value beyond their range
-_SIGNS = {ord("μ"): "µ", ord("−"): "-", ord("∞"): "inf"}
+_SIGNS = {"μ": "µ", "−": "-", "∞": "inf"}
 _HEAD = 1000  # lines in which the separator and the first numbers are looked for
 _MARKS = "\t;, "
+_BLOCK = 10_000  # rows of numbers that are read at once
 
 
 class Cells:
@@ -65,7 +67,12 @@ class Cells:
             text = content.decode("utf-16" if marked else "utf-8-sig")
         except UnicodeDecodeError:
             text = content.decode("latin-1")
-        return cls(text.translate(_SIGNS))
+        for (
+            sign,
+            plain,
+        ) in _SIGNS.items():  # A translation would take as much memory again.
+            text = text.replace(sign, plain)
+        return cls(text)
 
     def numbers(self, places: Sequence[int]) -> Array:
         """Return columns, (lines, columns), at increasing places; NaN for a cell without a number.
@@ -85,19 +92,29 @@ class Cells:
     def _lines(self, places: Sequence[int]) -> Iterator[str]:
         """Yield the lines, NaN in place of other cells, as NumPy's reader takes them."""
         mark = self._mark
-        number = re.compile(_number(mark))
+        number = _number(mark)
         between = "[ \t]+" if mark == " " else f" *{mark} *"
-        other = r"[^ \t]+" if mark == " " else f'(?:"[^"]*"|[^"{mark}]*)'
-        wanted = f'"?(?:{number.pattern})"?'
+        other = r"[^ \t\r\n]+" if mark == " " else f'(?:"[^"]*"|[^"\r\n{mark}]*)'
         count = places[-1] + 1
-        cells = [wanted if place in places else other for place in range(count)]
-        all_numbers = re.compile(f" *{between.join(cells)} *(?:{mark}|$)")
-        for line in _LINE.finditer(self._text):
-            text = line[0]
-            if not all_numbers.match(text):
-                row = islice(chain(_split(text, mark), repeat("")), count)
-                text = mark.join(x if number.fullmatch(x) else "nan" for x in row)
-            yield text if mark == "," else text.replace(",", ".")
+        wanted = f'"?{number}"?'
+        cells = between.join(wanted if i in places else other for i in range(count))
+        row = rf"[\r\n]* *{cells} *(?:{mark}[^\r\n]*)?(?![^\r\n])"
+        # Blocks of rows of numbers: a loop over lines takes longer than NumPy's reader.
+        rows = re.compile(f"(?:{row}){{1,{_BLOCK}}}+")
+        start = 0
+        while start < len(self._text):
+            block = rows.match(self._text, start)
+            if block:
+                text = block[0] if mark == "," else block[0].replace(",", ".")
+                yield from text.splitlines()
+            else:
+                block = _LINE.search(self._text, start)
+                if block is None:
+                    return
+                found = islice(chain(_split(block[0], mark), repeat("")), count)
+                line = [x if re.fullmatch(number, x) else "nan" for x in found]
+                yield mark.join(line).replace(",", "." if mark != "," else ",")
+            start = block.end()
 
     def line_number(self, row: int) -> int:
         """Return the number, from 1, of a line that is counted without blank lines, from 0."""
@@ -105,18 +122,20 @@ class Cells:
         return len(self._text[:above].splitlines()) + 1
 
 
-def longest(flags: Sequence[bool]) -> tuple[int, int]:
+def longest(flags: ArrayLike) -> tuple[int, int]:
     """Return start and end of the longest run of true flags, (0, 0) without any."""
     return max(runs(flags), key=lambda run: run[1] - run[0], default=(0, 0))
 
 
-def runs(flags: Sequence[bool]) -> list[tuple[int, int]]:
+def runs(flags: ArrayLike) -> list[tuple[int, int]]:
     """Return starts and ends of the runs of true flags.
 
     >>> runs([False, True, True, False, True])
     [(1, 3), (4, 5)]
     """
-    edges = np.flatnonzero(np.diff(flags, prepend=False, append=False))
+    edges = np.flatnonzero(
+        np.diff(np.asarray(flags, bool), prepend=False, append=False)
+    )
     return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
 
 
@@ -124,7 +143,7 @@ def _number(mark: str) -> str:
     """Return the pattern of a number beside a separator."""
     point = "." if mark == "," else ".,"
     digits = rf"(?:\d+[{point}]?\d*|[{point}]\d+)(?:[eE][-+]?\d+)?"
-    return f"[-+]?(?:{digits}|inf)"
+    return f"(?:[-+]?(?:{digits}|inf))"
 
 
 def _split(line: str, mark: str) -> list[str]:

@@ -18,16 +18,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TypedDict, Unpack
+from typing import TypedDict
 
 import numpy as np
 
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
 from lwa.base.files import reason
-from validation.scenes import units
 from validation.scenes.cells import Cells, longest, runs
 from validation.scenes.checks import SceneError
+from validation.scenes.units import BASES, in_si, read_statement, same
 
 # Name and unit: "Force (N)", "Force [N]", "Force in N"
 _HEADER = re.compile(r"^(.*?) ?(?:[([] ?([^][()\s]*) ?[])]|\bin (\S+))?$")
@@ -39,7 +39,7 @@ _FEW = 0.1  # rows of numbers in a preamble, at most, over the rows of the recor
 
 
 class Stated(TypedDict, total=False):
-    """Statements of the user about a measured file.
+    """Statements of the user about measured files, as keywords.
 
     columns : headers, with or without their units, or numbers of columns, by the names "time",
         "bead 8 force", "bead 8 velocity", "contact 8 force", "force", "speed", ….
@@ -78,7 +78,7 @@ class MeasuredFile:
         Name of the file; "-" is standard input.
     *wanted : str
         Names of columns that must be there; "force" stands for the signal of any sensor.
-    **stated
+    columns, units, step
         Statements of the user, see `Stated`.
 
     Raises
@@ -89,23 +89,28 @@ class MeasuredFile:
     """
 
     def __init__(
-        self, path: str | Path, *wanted: str, **stated: Unpack[Stated]
+        self,
+        path: str | Path,
+        *wanted: str,
+        columns: Mapping[str, str] | None = None,
+        units: Mapping[str, str] | None = None,
+        step: str | None = None,
     ) -> None:
         self.path = "standard input" if str(path) == "-" else path
-        self._step = stated.get("step")
+        self._step = step
         try:
             self._cells = Cells.read(path)
         except (OSError, SceneError, csv.Error) as error:
             raise SceneError(f"{self.path}: {reason(error)}") from None
         self.names: dict[int, str] = {}
-        self._name_columns(stated.get("columns") or {})
+        self._name_columns(columns or {})
         kinds = {name.split()[-1] for name in self.names.values()}
         kinds |= {"time"} if self._step else kinds & {"velocity"} and {"force"}
         for name in wanted:
             if name not in kinds:
                 raise self._fault(f"no column {name}", *wanted)
         self._given: dict[int, str] = {}
-        for key, statement in (stated.get("units") or {}).items():
+        for key, statement in (units or {}).items():
             places = [i for i, name in self.names.items() if name == _name(key)]
             places = places or self._places(key)
             if not places:
@@ -166,9 +171,9 @@ class MeasuredFile:
         """Lines on units that the user states otherwise than the file."""
         lines = []
         for place, statement in self._given.items():
-            _, unit = units.read_statement(statement, self.names[place].split()[-1])
+            _, unit = read_statement(statement, self.names[place].split()[-1])
             own = self._unit(place)
-            if unit and own and not units.same(unit, own):
+            if unit and own and not same(unit, own):
                 name = self.names[place]
                 lines.append(f"{name}: {statement} is stated, the file says {own}.")
         return lines
@@ -230,7 +235,7 @@ class MeasuredFile:
         """Return the record of a sensor from the places of its time, if any, and signal."""
         *time, values = self._record(places).T
         if self._step:
-            step, _ = units.read_statement(self._step, "time")
+            step, _ = read_statement(self._step, "time")
             time = [step * np.arange(len(values))]
         (t,) = time
         if np.any(np.diff(t) == 0):
@@ -251,7 +256,7 @@ class MeasuredFile:
         kept = list(self.names)
         table = self._table[:, [kept.index(place) for place in places]]
         numbers = ~np.isnan(table)
-        complete = [*map(bool, np.all(numbers, axis=1))]
+        complete = np.all(numbers, axis=1)
         start, end = longest(complete)
         if not end:
             named = " and ".join(self.names[place] for place in places)
@@ -271,7 +276,8 @@ class MeasuredFile:
                 f"{self.path}: line {line} holds ∞, the signal is clipped: a larger range of the "
                 "recorder is wanted"
             )
-        return record * [self._size(place) for place in places]
+        record *= [self._size(place) for place in places]
+        return record
 
     @cached_property
     def _table(self) -> Array:
@@ -288,19 +294,19 @@ class MeasuredFile:
             header = _HEADER.fullmatch(cell)
             if header and (header[2] or header[3]):
                 return str(header[2] or header[3])
-        return next(filter(units.same, cells), "")
+        return next(filter(same, cells), "")
 
     def _size(self, place: int) -> float:
         """Return the value in SI of an entry 1 of a column, 1 in a file without units."""
         name = self.names[place]
         quantity = name.split()[-1]
         if place in self._given:
-            return units.read_statement(self._given[place], quantity)[0]
+            return read_statement(self._given[place], quantity)[0]
         unit = self._unit(place)
-        size = units.in_si(unit, units.BASES[quantity]) if self.si else 1.0
+        size = in_si(unit, BASES[quantity]) if self.si else 1.0
         if size is None:
             says = f"has the unit {shorten(unit)}" if unit else "has no unit"
-            base = units.BASES[quantity]
+            base = BASES[quantity]
             raise SceneError(
                 f"{self.path}: column {name} {says}: --unit '{name}={base}', or as a calibration "
                 f"--unit '{name}=12.5 {base}/{unit or 'V'}'"
