@@ -85,6 +85,7 @@ class Cell(Value):
                 f"{len(stiffnesses)} stiffnesses for {len(masses)} masses: a periodic cell has as "
                 "many contacts as particles"
             )
+        # A frozen dataclass sets its own fields in this way.
         object.__setattr__(self, "masses", masses)
         object.__setattr__(self, "stiffnesses", stiffnesses)
         object.__setattr__(self, "spacing", positive(spacing, "spacing"))
@@ -113,10 +114,12 @@ class Cell(Value):
         masses = []
         contacts = []
         length = sp.S.Zero
+        # The last sphere touches the first one of the next period.
         for sphere, following in zip(row, row[1:] + row[:1], strict=True):
             contacts.append(stiffness(sphere, following))
             masses.append(sphere.mass)
             length += 2 * sphere.radius
+        # Without spheres the cell itself says what it needs.
         return cls(masses, contacts, length / len(row) if row else D)
 
     @cached_property
@@ -161,11 +164,13 @@ class Cell(Value):
 
     def compliances(self, k: Any = k) -> tuple[sp.Expr, ...]:
         """The A_i^{-1/k}, the strains of the contacts up to a common factor."""
-        k = exponent(k)  # one force A_i δ_i^k for all contacts
+        # One force A_i δ_i^k for all contacts
+        k = exponent(k)
         return tuple(power(A, -1 / k) for A in self.stiffnesses)
 
     def shares(self, k: Any = k) -> tuple[sp.Expr, ...]:
         """The shares C_i = P A_i^{-1/k} / Σ A_j^{-1/k}, strain of contact i divided by the mean."""
+        # Equal contacts have equal shares, whatever k is.
         if len(set(self.stiffnesses)) == 1:
             return (sp.Integer(1),) * self.size
         compliances = self.compliances(k)
@@ -230,6 +235,7 @@ def exponent(value: Any) -> sp.Expr:
     """
     least, largest = EXPONENTS
     result = read_exact(value, "k")
+    # A symbol may stand for any number.
     if result.is_number and not least <= result <= largest:
         raise InputError(
             f"k is {shorten(result)}: exponents from {least} to {largest} are taken"
@@ -252,6 +258,7 @@ def substitution(
     """
     symbols = dict.fromkeys((*cell.symbols, *sorted(k.free_symbols, key=str), *more))
     known: dict[str, sp.Symbol] = {}
+    # SymPy tells symbols of one name and different assumptions apart; a caller's keyword cannot.
     for symbol in symbols:
         if symbol.name in known:
             raise InputError(
@@ -261,6 +268,7 @@ def substitution(
     new = {}
     for name, value in values.items():
         if name in known:
+            # Masses, stiffnesses, lengths and k are positive; a law's parameters need not be.
             read = read_exact if known[name] in more else positive
             new[known[name]] = read(value, name)
         elif name != "omega":
@@ -283,7 +291,11 @@ def _by_ratio(
         )
     # m2 becomes ω m1 or, where m2 is no free symbol, m1 becomes m2/ω.
     m1, m2 = masses
-    for mass, other, ratio in ((m2, m1, omega), (m1, m2, 1 / omega)):
+    choices = (
+        (m2, m1, omega),
+        (m1, m2, 1 / omega),
+    )
+    for mass, other, ratio in choices:
         if mass.is_Symbol and mass not in known and mass not in other.free_symbols:
             return mass, ratio * other.xreplace(known)
     raise InputError(

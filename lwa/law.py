@@ -108,6 +108,7 @@ class ContactLaw(Value):
     @property
     def pulls(self) -> bool:
         """True if the contact also holds where δ < 0: laws with F′(0) > 0 that are no power."""
+        # δ^k is the force of a contact that opens, at k = 1 too.
         known = not (self.homogeneous or self.formless)
         return known and bool(self.slope().subs(self.delta, 0).is_positive)
 
@@ -137,6 +138,7 @@ class ContactLaw(Value):
         (8, 0, array([0., 8.]))
         """
         n = integer(n, "n", 0)
+        # A number of NumPy is an array without axes.
         if isinstance(delta, list | tuple) or getattr(delta, "ndim", 0) > 0:
             return self._at_array(delta, n)
         delta = real(delta, "delta")
@@ -184,12 +186,14 @@ class ContactLaw(Value):
 
         Symbols are accepted, a spacing as 1.
         """
+        # F′ of a power is positive at every strain; that of a law without expression is unknown.
         if self.homogeneous or self.formless:
             return
         D = cell.spacing
         delta = D * real(p, "p")
         if D.is_Symbol:
             delta = delta.subs(D, 1)
+        # A base that changes its sign on the way is 0 there, and its negative power a pole.
         for factor in self.F.atoms(sp.Pow):
             start = factor.base.subs(self.delta, 0)
             end = factor.base.subs(self.delta, delta)
@@ -219,6 +223,7 @@ class ContactLaw(Value):
         difference = self.F - real(force, "force")
         unknown = difference.free_symbols - {self.delta}
         demand_numbers(unknown, f"the load under the law {self.text} needs numbers")
+        # 15 digits more than the result has, for what the search loses
         with mpmath.workdps(50):
             root = growing_root(difference, self.delta)
             if root is None:
@@ -264,6 +269,7 @@ class Power(ContactLaw):
     def exponent(self) -> sp.Expr:
         return self.k
 
+    # SymPy integrates δ^k by cases of k.
     @cached_property
     def energy(self) -> sp.Expr:
         return self.delta ** (self.k + 1) / (self.k + 1)
@@ -321,6 +327,7 @@ class Law(ContactLaw):
         if not isinstance(self.F, sp.Expr) or self.delta not in self.F.free_symbols:
             fault = f"a SymPy expression in {self.delta} is wanted"
             raise InputError(f"F is {shorten(self.F)}: {fault}")
+        # Floats are taken for the decimals that they print.
         object.__setattr__(self, "F", read_exact(self.F, "F"))
         if self.slope().is_zero:
             raise InputError(
@@ -384,6 +391,7 @@ def named(name: str, *parameters: Any) -> ContactLaw:
     >>> named("hertz2", 1, "1/10").F
     delta**(5/2)/10 + delta**(3/2)
     """
+    # The name is checked before it is looked up: messages list the known ones.
     letters_of, build = _NAMED[one_of(name, NAMES, "law")]
     letters = letters_of.split()
     if len(parameters) > len(letters):
@@ -393,6 +401,7 @@ def named(name: str, *parameters: Any) -> ContactLaw:
         raise InputError(
             f"law {name} has {len(parameters)} parameters: {wanted} are wanted"
         )
+    # Only the corrections of a polynomial may soften a contact.
     read = signed if name == "polynomial" else positive
     values = []
     for letter, given in zip_longest(letters, parameters):
@@ -400,6 +409,7 @@ def named(name: str, *parameters: Any) -> ContactLaw:
         value = read(letter if given is None else given, place)
         values.append(_check_parameter(value, place, DELTA))
     force = build(*values)
+    # "power" and "general" build the law itself.
     if isinstance(force, ContactLaw):
         return force
     return Law(force, DELTA, name, tuple(values))
@@ -411,6 +421,7 @@ def read_law(value: Any, name: str) -> ContactLaw:
         raise InputError(
             f"{name} is {shorten(value)}: a text such as 'hertz2:1,2' is wanted"
         )
+    # Without a colon all parameters are symbols.
     title, colon, parameters = value.partition(":")
     return named(title.strip(), *(parameters.split(",") if colon else ()))
 
@@ -458,6 +469,7 @@ def substituted(
     values: Mapping[str, Any], cell: Cell, law: ContactLaw, *expressions: sp.Expr
 ) -> tuple[Any, ...]:
     """Substitute values in a cell, a law and expressions, as `lwa.cell.substitution`."""
+    # A symbol of the law that is also one of the cell is positive, as the cell's.
     others = sp.Tuple(*law.symbols, *expressions).free_symbols - {*cell.symbols}
     new = substitution(values, cell, more=sorted(others, key=str))
     replaced = [expression.xreplace(new) for expression in expressions]

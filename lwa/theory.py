@@ -82,7 +82,8 @@ class Theory(OfClosure):
         which the equations agree are left out: {} says that the ansatz satisfies both
         equations of motion to the order derived.
         """
-        sign = 1 if self.pde.acoustic else -1  # u_ττ = -u^k E on the optical branch
+        # On the optical branch u_ττ = -u^k E.
+        sign = 1 if self.pde.acoustic else -1
         found = {}
         for n, defect in enumerate(self.closure.solution.defect):
             if not defect.is_zero():
@@ -94,7 +95,8 @@ class Theory(OfClosure):
         """Mapping from n to φ_n in the compression; {} for powers and laws without expression."""
         if self.law.homogeneous or self.law.formless:
             return {}
-        return {n: self.law.phi(n) for n in range(2, max(self.order, 3))}
+        last = max(self.order - 1, 2)
+        return {n: self.law.phi(n) for n in range(2, last + 1)}
 
     def __repr__(self) -> str:
         return f"Theory({self.closure!r}: {self.pde.line()})"
@@ -127,12 +129,14 @@ class Theory(OfClosure):
 
     def _field_rows(self, most: int | None) -> list[str]:
         """LaTeX of the particles' fields to D^most."""
+        if not self.ansatz:  # one particle
+            return []
         if self.closure.name == "linear":
             return self.closure.latex_rows(most)
         rows = []
         for i, orders in self.slaved.items():
-            parts = latex_by_order(orders, self.cell.spacing, 0, most)
-            rows.append(f"w_{{{i + 1}}} = {' + '.join(['u', *parts])}")
+            field = latex_by_order(["u"], orders, self.cell.spacing, most=most)
+            rows.append(f"w_{{{i + 1}}} = {field}")
         return rows
 
     def _repr_latex_(self) -> str:
@@ -206,9 +210,11 @@ def homogenize(
     read_cell(cell)
     law = for_cell(law, cell, exponent(k) if law is None else k)
     one_of(branch, BRANCHES, "branch")
+    # The paper's ansatz covers one or two particles, and is the only one of optical modes.
     if closure is None:
         closure = "linear" if cell.size <= 2 or branch == "optical" else "full"
     one_of(closure, CLOSURES, "closure")
+    # Waves of the canonical field do not depend on which particle is called the first.
     if field is None:
         field = "center" if (closure, branch) == ("full", "acoustic") else "first"
     one_of(field, FIELDS, "field")
@@ -226,15 +232,15 @@ def _check_length(model: Model, closure: ClosureName) -> None:
     """Raise `lwa.InputError` for a derivation of more than `MOST_TERMS` terms, by an estimate."""
     ring = model.ring
     # The φ_n of a law that is no power grow as powers of one parameter, k.
-    parameters = (
-        min(len(ring.law), 1) + len(ring.masses.names) + len(ring.contacts.names)
-    )
+    parameters = min(len(ring.law), 1)
+    parameters += len(ring.masses.names) + len(ring.contacts.names)
     # The order D^{k+n} has at most one monomial per partition of n; its coefficient, of degree n in
     # P free parameters, has at most C(n + P, P) terms. The jets of the velocity multiply the total
     # by about n.
     n = min(model.order, 100)  # every larger order is refused
     count = int(partition(n)) * math.comb(n + parameters, parameters)
     if closure == "full":
+        # Jets of the velocity stand beside those of the strain.
         count *= model.order
     if count > MOST_TERMS:
         raise InputError(

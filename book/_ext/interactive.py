@@ -34,7 +34,7 @@ def formulas() -> str:
     ).pde.traveling_wave()
     theirs = paper.at_force(F)
     strain = canonical_wave(Cell([1]), k).on_background(p_0).field
-    gap = strain.stiffness(B) - strain.stiffness(v)
+    gap = strain.squared_speed(B) - strain.squared_speed(v)
     gradient = v * sp.sqrt(gap / (wave.I / wave.D**2 * strain.force(p_0 + v, 1)))
     solids = sp.symbols("E1 nu1 R1 E2 nu2 R2", positive=True)
     one, two = (

@@ -5,7 +5,7 @@ lattice the lattice's own waves (`validation.waves.solver`), and in the equation
 
     (1 - I ∂_x²) u_ττ = ∂_x F(u_x)
 
-its own waves (`Evolution`, integrated by `Continuum`). The waves meet at x = 0. The pulse of strain
+its own waves (integrated by `Continuum`). The waves meet at x = 0. The pulse of strain
 1 starts at x = -d. The strain is recorded at x = 0 and at x = d, where this pulse arrives after the
 collision. The shift of a pulse is its distance ahead of a pulse that ran alone.
 
@@ -32,8 +32,7 @@ from lwa.base.exact import read_exact
 from lwa.base.frozen import Estimate
 from lwa.base.progress import Progress
 from lwa.command.options import quantities
-from lwa.law import ContactLaw
-from lwa.linear.dispersion import Dispersion
+from lwa.loaded.background import Background
 from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import measure
@@ -107,50 +106,22 @@ def collision(
     return _report(second, records)
 
 
-@dataclass(frozen=True)
-class Evolution:
-    """The equation (1 - I ∂_x²) u_ττ = ∂_x F(u_x) of a cell and a law.
-
-    Let φ be the canonical field, F the contact force and I the coefficient of dispersion in the
-    units of the wave equation. In the field u = φ + (I/2) φ_xx the terms of order D^{k+3} are
-    I ∂_x³ F(u_x), for every cell of a power law or of equal contacts, and equal I ∂_x² u_ττ to this
-    order (Rosenau, Phys. Lett. A 118, 222 (1986), for equal beads). The canonical equation cut at
-    D^{k+3} amplifies short waves without bound; this one is well posed, and its energy
-    ∫ [½ u_τ² + ½ I u_xτ² + W(u_x)] dx, W′ = F, is positive.
-    """
-
-    cell: Cell
-    law: ContactLaw
-
-    @property
-    def I(self) -> sp.Expr:
-        """Coefficient I in the linear chain's dispersion Ω² = κ² - I κ⁴ + …, D² included."""
-        return Dispersion(self.cell, self.law.exponent).I
-
-    @property
-    def time_scale(self) -> sp.Expr:
-        """The ratio τ/t of the equation's time to the chain's."""
-        return self.cell.time_scale(self.law.exponent)
-
-    def force(self, p: sp.Expr, n: int = 0) -> sp.Expr:
-        """The n-th derivative F^{(n)}(p) in the units of the equation; the energy W for n = -1."""
-        return self.law.of_strain(sp.sympify(p), self.cell.spacing, n)
-
-    def speed(self, B: float) -> sp.Expr:
-        """Speed V = dx/dτ of the wave whose strain peaks at B: V² = 2 W(B)/B²."""
-        return sp.sqrt(2 * self.force(sp.Rational(str(B)), -1)) / sp.Rational(str(B))
-
-
 @dataclass(frozen=True, eq=False)
 class Continuum:
     """The long-wave equation (1 - I ∂_x²) u_ττ = ∂_x F(u_x) of a chain on a periodic interval.
+
+    Let φ be the canonical field, F and I those of `lwa.loaded.background`. In the field
+    u = φ + (I/2) φ_xx the terms of order D^{k+3} are I ∂_x³ F(u_x), for every cell of a power law
+    or of equal contacts, and equal I ∂_x² u_ττ to this order (Rosenau, Phys. Lett. A 118, 222
+    (1986), for equal beads). The canonical equation cut at D^{k+3} amplifies short waves without
+    bound; this one is well posed. Its wave of the strain B has the canonical wave's speed.
 
     In the strain p = u_x and the velocity v = u_τ the equation is p_τ = v_x,
     (1 - I ∂_x²) v_τ = ∂_x F(p), of the energy ∫ [½ v² + ½ I v_x² + W(p)] dx. A power law has no
     tension: F(p) = 0 at p < 0. The cell and the law have numbers only.
     """
 
-    equation: Evolution
+    equation: Background
     length: float  # the period
     points: int  # equidistant
 
@@ -240,11 +211,10 @@ def on_lattice(k: sp.Expr, second: float, rtol: float, samples: int) -> Records:
 
 def in_equation(k: sp.Expr, second: float, rtol: float, samples: int) -> Records:
     """The collision in the equation."""
-    equation = Evolution(Cell((1,), spacing=1), Power(k))
-    V, other, pace = (
-        float(part)
-        for part in (equation.speed(1), equation.speed(second), equation.time_scale)
-    )
+    equation = Background(Cell((1,), spacing=1), Power(k), 0)
+    V = float(equation.speed(sp.S.One))
+    other = float(equation.speed(sp.Rational(str(second))))
+    pace = float(equation.time_scale)
     power, rate = float(k - 1) / 2, float(k - 1) / (2 * math.sqrt(equation.I))
     width = 2 * math.acosh(2**power) / rate
     d, away, half = _places(width, V, other)

@@ -30,6 +30,7 @@ from numpy.typing import NDArray
 from lwa import Lattice, Link, Power, Resonator, hexagonal, loaded_wave
 from lwa.base.arrays import Array
 from lwa.base.progress import Progress
+from lwa.loaded.lattice import DirectionName
 from validation.lattice.laws import Contact
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Pulse, measure
@@ -177,7 +178,11 @@ def resonators(least: float) -> Iterator[Blow]:
 
 def packings(_: float) -> Iterator[Blow]:
     """Hexagonal packing of δ^{3/2}, across its rows and along them."""
-    for direction, bounds in (("across", (0.02, 0.06)), ("along", (0.02, 0.15))):
+    directions: dict[DirectionName, tuple[float, float]] = {
+        "across": (0.02, 0.06),
+        "along": (0.02, 0.15),
+    }
+    for direction, bounds in directions.items():
         lattice = hexagonal(HERTZ, direction)
         for strain in STRAINS:
             force = (strain * float(lattice.spacing)) ** float(HERTZ.k) * _force_at_one(
@@ -219,7 +224,7 @@ def _resonance(resonator: Resonator) -> float:
 
 def _force_at_one(lattice: Lattice) -> float:
     """Static force of a lattice of Hertz links at the mean compression 1 of a layer."""
-    compression = float(lattice.static(1).strain) * float(lattice.spacing)
+    compression = float(lattice.equilibrium(1).strain) * float(lattice.spacing)
     return float(compression ** -float(HERTZ.k))
 
 

@@ -45,10 +45,26 @@ class Jet(NamedTuple):
 class JetAlgebra:
     """Polynomials in the jets r_1 … r_weight and s_0 … s_weight, with ∂_x and ∂_τ.
 
-    k, mu, c : exponent of the law, mass fractions m̂_i and strain shares C_i as elements.
-    phi : the law's parameters φ_0 = 0, φ_1 = 1, φ_2, … as elements.
-    r, s : the jets r_0 = 1, r_1, … and s_0, s_1, ….
+    Parameters
+    ----------
+    ring : CoefficientRing
+        The ring of the coefficients.
+    weight : int
+        Highest order of a jet.
 
+    Attributes
+    ----------
+    k, mu, c : element, lists of elements
+        Exponent of the law, mass fractions m̂_i and strain shares C_i.
+    phi : list of elements
+        The law's parameters φ_0 = 0, φ_1 = 1, φ_2, ….
+    r, s : lists of elements
+        The jets r_0 = 1, r_1, … and s_0, s_1, ….
+    zero, one : element
+        The numbers 0 and 1.
+
+    Examples
+    --------
     >>> from lwa import Cell, Power
     >>> from lwa.algebra.model import Model
     >>> jets = JetAlgebra(Model(Cell([1]), Power(2)).ring, weight=2)
@@ -69,7 +85,8 @@ class JetAlgebra:
         self.c = ring.contacts.elements(self.context)
         self.phi = ring.phi(self.context, weight)
         generators = self.context.gens()
-        self._r1 = len(ring.names)  # index of r_1 among the generators
+        # Indices of r_1 and s_0 among the generators
+        self._r1 = len(ring.names)
         self._s0 = self._r1 + weight
         self.r = [self.one, *generators[self._r1 : self._s0]]
         self.s = list(generators[self._s0 :])
@@ -93,18 +110,23 @@ class JetAlgebra:
         self.half = (self.k + 1) / 2
         self._dx = {}
         self._dt = {}
+        # Derivatives that raise the weight are missing at the highest one.
+        for n in range(1, self.weight):
+            index = self._r1 + n - 1
+            self._dx[index] = r[n + 1] - r[1] * r[n]
+            self._dt[index] = s[n + 1] - s[1] * r[n]
         for n in range(self.weight + 1):
-            self._dt[self._s0 + n] = -self.half * s[1] * s[n]
-            if n == self.weight:  # its derivative in x needs an algebra of more weight
-                break
-            self._dx[self._s0 + n] = s[n + 1] - self.half * r[1] * s[n]
-            if n > 0:
-                self._dx[self._r1 + n - 1] = r[n + 1] - r[1] * r[n]
-                self._dt[self._r1 + n - 1] = s[n + 1] - s[1] * r[n]
+            index = self._s0 + n
+            scaled = self.half * s[n]
+            self._dt[index] = -s[1] * scaled
+            if n < self.weight:
+                self._dx[index] = s[n + 1] - r[1] * scaled
+        # φ_highest has no derivative either: it holds the next φ_n.
         for n in range(2, highest):
             theta = phi[n + 1] + (n - 1) * phi[n] - phi[n] * phi[2]
-            self._dx[n - 2] = r[1] * theta
-            self._dt[n - 2] = s[1] * theta
+            index = n - 2
+            self._dx[index] = r[1] * theta
+            self._dt[index] = s[1] * theta
 
     def dx(self, f: fmpq_mpoly, exponent: fmpq_mpoly | int) -> fmpq_mpoly:
         """The derivative p^{-e} ∂_x (p^e f) in x, e the exponent."""
@@ -173,6 +195,7 @@ class JetAlgebra:
             slope = f.derivative(index)
             if slope.is_zero():
                 continue
+            # r_1 and s_0 have no jet below them.
             lowest = index in (self._r1, self._s0)
             if lowest or not slope.derivative(index).is_zero():
                 return None
@@ -188,6 +211,7 @@ class JetAlgebra:
         in terms without s_i, an r_n beside lower r_i; r_1 alone is the derivative of p^e / e.
         """
         for index in reversed(range(self._r1 + 1, self.context.nvars())):
+            # s_0 is no derivative of a jet.
             if index != self._s0:
                 part = self._linear_part(f, index).integral(index - 1)
                 f = f - self.dx(part, exponent)
@@ -248,6 +272,7 @@ class GradedSeries:
         total = self.algebra.zero
         for j in range(1, n + 1):
             derivative = self.dx(n - j, j)
+            # In a symmetric cell every second term vanishes.
             if not derivative.is_zero():
                 total = total + derivative * taylor(h, j)
         return total

@@ -50,6 +50,7 @@ class Model(Value):
         if self.branch == "optical":
             contacts = Partition(stiffnesses, 1, "c")
         elif len(set(stiffnesses)) == 1:
+            # The shares are 1 whatever the law is: no A^{-1/k} is needed.
             contacts = Partition(stiffnesses, self.cell.size, "c")
         else:
             compliances = self.cell.compliances(self.k)

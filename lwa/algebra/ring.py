@@ -53,6 +53,7 @@ class Partition(Value):
     @cached_property
     def rational(self) -> dict[sp.Expr, sp.Rational]:
         """Mapping from each weight to its fraction; {} unless all fractions are rational."""
+        # Ratios may be rational where weights are not, such as m and 2m.
         first = self.distinct[0]
         ratios = {}
         for weight in self.distinct:
@@ -74,6 +75,7 @@ class Partition(Value):
         if self.rational:
             constants = map(to_flint, map(self.rational.get, self.weights))
             return list(map(context.constant, constants))
+        # The last fraction is what the others leave of the total.
         fractions = {}
         rest = context.constant(self.total)
         for weight, name in zip(self.distinct, self.names, strict=False):
@@ -114,6 +116,7 @@ class CoefficientRing(Value):
     def exponent(self, context: fmpq_mpoly_ctx) -> fmpq_mpoly:
         """The exponent k as an element of a ring that has `names` among its generators."""
         if self.highest:
+            # d ln(δ F′)/d ln δ
             return 1 + context.gen(context.variable_to_index("phi2"))
         if self.k.is_Rational:
             return context.constant(to_flint(self.k))
@@ -124,6 +127,7 @@ class CoefficientRing(Value):
 
         Those of a power are (k-1) … (k-n+1), given to φ_most.
         """
+        # φ_0 has no meaning; it makes places of the list and indices agree.
         found = [context.constant(0), context.constant(1)]
         if self.highest:
             return found + [context.gen(context.variable_to_index(n)) for n in self.law]
@@ -155,6 +159,7 @@ class Conversion:
 
     def __init__(self, ring: CoefficientRing) -> None:
         self._partitions = [p for p in (ring.masses, ring.contacts) if p.names]
+        # What the generators stand for
         values = list(ring.law.values())
         for partition in self._partitions:
             values += partition.distinct
@@ -177,7 +182,9 @@ class Conversion:
             terms = {e: to_flint(c) for e, c in polynomial.terms()}
             return self._context.from_dict(terms)
 
+        # Values of the polynomials' generators: those of the law, then total · w_i.
         self._images = list(map(element, ring.law.values()))
+        # For each partition the places of its generators, and Σw
         self._blocks = []
         self._sums = []
         for partition in self._partitions:
@@ -191,6 +198,7 @@ class Conversion:
 
     def __call__(self, terms: Sequence[Term]) -> sp.Expr:
         """Convert a polynomial, given by its terms: exponents by the ring's names, coefficient."""
+        # Degrees in the fractions of each partition
         degrees = []
         for block in self._blocks:
             degrees.append(max((sum(e[block]) for e, _ in terms), default=0))
@@ -204,6 +212,7 @@ class Conversion:
         numerator = numerator.compose(*self._images, *self._sums, ctx=self._context)
         if numerator.is_zero():
             return sp.S.Zero
+        # Lowest terms
         denominator = self._context.constant(1)
         for total, degree in zip(self._sums, degrees, strict=True):
             denominator = denominator * total**degree

@@ -66,10 +66,12 @@ def _acoustic(model: Model, progress: Progress[int]) -> Solution:
         strain = mean + c[1] * xi / 2
         right.append(strain * r_n)
         left.append((mean - c[0] * xi / 2) * r_n)
-        first.append((force_1 + xi * r_n) / (2 * mu[0]))  # without a remainder
-        second.append((force_2 - xi * r_n) / (2 * mu[1]) - _applied(b, second, n))
+        # The divisions leave no remainder.
+        first.append((force_1 + xi * r_n) / (2 * mu[0]))
+        total = (force_2 - xi * r_n) / (2 * mu[1])
+        second.append(total - _applied(b, second, n))
         b.append(c[0] * strain)
-    return _solution(b[: model.order + 1], first, second)
+    return _solution(b, first, second)
 
 
 def _optical(model: Model, progress: Progress[int]) -> Solution:
@@ -87,11 +89,13 @@ def _optical(model: Model, progress: Progress[int]) -> Solution:
         r_n = algebra.r[n]
         shifted = stiffness[1] * left.increment(-2, n)
         b.append(-algebra.slope(shifted + _applied(b, first, n), n))
-        right.append(mu[0] * b[n] * r_n)
-        left.append((mu[0] * b[n] + mu[1] * taylor(2, n)) * r_n)
+        strain = mu[0] * b[n]
+        right.append(strain * r_n)
+        left.append((strain + mu[1] * taylor(2, n)) * r_n)
         force = stiffness[0] * right.Phi[n] + stiffness[1] * left.Phi[n]
         first.append(force + shifted)
-        second.append(force - b[n] * leading.dx(0, n - 1) - _applied(b, second, n))
+        inertia = b[n] * leading.dx(0, n - 1) + _applied(b, second, n)
+        second.append(force - inertia)
     solution = _solution(b, first, second)
     acceleration = (algebra.one, *(k * e for e in solution.acceleration[1:]))
     defect = tuple(k * d for d in solution.defect)

@@ -40,7 +40,19 @@ SLOW_ORDER = 12
 class Closure(Value):
     """The consistency condition of a model, solved on first use.
 
-    Raises `lwa.InputError` for the combinations that have no solution.
+    Parameters
+    ----------
+    model : Model
+        Cell, contact law, branch and order.
+    name : {"linear", "full"}
+        The closure.
+    field : {"first", "center"}
+        The unknown of the wave equation.
+
+    Raises
+    ------
+    InputError
+        For the combinations that have no solution.
     """
 
     model: Model
@@ -49,23 +61,24 @@ class Closure(Value):
 
     def __post_init__(self) -> None:
         size, branch = self.model.cell.size, self.model.branch
-        if self.name == "linear" and self.field != "first":
+        if self.name == "full" and branch == "acoustic":
+            return  # covers any cell in either field
+        # At k = 1 the equations of motion are linear, and so is a slaved field.
+        if self.name == "full" and (self.model.k != 1 or self.field != "first"):
+            raise InputError(
+                "the optical branch oscillates at order D^0 and slaves no field algebraically "
+                "unless k = 1: use the linear closure, or k = 1 with the field 'first'"
+            )
+        if self.field != "first":
             raise InputError(
                 f"field is {self.field!r}: the linear closure has the field 'first', as in the "
                 'paper; closure="full" (--closure full) has both'
             )
-        one_field = size == 1 and branch == "acoustic"
-        if (self.name, branch) != ("full", "acoustic") and not (size == 2 or one_field):
+        one_equation = size == 1 and branch == "acoustic"
+        if size != 2 and not one_equation:
             raise InputError(
                 f"the cell has {size} masses: the linear closure's {branch} branch wants two; "
                 'closure="full" (--closure full) covers the acoustic branch of any cell'
-            )
-        # At k = 1 the equations of motion are linear, and so is the slaved field.
-        exact = self.model.k == 1 and self.field == "first"
-        if self.name == "full" and branch == "optical" and not exact:
-            raise InputError(
-                "the optical branch oscillates at order D^0 and slaves no field algebraically "
-                "unless k = 1: use the linear closure, or k = 1 with the field 'first'"
             )
 
     @cached_property

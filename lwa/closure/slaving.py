@@ -134,13 +134,14 @@ def full(
     for n in progress(range(1, model.order)):
         chain.extend(n)
     algebra = chain.algebra
-    fields = tuple(tuple(S)[: model.order] for S in chain.S)
+    fields = tuple(map(tuple, chain.S))
+    # The linear part of the second particle's field
     ansatz = []
     if len(fields) > 1:
         ansatz = [algebra.one, fields[1][0]]
         for n in range(1, len(fields[1])):
             ansatz.append(algebra.slope(fields[1][n], n))
-    return Solution(algebra, tuple(chain.E)[: model.order], tuple(ansatz), fields)
+    return Solution(algebra, tuple(chain.E), tuple(ansatz), fields)
 
 
 class _Slaving:
@@ -171,6 +172,7 @@ class _Slaving:
     def extend(self, n: int) -> None:
         """Append the terms in D^n of wave equation E, strains X, forces Φ and fields S."""
         accelerations = [rate.dt(self.E, n) for rate in self.rates]
+        # The rates of the last order would enter the next one.
         if n + 1 < self.order:
             for rate, S in zip(self.rates, self.S, strict=True):
                 rate.append(S.dt(self.E, n))

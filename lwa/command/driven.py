@@ -120,7 +120,6 @@ def shock(
         front = riemann.piston(cell, piston, ahead, law=law)
     else:
         front = riemann.shock(cell, behind, ahead, law=law)
-    errors = front.errors
 
     def row(key: str, label: str, unit: str = "m/s") -> Row:
         name, _, rule = key.partition(".")
@@ -130,7 +129,8 @@ def shock(
             else attempt(getattr, front, name)
         )
         closed = isinstance(value, sp.Expr) and not value.has(sp.Float)
-        bound = errors.get(rule or name, math.nan)
+        error = attempt(front.estimate, name, rule or "doubling")
+        bound = math.nan if isinstance(error, InputError) else error.relative_error
         return Row(key, label, value, unit, expression=closed, error=bound)
 
     kind = attempt(getattr, front, "kind")

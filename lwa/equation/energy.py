@@ -62,6 +62,7 @@ def energy(closure: Closure) -> list[fmpq_mpoly]:
         )
     fields = _Fields(closure)
     algebra = closure.solution.algebra
+    # The density is known to the order to which the velocities are.
     densities = []
     for n in range(closure.model.order - 1):
         density = fields.kinetic(n) + fields.elastic(n)
@@ -89,8 +90,12 @@ class _Fields:
             S = GradedSeries(algebra, algebra.one, terms)
             self.S.append(S)
             # ∂_τ w_i = φ_τ + D ∂_τ (φ_x S_i)
-            self.velocities.append([algebra.s[0], *(S.dt(E, n) for n in orders)])
+            velocity = [algebra.s[0]]
+            for n in orders:
+                velocity.append(S.dt(E, n))
+            self.velocities.append(velocity)
             self.forces.append(Force(algebra))
+        # The strain of contact i is C_i p (1 + X_i).
         for n in orders:
             strains = zip(self.forces, algebra.c, self._strains(n), strict=True)
             for force, share, strain in strains:

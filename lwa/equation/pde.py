@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any
 
 import sympy as sp
 
@@ -35,10 +35,19 @@ from lwa.equation.terms import (
 )
 from lwa.wave.compact import CompactWave
 
+LETTERS = {"G": Jet(((2, 3),)), "H": Jet(((2, 1), (3, 1))), "I": Jet(((4, 1),))}
+"""The paper's letters for the coefficients at D^{k+3}, and their jets."""
+
 
 @dataclass(frozen=True, repr=False)
 class PDE(OfClosure):
-    """The wave equation of a closure (`lwa.equation.pde` states its form)."""
+    """The wave equation of a closure (`lwa.equation.pde` states its form).
+
+    Parameters
+    ----------
+    closure : Closure
+        The solved consistency condition of a chain.
+    """
 
     @property
     def acoustic(self) -> bool:
@@ -61,6 +70,7 @@ class PDE(OfClosure):
 
         The leading term u_x^{k-1} u_xx (or -u^k) is left out.
         """
+        # The leading term is E_1 on the acoustic branch, E_0 on the optical one.
         base = self.closure.model.base
         sign = 1 if self.acoustic else -1
         acceleration = self.closure.solution.acceleration
@@ -69,20 +79,15 @@ class PDE(OfClosure):
             found[n] = terms(self.closure, sign * acceleration[n])
         return found
 
-    LETTERS: ClassVar[Mapping[str, Jet]] = {
-        "G": Jet(((2, 3),)),
-        "H": Jet(((2, 1), (3, 1))),
-        "I": Jet(((4, 1),)),
-    }
-    """The paper's letters for the coefficients at D^{k+3}, and their jets."""
-
-    @property
+    @cached_property
     def third_order(self) -> dict[str, sp.Expr]:
         """Mapping from "G", "H", "I" to their values; {} below order 4 or on the optical branch."""
+        # The ansatz to D^n gives the wave equation to D^{k+n-1}.
         if not self.acoustic or self.closure.model.order < 4:
             return {}
         values = {}
-        for letter, jet in self.LETTERS.items():
+        for letter, jet in LETTERS.items():
+            # A coefficient that vanishes, such as G at k = 2, has no term.
             coefficient = self.coefficients[3].get(jet, sp.S.Zero)
             values[letter] = coefficient * self.cell.spacing**2
         return values
@@ -120,9 +125,11 @@ class PDE(OfClosure):
         """True if all orders, D^{k+3} at least, are ∂_x of a flux: ∫ u_τ dx is conserved."""
         if not self.acoustic:
             return False
-        model = self.closure.model
-        longer = replace(model, order=max(model.order, 4))
-        return conservative(replace(self.closure, model=longer))
+        closure = self.closure
+        # The answer is that of the paper's order D^{k+3} at least.
+        if closure.model.order < 4:
+            closure = replace(closure, model=replace(closure.model, order=4))
+        return conservative(closure)
 
     @cached_property
     def energy(self) -> Mapping[int, Terms]:
@@ -140,12 +147,13 @@ class PDE(OfClosure):
 
     def _summands(self, write: Callable[[Terms, Jet], str]) -> list[str]:
         """The leading term and those of G, H, I, written by `Terms.text` or `Terms.latex`."""
+        # Terms know how to write a jet; these terms are none.
         notation = Terms(self.closure.model, {})
         if not self.acoustic:
             return [f"-{write(notation, Jet(()))}"]
         summands = [write(notation, Jet(((2, 1),)))]
         for letter in self.third_order:
-            summands.append(f"{letter} {write(notation, self.LETTERS[letter])}")
+            summands.append(f"{letter} {write(notation, LETTERS[letter])}")
         return summands
 
     @property
@@ -156,13 +164,18 @@ class PDE(OfClosure):
             del rest[3]
         return rest
 
-    def line(self) -> str:
-        """The equation as one line of text, and G, H, I, cut if they are long."""
+    @property
+    def headline(self) -> str:
+        """The equation as one line of text, with dots for the terms of other orders."""
         summands = self._summands(Terms.text)
         if any(self._without_letters.values()):
             summands.append("…")
+        return f"u_ττ = {' + '.join(summands)}"
+
+    def line(self) -> str:
+        """The equation and G, H, I as one line of text; long values are cut."""
         values = [f"{name} = {shorten(x)}" for name, x in self.third_order.items()]
-        return "; ".join([f"u_ττ = {' + '.join(summands)}", *values])
+        return "; ".join([self.headline, *values])
 
     def __repr__(self) -> str:
         return f"PDE({self.closure!r}: {self.line()})"
@@ -170,15 +183,14 @@ class PDE(OfClosure):
     @property
     def heading(self) -> str:
         """Format string for the heading of an order n, such as D^(k+{})."""
+        # F′ stands in the place of the power of D u_x.
         if not self.law.homogeneous:
             return "order {}"
         return "D^(k+{})" if self.acoustic else "D^{}"
 
     def __str__(self) -> str:
         """The equation as text, with G, H, I and the terms of the other orders below it."""
-        lines = [f"u_ττ = {' + '.join(self._summands(Terms.text))}"]
-        if any(self._without_letters.values()):
-            lines[0] += " + …"
+        lines = [self.headline]
         if not self.acoustic:
             lines.append("  (contacts that also pull: the odd law |δ|^(k-1) δ)")
         lines += [f"  {letter} = {value}" for letter, value in self.third_order.items()]
@@ -190,11 +202,15 @@ class PDE(OfClosure):
 
     def latex_rows(self, most: int | None = None) -> list[str]:
         """LaTeX of the equation to D^{k+most} (all orders if None), of τ, and of G, H, I."""
-        base = self.closure.model.base
-        summands = self._summands(Terms.latex)
-        summands += latex_by_order(self._without_letters, self.cell.spacing, base, most)
+        right_side = latex_by_order(
+            self._summands(Terms.latex),
+            self._without_letters,
+            self.cell.spacing,
+            self.closure.model.base,
+            most,
+        )
         return [
-            rf"u_{{\tau\tau}} = {' + '.join(summands)}",
+            rf"u_{{\tau\tau}} = {right_side}",
             rf"\tau = {latex.expression(self.time_scale)} \, t",
             *latex.rows(self.third_order),
         ]
@@ -212,9 +228,17 @@ class PDE(OfClosure):
     def traveling_wave(self) -> CompactWave:
         """The compact wave of the equation truncated at D^{k+3}, in closed form.
 
-        Raises `lwa.NoSolitaryWave` for numbers without a wave, and `lwa.InputError` if the closed
-        form does not apply: the order is below 4, the branch optical, or D^{k+2} does not vanish
-        (the linear closure with unequal contacts).
+        Returns
+        -------
+        CompactWave
+
+        Raises
+        ------
+        NoSolitaryWave
+            For numbers without a wave.
+        InputError
+            If the closed form does not apply: the law is no power, the order is below 4, the branch
+            optical, or D^{k+2} does not vanish (the linear closure with unequal contacts).
         """
         if not self.law.homogeneous:
             raise InputError(
@@ -222,6 +246,7 @@ class PDE(OfClosure):
                 "(--background P0) has the waves of any law"
             )
         wave = CompactWave(cell=self.cell, k=self.k, G=self.G, H=self.H, I=self.I)
+        # u_x^{k-2} u_xx² breaks the symmetry x → -x, u → -u, which an even pulse has.
         if 2 not in self.vanishing:
             raise InputError(
                 "unequal stiffnesses leave a term at D^(k+2): no wave in closed form"

@@ -8,7 +8,7 @@ powers of the base are collected in print, as in u_x^{k-3} u_xx^3.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -35,6 +35,7 @@ class BasePower(NamedTuple):
 
     def beside(self, jet: Jet) -> BasePower:
         """What is left of this power if the jet is written with bare derivatives."""
+        # Each factor of the jet has one base, or base^{(k+1)/2}, below it.
         strains = sum(e for _, e in jet.x)
         halves = Fraction(sum(e for _, e in jet.t), 2)
         return BasePower(self.a - strains - halves, self.b - halves)
@@ -88,6 +89,7 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
     def __repr__(self) -> str:
         """The first terms as text; a long coefficient is represented by its number of terms."""
         rows: list[str] = []
+        # Short coefficients only: a repr is one line at any order.
         for jet, coefficient in self.raw.items():
             if len(rows) < _SHOWN and len(coefficient) <= _SHOWN:
                 rows.append(f"{self.text(jet)}: {self[jet]}")
@@ -101,6 +103,7 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
         factors = []
         for name, exponent in self._factors(jet):
             name = re.sub("[{}]", "", name).replace(r"\tau", "τ")
+            # A negative or composed exponent needs parentheses: u_x^(-1).
             power = str(exponent).replace(" ", "")
             if not power.isalnum():
                 power = f"({power})"
@@ -112,7 +115,8 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
         factors = []
         for name, exponent in self._factors(jet):
             power = sp.latex(exponent, fold_short_frac=True)
-            power = re.sub(r" ([-+/]) ", r"\1", power)
+            # SymPy's spaces around signs would widen an exponent.
+            power = re.sub(r" ?([-+/]) ", r"\1", power)
             factors.append(name if power == "1" else f"{name}^{{{power}}}")
         return " ".join(factors) or "1"
 
@@ -146,9 +150,14 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
 def terms(closure: Closure, polynomial: fmpq_mpoly, power: BasePower = FORCE) -> Terms:
     """Convert a polynomial of the closure's algebra into jets of the field."""
     raw = closure.solution.algebra.terms(polynomial, closure.model.base)
-    # The paper's order: u_xx³, u_xx u_xxx, u_xxxx; jets with u_τ last.
-    ordered = sorted(raw, key=lambda jet: (bool(jet.t), -sum(e for _, e in jet.x), jet))
-    return Terms(closure.model, {jet: raw[jet] for jet in ordered}, power)
+    ordered = {jet: raw[jet] for jet in sorted(raw, key=_papers_order)}
+    return Terms(closure.model, ordered, power)
+
+
+def _papers_order(jet: Jet) -> tuple[bool, int, Jet]:
+    """Sort key of jets: u_xx³, u_xx u_xxx, u_xxxx; those with u_τ last."""
+    derivatives = sum(e for _, e in jet.x)
+    return bool(jet.t), -derivatives, jet
 
 
 def by_order(orders: Mapping[int, Terms], heading: str) -> list[str]:
@@ -163,18 +172,29 @@ def by_order(orders: Mapping[int, Terms], heading: str) -> list[str]:
 
 
 def latex_by_order(
-    orders: Mapping[int, Terms], spacing: sp.Expr, below: int, most: int | None
-) -> list[str]:
-    r"""LaTeX of the orders as summands D^{n - below} (terms) to n = most, and \cdots.
+    leading: Sequence[str],
+    orders: Mapping[int, Terms],
+    spacing: sp.Expr,
+    base: int = 0,
+    most: int | None = None,
+) -> str:
+    r"""LaTeX of a sum: leading summands, then D^{n - base} (terms of order n) for each order.
 
-    most : None stands for all orders.
+    Orders above ``most`` (None: no order) are dots.
     """
-    parts: list[str] = []
+    summands = [(sp.S.One, summand) for summand in leading]
     for n, of_order in orders.items():
         if not of_order:
             continue
         if most is not None and n > most:
-            return [*parts, r"\cdots"]
-        D = latex.power(spacing, n - below)
-        parts.append(rf"{D} \Bigl({of_order.latex_rows()[0]}\Bigr)")
-    return parts
+            summands.append((sp.S.One, r"\cdots"))
+            break
+        D = latex.power(spacing, n - base)
+        # A single term needs no parentheses.
+        if len(of_order) == 1:
+            ((jet, coefficient),) = of_order.items()
+            summands.append((coefficient, f"{D} {of_order.latex(jet)}"))
+        else:
+            (row,) = of_order.latex_rows()
+            summands.append((sp.S.One, rf"{D} \Bigl({row}\Bigr)"))
+    return latex.total(summands)

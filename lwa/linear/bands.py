@@ -52,10 +52,8 @@ class Bands(Value):
         InputError
             For wavenumbers that are not finite.
         """
-        kappa = finite(q, "wavenumber") * self.length
-        # Beyond [-π, π] whole turns are dropped exactly by e^{iκ}; inside it would lose digits.
-        turned = np.angle(np.exp(1j * kappa))
-        kappa = np.where(np.abs(kappa) <= np.pi, kappa, turned)
+        # Whole turns are dropped: P κ would lose the digits that they take up.
+        kappa = np.angle(np.exp(1j * finite(q, "wavenumber") * self.length))
         P = len(self.fractions)
         mass = np.sqrt(P * self.fractions)
         share = np.sqrt(self.shares)
@@ -71,6 +69,7 @@ class Bands(Value):
 
     def edges(self) -> Array:
         """Least and largest frequency of each branch, shape (P, 2), at κ = 0 and π/P."""
+        # Branches of a chain have their least and largest frequency at the ends of the zone.
         edge = np.pi / len(self.fractions) / self.length
         ends = self.branches([0.0, edge])
         return np.asarray(np.sort(ends, axis=0).T)

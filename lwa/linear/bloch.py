@@ -45,6 +45,7 @@ class Bloch:
         """
         none = [self.zero] * (min(self.P, most) + 1)
         one = [self.one, *none[1:]]
+        # The columns of the matrix
         a, _ = self._carried(one, none)
         _, f = self._carried(none, one)
         return [a_m + f_m for a_m, f_m in zip(a, f, strict=True)]

@@ -144,10 +144,13 @@ class Dispersion(Value):
         The coefficient of κ^{2n} has the degree 2n - 2 in the masses and in the compliances, and
         comes from about n² products.
         """
+        # Odd powers of κ have no term.
         n = integer(order, "order", 1) // 2
         terms = n * n
         for part in (self._model.ring.masses, self._model.ring.contacts):
-            terms *= comb(2 * max(n, 1) - 2 + len(part.names), len(part.names))
+            degree = 2 * max(n, 1) - 2
+            parameters = len(part.names)
+            terms *= comb(degree + parameters, parameters)
         if terms > MOST_TERMS:
             raise InputError(
                 f"order is {order}: give numbers for the cell, or a lower order"
@@ -164,6 +167,7 @@ class Dispersion(Value):
         weights = sp.Tuple(*self.cell.fractions, *self.cell.shares(self.k))
         demand_numbers(weights.free_symbols, "bands want numbers")
         fractions, shares = np.array(list(map(float, weights))).reshape(2, -1)
+        # A float below 1e-308 is 0.
         if not (np.all(fractions > 0) and np.all(shares > 0)):
             raise InputError(
                 "masses or compliances differ by more than the range of a float"
@@ -216,6 +220,7 @@ class LoadedChain(Value):
     @cached_property
     def spring_constants(self) -> tuple[sp.Expr, ...]:
         """The spring constants A_i F′(δ_i)."""
+        # Once for each stiffness: the search for δ takes a while.
         constants = {}
         for A in set(self.cell.stiffnesses):
             delta = self.law.inverse(self.precompression / A)
@@ -237,6 +242,7 @@ class LoadedChain(Value):
         """The bands in floats, in the units of the cell; raises `lwa.InputError` for symbols."""
         D = self.cell.spacing
         rate = self.sound_speed / D  # ω/Ω, in s⁻¹ for a cell in SI
+        # A symbol is the unit of length.
         length = sp.S.One if D.is_Symbol else D
         demand_numbers(rate.free_symbols | length.free_symbols, "bands want numbers")
         return replace(self.springs.bands, rate=float(rate), length=float(length))

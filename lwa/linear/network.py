@@ -106,10 +106,12 @@ class Network(NamedTuple):
         """Coefficients of s^n in b(-s) b(s)ᵀ, shape (links, size, size)."""
         parts = np.zeros((len(self.links), self.size, self.size))
         for part, (i, j, cosine) in zip(parts, self.links, strict=True):
+            # The particle of a cell ahead moves as its image in this cell, times e^{s (j - last)}.
             last = j % self.size
             coefficient = cosine**2 * (j - i) ** n / factorial(n)  # of e^{s r}
             part[i, last] -= coefficient
             part[last, i] -= (-1) ** n * coefficient
+            # The terms without e^{±s r}
             if n == 0:
                 part[i, i] += cosine**2
                 part[last, last] += cosine**2

@@ -28,14 +28,49 @@ from lwa.law import ContactLaw, for_cell
 from lwa.linear.dispersion import Dispersion
 
 
+def squared_speed(work: sp.Expr, force: sp.Expr, rise: sp.Expr) -> sp.Expr:
+    """The relation Q = 2 [W(p0+B) - W(p0) - F(p0) B] / B² of a wave that rises by B.
+
+    Parameters
+    ----------
+    work : Expr
+        The difference W(p0+B) - W(p0) of the energies.
+    force : Expr
+        The static force F(p0).
+    rise : Expr
+        The rise B.
+    """
+    return 2 * (work - force * rise) / rise**2
+
+
+def demand_sound(c0: sp.Expr) -> None:
+    """Raise `lwa.NoSolitaryWave` unless sound runs at the static strain."""
+    if c0.is_zero or c0.is_finite is False:
+        raise NoSolitaryWave(
+            "no sound runs at the static strain, so that no wave is small"
+        )
+
+
 @dataclass(frozen=True)
 class Background(Value):
-    """The canonical field of a chain on the static strain p0, a number or a symbol.
+    """The canonical field of a chain on a static strain.
 
     Speeds are dx/dτ in the wave equation's units; times `time_scale` they are dx/dt.
 
-    Raises `lwa.InputError` for a negative strain under a power law, whose contacts only push, for
-    unlike contacts under a law that is no power, and unless F′ > 0 at a strain other than 0.
+    Parameters
+    ----------
+    cell : Cell
+        The chain.
+    law : ContactLaw
+        The law of its contacts.
+    p0 : number or str
+        The static strain.
+
+    Raises
+    ------
+    InputError
+        For a negative strain under a power law, whose contacts only push, for unlike contacts
+        under a law that is no power, and unless F′ > 0 at a strain other than 0.
     """
 
     cell: Cell
@@ -44,9 +79,9 @@ class Background(Value):
 
     def __post_init__(self) -> None:
         for_cell(self.law, self.cell)
-        # floats stay: the digits of a shock's strains are its own
-        exact = real if isinstance(self.p0, sp.Expr) else read_exact
-        object.__setattr__(self, "p0", exact(self.p0, "background"))
+        # Floats keep their digits: those of a shock's strains are its own.
+        read = real if isinstance(self.p0, sp.Expr) else read_exact
+        object.__setattr__(self, "p0", read(self.p0, "background"))
         if self.law.homogeneous and self.p0.is_negative:
             raise InputError(
                 f"background is {shorten(self.p0)}: under a power law it must not be negative"
@@ -65,14 +100,9 @@ class Background(Value):
         ]
 
     @cached_property
-    def linear(self) -> Dispersion:
-        """The dispersion of small waves in the units of the wave equation, at any strain."""
-        return Dispersion(self.cell, self.law.exponent)
-
-    @cached_property
     def I(self) -> sp.Expr:
-        """Coefficient I in the linear chain's Ω² = κ² (1 - (I/D²) κ² + …)."""
-        return self.linear.I
+        """Coefficient I in the linear chain's Ω² = κ² (1 - (I/D²) κ² + …), at any strain."""
+        return Dispersion(self.cell, self.law.exponent).I
 
     @property
     def time_scale(self) -> sp.Expr:
@@ -95,39 +125,32 @@ class Background(Value):
             return sp.Symbol("B", real=True)
         return FALL if (self.law.exponent - 1).is_negative else RISE
 
-    def stiffness(self, v: sp.Expr) -> sp.Expr:
-        """The square Q(v) of the speed of the wave that rises by v, whether it exists or not."""
-        linear_part = self.force(self.p0, -1) + self.force(self.p0) * v
-        rise = self.force(sp.expand(self.p0 + v), -1) - linear_part
-        return sp.powsimp(2 * rise / v**2)
+    def squared_speed(self, B: sp.Expr) -> sp.Expr:
+        """Squared speed Q(B) of the wave that rises by B, whether it exists or not."""
+        work = self.force(sp.expand(self.p0 + B), -1) - self.force(self.p0, -1)
+        return sp.powsimp(squared_speed(work, self.force(self.p0), B))
 
     def speed(self, B: sp.Expr) -> sp.Expr:
         """Speed V = √Q(B) of the wave that rises by B, whether it exists or not."""
-        square = self.stiffness(B)
-        if (
-            self.law.homogeneous and self.law.exponent.is_Integer
-        ):  # a polynomial in p0 and B
-            square = sp.expand(sp.cancel(square))
+        square = self.squared_speed(B)
+        if self.law.homogeneous and self.law.exponent.is_Integer:
+            square = sp.expand(sp.cancel(square))  # a polynomial in p0 and B
         return power(square, sp.S.Half)
 
     @cached_property
     def kdv(self) -> KdV:
-        """The equation of Korteweg and de Vries of the limit B → 0, in the time τ.
+        """The limit B → 0, in the time τ.
 
-        Raises `lwa.NoSolitaryWave` where no sound runs (p0 = 0 under most laws), and at F″ = 0 as
-        at k = 1, where small waves of any amplitude run at one speed.
+        Raises
+        ------
+        NoSolitaryWave
+            Where no sound runs (p0 = 0 under most laws), and at F″ = 0 as for k = 1, where small
+            waves of any amplitude run at one speed.
         """
-        c0, bend = self.sound_speed, self.force(self.p0, 2)
-        if c0.is_zero or c0.is_finite is False:
-            raise NoSolitaryWave(
-                f"p0 is {self.p0}: no sound runs there, so that no wave is small"
-            )
-        if bend.is_zero:
-            raise NoSolitaryWave(
-                f"F″ is 0 at p0 = {self.p0}: waves of small amplitude disperse"
-            )
-        # V² = Q(B) = c0² + F″ B/3 + …, hence V = c0 + α B/3; Ω² = κ² - I κ⁴ gives γ = I c0/2.
-        return KdV(c0, sp.powsimp(bend / (2 * c0)), self.I * c0 / 2)
+        demand_sound(self.sound_speed)
+        return KdV.of_slopes(
+            self.sound_speed, self.force(self.p0, 1), self.force(self.p0, 2), self.I
+        )
 
     def on(self, p0: Any) -> Self:
         """The field of the same chain on another static strain p0."""
@@ -138,17 +161,47 @@ class Background(Value):
 class KdV(Value):
     """The limit of small waves, v_t + c0 v_x + α v v_x + γ v_xxx = 0, and its sech² wave.
 
-    v is the strain above p0, c0 the speed of sound, α the nonlinearity and γ the dispersion.
-    For a power α = (k-1) c0/(2 p0), γ = I c0/2, in time τ with c0 = p0^{(k-1)/2}.
+    Here v is the strain above p0. For a power, in the time τ, c0 = p0^{(k-1)/2},
+    α = (k-1) c0/(2 p0) and γ = I c0/2.
+
+    Parameters
+    ----------
+    sound_speed : Expr
+        The speed of sound c0.
+    nonlinearity : Expr
+        The coefficient α.
+    dispersion : Expr
+        The coefficient γ.
     """
 
     sound_speed: sp.Expr
     nonlinearity: sp.Expr
     dispersion: sp.Expr
 
+    @classmethod
+    def of_slopes(cls, c0: sp.Expr, F1: sp.Expr, F2: sp.Expr, I: sp.Expr) -> Self:
+        """Return the equation of a lattice with the slopes F′ and F″ at its static strain.
+
+        Raises `lwa.NoSolitaryWave` where small waves disperse.
+        """
+        if F2.has(sp.nan, sp.oo, sp.zoo):
+            raise NoSolitaryWave(
+                "F″ is not finite at the static strain, so that no wave is small"
+            )
+        if F2.is_zero:
+            raise NoSolitaryWave(
+                "F″ is 0 at the static strain: waves of small amplitude disperse"
+            )
+        # V² = Q(B) = c0² (1 + F″ B/(3F′) + …), hence V = c0 + α B/3; Ω² = c0² (q² - I q⁴) gives
+        # γ = I c0/2.
+        return cls(c0, sp.powsimp(c0 * F2 / F1) / 2, I * c0 / 2)
+
     def latex_rows(self) -> list[str]:
-        names = {"c_{0}": self.sound_speed, r"\alpha": self.nonlinearity}
-        names[r"\gamma"] = self.dispersion
+        names = {
+            "c_{0}": self.sound_speed,
+            r"\alpha": self.nonlinearity,
+            r"\gamma": self.dispersion,
+        }
         equation = r"v_{\tau} + c_{0} v_{x} + \alpha v v_{x} + \gamma v_{xxx} = 0"
         return [equation, *latex.rows(names)]
 
@@ -157,23 +210,24 @@ class KdV(Value):
         """The symbol B: positive, or negative where α < 0, as waves have the sign of α."""
         return FALL if (self.nonlinearity * self.sound_speed).is_negative else RISE
 
-    def _rise(self, B: Any) -> sp.Expr:
-        """Read the rise of a wave, of the sign of α."""
-        B = self.rise if B is None else read_exact(B, "B")
+    def _read_rise(self, B: Any) -> sp.Expr:
+        """Read the rise of a wave, of the sign of α; the symbol B where none is given."""
+        if B is None:
+            return self.rise
+        B = read_exact(B, "B")
         if (B * self.nonlinearity).is_nonpositive:
             raise NoSolitaryWave(f"B is {shorten(B)}: a small wave has the sign of α")
         return B
 
     def speed(self, B: Any = None) -> sp.Expr:
         """Speed V = c0 + α B/3 of the wave v = B sech²(ξ/L); B is a symbol unless given."""
-        return self.sound_speed + self.nonlinearity * self._rise(B) / 3
+        return self.sound_speed + self.nonlinearity * self._read_rise(B) / 3
 
     def width(self, B: Any = None) -> sp.Expr:
         """Width L = √(12 γ / (α B)) of v = B sech²(ξ/L); the FWHM is 2 arcosh(√2) L."""
-        return sp.sqrt(
-            12 * sp.simplify(self.dispersion / self.nonlinearity) / self._rise(B)
-        )
+        ratio = sp.simplify(self.dispersion / self.nonlinearity)
+        return sp.sqrt(12 * ratio / self._read_rise(B))
 
     def profile(self, xi: Any, B: Any = None) -> sp.Expr:
         """Strain v = B sech²(ξ/L) above the background."""
-        return self._rise(B) * sp.sech(signed(xi, "xi") / self.width(B)) ** 2
+        return self._read_rise(B) * sp.sech(signed(xi, "xi") / self.width(B)) ** 2

@@ -16,12 +16,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple, Self
+from typing import Any, Literal, NamedTuple, Self, get_args
 
 import numpy as np
 import sympy as sp
 
-from lwa.base.arrays import function_of
+from lwa.base.arrays import Array, function_of
 from lwa.base.exact import (
     InputError,
     Quantity,
@@ -38,22 +38,35 @@ from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.law import ContactLaw, Power, for_cell
 from lwa.linear.network import Bond, Network
-from lwa.loaded.statics import Statics
+from lwa.loaded.statics import Function, LinkForces, Statics
 
-_NO_LOAD = (
-    1e-9  # stiffness of a lattice of springs 1 that carries no load, but for rounding
-)
+# Stiffness of a lattice of springs 1 that carries no load, but for rounding
+_NO_LOAD = 1e-9
+
+DirectionName = Literal["across", "along"]
+"""A direction of plane waves in a hexagonal packing: across the rows, or along them."""
 
 
 @dataclass(frozen=True)
 class Link(Value):
-    """A link between the particles i < j, which count on into the next cells.
+    """A link between two particles, which count on into the next cells.
 
-    law : force F(δ). factor : number or symbol that multiplies F.
-    cosine : cosine of the link's angle with the lattice; its compression is the difference of the
-        particles' displacements times the cosine.
+    Parameters
+    ----------
+    i, j : int
+        The particles, i < j.
+    law : ContactLaw
+        The force F(δ).
+    factor : number or str
+        Factor of the force.
+    cosine : number
+        Cosine of the link's angle with the lattice; the compression of the link is the difference
+        of the particles' displacements times the cosine.
 
-    Raises `lwa.InputError` for a link to itself and for values that are not positive.
+    Raises
+    ------
+    InputError
+        For a link to itself and for values that are not positive.
     """
 
     i: int
@@ -63,7 +76,8 @@ class Link(Value):
     cosine: sp.Expr = sp.S.One
 
     def __post_init__(self) -> None:
-        i, j = (integer(x, "a link's particle", 0) for x in (self.i, self.j))
+        i = integer(self.i, "a link's particle", 0)
+        j = integer(self.j, "a link's particle", 0)
         if i >= j:
             raise InputError(
                 f"link ({i}, {j}): the second particle must come after the first"
@@ -72,10 +86,8 @@ class Link(Value):
             raise InputError(
                 f"link ({i}, {j}): its law is {shorten(self.law)}, no contact law"
             )
-        for name in ("factor", "cosine"):
-            object.__setattr__(
-                self, name, positive(getattr(self, name), f"link's {name}")
-            )
+        object.__setattr__(self, "factor", positive(self.factor, "link's factor"))
+        object.__setattr__(self, "cosine", positive(self.cosine, "link's cosine"))
 
     def compression(self, force: sp.Expr) -> sp.Expr:
         """The compression δ at which the link pushes with this force along the lattice."""
@@ -86,7 +98,20 @@ class Link(Value):
 
 @dataclass(frozen=True)
 class Resonator(Value):
-    """A mass on a linear spring inside a particle; the resonator carries no static load."""
+    """A mass on a linear spring inside a particle; the resonator carries no static load.
+
+    Parameters
+    ----------
+    bead : int
+        The particle.
+    mass, stiffness : number or str
+        Mass, and spring constant.
+
+    Raises
+    ------
+    InputError
+        For values that are not positive.
+    """
 
     bead: int
     mass: sp.Expr
@@ -94,14 +119,23 @@ class Resonator(Value):
 
     def __post_init__(self) -> None:
         integer(self.bead, "a resonator's bead", 0)
-        for name in ("mass", "stiffness"):
-            object.__setattr__(
-                self, name, positive(getattr(self, name), f"resonator's {name}")
-            )
+        object.__setattr__(self, "mass", positive(self.mass, "resonator's mass"))
+        stiffness = positive(self.stiffness, "resonator's stiffness")
+        object.__setattr__(self, "stiffness", stiffness)
 
 
-class Static(NamedTuple):
-    """A lattice at rest under a mean force: mean strain, and compression δ of each link."""
+class Equilibrium(NamedTuple):
+    """A lattice at rest under a mean force.
+
+    Parameters
+    ----------
+    force : Expr
+        The mean force.
+    strain : Expr
+        The mean strain.
+    compressions : tuple of Expr
+        The compression δ of each link.
+    """
 
     force: sp.Expr
     strain: sp.Expr
@@ -112,14 +146,28 @@ class Static(NamedTuple):
 class Lattice(Value):
     """A periodic lattice of particles and links.
 
-    masses, links, resonators : of one cell. spacing : period of the cell over its particles.
+    Parameters
+    ----------
+    masses : iterable of numbers or str
+        Masses of the particles of a cell.
+    links : iterable of Link
+        The links of a cell.
+    resonators : iterable of Resonator
+        The resonators of a cell.
+    spacing : number or str
+        Period of the cell over the number of its particles.
 
-    Raises `lwa.InputError` for values that are not positive, a particle without a link to the
-    others, and links without a path of load from cell to cell.
+    Raises
+    ------
+    InputError
+        For values that are not positive, a particle without a link to the others, and links
+        without a path of load from cell to cell.
 
+    Examples
+    --------
     >>> from lwa import Lattice, Link, Power
     >>> pair = Lattice([1, 1], [Link(0, 1, Power("3/2"), "A"), Link(1, 2, Power(1), "B")])
-    >>> pair.static("F").strain
+    >>> pair.equilibrium("F").strain
     F/(2*B) + F**(2/3)/(2*A**(2/3))
     """
 
@@ -135,24 +183,21 @@ class Lattice(Value):
         resonators: Iterable[Resonator] = (),
         spacing: Quantity = 1,
     ) -> None:
-        parts = {"masses": masses, "links": links, "resonators": resonators}
-        for name, values in parts.items():
-            row = items(values, name)
-            if name == "masses":
-                row = tuple(positive(m, f"mass {n}") for n, m in enumerate(row, 1))
-            kind = {"masses": sp.Expr, "links": Link, "resonators": Resonator}[name]
-            if wrong := [x for x in row if not isinstance(x, kind)]:
-                raise InputError(
-                    f"{name} hold {shorten(wrong[0])}: a {kind.__name__} is wanted"
-                )
-            object.__setattr__(self, name, row)
+        numbered = enumerate(items(masses, "masses"), start=1)
+        read = tuple(positive(m, f"mass {n}") for n, m in numbered)
+        object.__setattr__(self, "masses", read)
+        object.__setattr__(self, "links", _parts(links, Link, "links"))
+        parts = _parts(resonators, Resonator, "resonators")
+        object.__setattr__(self, "resonators", parts)
         object.__setattr__(self, "spacing", positive(spacing, "spacing"))
         if not self.masses or not self.links:
             raise InputError("a lattice needs at least one mass and one link")
-        places = [link.i for link in self.links] + [x.bead for x in self.resonators]
-        if max(places) >= self.size:
+        last = max(
+            [link.i for link in self.links] + [part.bead for part in self.resonators]
+        )
+        if last >= self.size:
             raise InputError(
-                f"particle {max(places)}: the cell has particles 0 to {self.size - 1}"
+                f"particle {last}: the cell has particles 0 to {self.size - 1}"
             )
         self._check_paths()
 
@@ -160,8 +205,8 @@ class Lattice(Value):
     def of_cell(cls, cell: Cell, law: ContactLaw) -> Self:
         """The chain of a cell whose contacts share a law."""
         for_cell(law, cell)
-        links = (Link(i, i + 1, law, A) for i, A in enumerate(cell.stiffnesses))
-        return cls(cell.masses, tuple(links), (), cell.spacing)
+        links = [Link(i, i + 1, law, A) for i, A in enumerate(cell.stiffnesses)]
+        return cls(cell.masses, links, (), cell.spacing)
 
     @property
     def size(self) -> int:
@@ -177,12 +222,10 @@ class Lattice(Value):
     def symbols(self) -> tuple[sp.Symbol, ...]:
         """The symbols of masses, links and resonators, by name."""
         values = [*self.masses]
-        values += [
-            x
-            for link in self.links
-            for x in (link.factor, link.cosine, *link.law.symbols)
-        ]
-        values += [x for r in self.resonators for x in (r.mass, r.stiffness)]
+        for link in self.links:
+            values += [link.factor, link.cosine, *link.law.symbols]
+        for resonator in self.resonators:
+            values += [resonator.mass, resonator.stiffness]
         return tuple(sorted(set().union(*(x.free_symbols for x in values)), key=str))
 
     @cached_property
@@ -193,46 +236,55 @@ class Lattice(Value):
     @property
     def exact(self) -> bool:
         """True for links in series whose laws are powers: all results are closed forms."""
-        return self.in_series and all(
-            isinstance(link.law, Power) for link in self.links
-        )
+        powers = all(isinstance(link.law, Power) for link in self.links)
+        return self.in_series and powers
 
     @property
     def alike(self) -> bool:
         """True for equal particles, with equal links from each one to the next."""
-        links = {(x.law, x.factor, x.cosine) for x in self.links}
+        links = {(link.law, link.factor, link.cosine) for link in self.links}
         return self.in_series and len({*self.masses}) == len(links) == 1
 
-    def static(self, force: Any) -> Static:
-        """The lattice at rest under a mean force: exact in series, else in floats."""
-        force = read_exact(force, "force")
+    def equilibrium(self, force: Quantity) -> Equilibrium:
+        """The lattice at rest under a mean force.
+
+        Compressions are exact for links in series, else floats.
+
+        Raises
+        ------
+        InputError
+            For a force that the links do not reach, and for symbols where compressions are floats.
+        """
+        load = read_exact(force, "force")
         if self.in_series:
-            compressions = tuple(link.compression(force) for link in self.links)
-            parts = zip(self.links, compressions, strict=True)
-            mean = sp.Add(*(delta / link.cosine for link, delta in parts)) / self.size
-        else:
-            demand_numbers(force.free_symbols, "numbers are wanted")
-            e = self.statics.mean_compression(float(force)) if force else 0.0
-            compressions = tuple(map(sp.Float, self.statics.compressions(np.array(e))))
-            mean = sp.Float(e)
-        return Static(force, mean / self.spacing, compressions)
-
-    def energy(self, state: Static) -> sp.Expr:
-        """The energy per particle in a static state."""
-        pairs = zip(self.links, state.compressions, strict=True)
-        energies = (
-            x.factor * x.law.energy.subs(x.law.delta, delta) for x, delta in pairs
+            compressions = tuple(link.compression(load) for link in self.links)
+            pairs = zip(self.links, compressions, strict=True)
+            mean = sp.Add(*(delta / link.cosine for link, delta in pairs)) / self.size
+            return Equilibrium(load, mean / self.spacing, compressions)
+        demand_numbers(load.free_symbols, "numbers are wanted")
+        e = self.statics.mean_compression(float(load)) if load else 0.0
+        found = self.statics.compressions(np.array(e))
+        return Equilibrium(
+            load, sp.Float(e) / self.spacing, tuple(map(sp.Float, found))
         )
-        return sp.Add(*energies) / self.size
 
-    def stiffness(self, state: Static) -> sp.Expr:
-        """The slope dF/d(D p) of links in series in a static state."""
-        # spring constants along the lattice: dF/dδ times the cosine squared
-        pairs = zip(self.links, state.compressions, strict=True)
-        springs = [x.factor * x.cosine**2 * x.law.at(delta, 1) for x, delta in pairs]
-        if any(K.is_zero for K in springs):
-            return sp.S.Zero
-        return self.size / sp.Add(*(1 / K for K in springs))
+    def energy(self, state: Equilibrium) -> sp.Expr:
+        """The energy per particle at rest."""
+        total = sp.S.Zero
+        for link, delta in zip(self.links, state.compressions, strict=True):
+            total += link.factor * link.law.energy.subs(link.law.delta, delta)
+        return total / self.size
+
+    def stiffness(self, state: Equilibrium) -> sp.Expr:
+        """The slope dF/d(D p) of links in series at rest."""
+        compliance = sp.S.Zero
+        for link, delta in zip(self.links, state.compressions, strict=True):
+            # The spring constant along the lattice is dF/dδ times the cosine squared.
+            spring = link.factor * link.cosine**2 * link.law.at(delta, 1)
+            if spring.is_zero:
+                return sp.S.Zero
+            compliance += 1 / spring
+        return self.size / compliance
 
     @property
     def resonance_sum(self) -> sp.Expr:
@@ -241,24 +293,25 @@ class Lattice(Value):
 
     def resonance(self, resonator: Resonator) -> float:
         """The frequency ω0 of a resonator against its bead."""
-        parts = 1 / resonator.mass + 1 / self.masses[resonator.bead]
-        return number(sp.sqrt(resonator.stiffness * parts))
+        inverse_mass = 1 / resonator.mass + 1 / self.masses[resonator.bead]
+        return number(sp.sqrt(resonator.stiffness * inverse_mass))
 
     @cached_property
     def statics(self) -> Statics:
         """Static states in floats; raises `lwa.InputError` for symbols."""
         demand_numbers(self.symbols, "numbers are wanted")
         x = sp.Symbol("delta", positive=True)
-        forces = (
-            tuple(link.factor * link.law.at(x, n) for n in range(3))
-            for link in self.links
-        )
-        compiled = (tuple(function_of(x, f) for f in triple) for triple in forces)
+        forces = []
+        bonds = []
+        for link in self.links:
+            derivatives = (link.factor * link.law.at(x, n) for n in range(3))
+            functions = [function_of(x, f) for f in derivatives]
+            if not link.law.pulls:
+                functions = [_pushing(function) for function in functions]
+            forces.append(LinkForces(*functions))
+            bonds.append(Bond(link.i, link.j, float(link.cosine)))
         masses = np.array([float(m) for m in self.masses])
-        network = Network(
-            self.size, tuple(Bond(x.i, x.j, float(x.cosine)) for x in self.links)
-        )
-        return Statics(network, masses, tuple(compiled))
+        return Statics(Network(self.size, tuple(bonds)), masses, tuple(forces))
 
     @cached_property
     def _network(self) -> Network:
@@ -274,29 +327,58 @@ class Lattice(Value):
             raise InputError("the links carry no load from cell to cell")
 
 
+def _parts(values: Iterable[Any], kind: type, name: str) -> tuple[Any, ...]:
+    """Read a sequence of links or resonators."""
+    row = items(values, name)
+    for part in row:
+        if not isinstance(part, kind):
+            raise InputError(
+                f"{name} hold {shorten(part)}: a {kind.__name__} is wanted"
+            )
+    return row
+
+
+def _pushing(function: Function) -> Function:
+    """The function of a law's compression that is 0 where the contact is open, δ < 0."""
+
+    def value(delta: Array) -> Array:
+        return np.where(delta < 0, 0.0, function(np.maximum(delta, 0.0)))
+
+    return value
+
+
 def hexagonal(
     law: ContactLaw | Quantity,
-    direction: str,
+    direction: DirectionName,
     mass: Quantity = 1,
     diameter: Quantity = 1,
 ) -> Lattice:
     """The lattice of plane waves in a hexagonal packing of equal disks or spheres.
 
-    law : of the contacts, or the exponent k of δ^k.
-    direction : "across" the rows, in layers √3/2 diameters apart, each joined to the next by two
-        contacts a particle at 30° to the wave; or "along" the rows, in layers half a diameter
-        apart, joined to the next by two contacts at 60° and to the next but one by a contact.
-
     Forces and masses are those per particle of a layer. The contacts do not rotate: strains are
     small. Particles neither spin nor rub.
 
+    Parameters
+    ----------
+    law : ContactLaw or number
+        The law of the contacts, or the exponent k of δ^k.
+    direction : {"across", "along"}
+        Across the rows, in layers √3/2 diameters apart, each joined to the next by two contacts a
+        particle at 30° to the wave; or along the rows, in layers half a diameter apart, joined to
+        the next by two contacts at 60° and to the next but one by a contact.
+    mass, diameter : number or str
+        Mass and diameter of a particle.
+
+    Examples
+    --------
     >>> hexagonal(1.5, "along").spacing
     1/2
     """
-    one_of(direction, ("across", "along"), "direction")
+    one_of(direction, get_args(DirectionName), "direction")
     law = law if isinstance(law, ContactLaw) else Power(law)
-    a, cosine = positive(diameter, "diameter"), sp.sqrt(3) / 2
-    if direction == "across":
-        return Lattice((mass,), (Link(0, 1, law, 2, cosine),), (), a * cosine)
-    links = Link(0, 1, law, 2, sp.S.Half), Link(0, 2, law)
-    return Lattice((mass,), links, (), a / 2)
+    a = positive(diameter, "diameter")
+    if direction == "along":
+        links = [Link(0, 1, law, factor=2, cosine=sp.S.Half), Link(0, 2, law)]
+        return Lattice([mass], links, spacing=a / 2)
+    cosine = sp.sqrt(3) / 2
+    return Lattice([mass], [Link(0, 1, law, 2, cosine)], spacing=a * cosine)

@@ -2,12 +2,16 @@
 
 The displacements w inside a cell minimise the energy at a mean compression e = D p per spacing.
 The energy is stationary there, hence F″ is the sum over the links of f″ (dδ/de)³ / P.
+
+Arrays of mean compressions have any shape. Arrays of compressions, and of displacements inside the
+cell, have one more axis, of the links or of the particles.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,19 +21,21 @@ from lwa.linear.bloch import dispersion_of_chain
 from lwa.linear.network import Network, solved
 
 _MOST = 100  # steps of Newton's method; strongly unlike links take ten
-_ROUNDING = 1e-14  # of the mean compression: the step after the last one is exact
+_ROUNDING = 1e-14  # last step of Newton's method, over the mean compression
+_HALVINGS = 60  # of a step of Newton's method; the last one is lost in rounding
+# Spring constant of an open link in Newton's method, over the largest one, for a regular matrix
+_OPEN = 1e-9
 # Ratio of spring constants: a link that is so much stiffer is rigid for I, whose solution loses as
-# many digits.
+# many digits. An open link is as much softer, so that it holds a particle that no other link holds.
 _RIGID = 1e8
-_REACH = (
-    -100,
-    40,
-)  # powers of 2 between which the mean compression under a force is sought
+# Relative rounding of forces that are differences, such as exp(δ) - 1
+_NOISE = 1e-9
+# Powers of 2 between which the mean compression under a force is sought
+_REACH = (-100, 40)
 _PARTS = 65  # places between two bounds, of which the next bounds are neighbours
 _BOLDEST = 3.0  # largest step of ln δ
-_LARGEST = (
-    1e6  # compression of a link in series over the least that it may have at first
-)
+# Compression of a link in series over the least that it may have at first
+_LARGEST = 1e6
 _LEAST = 1e-14  # least mean compression over the largest of a wave
 _SMALL = 0.1  # rise over e from which on a difference of compressions has 15 digits
 _NODES = 10  # of Gauss's rule: laws with a singularity at δ = 0 err by 1e-20 over such a rise
@@ -37,18 +43,47 @@ _NODES = 10  # of Gauss's rule: laws with a singularity at δ = 0 err by 1e-20 o
 Function = Callable[[Array], Array]
 
 
+class LinkForces(NamedTuple):
+    """The force of a link and its first two derivatives, as functions of the compression."""
+
+    force: Function
+    slope: Function
+    bend: Function
+
+
+class Samples(NamedTuple):
+    """The static law and the dispersion at strains, lengths in spacings.
+
+    Parameters
+    ----------
+    slope, bend : Array
+        F′ and F″.
+    dispersion : Array
+        The coefficient I in Ω² = c² (q² - I q⁴ + …), resonators left out.
+    """
+
+    slope: Array
+    bend: Array
+    dispersion: Array
+
+
 @dataclass(frozen=True)
 class Statics:
     """Static states of a cell in floats.
 
-    forces : for each link f, f′ and f″ of its compression, factor included.
-
-    Arrays e of mean compressions have any shape; compressions have one more axis, of the links.
+    Parameters
+    ----------
+    network : Network
+        The links.
+    masses : Array
+        Masses of the particles.
+    forces : tuple of LinkForces
+        Force of each link, its factor included.
     """
 
     network: Network
     masses: Array
-    forces: tuple[tuple[Function, ...], ...]
+    forces: tuple[LinkForces, ...]
 
     def compressions(self, e: Array) -> Array:
         """Compressions of the links at mean compressions; NaN where there is no static state."""
@@ -62,49 +97,72 @@ class Statics:
         Logarithms keep the digits of a compression that is far smaller than the mean. A step to
         where a law does not rise, as beyond a pole, is halved in the logarithm.
         """
-        spans, total = self.network.spans, self.network.size * e
+        spans = self.network.spans
+        total = self.network.size * e
         delta = e[..., None] * spans
-        before = delta / _LARGEST
+        inside = delta / _LARGEST  # the last compressions at which the laws rise
         with np.errstate(all="ignore"):
             for _ in range(_MOST):
-                force, springs = self.values(delta, 0), self.values(delta, 1)
-                logs, gain = np.log(force * spans), force / springs  # dδ = gain d ln f
+                force = self.values(delta, 0)
+                springs = self.values(delta, 1)
+                rises = (force > 0) & (springs > 0)
+                gain = force / springs  # dδ/d ln f
+                logs = np.log(force * spans)
+                # ln f of the force at which the compressions add up, to first order
                 missing = total - ((delta - logs * gain) / spans).sum(axis=-1)
-                mean = missing / (gain / spans).sum(axis=-1)
-                step = (mean[..., None] - logs) * gain / delta
-                outside = ~((force > 0) & (springs > 0))
-                step = np.where(outside, np.log(before / delta) / 2, step)
-                step = np.where(
-                    np.isfinite(step), np.clip(step, -_BOLDEST, _BOLDEST), 0.0
-                )
-                before, delta = np.where(outside, before, delta), delta * np.exp(step)
-                if not np.any(np.abs(step) > _ROUNDING):
+                common = missing / (gain / spans).sum(axis=-1)
+                forward = (common[..., None] - logs) * gain / delta
+                back = np.log(inside / delta) / 2
+                step = np.where(rises, forward, back)
+                bounded = np.clip(step, -_BOLDEST, _BOLDEST)
+                step = np.where(np.isfinite(step), bounded, 0.0)
+                inside = np.where(rises, delta, inside)
+                delta = delta * np.exp(step)
+                if np.all(np.abs(step) <= _ROUNDING):
                     break
         return np.asarray(delta)
 
     def _network(self, e: Array) -> Array:
-        """Newton's method for the displacements inside the cell, damped: no contact is lost."""
-        spans, incidence = self.network.spans, self.network.incidence[:, 1:]
-        inner = np.zeros((*e.shape, self.network.size - 1))
-        for _ in range(_MOST):
-            delta = e[..., None] * spans + inner @ incidence.T
-            force, springs = self.values(delta, 0), self.values(delta, 1)
-            with np.errstate(all="ignore"):  # far beyond the wave forces are infinite
-                step = -solved(
-                    incidence.T @ (springs[..., None] * incidence), force @ incidence
-                )
-                change = step @ incidence.T
-                reach = np.where(change * delta < 0, -delta / (2 * change), 1.0)
-                step *= np.minimum(1.0, reach.min(axis=-1))[..., None]
-                inner += step
+        """Newton's method for the displacements inside the cell, at which the energy is least.
+
+        The energy is convex where laws rise. Its slope along a step tells if the step is too long.
+        """
+        incidence = self.network.incidence[
+            :, 1:
+        ]  # the first particle stays where it is
+        delta = e[..., None] * self.network.spans
+        with np.errstate(all="ignore"):  # far beyond the wave forces are infinite
+            for _ in range(_MOST):
+                force = self.values(delta, 0)
+                springs = self.values(delta, 1)
+                stiffest = springs.max(axis=-1, keepdims=True)
+                held = np.maximum(springs, _OPEN * stiffest)
+                matrix = incidence.T @ (held[..., None] * incidence)
+                change = -solved(matrix, force @ incidence) @ incidence.T
+                step = self._part(delta, change) * change
+                delta = delta + step
                 if not np.any(np.abs(step).max(axis=-1) > _ROUNDING * e):
                     break
-        return np.asarray(e[..., None] * spans + inner @ incidence.T)
+        return np.asarray(delta)
+
+    def _part(self, delta: Array, change: Array) -> Array:
+        """The part 1, 1/2, 1/4, … of a step behind which the energy is no steeper than before."""
+        force = self.values(delta, 0)
+        steep = np.abs((force * change).sum(axis=-1))
+        steep += _NOISE * (np.abs(force) * np.abs(change)).sum(axis=-1)
+        part = np.ones_like(steep)
+        for _ in range(_HALVINGS):
+            ahead = self.values(delta + part[..., None] * change, 0)
+            fine = np.abs((ahead * change).sum(axis=-1)) <= steep
+            if np.all(fine | np.isnan(steep)):
+                break
+            part = np.where(fine, part, part / 2)
+        return np.asarray(part[..., None])
 
     def values(self, delta: Array, n: int) -> Array:
         """The n-th derivative of each link's force at compressions of shape (…, links)."""
         with np.errstate(all="ignore"):
-            columns = [force[n](delta[..., i]) for i, force in enumerate(self.forces)]
+            columns = [link[n](delta[..., i]) for i, link in enumerate(self.forces)]
         return np.stack(columns, axis=-1)
 
     def force(self, e: Array) -> Array:
@@ -113,42 +171,46 @@ class Statics:
         with np.errstate(invalid="ignore"):  # opposite infinities far beyond the wave
             return np.asarray(forces @ self.network.spans / self.network.size)
 
-    def samples(self, e: Array) -> tuple[Array, Array, Array]:
-        """F′, F″ and I at mean compressions, lengths in spacings."""
-        network, size = self.network, self.network.size
+    def samples(self, e: Array) -> Samples:
+        """F′, F″ and I at mean compressions."""
+        size = self.network.size
         if size > 1:
             # Far below the largest e a compression, or a force, may be a rounding error.
             e = np.maximum(e, _LEAST * np.max(e))
         delta = self.compressions(e)
         springs = self.values(delta, 1)
         with np.errstate(all="ignore"):
-            if network.in_series:
-                compliances = 1 / (springs * network.spans**2)
+            if self.network.in_series:
+                spans = self.network.spans
+                compliances = 1 / (springs * spans**2)
                 stiffness = size / compliances.sum(axis=-1)
-                shares = stiffness[..., None] / (springs * network.spans)
-                row = [compliances[..., n] * stiffness for n in network.order]
+                shares = stiffness[..., None] / (springs * spans)
+                row = [compliances[..., n] * stiffness for n in self.network.order]
                 dispersion = dispersion_of_chain(self.masses / self.masses.sum(), row)
             else:
-                soft = np.minimum(
-                    springs, _RIGID * np.abs(springs).min(axis=-1, keepdims=True)
+                closed = np.where(springs == 0, np.inf, np.abs(springs))
+                softest = closed.min(axis=-1, keepdims=True)
+                springs = np.where(springs == 0, softest / _RIGID, springs)
+                springs = np.minimum(springs, softest * _RIGID)
+                stiffness, dispersion, shares = self.network.acoustic(
+                    springs, self.masses
                 )
-                stiffness, dispersion, shares = network.acoustic(soft, self.masses)
         bend = (self.values(delta, 2) * shares**3).sum(axis=-1) / size
-        return stiffness, bend, dispersion + 0 * e
+        return Samples(stiffness, bend, dispersion + 0 * e)
 
     def mean_compression(self, force: float) -> float:
         """The mean compression under a force > 0; raises `lwa.InputError` if it is not reached."""
+        unreached = InputError(f"force is {force:g}: the links do not reach it")
         e: Array = np.exp2(np.arange(*_REACH))
         while e[-1] > e[0] * (1 + 4e-16):
-            above = np.flatnonzero(
-                ~(self.force(e) < force)
-            )  # or NaN, beyond the reach of a law
-            if not len(above) or not above[0]:
-                raise InputError(f"force is {force:g}: the links do not reach it")
+            # A force beyond the reach of a law is NaN.
+            above = np.flatnonzero(~(self.force(e) < force))
+            if not len(above) or above[0] == 0:
+                raise unreached
             low, high = e[above[0] - 1 : above[0] + 1]
             e = np.asarray(np.linspace(low, high, _PARTS))
         if np.isnan(self.force(e[-1:])[0]):
-            raise InputError(f"force is {force:g}: the links do not reach it")
+            raise unreached
         return float(e[-1])
 
     def rise(self, e: float, force: float, added: float) -> float:
@@ -161,6 +223,5 @@ class Statics:
         if abs(rough) > _SMALL * e:
             return rough
         places, weights = np.polynomial.legendre.leggauss(_NODES)
-        return added / float(
-            self.samples(e + rough * (1 + places) / 2)[0] @ weights / 2
-        )
+        slopes = self.samples(e + rough * (1 + places) / 2).slope
+        return added / float(slopes @ weights / 2)

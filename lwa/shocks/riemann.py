@@ -1,48 +1,62 @@
 """The Riemann problem of a chain: the shock or the rarefaction between two strains.
 
 A wall that moves at v_p into a chain of strain p₊ compresses the chain to the strain p₋, with
-v_p = ∫ c dp, c = √F′(p) the speed of sound. If r = c₋/c₊ > 1, sound is faster behind the front, and
-the front is a dispersive shock, a wave train between two edges; else a rarefaction c(p) = x/t joins
-c₋ and c₊.
+``v_p = ∫ c dp``, c the speed of sound. Let r be the ratio c₋/c₊. If it is above 1, sound is faster
+behind the front, and the front is a dispersive shock, a wave train between two edges; else a
+rarefaction ``c(p) = x/t`` joins c₋ and c₊.
 
-Edges. Let f(κ) be the frequency of the linear chain over the speed of sound, f̃(q) = -i f(iq). El's
-conditions (Chaos 15, 037103 (2005)) are
+Edges. Let f(κ) be the frequency of the linear chain over the speed of sound, and
+``f̃(q) = -i f(iq)``. El's conditions (Chaos 15, 037103 (2005)) are::
 
     trailing edge   ∫₀^κ (1 - f′)/f dκ = ln r,      speed f′(κ) in units of c₋,
     leading edge    ∫₀^q (f̃′ - 1)/f̃ dq = ln r,      speed f̃(q)/q in units of c₊.
 
-For equal beads f = 2 sin κ/2 makes the integrals -2 ln cos κ/4 and 2 ln cosh q/4, so that the
-speeds are 2/r - 1 and √(r(r-1))/arcosh √r.
+For equal beads ``f = 2 sin κ/2`` makes the integrals ``-2 ln cos κ/4`` and ``2 ln cosh q/4``, so
+that the speeds are ``2/r - 1`` and ``√(r(r-1))/arcosh √r``.
 
-Doubling rule: the leading pulse is the solitary wave on p₊ whose beads move at 2 v_p at most; exact
-for Toda's law, small jumps (KdV) and hard spheres. For k = 1.05 … 3 the lattice's own wave has
-the measured speed within 0.25 % and strain within 1.5 %; `lwa.shocks.waves` has the closed forms of
-the canonical wave, `lwa.shocks.waves` the errors.
+Doubling rule. The leading pulse is the solitary wave on p₊ whose beads move at 2 v_p at most; exact
+for Toda's law, small jumps (KdV) and hard spheres. `lwa.shocks.pulse` has the closed forms of the
+canonical wave, `lwa.shocks.errors` the errors of both rules.
 """
 
 from __future__ import annotations
 
+import math
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal, get_args
 
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, one_of, positive, read_exact, shorten
-from lwa.base.frozen import Value
+from lwa.base.exact import (
+    InputError,
+    brief,
+    demand_numbers,
+    number,
+    one_of,
+    positive,
+    read_exact,
+    shorten,
+)
+from lwa.base.frozen import Estimate, Value
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
 from lwa.law import ContactLaw, for_cell
 from lwa.loaded.background import Background
-from lwa.shocks import waves
-from lwa.shocks.waves import Pulse, demand_one_sign, floats, strain, tidy, velocity
+from lwa.shocks import errors
+from lwa.shocks.digits import WORKING, evaluated, floats, tidy
+from lwa.shocks.pulse import Pulse
+from lwa.shocks.simple import demand_one_sign, strain, velocity
 
-RULES = (
-    "dispersion",
-    "doubling",
-)  # El's leading edge; the solitary wave with beads at 2 v_p
+RuleName = Literal["dispersion", "doubling"]
+"""A rule for the leading edge: El's, or the solitary wave with beads at 2 v_p."""
+
+RULES: tuple[RuleName, ...] = get_args(RuleName)
+
+EstimatedName = Literal["trailing_speed", "leading_speed", "peak", "peak_force"]
+"""A result of a shock with a measured error."""
 
 # r up to which the trailing edge is given; against the lattice it is 3 % too slow for Hertz
 # contacts at p₋/p₊ = 2, r = 1.19, and 9 % at p₋/p₊ = 3, r = 1.32
@@ -52,13 +66,22 @@ SMALLEST = sp.Rational(1, 10**15)
 """Smallest jump of the strain, relative; 30 digits of the floats are left there."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Shock(Value):
-    """The front between the strains ``behind`` and ``ahead`` (see `shock`).
+    """The front between two strains (see `shock`).
 
-    Speeds are dx/dt in the units of the cell. `rise`, `peak` and `peak_force` are those of the
+    Speeds are ``dx/dt`` in the units of the cell. `rise`, `peak` and `peak_force` are those of the
     leading pulse; they raise `lwa.InputError` for rarefactions, for unequal beads, and for an
     inflection of F within the pulse. So do the edges of a shock.
+
+    Parameters
+    ----------
+    cell : Cell
+        The chain.
+    law : ContactLaw
+        The law of its contacts.
+    behind, ahead : Expr
+        The strains behind and ahead of the front.
     """
 
     cell: Cell
@@ -66,16 +89,21 @@ class Shock(Value):
     behind: sp.Expr
     ahead: sp.Expr
 
+    def __repr__(self) -> str:
+        strains = f"behind={brief(self.behind)}, ahead={brief(self.ahead)}"
+        return f"Shock({strains}, wall at {brief(self.plateau)}, law={self.law!r})"
+
     def latex_rows(self) -> list[str]:
-        names = {"p_{-}": self.behind, "p_{+}": self.ahead, "v_{p}": self.plateau}
+        rows = {"p_{-}": self.behind, "p_{+}": self.ahead, "v_{p}": self.plateau}
         with suppress(InputError):
-            names["s_{-}"] = self.trailing_speed
+            rows["s_{-}"] = self.trailing_speed
         with suppress(InputError):
-            names |= {"s_{+}": self.leading_speed(), r"p_{\max}": self.peak}
-        return latex.rows(names)
+            rows["s_{+}"] = self.leading_speed()
+            rows[r"p_{\max}"] = self.peak
+        return latex.rows(rows)
 
     @property
-    def kind(self) -> str:
+    def kind(self) -> Literal["shock", "rarefaction"]:
         """ "shock" where sound is faster behind the front, else "rarefaction"."""
         if self._gain.is_positive is None:
             raise InputError("kind depends on symbols: give numbers")
@@ -84,31 +112,34 @@ class Shock(Value):
     @property
     def oscillates(self) -> bool:
         """True if the beads at the wall go on oscillating: a shock of numbers with c₋ > 2 c₊."""
-        return bool(self.ratio.is_number and self.ratio > waves.RESTING)
+        return bool(self.ratio.is_number and self.ratio > errors.RESTING)
 
     def sound(self, p: Any) -> sp.Expr:
-        """Speed of sound dx/dt on the strain p; 0 without load under a power law."""
+        """Speed of sound ``dx/dt`` on the strain p; 0 without load under a power law."""
         return tidy(self._sound(p if isinstance(p, sp.Expr) else read_exact(p, "p")))
 
     def _sound(self, p: sp.Expr) -> sp.Expr:
+        """Speed of sound on the strain p, with all digits."""
         field = self._field.on(p)
         if self.law.homogeneous and p.is_zero:
             return sp.S.Zero
-        return field.sound_speed * field.time_scale
+        return evaluated(field.sound_speed * field.time_scale)
 
     @cached_property
     def ratio(self) -> sp.Expr:
-        """Ratio r = c₋/c₊ of the speeds of sound, infinite without load."""
-        behind, ahead = (
-            self._sound(p) / self._field.time_scale for p in (self.behind, self.ahead)
-        )
-        return sp.oo if ahead.is_zero else sp.powsimp(behind / ahead)
+        """Ratio r of the speeds of sound behind and ahead, infinite without load."""
+        behind = self._sound(self.behind) / self._field.time_scale
+        ahead = self._sound(self.ahead) / self._field.time_scale
+        if ahead.is_zero:
+            return sp.oo
+        return sp.powsimp(evaluated(behind / ahead))
 
     @cached_property
     def plateau(self) -> sp.Expr:
         """Velocity v_p of the wall, at which the beads behind the front come to rest beside it.
 
-        Beyond c₋ = 2 c₊ they go on oscillating (`oscillates`), and the mean strain is below p₋.
+        Where c₋ is above 2 c₊ they go on oscillating (`oscillates`), and the mean strain is below
+        p₋.
 
         >>> from lwa import Cell
         >>> shock(Cell([1], spacing=1), "p", k="3/2").plateau
@@ -118,10 +149,15 @@ class Shock(Value):
 
     @cached_property
     def trailing_speed(self) -> sp.Expr:
-        """Speed s₋ of the trailing edge by El's condition; for a rarefaction the speed c₋.
+        """Speed of the trailing edge by El's condition; for a rarefaction the speed c₋.
 
-        Raises `lwa.InputError` for a shock beyond r = 1.3, and for a shock of unequal beads.
+        Raises
+        ------
+        InputError
+            For a shock with r above 1.3, and for a shock of unequal beads.
 
+        Examples
+        --------
         >>> from lwa import Cell
         >>> shock(Cell([1], spacing=1), 2, "9/5", k=3).trailing_speed
         8*sqrt(3)/5
@@ -135,26 +171,33 @@ class Shock(Value):
             )
         return tidy(sp.expand(self._sound(self.behind) * (2 / r - 1)))
 
-    def leading_speed(self, rule: str = "doubling") -> sp.Expr:
-        """Speed s₊ of the leading pulse by "doubling", or of the leading edge by El's "dispersion".
+    def leading_speed(self, rule: RuleName = "doubling") -> sp.Expr:
+        """Speed of the leading pulse or edge; for a rarefaction the speed c₊.
 
-        Both are exact for Toda's law, where they are one speed; the closed form of the canonical
-        wave is not: it makes the doubling rule up to 0.7 % too fast for Hertz contacts, 5 % for
-        k = 3 without load. Dispersion holds within 1 % for Hertz contacts up to p₋/p₊ = 3 and is
-        14 % too slow at 50. `errors` has the errors.
+        Both rules are exact for Toda's law, where they are one speed; the closed form of the
+        canonical wave is not: it makes the doubling rule up to 0.7 % too fast for Hertz contacts,
+        5 % for cubic ones without load. Dispersion holds within 1 % for Hertz contacts up to
+        strains of the ratio 3 and is 14 % too slow at 50.
 
-        For a rarefaction the speed is c₊. Raises `lwa.InputError` for dispersion without sound
-        ahead, and for unequal beads.
+        Parameters
+        ----------
+        rule : {"doubling", "dispersion"}
+            The speed of the leading pulse by the doubling rule, or of the leading edge by El's
+            condition.
+
+        Raises
+        ------
+        InputError
+            For dispersion without sound ahead, and for unequal beads.
         """
         one_of(rule, RULES, "rule")
         if self._gain.is_negative:
             return self.sound(self.ahead)
         if rule == "doubling":
-            return tidy(self._pulse.speed * self._field.time_scale)
+            return tidy(evaluated(self._pulse.speed * self._field.time_scale))
         r = self._edge_ratio()
-        return tidy(
-            self._sound(self.ahead) * sp.sqrt(r * (r - 1)) / sp.acosh(sp.sqrt(r))
-        )
+        edge = sp.sqrt(r * (r - 1)) / sp.acosh(sp.sqrt(r))
+        return tidy(evaluated(self._sound(self.ahead) * edge))
 
     def _edge_ratio(self) -> sp.Expr:
         """The ratio r for El's edges, of equal beads in a chain with sound ahead."""
@@ -170,39 +213,74 @@ class Shock(Value):
             _ = self._pulse  # refuses an inflection of F within the leading pulse
         return self.ratio
 
-    @cached_property
-    def errors(self) -> dict[str, float]:
-        """Relative errors of the results, as measured on driven chains (`lwa.shocks.waves`).
+    def estimate(self, name: EstimatedName, rule: RuleName = "doubling") -> Estimate:
+        """A result in floats with a bound on its error, as measured on driven chains.
 
-        The keys are "trailing_speed", "dispersion" and "doubling" (of `leading_speed`), "peak" and
-        "peak_force". Unknown errors and those of symbols are left out.
+        Parameters
+        ----------
+        name : {"trailing_speed", "leading_speed", "peak", "peak_force"}
+            The result. Symbols that only scale it, such as a mass, count as 1.
+        rule : {"doubling", "dispersion"}
+            The rule of a leading speed.
+
+        Returns
+        -------
+        Estimate
+            The error is NaN for a rarefaction, and where none is known.
+
+        Raises
+        ------
+        InputError
+            Where there is no such result, and for symbols of the law and the strains.
+
+        Examples
+        --------
+        >>> from lwa import Cell
+        >>> front = shock(Cell([1], spacing=1), 1, k="3/2")
+        >>> speed = front.estimate("leading_speed")
+        >>> lattice = 1.0395  # of a driven chain
+        >>> abs(speed.value - lattice) < speed.error < 30 * abs(speed.value - lattice)
+        True
         """
-        if self._free or self.kind == "rarefaction":
-            return {}
-        found: dict[str, float] = {}
-        for errors in (self._pulse_errors, self._edge_errors):
-            with suppress(InputError):
-                found |= errors()
-        return found
+        one_of(name, get_args(EstimatedName), "name")
+        if name == "leading_speed":
+            result = self.leading_speed(rule)
+        else:
+            result = getattr(self, name)
+        demand_numbers(self._free, "an error is that of a number")
+        scale = dict.fromkeys(self.cell.symbols, sp.S.One)
+        value = number(result.subs(scale))
+        if self.kind == "rarefaction":
+            return Estimate(value, math.nan)
+        try:
+            relative = self._relative_error(name, rule)
+        except InputError:
+            relative = math.nan
+        return Estimate(value, abs(value) * relative)
 
-    def _pulse_errors(self) -> dict[str, float]:
-        pulse, peak = self._pulse, sp.N(self.peak)
-        share = waves.rise_error(pulse.stiffening) * sp.N(pulse.contact_rise)
+    def _relative_error(self, name: EstimatedName, rule: RuleName) -> float:
+        """The relative error of a result of a shock."""
+        delta = self._pulse.steepness
+        if name == "leading_speed" and rule == "doubling":
+            return errors.speed_error(delta)
+        if name == "leading_speed":
+            return errors.leading_error(self._edges_differ(), delta)
+        if name == "trailing_speed":
+            sound = self.sound(self.behind) / self.trailing_speed
+            return errors.trailing_error(self._edges_differ()) * abs(float(sound))
+        peak = sp.N(self.peak)
+        error = errors.rise_error(delta) * sp.N(self._pulse.contact_rise)
+        if name == "peak":
+            return abs(float(error / peak))
         # towards the strain ahead: the rule is too high, and a law may have a pole beyond the peak
-        force, less = (self.law.at(self.cell.spacing * p) for p in (peak, peak - share))
-        found = {"doubling": waves.speed_error(pulse.stiffening)}
-        found |= {"peak": share / peak, "peak_force": 1 - less / force}
-        return {name: abs(float(x)) for name, x in found.items()}
+        force = self.law.at(self.cell.spacing * peak)
+        less = self.law.at(self.cell.spacing * (peak - error))
+        return abs(float(1 - less / force))
 
-    def _edge_errors(self) -> dict[str, float]:
-        """Errors of El's edges, by the doubling rule."""
-        ratio = self.leading_speed("doubling") / self.leading_speed("dispersion")
-        off = abs(float(ratio) - 1)
-        found = {"dispersion": waves.leading_error(off, self._pulse.stiffening)}
-        with suppress(InputError):
-            share = float(self.sound(self.behind) / self.trailing_speed)
-            found["trailing_speed"] = waves.trailing_error(off) * abs(share)
-        return found
+    def _edges_differ(self) -> float:
+        """Relative difference of the leading speeds by the two rules."""
+        doubling = self.leading_speed("doubling")
+        return abs(float(doubling / self.leading_speed("dispersion")) - 1)
 
     @cached_property
     def _pulse(self) -> Pulse:
@@ -218,7 +296,7 @@ class Shock(Value):
 
     @property
     def rise(self) -> sp.Expr:
-        """Rise B = 2 v_p/s₊ of u_x in the leading pulse, by the doubling rule."""
+        """Rise of the slope ``u_x`` in the leading pulse, by the doubling rule."""
         return tidy(self._pulse.rise)
 
     @property
@@ -228,7 +306,7 @@ class Shock(Value):
 
     @property
     def peak_force(self) -> sp.Expr:
-        """Contact force A F at the peak of the leading pulse, in the units of the cell."""
+        """Contact force at the peak of the leading pulse, in the units of the cell."""
         stiffness = self.cell.stiffness(self.law.exponent)
         return tidy(stiffness * self.law.at(self.cell.spacing * self.peak))
 
@@ -240,14 +318,14 @@ class Shock(Value):
     @property
     def _free(self) -> set[sp.Symbol]:
         """Symbols of the law and the strains, and of the spacing unless the law is a power."""
-        scaled = set() if self.law.homogeneous else self.cell.spacing.free_symbols
         strains = self.ratio.free_symbols | self.behind.free_symbols
-        return {*strains, *self.law.symbols, *scaled}
+        spacing = set() if self.law.homogeneous else self.cell.spacing.free_symbols
+        return {*strains, *self.law.symbols, *spacing}
 
     @cached_property
     def _gained(self) -> sp.Expr:
-        """Velocity v_p as du/dτ, in the units of the wave equation."""
-        return velocity(self._field, self.behind)
+        """Velocity v_p as ``du/dτ``, in the units of the wave equation."""
+        return evaluated(velocity(self._field, self.behind))
 
     @cached_property
     def _gain(self) -> sp.Expr:
@@ -278,16 +356,34 @@ def shock(
     law: ContactLaw | None = None,
     k: Any = symbol_k,
 ) -> Shock:
-    """The front of a chain whose strain is ``behind`` on its left and ``ahead`` on its right.
+    """The front of a chain between two strains.
 
-    Strains are numbers or symbols, not negative under a power law; the contacts are δ^k unless a
-    law is given. Results are exact for symbols and short fractions where they have a closed form,
-    else floats of 30 digits. Raises `lwa.InputError` for other strains, for a jump below 1e-15 of
-    the strains, where sound is equally fast on both, and unless F′ > 0 and F″ keeps its sign
-    between the strains.
+    Results are exact for symbols and short fractions where they have a closed form, else floats of
+    30 digits.
 
+    Parameters
+    ----------
+    cell : Cell
+        The chain.
+    behind, ahead : number or str
+        The strains on the left and on the right, not negative under a power law.
+    law : ContactLaw, optional
+        The law of the contacts, by default a power.
+    k : number or str
+        Exponent of the power.
+
+    Raises
+    ------
+    InputError
+        For other strains, for a jump below 1e-15 of the strains, where sound is equally fast on
+        both, and unless ``F′`` is positive and ``F″`` keeps its sign between the strains.
+
+    Examples
+    --------
     >>> from lwa import Cell
     >>> front = shock(Cell([1], spacing=1), 1, 0, k="3/2")
+    >>> front
+    Shock(behind=1, ahead=0, wall at 0.979796, law=Power(k=3/2))
     >>> round(front.leading_speed() / front.sound(1), 4), round(front.peak.n(), 4)
     (0.8543, 1.7480)
     """
@@ -295,44 +391,6 @@ def shock(
     return _front(
         cell, contact, read_exact(behind, "behind"), read_exact(ahead, "ahead")
     )
-
-
-def _front(cell: Cell, law: ContactLaw, behind: sp.Expr, ahead: sp.Expr) -> Shock:
-    for name, p in (("behind", behind), ("ahead", ahead)):
-        if law.homogeneous and p.is_negative:
-            raise InputError(
-                f"{name} is {shorten(p)}: contacts of a power law only push"
-            )
-        if law.homogeneous and p.is_zero and (law.exponent - 1).is_nonpositive:
-            raise InputError(
-                f"{name} is 0 and k {law.exponent}: a front without load wants k > 1"
-            )
-    jump = behind - ahead
-    if (
-        jump.is_number
-        and not jump.is_zero
-        and abs(jump) < SMALLEST * max(abs(behind), abs(ahead))
-    ):
-        raise InputError(
-            f"the jump of the strain is {sp.N(jump, 3)}: 1e-15 of it at least is wanted"
-        )
-    strains = floats(behind, ahead, constants=law.F.atoms(sp.Rational))
-    if (
-        not law.homogeneous
-        and cell.spacing.is_Symbol
-        and any(p.is_Float for p in strains)
-    ):
-        raise InputError(
-            f"spacing is {cell.spacing}: beside long decimals a number is wanted"
-        )
-    front = Shock(cell, law, *strains)
-    gain = front._gain
-    demand_one_sign(front._field, front.behind, front.ahead)
-    if gain.is_zero:
-        raise InputError(
-            "sound is as fast behind as ahead: there is no shock and no rarefaction"
-        )
-    return front
 
 
 def piston(
@@ -343,17 +401,83 @@ def piston(
     law: ContactLaw | None = None,
     k: Any = symbol_k,
 ) -> Shock:
-    """The front that a wall moving at this velocity drives into a chain of strain ``ahead``.
+    """The front that a moving wall drives into a chain.
 
-    The velocity dx/dt, positive, is in the units of the cell: m/s for `lwa.Cell.of_spheres`.
-    Raises `lwa.InputError` as `shock`, and for a velocity that the law does not reach.
+    Parameters
+    ----------
+    cell : Cell
+        The chain.
+    velocity : number or str
+        Velocity ``dx/dt`` of the wall, positive, in the units of the cell: m/s for
+        `lwa.Cell.of_spheres`.
+    ahead : number or str
+        The strain ahead.
+    law : ContactLaw, optional
+        The law of the contacts, by default a power.
+    k : number or str
+        Exponent of the power.
 
+    Raises
+    ------
+    InputError
+        As `shock`, and for a velocity that the law does not reach.
+
+    Examples
+    --------
     >>> from lwa import Cell
     >>> piston(Cell([1], spacing=1), "v", k=3).behind
     sqrt(2)*3**(3/4)*sqrt(v)/3
     """
     contact = _read(law, cell, k)
-    speed, p0 = positive(velocity, "velocity"), read_exact(ahead, "ahead")
-    speed, p0 = floats(speed, p0, constants=contact.F.atoms(sp.Rational))
+    _demand_stiffening(contact)
+    speed = positive(velocity, "velocity")
+    if speed.is_number and not speed.is_Rational:
+        speed = sp.N(speed, WORKING)  # powers of roots take long
+    speed, p0 = floats(contact, speed, read_exact(ahead, "ahead"))
     field = Background(cell, contact, p0)
     return _front(cell, contact, strain(field, speed / field.time_scale), p0)
+
+
+def _demand_stiffening(law: ContactLaw) -> None:
+    """Raise `lwa.InputError` for a linear law."""
+    if law.slope(2).is_zero:
+        raise InputError(
+            "sound is as fast behind as ahead: there is no shock and no rarefaction"
+        )
+
+
+def _front(cell: Cell, law: ContactLaw, behind: sp.Expr, ahead: sp.Expr) -> Shock:
+    """Return the front between two strains, or refuse the strains."""
+    for name, p in (("behind", behind), ("ahead", ahead)):
+        if law.homogeneous and p.is_negative:
+            raise InputError(
+                f"{name} is {shorten(p)}: contacts of a power law only push"
+            )
+        if law.homogeneous and p.is_zero and (law.exponent - 1).is_nonpositive:
+            raise InputError(
+                f"{name} is 0 and k {law.exponent}: a front without load wants k > 1"
+            )
+    _demand_stiffening(law)
+    jump = behind - ahead
+    if behind.is_number and ahead.is_number and not jump.is_zero:
+        least = SMALLEST * max(abs(behind), abs(ahead))
+        if abs(jump) < least:
+            raise InputError(
+                f"the jump of the strain is {sp.N(jump, 3)}: 1e-15 of it at least is wanted"
+            )
+    strains = floats(law, behind, ahead)
+    hold_floats = any(p.has(sp.Float) for p in strains)
+    scaled = law.homogeneous and not any(p.free_symbols for p in strains)
+    if hold_floats and not scaled and cell.spacing.is_Symbol:
+        raise InputError(
+            f"spacing is {cell.spacing}: beside long decimals a number is wanted",
+            spacing=1,
+        )
+    front = Shock(cell, law, *strains)
+    gain = front._gain
+    demand_one_sign(front._field, front.behind, front.ahead)
+    if gain.is_zero:
+        raise InputError(
+            "sound is as fast behind as ahead: there is no shock and no rarefaction"
+        )
+    return front

@@ -3,6 +3,8 @@
 import sympy as sp
 from flint import fmpq
 
+from lwa.law import phi_symbol
+
 
 def rational(value):
     """A SymPy rational as FLINT's."""
@@ -11,10 +13,9 @@ def rational(value):
 
 def at_compression(law, value, delta):
     """The value of an expression in φ_2, φ_3, … at a compression."""
-    known = {s.name: s for s in value.free_symbols if s.name.startswith("phi")}
-    return value.xreplace(
-        {s: law.phi(int(n[3:])).subs(law.delta, delta) for n, s in known.items()}
-    )
+    for n in range(2, 9):
+        value = value.xreplace({phi_symbol(n): law.phi(n).subs(law.delta, delta)})
+    return value
 
 
 def of_fields(pde, terms, u, x, velocity=sp.S.Zero):

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from book.studies.collision import Continuum, Evolution, collision
+from book.studies.collision import Continuum, collision
 from lwa import Cell, Dimer, Power
 from lwa.law import named as law
+from lwa.loaded.background import Background
 
 ONE = Cell((1,), spacing=1)
 
@@ -52,7 +53,7 @@ def test_nearer_to_k_1_the_equation_is_better(hertz):
 @pytest.mark.parametrize("kind", [Power("k"), law("exponential", 1)])
 def test_the_energy_is_conserved(kind):
     """∂_τ e is ∂_x of the flux u_τ (F + I u_xττ): for u_ττ free, by the equation."""
-    equation, x, t = Evolution(ONE, kind), *sp.symbols("x t", real=True)
+    equation, x, t = Background(ONE, kind, 0), *sp.symbols("x t", real=True)
     u = sp.Function("u")(x, t)
     v, F, W = u.diff(t), *(equation.force(u.diff(x), n) for n in (0, -1))
     density = v**2 / 2 + equation.I * v.diff(x) ** 2 / 2 + W
@@ -65,13 +66,13 @@ def test_the_energy_is_conserved(kind):
     ("cell", "k"), [(ONE, "3/2"), (Dimer(1, "1/4", spacing=1), "2")]
 )
 def test_a_solitary_wave_goes_round_and_comes_back(cell, k):
-    equation = Evolution(cell, Power(k))
+    equation = Background(cell, Power(k), 0)
     interval = Continuum(equation, 24.0, 256)
     power = sp.Rational(k) - 1
     pulse = np.cosh(float(power / (2 * sp.sqrt(equation.I))) * interval.x) ** float(
         -2 / power
     )
-    V = float(equation.speed(1))
+    V = float(equation.speed(sp.S.One))
     p, v = interval.evolved(pulse, -V * pulse, [0, 24 / V])
     assert p[-1] == pytest.approx(pulse, abs=1e-7)
     energy = interval.energy(p, v)
@@ -81,19 +82,19 @@ def test_a_solitary_wave_goes_round_and_comes_back(cell, k):
 @pytest.mark.parametrize("n", [1, 5, 60])
 def test_small_waves_have_the_frequency_of_the_equation_down_to_the_grid(n):
     """cos(Ωτ) on a strain 1; short waves do not grow."""
-    equation = Evolution(ONE, Power("3/2"))
+    equation = Background(ONE, Power("3/2"), 0)
     interval = Continuum(equation, 20.0, 128)
     q = 2 * np.pi * n / 20.0
     wave = 1e-6 * np.cos(q * interval.x)
     tau = 7.0
     p, _ = interval.evolved(1 + wave, 0 * wave, [0, tau], rtol=1e-12)
-    omega = q * float(sp.sqrt(equation.force(1, 1) / (1 + equation.I * q**2)))
+    omega = q * float(sp.sqrt(equation.force(sp.S.One, 1) / (1 + equation.I * q**2)))
     assert (p[-1] - 1) == pytest.approx(wave * np.cos(omega * tau), abs=1e-10)
 
 
 def test_a_law_with_tension_is_not_cut():
     """Toda's contacts pull: a wave of both signs keeps its energy."""
-    interval = Continuum(Evolution(ONE, law("exponential", 1)), 20.0, 128)
+    interval = Continuum(Background(ONE, law("exponential", 1), 0), 20.0, 128)
     wave = 0.1 * np.sin(2 * np.pi * interval.x / 20)
     p, v = interval.evolved(wave, 0 * wave, [0, 30])
     energy = interval.energy(p, v)

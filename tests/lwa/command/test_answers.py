@@ -109,11 +109,11 @@ ANSWERS = {
         "leading_speed.doubling": None,
         **{f"leading_speed_value.{rule}": front.leading_speed(rule)
            for rule in ("doubling", "dispersion")},
-        **{f"leading_speed_error_value.{rule}": front.errors[rule] * front.leading_speed(rule)
+        **{f"leading_speed_error_value.{rule}": front.estimate("leading_speed", rule).error
            for rule in ("doubling", "dispersion")},
         **{f"{name}_value": getattr(front, name)
            for name in ("trailing_speed", "peak", "peak_force")},
-        **{f"{name}_error_value": front.errors[name] * getattr(front, name)
+        **{f"{name}_error_value": front.estimate(name).error
            for name in ("trailing_speed", "peak", "peak_force")},
     },
     "shock --masses 1 --spacing 1 --k 3/2 --behind 1": {
@@ -187,7 +187,7 @@ TEXTS = {
         "bright breather, |Ψ| = a sech(b n):",
     ),
     "shock --masses 1 --spacing 1 --k 3/2 --behind 2 --ahead 1": (
-        f"peak strain, doubling = {peak:.4g} ± {front.errors['peak'] * peak:.1e}\n",
+        f"peak strain, doubling = {peak:.4g} ± {front.estimate('peak').error:.1e}\n",
     ),
     "shock --masses 1 --spacing 1 --k 3/2 --behind 1": (
         "no sound runs there", "go on oscillating",

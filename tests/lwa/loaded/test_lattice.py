@@ -1,42 +1,45 @@
 """Lattices: static states, the Bloch coefficient, closed forms with symbols, refusals."""
 
-from itertools import pairwise
-
+import mpmath
 import numpy as np
 import pytest
 import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lwa import Lattice, Link, Power, loaded_wave
-from lwa.law import named
+from lwa import Lattice, Law, Link, Power, loaded_wave
+from lwa.law import DELTA, named
 
 HERTZ = Power("3/2")
 SQUARED = Power(2)
 A, C, F = sp.symbols("A C F", positive=True)
 
 
+SPRING = Law(DELTA)  # also pulls
+SHORT = mpmath.mpf(10) ** -10
+
+
 def springs_of(*ends):
-    return [Link(i, j, Power(1), factor) for i, j, factor in ends]
+    return [Link(i, j, SPRING, factor) for i, j, factor in ends]
 
 
-def numeric_dispersion(masses, springs, q=0.02):
-    """I by Ω²(q) of the dynamical matrix at q and q/2: Ω²/q² = c² (1 - I q² + O(q⁴))."""
-    P, found = len(masses), []
-    for kappa in (q, q / 2, q / 4):
-        K = np.zeros((P, P), complex)
+@mpmath.workdps(60)
+def bloch(masses, springs):
+    """I and c² by Ω²/q² = c² (1 - I q² + …) of the dynamical matrix at q = 1e-10 and twice that."""
+    squares = []
+    for q in (SHORT, 2 * SHORT):
+        K = mpmath.zeros(len(masses))
         for i, j, spring in springs:
-            b = np.zeros(P, complex)
+            b = mpmath.zeros(1, len(masses))
             b[i] += 1
-            b[j % P] -= np.exp(1j * kappa * (j - i))
-            K += spring * np.outer(b.conj(), b)
-        root = 1 / np.sqrt(np.array(masses))
-        found.append(np.linalg.eigvalsh(root[:, None] * K * root)[0] / kappa**2)
-    # c² = f - f₂ q² + f₄ q⁴: two steps of Richardson's extrapolation
-    once = [(4 * b - a) / 3 for a, b in pairwise(found)]
-    c2 = (16 * once[1] - once[0]) / 15
-    slopes = [(c2 - f) / (c2 * k**2) for f, k in zip(found, (q, q / 2), strict=False)]
-    return (4 * slopes[1] - slopes[0]) / 3, c2
+            b[j % len(masses)] -= mpmath.expj(q * (j - i))
+            K += spring * b.H * b
+        for i, j in np.ndindex(K.rows, K.cols):
+            K[i, j] /= mpmath.sqrt(mpmath.mpf(masses[i]) * masses[j])
+        squares.append(mpmath.eighe(K, eigvals_only=True)[0] / q**2)
+    return float((squares[0] - squares[1]) / (3 * squares[0] * SHORT**2)), float(
+        squares[0]
+    )
 
 
 springs = st.floats(0.2, 5)
@@ -53,11 +56,11 @@ def test_the_coefficient_is_that_of_the_bloch_branch(data):
         ends.append((i, i + data.draw(st.integers(1, 3)), data.draw(springs)))
     masses = [data.draw(springs) for _ in range(P)]
     lattice = Lattice(masses, springs_of(*data.draw(st.permutations(ends))))
-    I, c2 = numeric_dispersion(masses, ends)
+    I, square = bloch(masses, ends)
     found = lattice.statics.samples(np.array(1.0))
-    # differences of 1e-10 over q² = 1e-5; I is 12 where the links hardly join the particles
-    assert found[2] == pytest.approx(I, rel=1e-4, abs=1e-5)
-    assert found[0] / float(lattice.mass) == pytest.approx(c2, rel=1e-9)
+    # I is a difference of terms of the size P²/12 < 2.
+    assert found.dispersion == pytest.approx(I, rel=1e-12, abs=1e-13)
+    assert found.slope / float(lattice.mass) == pytest.approx(square, rel=1e-12)
 
 
 def test_the_coefficient_of_a_pair_in_closed_form():
@@ -84,7 +87,7 @@ def test_hertz_and_linear_contacts_in_turn():
         Lattice([1, 1], [Link(0, 1, HERTZ, 2), Link(1, 2, Power(1), 3)]), force="5/4"
     )
     assert float(number.speed) == pytest.approx(float(wave.speed.subs(at)), rel=1e-14)
-    assert number._square == pytest.approx(
+    assert number._quadrature.square == pytest.approx(
         float(number.speed) ** 2, rel=2e-14
     )  # by quadrature
 
@@ -95,7 +98,7 @@ def test_static_states_balance(force):
     law = named("hertz2", 1, "1/2")
     ends = [(0, 1, HERTZ), (1, 2, law), (2, 3, SQUARED), (0, 2, law), (1, 4, HERTZ)]
     lattice = Lattice([1, 2, 3], [Link(i, j, law, 2) for i, j, law in ends])
-    state = lattice.static(force)
+    state = lattice.equilibrium(force)
     forces = [
         2 * law.at(x, 0)
         for (_, _, law), x in zip(ends, state.compressions, strict=True)
