@@ -35,21 +35,22 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
 
     ``what`` names the expected kind of file in messages, such as "a scene".
 
-    Raises `lwa.InputError`, in one line that names the file, if the file cannot be read or parsed,
-    or if the reader refuses its content.
+    The path "-" stands for standard input, in either form. Raises `lwa.InputError`, in one line
+    that names the file, if the file cannot be read or parsed, or if the reader refuses its content.
     """
     if not isinstance(path, str | Path):
         raise InputError(f"{what} is read from a file: {shorten(path)} is no file name")
     suffix = Path(path).suffix.lower()
-    if suffix not in MOST_BYTES:
+    if suffix not in MOST_BYTES and str(path) != "-":
         raise InputError(
             f"{path}: {what} is a file ending in {' or '.join(MOST_BYTES)}"
         )
-    parse = tomllib.loads if suffix == ".toml" else json.loads
     try:
-        return reader(
-            parse(content(Path(path), MOST_BYTES[suffix]).decode("utf-8-sig"))
-        )
+        text = content(Path(path), MOST_BYTES.get(suffix, MOST_BYTES[".toml"]))
+        if str(path) == "-":
+            suffix = ".json" if text.lstrip().startswith(b"{") else ".toml"
+        parse = tomllib.loads if suffix == ".toml" else json.loads
+        return reader(parse(text.decode("utf-8-sig")))
     except (InputError, OSError) as error:
         fault = reason(error)
     except UnicodeDecodeError:
@@ -62,11 +63,13 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
 
 
 def content(file: Path, most: int = 10**9) -> bytes:
-    """Read a regular file of at most ``most`` bytes, by default a gigabyte.
+    """Read a regular file, or "-", standard input, of at most ``most`` bytes, or a gigabyte.
 
     Raises `OSError` if it cannot be read, and `lwa.InputError` for a folder, a pipe or a device
     (nothing is read then) and for a larger file.
     """
+    if str(file) == "-":
+        return sys.stdin.buffer.read(most)
     size = file.stat().st_size
     if not file.is_file():  # opening a pipe would wait for a writer
         raise InputError("only regular files are read")

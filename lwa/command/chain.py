@@ -25,6 +25,7 @@ from lwa.spheres.beads import (
     read_beads,
     read_materials,
     read_row,
+    striker_velocity,
 )
 from lwa.spheres.hertz import EXPONENT
 
@@ -101,7 +102,9 @@ def _chain(content: Any) -> ChainInput:
     beads = read_beads(file, read_materials(file))
     row = read_row(file, beads)
     striker = file.read("striker", table(STRIKER), Table({}, "striker", STRIKER))
-    velocity = sp.Rational(str(striker.read("velocity", finite, 0.0))) or None
+    velocity = None
+    if "velocity" in striker or "drop" in striker:
+        velocity = sp.Rational(str(striker_velocity(striker))) or None
     mass = striker.read("like", among(beads)).mass if "like" in striker else None
     force = sp.Rational(str(file.read("precompression", finite, 0.0)))
     if force < 0:

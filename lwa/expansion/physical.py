@@ -26,9 +26,7 @@ from lwa.cell import Cell, exponent
 from lwa.expansion.expand import Expansion, expand
 from lwa.expansion.series import EpsilonSeries
 from lwa.expansion.sums import Resummed
-
-GRAVITY = sp.Rational("9.81")
-"""Gravity in m/s², of strikers that drop and of the scenes."""
+from lwa.spheres.beads import GRAVITY as GRAVITY
 
 ORDER = 10
 """Order in k - 1 of the sums for strikes."""

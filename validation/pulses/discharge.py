@@ -50,8 +50,8 @@ def suggested(t: Array, signal: Array, pulse: NoisyPulse, unit: str) -> str:
         below = -swing[inside]
         if len(below) < _EARLY:
             return ""
-        error = below.std() / math.sqrt(len(below))
-        if below.mean() < max(_SURE * error, _LEAST * swing.max()):
+        error = pulse.noise / math.sqrt(len(below))
+        if not 0 < _SURE * error < below.mean() > _LEAST * swing.max():
             return ""
         constants.append(float(charge[inside].mean() / below.mean()))
     near, far = constants

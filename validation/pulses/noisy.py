@@ -44,6 +44,7 @@ _APART = 0.2  # share of the peak to which the signal falls between pulses that 
 _HUMP = 0.25
 _LATER = 0.1  # smallest peak of a later pulse over the first
 _EQUAL = 1e-6  # of the record's range: samples that differ less are equal
+_CONSTANT = 1e-8  # range of a signal without pulses, over its size
 _EXACT = 1e-4  # noise over the peak of a record without noise
 
 
@@ -56,13 +57,14 @@ class NoisyPulse:
     """A pulse of a record.
 
     numbers : arrival, peak above the base, fwhm, by these names; without the peak if the record
-    begins too late for a base. base : mean of the samples before the first pulse. missing : words
-    on the number that is missing.
+    begins too late for a base. base : value below the pulse. missing : words on the number that is
+    missing. noise : standard deviation of the noise of a sample, 0 in a record without.
     """
 
     numbers: Mapping[str, Estimate]
     base: float
     missing: str | None = None
+    noise: float = 0.0
 
 
 def noisy_pulse(
@@ -112,17 +114,16 @@ def noisy_pulses(
     t, f = checked(time, values)
     size = float(np.abs(f).max()) or 1.0  # so that squares neither over- nor underflow
     f = f / size
+    step = _step(f)
+    if np.ptp(f) < _CONSTANT:
+        raise MeasureError("no pulse is in the record: its signal is constant")
+    if _is_exact(f) and step < _EXACT * np.ptp(f):
+        yield from _exact(t, f, size)
+        return
     try:
         rise, fall = _place(t, f - f[:_EARLY].mean())
     except InvertedError as error:
         raise MeasureError(f"{error}: {turned}".rstrip(": ")) from None
-    early = f[t < t[0] + (rise - t[0]) / 4]
-    step = _step(f)
-    noise = np.ptp(early) if len(early) >= _EARLY else _neighbours(f)
-    if max(noise, step) < _EXACT * np.ptp(f):
-        _check_top(t, f, (rise, fall), _FEWEST_EXACT)
-        yield from _exact(t, f, size, max(1, len(early)))
-        return
     block = max(1, int(np.count_nonzero((t > rise) & (t < fall))) // _MOST)
     whole = len(t) // block * block
     at, means = np.array((t, f))[:, :whole].reshape(2, -1, block).mean(axis=2)
@@ -147,7 +148,8 @@ def noisy_pulses(
         else:
             numbers["peak"] *= size
         (level,) = base.at(np.array([rise])).tolist()
-        yield NoisyPulse(numbers, level * size, missing)
+        noise = math.sqrt(base.best.variance) * size
+        yield NoisyPulse(numbers, level * size, missing, noise)
         behind = t > 2 * fall - rise
         later = f[behind] - base.at(t[behind])
         if not later.max(initial=0.0) > _LATER * highest:
@@ -155,10 +157,23 @@ def noisy_pulses(
         rise, fall = _place(t[behind], later)
 
 
-def _exact(t: Array, f: Array, size: float, early: int) -> Iterator[NoisyPulse]:
-    """Measure the pulses of a record without noise, whose base is the mean of early samples."""
-    level = float(f[:early].mean())
-    signal, coarse = (spline(t[::every], f[::every] - level) for every in (1, 2))
+def _is_exact(f: Array) -> bool:
+    """Whether a record is without noise before it first exceeds half of its maximum."""
+    swing = f - f[0]
+    before = f[: int(np.argmax(swing > swing.max() / 2))]
+    early = before[: len(before) // 4]
+    if len(early) >= _EARLY and np.ptp(early) < _EXACT * np.ptp(f):
+        return True
+    # The signal may rise smoothly from the start; noise falls as well.
+    falls = -np.minimum(np.diff(before), 0.0).sum()
+    return len(before) > 0 and bool(falls < _EXACT * np.ptp(f))
+
+
+def _exact(t: Array, f: Array, size: float) -> Iterator[NoisyPulse]:
+    """Measure the pulses of a record without noise, whose base is its first sample."""
+    level = float(f[0])
+    signal = spline(t, f - level)
+    coarse = [spline(t[start::2], f[start::2] - level) for start in (0, 1)]
     first = first_pulse(signal)
     later = [
         pulse
@@ -166,13 +181,20 @@ def _exact(t: Array, f: Array, size: float, early: int) -> Iterator[NoisyPulse]:
         if pulse.arrival > first.arrival and pulse.peak > _LATER * first.peak
     ]
     for pulse in (first, *later):
-        start, end = pulse.rise - pulse.fwhm / 2, pulse.fall + pulse.fwhm / 2
-        inside = coarse.times[(coarse.times > start) & (coarse.times < end)]
-        rough = highest_pulse(Piecewise(np.array((start, *inside, end)), coarse))
-        numbers = {
-            name: Estimate.against(getattr(pulse, name), getattr(rough, name))
-            for name in ("arrival", "peak", "fwhm")
-        }
+        _check_top(t, f, (pulse.rise, pulse.fall), _FEWEST_EXACT)
+        beside = pulse.fwhm / 2
+        start = max(pulse.rise - beside, t[1])
+        end = min(pulse.fall + beside, t[-2])
+        rough = []
+        for other in coarse:
+            inside = other.times[(other.times > start) & (other.times < end)]
+            around = Piecewise(np.array((start, *inside, end)), other)
+            rough.append(highest_pulse(around))
+        numbers = {}
+        for name in ("arrival", "peak", "fwhm"):
+            value = getattr(pulse, name)
+            error = max(abs(value - getattr(other, name)) for other in rough)
+            numbers[name] = Estimate(value, error)
         numbers["peak"] *= size
         yield NoisyPulse(numbers, level * size)
 

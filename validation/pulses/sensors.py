@@ -12,6 +12,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -41,6 +42,10 @@ LESS = 10.0  # tolerance of the less accurate run over that of the accurate one
 _ROUNDING = 10  # rounding of the static compression over rtol; with more, steps follow the noise
 _UNSURE = 1e-4  # of half the maximum; two of 9,936 arrivals under load depend on its sixth digit
 _QUICK = 0.9  # of the time of a small wave, of light beads: a pulse takes more
+# Samples in the shortest time √(m/spring) of a bead between two contacts. The force of two beads
+# that collide, or of a Hertz chain's wave, has 1.5 or 1.9 √(m/spring) of one contact above half.
+_RESOLVED = 16.0
+_MOST_SAMPLES = 100_000  # spare memory
 _LOOKS = 200  # times at which a sensor is searched for an earlier pulse
 READINGS = ("arrival", "peak", "fwhm")  # names of the numbers of a pulse
 SPEEDS = ("speed_sites", "speed")  # in sites per time, and in length per time
@@ -86,12 +91,25 @@ class Reading:
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """A run, the pulses at the sensors, and the speeds from each sensor to the next."""
+    """A run, the pulses at the sensors, the speeds from each sensor to the next, and the end.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    tracks : tuple of Track
+        Dynamic forces at the sensors.
+    sensors, speeds : tuple of Reading
+        Pulses, and speeds.
+    end : mapping
+        Velocity and displacement at the end, by these names, of the bead sensors, counted from 1.
+    """
 
     run: Run
     tracks: tuple[Track, ...]
     sensors: tuple[Reading, ...]
     speeds: tuple[Reading, ...]
+    end: Mapping[int, Mapping[str, Estimate]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,7 +203,25 @@ def record(
     # Errors of both arrivals are added: in the less accurate speed they may cancel.
     places = [track.place for track in fine]
     speeds = speeds_between(firsts, places, operator.add, doubt)
-    return Recording(run, fine, tuple(found or firsts), speeds)
+    end = {
+        i + 1: compared(partial(_state_at_end, bead=i), run, check, rtol)
+        for i in scene.bead_sensors
+    }
+    return Recording(run, fine, tuple(found or firsts), speeds, end)
+
+
+def _state_at_end(run: Run, bead: int) -> dict[str, float]:
+    """Return velocity and displacement of a bead at the end of a run."""
+    return {
+        "velocity": float(run.velocities[bead]),
+        "displacement": float(run.displacements[bead]),
+    }
+
+
+def enough_samples(scene: Scene) -> int:
+    """Return a number of samples that resolve pulses, from 1001 to `_MOST_SAMPLES`."""
+    wanted = _RESOLVED * scene.duration / Motion(scene).scales.time
+    return int(min(max(1001.0, wanted), _MOST_SAMPLES))
 
 
 def _time_of_a_site(motion: Motion, contacts: slice, force: float) -> float:

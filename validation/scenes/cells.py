@@ -9,7 +9,6 @@ from __future__ import annotations
 import codecs
 import csv
 import re
-import sys
 from collections.abc import Iterator, Sequence
 from itertools import chain, islice, repeat
 from pathlib import Path
@@ -58,10 +57,7 @@ class Cells:
     @classmethod
     def read(cls, path: str | Path) -> Cells:
         """Read a file, or standard input ("-"): UTF-8, UTF-16 by its mark, or Latin-1."""
-        if str(path) == "-":
-            content = sys.stdin.buffer.read()
-        else:
-            content = files.content(Path(path))
+        content = files.content(Path(path))
         marked = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
         try:
             text = content.decode("utf-16" if marked else "utf-8-sig")

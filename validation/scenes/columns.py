@@ -187,10 +187,13 @@ class MeasuredFile:
         places = []
         for name in names:
             own = [place for place, known in self.names.items() if known == name]
+            if name == "time" and self._step:
+                continue
             if len(own) != 1:
                 raise self._fault(f"{len(own)} columns are {name}", name)
             places += own
-        return self._record(places)
+        record = self._record(places)
+        return self._timed(record) if "time" in names else record
 
     def records(self, of: str = "contact") -> list[Record]:
         """Return the records of all sensors, those of beads first.
@@ -233,11 +236,7 @@ class MeasuredFile:
         self, kind: str, number: int | None, quantity: str, places: list[int]
     ) -> Record:
         """Return the record of a sensor from the places of its time, if any, and signal."""
-        *time, values = self._record(places).T
-        if self._step:
-            step, _ = read_statement(self._step, "time")
-            time = [step * np.arange(len(values))]
-        (t,) = time
+        t, values = self._timed(self._record(places)).T
         if np.any(np.diff(t) == 0):
             step = np.ptp(t) / (len(t) - 1)
             raise SceneError(
@@ -250,6 +249,13 @@ class MeasuredFile:
             turned = f"-1 {given}"
         option = f"--unit '{self.names[place]}={turned.strip()}'"
         return Record(kind, number, quantity, t, values, option)
+
+    def _timed(self, record: Array) -> Array:
+        """Return a record with the times by the user's step, if there is one, in front."""
+        if not self._step:
+            return record
+        step, _ = read_statement(self._step, "time")
+        return np.column_stack((step * np.arange(len(record)), record))
 
     def _record(self, places: list[int]) -> Array:
         """Return columns, (rows, columns), in the rows where all of them are numbers."""

@@ -28,6 +28,7 @@ from validation.pulses.sensors import (
     Reading,
     Recording,
     echoes,
+    enough_samples,
     record,
 )
 from validation.report.command import option, output_option, study
@@ -60,7 +61,8 @@ def report(recording: Recording, every: bool = False) -> Report:
     ``echoes`` of later pulses: ``kind``, ``number``, ``pulse``, ``reflected``, ``delay_value``
     behind the first pulse and ``ratio_value`` of their peaks (`validation.pulses.sensors.echoes`);
     ``speeds``: ``kind``, ``from``, ``to``, ``speed_sites_value``, ``speed_value`` (null without
-    spacings), ``missing``; each measured value with its error, as ``arrival_error_value``, and all
+    spacings), ``missing``; ``end`` of the bead sensors: ``bead``, ``velocity_value`` and
+    ``displacement_value`` at the end; each value with its error, as ``arrival_error_value``, and
     null where ``missing`` is the reason; ``energy_drift_value``, and ``momentum_drift_value``, null
     with a wall; with damping the energy ``dissipated_value``, with a drive its ``work_value``.
     """
@@ -91,9 +93,19 @@ def report(recording: Recording, every: bool = False) -> Report:
         operator.add,
         every,
     )
+    columns = (
+        Column("", "at the end"),
+        Column("bead"),
+        Column("velocity", run.label("velocity"), error=True),
+        Column("displacement", run.label("displacement"), error=True),
+    )
+    end = [
+        {"at the end": f"bead {bead}", "bead": bead, **state}
+        for bead, state in recording.end.items()
+    ]
     return Report(
         f"{title}, momentum {momentum}",
-        tables,
+        (*tables, Table.of(columns, end, "end")),
         panels=tuple(run.pictured()),
         notes=(missing, note if recording.sensors else ""),
         data=data,
@@ -288,8 +300,13 @@ def run(
     run_progress: RunProgress,
 ) -> Report:
     """A scene from a file, TOML or JSON: arrival, peak force, FWHM and speed at its sensors."""
-    chain = scenefile.read_scene(scene)
-    if out is not None and out.exists() and out.samefile(scene):
+    chain = scenefile.read_scene(scene, enough_samples)
+    if (
+        out is not None
+        and out.exists()
+        and Path(scene).exists()
+        and out.samefile(scene)
+    ):
         raise SceneError(
             f"out is {out}: it is the scene's own file, which would be lost"
         )
