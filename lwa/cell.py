@@ -136,6 +136,8 @@ class Cell(Value):
     def at(self, **values: Any) -> Cell:
         """The cell with numbers (or other symbols) for the named symbols; see `substitution`.
 
+        Examples
+        --------
         >>> Cell(["m1", "m1", "m2"]).at(omega="1/3").masses
         (m1, m1, m1/3)
         """
@@ -231,7 +233,18 @@ def read_cell(value: Any) -> Cell:
 def exponent(value: Any) -> sp.Expr:
     """Read the exponent k of F = A δ^k exactly.
 
-    Raises `lwa.InputError` for numbers outside of `EXPONENTS`.
+    Parameters
+    ----------
+    value : number or symbol
+
+    Returns
+    -------
+    expression
+
+    Raises
+    ------
+    InputError
+        For numbers outside of `EXPONENTS`.
     """
     least, largest = EXPONENTS
     result = read_exact(value, "k")
@@ -251,10 +264,27 @@ def substitution(
 ) -> dict[sp.Symbol, sp.Expr]:
     """Map symbols of a cell, of its exponent and more to the values given for their names.
 
-    Unless a symbol has this name, ``omega`` is the ratio m2/m1 of the cell's two masses.
+    Parameters
+    ----------
+    values : mapping
+        Values by the names of symbols. Unless a symbol has this name, ``omega`` is the ratio m2/m1
+        of the cell's two masses.
+    cell : Cell
+    k : expression
+        Exponent of the contact law.
+    more : sequence of symbols
+        Further symbols, of values of either sign.
 
-    Raises `lwa.InputError` for a name that does not occur or that two symbols have, and a value of
-    the cell or the exponent that is not positive.
+    Returns
+    -------
+    dict
+        Mapping from symbols to expressions.
+
+    Raises
+    ------
+    InputError
+        For a name that does not occur or that two symbols have, and a value of the cell or the
+        exponent that is not positive.
     """
     symbols = dict.fromkeys((*cell.symbols, *sorted(k.free_symbols, key=str), *more))
     known: dict[str, sp.Symbol] = {}

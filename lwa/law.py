@@ -171,9 +171,20 @@ class ContactLaw(Value):
         return bool(self.F.atoms(AppliedUndef))
 
     def of_strain(self, p: sp.Expr, D: sp.Expr, n: int = 0) -> sp.Expr:
-        """The n-th derivative of F at the strain p, in the units of u_ττ = F′(u_x) u_xx.
+        """The n-th derivative of F at a strain, in the units of u_ττ = F′(u_x) u_xx.
 
-        For n = 0 this is F(Dp)/D (p^k/k for a power), for n = -1 the energy W.
+        Parameters
+        ----------
+        p : expression
+            The strain.
+        D : expression
+            The spacing.
+        n : int
+            For n = 0 the result is F(Dp)/D (p^k/k for a power), for n = -1 the energy W.
+
+        Returns
+        -------
+        expression
         """
         p, D = real(p, "p"), real(D, "D")
         # Each derivative by p instead of δ = D p brings a factor D, each integral 1/D.
@@ -182,9 +193,18 @@ class ContactLaw(Value):
         return self.at(D * p, n) * D ** (n - 1)
 
     def check_strain(self, p: sp.Expr, cell: Cell) -> None:
-        """Raise `lwa.InputError` unless F is real up to the strain p and grows there, F′ > 0.
+        """Refuse a strain up to which F is not real, or at which F does not grow, F′ > 0.
 
-        Symbols are accepted, a spacing as 1.
+        Parameters
+        ----------
+        p : expression
+            The strain. Symbols are accepted.
+        cell : Cell
+            The cell, whose spacing is 1 if it is a symbol.
+
+        Raises
+        ------
+        InputError
         """
         # F′ of a power is positive at every strain; that of a law without expression is unknown.
         if self.homogeneous or self.formless:
@@ -212,9 +232,12 @@ class ContactLaw(Value):
         return self.inverse(real(force, "force") / cell.stiffness(self.exponent))
 
     def inverse(self, force: sp.Expr) -> sp.Expr:
-        """The compression at which F is this force, to 35 digits.
+        """The compression at which F is this force: exact for a power, else to 35 digits.
 
-        Raises `lwa.InputError` for a force beyond the law's reach, and for symbols.
+        Raises
+        ------
+        InputError
+            For a force beyond the law's reach, and for symbols under a law that is no power.
         """
         if self.formless:
             raise InputError(
@@ -391,7 +414,7 @@ def named(name: str, *parameters: Any) -> ContactLaw:
     >>> named("hertz2", 1, "1/10").F
     delta**(5/2)/10 + delta**(3/2)
     """
-    # The name is checked before it is looked up: messages list the known ones.
+    # An unknown name is refused with the list of the known ones.
     letters_of, build = _NAMED[one_of(name, NAMES, "law")]
     letters = letters_of.split()
     if len(parameters) > len(letters):
@@ -416,7 +439,24 @@ def named(name: str, *parameters: Any) -> ContactLaw:
 
 
 def read_law(value: Any, name: str) -> ContactLaw:
-    """Read a law from its name and parameters, such as "hertz2:1,2"; ``name`` is for messages."""
+    """Read a law from its name and parameters.
+
+    Parameters
+    ----------
+    value : str
+        Such as "hertz2:1,2" or "power".
+    name : str
+        Name of the value in messages.
+
+    Returns
+    -------
+    ContactLaw
+
+    Raises
+    ------
+    InputError
+        For anything else; nothing is evaluated.
+    """
     if not isinstance(value, str):
         raise InputError(
             f"{name} is {shorten(value)}: a text such as 'hertz2:1,2' is wanted"
@@ -441,10 +481,24 @@ def phi_symbol(n: int) -> sp.Symbol:
 
 
 def for_cell(law: Any, cell: Cell, k: Any = symbol_k) -> ContactLaw:
-    """Return the law of a cell's contacts; the power k without a law.
+    """Return the law of a cell's contacts.
 
-    Raises `lwa.InputError` for anything but a law or None, for a law besides an exponent, and for
-    unlike contacts under a law that is no power.
+    Parameters
+    ----------
+    law : ContactLaw or None
+    cell : Cell
+    k : number or symbol
+        Exponent of the power that stands for None.
+
+    Returns
+    -------
+    ContactLaw
+
+    Raises
+    ------
+    InputError
+        For anything but a law or None, for a law besides an exponent, and for unlike contacts under
+        a law that is no power.
     """
     # `k != symbol_k` alone would be an array if k is one.
     if law is not None and (not isinstance(k, sp.Symbol) or k != symbol_k):
@@ -468,7 +522,21 @@ def for_cell(law: Any, cell: Cell, k: Any = symbol_k) -> ContactLaw:
 def substituted(
     values: Mapping[str, Any], cell: Cell, law: ContactLaw, *expressions: sp.Expr
 ) -> tuple[Any, ...]:
-    """Substitute values in a cell, a law and expressions, as `lwa.cell.substitution`."""
+    """Substitute values in a cell, a law and expressions, as `lwa.cell.substitution`.
+
+    Parameters
+    ----------
+    values : mapping
+        Values by the names of symbols.
+    cell : Cell
+    law : ContactLaw
+    *expressions : expressions
+
+    Returns
+    -------
+    tuple
+        The cell, the law and the expressions, in this order.
+    """
     # A symbol of the law that is also one of the cell is positive, as the cell's.
     others = sp.Tuple(*law.symbols, *expressions).free_symbols - {*cell.symbols}
     new = substitution(values, cell, more=sorted(others, key=str))

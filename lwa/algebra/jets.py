@@ -92,6 +92,9 @@ class JetAlgebra:
         self.s = list(generators[self._s0 :])
         # The φ_n come first among the generators; those between them and r_1 are constants.
         self._constants = range(len(ring.law) if ring.highest else 0, self._r1)
+        # The jets that hold a derivative of the one before, highest first: not r_1 and s_0
+        derived = (*range(self._r1 + 1, self._s0), *range(self._s0 + 1, len(names)))
+        self._derived = sorted(derived, reverse=True)
         self._set_derivatives(ring.highest)
 
     def _set_derivatives(self, highest: int) -> None:
@@ -191,18 +194,11 @@ class JetAlgebra:
         # Subtracting the derivative of this part of g lowers the highest jet, first among those of
         # the velocity, then among those of the strain.
         total = self.zero
-        for index in reversed(range(self._r1, self.context.nvars())):
-            slope = f.derivative(index)
-            if slope.is_zero():
-                continue
-            # r_1 and s_0 have no jet below them.
-            lowest = index in (self._r1, self._s0)
-            if lowest or not slope.derivative(index).is_zero():
-                return None
-            part = slope.integral(index - 1)
+        for index in self._derived:
+            part = f.derivative(index).integral(index - 1)
             total = total + part
             f = f - self.dx(part, exponent)
-        return total
+        return total if f.is_zero() else None
 
     def by_parts(self, f: fmpq_mpoly, exponent: fmpq_mpoly) -> fmpq_mpoly:
         """Reduce f by a total derivative, p^{-e} ∂_x (p^e g), until no highest jet is linear.
@@ -210,11 +206,9 @@ class JetAlgebra:
         All terms of f have one weight. A highest jet is an s_n linear beside lower jets s_i, or,
         in terms without s_i, an r_n beside lower r_i; r_1 alone is the derivative of p^e / e.
         """
-        for index in reversed(range(self._r1 + 1, self.context.nvars())):
-            # s_0 is no derivative of a jet.
-            if index != self._s0:
-                part = self._linear_part(f, index).integral(index - 1)
-                f = f - self.dx(part, exponent)
+        for index in self._derived:
+            part = self._linear_part(f, index).integral(index - 1)
+            f = f - self.dx(part, exponent)
         return f - self._linear_part(f, self._r1) * self.r[1]
 
     def _linear_part(self, f: fmpq_mpoly, index: int) -> fmpq_mpoly:
@@ -246,9 +240,6 @@ class GradedSeries:
         self._derivatives = [[f_n] for f_n in terms]
         # Computed once for each term
         self._velocity_slopes = cache(lambda n: algebra.velocity_slopes(self[n]))
-
-    def __len__(self) -> int:
-        return len(self._derivatives)
 
     def __getitem__(self, n: int) -> fmpq_mpoly:
         return self._derivatives[n][0]

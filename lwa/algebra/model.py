@@ -22,7 +22,16 @@ BRANCHES = get_args(Branch)
 
 @dataclass(frozen=True)
 class Model(Value):
-    """A cell, its contact law, a branch, and the highest power of D in the ansatz."""
+    """A chain, one of its branches, and the order of a theory.
+
+    Parameters
+    ----------
+    cell : Cell
+    law : ContactLaw
+    branch : {"acoustic", "optical"}
+    order : int
+        Highest power of D in the ansatz; 0 if nothing but the ring is wanted.
+    """
 
     cell: Cell
     law: ContactLaw

@@ -159,14 +159,14 @@ class Conversion:
 
     def __init__(self, ring: CoefficientRing) -> None:
         self._partitions = [p for p in (ring.masses, ring.contacts) if p.names]
-        # What the generators stand for
+        # Values of the generators
         values = list(ring.law.values())
         for partition in self._partitions:
             values += partition.distinct
         symbols = sorted(set().union(*(v.free_symbols for v in values)), key=str)
         # Without a generator SymPy would take an irrational number for one.
         symbols = symbols or [sp.Dummy()]
-        # What is no polynomial over Q, such as A^{-1/k}, is a generator of its own.
+        # An expression that is no polynomial over Q, such as A^{-1/k}, is a generator of its own.
         letters = {}
         for value in values:
             try:

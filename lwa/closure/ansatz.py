@@ -36,7 +36,7 @@ def linear(model: Model, progress: Progress[int] = iter) -> Solution:
 def _applied(b: Sequence[fmpq_mpoly], f: GradedSeries, n: int) -> fmpq_mpoly:
     """Term n of the ansatz applied to a series f, Σ_{0<j<n} b_j ∂_x^j f_{n-j}, without b_n."""
     total = f.algebra.zero
-    for j in range(1, min(n, len(f))):
+    for j in range(1, n):
         total = total + b[j] * f.dx(n - j, j)
     return total
 

@@ -34,7 +34,7 @@ class BasePower(NamedTuple):
     b: Fraction | int
 
     def beside(self, jet: Jet) -> BasePower:
-        """What is left of this power if the jet is written with bare derivatives."""
+        """The power of the base beside a jet that is written with bare derivatives."""
         # Each factor of the jet has one base, or base^{(k+1)/2}, below it.
         strains = sum(e for _, e in jet.x)
         halves = Fraction(sum(e for _, e in jet.t), 2)
@@ -52,8 +52,13 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
 
     A jet without u_τ may also be given by its plain tuple, as in ``terms[(2, 1), (3, 1)]``.
 
-    raw : mapping from jets to the terms of their coefficients.
-    power : the power of the base that multiplies all terms.
+    Parameters
+    ----------
+    model : Model
+    raw : dict
+        Mapping from jets to the terms of their coefficients in the model's ring.
+    power : BasePower
+        The power of the base that multiplies all terms.
     """
 
     model: Model
@@ -148,7 +153,19 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
 
 
 def terms(closure: Closure, polynomial: fmpq_mpoly, power: BasePower = FORCE) -> Terms:
-    """Convert a polynomial of the closure's algebra into jets of the field."""
+    """Convert a polynomial of the closure's algebra into jets of the field.
+
+    Parameters
+    ----------
+    closure : Closure
+    polynomial : element
+    power : BasePower
+        The power of the base that multiplies the polynomial.
+
+    Returns
+    -------
+    Terms
+    """
     raw = closure.solution.algebra.terms(polynomial, closure.model.base)
     ordered = {jet: raw[jet] for jet in sorted(raw, key=_papers_order)}
     return Terms(closure.model, ordered, power)

@@ -26,7 +26,13 @@ Polynomial = list[fmpq_mpoly]
 
 
 class Bloch:
-    """The dispersion relation of a cell and the series of its branches, over a ring Q[k, m̂, C]."""
+    """The dispersion relation of a cell and the series of its branches.
+
+    Parameters
+    ----------
+    model : Model
+        The cell and its law, over whose ring Q[k, m̂, C] all coefficients are polynomials.
+    """
 
     def __init__(self, model: Model) -> None:
         ring = model.ring
@@ -88,10 +94,17 @@ class Bloch:
 
 
 def dispersion_of_chain(masses: Sequence[Any], shares: Sequence[Any]) -> Any:
-    """Coefficient I in Ω² = κ² (1 - I κ² + …) of a chain, from its relation's terms Ω² and Ω⁴.
+    """Coefficient I/D² in Ω² = κ² (1 - (I/D²) κ² + …) of a chain.
 
-    I = P²/12 - Σ_{i<j} m̂_i m̂_j S (P - S), S = C_i + … + C_{j-1} the strain from i to j. The mass
-    fractions m̂ and the shares C are numbers, expressions or arrays.
+    Parameters
+    ----------
+    masses, shares : sequences of numbers, expressions or arrays
+        Mass fractions m̂_i of the particles, strain shares C_i of the contacts.
+
+    Notes
+    -----
+    The terms Ω² and Ω⁴ of the dispersion relation give P²/12 - Σ_{i<j} m̂_i m̂_j S (P - S), where
+    S = C_i + … + C_{j-1} is the strain from i to j.
     """
     P = len(masses)
     pairs: Any = 0

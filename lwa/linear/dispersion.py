@@ -102,12 +102,28 @@ class Dispersion(Value):
         return {m: self._expression(t) for m, t in enumerate(trace)}
 
     def acoustic(self, order: int = 4) -> dict[int, sp.Expr]:
-        """Mapping from n = 2, 4, … ≤ ``order`` to the coefficient of κ^n in the acoustic Ω²."""
+        """The series of the acoustic branch.
+
+        Parameters
+        ----------
+        order : int
+            Highest power of κ.
+
+        Returns
+        -------
+        dict
+            Mapping from n = 2, 4, … ≤ ``order`` to the coefficient of κ^n in Ω².
+
+        Raises
+        ------
+        InputError
+            For more terms than `MOST_TERMS`.
+        """
         series = self._bloch.acoustic(self._length(order))
         return {2 * n: self._expression(c) for n, c in enumerate(series) if n > 0}
 
     def optical(self, order: int = 4) -> dict[int, sp.Expr]:
-        """Mapping n = 0, 2, … ≤ ``order`` → coefficient of κ^n in a dimer's optical Ω²."""
+        """The series of a dimer's optical branch, with n = 0, 2, …; see `acoustic`."""
         if self.cell.size != 2:  # the roots of other cells are not rational
             raise InputError(
                 f"the optical series needs a cell of 2 masses, not {self.cell.size}"

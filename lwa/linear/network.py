@@ -76,6 +76,11 @@ class Network(NamedTuple):
         springs : ndarray, shape (…, links)
             Spring constants.
         masses : ndarray, shape (size,)
+
+        Returns
+        -------
+        Acoustic
+            Arrays of the shape of the leading axes, and of ``springs``.
         """
         total = masses.sum()
         k = [np.tensordot(springs, self._powers(n), 1) for n in range(5)]
@@ -119,7 +124,17 @@ class Network(NamedTuple):
 
 
 def solved(matrix: Array, right: Array) -> Array:
-    """Solve linear systems with axes in front; NaN for a matrix that is singular or not finite."""
+    """Solve linear systems; NaN for a matrix that is singular or not finite.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (…, n, n)
+    right : ndarray, shape (…, n)
+
+    Returns
+    -------
+    ndarray, shape (…, n)
+    """
     scale = np.abs(matrix).max(axis=(-2, -1), keepdims=True)
     usable = np.isfinite(scale) & (scale > 0)
     scale = np.where(usable, scale, 1)

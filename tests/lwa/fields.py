@@ -20,7 +20,7 @@ def at_compression(law, value, delta):
 
 def of_fields(pde, terms, u, x, velocity=sp.S.Zero):
     """The sum Σ coefficient · base^{a + bk} · jet for fields u(x) and u_τ(x)."""
-    base, law, D = (u.diff(x) if pde.acoustic else u), pde.law, pde.cell.spacing
+    base, law, D = u.diff(x), pde.law, pde.cell.spacing
     total = sp.S.Zero
     for jet, coefficient in terms.items():
         a, b = map(sp.Rational, terms.power.beside(jet))
@@ -36,15 +36,12 @@ def of_fields(pde, terms, u, x, velocity=sp.S.Zero):
 
 
 def right_side(pde, u, x, velocity=sp.S.Zero):
-    """The right-hand side of u_ττ."""
-    D, law, base = pde.cell.spacing, pde.law, int(pde.acoustic)
-    leading = (
-        law.of_strain(u.diff(x), D, 1) * u.diff(x, 2) if base else -(u**law.exponent)
-    )
-    orders = pde.coefficients.items()
-    return leading + sum(
-        D ** (n - base) * of_fields(pde, e, u, x, velocity) for n, e in orders
-    )
+    """The right-hand side of u_ττ on the acoustic branch."""
+    D, p = pde.cell.spacing, u.diff(x)
+    total = pde.law.of_strain(p, D, 1) * p.diff(x)
+    for n, terms in pde.coefficients.items():
+        total += D ** (n - 1) * of_fields(pde, terms, u, x, velocity)
+    return total
 
 
 def energy_density(pde, u, x, velocity=sp.S.Zero):

@@ -106,5 +106,6 @@ def test_an_open_contact_carries_nothing():
     assert (hertz.at(-1), hertz.at(4), hertz.at(0.25, 1)) == (0, 8, sp.Rational(3, 4))
     assert named("hertz2", 1, 1).at(-2) == named("hertz2", 1, 1).at(-2, 1) == 0
     assert np.array_equal(hertz.at([[-1, 4], [0, 1]]), [[0, 8], [0, 1]])
+    assert np.array_equal(Power(1).at([-1, 1], 1), [0, 1])
     assert toda.at(-1) == sp.exp(-1) - 1
     assert np.allclose(toda.at([-1.0, 1.0]), np.expm1([-1.0, 1.0]), rtol=1e-15)

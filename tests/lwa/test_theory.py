@@ -28,6 +28,20 @@ def test_cells_of_two_masses():
     assert Dimer(1, omega).at(omega=3).masses == (1, 3)  # a symbol of the caller's
 
 
+def test_the_closure_is_the_papers_where_the_paper_has_one():
+    def chosen(*masses, **kind):
+        closure = homogenize(Cell(masses), **kind).closure
+        return closure.name, closure.field
+
+    assert chosen("m") == chosen(1, 2) == chosen(1, 2, branch="optical")
+    assert chosen(1, 2) == ("linear", "first")
+    assert chosen(1, 2, 3) == chosen(1, 2, closure="full") == ("full", "center")
+    theories = [homogenize(Cell(m), k="5/2") for m in ((1, 2, 3), (2, 3, 1), (3, 1, 2))]
+    assert "closure='full', branch='acoustic', field='center'" in repr(theories[0])
+    # one chain, whichever bead is called the first
+    assert len({theory.pde.I for theory in theories}) == 1
+
+
 def test_floats_enter_as_their_decimals():
     own = homogenize(Dimer("9/20", "123/1000"), k="3/2").pde.I
     assert own == homogenize(Dimer(0.45, 0.123), k=1.5).pde.I
@@ -52,9 +66,7 @@ def test_the_canonical_equation_is_the_same_from_every_particle(masses, n):
     """Particles named anew change the field that the wave equation is about, and no wave."""
     n %= len(masses)
     found, again = (
-        homogenize(
-            Cell(cell), 7, k="3/2", closure="full", field="center"
-        ).pde.coefficients
+        homogenize(Cell(cell), 7, k="3/2", closure="full").pde.coefficients
         for cell in (masses, masses[n:] + masses[:n])
     )
     assert found.keys() == again.keys()

@@ -19,9 +19,8 @@ X = np.array([1.0, 2.0, 3.0])
 
 @pytest.fixture
 def report():
-    return Report(
-        "one", panels=(Panel("x", "y", (Curve("c", X, X**2),), "xy", "squares"),)
-    )
+    panel = Panel("x", "y", (Curve("c", X, X**2),), "xy", "squares")
+    return Report("one", panels=(panel,))
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
@@ -30,6 +29,10 @@ def test_every_format(report, tmp_path, suffix):
     report.save(file)
     assert file.read_bytes().startswith(SIGNATURES[suffix])
     assert list(tmp_path.iterdir()) == [file]
+
+
+def ticks(axis):
+    return {tick.get_text() for tick in axis.get_ticklabels()}
 
 
 @pytest.mark.parametrize(
@@ -41,14 +44,25 @@ def test_every_format(report, tmp_path, suffix):
 )
 def test_a_logarithmic_axis_of_few_decades_has_plain_numbers(most, labels):
     x = np.geomspace(1, most, 5)
-    picture = figure([Panel("x", "y", (Curve("c", x, 1e6 * x),), "xy")])
-    picture.canvas.draw()
-    (axes,) = picture.axes
-    assert {tick.get_text() for tick in axes.get_xticklabels()} >= labels
+    (axes,) = figure([Panel("x", "y", (Curve("c", x, 1e6 * x),), "xy")]).axes
+    axes.figure.draw_without_rendering()
+    assert ticks(axes.xaxis) >= labels
     assert not any(tick.get_text() for tick in axes.get_xticklabels(minor=True))
-    assert any(
-        "10^" in tick.get_text() for tick in axes.get_yticklabels()
-    )  # too large for that
+    assert any("10^" in tick for tick in ticks(axes.yaxis))  # too large for that
+
+
+def test_axes_in_si_have_prefixes_and_their_data_have_none():
+    """A time far from 0 keeps Matplotlib's offset, whose digits a prefix would not have."""
+    y = 1200 * X
+    curves = {x[0]: (Curve("c", x, y),) for x in (1e-5 * X, 58 + 1e-5 * X)}
+    panels = [Panel("time (s)", "force (N)", curve) for curve in curves.values()]
+    near, far = figure(panels).axes
+    near.figure.draw_without_rendering()
+    assert (near.get_xlabel(), near.get_ylabel()) == ("time (µs)", "force (kN)")
+    assert {"10", "20", "30"} <= ticks(near.xaxis)
+    assert {"2", "3"} <= ticks(near.yaxis)
+    np.testing.assert_array_equal(near.lines[0].get_ydata(), y)
+    assert far.get_xlabel() == "time (s)"
 
 
 def test_a_map_has_a_colour_for_each_place():
@@ -59,11 +73,8 @@ def test_a_map_has_a_colour_for_each_place():
     assert mesh.get_array().shape == (2, 3)
     assert mesh.get_array().mask.sum() == 1
     assert bar.get_ylabel() == "c"
-    assert (
-        axes.patch.get_hatch()
-    )  # where nothing is: grey stands in the middle of some colours
-    low, high = axes.get_xlim()
-    assert low < X[0] < X[-1] < high
+    # where nothing is: grey stands in the middle of some colours
+    assert axes.patch.get_hatch()
 
 
 def test_a_panel_is_drawn_into_axes_that_are_given(report):
@@ -76,21 +87,16 @@ def test_a_panel_is_drawn_into_axes_that_are_given(report):
     own = report.plot()
     assert own.get_title() == "squares"
     pyplot.close(own.figure)
-    with pytest.raises(InputError, match="this result has no picture"):
-        Report("none").plot()
 
 
 def test_a_run_is_drawn_into_given_axes():
     three = struck((1,), 3, duration=3)
     run = simulate(replace(three, contact_sensors=(1,), bead_sensors=(0, 2)))
-    ax = Figure().add_subplot()
-    assert run.plot(ax) is ax
-    assert [text.get_text() for text in ax.get_legend().get_texts()] == [
-        "bead 1", "bead 3", "contact 2",
-    ]  # fmt: skip
-    for line, force in zip(
-        ax.lines, (*run.bead_force, *run.contact_force), strict=True
-    ):
+    ax = run.plot(Figure().add_subplot())
+    names = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert names == ["bead 1", "bead 3", "contact 2"]
+    forces = (*run.bead_force, *run.contact_force)
+    for line, force in zip(ax.lines, forces, strict=True):
         assert np.array_equal(line.get_xdata(), run.time)
         assert np.array_equal(line.get_ydata(), force)
     ax.figure.draw_without_rendering()

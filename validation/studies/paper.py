@@ -58,8 +58,12 @@ BEADS = 38
 SENSORS = (15, 34)  # beads, counted from the striker, 1
 LIKE = ((15, 33), (16, 34))  # beads of one kind, both steel and both PTFE
 VELOCITY = 1.37  # of the striker, in m/s
-# rtol of the run that counts and of the run that gives its errors
-TOLERANCES = (1e-10, 1e-9)
+# rtol of the run that counts and of the run that gives its errors; ten times the former would
+# make errors four times as large
+TOLERANCES = (1e-10, 4e-10)
+# Least relative error over rtol, as two runs may agree by chance. Measured: 38 beads lose 0.002 to
+# 0.008 of rtol, from 1e-7 to 1e-10. So 129 of 138 errors are 1 to 30 times the deviation.
+_LEAST = 0.01
 SOURCES = ("F_m", "striker")
 """Names of the quantities that set the theory's amplitude."""
 
@@ -195,7 +199,7 @@ def paper(
     velocity = between(velocity, "velocity", 1e-6, 1000)
     scene = recorded_chain(sorted({*SENSORS, *LIKE[0], *LIKE[1]}), velocity)
     run, check = twice(scene, *tolerances, progress=run_progress)
-    lattice = compared(lattice_numbers, run, check, rtol=tolerances[0])
+    lattice = compared(lattice_numbers, run, check, _LEAST * tolerances[0])
     wave = homogenize(chain_cell(), k=HERTZ).pde.traveling_wave()
     peak = lattice["peak bead force F_m"].value
     waves = {
@@ -401,7 +405,7 @@ def scaling(
     rows = []
     for height, run, check in zip(HEIGHTS, fine, coarse, strict=True):
         row: dict[str, Any] = {"modulus_value": E, "height_value": height}
-        row |= compared(_speed_and_force, run, check, tolerances[0])
+        row |= compared(_speed_and_force, run, check, _LEAST * tolerances[0])
         theory = wave.at_force(row["force"].value, of="bead")
         row["theory_value"] = float(theory.speed)
         rows.append(row)

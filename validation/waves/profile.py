@@ -31,9 +31,11 @@ from validation.scenes.scene import Scene
 from validation.waves import newton
 
 TOLERANCE = 1e-9  # tail and residual of a solitary wave over its peak strain, at most
-# Relative error of a solitary wave's numbers by rounding: between grids they differ by 2e-14 at
-# most (k = 1.02 … 60).
-ROUNDING = 1e-13
+# Relative errors of a solitary wave's numbers by rounding, 1.5 times the differences between grids
+# or more (k = 1.02 … 60, p0 = 0 … 0.9999): of each number, and by cancellation, as a wave is bent
+# by (k - 1)(1 - p0) of its strain.
+ROUNDING = 5e-14
+CANCELLED = 1e-15
 OUTSIDE = 0.6  # share of the half period at which a dimer's pulse has ended and its tail begins
 
 Number = Literal["c2", "c", "tail", "peak", "fwhm"]
@@ -118,8 +120,8 @@ class ExactWave(Pictured):
         value = getattr(self, one_of(name, _NUMBERS, "name"))
         if callable(value):
             value = value(*arguments)
-        # On a background rounding is that of the whole strain, of which the wave is a part.
-        error = ROUNDING / (1 - self.background) + self.residual + self.tail
+        bend = (self.k - 1) * (1 - self.background)
+        error = ROUNDING + CANCELLED / bend + self.residual + self.tail
         return Estimate(value, error if name == "tail" else error * value)
 
     def times(self, s: float) -> ExactWave:
@@ -159,7 +161,7 @@ class ExactWave(Pictured):
 
         Strain and force are those of contact 0, the velocity is that of bead 0.
         """
-        xi = np.linspace(-self.half_period, self.half_period, 4 * len(self.even) + 1)
+        xi = np.linspace(-self.half_period, self.half_period, len(self.even) + 1)
         _, peak = summit(self._profile(quantity), xi)
         return peak
 

@@ -208,8 +208,9 @@ def solve(problem: newton.Problem, start: ExactWave | None = None) -> ExactWave:
         phase = beta * (problem.xi - (m2 - m1) / (m1 + m2) / 2)
         force = np.cos(np.clip(phase, -np.pi / 2, np.pi / 2)) ** (2 * k / (k - 1))
         c2 = 4 / ((k + 1) * (m1 + m2))
-    # c² of the wave scaled to force 1 at ξ = 0; `newton.Problem.wave` scales the forces.
-    return _converged(problem, force, c2 * float(force[0]) ** ((1 - k) / k))
+    # c² of the wave scaled to peak force 1, as `newton.Problem.wave` scales the forces.
+    share = float(force[0]) / problem.height
+    return _converged(problem, force, c2 * share ** ((1 - k) / k))
 
 
 def _converged(problem: newton.Problem, force: Any, c2: float) -> ExactWave:

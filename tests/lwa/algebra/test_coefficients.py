@@ -10,15 +10,6 @@ from tests.identity import same
 m1, m2, A1, A2, k = sp.symbols("m1 m2 A1 A2 k", positive=True)
 
 
-def elements(ring):
-    context = fmpq_mpoly_ctx.get(ring.names or ("unused",), "lex")
-    return (
-        ring.masses.elements(context),
-        ring.contacts.elements(context),
-        ring.exponent(context),
-    )
-
-
 def test_ring_elements_convert_back_to_their_expressions():
     for cell in (
         Cell([m1, m2]),
@@ -30,10 +21,13 @@ def test_ring_elements_convert_back_to_their_expressions():
     ):
         for exponent in (k, sp.Rational(3, 2)):
             ring = Model(cell, Power(exponent)).ring
-            fractions, shares, own = elements(ring)
-            expected = [*cell.fractions, *cell.shares(exponent), exponent]
-            for element, value in zip(
-                [*fractions, *shares, own], expected, strict=True
-            ):
-                terms = [(tuple(e[: len(ring.names)]), c) for e, c in element.terms()]
-                assert same(ring.expression(terms), value)
+            context = fmpq_mpoly_ctx.get(ring.names, "lex")
+            pairs = [
+                (ring.exponent(context), exponent),
+                *zip(ring.masses.elements(context), cell.fractions, strict=True),
+                *zip(
+                    ring.contacts.elements(context), cell.shares(exponent), strict=True
+                ),
+            ]
+            for element, value in pairs:
+                assert same(ring.expression(list(element.terms())), value)

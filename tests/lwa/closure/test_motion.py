@@ -94,12 +94,10 @@ def acceleration(equation, k, field, velocity, optical):
 def slaved(theory, k, field, velocity):
     """The particles' fields: by the full closure, or the first and the linear ansatz."""
     if theory.closure.name == "linear":
-        second = field
+        second = slope = field
         for n, b in theory.ansatz.items():
-            field_n = field
-            for _ in range(n):
-                field_n = field_n.derivative("x")
-            second += rational(b) * D**n * field_n
+            slope = slope.derivative("x")
+            second += rational(b) * D**n * slope
         return [field, rational(theory.amplitude_ratio) * second]
     jets, fields = Jets(k, field, velocity, field.derivative("x")), []
     for i in range(theory.cell.size):
@@ -115,8 +113,9 @@ def residuals(theory, equation):
     on the optical branch, of the law δ^k without a bound, at D^0 … D^{order-1}."""
     cell, k, optical = theory.cell, int(theory.k), not theory.pde.acoustic
     P = cell.size
-    u = sum(c * X**i for i, c in enumerate([3, 2, 1, -1, 2, 1, -2, 1, 3, -1, 2, 1, 1]))
-    v = sum(c * X**i for i, c in enumerate([1, -1, 2, 1, 1, -3, 2, 1, -1, 1, 2, -1]))
+    # any field and velocity with a slope and all higher derivatives
+    u = 3 + sum((-1) ** i * (i % 3 + 1) * X**i for i in range(1, 13))
+    v = 1 + sum((-1) ** (i // 2) * (i % 3 + 1) * X**i for i in range(1, 12))
     a = acceleration(equation, k, u, v, optical)
     # φ_τττ: the wave equation's own derivative along the motion (u + τv, v + τa)
     da = tau(acceleration(equation, k, u + v * TAU, v + a * TAU, optical), 1)

@@ -116,3 +116,13 @@ def test_springs_of_the_laws():
     # (e^{2δ} - 1)/2 = 2, and A F′ = 3 e^{2δ}
     assert float(chain.spring_constants[0]) == pytest.approx(15, rel=1e-14)
     assert chain.bands.edges()[0, 1] == pytest.approx(2 * np.sqrt(15), rel=1e-13)
+
+
+def test_long_decimals():
+    """Written out, the root of the speed would hold numbers beyond a double."""
+    masses, k, F0 = (0.239655726292, 1.563930410198), 1.97, 1.2
+    chain = LoadedChain(Cell(masses, spacing=1), Power(k), F0)
+    spring = k * F0 ** (1 - 1 / k)
+    speed = np.sqrt(2 * spring / sum(masses))
+    assert float(chain.sound_speed) == pytest.approx(speed, rel=1e-14)
+    assert chain.bands.branches(1e-6)[0] == pytest.approx(speed * 1e-6, rel=1e-9)

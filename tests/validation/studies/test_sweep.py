@@ -1,4 +1,4 @@
-"""Sweeps: no point is computed twice or lost; the theory beside, maps and tables."""
+"""Sweeps: no point is computed twice or lost; the theory beside, pictures and tables."""
 
 import json
 import os
@@ -15,10 +15,12 @@ import pytest
 import sympy as sp
 
 from lwa import Estimate, InputError
+from lwa.base import INTERRUPTED
 from tests.commands import ended
 from validation import cli
 from validation.lattice.threads import cluster, threads
 from validation.pulses.steady import LABELS, Point, PointFile
+from validation.report import command
 from validation.scenes.checks import Failure
 from validation.studies.limits import theory_at
 from validation.studies.sweep import AHEAD, measured, report, sweep, theory
@@ -62,42 +64,43 @@ def test_an_interrupted_sweep_resumes_and_grows(capsys, file, reference):
     computed, wanted = [], numbers(report(KS, OMEGAS, reference, 2))
     with pytest.raises(KeyboardInterrupt):
         sweep(KS, OMEGAS, file=file, progress=stopped(KeyboardInterrupt), **QUICK)
-    options = {
-        "file": file,
-        "progress": lambda todo: computed.extend(todo) or todo,
-    } | QUICK
+
+    def progress(todo):
+        computed.extend(todo)
+        return todo
+
+    options = {"file": file, "progress": progress} | QUICK
     assert numbers(sweep(KS, OMEGAS, **options)) == wanted
     assert computed == [(3, 1)]
     assert numbers(sweep([4], [1], **options))[0]["missing"] == "it “broke”\n"
-    assert [path.name for path in file.parent.iterdir()] == ["s.sqlite"]
-    grid = (
-        "--k",
-        "3",
-        "--omega",
-        "0.25:1:4,1/4",
-        "--stretch",
-        "2",
-        "--file",
-        str(file),
-    )
-    picture = ("--plot", str(file.with_name("s.svg")))
-    status, out, err = ended(
-        capsys, cli.main, "sweep", *grid, *picture, "--format", "json"
-    )
+    line = f"sweep --k 3 --omega 0.25:1:4,1/4 --stretch 2 --file {file} --format json"
+    status, out, err = ended(capsys, cli.main, *line.split())
     assert (status, err) == (0, "")
     assert json.loads(out)["points"] == wanted
-    assert file.with_name("s.svg").read_text().startswith("<?xml")
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [("", "--file points.sqlite keeps"), ("--file s.sqlite", "goes on from s.sqlite")],
+)
+def test_ctrl_c_says_how_points_are_kept(capsys, folder, monkeypatch, options, says):
+    monkeypatch.setattr(command, "progress", stopped(KeyboardInterrupt))
+    line = f"sweep --k 3 --omega 1,3/4 --stretch 2 --jobs 1 {options}"
+    status, out, err = ended(capsys, cli.main, *line.split())
+    assert (status, out) == (INTERRUPTED, "")
+    assert err.startswith("\nlwa-validate: interrupted: ")
+    assert says in err
 
 
 @pytest.mark.parametrize(
     ("change", "words"),
     [
         ("pragma user_version = 5003", "another stretch"),
+        ("pragma user_version = 0", "a database, but not a sweep's"),
         ("update points set k = '__import__(0)'", "k is"),
-        ("alter table points add column x", "file is"),
     ],
 )
-def test_another_file_is_refused_and_left_alone(file, change, words):
+def test_another_database_is_refused_and_left_alone(file, change, words):
     with closing(sqlite3.connect(file, isolation_level=None)) as data:
         data.execute(change)
     refused(file, words)
@@ -110,7 +113,7 @@ def refused(file, words):
     assert file.read_bytes() == before
 
 
-def test_a_file_of_another_kind_or_of_another_sweep_is_refused(file):
+def test_a_file_that_is_open_or_of_another_kind_is_refused(file):
     with PointFile(file, 2).opened():
         refused(file, r"s\.sqlite: .*locked")
     file.write_bytes(100 * b"a,b,c,d,e\n")
@@ -124,9 +127,12 @@ def test_few_points_wait_for_a_worker():
         def submit(self, function, k, omega, stretch):
             nonlocal most
             most = max(most, len(todo) - len(finished))
-            return super().submit(
-                lambda: finished.append(k) or Point(k, omega, None, {}, "no")
-            )
+
+            def finish():
+                finished.append(k)
+                return Point(k, omega, None, {}, "no")
+
+            return super().submit(finish)
 
     most, todo, finished = 0, [], []
     grid = tuple(map(R, range(2, 42))), tuple(R(n, 10) for n in range(1, 51))
@@ -171,11 +177,9 @@ def test_a_cluster_that_loses_a_worker_loses_no_point(reference):
 def test_an_address_without_a_scheduler_is_refused():
     """A server that accepts a call and does not answer."""
     with socket.create_server(("127.0.0.1", 0)) as server:
-        port = server.getsockname()[1]
-        with pytest.raises(
-            InputError, match=rf"^cluster is 'tcp://127\.0\.0\.1:{port}'"
-        ):
-            cluster(f"tcp://127.0.0.1:{port}", 0.4).__enter__()
+        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        with pytest.raises(InputError, match=rf"^cluster is '{address}'"):
+            cluster(address, 0.4).__enter__()
 
 
 def test_without_dask_the_extra_is_named(monkeypatch):
@@ -202,21 +206,17 @@ def points():
 def test_the_document_is_json_and_complete(points):
     found = json.loads(json.dumps(report(*AXES, points).document(), allow_nan=False))
     assert (found["stretch"], found["missing"]) == (4, 1)
-    assert [(p["k"], p["omega"]) for p in found["points"][2:4]] == [
-        ("3/2", "50"),
-        ("2", "1/2"),
-    ]
-    for p, point in zip(found["points"], points, strict=True):
+    for row, point in zip(found["points"], points, strict=True):
+        assert (row["k"], row["omega"]) == (str(point.k), str(point.omega))
         for name in LABELS:
             number = point.numbers.get(name)
-            assert p[f"{name}_value"] == (None if number is None else number.value)
-            assert p[f"{name}_error_value"] == (
-                None if number is None else number.error
-            )
-        assert (p["missing"] is None) == (p["sites"] == [24, 32])
-    last = found["points"][-1]["theory"]
-    assert last["linear"]["width_value"] is None
-    assert last["canonical"]["width_value"] > 0
+            pair = None if number is None else number.value, number and number.error
+            assert (row[f"{name}_value"], row[f"{name}_error_value"]) == pair
+        assert (row["missing"] is None) == (row["sites"] == [24, 32])
+    *_, last = found["points"]
+    assert last["theory"]["linear"]["width_value"] is None
+    off = last["theory"]["canonical"]["width_value"] / last["width_value"] - 1
+    assert last["error"]["canonical"]["width_value"] == pytest.approx(off)
 
 
 def test_the_picture_has_a_curve_for_each_exponent(points):
@@ -225,9 +225,8 @@ def test_the_picture_has_a_curve_for_each_exponent(points):
     assert [len(panel.curves) for panel in panels] == [3, 3, 3, 3]
     for k, curve in zip(ks, panels[0].curves, strict=True):
         values = [float(k + omega) for omega in omegas]
-        np.testing.assert_array_equal(
-            curve.y, [np.nan if x == 3 else x for x in values]
-        )
+        expected = [np.nan if x == 3 else x for x in values]
+        np.testing.assert_array_equal(curve.y, expected)
     assert all((curve.y[1:] > 0).all() for curve in panels[3].curves[::2])
     for axes, step in (((ks[:1], omegas), 1), ((ks, omegas[:1]), 3)):
         some = points[: 3 * step : step]
@@ -242,10 +241,13 @@ def test_the_theory_is_that_of_lwa():
     for (i, k), (j, omega) in product(enumerate(ks), enumerate(omegas[:2])):
         for closure, grids in found.items():
             wave = theory_at(k, omega, closure)
-            widths = [wave.fwhm(quantity) for quantity in ("force", "strain")]
-            values = [grids[name][i, j] for name in ("width", "strain_width", "speed")]
-            expected = [*map(float, (*widths, wave.at_force(1).speed))]
-            assert values == pytest.approx(expected, rel=1e-14)
+            expected = {
+                "width": wave.fwhm("force"),
+                "strain_width": wave.fwhm("strain"),
+                "speed": wave.at_force(1).speed,
+            }
+            for name, value in expected.items():
+                assert grids[name][i, j] == pytest.approx(float(value), rel=1e-14)
     for name, values in found["linear"].items():
         assert np.isnan(values[1, 2]), name  # G + H + I < 0: no wave
 

@@ -8,14 +8,13 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from lwa.base.words import QUANTITIES
 from validation import measure, simulate
 from validation.scenes.checks import SceneError
 from validation.studies.exact import exact
 from validation.studies.exact import resonances as special_ratios
 from validation.waves.newton import Problem, SpecialRatio
 from validation.waves.solver import NoWave, exact_wave, resonances, solve
-
-QUANTITIES = ("strain", "force", "velocity")
 
 
 @pytest.fixture(scope="module")
@@ -30,9 +29,8 @@ def specials():
 
 def test_the_widths_of_the_hertz_chain(hertz):
     """The widths of a simulated struck chain; further digits by another grid."""
-    assert (hertz.fwhm("force"), hertz.fwhm()) == pytest.approx(
-        (1.411928, 1.725713), abs=5e-7
-    )
+    assert hertz.fwhm("force") == pytest.approx(1.411928, abs=5e-7)
+    assert hertz.fwhm() == pytest.approx(1.725713, abs=5e-7)
     finer = solve(Problem((1.0, 1.0), 1.5, 9, 200))
     for name in QUANTITIES:  # rounding, divided by the slope at half maximum
         assert finer.fwhm(name) == pytest.approx(hertz.fwhm(name), abs=1e-11)
@@ -41,18 +39,21 @@ def test_the_widths_of_the_hertz_chain(hertz):
     assert hertz.residual < 1e-14
 
 
+SECOND = np.array([2, -27, 270, -490, 270, -27, 2]) / 180
+FIRST = np.array([-1, 9, -45, 0, 45, -9, 1]) / 60
+
+
 @pytest.mark.parametrize(
     ("k", "p0"),
     [
-        (1.01, 0.5),
         (1.02, 0),
         (1.5, 1e-9),
         (1.5, 0.3),
         (1.5, 0.9999),
         (3, 1e-3),
-        (5, 0),
-        (60, 0),
         (6, 0.23),
+        (20, 0),
+        pytest.param(60, 0, marks=pytest.mark.slow),
     ],
 )
 def test_the_equations_of_motion_hold_at_any_point(k, p0):
@@ -69,19 +70,16 @@ def test_the_equations_of_motion_hold_at_any_point(k, p0):
     def force(xi):
         return np.maximum(2.5 * p0 + more.strain(xi), 0) ** k
 
-    def derivative(f, weights):
-        return sum(
-            w * f(xi + j * h) for w, j in zip(weights, range(-3, 4), strict=True)
-        )
+    def weighted(f, weights):
+        terms = [w * f(xi + j * h) for j, w in enumerate(weights, start=-3)]
+        return sum(terms)
 
-    second = derivative(
-        more.strain, np.array([2, -27, 270, -490, 270, -27, 2]) / (180 * h * h)
-    )
     push = force(xi + 1) - 2 * force(xi) + force(xi - 1)
-    assert more.c2 * second == pytest.approx(push, abs=1e-6 * np.abs(push).max())
-    slope = derivative(more.velocity, np.array([-1, 9, -45, 0, 45, -9, 1]) / (60 * h))
+    bent = more.c2 * weighted(more.strain, SECOND) / h**2
+    assert bent == pytest.approx(push, abs=1e-6 * np.abs(push).max())
     push = force(xi + 0.5) - force(xi - 0.5)
-    assert more.c * slope == pytest.approx(push, abs=1e-6 * np.abs(push).max())
+    faster = more.c * weighted(more.velocity, FIRST) / h
+    assert faster == pytest.approx(push, abs=1e-6 * np.abs(push).max())
     for name in QUANTITIES:
         assert more.fwhm(name) == pytest.approx(wave.fwhm(name), rel=1e-10)
     assert more.background == pytest.approx(2.5 * p0, rel=1e-15)
@@ -121,12 +119,11 @@ def test_the_special_ratios_are_the_published_ones(specials):
     ratios = special_ratios(1.5, 3).document()["mass_ratios"]
     assert ratios == pytest.approx([0.3428, 0.1548, 0.0901], abs=6e-5)
     assert special_ratios(sp.sqrt(2), 1).data["k_value"] == pytest.approx(2**0.5)
-    assert all(wave.solitary and wave.residual < 1e-12 for wave in specials)
-    longer = []
-    for wave in specials:
+    for wave, ratio in zip(specials, ratios, strict=True):
+        assert wave.solitary
+        assert wave.residual < 1e-12
         box = SpecialRatio(wave.masses, 1.5, 1.2 * wave.half_period)
-        longer.append(solve(box, wave).omega)
-    assert longer == pytest.approx(ratios, rel=1e-10)
+        assert solve(box, wave).omega == pytest.approx(ratio, rel=1e-10)
 
 
 def test_the_tail_grows_from_none_at_a_special_ratio(specials):
@@ -143,74 +140,67 @@ def test_the_tail_grows_from_none_at_a_special_ratio(specials):
     assert tails[0] / tails[1] == pytest.approx(-10, rel=0.2)
 
 
-@pytest.mark.parametrize(
-    ("k", "count"),
-    [(2, 2), *(pytest.param(*x, marks=pytest.mark.slow) for x in ((1.2, 4), (5, 2)))],
-)
-def test_special_ratios_for_other_exponents(specials, k, count):
-    """Near k = 1, √(m1/m2) grows by equal steps: the light beads' oscillations, in order."""
-    waves = resonances(k, count)
+def test_special_ratios_at_k_2_are_those_of_hertz_continued(specials):
+    """Hertz's second ratio leads there by steps of 0.1."""
+    waves = resonances(2, 2)
+    assert waves[0].omega > waves[1].omega
     assert all(wave.solitary for wave in waves)
-    assert max(wave.residual for wave in waves) < 1e-11
+    wave = specials[1]
+    for step in (1.6, 1.7, 1.8, 1.9, 2.0):
+        wave = solve(SpecialRatio(wave.masses, step), wave)
+    assert wave.omega == pytest.approx(waves[-1].omega, rel=1e-10)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("k", "count"), [(1.2, 4), (5, 2)])
+def test_special_ratios_far_from_hertz(k, count):
+    """Near k = 1, √(m1/m2) grows by equal steps: the light beads' oscillations, none left out."""
+    waves = resonances(k, count)
+    assert all(wave.solitary and wave.residual < 1e-11 for wave in waves)
     roots = np.array([wave.omega**-0.5 for wave in waves])
     assert np.all(np.diff(roots) > 0)
-    if k < 1.5:  # none is left out
+    if k < 1.5:
         assert np.diff(roots) == pytest.approx(roots[1] - roots[0], rel=0.25)
         assert roots[0] - 1 < 2 * (roots[1] - roots[0])
     wave = waves[-1]  # a longer period changes nothing
     longer = solve(SpecialRatio(wave.masses, k, 1.1 * wave.half_period), wave)
     assert longer.omega == pytest.approx(wave.omega, rel=1e-8)
-    if k == 2:  # Hertz's ratio leads there by steps of 0.1
-        wave = specials[1]
-        for step in (1.6, 1.7, 1.8, 1.9, 2.0):
-            wave = solve(SpecialRatio(wave.masses, step), wave)
-        assert wave.omega == pytest.approx(waves[-1].omega, rel=1e-10)
 
 
-@pytest.mark.parametrize(
-    ("k", "unit"), [(1.5, 1e-6), pytest.param(3.0, 7.0, marks=pytest.mark.slow)]
-)
-def test_units_of_mass_and_relabelling(k, unit):
+def test_units_of_mass_and_relabelling(specials):
     """c² ∝ 1/m; m1 ↔ m2 is the mirror image, contact 0 for contact 1; bead 1 for bead 0."""
-    special = resonances(k, 2)[-1]
-    one = exact_wave([unit, unit * special.omega], k)
-    other = exact_wave([unit * special.omega, unit], k)
+    special, unit = specials[1], 1e-6
+    one = exact_wave([unit, unit * special.omega], 1.5)
+    other = exact_wave([unit * special.omega, unit], 1.5)
     xi = np.linspace(-2, 2, 21)
     assert one.c2 * unit == pytest.approx(special.c2, rel=1e-12)
     assert one.strain(xi) == pytest.approx(special.strain(xi), abs=1e-12)
     assert other.masses == pytest.approx(one.masses[::-1], rel=1e-12)
     assert other.c2 == pytest.approx(one.c2, rel=1e-12)
     assert other.strain(xi) == pytest.approx(one.strain(xi, 1), abs=1e-12)
-    speeds = (wave.velocity(xi, bead) for wave, bead in ((one, 0), (other, 1)))
-    assert next(speeds) == pytest.approx(next(speeds), rel=1e-9, abs=1e-9 * one.c)
+    assert other.velocity(xi, 1) == pytest.approx(one.velocity(xi), abs=1e-9 * one.c)
 
 
 def test_a_ratio_in_seven_digits_is_the_special_ratio(specials):
     """The wave has the special ratio's masses, and the report says so."""
-    one, two = exact(1.5, (2, 2 * specials[1].omega * (1 - 5e-8))).document()[
-        "masses_value"
-    ]
-    assert (one, two) == pytest.approx((2, 2 * specials[1].omega), rel=1e-13)
+    given = (2, 2 * specials[1].omega * (1 - 5e-8))
+    found = exact(1.5, given).document()["masses_value"]
+    assert found == pytest.approx((2, 2 * specials[1].omega), rel=1e-13)
 
 
-OFF = 0.3428457811 * (1 + 2e-7)
-LOW = pytest.param(0.3, 1.1, marks=pytest.mark.slow)
-
-
-@pytest.mark.parametrize(("omega", "k"), [(OFF, 1.5), (1 / 0.6, 1.5), LOW])
-def test_a_ratio_without_a_solitary_wave_names_the_ways_on_and_no_tail(omega, k):
-    masses = re.escape(f"k = {k:g}, masses 1, {omega:.10g}")
-    with pytest.raises(
-        NoWave, match=rf"{masses}: see resonances \(nearest .*\) and sweep$"
-    ):
-        exact_wave([1, omega], k)
+@pytest.mark.parametrize("omega", [0.3428457811 * (1 + 2e-7), 1 / 0.6])
+def test_a_ratio_without_a_solitary_wave_names_the_ways_on(omega):
+    masses = re.escape(f"k = 1.5, masses 1, {omega:.10g}")
+    ways = r"see resonances \(nearest .*\) and sweep$"
+    with pytest.raises(NoWave, match=f"{masses}: {ways}"):
+        exact_wave([1, omega], 1.5)
 
 
 def test_the_report_holds_every_number_of_a_wave(hertz):
     found = json.loads(json.dumps(exact(1.5, (1,)).document(), allow_nan=False))
     assert found["c_value"] ** 2 == pytest.approx(found["c2_value"], rel=1e-14)
-    assert found["fwhm_value"] == {name: hertz.fwhm(name) for name in QUANTITIES}
-    assert found["amplitude_value"] == {name: hertz.peak(name) for name in QUANTITIES}
+    for key, read in (("fwhm", hertz.fwhm), ("amplitude", hertz.peak)):
+        assert found[f"{key}_value"] == {name: read(name) for name in QUANTITIES}
     assert all(0 < error < 1e-11 for error in found["fwhm_error_value"].values())
     numbers = found["solitary"], found["tail_value"], found["residual_value"]
     assert numbers == (True, 0, hertz.residual)
@@ -220,26 +210,14 @@ def test_the_report_holds_every_number_of_a_wave(hertz):
     ("masses", "options", "named"),
     [
         ([1, 2, 3], {}, "3 masses"),
-        ([1, -1], {}, "mass is -1"),
         ([1, 1e-4], {}, "ratio of the masses is 0.0001"),
-        ([1e4, 1], {}, "ratio of the masses is 0.0001"),
-        ([1], {"k": 1}, "k is 1"),
         ([1], {"k": 61}, "k is 61"),
         ([1], {"k": 9, "background": 0.5}, "k is 9"),
-        ([1, 0.5], {"k": 1.05}, "k is 1.05"),
         ([1, 0.5], {"k": 5.5}, "k is 5.5"),
-        ([1], {"background": -0.1}, "background is -0.1"),
-        ([1], {"background": 1}, "background is 1"),
         ([1], {"background": 1e-300}, "background is 1e-300"),
-        ([1], {"background": "1/2"}, "background is '1/2'"),
         ([1, 0.5], {"background": 0.1}, "background is 0.1"),
     ],
 )
 def test_bad_input(masses, options, named):
-    with pytest.raises(SceneError, match=rf"^{re.escape(named)}(\W|$)"):
+    with pytest.raises(SceneError, match=rf"^{re.escape(named)}\W"):
         exact_wave(masses, **{"k": 1.5} | options)
-    for count in (0, 7):
-        with pytest.raises(SceneError, match=f"^count is {count}"):
-            resonances(1.5, count)
-    with pytest.raises(ValueError, match="quantity is"):
-        exact_wave([1], 1.5).fwhm("mass")
