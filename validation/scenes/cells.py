@@ -24,6 +24,14 @@ _LINE = re.compile(r"[^\r\n]*\S[^\r\n]*")  # a line that is not blank
 _SIGNS = {"μ": "µ", "−": "-", "∞": "inf"}
 _HEAD = 1000  # lines in which the separator and the first numbers are looked for
 _MARKS = "\t;, "
+# What NumPy's reader does not take, by the separator: some loggers write + 1.5.
+_SIGNED = {"+ ": "+", "- ": "-"}
+_PLAIN = {
+    "\t": _SIGNED | {",": "."},
+    ";": _SIGNED | {",": "."},
+    ",": _SIGNED,
+    " ": {",": "."},
+}
 _BLOCK = 10_000  # rows of numbers that are read at once
 
 
@@ -101,15 +109,17 @@ class Cells:
         while start < len(self._text):
             block = rows.match(self._text, start)
             if block:
-                text = block[0] if mark == "," else block[0].replace(",", ".")
-                yield from text.splitlines()
+                text = block[0]
             else:
                 block = _LINE.search(self._text, start)
                 if block is None:
                     return
                 found = islice(chain(_split(block[0], mark), repeat("")), count)
                 line = [x if re.fullmatch(number, x) else "nan" for x in found]
-                yield mark.join(line).replace(",", "." if mark != "," else ",")
+                text = mark.join(line)
+            for sign, plain in _PLAIN[mark].items():
+                text = text.replace(sign, plain)
+            yield from text.splitlines()
             start = block.end()
 
     def line_number(self, row: int) -> int:
@@ -139,7 +149,8 @@ def _number(mark: str) -> str:
     """Return the pattern of a number beside a separator."""
     point = "." if mark == "," else ".,"
     digits = rf"(?:\d+[{point}]?\d*|[{point}]\d+)(?:[eE][-+]?\d+)?"
-    return f"(?:[-+]?(?:{digits}|inf))"
+    blank = "" if mark == " " else " ?"  # some loggers write + 1.5
+    return f"(?:[-+]?{blank}(?:{digits}|inf))"
 
 
 def _split(line: str, mark: str) -> list[str]:

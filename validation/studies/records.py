@@ -165,6 +165,12 @@ class Measured:
         says="Where sensors sit whose columns do not say it.",
     ),
     record_options,
+    page="experiment",
+    examples=(
+        "lwa-validate run --example > scene.toml",
+        "lwa-validate run scene.toml --out forces.csv",
+        "lwa-validate pulses forces.csv --distance 4.76e-3",
+    ),
 )
 def pulses(
     records: Paths,
@@ -250,6 +256,12 @@ _COMPARED = (
     click.argument("scene", type=click.Path()),
     click.argument("measured", type=click.Path(), nargs=-1, required=True),
     record_options,
+    page="experiment",
+    examples=(
+        "lwa-validate run --example > scene.toml",
+        "lwa-validate run scene.toml --out forces.csv",
+        "lwa-validate compare scene.toml forces.csv",
+    ),
 )
 def compare(
     scene: str,

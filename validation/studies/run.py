@@ -290,6 +290,11 @@ _RTOL = f"Relative tolerance. Errors are differences to a run with {LESS:g} time
         default=False,
         says="Measure all pulses at each sensor, not only the first.",
     ),
+    page="recipes",
+    examples=(
+        "lwa-validate run --example > scene.toml",
+        "lwa-validate run scene.toml --out forces.csv --plot forces.svg",
+    ),
 )
 def run(
     scene: str,
