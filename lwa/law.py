@@ -36,6 +36,7 @@ from lwa.base.exact import (
     power,
     read_exact,
     real,
+    replaced,
     shorten,
     signed,
 )
@@ -538,7 +539,7 @@ def substituted(
         The cell, the law and the expressions, in this order.
     """
     # A symbol of the law that is also one of the cell is positive, as the cell's.
-    others = sp.Tuple(*law.symbols, *expressions).free_symbols - {*cell.symbols}
-    new = substitution(values, cell, more=sorted(others, key=str))
-    replaced = [expression.xreplace(new) for expression in expressions]
-    return cell.replaced(new), law.replaced(new), *replaced
+    more = sp.Tuple(*law.symbols, *expressions).free_symbols - {*cell.symbols}
+    new = substitution(values, cell, more=sorted(more, key=str))
+    others = [replaced(expression, new) for expression in expressions]
+    return cell.replaced(new), law.replaced(new), *others

@@ -37,7 +37,7 @@ ODD = (
 # function returns: no user calls them, and they may fail in any way.
 OWN = {
     "CompactWave", "ExpandedWave", "InputError", "LoadedWave", "NoSolitaryWave", "SceneError",
-    "MeasureError",    "anew", "check_strain", "compression", "compressions",
+    "MeasureError", "anew", "check_strain", "compression", "compressions",
     "latex_rows", "of_strain", "phi", "replaced",
     "ExactWave", "Pulse", "Run", "plot", "simulate_many",  # the last two take objects of others
 }  # fmt: skip

@@ -11,7 +11,7 @@ import keyword
 import math
 import operator
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from fractions import Fraction
 from typing import Any
 
@@ -162,6 +162,24 @@ def demand_numbers(free: Collection[sp.Symbol], why: str) -> None:
         raise InputError(f"{min(map(str, free))!r} has no value: {why}")
 
 
+def demand_distinct(**parts: Collection[sp.Symbol]) -> None:
+    """Raise `InputError` if quantities of two parts have symbols of one name.
+
+    >>> demand_distinct(cell=[sp.Symbol("q")], wavenumber=[sp.Symbol("q", real=True)])
+    Traceback (most recent call last):
+        ...
+    lwa.base.InputError: 'q' names a symbol of the cell and the wavenumber: choose another
+    """
+    owners: dict[str, str] = {}
+    for part, symbols in parts.items():
+        for symbol in symbols:
+            owner = owners.setdefault(symbol.name, part)
+            if owner != part:
+                raise InputError(
+                    f"{symbol.name!r} names a symbol of the {owner} and the {part}: choose another"
+                )
+
+
 def number(value: sp.Expr) -> float:
     """The float of an exact number, right to the last digit however much its terms cancel.
 
@@ -211,3 +229,18 @@ def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
         if bits * max(abs(int(exponent.p)), int(exponent.q)) > _POWER_BITS:
             base = Unmultiplied(number) * rest
     return base**exponent
+
+
+def replaced(value: sp.Expr, new: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
+    """Substitute for symbols, with powers by `power`: SymPy writes long numbers out.
+
+    >>> x = sp.Symbol("x", positive=True)
+    >>> replaced(x**2 + x**sp.Rational(1, 9999), {x: sp.Rational(9, 4)})
+    (9/4)**(1/9999) + 81/16
+    """
+    if value.free_symbols.isdisjoint(new):
+        return value
+    if value.is_Symbol:
+        return new[value]
+    parts = [replaced(part, new) for part in value.args]
+    return power(*parts) if value.is_Pow else value.func(*parts)

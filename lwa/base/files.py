@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import sys
 import tomllib
 from collections.abc import Callable, Mapping, Sequence, Set
@@ -18,7 +19,7 @@ from typing import Any, TypeVar
 
 from lwa.base.exact import InputError, shorten
 from lwa.base.exact import integer as integer
-from lwa.base.words import suggestion
+from lwa.base.words import similar, suggestion
 
 T = TypeVar("T")
 Reader = Callable[[Any, str], Any]
@@ -52,7 +53,7 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
         parse = tomllib.loads if suffix == ".toml" else json.loads
         return reader(parse(text.decode("utf-8-sig")))
     except (InputError, OSError) as error:
-        fault = reason(error)
+        fault = reason(error) + _near_files(Path(path), error)
     except UnicodeDecodeError:
         fault = "not a text in UTF-8"
     except RecursionError:
@@ -60,6 +61,14 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
     except ValueError as error:  # raised by the parsers
         fault = f"not {suffix[1:].upper()}: {str(error).partition(';')[0]}"
     raise InputError(f"{path}: {fault}") from None
+
+
+def _near_files(path: Path, error: Exception) -> str:
+    """Words on the files of similar names beside a file that is not there."""
+    near: list[str] = []
+    if isinstance(error, FileNotFoundError) and path.parent.is_dir():
+        near = similar(path.name, os.listdir(path.parent))
+    return f": did you mean {' or '.join(near)}?" if near else ""
 
 
 def content(file: Path, most: int = 10**9) -> bytes:

@@ -122,10 +122,6 @@ class Estimate(Value):
     def __str__(self) -> str:
         return self.text(TABLE_DIGITS)
 
-    def __format__(self, most: str) -> str:
-        """The text with a number of digits at most, as in f"{estimate:9}"."""
-        return self.text(int(most)) if most else str(self)
-
     def text(self, most: int = EXACT_DIGITS) -> str:
         """The value to the digits that its error leaves, and the error.
 
@@ -142,7 +138,7 @@ class Estimate(Value):
         Examples
         --------
         >>> print(Estimate(4859925635.0, 99925635.0), Estimate(1.4119284, 3e-6))
-        4.86e+09 ± 1e+08 1.41193 ± 1e-05
+        4.86e+09 ± 1.0e+08 1.41193 ± 1e-05
         """
         if not math.isfinite(self.value + self.error):
             return f"{self.value:.{UNKNOWN_DIGITS}g}, error unknown"
@@ -162,10 +158,11 @@ class Estimate(Value):
         unit = 10.0**last
         # An error of 3e-06 is 3.0000000000000004 units of 1e-06 in floats: no reason for 4e-06.
         error = max(math.ceil(self.error / unit * (1 - 1e-12)), 1) * unit
+        scientific = f"{error:.{max(_place(error) - last, 0)}e}"
         if not PLAIN[0] <= first <= PLAIN[1]:
-            return f"{self.value:.{first - last}e} ± {error:.2g}"
+            return f"{self.value:.{first - last}e} ± {scientific}"
         decimals = max(0, -last)
-        width = f"{error:.{decimals}f}" if error >= LEAST_PLAIN else f"{error:.2g}"
+        width = f"{error:.{decimals}f}" if error >= LEAST_PLAIN else scientific
         return f"{round(self.value, -last):.{decimals}f} ± {width}"
 
     @property

@@ -13,6 +13,10 @@ import sympy as sp
 from lwa.base.exact import evaluated
 
 NUMBER = 24  # symbols of an exact number beyond which its digits stand in its place
+DIGITS = 6  # digits of an irrational number behind its formula
+_LONG_FRACTION = (
+    2  # parts of a numerator for one of its denominator, beyond which it is moved out
+)
 WIDTH = 64
 """Symbols in a line of a display, of a fraction in both parts; a page holds about 70 in a row."""
 
@@ -36,24 +40,47 @@ def _aligned(rows: list[str], unnumbered: str = "") -> str:
 def _broken(row: str) -> list[str]:
     """The lines of a row: terms are put on a line as long as they fit."""
     lines = [""]
-    for term in _terms(row):
-        if lines[-1] and width(lines[-1] + term) > WIDTH:
-            lines.append("")
-        lines[-1] += f" {term}" if lines[-1] else term
+    for term in _terms(row, _OUTSIDE):
+        parts = [term]
+        if width(term) > WIDTH:
+            # Brackets that grow must close on their line: those around the new breaks do not grow.
+            fixed = _outside_of_braces(term, r"\left(", r"\bigl(")
+            fixed = _outside_of_braces(fixed, r"\right)", r"\bigr)")
+            parts = list(_terms(fixed, _IN_BRACKETS))
+        for part in parts:
+            if lines[-1] and width(lines[-1] + part) > WIDTH:
+                lines.append("")
+            lines[-1] += f" {part}" if lines[-1] else part
     return lines
 
 
-def _terms(row: str) -> Iterator[str]:
-    """The parts of a row from one sign to the next, outside of braces and of \\left … \\right."""
-    depth, start = 0, 0
-    for token in re.finditer(r"\\left|\\right|[{}]|(?<=\S) (?=[+-] )", row):
-        if token[0] == " ":
-            if depth == 0:
-                yield row[start : token.start()]
-                start = token.end()
-        else:
+_OUTSIDE = re.compile(r"\\left|\\right|[{}]|(?<=\S) (?=[+-] )")
+"""Signs between terms, and what a term must not be broken in: braces and brackets that grow."""
+
+_IN_BRACKETS = re.compile(r"[{}]|(?<=\S) (?=[+-] )")
+
+
+def _terms(row: str, tokens: re.Pattern[str]) -> Iterator[str]:
+    """The parts of a row from one sign to the next, outside of braces (and \\left … \\right)."""
+    depth = 0
+    start = 0
+    for token in tokens.finditer(row):
+        if token[0] != " ":
             depth += 1 if token[0] in ("\\left", "{") else -1
+        elif depth == 0:
+            yield row[start : token.start()]
+            start = token.end()
     yield row[start:]
+
+
+def _outside_of_braces(text: str, old: str, new: str) -> str:
+    """Replace a part of a text where it is not inside of braces."""
+    depth = 0
+    parts = []
+    for part in re.split(rf"([{{}}]|{re.escape(old)})", text):
+        depth += {"{": 1, "}": -1}.get(part, 0)
+        parts.append(new if part == old and depth == 0 else part)
+    return "".join(parts)
 
 
 def width(text: str) -> int:
@@ -66,8 +93,16 @@ def width(text: str) -> int:
 
 
 def row(name: str, value: sp.Expr) -> str:
-    """The row ``name = value``."""
-    return f"{name} = {expression(value)}"
+    """The row ``name = value``, with six digits of an irrational number behind its formula.
+
+    >>> row("x", sp.sqrt(2)), row("y", sp.Rational(1, 2))
+    ('x = \\\\sqrt{2} \\\\approx 1.41421', 'y = \\\\frac{1}{2}')
+    """
+    text = expression(value)
+    irrational = value.is_number and not value.is_Rational and not value.has(sp.Float)
+    if irrational and text == _formula(value):
+        text += rf" \approx {sp.latex(evaluated(value, DIGITS))}"
+    return f"{name} = {text}"
 
 
 def expression(value: sp.Expr) -> str:
@@ -77,15 +112,24 @@ def expression(value: sp.Expr) -> str:
     >>> expression((x + y) / 2)
     '\\\\frac{x}{2} + \\\\frac{y}{2}'
     """
-    # A power such as a^{1/k} is printed first, as SymPy asks at length whether 1/k is constant.
-    symbolic = (
-        p for p in value.atoms(sp.Pow) if p.base.is_Symbol and p.exp.free_symbols
-    )
-    powers = {p: sp.Symbol(sp.latex(p)) for p in symbolic}
-    plain = str(sp.latex(value.xreplace(powers)))
-    if not value.free_symbols and width(plain) > NUMBER:
+    formula = _formula(value)
+    if not value.free_symbols and width(formula) > NUMBER:
         return str(sp.latex(evaluated(value, 15)))
-    return plain
+    return formula
+
+
+def _formula(value: sp.Expr) -> str:
+    # A power such as a^{1/k} is printed first, as SymPy asks at length whether 1/k is constant.
+    powers = {}
+    for p in value.atoms(sp.Pow):
+        if p.base.is_Symbol and p.exp.free_symbols:
+            powers[p] = sp.Symbol(sp.latex(p))
+    plain = value.xreplace(powers)
+    formula = str(sp.latex(plain))
+    if width(formula) > WIDTH:
+        # A wide numerator stands beside one over its denominator: a fraction has no breaks.
+        formula = str(sp.latex(plain, long_frac_ratio=_LONG_FRACTION))
+    return formula
 
 
 SPEED = r"\frac{dx}{dt}"

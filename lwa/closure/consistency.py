@@ -67,18 +67,24 @@ class Closure(Value):
         if self.name == "full" and (self.model.k != 1 or self.field != "first"):
             raise InputError(
                 "the optical branch oscillates at order D^0 and slaves no field algebraically "
-                "unless k = 1: use the linear closure, or k = 1 with the field 'first'"
+                "unless k is 1 and the field 'first'",
+                closure="linear",
+                field="first",
             )
         if self.field != "first":
             raise InputError(
                 f"field is {self.field!r}: the linear closure has the field 'first', as in the "
-                'paper; closure="full" (--closure full) has both'
+                "paper",
+                closure="full",
+                branch="acoustic",
             )
         one_equation = size == 1 and branch == "acoustic"
         if size != 2 and not one_equation:
             raise InputError(
-                f"the cell has {size} masses: the linear closure's {branch} branch wants two; "
-                'closure="full" (--closure full) covers the acoustic branch of any cell'
+                f"masses: {size} in a cell, and the linear closure's {branch} branch wants two; "
+                "the full closure covers the acoustic branch of any cell",
+                closure="full",
+                branch="acoustic",
             )
 
     @cached_property

@@ -13,61 +13,127 @@ from typing import Any
 import sympy as sp
 
 from lwa.base.exact import InputError
-from lwa.base.files import Table, among, finite, load, table
+from lwa.base.files import Reader, Table, among, finite, load, positive, table
 from lwa.cell import Cell, D
 from lwa.command.options import given
-from lwa.command.rows import approximate
+from lwa.command.rows import Scale
 from lwa.law import ContactLaw, Power, for_cell, read_law
 from lwa.spheres.beads import (
     FILE,
     STRIKER,
+    Row,
     period,
     read_beads,
     read_materials,
     read_row,
-    striker_velocity,
 )
 from lwa.spheres.hertz import EXPONENT
+
+HERTZIAN = 0.01
+"""Compression over the spacing from which on a note is printed: the radius of contact of equal
+spheres is then a tenth of their radius R, ``a/R = √(δ/2R)``, where Hertz (1882) wants a ≪ R."""
+
+
+@dataclass(frozen=True)
+class Striker:
+    """The striker of a file: numbers that are not given there are None."""
+
+    velocity: sp.Expr | None = None
+    drop: sp.Expr | None = None
+    mass: sp.Expr | None = None
 
 
 @dataclass(frozen=True)
 class ChainInput:
     """A chain as the options of a command or a file describe it.
 
-    precompression : static force of the chain, 0 for none. si : True if the numbers are in SI.
-    velocity, mass : of the striker, where the file names them.
+    Parameters
+    ----------
+    cell : Cell
+        One period of the chain.
+    law : ContactLaw
+        The law of its contacts.
+    precompression : Expr
+        Static force of the chain, 0 for none.
+    si : bool
+        True if the numbers are in SI.
+    striker : Striker
+        The striker of a file.
+    gravity : float
+        Acceleration along the chain, of a file; no theory here takes it into account.
     """
 
     cell: Cell
     law: ContactLaw
     precompression: sp.Expr = sp.S.Zero
     si: bool = False
-    velocity: sp.Expr | None = None
-    mass: sp.Expr | None = None
+    striker: Striker = Striker()
+    gravity: float = 0.0
+
+    @property
+    def scale(self) -> Scale:
+        """The units of the chain's numbers."""
+        return Scale(self.si, self.cell.spacing)
 
     @property
     def text(self) -> str:
         """One line of text with the masses, the contacts and the spacing of the chain."""
-        law, cell, k = self.law, self.cell, self.law.exponent
-        force = f"A δ^k, k = {k}" if law.homogeneous else f"A F, F = {law.F}"
-        write = approximate if self.si else str
-        kg, of_A, m = (" kg", f" N/m^({k})", " m") if self.si else ("", "", "")
-        masses, A = (
-            ", ".join(map(write, row)) for row in (cell.masses, cell.stiffnesses)
+        k = self.law.exponent
+        force = f"A F, F = {self.law.F}"
+        if self.law.homogeneous:
+            force = f"A δ^k, k = {k}"
+
+        def written(value: sp.Expr, unit: str) -> str:
+            return self.scale.number(value, unit) if self.si else str(value)
+
+        masses = ", ".join(written(m, "kg") for m in self.cell.masses)
+        contacts = self.cell.stiffnesses
+        if len(set(contacts)) == 1:
+            contacts = contacts[:1]
+        stiffnesses = ", ".join(written(A, f"N/m^({k})") for A in contacts)
+        spacing = written(self.cell.spacing, "m")
+        return (
+            f"masses {masses}; contact force {force}, A = {stiffnesses}; "
+            f"spacing D = {spacing}"
         )
-        chain = f"masses {masses}{kg}; contact force {force}, A = {A}{of_A}"
-        return f"{chain}; spacing D = {write(cell.spacing)}{m}"
 
     def load(
         self, background: sp.Expr | None, precompression: sp.Expr | None
     ) -> sp.Expr | None:
-        """Static force of the file or of the options; raises `lwa.InputError` for two loads."""
+        """The static force of the file or of the options; None for none, or for a strain.
+
+        Raises `lwa.InputError` for two loads.
+        """
         static = self.precompression
-        if static and (background is not None or precompression is not None):
+        if static:
+            for name, load in (
+                ("background", background),
+                ("precompression", precompression),
+            ):
+                if load is not None:
+                    raise InputError(
+                        f"the file has a precompression of {static}: give no other load",
+                        **{name: None},
+                    )
+            return static
+        if background is not None and precompression is not None:
             raise InputError(
-                f"the file has a precompression of {static}: give no other load"
+                "--background and --precompression are both given: one says the other",
+                background=None,
             )
-        return static or precompression
+        return precompression
+
+    def hertz_notes(self, force: sp.Expr) -> list[str]:
+        """A note on a force that presses spheres too much for Hertz's contact; [] for others."""
+        if not self.si or self.law.exponent != EXPONENT or force.free_symbols:
+            return []
+        strain = float(self.law.compression(self.cell, force) / self.cell.spacing)
+        if strain < HERTZIAN:
+            return []
+        return [
+            f"contacts are compressed by {strain:.2g} of the spacing: Hertz's contact is that of "
+            f"elastic spheres up to about {HERTZIAN}, and metals yield before"
+        ]
 
 
 def take_chain(options: dict[str, Any]) -> ChainInput:
@@ -76,15 +142,27 @@ def take_chain(options: dict[str, Any]) -> ChainInput:
     chosen = {name: options.pop(name) for name in names if name in options}
     file = options.pop("spheres", None)
     if file is not None:
-        for name in filter(given, chosen):
-            raise InputError(
-                f"--{name} and --spheres are both given: spheres have their own"
-            )
+        for name in chosen:
+            if given(name):
+                raise InputError(
+                    f"--{name} and --spheres are both given: spheres have their own",
+                    **{name: None},
+                )
         return read_chain(file)
-    cell = Cell(chosen["masses"], chosen["stiffnesses"], chosen.get("spacing", D))
+    masses, stiffnesses = chosen["masses"], chosen["stiffnesses"] or ()
+    if len(stiffnesses) not in (0, len(masses)):
+        raise InputError(
+            f"stiffnesses: {len(stiffnesses)} for {len(masses)} masses, and a periodic cell has as "
+            "many contacts as beads",
+            stiffnesses=",".join(["1"] * len(masses)),
+        )
+    if chosen.get("law") is not None and given("k"):
+        raise InputError("--k and --law are both given: a law has its own", k=None)
+    cell = Cell(masses, stiffnesses, chosen.get("spacing", D))
     if cell.spacing.is_Symbol and chosen["k"] == cell.spacing:
         raise InputError(
-            f"k is {cell.spacing}: the name is that of the spacing, a unit of length"
+            f"k is {cell.spacing}: the name is that of the spacing, a unit of length",
+            k="k",
         )
     return ChainInput(cell, for_cell(chosen.get("law"), cell, chosen["k"]))
 
@@ -101,28 +179,44 @@ def _chain(content: Any) -> ChainInput:
     file = Table(content, "", FILE)
     beads = read_beads(file, read_materials(file))
     row = read_row(file, beads)
-    striker = file.read("striker", table(STRIKER), Table({}, "striker", STRIKER))
-    velocity = None
-    if "velocity" in striker or "drop" in striker:
-        velocity = sp.Rational(str(striker_velocity(striker))) or None
-    mass = striker.read("like", among(beads)).mass if "like" in striker else None
-    force = sp.Rational(str(file.read("precompression", finite, 0.0)))
+    force = _number(file, "precompression", finite) or sp.S.Zero
     if force < 0:
         raise InputError(f"precompression is {force}: it must not be negative")
-    if row.spheres:
-        return ChainInput(
-            Cell.of_spheres(row.spheres), Power(EXPONENT), force, True, velocity, mass
-        )
-    # the smallest periodic cell of a chain of masses
-    masses, stiffnesses = row.masses * min(row.repeat, 2), row.stiffnesses or [1.0]
-    P = period(masses, stiffnesses)
-    stiffnesses = [stiffnesses[i % len(stiffnesses)] for i in range(P)]
-    spacings = row.spacings
-    spacing = sp.Rational(str(sum(spacings) / len(spacings))) if spacings else D
-    cell = Cell(tuple(masses[:P]), tuple(stiffnesses), spacing)
-    named = row.given.one("k", "law") == "law"
-    law = (
-        row.given.read("law", read_law) if named else Power(row.given.read("k", finite))
+    described = file.read("striker", table(STRIKER), Table({}, "striker", STRIKER))
+    like = described.read("like", among(beads)) if "like" in described else None
+    striker = Striker(
+        velocity=_number(described, "velocity", finite) or None,
+        drop=_number(described, "drop", positive),
+        mass=like and like.mass,
     )
+    gravity = file.read("gravity", finite, 0.0)
+    if row.spheres:
+        cell = Cell.of_spheres(row.spheres)
+        return ChainInput(cell, Power(EXPONENT), force, True, striker, gravity)
+    law: ContactLaw
+    if row.given.one("k", "law") == "law":
+        law = row.given.read("law", read_law)
+    else:
+        law = Power(row.given.read("k", finite))
     si = file.read("units", among({"SI": True}), False)
-    return ChainInput(cell, law, force, si, velocity, mass)
+    return ChainInput(_cell_of_masses(row), law, force, si, striker, gravity)
+
+
+def _number(entries: Table, key: str, reader: Reader) -> sp.Rational | None:
+    """Read an entry exactly, as the decimal that it prints as; None if it is absent."""
+    if key not in entries:
+        return None
+    return sp.Rational(str(entries.read(key, reader)))
+
+
+def _cell_of_masses(row: Row) -> Cell:
+    """The smallest periodic cell of a chain of masses."""
+    # Two cells show a period that is longer than one half of a cell.
+    masses = row.masses * min(row.repeat, 2)
+    stiffnesses = row.stiffnesses or [1.0]
+    P = period(masses, stiffnesses)
+    contacts = [stiffnesses[i % len(stiffnesses)] for i in range(P)]
+    spacing: sp.Expr = D
+    if row.spacings:
+        spacing = sp.Rational(str(sum(row.spacings) / len(row.spacings)))
+    return Cell(tuple(masses[:P]), tuple(contacts), spacing)

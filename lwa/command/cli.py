@@ -12,8 +12,9 @@ from typing import Any
 
 import click
 
-from lwa.base import INTERRUPTED, InputError, NoSolitaryWave
+from lwa.base import INTERRUPTED, Refusal, cut
 from lwa.base.progress import alive
+from lwa.command.hints import help_end, next_step
 
 HELP = {"help_option_names": ["-h", "--help"]}
 """Settings of a command: both ways to ask for help."""
@@ -75,12 +76,14 @@ def run(
             stream.reconfigure(encoding="utf-8", errors="backslashreplace")
     # Numbers of 330 digits have coefficients of 10^5 at the highest orders; 3·10^5 are read in 1 s.
     sys.set_int_max_str_digits(300_000)
-    sys.exit(_status(command, name, arguments))
+    given = sys.argv[1:] if arguments is None else arguments
+    sys.exit(_status(command, name, given))
 
 
-def _status(command: click.Command, name: str, arguments: Sequence[str] | None) -> int:
+def _status(command: click.Command, name: str, arguments: Sequence[str]) -> int:
     """Run a command and return its exit status; what it refuses is one line on standard error."""
-    output, status, fault = sys.stdout, 2, ""
+    output = sys.stdout
+    status = 2
     try:
         if output is None:
             raise OSError(errno.EBADF, "it is closed")
@@ -92,8 +95,8 @@ def _status(command: click.Command, name: str, arguments: Sequence[str] | None) 
         return 2
     except click.ClickException as error:
         fault = error.format_message()
-    except (InputError, NoSolitaryWave) as error:
-        fault = str(error)
+    except Refusal as refusal:
+        fault = next_step(refusal, command, name, arguments)
     except (click.Abort, KeyboardInterrupt) as error:
         status = INTERRUPTED
         interrupt = error.__cause__ or error  # click puts an Abort around it
@@ -102,15 +105,14 @@ def _status(command: click.Command, name: str, arguments: Sequence[str] | None) 
     except (OSError, SystemExit) as error:
         if isinstance(error, SystemExit) and sys.stdout is output:
             raise
-        sys.stdout = (
-            output  # click replaces the output, and exits, where a pipe is closed
-        )
+        # Click replaces the output, and exits, where a pipe is closed.
+        sys.stdout = output
         if output is not None:  # discard what is not flushed yet
             os.dup2(os.open(os.devnull, os.O_WRONLY), output.fileno())
         if isinstance(error, SystemExit):
             return CLOSED
         fault = f"{error.filename or 'the output'}: {error.strerror or error}"
-    click.echo(f"{name}: {' '.join(fault.split())}", err=True)
+    click.echo(cut(f"{name}: {fault}"), err=True)
     return status
 
 
@@ -126,7 +128,13 @@ COMMANDS = {
 """Module in `lwa.command`, and summary, of each command by its name."""
 
 
-@click.group(cls=Commands, package="lwa.command", table=COMMANDS, context_settings=HELP)
+@click.group(
+    cls=Commands,
+    package="lwa.command",
+    table=COMMANDS,
+    context_settings=HELP,
+    epilog=help_end(["lwa derive", "lwa wave --k 3/2 --masses 1"], "reference"),
+)
 @version
 def lwa() -> None:
     """Long-wave theory of granular chains with contact force F = A δ^k.

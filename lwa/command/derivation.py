@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import click
-
+from lwa.base.frozen import Shown
+from lwa.command.answer import Answer, Values
 from lwa.command.chain import take_chain
-from lwa.command.options import theory_options
-from lwa.command.rows import Answer, Row, Values
-from lwa.equation.terms import Terms, by_order
+from lwa.command.options import command, given, theory_options
+from lwa.command.rows import Row
+from lwa.equation.terms import Terms, by_order, latex_by_order
 from lwa.theory import Theory, homogenize
+from lwa.wave.compact import canonical_wave
 
 UNKNOWNS = {
     "first": "u is the displacement of the cell's first particle",
@@ -19,29 +20,50 @@ UNKNOWNS = {
 }
 """Meaning of the unknown u by the name of the field."""
 
+FIRST = "from field to field G and H differ; in the canonical field, whichever bead is the first:"
+"""Heading of the canonical equation's coefficients beside those of a first field."""
+
 
 def settings_json(theory: Theory) -> Values:
     """JSON of the chain, its law and the settings; the φ_n are functions of the compression."""
-    law = {}
+    settings: Values = {"k": str(theory.k)}
     if not theory.law.homogeneous:
-        law = {
-            "law": str(theory.law.F),
-            "phi": {str(n): str(x) for n, x in theory.phi.items()},
-        }
-    return {
-        "k": str(theory.k),
-        **law,
-        "masses": [str(m) for m in theory.cell.masses],
-        "stiffnesses": [str(A) for A in theory.cell.stiffnesses],
-        "spacing": str(theory.cell.spacing),
-        "order": theory.order,
-        "closure": theory.closure.name,
-        "branch": theory.closure.model.branch,
-        "field": theory.closure.field,
-    }
+        settings["law"] = str(theory.law.F)
+        settings["phi"] = {str(n): str(x) for n, x in theory.phi.items()}
+    settings["masses"] = [str(m) for m in theory.cell.masses]
+    settings["stiffnesses"] = [str(A) for A in theory.cell.stiffnesses]
+    settings["spacing"] = str(theory.cell.spacing)
+    settings["order"] = theory.order
+    settings["closure"] = theory.closure.name
+    settings["branch"] = theory.closure.model.branch
+    settings["field"] = theory.closure.field
+    return settings
 
 
-@click.command()
+def closure_lines(theory: Theory) -> list[str]:
+    """Lines of text with the closure and the unknown, and why a closure was chosen."""
+    closure = theory.closure
+    lines = [f"closure {closure.name}; {UNKNOWNS[closure.field]}"]
+    if theory.cell.size > 2 and not given("closure"):
+        lines.append(
+            f"{theory.cell.size} beads in a cell: the paper's closure is that of one or two, the "
+            "full one was taken"
+        )
+    return lines
+
+
+def depends_on_first(theory: Theory) -> bool:
+    """True for the first field of unlike beads, whose wave depends on which bead is the first."""
+    first = theory.closure.field == "first" and theory.pde.acoustic
+    return first and not theory.cell.uniform and theory.law.homogeneous
+
+
+@command(
+    "lwa derive --order 4",
+    "lwa derive --masses 1,2,3 --k 5/2 --format latex",
+    "lwa derive --law hertz2:1,2 --masses 1",
+    page="closure",
+)
 @theory_options()
 def derive(style: str, **options: Any) -> None:
     """Derive the long-wave equation of a chain.
@@ -53,76 +75,103 @@ def derive(style: str, **options: Any) -> None:
     """
     chain = take_chain(options)
     theory = homogenize(chain.cell, law=chain.law, **options)
-    closure, law, pde = theory.closure, theory.law, theory.pde
-    head = {
-        **settings_json(theory),
-        "lambda": theory.amplitude_ratio,
-        "ansatz": {},
-        **dict.fromkeys("GHI"),
-        **pde.third_order,
-        "terms": _terms_json(pde.coefficients),
-        "defect": _terms_json(theory.defect),
-        "conservative": pde.conservative,
-    }
-    rows: list[Row | str] = [
+    pde = theory.pde
+    head: Values = settings_json(theory)
+    head["lambda"] = theory.amplitude_ratio
+    head["ansatz"] = {}
+    head |= dict.fromkeys("GHI") | pde.third_order
+    head["terms"] = _terms_json(pde.coefficients)
+    head["defect"] = _terms_json(theory.defect)
+    head["conservative"] = pde.conservative
+    rows: list[Row | str | Answer] = [
         chain.text,
-        f"closure {closure.name}, {closure.model.branch} branch, to D^{theory.order}; "
-        f"τ = t·{pde.time_scale}",
-        UNKNOWNS[closure.field],
+        *closure_lines(theory),
+        f"{theory.closure.model.branch} branch, to D^{theory.order}; τ = t·{pde.time_scale}",
+        *_law_lines(theory),
+        "",
+        *_ansatz_rows(theory),
+        *_field_lines(theory),
+        str(pde),
+        "",
+        *_defect_lines(theory),
     ]
-    if not law.homogeneous:
-        rows.append(
-            f"phi_n = {law.delta}^(n-1) F^(n)/F', at {law.delta} = D u_x; F' is taken there"
-        )
-        rows += [f"  phi{n} = {value}" for n, value in theory.phi.items()]
-    rows.append("")
-    if theory.ansatz:
-        rows += [
-            "w = λ (u + Σ b_n D^n ∂_x^n u), the linear part of the second particle's field",
-            f"  λ = {theory.amplitude_ratio}",
-            *(
-                Row(f"ansatz.{n}", f"b{n}", b, digits=0)
-                for n, b in theory.ansatz.items()
-            ),
-            "",
-        ]
-    for i, series in theory.slaved.items():
-        # the linear part of the second particle's field w is the ansatz
-        if i == 1:
-            series = {n: found.nonlinear for n, found in series.items()}
-        if lines := by_order(series, "D^{}"):
-            name = (
-                "nonlinear terms of w"
-                if i == 1
-                else f"field of particle {i + 1}, less u"
-            )
-            rows += [f"{name}:", *lines, ""]
-    rows += [str(pde), ""]
+    if depends_on_first(theory) and theory.order >= 4:
+        canonical = canonical_wave(theory.cell, theory.k)
+        letters = [Row(x, x, getattr(canonical, x), form="formula") for x in "GHI"]
+        rows.append(Answer({}, ["", FIRST, *letters], key="canonical"))
+    shown: list[Shown | str] = [theory]
     if theory.defect:
-        rows.append(
-            "defect: u_ττ by the first equation of motion minus u_ττ by the second"
-        )
-        rows += by_order(theory.defect, pde.heading)
-    else:
-        rows.append("all equations of motion are satisfied at every order shown")
-    if closure.model.branch == "acoustic" and not pde.conservative:
-        rows.append(
-            "not in conservation form: the linear closure of unequal particles does not conserve "
-            "momentum; see --closure full"
-            if closure.name == "linear"
-            else "not in conservation form in this field; see --field center"
-        )
-    Answer(head, rows, shown=[theory]).print(style)
+        defect = latex_by_order([], theory.defect, theory.cell.spacing)
+        difference = r"{u_{\tau\tau}^{(1)} - u_{\tau\tau}^{(2)}}"
+        shown.append(f"{difference} = {defect}")
+    Answer(head, rows, shown=shown).print(style)
+
+
+def _law_lines(theory: Theory) -> list[str]:
+    """Lines of text with the φ_n of a law that is no power."""
+    law = theory.law
+    if law.homogeneous:
+        return []
+    delta = law.delta
+    lines = [f"phi_n = {delta}^(n-1) F^(n)/F', at {delta} = D u_x; F' is taken there"]
+    return lines + [f"  phi{n} = {value}" for n, value in theory.phi.items()]
+
+
+def _ansatz_rows(theory: Theory) -> list[Row | str]:
+    """Rows of λ and the b_n; [] for a cell of one particle."""
+    if not theory.ansatz:
+        return []
+    rows: list[Row | str] = [
+        "w = λ (u + Σ b_n D^n ∂_x^n u), the linear part of the second particle's field",
+        f"  λ = {theory.amplitude_ratio}",
+    ]
+    for n, b in theory.ansatz.items():
+        rows.append(Row(f"ansatz.{n}", f"b{n}", b, form="formula"))
+    return [*rows, ""]
+
+
+def _field_lines(theory: Theory) -> list[str]:
+    """Lines of text with what the full closure adds to the fields of the particles."""
+    lines = []
+    for i, orders in theory.slaved.items():
+        title = f"field of particle {i + 1}, less u"
+        if i == 1:  # its linear part is the ansatz
+            title = "nonlinear terms of w"
+            orders = {n: found.nonlinear for n, found in orders.items()}
+        terms = by_order(orders, "D^{}")
+        if terms:
+            lines += [f"{title}:", *terms, ""]
+    return lines
+
+
+def _defect_lines(theory: Theory) -> list[str]:
+    """Lines of text with the defect, and whether momentum is conserved."""
+    pde = theory.pde
+    lines = ["all equations of motion are satisfied at every order shown"]
+    if theory.defect:
+        lines = [
+            "defect: u_ττ by the first equation of motion minus u_ττ by the second",
+            *by_order(theory.defect, pde.heading),
+        ]
+    if pde.acoustic and not pde.conservative:
+        if theory.closure.name == "linear":
+            lines.append(
+                "not in conservation form: the linear closure of unequal particles does not "
+                "conserve momentum; see --closure full"
+            )
+        else:
+            lines.append("not in conservation form in this field; see --field center")
+    return lines
 
 
 def _terms_json(coefficients: Mapping[int, Terms]) -> list[Values]:
-    return [
-        {
-            "order": n,
-            "jet": [list(power) for power in jet.x],
-            "jet_t": [list(power) for power in jet.t],
-            "coefficient": terms[jet],
-        }
-        for n, terms in coefficients.items()
-        for jet in terms
-    ]
+    """JSON of the terms by their orders."""
+    rows: list[Values] = []
+    for n, terms in coefficients.items():
+        for jet, coefficient in terms.items():
+            row: Values = {"order": n}
+            row["jet"] = [list(power) for power in jet.x]
+            row["jet_t"] = [list(power) for power in jet.t]
+            row["coefficient"] = coefficient
+            rows.append(row)
+    return rows

@@ -2,40 +2,57 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
-import click
 import sympy as sp
 
 from lwa.base import InputError
+from lwa.base.exact import positive
+from lwa.command.answer import Answer
 from lwa.command.chain import take_chain
 from lwa.command.options import (
     SPHERES,
     cell_options,
-    spheres_option,
+    command,
+    not_negative,
     style_option,
     value,
 )
-from lwa.command.rows import Answer, Row, attempt
-from lwa.command.waves import hertz_note
+from lwa.command.rows import Form, Row, attempt, estimated
 from lwa.expansion.physical import pulse_of_strike
 from lwa.shocks import riemann
 
+_STRIKE_FILE = "lwa-validate run --example striker > chain.toml"
 
-@click.command()
-@spheres_option(required=True)
-@value(
-    "--velocity", "Velocity of the striker, in m/s in SI.  [default: that in the file]"
+
+@command(
+    _STRIKE_FILE,
+    "lwa strike --spheres chain.toml --drop 0.5",
+    "lwa strike --spheres chain.toml --velocity 1 --mass 0.01",
+    page="recipes",
 )
-@value("--drop", "Height from which the striker falls, in m, in place of --velocity.")
+@SPHERES
+@value(
+    "--velocity",
+    "Velocity of the striker, in m/s in SI.  [default: that in the file]",
+    "1",
+    positive,
+)
+@value(
+    "--drop",
+    "Height from which the striker falls, in m, in place of --velocity.",
+    "0.5",
+    positive,
+)
 @value(
     "--mass",
     "Mass of the striker, in kg in SI.  [default: that in the file, or of a bead]",
+    "0.01",
+    positive,
 )
 @style_option()
 def strike(
-    spheres: str,
+    spheres: str | None,
     velocity: sp.Expr | None,
     drop: sp.Expr | None,
     mass: sp.Expr | None,
@@ -44,30 +61,34 @@ def strike(
     """Leading pulse of a chain of equal beads that a mass strikes: force, speed and width.
 
     Needs --spheres, and --velocity or --drop unless the file has a striker. Units are those of the
-    file; the width is that of a contact's force.
+    file; the width is that of a contact's force. Gravity acts on the striker that falls, and is
+    neglected in the chain.
     """
+    if spheres is None:
+        raise InputError(
+            f"the chain is read from a file, such as one written by {_STRIKE_FILE}",
+            spheres="chain.toml",
+        )
     chain = take_chain({"spheres": spheres})
-    cell, law = chain.cell, chain.law
+    cell, striker = chain.cell, chain.striker
     if chain.precompression:
         raise InputError(
-            f"precompression is {chain.precompression}: the pulse of a strike is that of a chain "
-            "without load"
+            f"precompression is {chain.precompression} in {spheres}: the pulse of a strike is that "
+            "of a chain without load; leave the key out"
         )
     if velocity is None and drop is None:
-        velocity = chain.velocity
+        velocity, drop = striker.velocity, striker.drop
+    if velocity is None and drop is None:
+        raise InputError(f"{spheres} has no striker that moves", velocity="1")
     if mass is None:
-        mass = chain.mass or cell.masses[0]
-    pulse = pulse_of_strike(cell, mass, velocity, drop=drop, k=law.exponent)
-    rows: list[Row | str] = [
-        f"chain of equal beads; F = A δ^k, k = {law.exponent}",
-        Row("", "mass of the beads", cell.masses[0], unit="kg"),
-        Row("mass", "mass of the striker", pulse.mass, "kg", expression=False),
+        mass = striker.mass or cell.masses[0]
+    pulse = pulse_of_strike(cell, mass, velocity, drop=drop, k=chain.law.exponent)
+    rows: list[Row | str | Answer] = [
+        f"chain of equal beads; F = A δ^k, k = {chain.law.exponent}",
+        Row("", "mass of the beads", cell.masses[0], "kg"),
+        Row("mass", "mass of the striker", pulse.mass, "kg", form="number"),
         Row(
-            "velocity",
-            "velocity of the striker",
-            pulse.velocity,
-            "m/s",
-            expression=False,
+            "velocity", "velocity of the striker", pulse.velocity, "m/s", form="number"
         ),
         "",
         "leading pulse:",
@@ -76,24 +97,39 @@ def strike(
         Row("fwhm.length", "FWHM of the force", pulse.fwhm("force", "length"), "m"),
         Row("fwhm.time", "FWHM of the force in time", pulse.fwhm(), "s"),
     ]
-    notes = hertz_note(chain, pulse.wave.F)
+    notes = chain.hertz_notes(pulse.wave.F)
+    if chain.gravity:
+        notes.append(
+            f"gravity {chain.gravity:g} is neglected: the weight of the beads is taken for small "
+            "beside the pulse's force; lwa-validate run has it"
+        )
     if pulse.train:
         notes.append(
             "a striker heavier than two beads sends further pulses behind this one"
         )
-    Answer({}, rows, chain.si, shown=[pulse], notes=notes).print(style)
+    errors = "bound of the difference to struck chains, as measured"
+    Answer({}, rows, chain.scale, [pulse], errors, notes).print(style)
 
 
-@click.command()
+@command(
+    "lwa shock --k 3/2 --masses 1 --spacing 1 --behind 2 --ahead 1",
+    "lwa shock --k 3/2 --masses 1 --behind 1",
+    page="shocks",
+)
 @cell_options()
 @SPHERES
-@value("--behind", "Strain behind the front, compression over D.")
+@value("--behind", "Strain behind the front, compression over D.", "2", not_negative)
 @value(
     "--piston",
     "Velocity of the wall, in m/s if the chain is in SI, in place of --behind.",
+    "1",
+    positive,
 )
 @value(
-    "--ahead", "Strain ahead of the front.  [default: 0, or that of the load in a file]"
+    "--ahead",
+    "Strain ahead of the front.  [default: 0, or that of the load in a file]",
+    "1",
+    not_negative,
 )
 def shock(
     style: str,
@@ -110,8 +146,12 @@ def shock(
     doubling rule. Errors were measured on driven chains; closed forms without an error are exact
     for the law. Values that no theory here gives are null; `notes` has the reason.
     """
-    if (behind is None) == (piston is None):
-        raise InputError("--behind or --piston: one of the two is wanted")
+    if behind is not None and piston is not None:
+        raise InputError(
+            "--behind and --piston are both given: one says the other", piston=None
+        )
+    if behind is None and piston is None:
+        raise InputError("neither --behind nor --piston is given", behind="1")
     chain = take_chain(options)
     cell, law, static = chain.cell, chain.law, chain.precompression
     if ahead is None:
@@ -121,39 +161,45 @@ def shock(
     else:
         front = riemann.shock(cell, behind, ahead, law=law)
 
-    def row(key: str, label: str, unit: str = "m/s") -> Row:
-        name, _, rule = key.partition(".")
-        value = (
-            attempt(front.leading_speed, rule)
-            if rule
-            else attempt(getattr, front, name)
-        )
-        closed = isinstance(value, sp.Expr) and not value.has(sp.Float)
-        error = attempt(front.estimate, name, rule or "doubling")
-        bound = math.nan if isinstance(error, InputError) else error.relative_error
-        return Row(key, label, value, unit, expression=closed, error=bound)
+    def row(
+        name: str, label: str, unit: str, *rule: riemann.RuleName, known: bool = True
+    ) -> Row:
+        """The row of an attribute, or of the leading edge by a rule."""
+        key = ".".join((name, *rule))
+        if rule:
+            result = attempt(front.leading_speed, *rule)
+        else:
+            result = attempt(getattr, front, name)
+        if isinstance(result, InputError):
+            return Row(key, label, result, unit)
+        form: Form = "number" if result.has(sp.Float) else "both"
+        error = estimated(front, name, *rule) if known else None
+        return Row(key, label, result, unit, form=form, estimate=error)
 
     kind = attempt(getattr, front, "kind")
-    head = {"kind": None if isinstance(kind, InputError) else kind}
-    rows: list[Row | str] = [
+    named = None if isinstance(kind, InputError) else kind
+    rows: list[Row | str | Answer] = [
         chain.text,
-        row("behind", "strain behind", ""),
+        row("behind", "strain behind", "", known=False),
         Row("ahead", "strain ahead", front.ahead),
         "",
-        f"{head['kind'] or 'front'}, speeds dx/dt:",
-        row("plateau", "velocity of the wall"),
-        row("trailing_speed", "trailing edge"),
-        *(
-            row(f"leading_speed.{rule}", f"leading edge, {rule}")
-            for rule in riemann.RULES
-        ),
+        f"{named or 'front'}, speeds dx/dt:",
+        row("plateau", "velocity of the wall", "m/s", known=False),
+        row("trailing_speed", "trailing edge", "m/s"),
     ]
+    for rule in riemann.RULES:
+        rows.append(row("leading_speed", f"leading edge, {rule}", "m/s", rule))
     if kind != "rarefaction":
         rows.append(row("peak", "peak strain, doubling", ""))
         rows.append(row("peak_force", "peak force, doubling", "N"))
-    notes = [
-        "c₋ > 2 c₊: the beads near the wall go on oscillating. The strain behind is that of a wall "
-        "at rest beside its neighbours, v_p = ∫ c dp; the mean strain is below it."
-    ]
-    notes *= front.oscillates
-    Answer(head, rows, chain.si, cell.spacing, [front], notes).print(style)
+    notes = []
+    if front.oscillates:
+        notes.append(
+            "c₋ > 2 c₊: the beads near the wall go on oscillating. The strain behind is that of a "
+            "wall at rest beside its neighbours, v_p = ∫ c dp; the mean strain is below it."
+        )
+    missing = [row.value for row in rows if isinstance(row, Row)]
+    if any(str(value).startswith(f"'{cell.spacing}'") for value in missing):
+        notes.append("a number that depends on the spacing wants one: --spacing 1")
+    errors = "bound of the difference to driven chains, as measured"
+    Answer({"kind": named}, rows, chain.scale, [front], errors, notes).print(style)

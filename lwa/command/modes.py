@@ -6,12 +6,13 @@ import math
 from dataclasses import replace
 from typing import Any
 
-import click
 import sympy as sp
 
-from lwa.base.exact import InputError
-from lwa.base.frozen import Shown
-from lwa.command.chain import take_chain
+from lwa.base.exact import InputError, positive
+from lwa.base.frozen import TABLE_DIGITS, Shown
+from lwa.base.words import BRANCHES, BranchName, one_of
+from lwa.command.answer import Answer, Values
+from lwa.command.chain import ChainInput, take_chain
 from lwa.command.options import (
     BACKGROUND,
     PRECOMPRESSION,
@@ -19,18 +20,23 @@ from lwa.command.options import (
     SPHERES,
     angle,
     cell_options,
+    command,
     given,
-    reader,
     series_options,
     value,
 )
-from lwa.command.rows import PRINTED_DIGITS, Answer, Row, Values
+from lwa.command.rows import Row, attempt
 from lwa.law import Power
 from lwa.linear.dispersion import Dispersion, LoadedChain
 from lwa.spheres.hertz import EXPONENT
+from lwa.spheres.units import fitting
 
 
-@click.command()
+@command(
+    "lwa dispersion --masses 3,1 --order 6",
+    "lwa dispersion --masses 1,2 --precompression 1 --spacing 1",
+    page="pressed",
+)
 @series_options("1", "Highest power of κ in Ω², an integer.")
 @PRECOMPRESSION
 @SPACING
@@ -54,46 +60,59 @@ def dispersion(
     if precompression is not None and not (spheres or given("k")):
         chain = replace(chain, law=Power(EXPONENT))
     linear = Dispersion(chain.cell, chain.law.exponent)
-    rows: list[Row | str] = [
+    head: Values = {"acoustic": None, "optical": None}
+    rows: list[Row | str | Answer] = [
         chain.text,
         "Ω²(κ), κ = qD and Ω/D the frequency in τ",
         "",
     ]
-    head: Values = {"acoustic": None, "optical": None}
     for name, series in linear.series(order).items():
         head[name] = {str(n): str(c) for n, c in series.items()}
+        rows.append(f"{name}:")
+        for n, c in series.items():
+            rows.append(f"  {f'κ^{n}' if n else '1'}: {c}")
+    shown: list[Shown | str] = [linear]
+    if precompression is not None:
+        loaded = LoadedChain(chain.cell, chain.law, precompression)
+        shown.append(loaded)
         rows += [
-            f"{name}:",
-            *(f"  {f'κ^{n}' if n else '1'}: {c}" for n, c in series.items()),
+            "",
+            f"about the load {precompression}:",
+            Row("precompression", "", precompression, form="formula"),
+            Row("spring_constants", "spring constants", loaded.spring_constants, "N/m"),
+            Row("sound_speed", "sound speed dx/dt", loaded.sound_speed, "m/s"),
         ]
-    if precompression is None:
-        Answer(head, rows, shown=[linear]).print(style)
-        return
-    loaded = LoadedChain(chain.cell, chain.law, precompression)
-    rows += [
-        "",
-        f"about the load {precompression}:",
-        Row("precompression", "", precompression, digits=0),
-        Row("spring_constants", "spring constants", loaded.spring_constants, "N/m"),
-        Row("sound_speed", "sound speed dx/dt", loaded.sound_speed, "m/s"),
-    ]
-    numbers = (*chain.cell.masses, *loaded.spring_constants)
-    if not any(x.free_symbols for x in numbers):
-        edges = loaded.bands.edges()
-        head["band_edges_value"] = edges.tolist()
-        head["band_edges_frequency_value"] = (edges / (2 * math.pi)).tolist()
-        unit = "s" if chain.si else "unit of time"
-        for i, (low, high) in enumerate(edges, start=1):
-            hertz = (
-                f" ({low / (2 * math.pi):.6g} … {high / (2 * math.pi):.6g} Hz)"
-                * chain.si
-            )
-            band = f"{low:.{PRINTED_DIGITS}g} … {high:.{PRINTED_DIGITS}g}"
-            rows.append(f"  band {i}: {band}, in rad per {unit}{hertz}")
-    Answer(head, rows, chain.si, chain.cell.spacing, [linear, loaded]).print(style)
+        numbers = (*chain.cell.masses, *loaded.spring_constants)
+        if not any(x.free_symbols for x in numbers):
+            edges = loaded.bands.edges()
+            head["band_edges_value"] = edges.tolist()
+            head["band_edges_frequency_value"] = (edges / (2 * math.pi)).tolist()
+            rows += _band_lines(chain, edges.tolist())
+    Answer(head, rows, chain.scale, shown).print(style)
 
 
-@click.command()
+def _band_lines(chain: ChainInput, edges: list[list[float]]) -> list[str]:
+    """Lines of text with the frequencies from and to of each band."""
+    unit = "Hz" if chain.si else "rad per unit of time"
+    turn = 2 * math.pi if chain.si else 1.0
+    fitted = fitting(unit, edges[-1][1] / turn)
+    lines = []
+    for i, band in enumerate(edges, start=1):
+        low, high = (f"{x / turn / fitted.size:.{TABLE_DIGITS}g}" for x in band)
+        lines.append(f"  band {i}: {low} … {high} {fitted.name}")
+    return lines
+
+
+def _branch(text: str, name: str) -> BranchName | int:
+    """Read a branch by its name or its number."""
+    return int(text) if text.isdecimal() else one_of(text, BRANCHES, name)
+
+
+@command(
+    "lwa envelope --masses 1,1/2 --k 3/2 --precompression 1 --detuning 1/1000",
+    "lwa envelope --masses 1 --k 2 --background 1 --wavenumber pi/3",
+    page="modes",
+)
 @cell_options()
 @SPHERES
 @BACKGROUND
@@ -101,29 +120,35 @@ def dispersion(
 @value(
     "--wavenumber",
     "Wavenumber κ per cell, 0 … pi: a number, a name, or a part of pi such as pi/3.",
+    "pi/3",
+    angle,
     "pi",
-    reader(angle),
 )
-@click.option(
+@value(
     "--branch",
+    "Branch of the mode: acoustic, optical, or its number from 0.  [default: optical; acoustic for "
+    "equal beads]",
+    "acoustic",
+    _branch,
     metavar="NAME|N",
-    help="Branch of the mode: acoustic, optical, or its number from 0.  [default: optical; "
-    "acoustic for equal beads]",
 )
 @value(
     "--frequency",
     "Frequency f of a breather: in Hz if the chain is in SI, else in radians per time.",
+    "2.4",
+    positive,
 )
 @value(
     "--detuning",
     "Relative detuning 1 - f/f0 of a breather from the band's edge f0, in place of --frequency.",
+    "1/1000",
 )
 def envelope(
     style: str,
     background: sp.Expr | None,
     precompression: sp.Expr | None,
     wavenumber: sp.Expr,
-    branch: str | None,
+    branch: BranchName | int | None,
     frequency: sp.Expr | None,
     detuning: sp.Expr | None,
     **options: Any,
@@ -137,58 +162,61 @@ def envelope(
     frequencies are in Hz, displacements in m and forces in N. In JSON `amplitude` is the largest
     displacement of each bead, and `width` is 1/b of the envelope sech(bn) or tanh(bn).
     """
-    from lwa.envelopes import (
-        schrodinger,
-    )  # here: it loads NumPy, which `lwa dispersion` may spare
+    from lwa.envelopes import schrodinger  # here: `lwa dispersion` spares NumPy
 
     if frequency is not None and detuning is not None:
         raise InputError(
-            "--frequency and --detuning are both given: one says the other"
+            "--frequency and --detuning are both given: one says the other",
+            detuning=None,
         )
     chain = take_chain(options)
-    cell, place = chain.cell, int(branch) if branch and branch.isdecimal() else branch
-    load = {
-        "background": background,
-        "precompression": chain.load(background, precompression),
-    }
+    load = chain.load(background, precompression)
+    if background is None and load is None:
+        raise InputError(
+            "neither --background nor --precompression is given: a mode is that of a loaded chain",
+            precompression="1",
+        )
     equation = schrodinger.envelope(
-        cell, law=chain.law, **load, wavenumber=wavenumber, branch=place
+        chain.cell,
+        law=chain.law,
+        background=background,
+        precompression=load,
+        wavenumber=wavenumber,
+        branch=branch,
     )
     turn = 2 * sp.pi if chain.si else sp.S.One
     name = "ω/(2π)" if chain.si else "ω"
-    rows: list[Row | str] = [
+    kind = attempt(getattr, equation, "kind")
+    head: dict[str, str | None] = {"branch": str(equation.branch), "kind": None}
+    described = f"  bright or dark: {kind}"
+    if not isinstance(kind, InputError):
+        head["kind"] = kind
+        described = f"  {kind} envelopes"
+    rows: list[Row | str | Answer] = [
         chain.text,
         "u = Ψ(X, T) U e^{i(κ n - ω t)} + c.c., Σ m |U|² = 1, n and κ per cell",
         "i Ψ_T + ½ ω'' Ψ_XX = χ |Ψ|² Ψ",
         "",
-        Row("wavenumber", "κ", equation.wavenumber, digits=0),
+        Row("wavenumber", "κ", equation.wavenumber, form="formula"),
         Row("frequency", f"frequency {name}", equation.frequency / turn, "Hz"),
         Row("group_velocity", "dω/dκ", equation.group_velocity, "cells/s"),
         Row("dispersion", "ω''", equation.dispersion, "cells²/s"),
         Row("nonlinearity", "χ", equation.nonlinearity, "1/(s kg m²)"),
+        described,
     ]
-    head: dict[str, str | None] = {"branch": str(equation.branch), "kind": None}
-    try:
-        head["kind"] = equation.kind
-        rows.append(f"  {equation.kind} envelopes")
-    except InputError as fault:
-        rows.append(f"  bright or dark: {fault}")
-    shown: list[Shown] = [equation]
+    shown: list[Shown | str] = [equation]
     if frequency is not None or detuning is not None:
-        breather = equation.breather(frequency and frequency * turn, detuning=detuning)
+        angular = None if frequency is None else frequency * turn
+        breather = equation.breather(angular, detuning=detuning)
         shown.append(breather)
         shape = "sech" if breather.kind == "bright" else "tanh"
+        own = breather.frequency / turn
         rows += [
             "",
             f"{breather.kind} breather, |Ψ| = a {shape}(b n):",
-            Row(
-                "breather_frequency",
-                f"frequency {name}",
-                breather.frequency / turn,
-                unit="Hz",
-            ),
+            Row("breather_frequency", f"frequency {name}", own, "Hz"),
             Row("detuning", "detuning Δ = 1 - f/f0", breather.detuning),
             Row("amplitude", "largest displacement by bead", breather.amplitude, "m"),
             Row("width", "width 1/b in cells", breather.width),
         ]
-    Answer(head, rows, chain.si, cell.spacing, shown).print(style)
+    Answer(head, rows, chain.scale, shown).print(style)

@@ -1,4 +1,4 @@
-"""Options that several commands have in common, and their readers: callbacks of click."""
+"""Options that several commands have in common, their readers, and the end of a command's help."""
 
 from __future__ import annotations
 
@@ -11,13 +11,16 @@ import click
 import sympy as sp
 from click.core import ParameterSource
 
-from lwa.base.exact import integer, read_exact
-from lwa.cell import D, k
-from lwa.closure.consistency import BRANCHES, CLOSURES, FIELDS
+from lwa.base.exact import InputError, integer, positive, read_exact
+from lwa.base.words import BRANCHES, CLOSURES, FIELDS, one_of, similar
+from lwa.cell import D, exponent, k
+from lwa.command.hints import ValueOption, called, help_end
 from lwa.law import NAMES, read_law
 
-Command = Callable[..., None]
-Option = Callable[[Command], Command]
+Function = Callable[..., None]
+Option = Callable[[Any], Any]
+Reader = Callable[[str, str], Any]
+"""Function of a text and of the option's name in messages."""
 
 STYLES = ("text", "json", "latex")
 """Values of ``--format`` of every command."""
@@ -25,16 +28,24 @@ STYLES = ("text", "json", "latex")
 # --- readers ---
 
 
-def called(option: click.Parameter) -> str:
-    """Name of an option in messages, without its dashes."""
-    return option.opts[0].lstrip("-")
+def reader(read: Reader) -> Callable[..., Any]:
+    """Make a callback of Click that reads the text of an option.
 
+    Parameters
+    ----------
+    read : callable
+        Function of the text and of the option's name; raises `lwa.InputError` for other texts.
 
-def reader(read: Callable[[str, str], Any]) -> Callable[..., Any]:
-    """Make a callback of click that reads a text under the name of its option; None when absent."""
-    return lambda context, option, text: (
-        None if text is None else read(text, called(option))
-    )
+    Returns
+    -------
+    callable
+        The callback; its value is None for an option that is absent.
+    """
+
+    def callback(context: click.Context, option: click.Parameter, text: Any) -> Any:
+        return None if text is None else read(text, called(option))
+
+    return callback
 
 
 quantity = reader(read_exact)
@@ -44,12 +55,24 @@ quantity = reader(read_exact)
 def quantities(
     context: click.Context, option: click.Parameter, text: str | None
 ) -> tuple[sp.Expr, ...]:
-    """Read quantities separated by commas; () when absent."""
-    return (
-        tuple(read_exact(part, called(option)) for part in text.split(","))
-        if text
-        else ()
-    )
+    """Read quantities separated by commas, as a callback of Click; () when absent."""
+    parts = text.split(",") if text else []
+    return tuple(read_exact(part, called(option)) for part in parts)
+
+
+def _positive_row(text: str, name: str) -> tuple[sp.Expr, ...]:
+    """Read positive quantities separated by commas."""
+    return tuple(positive(part, name) for part in text.split(","))
+
+
+def _exponent(text: str, name: str) -> sp.Expr:
+    return exponent(positive(text, name))
+
+
+def not_negative(text: str, name: str) -> sp.Expr:
+    """Read a positive quantity or zero."""
+    value = read_exact(text, name)
+    return value if value.is_zero else positive(value, name)
 
 
 def angle(text: str, name: str) -> sp.Expr:
@@ -65,10 +88,34 @@ def count(text: str, name: str) -> int:
     return integer(read_exact(text, name), name, 1)
 
 
+class Words(click.Choice[str]):
+    """One of several words; the refusal of another word names those that are spelt alike."""
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> str:
+        """Return a word that is among the choices; see `lwa.base.words.one_of`."""
+        words = list(self.choices)
+        name = "value" if param is None else called(param)
+        try:
+            return one_of(value, words, name)
+        except InputError as refusal:
+            near = similar(value, words) or words
+            raise InputError(refusal.reason, **{name: near[0]}) from None
+
+
 def given(option: str) -> bool:
     """True if the option was given on the command line."""
     source = click.get_current_context().get_parameter_source(option)
     return source is ParameterSource.COMMANDLINE
+
+
+# --- commands ---
+
+
+def command(*examples: str, page: str) -> Callable[[Function], click.Command]:
+    """Make a decorator that turns a function into a command with examples in its help."""
+    return click.command(epilog=help_end(examples, page))
 
 
 # --- options ---
@@ -77,85 +124,132 @@ def given(option: str) -> bool:
 def value(
     name: str,
     says: str,
+    example: str,
+    read: Reader = read_exact,
     default: str | None = None,
-    read: Any = quantity,
     metavar: str = "VALUE",
-    **settings: Any,
 ) -> Option:
-    """Make an option that a callback of click reads; a default is shown in the help."""
-    if (
-        default is not None
-    ):  # None itself would be a default, and no required option missing
-        settings |= {"default": default, "show_default": True}
-    return click.option(name, callback=read, metavar=metavar, help=says, **settings)
+    """Make an option.
+
+    Parameters
+    ----------
+    name : str
+        The option with its dashes.
+    says : str
+        Its help.
+    example : str
+        A valid text, for refusals of other texts.
+    read : callable
+        Reader of the text, by default that of one quantity.
+    default : str, optional
+        Text in place of an absent option, shown in the help.
+    metavar : str
+        Word for the text in the help.
+    """
+    return click.option(
+        name,
+        cls=ValueOption,
+        example=example,
+        callback=reader(read),
+        default=default,
+        show_default=default is not None,
+        metavar=metavar,
+        help=says,
+    )
 
 
 def together(*options: Option) -> Option:
     """Combine several options into one decorator, in their order in the help."""
-    return lambda command: reduce(
-        lambda c, option: option(c), reversed(options), command
-    )
-
-
-def _choice(name: str, values: Sequence[str], says: str, *names: str) -> Option:
-    kind = click.Choice(values)
-    return click.option(
-        name, *names, default=values[0], show_default=True, type=kind, help=says
+    return lambda function: reduce(
+        lambda made, option: option(made), reversed(options), function
     )
 
 
 def exponent_option(default: str) -> Option:
     """Make the option ``--k``."""
-    return value("--k", "Exponent k of the force A δ^k of a contact.", default)
+    says = "Exponent k of the force A δ^k of a contact."
+    return value("--k", says, "3/2", _exponent, default)
 
 
 def order_option(says: str, default: str | None = "4") -> Option:
     """Make the option ``--order``; without a default the command chooses."""
-    return value("--order", says, default, reader(count), "N")
+    return value("--order", says, "4", count, default, "N")
 
 
 def law_option(says: str) -> Option:
     """Make the option ``--law``."""
-    return value("--law", says, None, reader(read_law), "NAME[:PARAM,…]")
+    return value("--law", says, "hertz2:1,2", read_law, None, "NAME[:PARAM,…]")
 
 
 def style_option(languages: Sequence[str] = ()) -> Option:
     """Make the option ``--format``, the argument ``style`` of a command."""
-    return _choice("--format", (*STYLES, *languages), "Form of the result.", "style")
-
-
-def spheres_option(**settings: Any) -> Option:
-    """Make the option ``--spheres``."""
-    says = (
-        "TOML or JSON file of the chain, in place of options on masses, contacts and spacing: "
-        "spheres in SI, or any scene of lwa-validate run."
+    words = Words((*STYLES, *languages))
+    says = "Form of the result."
+    return click.option(
+        "--format", "style", default="text", show_default=True, type=words, help=says
     )
-    return value("--spheres", says, None, None, "FILE", type=click.Path(), **settings)
 
 
+def _choice(
+    name: str, words: Sequence[str], says: str, default: str | None = None
+) -> Option:
+    """Make an option with a word; without a default the theory chooses."""
+    return click.option(
+        name,
+        type=Words(words),
+        default=default,
+        show_default=default is not None,
+        help=says,
+    )
+
+
+SPHERES = click.option(
+    "--spheres",
+    metavar="FILE",
+    type=click.Path(),
+    help="TOML or JSON file of the chain, in place of options on masses, contacts and spacing: "
+    "spheres in SI, or any scene of lwa-validate run.",
+)
 MASSES = value(
     "--masses",
     "Masses of the beads in one period of the chain.",
+    "0.45,0.123",
+    _positive_row,
     "m1,m2",
-    quantities,
     "M1,M2,…",
 )
 STIFFNESSES = value(
     "--stiffnesses",
-    "Stiffness A of each contact in the period, the first between beads 1 and 2.  [default: all 1]",
-    None,
-    quantities,
-    "A1,A2,…",
+    "Stiffness A of each contact in the period, the first between beads 1 and 2.  "
+    "[default: all 1]",
+    "1,1",
+    _positive_row,
+    metavar="A1,A2,…",
 )
-SPACING = value("--spacing", "Distance D between neighbouring beads at rest.", D.name)
+SPACING = value(
+    "--spacing",
+    "Distance D between neighbouring beads at rest.",
+    "1",
+    positive,
+    D.name,
+)
 FORCE = value(
     "--force",
     "Peak contact force of the wave, any static load included; in N if the chain is in SI.",
+    "10",
+    positive,
 )
-SPHERES = spheres_option()
-BACKGROUND = value("--background", "Static strain of the chain, compression over D.")
+BACKGROUND = value(
+    "--background",
+    "Static strain of the chain, compression over D.",
+    "1/10",
+    not_negative,
+)
 PRECOMPRESSION = value(
-    "--precompression", "Static force on the chain; in N if the chain is in SI."
+    "--precompression",
+    "Static force on the chain; in N if the chain is in SI.",
+    "1",
+    not_negative,
 )
 
 
@@ -181,18 +275,20 @@ def theory_options(languages: Sequence[str] = ()) -> Option:
             "--closure",
             CLOSURES,
             "How the motion of the other beads follows from that of the first: linear, the "
-            "paper's ansatz, or full, which satisfies the equation of motion of every bead.",
+            "paper's ansatz, or full, which satisfies the equation of motion of every bead.  "
+            "[default: linear for one or two masses, else full]",
         ),
         _choice(
             "--field",
             FIELDS,
             "Unknown u of the wave equation: displacement of the first bead, or the mass-weighted "
-            "mean of all beads (center, which needs --closure full).",
+            "mean of all beads.  [default: first with --closure linear, else center]",
         ),
         _choice(
             "--branch",
             BRANCHES,
             "Neighbours move together (acoustic) or against each other.",
+            "acoustic",
         ),
     )
 

@@ -1,219 +1,222 @@
-"""Results of a command as rows, each of which is written as text, JSON and LaTeX.
+"""Rows of an answer: one value each, as text, in JSON and in LaTeX.
 
-A value is an exact expression, a tuple of them (one per contact), a number with its error
-(`Estimate`), or the `InputError` that says why there is no value.
+A value is an exact expression, a tuple of expressions (one per contact or bead), a number with its
+error (`Estimate`), or the `InputError` that says why there is no value.
 """
 
 from __future__ import annotations
 
-import json
 import math
-import re
-import textwrap
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal
 
-import click
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from lwa.base import latex
 from lwa.base.exact import InputError, evaluated
-from lwa.base.frozen import Estimate, Shown
+from lwa.base.frozen import EXACT_DIGITS, TABLE_DIGITS, Estimate
+from lwa.spheres.units import fitting
 
-PRINTED_DIGITS = 15  # significant digits of a printed number that is exact
-WIDTH = 100  # columns of text
-# Breaks of a line: spaces, and within a longer word after an operator but **
-_BREAK = re.compile(r"(\s+|(?<=[^*/][*/])(?![*/\s]))")
 FRACTION = 24  # characters of a fraction beyond which text has its digits alone
 LONG = 160  # characters of an exact number beyond which text has its digits alone
 
-Values = dict[str, Any]
+Form = Literal["both", "formula", "number"]
+"""What a row shows of an expression: the formula and its digits, or one of them."""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """The units of an answer's numbers.
+
+    Parameters
+    ----------
+    si : bool
+        True if numbers are in SI; text then has digits with units alone.
+    spacing : Expr
+        The symbol of the unit of length, or a number.
+    """
+
+    si: bool = False
+    spacing: sp.Expr = sp.S.One
+
+    def plain(self, value: sp.Expr) -> sp.Expr:
+        """The value at V_s = 1, |B| = 1, and at D = 1 where the spacing is a symbol."""
+        ones = {}
+        for symbol in value.free_symbols:
+            if symbol.name in ("V_s", "B"):
+                ones[symbol] = sp.Integer(-1 if symbol.is_negative else 1)
+        if self.spacing.is_Symbol:
+            ones[self.spacing] = sp.S.One
+        # A derivative by D, of a law without an expression, is one at D = 1.
+        if value.has(sp.Derivative):
+            return value.subs(ones)
+        return value.xreplace(ones)
+
+    def unit_of(self, value: sp.Expr) -> str | None:
+        """The unit of a number times powers of symbols, such as " D^2"; None for other values."""
+        symbols = value.free_symbols
+        rest = sp.factor_terms(value).as_independent(*symbols, as_Add=False)[1]
+        powers = [factor.as_base_exp() for factor in sp.Mul.make_args(rest)]
+        if rest == 1:
+            return ""
+        if any(not base.is_Symbol or n.free_symbols for base, n in powers):
+            return None
+        if len(powers) > 1:
+            return f"·{rest}"
+        ((base, n),) = powers
+        if n == 1:
+            return f" {base}"
+        return f" {base}^{n}" if n.is_Integer else f" {base}^({n})"
+
+    def measured(self, value: Estimate, unit: str) -> str:
+        """A number with its error as text; in SI with the prefix that suits its size."""
+        if not self.si or not unit:
+            return value.text()
+        fitted = fitting(unit, abs(value.value))
+        text = (value * (1 / fitted.size)).text()
+        number, comma, unknown = text.partition(",")
+        return f"{number} {fitted.name}{comma}{unknown}"
+
+    def number(self, value: sp.Expr, unit: str) -> str:
+        """An exact number in SI as text: six digits, and the unit with a prefix."""
+        number = as_float(value)
+        if number is None:
+            return f"{approximate(value, TABLE_DIGITS)} {unit}".rstrip()
+        fitted = fitting(unit, abs(number))
+        return f"{number / fitted.size:.{TABLE_DIGITS}g} {fitted.name}".rstrip()
+
+
+UNITLESS = Scale()
+"""The scale of numbers without units."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """A result of a command: one value with its names in JSON, text and LaTeX.
+    """One value of an answer, with its names.
 
-    key : name in JSON; "fwhm.force" is the entry "force" of "fwhm". Not in JSON where empty.
-    label : name in text; not in text where empty.
-    unit : unit of the value for a chain in SI.
-    digits : digits that are printed; 0 for a value that is printed without.
-    expression : True if JSON has the expression besides its digits.
-    error : bound of the error of an expression, relative; NaN for none that is stated.
+    Parameters
+    ----------
+    key : str
+        Name in JSON; "fwhm.force" is the entry "force" of "fwhm". Not in JSON where empty.
+    label : str
+        Name in text; not in text where empty.
+    value : Expr, tuple of Expr, Estimate or InputError
+        The value, or why there is none.
+    unit : str
+        Unit of the value for a chain in SI.
+    symbol : str
+        Name in LaTeX; not in LaTeX where empty.
+    form : {"both", "formula", "number"}
+        What is shown of an expression.
+    digits : int
+        Digits of an expression that are printed.
+    estimate : Estimate, optional
+        The number of an expression with its error.
     """
 
     key: str
     label: str
     value: Any
     unit: str = ""
-    digits: int = PRINTED_DIGITS
-    expression: bool = True
-    error: float = math.nan
+    symbol: str = ""
+    form: Form = "both"
+    digits: int = EXACT_DIGITS
+    estimate: Estimate | None = None
 
-
-@dataclass(frozen=True)
-class Answer:
-    """The result of a command.
-
-    head : JSON of the chain and the settings; expressions become strings when they are printed.
-    rows : the results and the other lines of text, in their order.
-    si : True if numbers are in SI; then all values are printed in digits, with their units.
-    spacing : the symbol of the unit of length, or a number.
-    shown : results whose rows make the LaTeX.
-    notes : sentences on the validity of the numbers.
-    parts : further answers by their key in JSON.
-    """
-
-    head: Mapping[str, Any]
-    rows: Sequence[Row | str]
-    si: bool = False
-    spacing: sp.Expr = sp.S.One
-    shown: Sequence[Shown] = ()
-    notes: Sequence[str] = ()
-    parts: Mapping[str, Answer] = field(default_factory=dict)
-
-    def print(self, style: str) -> None:
-        """Print the answer as "text", "json" or "latex"."""
-        if style == "json":
-            click.echo(json.dumps(self.json(), indent=2, default=str))
-        else:
-            click.echo(self.latex() if style == "latex" else self.text())
-
-    def plain(self, value: sp.Expr) -> sp.Expr:
-        """The value at V_s = 1, |B| = 1, and at D = 1 where the spacing is a symbol."""
-        letters = (s for s in value.free_symbols if s.name in ("V_s", "B"))
-        ones = {s: sp.Integer(-1 if s.is_negative else 1) for s in letters}
-        if self.spacing.is_Symbol:
-            ones[self.spacing] = sp.S.One
-        # a derivative by D, of a law without an expression, at D = 1
-        return value.subs(ones) if value.has(sp.Derivative) else value.xreplace(ones)
+    @property
+    def error(self) -> float:
+        """The absolute error of the value; NaN if unknown or if there is none."""
+        measured = self.value if isinstance(self.value, Estimate) else self.estimate
+        return math.nan if measured is None else measured.error
 
     # --- JSON -------------------------------------------------------------------------------
 
-    def json(self) -> Values:
-        """The object that ``--format json`` prints.
+    def entries(self, scale: Scale) -> dict[str, Any]:
+        """The values in JSON, by the ending of their names: "", "_value", "_error_value"."""
+        if isinstance(self.value, InputError):
+            return {"_value": None, "_error_value": None}
+        error = None if math.isnan(self.error) else float(self.error)
+        if isinstance(self.value, Estimate):
+            return {"_value": float(self.value), "_error_value": error}
+        found = {}
+        if self.form != "number":
+            found[""] = self.value
+        floats = None
+        if self.form != "formula":
+            floats = self._floats(scale)
+        if floats is not None:
+            found["_value"] = floats
+        if self.estimate is not None:
+            found["_error_value"] = error
+        return found
 
-        Names ending in ``_value`` are floats, in the unit of length where the spacing is a symbol,
-        at V_s = 1 and B = 1, or -1 where B < 0. Symbols, complex numbers and numbers beyond a
-        double have none. The notes include the reasons of missing values.
-        """
-        result, units, faults = dict(self.head), dict[str, Any](), []
-        for row in (row for row in self.rows if isinstance(row, Row) and row.key):
-            if row.unit:
-                _put(units, row.key, "", row.unit)
-            if isinstance(row.value, InputError):
-                faults.append(str(row.value))
-            if isinstance(row.value, Estimate | InputError):
-                value, error = (
-                    getattr(row.value, "value", None),
-                    getattr(row.value, "error", math.nan),
-                )
-                _put(result, row.key, "_value", value)
-                _put(
-                    result,
-                    row.key,
-                    "_error_value",
-                    None if math.isnan(error) else error,
-                )
-                continue
-            if row.expression:
-                _put(result, row.key, "", row.value)
-            floats = self._floats(row.value) if row.digits else None
-            if floats is not None:
-                _put(result, row.key, "_value", floats)
-                if not math.isnan(row.error):
-                    _put(result, row.key, "_error_value", abs(floats) * row.error)
-        result |= {"units": units} if self.si else {}
-        result |= {key: part.json() for key, part in self.parts.items()}
-        notes = dict.fromkeys((*self.notes, *faults))
-        return result | ({"notes": list(notes)} if notes else {})
-
-    def _floats(self, value: Any) -> Any:
+    def _floats(self, scale: Scale) -> Any:
         """The float of an expression, or a list of floats; None if any value has no float."""
-        if not isinstance(value, tuple):
-            return as_float(self.plain(value))
-        floats = [as_float(self.plain(x)) for x in value]
+        if not isinstance(self.value, tuple):
+            return as_float(scale.plain(self.value))
+        floats = [as_float(scale.plain(x)) for x in self.value]
         return None if None in floats else floats
 
     # --- text -------------------------------------------------------------------------------
 
-    def text(self) -> str:
-        """The lines that ``--format text`` prints."""
-        lines = []
-        for row in self.rows:
-            if isinstance(row, str):
-                lines.append(row)
-            elif row.label:
-                lines.append(f"  {row.label}{self._value_text(row)}")
-        lines += [part.text() for part in self.parts.values()]
-        lines += [f"\nNote: {note}" for note in self.notes]
-        rows = (line for part in lines for line in part.split("\n"))
-        return "\n".join(line for row in rows for line in _wrapped(row))
+    def text(self, scale: Scale) -> str:
+        """The row as a line of text."""
+        if isinstance(self.value, InputError):
+            return f"{self.label}: {self.value.reason}"
+        return f"{self.label} = {self._value_text(scale)}"
 
-    def _value_text(self, row: Row) -> str:
-        unit = f" {row.unit}" if self.si and row.unit else ""
-        if isinstance(row.value, InputError):
-            return f": {row.value}"
-        if isinstance(row.value, Estimate):
-            return f" = {summed(row.value, unit)}"
-        digits = significant(row.error) if row.error > 0 else row.digits
-        values = dict.fromkeys(
-            row.value if isinstance(row.value, tuple) else (row.value,)
-        )
-        text = ", ".join(self._number_text(x, digits) for x in values)
-        if row.error > 0 and (number := as_float(self.plain(row.value))):
-            text += f" ± {abs(number) * row.error:.1e}{self._length_unit(row.value)}"
-        return f" = {text}{unit}"
+    def _value_text(self, scale: Scale) -> str:
+        if isinstance(self.value, Estimate):
+            return scale.measured(self.value, self.unit)
+        if self.estimate is not None and not math.isnan(self.error):
+            number = scale.measured(self.estimate, self.unit)
+            if not scale.si:
+                number += scale.unit_of(self.value) or ""
+            formula = str(self.value)
+            bare = scale.si or self.form == "number" or self.value.has(sp.Float)
+            if bare or len(formula) > LONG or self.value.is_Rational:
+                return number
+            return f"{formula} ≈ {number}"
+        values = self.value if isinstance(self.value, tuple) else (self.value,)
+        # Contacts that are alike are printed once.
+        texts = dict.fromkeys(self._expression(x, scale) for x in values)
+        return ", ".join(texts)
 
-    def _number_text(self, value: sp.Expr, digits: int) -> str:
-        """The value and its ``digits``, if any; a short fraction, or symbols, without digits."""
-        if self.si:
-            return approximate(value, digits or PRINTED_DIGITS)
-        written = str(value)
-        if not digits or value.free_symbols - {self.spacing} or value.has(AppliedUndef):
-            return written
-        plain = self.plain(value)
-        if plain.is_Rational and len(written) <= FRACTION:
-            return written
-        number = sp.sstr(evaluated(plain, digits), full_prec=False) + self._length_unit(
-            value
-        )
-        long = plain.has(sp.Float) or plain.is_Rational or len(written) > LONG
-        return number if long else f"{written} ≈ {number}"
-
-    def _length_unit(self, value: sp.Expr) -> str:
-        """The unit D^n of a value c D^n, D the symbol of the spacing, after a space; else ""."""
-        rest = sp.factor_terms(value).as_independent(self.spacing, as_Add=False)[1]
-        base, n = rest.as_base_exp()
-        if not self.spacing.is_Symbol or base != self.spacing or not n.is_number:
-            return ""
-        return f" {base}" if n == 1 else f" {base}^{n}"
+    def _expression(self, value: sp.Expr, scale: Scale) -> str:
+        """An expression as text: the formula, its digits, or both."""
+        if scale.si:
+            return scale.number(value, self.unit)
+        formula = str(value)
+        symbolic = value.free_symbols - {scale.spacing} or value.has(AppliedUndef)
+        if self.form == "formula" or symbolic:
+            return formula
+        plain = scale.plain(value)
+        if plain.is_Rational and len(formula) <= FRACTION:
+            return formula
+        unit = scale.unit_of(value)
+        if unit is None:  # no number but at D = 1
+            return formula
+        digits = sp.sstr(evaluated(plain, self.digits), full_prec=False)
+        number = f"{digits}{unit}"
+        closed = not plain.has(sp.Float) and not plain.is_Rational
+        if closed and self.form == "both" and len(formula) <= LONG:
+            return f"{formula} ≈ {number}"
+        return number
 
     # --- LaTeX ------------------------------------------------------------------------------
 
     def latex(self) -> str:
-        """The display that ``--format latex`` prints, units and notes as comments behind it."""
-        notes = [*["numbers are in SI: m, s, kg, N, rad"] * self.si, *self.notes]
-        return "\n".join(
-            [latex.align(self._equations()), *(f"% {note}" for note in notes)]
-        )
-
-    def _equations(self) -> list[str]:
-        rows = [row for result in self.shown for row in result.latex_rows()]
-        return [
-            *rows,
-            *(row for part in self.parts.values() for row in part._equations()),
-        ]
-
-
-def _put(result: Values, key: str, suffix: str, value: Any) -> None:
-    group, dot, entry = key.partition(".")
-    if dot:
-        result.setdefault(group + suffix, {})[entry] = value
-    else:
-        result[group + suffix] = value
+        """The row as ``symbol = value``; "" without a symbol or a value."""
+        if not self.symbol or isinstance(self.value, InputError):
+            return ""
+        measured = self.value if isinstance(self.value, Estimate) else self.estimate
+        if measured is not None and not math.isnan(measured.error):
+            return f"{self.symbol} = {measured.latex()}"
+        values = self.value if isinstance(self.value, tuple) else (self.value,)
+        texts = dict.fromkeys(latex.expression(x) for x in values)
+        return f"{self.symbol} = {', '.join(texts)}"
 
 
 def as_float(value: sp.Expr) -> float | None:
@@ -234,7 +237,7 @@ def attempt(read: Callable[..., Any], *arguments: Any) -> Any:
         return fault
 
 
-def approximate(value: sp.Expr, digits: int = PRINTED_DIGITS) -> str:
+def approximate(value: sp.Expr, digits: int = EXACT_DIGITS) -> str:
     """A number in digits; an expression in symbols with its numeric factor in digits."""
     if value.is_zero:
         return "0"
@@ -245,24 +248,7 @@ def approximate(value: sp.Expr, digits: int = PRINTED_DIGITS) -> str:
     return str(rest) if factor == 1 else f"{number}·{rest}"
 
 
-def significant(relative: float) -> int:
-    """The digits of a number that reach one beyond its relative error."""
-    return min(16, max(1, 2 - math.floor(math.log10(relative))))
-
-
-def summed(total: Estimate, unit: str) -> str:
-    """A number as text: the value to one digit beyond its error, and the error."""
-    if math.isnan(total.error):
-        return f"{total.value:.4g}{unit}, error unknown"
-    if not total.error:
-        return f"{total.value:.{PRINTED_DIGITS}g}{unit}"
-    digits = significant(total.error / abs(total.value))
-    return f"{total.value:.{digits}g} ± {total.error:.1e}{unit}"
-
-
-def _wrapped(line: str) -> list[str]:
-    """Break a line of text at `WIDTH`; further lines are indented by eight columns more."""
-    start = line[: len(line) - len(line.lstrip())]
-    wrapper = textwrap.TextWrapper(WIDTH, "", f"{start}        ")
-    wrapper.wordsep_re = _BREAK
-    return wrapper.wrap(line) or [""]
+def estimated(result: Any, name: str, *arguments: Any) -> Estimate | None:
+    """The estimate of a result's number; None with symbols."""
+    found = attempt(result.estimate, name, *arguments)
+    return None if isinstance(found, InputError) else found

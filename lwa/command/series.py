@@ -2,19 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-import click
-
-from lwa.base.frozen import QUANTITIES
+from lwa.base.words import QUANTITIES
 from lwa.cell import k
+from lwa.command.answer import Answer, Values
 from lwa.command.chain import take_chain
-from lwa.command.options import series_options
-from lwa.command.rows import Answer, Row, attempt
-from lwa.expansion.expand import expand
+from lwa.command.options import command, series_options
+from lwa.command.rows import Row, attempt
+from lwa.expansion.expand import Expansion, expand
+from lwa.expansion.series import EpsilonSeries
+
+_ORDER = 8
+"""Order of a series in numbers: of equal spheres, sums then err by 1e-5."""
+
+_SYMBOLIC_ORDER = 4
+"""Order of a series with symbols, whose terms grow with the order."""
+
+_ERRORS = "estimate of the sum's error, by its last terms and by radiation"
 
 
-@click.command()
+@command(
+    "lwa expansion --k 3/2 --masses 1 --order 10",
+    "lwa expansion --k 11/10 --masses 1,0.7",
+    page="expansion",
+)
 @series_options(
     k.name, "Highest power of ε = k - 1; by default 8, or 4 with symbols.", None
 )
@@ -28,41 +41,56 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
     """
     chain = take_chain(options)
     cell = chain.cell
-    expanded = expand(cell, order or 4, law=chain.law)
+    expanded = expand(cell, order or _SYMBOLIC_ORDER, law=chain.law)
     if order is None and expanded.numeric:
-        expanded = expand(cell, 8, law=chain.law)
-    head = {
+        expanded = expand(cell, _ORDER, law=chain.law)
+    head: Values = {
         "k": str(expanded.k),
         "masses": [str(m) for m in cell.masses],
         "stiffnesses": [str(A) for A in cell.stiffnesses],
         "order": expanded.order,
         "c2": [expanded.c2.prefactor * a for a in expanded.c2.coefficients],
     }
-    series = {
-        "c2": ("c²", expanded.c2),
-        **{f"fwhm.{q}": (f"FWHM of the {q}", expanded.fwhm(q)) for q in QUANTITIES},
-        "momentum": ("momentum", expanded.momentum),
-        "energy": ("energy", expanded.energy),
-    }
-    rows: list[Row | str] = [
+    series = {"c2": ("c²", expanded.c2)}
+    for q in QUANTITIES:
+        series[f"fwhm.{q}"] = (f"FWHM of the {q}", expanded.fwhm(q))
+    series["momentum"] = ("momentum", expanded.momentum)
+    series["energy"] = ("energy", expanded.energy)
+    sums: list[Row | str | Answer] = [
         chain.text,
         "ε = k - 1; peak force 1 on the first contact, lengths in D",
         "",
     ]
-    for label, part in series.values():
-        factors = [str(part.prefactor)] * (part.prefactor != 1)
-        factors += [f"ε^({part.power})"] * (part.power != 0)
-        rows.append(f"{label} = {' '.join([*factors, 'Σ a_n ε^n'])}")
-        rows += [Row("", f"a{n}", a, digits=0) for n, a in enumerate(part.coefficients)]
     if expanded.numeric:
-        rows += ["", f"at k = {expanded.k}, with estimates of the error:"]
-        rows += [
-            Row(key, label, attempt(part.at)) for key, (label, part) in series.items()
-        ]
-        mass = attempt(expanded.effective_mass.at)
-        rows.append(Row("effective_mass", "effective mass P²/2E", mass))
-        if cell.size == 2:
-            rows.append(
-                "  (of the mean of a dimer's two contacts, which differ behind a striker)"
-            )
-    Answer(head, rows, shown=[expanded]).print(style)
+        sums += _sum_rows(expanded, series)
+    rows = [*sums, *_series_rows(series)]
+    Answer(head, rows, shown=[expanded], errors=_ERRORS).print(style)
+
+
+def _sum_rows(
+    expanded: Expansion, series: Mapping[str, tuple[str, EpsilonSeries]]
+) -> Iterator[Row | str]:
+    """Rows of the sums at the expansion's k."""
+    yield f"at k = {expanded.k}, order {expanded.order}:"
+    for key, (label, part) in series.items():
+        yield Row(key, label, attempt(part.at))
+    mass = attempt(expanded.effective_mass.at)
+    yield Row("effective_mass", "effective mass P²/2E", mass)
+    if expanded.cell.size == 2:
+        yield "  (of the mean of a dimer's two contacts, which differ behind a striker)"
+    yield ""
+
+
+def _series_rows(
+    series: Mapping[str, tuple[str, EpsilonSeries]],
+) -> Iterator[Row | str]:
+    """Rows of the coefficients of each series."""
+    for label, part in series.values():
+        factors = []
+        if part.prefactor != 1:
+            factors.append(str(part.prefactor))
+        if part.power != 0:
+            factors.append(f"ε^({part.power})")
+        yield f"{label} = {' '.join([*factors, 'Σ a_n ε^n'])}"
+        for n, a in enumerate(part.coefficients):
+            yield Row("", f"a{n}", a, form="formula")

@@ -2,32 +2,59 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
-from sympy.polys.fields import sfield
-from sympy.polys.matrices import DomainMatrix
 
 from lwa.base.exact import InputError, demand_numbers
-from lwa.base.progress import announced
 from lwa.cell import Cell
-from lwa.envelopes.response import CLOSE, Arithmetic, Contacts, Matrix, Mode
+from lwa.envelopes.response import CLOSE, Contacts, Matrix, Mode
 from lwa.law import ContactLaw
 
-ROUNDING = 1e-7  # a force on a mode, relative to the largest, that counts as none
-SOUND = 1e-5  # 1 - (c_g/c_0)² from which on floats give the mean flow to six digits (1e-11/SOUND)
-
-MOST_SYMBOLS = 5  # beyond which exact coefficients take seconds
+# A force on a mode, relative to the largest, that counts as none
+ROUNDING = 1e-7
+# 1 - (c_g/c_0)² from which on floats give the mean flow to six digits (1e-11/SOUND)
+SOUND = 1e-5
 
 K2, K3, K4 = sp.symbols("K2 K3 K4", positive=True)
-"""Coefficients of the force K2 δ + K3 δ² + K4 δ³ on top of the load, under `lwa.general()`."""
+"""Coefficients of the force ``K2 δ + K3 δ² + K4 δ³`` on top of the load, under `lwa.general`."""
 
-X = sp.Symbol("x")
-"""Squared frequency ω² of a mode; the numbers of a chain stand beside it as Dummies."""
+
+class LoadedLaw(NamedTuple):
+    """A contact law about a static compression: the force F′ (δ + s δ²/δ0 + t δ³/δ0²) on top.
+
+    Parameters
+    ----------
+    slope : Expr
+        F′.
+    s, t : Expr
+        The nonlinearities.
+    length : Expr
+        The unit δ0 of the compression: the static one, or 1 without load and under `lwa.general`.
+    """
+
+    slope: sp.Expr
+    s: sp.Expr
+    t: sp.Expr
+    length: sp.Expr
+
+    @classmethod
+    def of(cls, law: ContactLaw, delta: sp.Expr) -> LoadedLaw:
+        """Return a law about a compression."""
+        if law.formless:
+            return cls(K2, K3 / K2, K4 / K2, sp.S.One)
+        slope = law.at(delta, 1)
+        if delta.is_zero:
+            s = law.at(delta, 2) / slope / 2
+            t = law.at(delta, 3) / slope / 6
+            return cls(slope, s, t, sp.S.One)
+        s = law.phi(2).subs(law.delta, delta) / 2
+        t = law.phi(3).subs(law.delta, delta) / 6
+        return cls(slope, s, t, delta)
 
 
 def cell_mode(
@@ -38,54 +65,70 @@ def cell_mode(
     branch: int,
     floats: bool,
 ) -> Mode:
-    """Return the mode of a branch of a cell whose contacts are at a mean static compression."""
-    delta = compression * cell.shares(law.exponent)[0]
-    mass, unit = cell.masses[0], sp.S.One if law.formless or delta.is_zero else delta
-    if law.formless:
-        first, s, t = K2, K3 / K2, K4 / K2
-    else:
-        first = law.at(delta, 1)
-        if delta.is_zero:
-            s, t = (law.at(delta, n) / first / sp.factorial(n) for n in (2, 3))
-        else:
-            s, t = (law.phi(n).subs(law.delta, delta) / sp.factorial(n) for n in (2, 3))
+    """Return the mode of a branch of a loaded cell.
+
+    Parameters
+    ----------
+    cell : Cell
+        The chain.
+    law : ContactLaw
+        The law of its contacts.
+    compression : Expr
+        Mean static compression of the contacts.
+    wavenumber : Expr
+        κ per cell.
+    branch : int
+        Number of the branch, from 0.
+    floats : bool
+        True for floats, False for exact numbers.
+    """
+    loaded = LoadedLaw.of(law, compression * cell.shares(law.exponent)[0])
     compliances = cell.compliances(law.exponent)
-    masses = [m / mass for m in cell.masses]
-    c = [sp.powsimp(part / compliances[0]) for part in compliances]
-    numbers = (*masses, *c, s, t, wavenumber)
-    if floats:
-        demand_numbers(
-            set().union(*(x.free_symbols for x in numbers)), "floats need numbers"
-        )
-    samples = [_sampled(cell, x) for x in numbers]
-    m_float, c_float = np.array(samples[:-3]).reshape(2, -1)
-    sample = Sampled.of(
-        Contacts(m_float, c_float, *samples[-3:-1]), samples[-1], branch
+    mass = cell.masses[0]
+    exact = Contacts(
+        masses=np.array([m / mass for m in cell.masses]),
+        c=np.array([sp.powsimp(part / compliances[0]) for part in compliances]),
+        s=loaded.s,
+        t=loaded.t,
     )
+    if floats:
+        numbers = (*exact.masses, *exact.c, exact.s, exact.t, wavenumber)
+        free = set().union(*(x.free_symbols for x in numbers))
+        demand_numbers(free, "floats need numbers")
+    sample = _sample(cell, exact, wavenumber, branch)
     if floats:
         mode = sample.mode()
     elif cell.size == 1:
-        mode = equal_beads(s, t, wavenumber)
+        mode = equal_beads(exact.s, exact.t, wavenumber)
     else:
-        if len(set().union(*(x.free_symbols for x in numbers))) > MOST_SYMBOLS:
-            announced("the envelope's equation in these symbols")
-        contacts, edge = (
-            Contacts(np.array(masses), np.array(c), s, t),
-            int(sp.cos(wavenumber)),
-        )
-        mode = edge_mode(
-            contacts, edge, branch, sample.bead, lambda x: _sampled(cell, x)
-        )
-    rate = sp.powsimp(cell.stiffnesses[0] * first / mass)  # unit of ω²
+        mode = edge_mode(cell, exact, sp.cos(wavenumber), branch, sample.bead)
+    rate = sp.powsimp(cell.stiffnesses[0] * loaded.slope / mass)  # unit of ω²
+    length = loaded.length
     return Mode(
-        sp.sympify(mode.square) * rate,
-        mode.slope * rate,
-        mode.curvature * rate,
-        mode.cubic * rate / (mass * unit**2),
-        [sp.sympify(x) / (mass * unit) for x in mode.mean],
-        [sp.sympify(x) / mass for x in mode.size],
-        [sp.sympify(x) / sp.sqrt(mass) for x in mode.shape],
+        square=sp.sympify(mode.square) * rate,
+        slope=mode.slope * rate,
+        curvature=mode.curvature * rate,
+        cubic=mode.cubic * rate / (mass * length**2),
+        mean=_scaled(mode.mean, 1 / (mass * length)),
+        size=_scaled(mode.size, 1 / mass),
+        shape=_scaled(mode.shape, 1 / sp.sqrt(mass)),
     )
+
+
+def _scaled(values: Iterable[Any], unit: sp.Expr) -> list[sp.Expr]:
+    """Values in a unit."""
+    return [sp.sympify(value) * unit for value in values]
+
+
+def _sample(cell: Cell, exact: Contacts, wavenumber: sp.Expr, branch: int) -> Sampled:
+    """The modes in floats, at sample values of symbols."""
+    floats = Contacts(
+        masses=np.array([_sampled(cell, m) for m in exact.masses]),
+        c=np.array([_sampled(cell, c) for c in exact.c]),
+        s=_sampled(cell, exact.s),
+        t=_sampled(cell, exact.t),
+    )
+    return Sampled.of(floats, _sampled(cell, wavenumber), branch)
 
 
 def _sampled(cell: Cell, value: sp.Expr) -> float:
@@ -96,6 +139,7 @@ def _sampled(cell: Cell, value: sp.Expr) -> float:
     """
     symbols = dict.fromkeys(value.free_symbols, 1.5)
     for values in (cell.stiffnesses, cell.masses):
+        # A symbol that occurs twice has its first sample.
         for i, part in reversed([*enumerate(values)]):
             symbols |= dict.fromkeys(part.free_symbols, np.pi / (3 + 3 * i))
     return float(value.xreplace(symbols))
@@ -103,9 +147,18 @@ def _sampled(cell: Cell, value: sp.Expr) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Sampled:
-    """Modes of a cell in floats, the branch and the bead with the mode's largest displacement.
+    """Modes of a cell in floats.
 
-    z : e^{iκ}, real at the edges. squares, vectors : squared frequencies, and √m times the modes.
+    Parameters
+    ----------
+    contacts : Contacts
+        The cell.
+    z : complex or int
+        e^{iκ}, real at the edges.
+    squares, vectors : array
+        Squared frequencies, and √m times the modes.
+    branch : int
+        Number of the branch.
     """
 
     contacts: Contacts
@@ -135,9 +188,8 @@ class Sampled:
     @property
     def gaps(self) -> NDArray[Any]:
         """Differences x_j - x of the squared frequencies of the other branches."""
-        return np.asarray(
-            np.delete(self.squares, self.branch) - self.squares[self.branch]
-        )
+        others = np.delete(self.squares, self.branch)
+        return np.asarray(others - self.squares[self.branch])
 
     @property
     def shape(self) -> NDArray[Any]:
@@ -151,35 +203,45 @@ class Sampled:
 
     def mode(self) -> Mode:
         """The mode and its response; `lwa.InputError` where floats cannot resolve the response."""
-        contacts, z, x = self.contacts, self.z, float(self.squares[self.branch])
+        contacts = self.contacts
+        z = self.z
+        x = float(self.squares[self.branch])
         # T(x) - 2 cos κ = Π m Π c Π_j (x_j - x) over the modes j, differentiated at a root
         first = -np.prod(contacts.masses * contacts.c * np.append(self.gaps, 1))
-        slopes = first, -2 * first * (1 / self.gaps).sum()
-        speed = (
-            contacts.masses.sum() * contacts.c.sum() * (z.imag / first) ** 2 / x
-        )  # (c_g/c_0)²
-        if x < contacts.close or 1 - speed < SOUND:
+        second = -2 * first * (1 / self.gaps).sum()
+        sound = 1 / (contacts.masses.sum() * contacts.c.sum())  # c_0²
+        if x < contacts.close or 1 - (z.imag / first) ** 2 / x / sound < SOUND:
             exact = "; exact results stand" if len(contacts.masses) == 1 else ""
             raise InputError(
                 "the mode's group velocity is too close to that of sound, c_g = c_0, for floats: "
                 f"its mean flow runs along with it{exact}"
             )
         projector = np.outer(self.shape, self.shape.conj())
-        resolvent = self._resolvent(4 * x)
-        floats = Arithmetic(lambda _: resolvent, np.real, lambda e: e)
-        return contacts.mode(z, x, slopes, projector, self.bead, z.imag, floats)
+        found = contacts.mode(
+            z, z.imag, x, (first, second), projector, self._resolvent(4 * x)
+        )
+        phase = abs(self.shape[self.bead]) / self.shape[self.bead]
+        return Mode(
+            square=x,
+            slope=found.slope,
+            curvature=np.real(found.curvature),
+            cubic=np.real(found.cubic),
+            mean=np.real(found.mean),
+            size=np.real(found.size),
+            shape=self.shape * phase,
+        )
 
     def _resolvent(self, square: float) -> Matrix:
         """Inverse of K(2κ) - 4ω²M; a mode of the frequency 2ω that is not driven is left out."""
-        contacts, z = self.contacts, self.z
+        contacts = self.contacts
+        z = self.z
         squares, vectors = np.linalg.eigh(contacts.secular(z * z, 0) / contacts.units)
         vectors = vectors / np.sqrt(contacts.masses)[:, None]
         d = contacts.strains(z) @ self.shape
         drive = contacts.strains(1 / (z * z)).T @ (d * d / contacts.c**2)
         near = np.abs(squares - square) < contacts.close
-        if np.any(
-            np.abs(vectors.conj().T @ drive)[near] > ROUNDING * np.abs(drive).max()
-        ):
+        driven = np.abs(vectors.conj().T @ drive) > ROUNDING * np.abs(drive).max()
+        if np.any(near & driven):
             raise InputError(
                 "the second harmonic is a mode too, or too near one for floats: the envelope's "
                 "equation fails"
@@ -194,93 +256,107 @@ class Sampled:
 def equal_beads(s: sp.Expr, t: sp.Expr, wavenumber: sp.Expr) -> Mode:
     """The mode of a cell of one bead in closed form, in the units of `lwa.envelopes.response`.
 
-    With S, C = sin κ/2, cos κ/2: ω = |d| = 2S and c_g = C, hence e0 = -2s |d|²/(1 - C²) = -8s. The
-    second harmonic has G = 4 sin²κ/(4 sin²κ - 16 S²) = -C²/S² and e2 = s d² C²/S².
+    With S and C for ``sin κ/2`` and ``cos κ/2``: ``ω = |d| = 2S`` and ``c_g = C``, hence
+    ``e0 = -2s |d|²/(1 - C²) = -8s``. The second harmonic has
+    ``G = 4 sin²κ/(4 sin²κ - 16 S²) = -C²/S²`` and ``e2 = s d² C²/S²``.
     """
-    S, C = sp.sin(wavenumber / 2), sp.cos(wavenumber / 2)
-    cubic = 48 * t * S**4 - 32 * s**2 * S**2 * (1 + S**2)
-    return Mode(4 * S**2, 4 * S * C, -(S**2), cubic, [-8 * s], [4 * S**2], [sp.S.One])
-
-
-@dataclass(frozen=True, eq=False)
-class Root:
-    """Squared frequency x = ω² of a mode, a root of an irreducible polynomial.
-
-    Powers of x in a result are reduced to the lowest ones by division with remainder.
-
-    values : mapping from the field's generators to values.
-    """
-
-    value: sp.Expr
-    polynomial: sp.Poly
-    values: dict[sp.Symbol, sp.Expr]
-
-    def number(self, element: Any) -> sp.Expr:
-        """Value of an element of the field."""
-        top, below = (
-            sp.Poly(part.as_expr(), X, field=True).rem(self.polynomial)
-            for part in (element.numer, element.denom)
-        )
-        quotient = (top * below.invert(self.polynomial)).rem(self.polynomial)
-        reduced = sp.Add(
-            *(sp.factor(c) * self.value**n for (n,), c in quotient.terms())
-        )
-        return reduced.xreplace(self.values)
+    S = sp.sin(wavenumber / 2)
+    C = sp.cos(wavenumber / 2)
+    return Mode(
+        square=4 * S**2,
+        slope=4 * S * C,
+        curvature=-(S**2),
+        cubic=48 * t * S**4 - 32 * s**2 * S**2 * (1 + S**2),
+        mean=[-8 * s],
+        size=[4 * S**2],
+        shape=[sp.S.One],
+    )
 
 
 def edge_mode(
-    contacts: Contacts,
-    edge: int,
-    branch: int,
-    bead: int,
-    sampled: Callable[[sp.Expr], float],
-    generic: bool = False,
+    cell: Cell, contacts: Contacts, edge: sp.Integer, branch: int, bead: int
 ) -> Mode:
     """The mode of two beads at the edge of a band, in exact numbers.
 
-    edge : e^{iκ} at κ = 0 or π, 1 or -1. bead : index of the bead whose φ is positive.
-    sampled : function that gives a float of an expression, its symbols replaced by sample numbers;
-    the roots are ordered by these floats.
-    generic : True to derive the mode with symbols for all numbers, which are put in at the end:
-    a pole at the frequency 2ω that no force drives cancels then.
+    Symbols stand for all numbers until the end: a pole at the frequency 2ω that no force drives
+    cancels then.
 
-    Raises `lwa.InputError` where the second harmonic is a mode that the mode drives.
+    Parameters
+    ----------
+    cell : Cell
+        The chain; its symbols have sample values by which the branches are ordered.
+    contacts : Contacts
+        The cell under load; at κ = π masses or contacts are alike.
+    edge : {1, -1}
+        e^{iκ}.
+    branch : int
+        Number of the branch.
+    bead : int
+        Index of the bead whose φ is positive.
+
+    Raises
+    ------
+    InputError
+        Where the second harmonic is a mode that the mode drives.
     """
-    numbers = (*contacts.masses, *contacts.c, contacts.s, contacts.t)
-    letters = {
-        a: a if a.is_Rational and not generic else sp.Dummy(positive=True)
-        for a in numbers
-    }
-    field, (x, *elements) = sfield([X, *(letters[a] for a in numbers)])
-    inner = Contacts(*np.array(elements[:-2], object).reshape(2, 2), *elements[-2:])
-    z = field.one * edge
+    letters, values = _letters(contacts)
+    squares = _edge_squares(letters, edge)
+    squares.sort(key=lambda square: _sampled(cell, square.xreplace(values)))
+    square = squares[branch]
+    x = sp.Dummy("x")
+    secular = sp.Matrix(letters.secular(edge, x))
+    relation = secular.det() * np.prod(letters.c)  # T(x) - 2 cos κ
+    first, second = (sp.factor(relation.diff(x, n).subs(x, square)) for n in (1, 2))
+    adjugate = np.array(secular.subs(x, square).adjugate())
+    projector = adjugate / (np.diagonal(adjugate) * letters.masses).sum()
+    resolvent = np.array(sp.Matrix(letters.secular(sp.S.One, 4 * square)).inv())
+    found = letters.mode(edge, 0, square, (first, second), projector, resolvent)
 
-    def matrix(entries: Matrix) -> DomainMatrix:
-        rows = [[field.one * a for a in row] for row in entries]
-        return DomainMatrix(rows, (2, 2), field.to_domain())
+    def number(value: Any) -> sp.Expr:
+        return sp.factor(value).xreplace(values)
 
-    def inverse(entries: Matrix) -> Matrix:
-        return np.array(matrix(entries).inv().to_list(), object)
-
-    secular = matrix(inner.secular(z, x))
-    relation = secular.det() * np.prod(inner.c)  # T(x) - 2 cos κ
-    values = {letter: a for a, letter in letters.items()}
-    roots: list[tuple[sp.Expr, sp.Poly]] = []
-    for factor, count in sp.factor_list(relation.numer.as_expr())[1]:
-        if X in factor.free_symbols:
-            polynomial = sp.Poly(factor, X, field=True)
-            roots += count * [(root, polynomial) for root in sp.roots(polynomial)]
-    roots.sort(key=lambda pair: sampled(pair[0].xreplace(values)))
-    square = Root(*roots[branch], values)
-    if not generic and square.number(matrix(inner.secular(z * z, 4 * x)).det()).is_zero:
-        return edge_mode(contacts, edge, branch, bead, sampled, generic=True)
-    slopes = relation.diff(x), relation.diff(x).diff(x)
-    adjugate = np.array(secular.adjugate().to_list(), object)
-    projector = adjugate / (np.diagonal(adjugate) * inner.masses).sum()
-    exact = Arithmetic(inverse, square.number, square.number)
-    mode = inner.mode(z, x, slopes, projector, bead, 0, exact)
-    if mode.cubic.has(sp.zoo, sp.nan):
+    cubic = number(found.cubic)
+    if cubic.has(sp.zoo, sp.nan):
         raise InputError(
             "the second harmonic is a mode too: the envelope's equation fails"
         )
-    return mode
+    root = sp.sqrt(number(projector[bead, bead]))
+    return Mode(
+        square=number(square),
+        slope=sp.S.Zero,
+        curvature=number(found.curvature),
+        cubic=cubic,
+        mean=[number(e) for e in found.mean],
+        size=[number(d) for d in found.size],
+        shape=[number(phi) / root for phi in projector[:, bead]],
+    )
+
+
+def _letters(contacts: Contacts) -> tuple[Contacts, dict[sp.Symbol, sp.Expr]]:
+    """A cell with symbols for its numbers, one for equal numbers, and the numbers by symbol."""
+    values: dict[sp.Symbol, sp.Expr] = {}
+
+    def named(numbers: Iterable[sp.Expr]) -> Matrix:
+        symbols: dict[sp.Expr, sp.Symbol] = {}
+        for number in numbers:
+            if number not in symbols:
+                symbols[number] = sp.Dummy(positive=True)
+                values[symbols[number]] = number
+        return np.array([symbols[number] for number in numbers])
+
+    masses = named(contacts.masses)
+    c = named(contacts.c)
+    s, t = sp.Dummy("s"), sp.Dummy("t")
+    values |= {s: contacts.s, t: contacts.t}
+    return replace(contacts, masses=masses, c=c, s=s, t=t), values
+
+
+def _edge_squares(contacts: Contacts, edge: sp.Integer) -> list[sp.Expr]:
+    """Squared frequencies of two beads: at κ = 0, or at κ = π of like masses or like contacts."""
+    m1, m2 = contacts.masses
+    k1, k2 = 1 / contacts.c
+    if edge == 1:
+        return [sp.S.Zero, (k1 + k2) * (1 / m1 + 1 / m2)]
+    if m1 == m2:
+        return [2 * k1 / m1, 2 * k2 / m1]
+    return [2 * k1 / m1, 2 * k1 / m2]

@@ -1,59 +1,86 @@
-"""The nonlinear Schrödinger equation i Ψ_T + ½ω″ Ψ_XX = χ |Ψ|²Ψ of a mode of a loaded chain.
+"""The nonlinear Schrödinger equation of a mode of a loaded chain::
 
-To leading order the displacements in cell n are u = Ψ(X,T) U e^{i(κn - ωt)} + c.c.: U is the mode,
-Σ m_i |U_i|² = 1 over the beads of a cell, ω its frequency, κ its wavenumber per cell, ω″ = d²ω/dκ²,
-X = n - (dω/dκ) t, T = t, and χ the nonlinear coefficient (`lwa.envelopes.response`). The load is
-held, not the length. Equal beads under A δ^k have χ = -ω (k-1) (k - cos² κ/2)/(m δ0²), δ0 the
-static compression.
+    i Ψ_T + ½ω″ Ψ_XX = χ |Ψ|²Ψ.
 
-At the edge of a band, dω/dκ = 0, envelopes stand. Such a breather of the frequency (1 - Δ) ω, Δ the
-detuning, is Ψ = a f(bn) e^{-iΩT}, Ω = -Δω, with
+To leading order the displacements in cell n are ``u = Ψ(X,T) U e^{i(κn - ωt)} + c.c.``: U is the
+mode, with ``Σ m_i |U_i|² = 1`` over the beads of a cell, ω its frequency, κ its wavenumber per
+cell, ω″ the second derivative of ω by κ, ``X = n - (dω/dκ) t``, ``T = t``, and χ the nonlinear
+coefficient (`lwa.envelopes.response`). The load is held, not the length. Equal beads under a power
+law of the exponent k have ``χ = -ω (k-1) (k - cos² κ/2)/(m δ0²)``, δ0 the static compression.
+
+At the edge of a band, where the group velocity is 0, envelopes stand. Such a breather of the
+frequency (1 - Δ) ω, Δ the detuning, is ``Ψ = a f(bn) e^{-iΩT}`` with ``Ω = -Δω`` and::
 
     bright, ω″χ < 0:   f = sech,   χ a² = 2Ω,   ω″ b² = -2Ω,
     dark,   ω″χ > 0:   f = tanh,   χ a² = Ω,    ω″ b² = Ω,
 
-so that Ω has the sign of χ. A bead is displaced by 2a|U| at most, and the compression of a contact
-differs from its static value δ0 by 2a|d|, d the contact's compression in the mode. Contacts begin
-to open at about 2a|d| = δ0, that is at a detuning Δ_o, as a² ∝ Δ.
+so that Ω has the sign of χ. A bead is displaced by ``2a|U|`` at most, and the compression of a
+contact differs from its static value δ0 by ``2a|d|``, d the contact's compression in the mode.
+Contacts begin to open at about ``2a|d| = δ0``, that is at a detuning Δ_o, as a² is proportional to
+Δ.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NoReturn
+from typing import Any, Literal, NoReturn, get_args
 
 import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from lwa.algebra.model import BRANCHES
 from lwa.base import latex
 from lwa.base.arrays import Array
-from lwa.base.exact import InputError, integer, one_of, positive, shorten, signed
+from lwa.base.exact import (
+    InputError,
+    demand_distinct,
+    integer,
+    positive,
+    shorten,
+    signed,
+)
 from lwa.base.frozen import Value
+from lwa.base.words import BRANCHES, BranchName, one_of
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
 from lwa.envelopes.modes import cell_mode
 from lwa.envelopes.response import Mode
 from lwa.law import ContactLaw, for_cell, substituted
 
-LONG = 400  # operations in a result that from there on would take minutes to factor
+# Operations in a result that from there on would take minutes to factor
+LONG = 400
 # Greatest q of powers x^{p/q} that are factored, as polynomials in x^{1/q}: a decimal k such as
 # 3.1185 makes polynomials of thousands of terms.
 FINE = 100
 
-KINDS = ("bright", "dark")  # localised, ω″χ < 0, or a dip in a wave train
+KindName = Literal["bright", "dark"]
+"""A kind of envelope: localised, ``ω″χ < 0``, or a dip in a wave train."""
+
+KINDS: tuple[KindName, ...] = get_args(KindName)
 
 
 @dataclass(frozen=True, repr=False)
 class Envelope(Value):
-    """The envelope's equation of one mode (see `envelope`), exact, or `numeric` in floats.
-
-    compression : mean static compression of the contacts.
-    branch : 0 is the acoustic branch, 1 the lowest optical one.
+    """The envelope's equation of one mode (see `envelope`), exact or in floats.
 
     Units are those of the cell; frequencies are in radians per unit of time.
+
+    Parameters
+    ----------
+    cell : Cell
+        The chain.
+    law : ContactLaw
+        The law of its contacts.
+    compression : Expr
+        Mean static compression of the contacts.
+    wavenumber : Expr
+        κ per cell.
+    branch : int
+        0 is the acoustic branch, 1 the lowest optical one.
+    floats : bool
+        True for results in floats.
     """
 
     cell: Cell
@@ -67,41 +94,47 @@ class Envelope(Value):
         return f"Envelope({self.cell!r}, κ={self.wavenumber}, branch={self.branch})"
 
     def latex_rows(self) -> list[str]:
-        names = {r"\omega": self.frequency, r"\omega''": self.dispersion}
         equation = (
             r"i \Psi_{T} + \tfrac{1}{2} \omega'' \Psi_{XX} = \chi |\Psi|^{2} \Psi"
         )
-        return [equation, *latex.rows(names | {r"\chi": self.nonlinearity})]
+        rows = {
+            r"\omega": self.frequency,
+            r"\omega''": self.dispersion,
+            r"\chi": self.nonlinearity,
+        }
+        return [equation, *latex.rows(rows)]
 
     def numeric(self) -> Envelope:
         """Float values of the coefficients, for any cell of numbers and any wavenumber."""
         return replace(self, floats=True)
 
     def at(self, **values: Any) -> Envelope:
-        """The envelope for these values of the named symbols, and of ω = m2/m1 by ``omega``."""
+        """The envelope for these values of the named symbols, and of m2/m1 by ``omega``."""
         cell, law, compression, wavenumber = substituted(
             values, self.cell, self.law, self.compression, self.wavenumber
         )
-        return Envelope(cell, law, compression, wavenumber, self.branch, self.floats)
+        return replace(
+            self, cell=cell, law=law, compression=compression, wavenumber=wavenumber
+        )
 
     # --- coefficients ---
 
     @cached_property
     def frequency(self) -> sp.Expr:
         """Frequency ω of the mode, in radians per unit of time."""
-        square = self._tidy(self._mode.square)
-        return self._tidy(sp.sqrt(square).replace(sp.Abs, lambda x: x))  # sin κ/2 ≥ 0
+        root = sp.sqrt(self._tidy(self._mode.square))
+        return self._tidy(root.replace(sp.Abs, lambda x: x))  # sin κ/2 is not negative
 
     @cached_property
     def group_velocity(self) -> sp.Expr:
-        """Group velocity dω/dκ, in cells per unit of time."""
+        """Group velocity ``dω/dκ``, in cells per unit of time."""
         if sp.sin(self.wavenumber).is_zero:  # the edge of a band, in floats as well
             return sp.S.Zero
         return self._tidy(self._mode.slope / (2 * self.frequency))
 
     @cached_property
     def dispersion(self) -> sp.Expr:
-        """Dispersion coefficient ω″ = d²ω/dκ².
+        """Dispersion coefficient ω″, the second derivative of ω by κ.
 
         >>> envelope(Cell(["m"], ["K"]), k=1, background="p0", wavenumber="q").dispersion
         -sqrt(K)*sin(q/2)/(2*sqrt(m))
@@ -110,12 +143,12 @@ class Envelope(Value):
 
     @cached_property
     def nonlinearity(self) -> sp.Expr:
-        """Nonlinear coefficient χ: the amplitude Ψ raises the frequency by χ|Ψ|²."""
+        """Nonlinear coefficient χ: the amplitude Ψ raises the frequency by ``χ|Ψ|²``."""
         return self._tidy(self._mode.cubic / (2 * self.frequency))
 
     @cached_property
     def mean_strain(self) -> tuple[sp.Expr, ...]:
-        """Lasting compression of each contact divided by |Ψ|², with the mean flow's part."""
+        """Lasting compression of each contact over ``|Ψ|²``, with the mean flow's part."""
         return self._each(self._mode.mean)
 
     @cached_property
@@ -125,29 +158,45 @@ class Envelope(Value):
 
     @cached_property
     def strains(self) -> tuple[sp.Expr, ...]:
-        """Square |d|² for each contact, whose compression is A d e^{i(κn - ωt)} + c.c. + …."""
+        """Squared compression ``|d|²`` of each contact in the mode."""
         return self._each(self._mode.size)
 
     @property
-    def kind(self) -> str:
+    def kind(self) -> KindName:
         """ "bright" or "dark"; raises `lwa.InputError` where symbols leave it open."""
         sign = self.dispersion * self.nonlinearity
         if sign.is_zero:
             raise InputError(
                 "the dispersion or the nonlinearity vanishes: no envelope has a shape"
             )
-        negative = (sp.simplify(sign) if _short(sign) else sign).is_negative
-        if negative is None:
+        if _short(sign):
+            sign = sp.simplify(sign)
+        if sign.is_negative is None:
             raise InputError("kind depends on symbols: give numbers")
-        return KINDS[0] if negative else KINDS[1]
+        return "bright" if sign.is_negative else "dark"
 
     def breather(
-        self, frequency: Any = None, *, detuning: Any = None, kind: str = ""
+        self,
+        frequency: Any = None,
+        *,
+        detuning: Any = None,
+        kind: KindName | None = None,
     ) -> Breather:
-        """The standing envelope of a frequency, or of the detuning Δ = 1 - frequency/ω.
+        """The standing envelope of a frequency, or of a detuning.
 
-        frequency : in radians per unit of time.
-        kind : "bright" or "dark", for symbols that leave the kind open. Errors are `Breather`'s.
+        Parameters
+        ----------
+        frequency : number, optional
+            Frequency of the breather, in radians per unit of time.
+        detuning : number or str, optional
+            Detuning Δ, 1 less the ratio of the breather's frequency to ω; in place of a frequency.
+        kind : {"bright", "dark"}, optional
+            The kind, where symbols leave it open.
+
+        Raises
+        ------
+        InputError
+            Where the group velocity is not 0, and as `lwa.Breather`.
         """
         if (frequency is None) == (detuning is None):
             raise InputError("frequency or detuning: one of the two is wanted")
@@ -161,24 +210,27 @@ class Envelope(Value):
 
     @property
     def load(self) -> sp.Expr:
-        """The static force F0, in the units of the cell."""
+        """The static force, in the units of the cell."""
         return self.cell.stiffnesses[0] * self.law.at(self.static_compressions[0])
 
     @property
     def static_compressions(self) -> tuple[sp.Expr, ...]:
-        """Static compression δ0 of each contact."""
+        """Static compression of each contact."""
         return tuple(c * self.compression for c in self.cell.shares(self.law.exponent))
 
     @property
     def opening(self) -> sp.Expr:
-        """The |Ψ|² at which a contact's compression 2|Ψ||d| reaches δ0; ∞ if contacts pull."""
-        roots = (p for p in self.law.F.atoms(sp.Pow) if p.base == self.law.delta)
-        if not self.law.homogeneous and all(
-            p.exp.is_integer for p in roots
-        ):  # real at δ < 0
+        """The ``|Ψ|²`` at which a contact's compression reaches its static one; ∞ if it pulls."""
+        if self.law.pulls or self.law.formless:
             return sp.oo
-        pairs = zip(self.static_compressions, self.strains, strict=True)
-        smallest = sp.Min(*(delta**2 / (4 * d) for delta, d in pairs if d))
+        limits = [
+            static**2 / (4 * strain)
+            for static, strain in zip(
+                self.static_compressions, self.strains, strict=True
+            )
+            if strain
+        ]
+        smallest = sp.Min(*limits)
         return sp.N(smallest) if self.floats else smallest
 
     @cached_property
@@ -193,10 +245,12 @@ class Envelope(Value):
             self.floats,
         )
 
-    def _each(self, values: Any) -> tuple[sp.Expr, ...]:
+    def _each(self, values: Iterable[sp.Expr]) -> tuple[sp.Expr, ...]:
+        """The values in their shortest forms."""
         return tuple(self._tidy(value) for value in values)
 
     def _tidy(self, value: sp.Expr) -> sp.Expr:
+        """A value as a float, or with its factors unless that would take minutes."""
         if self.floats:
             return sp.N(value)
         return sp.powsimp(sp.factor(value)) if _short(value) else value
@@ -204,45 +258,60 @@ class Envelope(Value):
 
 def _short(value: sp.Expr) -> bool:
     """Return True for an expression that is factored within seconds."""
-    roots = (power.exp.q for power in value.atoms(sp.Pow) if power.exp.is_Rational)
-    return bool(sp.count_ops(value) < LONG and max(roots, default=1) <= FINE)
+    if sp.count_ops(value) >= LONG:
+        return False
+    roots = [p.exp.q for p in value.atoms(sp.Pow) if p.exp.is_Rational]
+    return max(roots, default=1) <= FINE
 
 
 @dataclass(frozen=True)
 class Breather(Value):
-    """The standing envelope of the frequency (1 - Δ) ω (see `lwa.Envelope.breather`).
+    """The standing envelope of a frequency (see `lwa.Envelope.breather`).
 
-    envelope : the equation, of frequency ω. detuning, kind : Δ, and one of `KINDS`.
+    Parameters
+    ----------
+    envelope : Envelope
+        The equation, of the frequency ω.
+    detuning : Expr
+        Detuning Δ: the frequency is (1 - Δ) ω.
+    kind : {"bright", "dark"}
+        The kind.
 
-    Raises `lwa.InputError` for a detuning to the side where there is no such envelope, and for one
-    at which contacts open.
+    Raises
+    ------
+    InputError
+        For a detuning to the side where there is no such envelope, and for one at which contacts
+        open.
     """
 
     envelope: Envelope
     detuning: sp.Expr
-    kind: str
+    kind: KindName
 
     def __post_init__(self) -> None:
         one_of(self.kind, KINDS, "kind")
         if self.detuning.is_number and self.detuning >= 1:
             self._refuse("a frequency is positive, and the detuning below 1")
         if self._square.is_positive is False:
-            below = self.envelope.nonlinearity.is_negative
-            side, sign = ("below", "> 0") if below else ("above", "< 0")
-            self._refuse(f"{self.kind} breathers lie {side} f0, at values {sign}")
+            if self.envelope.nonlinearity.is_negative:
+                self._refuse(f"{self.kind} breathers lie below f0, at values > 0")
+            self._refuse(f"{self.kind} breathers lie above f0, at values < 0")
         part = self.detuning / self.opening_detuning
         if part.is_number and part > 1:
             self._refuse(f"contacts open from {float(self.opening_detuning):.5g} on")
 
     def _refuse(self, why: str) -> NoReturn:
-        raise InputError(
-            f"detuning 1 - f/f0 is {sp.sstr(sp.N(self.detuning, 5), full_prec=False)}: {why}"
-        )
+        """Raise an error that names the detuning."""
+        detuning = sp.sstr(sp.N(self.detuning, 5), full_prec=False)
+        raise InputError(f"detuning 1 - f/f0 is {detuning}: {why}")
 
     def latex_rows(self) -> list[str]:
-        shape = r"\operatorname{sech}" if self.kind == KINDS[0] else r"\tanh"
-        rows = [rf"|\Psi| = a {shape}(b n)", latex.row("a^{2}", self._square)]
-        return [*rows, latex.row("b^{-1}", self.width)]
+        shape = r"\operatorname{sech}" if self.kind == "bright" else r"\tanh"
+        return [
+            rf"|\Psi| = a {shape}(b n)",
+            latex.row("a^{2}", self._square),
+            latex.row("b^{-1}", self.width),
+        ]
 
     @property
     def frequency(self) -> sp.Expr:
@@ -252,22 +321,20 @@ class Breather(Value):
     @property
     def _shift(self) -> sp.Expr:
         """The ratio χ a²/Δ: 2Ω/Δ for bright, Ω/Δ for dark breathers."""
-        return -(2 if self.kind == KINDS[0] else 1) * self.envelope.frequency
+        rate = -self.envelope.frequency  # Ω/Δ
+        return 2 * rate if self.kind == "bright" else rate
 
     @cached_property
     def _square(self) -> sp.Expr:
         """Square a² of the envelope's amplitude."""
-        return sp.powsimp(
-            self._factored(self._shift * self.detuning / self.envelope.nonlinearity)
-        )
+        square = self._shift * self.detuning / self.envelope.nonlinearity
+        return sp.powsimp(self._factored(square))
 
     def _factored(self, value: sp.Expr) -> sp.Expr:
         """The value with its factors, unless SymPy would take minutes, as where Δ is a surd."""
-        return (
-            sp.factor(value)
-            if _short(value) and not self.detuning.is_irrational
-            else value
-        )
+        if _short(value) and not self.detuning.is_irrational:
+            return sp.factor(value)
+        return value
 
     @cached_property
     def amplitude(self) -> tuple[sp.Expr, ...]:
@@ -278,28 +345,36 @@ class Breather(Value):
     def width(self) -> sp.Expr:
         """Width 1/b, in cells, of the envelope sech(bn) or tanh(bn)."""
         ratio = self.envelope.dispersion / (self._shift * self.detuning)
-        return sp.sqrt(self._factored(-ratio if self.kind == KINDS[0] else ratio))
+        return sp.sqrt(self._factored(-ratio if self.kind == "bright" else ratio))
 
     @cached_property
     def opening_detuning(self) -> sp.Expr:
-        """Detuning Δ_o at which contacts begin to open, to leading order; ∞ if contacts pull.
+        """Detuning at which contacts begin to open, to leading order; ∞ if contacts pull.
 
-        Under a power law Δ_o is the same at every load. In the lattice contacts open earlier: for
-        spheres of mass ratios 0.3 to 0.5 at 0.018 instead of 3/128 = 0.0234.
+        Under a power law it is the same at every load. In the lattice contacts open earlier: for
+        spheres of mass ratios 0.3 to 0.5 at 0.018 instead of 3/128, which is 0.0234.
         """
-        return sp.simplify(
-            self.envelope.opening * self.envelope.nonlinearity / self._shift
-        )
+        ratio = self.envelope.opening * self.envelope.nonlinearity / self._shift
+        return sp.simplify(ratio)
 
     def displacements(self, cells: ArrayLike) -> Array:
-        """Displacements of the beads at t = 0 to leading order, a row for each cell; in floats."""
+        """Displacements of the beads at the time 0 to leading order, in floats.
+
+        Parameters
+        ----------
+        cells : array_like
+            Numbers n of the cells.
+
+        Returns
+        -------
+        array, shape (cells, beads)
+        """
         n = np.asarray(cells, float)
-        shape = n / float(self.width)
-        profile = 1 / np.cosh(shape) if self.kind == KINDS[0] else np.tanh(shape)
+        x = n / float(self.width)
+        profile = 1 / np.cosh(x) if self.kind == "bright" else np.tanh(x)
         phase = np.cos(float(self.envelope.wavenumber) * n)
-        return np.asarray(
-            np.multiply.outer(profile * phase, np.array(self.amplitude, float))
-        )
+        amplitude = np.array(self.amplitude, float)
+        return np.asarray(np.multiply.outer(profile * phase, amplitude))
 
 
 def envelope(
@@ -310,28 +385,41 @@ def envelope(
     background: Any = None,
     precompression: Any = None,
     wavenumber: Any = sp.pi,
-    branch: Any = None,
+    branch: BranchName | int | None = None,
 ) -> Envelope:
     """The nonlinear Schrödinger equation of a mode of a chain under load.
 
+    Results are exact, in symbols as well, for cells of one bead at any wavenumber, and of two beads
+    at κ = 0 and, with equal masses or contacts, at κ = π, unless they are `numeric`; elsewhere they
+    are floats, for numbers.
+
     Parameters
     ----------
-    cell : the periodic cell. Of masses that are symbols the first one is taken to be the heaviest.
-    law, k : the contact law, δ^k unless given; under `lwa.general()` results hold the symbols
-        K2, K3, K4 of the force K2 δ + K3 δ² + K4 δ³ on top of the load, for equal contacts.
-    background, precompression : the static strain or the static force, one of the two. A strain
-        may be zero or negative under a law that is no power.
-    wavenumber : κ per cell, 0 … π.
-    branch : "acoustic", "optical" or the number of the branch from 0; by default 0 for equal beads,
-        else 1.
+    cell : Cell
+        The periodic cell. Of masses that are symbols the first one is taken to be the heaviest.
+    law : ContactLaw, optional
+        The contact law, by default a power; under `lwa.general` results hold the symbols K2, K3, K4
+        of the force ``K2 δ + K3 δ² + K4 δ³`` on top of the load, for equal contacts.
+    k : number or str
+        Exponent of the power.
+    background : number or str, optional
+        The static strain. It may be zero or negative under a law that is no power.
+    precompression : number or str, optional
+        The static force, in place of a strain.
+    wavenumber : number or str
+        κ per cell, from 0 to π.
+    branch : {"acoustic", "optical"} or int, optional
+        The branch, or its number from 0; by default 0 for equal beads, else 1.
 
-    Results are exact for cells of one bead at any wavenumber and of two beads at κ = 0 and π, in
-    symbols as well, unless they are `numeric`; elsewhere they are floats, for numbers.
+    Raises
+    ------
+    InputError
+        For other arguments, and unless ``F′`` is positive at the strain. Results raise it where
+        branches touch, at zero frequency, where the mode drives a mode of twice its frequency, and,
+        in floats, where the mode moves nearly with sound.
 
-    Raises `lwa.InputError` for other arguments, and unless F′ > 0 at the strain. Results raise it
-    where branches touch, at zero frequency, where the mode drives a mode of twice its frequency,
-    and, in floats, where the mode moves nearly with sound.
-
+    Examples
+    --------
     >>> envelope(Cell(["m"], spacing=1), k=2, background="p0").nonlinearity
     -4*sqrt(2)/(m**(3/2)*p0**(3/2))
     """
@@ -339,24 +427,41 @@ def envelope(
     if (background is None) == (precompression is None):
         raise InputError("background or precompression: one of the two is wanted")
     if precompression is not None:
-        static = law.compression(cell, positive(precompression, "precompression"))
+        load = positive(precompression, "precompression")
+        static = law.compression(cell, load)
     else:
         read = positive if law.homogeneous else signed  # powers only push
-        static = cell.spacing * read(background, "background")
-        law.check_strain(static / cell.spacing, cell)
+        load = read(background, "background")
+        static = cell.spacing * load
+        law.check_strain(load, cell)
     kappa = signed(wavenumber, "wavenumber")
     if kappa.is_number and not 0 <= kappa <= sp.pi:
         raise InputError(f"wavenumber is {shorten(kappa)}: 0 … pi per cell is wanted")
+    demand_distinct(
+        cell=cell.symbols,
+        law=law.symbols,
+        load=load.free_symbols,
+        wavenumber=kappa.free_symbols,
+    )
+    number = _branch_number(branch, cell)
+    # Elsewhere ω² is no rational function of masses and stiffnesses.
+    alike = len({*cell.masses}) == 1 or len({*cell.stiffnesses}) == 1
+    edge = cell.size == 2 and (kappa.is_zero or (kappa == sp.pi and alike))
+    exact = cell.size == 1 or edge
+    return Envelope(cell, law, static, kappa, number, floats=not exact)
+
+
+def _branch_number(branch: Any, cell: Cell) -> int:
+    """Read a branch; by default the acoustic one of equal beads, else the lowest optical one."""
     if branch is None:
-        branch = min(1, cell.size - 1)
-    named = isinstance(branch, str) and branch in BRANCHES
-    number = BRANCHES.index(branch) if named else integer(branch, "branch", 0)
+        return min(1, cell.size - 1)
+    if isinstance(branch, str) and branch in BRANCHES:
+        number = BRANCHES.index(branch)
+    else:
+        number = integer(branch, "branch", 0)
     if number >= cell.size:
         raise InputError(
             f"branch is {shorten(branch)}: a cell of {cell.size} has as many branches, "
             "counted from 0"
         )
-    edge = cell.size == 2 and kappa in (sp.S.Zero, sp.pi)
-    return Envelope(
-        cell, law, static, kappa, number, floats=not (cell.size == 1 or edge)
-    )
+    return number

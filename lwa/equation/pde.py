@@ -242,8 +242,8 @@ class PDE(OfClosure):
         """
         if not self.law.homogeneous:
             raise InputError(
-                "the compact wave in closed form belongs to a power law: `lwa.loaded_wave` "
-                "(--background P0) has the waves of any law"
+                f"law is {self.law.text}: the compact wave in closed form belongs to a power law; "
+                "`lwa.loaded_wave` has the waves of any law, on a background or of a force"
             )
         wave = CompactWave(cell=self.cell, k=self.k, G=self.G, H=self.H, I=self.I)
         # u_x^{k-2} u_xx² breaks the symmetry x → -x, u → -u, which an even pulse has.

@@ -314,8 +314,9 @@ class CompactWave(Value):
         if any(sp.cancel(x) != 0 for x in differences):
             raise InputError(
                 "waves on a background are those of the canonical field, which conserves momentum "
-                'and energy: closure="full" with field="center" (--closure full --field center), '
-                "or canonical_wave(cell, k)"
+                "and energy; canonical_wave(cell, k) is such a wave",
+                closure="full",
+                field="center",
             )
         return loaded_wave(self.cell, k=self.k, **states)
 

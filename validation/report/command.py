@@ -18,7 +18,8 @@ import click
 from lwa.base.progress import bar, shown
 from lwa.command.cli import HELP
 from lwa.command.cli import run as run_command
-from lwa.command.options import called, quantities, quantity
+from lwa.command.hints import called, help_end
+from lwa.command.options import quantities, quantity
 from validation.pictures import SUFFIXES
 from validation.report.result import Report, output_file
 from validation.report.table import WIDTH
@@ -120,15 +121,6 @@ def study(
     """
     end = help_end(examples, page)
     return lambda function: Study(function, options, end)
-
-
-def help_end(examples: Sequence[str], page: str) -> str:
-    """Return the end of a command's help: examples, and the page of the book."""
-    end = ""
-    if examples:
-        lines = "\n".join(f"  {line}" for line in examples)
-        end = f"\b\nExamples:\n{lines}\n\n"  # \b: Click leaves the lines as they are
-    return f"{end}In the book: {page}.html" if page else end
 
 
 def printed_as(style: str, report: Report) -> str:

@@ -4,9 +4,11 @@ import json
 import os
 import random
 import re
+import shlex
 
 import pytest
 
+from lwa.base import LONGEST_MESSAGE
 from tests.lwa.command.answers import STEEL_AND_PTFE, run
 
 FREE = {"k": 1.5}  # without a load
@@ -14,39 +16,44 @@ MASSES = {"cell": [1, 1], "k": 1.5, "stiffnesses": 2, "spacings": 0.5, "repeat":
 
 
 def refused(capsys, words, *arguments):
+    """One line names the value; the line that it proposes is answered, or refused otherwise."""
     status, out, err = run(capsys, *arguments)
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert err.startswith("lwa: ")
     assert words in err
+    assert len(err) <= LONGEST_MESSAGE + 1
+    _, proposed, line = err.partition("; try: lwa ")
+    if proposed:
+        assert run(capsys, *shlex.split(line))[2] != err
 
 
 LINES = [
     ("explain", "No such command"),
     ("derive --nonsense", "--nonsense"),
-    ("derive --k 0", "k is 0"),
+    ("derive --k 0", "k is 0: it must be positive; try: lwa derive --k 3/2"),
     ("derive --k __import__('os').system('true')", 'k is "__import__'),
-    ("derive --masses 1,2,3", "--closure full"),
-    ("derive --stiffnesses 1", "1 stiffnesses for 2 masses"),
+    ("derive --masses 1,0", "masses is 0"),
+    ("derive --masses 1,2,3 --closure linear", "try: lwa derive --masses 1,2,3 --clos"),
+    ("derive --stiffnesses 1,2,3", "3 for 2 masses"),
     ("derive --masses 1 --branch optical", "optical"),
     ("derive --order 0", "order is 0"),
-    ("derive --order 2.5", "order is 5/2"),
     ("derive --order 200", "order is 200"),
     ("derive --order 20 --closure full", "order is 20"),
-    ("derive --order ９", "order is '９'"),
-    ("derive --closure none", "'none'"),
+    ("derive --closure ful", "did you mean full?; try: lwa derive --closure full"),
     ("derive --field center", "field is 'center'"),
     ("derive --closure full --branch optical", "the optical branch"),
     ("derive --law toda", "one of power"),
     ("derive --law hertz2:1+1", "hertz2's a"),
-    ("derive --law general --k 2", "one of them"),
+    ("derive --law general --k 2", "--k and --law"),
     ("derive --law hertz2:delta,1", "'delta': the name means the compression"),
     ("dispersion --precompression -1", "must be positive"),
     ("wave --k D --masses 3,1", "k is D: the name is that of the spacing"),
     ("wave --k 29000", "exponents from 1/100 to 1000"),
-    ("wave --k 3 --masses 1,100", "a compact wave needs"),
     ("wave --order 3", "order is 3"),
-    ("wave --k 2 --masses 1,1 --stiffnesses 1,2", "unequal stiffnesses"),
-    ("wave --law hertz2", "--background"),
+    # the numbers of the canonical field: (√3/3, 1.19315), √(1/6)
+    ("wave --k 2 --masses 1,1 --stiffnesses 1,2", "V_s = 0.57735 at B = 1"),
+    ("wave --k 3 --masses 1,100", "V_s = 0.408248 at B = 1"),
+    ("wave --law hertz2", "law is hertz2"),
     ("wave --background 1 --closure linear", "canonical field"),
     ("wave --background 1 --precompression 1", "both given"),
     ("wave --background 1 --force 1", "goes with --precompression"),
@@ -56,44 +63,23 @@ LINES = [
     ("wave --spheres none.toml", "No such file"),
     ("expansion --k 1", "k is 1"),
     ("expansion --order 100", "order is 100"),
-    ("strike --velocity 1", "--spheres"),
-    ("envelope", "background or precompression"),
-    ("envelope --background 1 --precompression 1", "background or precompression"),
+    ("strike --velocity 1", "--spheres chain.toml"),
+    ("envelope", "neither --background nor --precompression"),
     ("envelope --background 1 --wavenumber 4", "0 … pi"),
-    ("shock --law magnetic:4,1 --behind 0.123", "spacing is D"),
-    (
-        "envelope --law magnetic:4,1 --masses 1,2,3 --precompression 2 --detuning nu",
-        "f/f0 is nu",
-    ),
     ("envelope --background 1 --wavenumber pi*2", "wavenumber is 'pi*2'"),
-    (
-        "envelope --masses 1 --k 2 --background 1 --wavenumber 1 --detuning 1/100",
-        "where dω/dκ = 0",
-    ),
     ("envelope --background 1 --branch up", "branch is 'up'"),
-    # of minutes, if powers of a decimal were factored
-    (
-        "envelope --k 3.1185 --background 2.091 --stiffnesses 1,2 --detuning 1/9",
-        "kind depends on",
-    ),
     ("envelope --background 1 --detuning 1 --frequency 1", "both given"),
     ("envelope --precompression 1 --masses 1,1/2 --k 2 --detuning -1", "below"),
     ("envelope --law hertz2:1,2 --background 0 --masses 1", "F′ is 0"),
     ("envelope --law general --precompression 1", "law is general"),
     ("envelope --law polynomial:1/2,-1/4 --masses 1 --background 3", "F′ is -2.75"),
-    (
-        "wave --masses 1 --precompression 10 --force 5 --k 2",
-        "force is 5, below precompression 10",
-    ),
-    ("shock", "--behind or --piston"),
+    ("shock", "neither --behind nor --piston"),
     ("shock --law general --behind 1", "law is general"),
-    ("shock --behind 1 --piston 1", "--behind or --piston"),
+    ("shock --law magnetic:4,1 --behind 0.123", "spacing is D"),
+    ("shock --behind 1 --piston 1", "both given"),
     ("shock --behind 1 --ahead 1", "there is no shock"),
-    ("shock --piston -1", "velocity is -1"),
-    (
-        "shock --k 3.1085 --masses 3,1 --piston D",
-        "'D' has no value: beside fractions above 64",
-    ),
+    # of minutes, if powers of a decimal were factored
+    ("shock --k 3.1085 --masses 3,1 --piston D", "'D' has no value"),
 ]
 
 
@@ -108,7 +94,6 @@ def test_lines_are_refused(capsys, line, words):
         ("", "", ("--masses", "m1,m2"), "--masses and --spheres are both given"),
         ("", "", ("--force", "1 N"), "force is '1 N': an integer, a decimal"),
         ("", "", ("--force", "1", "--format", "c"), "--format c is for any force"),
-        ('"light"]', '"light", "heavy"]', (), "the cell has 3 masses"),
         (
             '"light"]',
             '"ligth"]',
@@ -170,7 +155,7 @@ def test_files_of_spheres_are_refused(capsys, tmp_path, old, new, more, words):
         ({}, "wave --precompression 1", "the file has a precompression of 2"),
         ({}, "envelope --precompression 1", "the file has a precompression of 2"),
         ({}, "strike --velocity 1", "precompression is 2"),
-        (FREE, "strike", "velocity or drop"),
+        (FREE, "strike", "no striker that moves"),
         (FREE, "strike --velocity 1 --drop 1", "velocity or drop"),
         (FREE, "strike --velocity v", "velocity is v: a number is wanted"),
         (FREE, "strike --drop -1", "drop is -1: it must be positive"),

@@ -79,11 +79,11 @@ def test_a_wave_of_spheres_has_the_values_of_python(capsys, file):
     for name in ("compression", "speed", "bead_velocity", "force"):
         assert found[f"{name}_value"] == float(getattr(wave, name))
     out = said(capsys, *options, "--force", "10")
-    speed = f"speed dx/dt = {found['speed_value']:.10f}"[:22]
+    speed = f"speed dx/dt = {found['speed_value']:.6g} m/s"
     for words in (
-        "masses 0.00045, 0.000123 kg",
-        f"A = {float(A):.15g}",
-        "D = 0.00476 m",
+        "masses 450 mg, 123 mg",
+        f"A = {float(A):.6g} N/m^(3/2)",
+        "D = 4.76 mm",
         speed,
     ):
         assert words in out
@@ -171,7 +171,7 @@ def test_bands_and_breathers_have_hertz_and_metres(capsys, file):
     amplitude = static * math.sqrt(32 * 0.005 / 0.75)  # U = δ0 √(32 ν/(k (k - 1)))
     assert found["amplitude_value"] == pytest.approx([0, amplitude], rel=1e-9)
     assert found["units"]["amplitude"] == "m"
-    assert "frequency ω/(2π) = 8101." in said(capsys, *envelope, "--detuning", "1/200")
+    assert "frequency ω/(2π) = 8.101" in said(capsys, *envelope, "--detuning", "1/200")
 
 
 def test_a_strike(capsys, file):

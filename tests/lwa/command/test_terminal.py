@@ -1,7 +1,10 @@
 """Between a command and its user: encodings, closed and full outputs, completion, digits."""
 
 import os
+import re
+import shlex
 from contextlib import redirect_stdout
+from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
@@ -9,8 +12,10 @@ from click.testing import CliRunner
 from lwa.command import cli
 from lwa.command.cli import CLOSED
 from tests.commands import encoded, ended
+from tests.lwa.command.answers import said
 from validation.cli import main, validate
 
+ROOT = Path(__file__).parents[3]
 MAINS = {"lwa": cli.main, "lwa-validate": main}
 
 
@@ -82,3 +87,36 @@ def test_a_shell_completes_names_and_files(words, offered):
     shown = CliRunner(env=asked).invoke(command, prog_name=program)
     expected = [name if "," in name else f"plain,{name}" for name in offered.split()]
     assert shown.output.split() == expected
+
+
+@pytest.mark.parametrize("name", ["", *cli.COMMANDS])
+def test_the_examples_of_a_help_run_and_its_page_is_in_the_book(capsys, folder, name):
+    """One after another in an empty folder."""
+    text = said(capsys, *name.split(), "--help")
+    assert max(map(len, text.splitlines())) <= 80
+    _, _, end = text.partition("Examples:\n")
+    examples = re.findall(r"^ +(lwa\S*) (.*)$", end, re.MULTILINE)
+    assert 2 <= len(examples) <= 3
+    for program, line in examples:
+        arguments, _, file = line.partition(" > ")
+        status, out, err = ended(capsys, MAINS[program], *shlex.split(arguments))
+        assert (status, err) == (0, ""), line
+        if file:
+            Path(file).write_text(out)
+    (page,) = re.findall(r"In the book: (\w+)\.html", text)
+    assert (ROOT / "book" / f"{page}.md").exists()
+
+
+def test_text_is_as_wide_as_the_terminal_and_a_pipe_gets_100(capsys, monkeypatch):
+    line = ("wave", "--masses", "m1,m2")
+    texts = [said(capsys, *line)]
+    monkeypatch.setattr(
+        "lwa.command.answer.sys.stdout.isatty", lambda: True, raising=False
+    )
+    for width in (80, 60, 200):
+        monkeypatch.setenv("COLUMNS", str(width))
+        texts.append(said(capsys, *line))
+    widths = [max(map(len, text.splitlines())) for text in texts]
+    assert [80 < widths[0] <= 100, 60 < widths[1] <= 80, widths[2] <= 60] == [True] * 3
+    assert texts[0] == texts[3]
+    assert {"".join(text.split()) for text in texts} == {"".join(texts[0].split())}
