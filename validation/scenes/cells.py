@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 
 from lwa.base import files
 from lwa.base.arrays import Array
+from validation.scenes.checks import SceneError
 
 _LINE = re.compile(r"[^\r\n]*\S[^\r\n]*")  # a line that is not blank
 # Signs with several codes, and the sign of recorders for a value beyond their range
@@ -32,6 +33,7 @@ _PLAIN = {
     ",": _SIGNED,
     " ": {",": "."},
 }
+_FEW = 0.1  # rows of numbers in a preamble, at most, over the rows of the record
 _BLOCK = 10_000  # rows of numbers that are read at once
 
 
@@ -71,10 +73,8 @@ class Cells:
             text = content.decode("utf-16" if marked else "utf-8-sig")
         except UnicodeDecodeError:
             text = content.decode("latin-1")
-        for (
-            sign,
-            plain,
-        ) in _SIGNS.items():  # A translation would take as much memory again.
+        # A translation would take as much memory again.
+        for sign, plain in _SIGNS.items():
             text = text.replace(sign, plain)
         return cls(text)
 
@@ -83,6 +83,8 @@ class Cells:
 
         Blank lines are left out.
         """
+        if not self.first:
+            return np.empty((0, len(places)))
         # NumPy's reader parses 2 million rows in a second, Python's in twelve.
         return np.loadtxt(
             self._lines(places),
@@ -122,7 +124,31 @@ class Cells:
             yield from text.splitlines()
             start = block.end()
 
-    def line_number(self, row: int) -> int:
+    def rows(self, table: Array) -> tuple[int, int]:
+        """Return start and end of the record in a table of columns: the rows without any NaN.
+
+        Raises `SceneError` without any such row, and for a gap or an infinite value in the record.
+        """
+        numbers = ~np.isnan(table)
+        complete = np.all(numbers, axis=1)
+        start, end = longest(complete)
+        if not end:
+            raise SceneError("no row has numbers in all of these columns")
+        for first, last in runs(complete):
+            # A preamble may hold rows of numbers, few, with lines without any behind them.
+            gap = slice(last, start) if last <= start else slice(end, first)
+            large = last - first > _FEW * (end - start)
+            if first != start and (large or numbers[gap].any()):
+                raise SceneError(f"line {self._line(gap.start)} is a gap in the record")
+        beyond = np.flatnonzero(np.isinf(table[start:end]).any(axis=1))
+        if len(beyond):
+            raise SceneError(
+                f"line {self._line(start + int(beyond[0]))} holds ∞, the signal is clipped: a "
+                "larger range of the recorder is wanted"
+            )
+        return start, end
+
+    def _line(self, row: int) -> int:
         """Return the number, from 1, of a line that is counted without blank lines, from 0."""
         above = next(islice(_LINE.finditer(self._text), row, None)).start()
         return len(self._text[:above].splitlines()) + 1
@@ -155,9 +181,8 @@ def _number(mark: str) -> str:
 
 def _split(line: str, mark: str) -> list[str]:
     """Return the cells of a line."""
-    if (
-        mark == " "
-    ):  # The blank between a header and its unit in brackets does not separate.
+    if mark == " ":
+        # The blank between a header and its unit in brackets does not separate.
         line, mark = re.sub(r"[ \t]+(?![([])", "\t", line.strip("#% \t")), "\t"
     cells = next(csv.reader([line], delimiter=mark, skipinitialspace=True))
     return [" ".join(cell.split()) for cell in cells]

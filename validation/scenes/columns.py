@@ -17,6 +17,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import cycle
 from pathlib import Path
 from typing import TypedDict
 
@@ -25,17 +26,20 @@ import numpy as np
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
 from lwa.base.files import reason
-from validation.scenes.cells import Cells, longest, runs
+from validation.scenes.cells import Cells
 from validation.scenes.checks import SceneError
-from validation.scenes.units import BASES, in_si, read_statement, same
-
-# Name and unit: "Force (N)", "Force [N]", "Force in N"
-_HEADER = re.compile(r"^(.*?) ?(?:[([] ?([^][()\s]*) ?[])]|\bin (\S+))?$")
-_SENSOR = re.compile(
-    r"(?!contact.*velocity)(?:(bead|contact) )?(?:([1-9]\d{0,8}) )?(force|velocity)"
+from validation.scenes.units import (
+    HEADER,
+    found_unit,
+    known,
+    read_statement,
+    size_of,
 )
-_OTHERS = ("time", "displacement", "speed", "force_error", "speed_error")
-_FEW = 0.1  # rows of numbers in a preamble, at most, over the rows of the record
+
+_NAME = re.compile(
+    "time|displacement|speed|force_error|speed_error"
+    r"|(?!contact.*velocity)(?:(bead|contact) )?(?:([1-9]\d{0,8}) )?(force|velocity)"
+)
 
 
 class Stated(TypedDict, total=False):
@@ -76,10 +80,13 @@ class MeasuredFile:
     ----------
     path : str or Path
         Name of the file; "-" is standard input.
-    *wanted : str
-        Names of columns that must be there; "force" stands for the signal of any sensor.
     columns, units, step
         Statements of the user, see `Stated`.
+
+    Attributes
+    ----------
+    names : dict of str
+        Names by the numbers of the columns; number 0 is the time that a step states.
 
     Raises
     ------
@@ -91,90 +98,92 @@ class MeasuredFile:
     def __init__(
         self,
         path: str | Path,
-        *wanted: str,
         columns: Mapping[str, str] | None = None,
         units: Mapping[str, str] | None = None,
         step: str | None = None,
     ) -> None:
         self.path = "standard input" if str(path) == "-" else path
-        self._step = step
         try:
             self._cells = Cells.read(path)
         except (OSError, SceneError, csv.Error) as error:
             raise SceneError(f"{self.path}: {reason(error)}") from None
-        self.names: dict[int, str] = {}
+        # The cell in front is that of column 0.
+        self._head = [["", *row] for row in self._cells.head]
+        self.names = {0: "time"} if step else {}
+        self._stated = {0: step} if step else {}
         self._name_columns(columns or {})
-        kinds = {name.split()[-1] for name in self.names.values()}
-        kinds |= {"time"} if self._step else kinds & {"velocity"} and {"force"}
-        for name in wanted:
-            if name not in kinds:
-                raise self._fault(f"no column {name}", *wanted)
-        self._given: dict[int, str] = {}
         for key, statement in (units or {}).items():
-            places = [i for i, name in self.names.items() if name == _name(key)]
-            places = places or self._places(key)
-            if not places:
-                raise self._fault(f"unit is of {shorten(key)}, which is no column", key)
-            self._given |= dict.fromkeys(places, str(statement))
+            numbers = self._named(_name(key)) or self._numbers(key)
+            if not numbers:
+                wrong = f"unit is of {shorten(key)}, which is no column"
+                raise self._fault(wrong, *(units or {}))
+            self._stated |= dict.fromkeys(numbers, str(statement))
 
     def _name_columns(self, stated: Mapping[str, str]) -> None:
         """Name the columns that the user states, and those whose headers are such names."""
         for name, column in stated.items():
-            if not _is_name(_name(name)):
+            if not _NAME.fullmatch(_name(name)):
                 known = "time, bead 8 force, bead 8 velocity, contact 8 force, speed"
                 raise SceneError(
                     f"column is {shorten(name)}: such as {known} is wanted"
                 )
-            places = self._places(str(column))
-            if len(places) != 1:
-                raise self._fault(f"{len(places)} columns are {shorten(column)}", name)
-            self.names[places[0]] = _name(name)
-        for row in reversed(self._cells.head):  # the lowest header counts
+            numbers = self._numbers(str(column))
+            if len(numbers) != 1:
+                raise self._fault(f"{len(numbers)} columns are {shorten(column)}", name)
+            self.names[numbers[0]] = _name(name)
+        for row in reversed(self._head):  # the lowest header counts
             taken = {*self.names.values()}
-            for place, cell in enumerate(row):
-                if _is_name(_name(cell)) and _name(cell) not in taken:
-                    self.names.setdefault(place, _name(cell))
+            for number, cell in enumerate(row):
+                name = _name(cell)
+                if _NAME.fullmatch(name) and name not in taken:
+                    self.names.setdefault(number, name)
         self.names = dict(sorted(self.names.items()))
 
-    def _places(self, column: str) -> list[int]:
-        """Return the places of the columns of a number or a header, that of the lowest line."""
+    def _named(self, name: str) -> list[int]:
+        """Return the numbers of the columns of a name."""
+        return [number for number, known in self.names.items() if known == name]
+
+    def _numbers(self, column: str) -> list[int]:
+        """Return the numbers of the columns of a header, or the number that is given."""
         if re.fullmatch(r"[1-9]\d{0,5}", column):
-            return [int(column) - 1]
-        for row in reversed(self._cells.head):
-            headers = [(_name(cell), cell.lower()) for cell in row]
-            places = [i for i, own in enumerate(headers) if column.lower() in own]
-            if places:
-                return places
+            return [int(column)]
+        for row in reversed(self._head):
+            numbers = []
+            for number, cell in enumerate(row):
+                if column.lower() in (_name(cell), cell.lower()):
+                    numbers.append(number)
+            if numbers:
+                return numbers
         return []
 
     def _fault(self, words: str, *names: str) -> SceneError:
         """Return an error that lists the columns, and ends in options that name some of them."""
         paste = " ".join(f"--column '{name}={i}'" for i, name in enumerate(names, 1))
         found = []
-        for place, entry in enumerate(self._cells.first):
-            above = [row[place] for row in self._cells.head[-2:] if place < len(row)]
-            found.append(f"{place + 1} {' '.join(above)[:20]!r} {entry[:12]}")
+        for number, entry in enumerate(self._cells.first, start=1):
+            above = [row[number] for row in self._head[-2:] if number < len(row)]
+            found.append(f"{number} {' '.join(above)[:20]!r} {entry[:12]}")
         listed = ", ".join(found) or "no numbers"
         return SceneError(f"{self.path}: {words}: found {listed}: {paste}")
 
     @cached_property
     def si(self) -> bool:
         """Whether a unit is stated, by the file or by the user; values are in SI then."""
-        stated = " ".join((*self._given.values(), self._step or ""))
+        found = map(self._unit, self.names)
         # A number alone is a factor.
-        return bool(re.search(r"[^-+.\deE ]", stated)) or any(
-            map(self._unit, self.names)
+        return bool(
+            re.search(r"[^-+.\deE ]", "".join((*self._stated.values(), *found)))
         )
 
     @property
     def notes(self) -> list[str]:
         """Lines on units that the user states otherwise than the file."""
         lines = []
-        for place, statement in self._given.items():
-            _, unit = read_statement(statement, self.names[place].split()[-1])
-            own = self._unit(place)
-            if unit and own and not same(unit, own):
-                name = self.names[place]
+        for number, statement in self._stated.items():
+            name = self.names[number]
+            _, unit = read_statement(statement, name)
+            own = self._unit(number)
+            if unit and own and (known(unit) or unit) != (known(own) or own):
                 lines.append(f"{name}: {statement} is stated, the file says {own}.")
         return lines
 
@@ -184,16 +193,13 @@ class MeasuredFile:
         Raises `SceneError`, in one line, for two columns of one name, for a gap in the record, for
         a value beyond the recorder's range, and for a unit of another quantity.
         """
-        places = []
+        numbers = []
         for name in names:
-            own = [place for place, known in self.names.items() if known == name]
-            if name == "time" and self._step:
-                continue
+            own = self._named(name)
             if len(own) != 1:
-                raise self._fault(f"{len(own)} columns are {name}", name)
-            places += own
-        record = self._record(places)
-        return self._timed(record) if "time" in names else record
+                raise self._fault(f"{len(own)} columns are {name}", *names)
+            numbers += own
+        return self._record(numbers)
 
     def records(self, of: str = "contact") -> list[Record]:
         """Return the records of all sensors, those of beads first.
@@ -203,128 +209,79 @@ class MeasuredFile:
 
         of : kind of the sensors whose names do not say it.
 
-        Raises `SceneError` as `rows` does, for two columns of one sensor, for several sensors of
-        which one has no number, and for columns of time that are not as many as the sensors.
+        Raises `SceneError` as `rows` does, and for columns of time that are not as many as the
+        sensors.
         """
-        times: list[list[int]] = [[]] if self._step else []
-        signals: list[tuple[int, re.Match[str]]] = []
-        for place, name in self.names.items():
-            sensor = _SENSOR.fullmatch(name)
-            if sensor:
-                signals.append((place, sensor))
-            elif name == "time" and not self._step:
-                times.append([place])
-        if len(times) not in (1, len(signals)):
-            wanted = f"{len(times)} columns time and {len(signals)} of sensors"
-            raise self._fault(f"{wanted}: one for all, or one for each, is wanted")
-        found: dict[tuple[str, int | None], tuple[str, list[int]]] = {}
-        for i, (place, sensor) in enumerate(signals):
-            kind, number, quantity = sensor.groups()
-            usual = "bead" if quantity == "velocity" else of
-            key = (kind or usual, int(number) if number else None)
-            other, _ = found.get(key, ("", []))
-            if other == quantity:
-                raise SceneError(f"{self.path}: two columns are {self.names[place]}")
-            if other != "force":
-                found[key] = (quantity, [*times[i % len(times)], place])
-        if len(found) > 1 and None in [number for _, number in found]:
-            raise SceneError(f"{self.path}: each of several sensors needs its number")
-        ordered = sorted(found.items(), key=lambda sensor: sensor[0][0])
-        return [self._signal(*sensor, *columns) for sensor, columns in ordered]
+        times = self._named("time")
+        sensors = []
+        for number, name in self.names.items():
+            force = name.replace("velocity", "force")
+            if name.endswith("force") or (name != force and not self._named(force)):
+                sensors.append(number)
+        if not sensors or len(times) not in (1, len(sensors)):
+            there = f"{len(times)} columns are time and {len(sensors)} of sensors"
+            wanted = "one time for all, or one for each, is wanted"
+            raise self._fault(f"{there}: {wanted}", "time", "force")
+        pairs = zip(cycle(times), sensors, strict=False)
+        records = [self._signal(time, signal, of) for time, signal in pairs]
+        return sorted(records, key=lambda record: record.kind)
 
-    def _signal(
-        self, kind: str, number: int | None, quantity: str, places: list[int]
-    ) -> Record:
-        """Return the record of a sensor from the places of its time, if any, and signal."""
-        t, values = self._timed(self._record(places)).T
-        if np.any(np.diff(t) == 0):
-            step = np.ptp(t) / (len(t) - 1)
-            raise SceneError(
-                f"{self.path}: times repeat, as rounded ones do: --step '{step:.6g} s' states them"
-            )
-        place = places[-1]
-        given = self._given.get(place) or self._unit(place)
-        turned = given[1:] if given.startswith("-") else f"-{given}"
-        if not re.match(r"-?[\d.]", turned):
-            turned = f"-1 {given}"
-        option = f"--unit '{self.names[place]}={turned.strip()}'"
-        return Record(kind, number, quantity, t, values, option)
+    def _signal(self, time: int, signal: int, of: str) -> Record:
+        """Return the record of a sensor from the columns of its time and signal."""
+        name = self.names[signal]
+        sensor = _NAME.fullmatch(name)
+        assert sensor is not None
+        kind, number, quantity = sensor.groups()
+        t, values = self._record([time, signal]).T
+        given = self._stated.get(signal) or self._unit(signal) or "1"
+        turned = f"-{given}".removeprefix("--")
+        return Record(
+            kind or ("bead" if quantity == "velocity" else of),
+            int(number) if number else None,
+            quantity,
+            t,
+            values,
+            f"--unit '{name}={turned}'",
+        )
 
-    def _timed(self, record: Array) -> Array:
-        """Return a record with the times by the user's step, if there is one, in front."""
-        if not self._step:
-            return record
-        step, _ = read_statement(self._step, "time")
-        return np.column_stack((step * np.arange(len(record)), record))
-
-    def _record(self, places: list[int]) -> Array:
+    def _record(self, numbers: list[int]) -> Array:
         """Return columns, (rows, columns), in the rows where all of them are numbers."""
-        kept = list(self.names)
-        table = self._table[:, [kept.index(place) for place in places]]
-        numbers = ~np.isnan(table)
-        complete = np.all(numbers, axis=1)
-        start, end = longest(complete)
-        if not end:
-            named = " and ".join(self.names[place] for place in places)
-            raise self._fault(f"no row has numbers in {named}", *self.names.values())
-        for first, last in runs(complete):
-            # A preamble may hold rows of numbers, few, with lines without any behind them.
-            gap = slice(last, start) if last <= start else slice(end, first)
-            large = last - first > _FEW * (end - start)
-            if first != start and (large or numbers[gap].any()):
-                line = self._cells.line_number(gap.start)
-                raise SceneError(f"{self.path}: line {line} is a gap in the record")
-        record = table[start:end]
-        beyond = np.flatnonzero(np.isinf(record).any(axis=1))
-        if len(beyond):
-            line = self._cells.line_number(start + int(beyond[0]))
-            raise SceneError(
-                f"{self.path}: line {line} holds ∞, the signal is clipped: a larger range of the "
-                "recorder is wanted"
+        columns = self._columns
+        try:
+            start, end = self._cells.rows(
+                np.column_stack([columns[number] for number in numbers if number])
             )
-        record *= [self._size(place) for place in places]
-        return record
+            sizes = [self._size(number) for number in numbers]
+        except SceneError as error:
+            names = " and ".join(self.names[number] for number in numbers)
+            raise SceneError(f"{self.path}: {names}: {error}") from None
+        # The time that a step states starts with the record.
+        columns = columns | {0: np.arange(-start, end - start, dtype=float)}
+        table = np.column_stack([columns[number][start:end] for number in numbers])
+        return np.asarray(table * sizes)
 
     @cached_property
-    def _table(self) -> Array:
-        """Columns of all lines, with NaN where a cell is no number."""
+    def _columns(self) -> dict[int, Array]:
+        """Columns of all lines by number, with NaN where a cell is no number."""
+        found = [number for number in self.names if number]
         try:
-            return self._cells.numbers(list(self.names))
+            table = self._cells.numbers([number - 1 for number in found])
         except (ValueError, csv.Error) as error:
             raise SceneError(f"{self.path}: {shorten(str(error))}") from None
+        return dict(zip(found, table.T, strict=True))
 
-    def _unit(self, place: int) -> str:
+    def _unit(self, number: int) -> str:
         """Return the unit that the file states for a column, "" for none."""
-        cells = [row[place] for row in reversed(self._cells.head) if place < len(row)]
-        for cell in cells:
-            header = _HEADER.fullmatch(cell)
-            if header and (header[2] or header[3]):
-                return str(header[2] or header[3])
-        return next(filter(same, cells), "")
+        return found_unit([row[number] for row in self._head if number < len(row)])
 
-    def _size(self, place: int) -> float:
+    def _size(self, number: int) -> float:
         """Return the value in SI of an entry 1 of a column, 1 in a file without units."""
-        name = self.names[place]
-        quantity = name.split()[-1]
-        if place in self._given:
-            return read_statement(self._given[place], quantity)[0]
-        unit = self._unit(place)
-        size = in_si(unit, BASES[quantity]) if self.si else 1.0
-        if size is None:
-            says = f"has the unit {shorten(unit)}" if unit else "has no unit"
-            base = BASES[quantity]
-            raise SceneError(
-                f"{self.path}: column {name} {says}: --unit '{name}={base}', or as a calibration "
-                f"--unit '{name}=12.5 {base}/{unit or 'V'}'"
-            )
-        return size
+        name = self.names[number]
+        if number in self._stated:
+            return read_statement(self._stated[number], name)[0]
+        return size_of(self._unit(number), name) if self.si else 1.0
 
 
 def _name(header: str) -> str:
     """Return a header without its unit as it is compared."""
-    return _HEADER.sub(r"\1", header).lower().replace("dynamic ", "").strip("#% ")
-
-
-def _is_name(name: str) -> bool:
-    """Whether a header is the name of a quantity that can be read."""
-    return name in _OTHERS or _SENSOR.fullmatch(name) is not None
+    return HEADER.sub(r"\1", header).lower().replace("dynamic ", "").strip("#% ")

@@ -124,7 +124,7 @@ def law(
     an unknown material, ``E_value``, with their errors; ``correlation_value`` of k and ln A;
     ``residual_value`` of ln V; ``one_power``.
     """
-    file = MeasuredFile(data, "force", "speed", **stated)
+    file = MeasuredFile(data, **stated)
     force, speed, weight = _pulses(file)
     content: dict[str, Any] = {}
     if spheres is None:

@@ -12,7 +12,7 @@ import click
 
 from lwa.base.exact import shorten
 from lwa.base.frozen import Estimate
-from lwa.command.options import called
+from lwa.command.hints import called
 from validation.lattice.cost import RunProgress, silent
 from validation.pictures import Curve, Panel
 from validation.pulses.discharge import corrected, suggested
@@ -114,7 +114,7 @@ class Measured:
         Raises `SceneError` for files of which some have no units, and for a sensor in two files.
         """
         names = [paths] if isinstance(paths, str | Path) else [*paths]
-        files = [MeasuredFile(name, "time", "force", **stated) for name in names]
+        files = [MeasuredFile(name, **stated) for name in names]
         signals: dict[tuple[str, int | None], Record] = {}
         for place, file in enumerate(files, start=1):
             if file.si != files[0].si:
@@ -130,10 +130,11 @@ class Measured:
                     signal = replace(signal, values=values)
                 sensor = (signal.kind, signal.number)
                 if sensor in signals:
-                    raise SceneError(
-                        f"{file.path}: {signal.kind} {signal.number} is in two files"
-                    )
+                    named = f"{signal.kind} {signal.number or ''}".strip()
+                    raise SceneError(f"{file.path}: {named} is there twice")
                 signals[sensor] = signal
+        if len(signals) > 1 and None in [number for _, number in signals]:
+            raise SceneError(f"{names[0]}: each of several sensors needs its number")
         notes = [note for file in files for note in file.notes]
         return cls([*signals.values()], files[0].si, notes)
 

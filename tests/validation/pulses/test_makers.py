@@ -203,5 +203,5 @@ def test_one_file_a_channel(chain, tmp_path):
     assert [row["number"] for row in found["sensors"]] == [1, 2]
     peaks = [row["peak_value"] for row in found["sensors"]]
     assert peaks == pytest.approx([pulse.peak for pulse in true], rel=0.01)
-    with pytest.raises(SceneError, match="in two files"):
+    with pytest.raises(SceneError, match="bead 3 is there twice"):
         pulses(files, columns={"time": "1", "bead 3 force": "2"})
