@@ -22,8 +22,7 @@ from scipy.signal import peak_widths
 from lwa.base.arrays import Array
 from lwa.base.frozen import Estimate
 from validation.pulses.base import Base
-from validation.pulses.pulse import MeasureError, highest_pulse
-from validation.pulses.signals import Piecewise
+from validation.pulses.signals import MeasureError
 
 _BESIDE = 0.3  # widths in front of the rise and behind the fall that the fit takes in
 _READ = 0.1  # widths likewise in which the spline is read: its ends follow the noise
@@ -36,7 +35,7 @@ _MORE = 8  # and at least so many more
 _DENSEST = 0.8  # coefficients over samples, at most
 _COARSER = 1.3  # coefficients over those of the spline that shows what is not resolved
 _WITHIN = 0.7  # 0.68 and a little: the number of coefficients depends on the noise
-_GRID = 400  # intervals on which drawn splines are read
+_GRID = 400  # intervals on which splines are read
 _MISFIT = 2.0  # residuals over σ², from which on they are the noise
 _LOUDEST = 0.05  # greatest noise over the peak, for which the pulse is located
 
@@ -61,19 +60,23 @@ def fitted(
         variance = left
         wanted, spline, left = _smoothed(t, f, variance, base.best.length, most)
         variance = max(variance, left)
-    numbers = _read(spline, ends)
-    share = math.sqrt(variance) / numbers[1]
+    share = math.sqrt(variance) / float(spline(t).max())
     if share > _LOUDEST:
         raise MeasureError(
             f"the noise is {share:.1%} of the peak: at most {_LOUDEST:.0%} is read"
         )
     noise = base.drawn(t, spline(t), variance, step)
-    errors = _spread(spline, _fit(t, noise, len(spline.c)).c, ends)
+    drawn = _fit(t, noise, len(spline.c)).c
+    best = spline.c[:, np.newaxis]
+    found = _read(BSpline(spline.t, np.hstack((best, best + drawn)), _DEGREE), ends)
+    numbers = found[0]
+    errors = np.quantile(np.abs(found[1:] - numbers), _WITHIN, axis=0)
     if wanted > most:
-        coarse = _read(_fit(t, f, max(_LOWEST, round(most / _COARSER))), ends)
-        errors = np.hypot(errors, np.subtract(numbers, coarse))
-    names = ("arrival", "peak", "fwhm")
-    return dict(zip(names, map(Estimate, numbers, errors.tolist()), strict=True))
+        count = max(_LOWEST, round(most / _COARSER))
+        coarse = _read(_fit(t, f[:, np.newaxis], count), ends)
+        errors = np.hypot(errors, numbers - coarse[0])
+    estimates = map(Estimate, numbers.tolist(), errors.tolist())
+    return dict(zip(("arrival", "peak", "fwhm"), estimates, strict=True))
 
 
 def _smoothed(
@@ -104,21 +107,11 @@ def _fit(t: Array, f: Array, count: int) -> BSpline:
     return make_lsq_spline(t, f, knots, _DEGREE)
 
 
-def _read(spline: BSpline, ends: tuple[float, float]) -> tuple[float, float, float]:
-    """Return arrival, peak and FWHM of a spline between two times."""
-    inside = (spline.t > ends[0]) & (spline.t < ends[1])
-    times = np.array((ends[0], *spline.t[inside], ends[1]))
-    pulse = highest_pulse(Piecewise(times, spline))
-    return pulse.arrival, pulse.peak, pulse.fwhm
-
-
-def _spread(spline: BSpline, drawn: Array, ends: tuple[float, float]) -> Array:
-    """Return the errors of arrival, peak and FWHM from coefficients of noise, (…, `DRAWS`)."""
-    exact = spline.c[:, np.newaxis]
+def _read(splines: BSpline, ends: tuple[float, float]) -> Array:
+    """Return arrival, peak and FWHM of each of several splines between two times, (splines, 3)."""
     grid = np.linspace(*ends, _GRID + 1)
-    curves = BSpline(spline.t, np.hstack((exact, exact + drawn)), _DEGREE)(grid)
     numbers = []
-    for f in curves.T:
+    for f in splines(grid).T:
         # The vertex of the parabola through the highest value and its neighbours
         top = min(max(int(np.argmax(f)), 1), _GRID - 1)
         slope = (f[top + 1] - f[top - 1]) / 2
@@ -129,7 +122,5 @@ def _spread(spline: BSpline, drawn: Array, ends: tuple[float, float]) -> Array:
         bounds = (np.array([2 * f[top] - peak]), np.array([0]), np.array([_GRID]))
         width, *_ = peak_widths(f, [top], 0.5, bounds)
         numbers.append((top + shift, peak, width[0]))
-    found = np.array(numbers)
-    errors = np.quantile(np.abs(found[1:] - found[0]), _WITHIN, axis=0)
-    step = (ends[1] - ends[0]) / _GRID
-    return np.asarray(errors * (step, 1.0, step))
+    step = grid[1] - grid[0]
+    return np.asarray(np.array(numbers) * (step, 1.0, step) + (ends[0], 0.0, 0.0))

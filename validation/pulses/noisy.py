@@ -48,10 +48,6 @@ _CONSTANT = 1e-8  # range of a signal without pulses, over its size
 _EXACT = 1e-4  # noise over the peak of a record without noise
 
 
-class InvertedError(MeasureError):
-    """A record whose pulses are negative."""
-
-
 @dataclass(frozen=True)
 class NoisyPulse:
     """A pulse of a record.
@@ -120,10 +116,7 @@ def noisy_pulses(
     if _is_exact(f) and step < _EXACT * np.ptp(f):
         yield from _exact(t, f, size)
         return
-    try:
-        rise, fall = _place(t, f - f[:_EARLY].mean())
-    except InvertedError as error:
-        raise MeasureError(f"{error}: {turned}".rstrip(": ")) from None
+    rise, fall = _place(t, f - f[:_EARLY].mean(), turned)
     block = max(1, int(np.count_nonzero((t > rise) & (t < fall))) // _MOST)
     whole = len(t) // block * block
     at, means = np.array((t, f))[:, :whole].reshape(2, -1, block).mean(axis=2)
@@ -154,7 +147,7 @@ def noisy_pulses(
         later = f[behind] - base.at(t[behind])
         if not later.max(initial=0.0) > _LATER * highest:
             return
-        rise, fall = _place(t[behind], later)
+        rise, fall = _place(t[behind], later, turned)
 
 
 def _is_exact(f: Array) -> bool:
@@ -226,16 +219,19 @@ def _step(f: Array) -> float:
     return float(step) if np.abs(levels - levels.round()).max() < 0.25 else 0.0
 
 
-def _place(t: Array, f: Array) -> tuple[float, float]:
-    """Return about the times at which the first pulse rises and falls through half of its peak."""
+def _place(t: Array, f: Array, turned: str) -> tuple[float, float]:
+    """Return about the times at which the first pulse rises and falls through half of its peak.
+
+    turned : what changes the sign of the signal, for a message.
+    """
     highest = max(f.max(), np.finfo(float).tiny)
     samples = (_neighbours(f) / (_SMOOTH * highest)) ** 2
     count = math.ceil(min(max(1.0, samples), len(f)))
     g = np.convolve(f, np.full(count, 1 / count), "same")
     if -g.min() > max(g.max(), 0):
-        raise InvertedError(
-            "the signal falls farther below its start than it rises: it is inverted, or begins "
-            "in a pulse"
+        raise MeasureError(
+            "the signal falls farther below its start than it rises: it begins in a pulse, or is "
+            f"inverted: {turned}".removesuffix(": ")
         )
     if not g.max() > 0:
         raise MeasureError("no pulse is in the record: its signal is nowhere positive")
