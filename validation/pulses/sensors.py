@@ -44,7 +44,7 @@ _UNSURE = 1e-4  # of half the maximum; two of 9,936 arrivals under load depend o
 _QUICK = 0.9  # of the time of a small wave, of light beads: a pulse takes more
 # Samples in the shortest time √(m/spring) of a bead between two contacts. The force of two beads
 # that collide, or of a Hertz chain's wave, has 1.5 or 1.9 √(m/spring) of one contact above half.
-_RESOLVED = 16.0
+_RESOLVED = 22.0
 _MOST_SAMPLES = 100_000  # spare memory
 _LOOKS = 200  # times at which a sensor is searched for an earlier pulse
 READINGS = ("arrival", "peak", "fwhm")  # names of the numbers of a pulse
