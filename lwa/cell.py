@@ -11,7 +11,11 @@ a cell with P equal contacts of stiffness A_eff, A_eff^{-1/k} = (1/P) Σ A_i^{-1
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import (
+    Iterable,
+    Mapping,
+    Sequence,
+)
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -181,6 +185,7 @@ class Cell(Value):
 
     def stiffness(self, k: Any = k) -> sp.Expr:
         """The stiffness A_eff of P equal contacts with the same response as the cell."""
+        # Equal contacts: no power is taken and undone.
         if len(set(self.stiffnesses)) == 1:
             return self.stiffnesses[0]
         # A_eff^{-1/k} is the mean of the A_i^{-1/k}: compressions add.
@@ -190,12 +195,17 @@ class Cell(Value):
         """The ratio τ/t = √(P k A_eff D^{k+1} / M) of the time in u_ττ = u_x^{k-1} u_xx + …."""
         # Force A_eff (D u_x)^k on the density M/(P D): M/(P D) u_tt = k A_eff D^k u_x^{k-1} u_xx
         k = exponent(k)
-        stiffness = self.size * k * self.stiffness(k) * power(self.spacing, k + 1)
-        return power(stiffness / self.mass, sp.S.Half)
+        modulus = self.size * k * self.stiffness(k) * power(self.spacing, k + 1)
+        return power(modulus / self.mass, sp.S.Half)
 
 
 def Dimer(
-    m1: Any, m2: Any, N: int = 1, *, stiffnesses: Sequence[Any] = (), spacing: Any = D
+    m1: Any,
+    m2: Any,
+    N: int = 1,
+    *,
+    stiffnesses: Sequence[Any] = (),
+    spacing: Any = D,
 ) -> Cell:
     """The paper's N:1 dimer.
 
@@ -295,6 +305,7 @@ def substitution(
                 f"{symbol.name!r} names two symbols, with different assumptions: use one"
             )
         known[symbol.name] = symbol
+    # The values, by symbol
     new = {}
     for name, value in values.items():
         if name in known:
@@ -311,7 +322,9 @@ def substitution(
 
 
 def _by_ratio(
-    cell: Cell, omega: sp.Expr, known: Mapping[sp.Symbol, sp.Expr]
+    cell: Cell,
+    omega: sp.Expr,
+    known: Mapping[sp.Symbol, sp.Expr],
 ) -> tuple[sp.Symbol, sp.Expr]:
     """The mass that a ratio ω = m2/m1 replaces, where others have known values, and its value."""
     masses = tuple(dict.fromkeys(cell.masses))
@@ -333,7 +346,11 @@ def _by_ratio(
     )
 
 
-def _quantities(values: Any, name: str, singular: str) -> tuple[sp.Expr, ...]:
+def _quantities(
+    values: Any,
+    name: str,
+    singular: str,
+) -> tuple[sp.Expr, ...]:
     """Read a sequence of positive numbers or symbols."""
     numbered = enumerate(items(values, name), start=1)
     return tuple(positive(x, f"{singular} {i}") for i, x in numbered)

@@ -26,7 +26,11 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from lwa.base import latex
-from lwa.base.calculus import growing_root, integral, ratio
+from lwa.base.calculus import (
+    growing_root,
+    integral,
+    ratio,
+)
 from lwa.base.exact import (
     InputError,
     demand_numbers,
@@ -41,7 +45,12 @@ from lwa.base.exact import (
     signed,
 )
 from lwa.base.frozen import Value
-from lwa.cell import Cell, exponent, read_cell, substitution
+from lwa.cell import (
+    Cell,
+    exponent,
+    read_cell,
+    substitution,
+)
 from lwa.cell import k as symbol_k
 
 DELTA = sp.Symbol("delta", positive=True)
@@ -73,6 +82,7 @@ class ContactLaw(Value):
     @property
     def text(self) -> str:
         """Name and parameters as `read_law` reads them, such as "hertz2:1,2"; F without a name."""
+        # A law without parameters, such as "general", has no colon.
         parameters = ",".join(map(str, self.parameters))
         return f"{self.name}:{parameters}".rstrip(":") if self.name else str(self.F)
 
@@ -103,8 +113,9 @@ class ContactLaw(Value):
 
     def phi(self, n: int) -> sp.Expr:
         """The parameter φ_n = δ^{n-1} F^{(n)}/F′ as an expression in δ."""
-        power = integer(n, "n", 1) - 1
-        return ratio(self.delta**power * self.slope(n), self.slope())
+        # φ_0 has no meaning.
+        order = integer(n, "n", 1) - 1
+        return ratio(self.delta**order * self.slope(n), self.slope())
 
     @property
     def pulls(self) -> bool:
@@ -171,7 +182,12 @@ class ContactLaw(Value):
         """True if F is a function without an expression, as that of `general`."""
         return bool(self.F.atoms(AppliedUndef))
 
-    def of_strain(self, p: sp.Expr, D: sp.Expr, n: int = 0) -> sp.Expr:
+    def of_strain(
+        self,
+        p: sp.Expr,
+        D: sp.Expr,
+        n: int = 0,
+    ) -> sp.Expr:
         """The n-th derivative of F at a strain, in the units of u_ττ = F′(u_x) u_xx.
 
         Parameters
@@ -230,6 +246,7 @@ class ContactLaw(Value):
 
     def compression(self, cell: Cell, force: sp.Expr) -> sp.Expr:
         """The mean compression of a cell's contacts that push with this force; see `inverse`."""
+        # The contacts of a cell act like equal ones of this stiffness.
         return self.inverse(real(force, "force") / cell.stiffness(self.exponent))
 
     def inverse(self, force: sp.Expr) -> sp.Expr:
@@ -261,6 +278,7 @@ class ContactLaw(Value):
         """The law with the values that `lwa.cell.substitution` gives for its symbols."""
         if self.name:
             return named(self.name, *(x.xreplace(new) for x in self.parameters))
+        # A value that holds δ would change the law, not its parameters.
         for symbol in self.symbols:
             _check_parameter(new.get(symbol, symbol), str(symbol), self.delta)
         return Law(self.F.xreplace(new), self.delta)
@@ -304,7 +322,12 @@ class Power(ContactLaw):
     def _at(self, delta: sp.Expr, n: int) -> sp.Expr:
         return sp.ff(self.k, n) * power(delta, self.k - n)
 
-    def of_strain(self, p: sp.Expr, D: sp.Expr, n: int = 0) -> sp.Expr:
+    def of_strain(
+        self,
+        p: sp.Expr,
+        D: sp.Expr,
+        n: int = 0,
+    ) -> sp.Expr:
         n = integer(n, "n", -1)
         # p^k/k derived n times; for n = -1 the falling factorial is 1/(k + 1).
         return sp.ff(self.k, n) / self.k * power(real(p, "p"), self.k - n)
@@ -467,7 +490,11 @@ def read_law(value: Any, name: str) -> ContactLaw:
     return named(title.strip(), *(parameters.split(",") if colon else ()))
 
 
-def _check_parameter(value: sp.Expr, name: str, delta: sp.Symbol) -> sp.Expr:
+def _check_parameter(
+    value: sp.Expr,
+    name: str,
+    delta: sp.Symbol,
+) -> sp.Expr:
     """Return a law's parameter; raise `lwa.InputError` if it holds the compression's symbol."""
     if delta.name in {s.name for s in value.free_symbols}:
         raise InputError(
@@ -481,7 +508,11 @@ def phi_symbol(n: int) -> sp.Symbol:
     return sp.Symbol(f"phi{n}", real=True)
 
 
-def for_cell(law: Any, cell: Cell, k: Any = symbol_k) -> ContactLaw:
+def for_cell(
+    law: Any,
+    cell: Cell,
+    k: Any = symbol_k,
+) -> ContactLaw:
     """Return the law of a cell's contacts.
 
     Parameters

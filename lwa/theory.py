@@ -10,10 +10,22 @@ from typing import Any
 import sympy as sp
 from sympy.functions.combinatorial.numbers import partition
 
-from lwa.algebra.model import BRANCHES, Branch, Model
+from lwa.algebra.model import (
+    BRANCHES,
+    Branch,
+    Model,
+)
 from lwa.base import latex
-from lwa.base.exact import InputError, integer, one_of
-from lwa.cell import Cell, exponent, read_cell
+from lwa.base.exact import (
+    InputError,
+    integer,
+    one_of,
+)
+from lwa.cell import (
+    Cell,
+    exponent,
+    read_cell,
+)
 from lwa.cell import k as symbol_k
 from lwa.closure.consistency import (
     CLOSURES,
@@ -24,7 +36,12 @@ from lwa.closure.consistency import (
     OfClosure,
 )
 from lwa.equation.pde import PDE
-from lwa.equation.terms import STRAIN, Terms, latex_by_order, terms
+from lwa.equation.terms import (
+    STRAIN,
+    Terms,
+    latex_by_order,
+    terms,
+)
 from lwa.law import ContactLaw, for_cell
 
 MOST_TERMS = 600_000
@@ -120,6 +137,7 @@ class Theory(OfClosure):
         law = self.law
         if law.homogeneous:
             return []
+        # The definition of φ_n, then its values for this law
         delta = sp.latex(law.delta)
         definition = rf"\frac{{{delta}^{{n-1}} F^{{(n)}}({delta})}}{{F'({delta})}}"
         place = rf"{delta} = {sp.latex(self.cell.spacing)} u_{{x}}"
@@ -134,6 +152,7 @@ class Theory(OfClosure):
         if self.closure.name == "linear":
             return self.closure.latex_rows(most)
         rows = []
+        # Particles are numbered from 1, as in the text.
         for i, orders in self.slaved.items():
             field = latex_by_order(["u"], orders, self.cell.spacing, most=most)
             rows.append(f"w_{{{i + 1}}} = {field}")
@@ -223,6 +242,7 @@ def homogenize(
             f"branch is {branch!r}: its contacts also pull, and its unit of time is that of a "
             "power law; a law given for compression has the acoustic branch"
         )
+    # The derivation itself waits until a result is asked for.
     model = Model(cell, law, branch, integer(order, "order", 1))
     _check_length(model, closure)
     return Theory(Closure(model, closure, field))

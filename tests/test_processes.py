@@ -124,7 +124,10 @@ def test_a_long_run_shows_its_progress_on_a_terminal_and_stops_at_ctrl_c(
         while some := os.read(mine, 1000):
             rest += some
     os.close(mine)
-    assert (running.returncode, out) == (INTERRUPTED, "")
+    # Python ends itself by the signal, which is 130 in a shell as well, where the interrupt passed
+    # through a text that is executed, as in the compiler.
+    assert running.returncode in (INTERRUPTED, -signal.SIGINT)
+    assert out == ""
     assert rest.decode().splitlines()[-1].endswith("lwa-validate: interrupted")
     assert b"Traceback" not in rest
     assert [file.name for file in tmp_path.iterdir()] == ["scene.toml"]

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import click
 
 from lwa.command.cli import HELP, Commands, run, version
+from lwa.command.hints import help_end
 
 STUDIES = {
     "compare": ("records", "Measured forces beside the simulation of their scene."),
@@ -47,13 +48,11 @@ Simulate chains with contacts F = A δ^k and compare them with the long-wave the
 
 The exit status is 1 if a comparison fails, and 2 for bad input."""
 
-EXAMPLES = """\b
-Examples:
-  lwa-validate paper
-  lwa-validate run --example > scene.toml
-  lwa-validate run scene.toml --plot forces.svg
-
-In the book: reference.html"""
+EXAMPLES = (
+    "lwa-validate paper",
+    "lwa-validate run --example > scene.toml",
+    "lwa-validate run scene.toml --plot forces.svg",
+)
 
 _ENVIRONMENT = {
     # Figures go to files: a display, or a notebook's shell, has no part in them.
@@ -69,7 +68,7 @@ _ENVIRONMENT = {
     table=STUDIES,
     context_settings=HELP,
     help=HELP_TEXT,
-    epilog=EXAMPLES,
+    epilog=help_end(EXAMPLES, "reference"),
 )
 @version
 def validate() -> None:

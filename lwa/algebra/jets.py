@@ -19,12 +19,21 @@ on p: p dφ_n/dp = φ_{n+1} + (n-1) φ_n - φ_n φ_2. For δ^k they are (k-1) �
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import (
+    Iterator,
+    Mapping,
+    Sequence,
+)
 from functools import cache
 from math import factorial
 from typing import NamedTuple
 
-from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+from flint import (
+    Ordering,
+    fmpq,
+    fmpq_mpoly,
+    fmpq_mpoly_ctx,
+)
 
 from lwa.algebra.ring import CoefficientRing, Term
 
@@ -144,7 +153,10 @@ class JetAlgebra:
         return self._derivative(f, exponent * self.s[1], self._dt)
 
     def _derivative(
-        self, f: fmpq_mpoly, rate: fmpq_mpoly, images: Mapping[int, fmpq_mpoly]
+        self,
+        f: fmpq_mpoly,
+        rate: fmpq_mpoly,
+        images: Mapping[int, fmpq_mpoly],
     ) -> fmpq_mpoly:
         """The derivative of p^e f by the chain rule; ``rate`` is that of p^e, over p^e."""
         result = rate * f
@@ -180,6 +192,7 @@ class JetAlgebra:
 
         base : order of the derivative of u in the base p: r_n is ∂_x^{n + base} u / p.
         """
+        # The exponents of a term: parameters first, then strain jets, then velocity jets.
         split: dict[Jet, list[Term]] = {}
         for exponents, coefficient in f.terms():
             x = _powers(exponents[self._r1 : self._s0], 1 + base)
@@ -195,7 +208,10 @@ class JetAlgebra:
         # the velocity, then among those of the strain.
         total = self.zero
         for index in self._derived:
-            part = f.derivative(index).integral(index - 1)
+            slope = f.derivative(index)
+            if not slope.derivative(index).is_zero():
+                return None
+            part = slope.integral(index - 1)
             total = total + part
             f = f - self.dx(part, exponent)
         return total if f.is_zero() else None

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Literal, get_args
+from typing import (
+    Any,
+    Literal,
+    get_args,
+)
 
 import sympy as sp
 
@@ -12,7 +16,11 @@ from lwa.algebra.jets import JetAlgebra
 from lwa.algebra.ring import CoefficientRing, Partition
 from lwa.base.frozen import Value
 from lwa.cell import Cell
-from lwa.law import ContactLaw, phi_symbol, substituted
+from lwa.law import (
+    ContactLaw,
+    phi_symbol,
+    substituted,
+)
 
 Branch = Literal["acoustic", "optical"]
 """Neighbours move together, or against each other."""

@@ -12,9 +12,15 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import sympy as sp
-from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+from flint import (
+    Ordering,
+    fmpq,
+    fmpq_mpoly,
+    fmpq_mpoly_ctx,
+)
 from sympy.polys.polyerrors import BasePolynomialError
 
+from lwa.base.exact import factored
 from lwa.base.frozen import Value
 from lwa.law import phi_symbol
 
@@ -57,7 +63,7 @@ class Partition(Value):
         first = self.distinct[0]
         ratios = {}
         for weight in self.distinct:
-            ratios[weight] = sp.factor(weight / first)
+            ratios[weight] = factored(weight / first)
             if not ratios[weight].is_Rational:
                 return {}
         unit = self.total / sp.Add(*(ratios[w] for w in self.weights))
@@ -66,6 +72,7 @@ class Partition(Value):
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the ring's generators: one per distinct weight but the last."""
+        # Numbers need no generator.
         if self.rational:
             return ()
         return tuple(f"{self.letter}{i}" for i in range(len(self.distinct) - 1))
@@ -103,6 +110,7 @@ class CoefficientRing(Value):
     @cached_property
     def law(self) -> dict[str, sp.Expr]:
         """Mapping from the generators of the contact law, k or φ_2, φ_3, …, to their values."""
+        # A rational k is a number of the ring.
         if self.highest:
             symbols = map(phi_symbol, range(2, self.highest + 1))
             return {symbol.name: symbol for symbol in symbols}
@@ -141,7 +149,8 @@ class CoefficientRing(Value):
         """The conversion of polynomials to factored SymPy expressions in the caller's symbols.
 
         >>> m1, m2, k = sp.symbols("m1 m2 k")
-        >>> ring = CoefficientRing(k, 0, Partition((m1, m2), 1, "mu"), Partition((1,), 1, "c"))
+        >>> masses, contacts = Partition((m1, m2), 1, "mu"), Partition((sp.S.One,), 1, "c")
+        >>> ring = CoefficientRing(k, 0, masses, contacts)
         >>> ring.expression([((1, 1), fmpq(1)), ((1, 2), fmpq(-1))])  # k m̂_0 - k m̂_0²
         k*m1*m2/(m1 + m2)**2
         """

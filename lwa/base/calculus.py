@@ -8,6 +8,8 @@ from typing import Any
 import mpmath
 import sympy as sp
 
+from lwa.base.exact import rearranged
+
 
 def integral(F: sp.Expr, x: sp.Symbol) -> sp.Expr:
     """The integral ∫ F dx; rational powers of linear functions by the power rule.
@@ -28,7 +30,7 @@ def integral(F: sp.Expr, x: sp.Symbol) -> sp.Expr:
 
 def ratio(top: sp.Expr, bottom: sp.Expr) -> sp.Expr:
     """The ratio top/bottom in lowest terms."""
-    return sp.cancel(sp.powsimp(top / bottom))
+    return rearranged(sp.cancel, sp.powsimp(top / bottom))
 
 
 def growing_root(F: sp.Expr, x: sp.Symbol) -> Any:

@@ -11,7 +11,7 @@ import keyword
 import math
 import operator
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from fractions import Fraction
 from typing import Any
 
@@ -36,6 +36,9 @@ DIGITS = 330
 
 MOST_CANCELLED = 20_000
 """Digits that the terms of an exact number may cancel before it is evaluated in vain."""
+
+_FINEST_ROOT = 12
+"""Greatest q of powers x^{p/q} that are rearranged as polynomials in x^{1/q}."""
 
 _POWER_BITS = 300
 """Most bits of a number, times the larger part of an exponent, of powers that are written out.
@@ -244,3 +247,26 @@ def replaced(value: sp.Expr, new: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
         return new[value]
     parts = [replaced(part, new) for part in value.args]
     return power(*parts) if value.is_Pow else value.func(*parts)
+
+
+def factored(value: sp.Expr) -> sp.Expr:
+    """The expression in lowest terms, factored; see `rearranged`."""
+    return rearranged(sp.factor, value)
+
+
+def rearranged(method: Callable[[sp.Expr], sp.Expr], value: sp.Expr) -> sp.Expr:
+    """Apply SymPy's `factor` or `cancel`; powers with long exponents are taken for symbols.
+
+    SymPy takes x^{p/q} for the power p of x^{1/q}. Polynomials of such a degree fill the memory
+    where an exponent comes from a decimal such as 1.2345.
+
+    >>> x = sp.Symbol("x", positive=True)
+    >>> [rearranged(sp.factor, x ** sp.Rational(2, q) - 1) for q in (5, 13)]
+    [(x**(1/5) - 1)*(x**(1/5) + 1), x**(2/13) - 1]
+    """
+    letters = {}
+    for part in value.atoms(sp.Pow):
+        if part.exp.is_Rational and part.exp.q > _FINEST_ROOT:
+            letters[part] = sp.Dummy(positive=True)
+    back = {letter: part for part, letter in letters.items()}
+    return method(value.xreplace(letters)).xreplace(back)

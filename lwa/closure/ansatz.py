@@ -17,7 +17,11 @@ from flint import fmpq_mpoly
 from lwa.algebra.jets import GradedSeries, taylor
 from lwa.algebra.model import Model
 from lwa.base.progress import Progress
-from lwa.closure.slaving import Force, Solution, full
+from lwa.closure.slaving import (
+    Force,
+    Solution,
+    full,
+)
 
 
 def linear(model: Model, progress: Progress[int] = iter) -> Solution:
@@ -33,7 +37,11 @@ def linear(model: Model, progress: Progress[int] = iter) -> Solution:
     return _acoustic(model, progress)
 
 
-def _applied(b: Sequence[fmpq_mpoly], f: GradedSeries, n: int) -> fmpq_mpoly:
+def _applied(
+    b: Sequence[fmpq_mpoly],
+    f: GradedSeries,
+    n: int,
+) -> fmpq_mpoly:
     """Term n of the ansatz applied to a series f, Σ_{0<j<n} b_j ∂_x^j f_{n-j}, without b_n."""
     total = f.algebra.zero
     for j in range(1, n):
@@ -103,7 +111,9 @@ def _optical(model: Model, progress: Progress[int]) -> Solution:
 
 
 def _solution(
-    b: Sequence[fmpq_mpoly], first: GradedSeries, second: GradedSeries
+    b: Sequence[fmpq_mpoly],
+    first: GradedSeries,
+    second: GradedSeries,
 ) -> Solution:
     """The solution with E_n of the first equation of motion and the defect first - second."""
     defect = tuple(E_n - other for E_n, other in zip(first, second, strict=True))

@@ -8,7 +8,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Literal, get_args
+from typing import (
+    Any,
+    Literal,
+    get_args,
+)
 
 import sympy as sp
 

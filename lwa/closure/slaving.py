@@ -25,7 +25,11 @@ from typing import Literal
 
 from flint import fmpq_mpoly
 
-from lwa.algebra.jets import GradedSeries, JetAlgebra, taylor
+from lwa.algebra.jets import (
+    GradedSeries,
+    JetAlgebra,
+    taylor,
+)
 from lwa.algebra.model import Model
 from lwa.base.progress import Progress
 
@@ -127,7 +131,9 @@ class Solution:
 
 
 def full(
-    model: Model, field: FieldName = "first", progress: Progress[int] = iter
+    model: Model,
+    field: FieldName = "first",
+    progress: Progress[int] = iter,
 ) -> Solution:
     """Find the closure that satisfies all equations of motion, to D^order in all fields."""
     chain = _Slaving(model, field)

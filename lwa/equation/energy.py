@@ -119,6 +119,7 @@ class _Fields:
     def elastic(self, n: int) -> fmpq_mpoly:
         """Coefficient of D^n in Σ C_i W(p (1 + X_i)) / P, divided by p² F′; 0 for n = 0."""
         total = self.algebra.zero
+        # At D^0 every strain is the mean one, whose energy W(p) stands apart.
         if n == 0:
             return total
         for c, force in zip(self.algebra.c, self.forces, strict=True):

@@ -23,7 +23,11 @@ import sympy as sp
 
 from lwa.algebra.jets import Jet
 from lwa.base import latex
-from lwa.base.exact import InputError, power, shorten
+from lwa.base.exact import (
+    InputError,
+    power,
+    shorten,
+)
 from lwa.closure.consistency import OfClosure
 from lwa.equation.energy import conservative, energy
 from lwa.equation.terms import (
@@ -59,7 +63,8 @@ class PDE(OfClosure):
         """The ratio τ/t of the equation's time to the chain's."""
         if self.acoustic:
             return self.cell.time_scale(self.law.exponent)
-        # w = λu strains each contact by (λ - 1)u, and 1 - λ = M/m2.
+        # w = λu strains each contact by (λ - 1)u, and 1 - λ = M/m2. The unit of time makes the
+        # leading term -u^k.
         m1, m2 = self.cell.masses
         stretch = power(self.cell.mass / m2, self.k)
         return power(sp.Add(*self.cell.stiffnesses) * stretch / m1, sp.S.Half)
@@ -159,6 +164,7 @@ class PDE(OfClosure):
     @property
     def _without_letters(self) -> dict[int, Terms]:
         """The terms by their orders, but for those of G, H and I."""
+        # A copy: the equation keeps its own.
         rest = dict(self.coefficients)
         if self.third_order:
             del rest[3]
@@ -191,6 +197,7 @@ class PDE(OfClosure):
     def __str__(self) -> str:
         """The equation as text, with G, H, I and the terms of the other orders below it."""
         lines = [self.headline]
+        # -u^k acts on both signs of u.
         if not self.acoustic:
             lines.append("  (contacts that also pull: the odd law |δ|^(k-1) δ)")
         lines += [f"  {letter} = {value}" for letter, value in self.third_order.items()]
@@ -245,6 +252,7 @@ class PDE(OfClosure):
                 f"law is {self.law.text}: the compact wave in closed form belongs to a power law; "
                 "`lwa.loaded_wave` has the waves of any law, on a background or of a force"
             )
+        # G, H, I refuse an order below 4 and the optical branch.
         wave = CompactWave(cell=self.cell, k=self.k, G=self.G, H=self.H, I=self.I)
         # u_x^{k-2} u_xx² breaks the symmetry x → -x, u → -u, which an even pulse has.
         if 2 not in self.vanishing:

@@ -8,7 +8,11 @@ powers of the base are collected in print, as in u_x^{k-3} u_xx^3.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import (
+    Iterator,
+    Mapping,
+    Sequence,
+)
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -128,8 +132,10 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
     def _factors(self, jet: Jet) -> list[tuple[str, sp.Expr]]:
         """Names, in LaTeX, and exponents of the factors: F′, the base, the derivatives."""
         a, b = map(sp.Rational, self.power.beside(jet))
+        # u_x on the acoustic branch
         base = latex.derivative(1) if self.model.base else "u"
         law = self.model.law
+        # F′ belongs to a law that is no power; of a power it is joined to the base.
         if law.homogeneous:
             factors = [(base, a + b * law.exponent)]
         else:
@@ -152,7 +158,11 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
         return [latex.total((self[jet], self.latex(jet)) for jet in self)]
 
 
-def terms(closure: Closure, polynomial: fmpq_mpoly, power: BasePower = FORCE) -> Terms:
+def terms(
+    closure: Closure,
+    polynomial: fmpq_mpoly,
+    power: BasePower = FORCE,
+) -> Terms:
     """Convert a polynomial of the closure's algebra into jets of the field.
 
     Parameters

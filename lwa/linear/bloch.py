@@ -17,7 +17,12 @@ from collections.abc import Sequence
 from math import factorial
 from typing import Any
 
-from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+from flint import (
+    Ordering,
+    fmpq,
+    fmpq_mpoly,
+    fmpq_mpoly_ctx,
+)
 
 from lwa.algebra.model import Model
 

@@ -23,10 +23,25 @@ from flint import fmpq_mpoly
 
 from lwa.algebra.model import Model
 from lwa.base import latex
-from lwa.base.exact import InputError, demand_numbers, integer, positive, shorten
+from lwa.base.exact import (
+    InputError,
+    demand_numbers,
+    integer,
+    positive,
+    shorten,
+)
 from lwa.base.frozen import Value
-from lwa.cell import Cell, exponent, read_cell, substitution
-from lwa.law import ContactLaw, Power, for_cell
+from lwa.cell import (
+    Cell,
+    exponent,
+    read_cell,
+    substitution,
+)
+from lwa.law import (
+    ContactLaw,
+    Power,
+    for_cell,
+)
 from lwa.linear.bloch import Bloch
 
 if TYPE_CHECKING:
@@ -79,6 +94,7 @@ class Dispersion(Value):
 
     def latex_rows(self, order: int = 4) -> list[str]:
         """LaTeX of Ω²(κ) to κ^order, of the acoustic and of a dimer's optical branch."""
+        # The branches of one chain, in the same units
         rows = []
         for branch, series in self.series(order).items():
             terms = []

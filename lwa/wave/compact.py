@@ -29,6 +29,7 @@ from lwa.base import latex
 from lwa.base.exact import (
     InputError,
     brief,
+    factored,
     integer,
     number,
     one_of,
@@ -123,15 +124,15 @@ class CompactWave(Value):
     @cached_property
     def _ratios(self) -> tuple[sp.Expr, sp.Expr]:
         """The ratios G/I and H/I, which in the canonical field depend on k alone."""
-        return sp.factor(self.G / self.I), sp.factor(self.H / self.I)
+        return factored(self.G / self.I), factored(self.H / self.I)
 
     @cached_property
     def coefficient_sum(self) -> sp.Expr:
         """The sum (G + H + I) / D²."""
         g, h = self._ratios
         if (g + h).free_symbols <= self.k.free_symbols:  # I stays a factor
-            return self.I / self.D**2 * sp.factor(1 + g + h)
-        return sp.factor((self.G + self.H + self.I) / self.D**2)
+            return self.I / self.D**2 * factored(1 + g + h)
+        return factored((self.G + self.H + self.I) / self.D**2)
 
     @property
     def m(self) -> sp.Expr:
@@ -176,7 +177,7 @@ class CompactWave(Value):
         # With β² = (k-1)²/(4 I (1+g+h)) and m = 2/(k-1) written out k - 1 cancels.
         k = self.k
         g, h = self._ratios
-        return sp.factor(1 - (k - 1) * (h + 4 - k) / (2 * (1 + g + h)))
+        return factored(1 - (k - 1) * (h + 4 - k) / (2 * (1 + g + h)))
 
     def speed(self, B: Any = RISE) -> sp.Expr:
         """Speed V = dx/dτ of the wave whose strain peaks at B."""

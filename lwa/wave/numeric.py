@@ -20,7 +20,7 @@ import sympy as sp
 from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array, finite
-from lwa.base.exact import InputError, one_of
+from lwa.base.exact import InputError, factored, one_of
 from lwa.base.frozen import NoSolitaryWave, Value, strain_power
 
 LARGEST = 1e150
@@ -117,7 +117,7 @@ class NumericWave(Value):
             return total
 
         forms = []
-        excess = sp.factor((self.speed_factor - 1) / (self.k - 1))
+        excess = factored((self.speed_factor - 1) / (self.k - 1))
         for value in (self.coefficient_sum, self.speed_factor, excess):
             numerator, denominator = sp.fraction(value)
             forms.append(by_masses(numerator) / by_masses(denominator))

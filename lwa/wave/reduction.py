@@ -21,7 +21,7 @@ from typing import Self
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import power
+from lwa.base.exact import factored, power
 from lwa.base.frozen import Value
 
 
@@ -59,7 +59,7 @@ class Reduction(Value):
         cls, p: sp.Expr, k: sp.Expr, I: sp.Expr, H_over_I: sp.Expr, V: sp.Expr
     ) -> Self:
         """Return the reduction of a wave of the speed V = dx/dτ by the root p."""
-        a = sp.factor(3 + H_over_I - k) * p - 2  # 1 - kp + 3 (p - 1) + p H/I
+        a = factored(3 + H_over_I - k) * p - 2  # 1 - kp + 3 (p - 1) + p H/I
         eta = 1 + p - k * p
         return cls(
             p=p,
@@ -84,10 +84,10 @@ class Reduction(Value):
 
 def roots(total: sp.Expr, H_over_I: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
     """The two roots p; ``total`` is (G + H + I)/I. The paper has the first root."""
-    A = sp.factor(total)
-    B = sp.factor(H_over_I + 3)
+    A = factored(total)
+    B = factored(H_over_I + 3)
     # Any sign of the root will do, as both are returned.
-    root = square_root(sp.factor(B**2 - 8 * A)).replace(sp.Abs, lambda x: x)
+    root = square_root(factored(B**2 - 8 * A)).replace(sp.Abs, lambda x: x)
     return sp.together((B - root) / (2 * A)), sp.together((B + root) / (2 * A))
 
 

@@ -168,7 +168,10 @@ BAD = [
     ("run s.toml --out o.csv", "out is o.csv, but the scene names no s"),
     ("paper --velocity __import__('os')", "velocity is "),
     ("paper --velocity 0", "velocity is 0: "),
-    ("paper --format xml", "Invalid value for '--format'"),
+    (
+        "paper --format jsn",
+        "format is 'jsn': did you mean json?; try: lwa-validate paper",
+    ),
     ("exact --masses 1,0.2733", "no solitary wave"),
     ("sweep --k 1", "k is 1:"),
     ("sweep --k 1:2", "k is '1:2':"),

@@ -61,7 +61,7 @@ def pulses(draw, size):
     return text
 
 
-@pytest.mark.parametrize("count", [80, pytest.param(5000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [80, pytest.param(400, marks=pytest.mark.slow)])
 @pytest.mark.filterwarnings("error")
 def test_a_random_line_gives_numbers_or_one_line_of_refusal(capsys, folder, count):
     draw = random.Random(count)
@@ -81,5 +81,5 @@ def test_a_random_line_gives_numbers_or_one_line_of_refusal(capsys, folder, coun
         if status == 2:
             assert (out, err.count("\n")) == ("", 1), words
             assert len(err) <= 320, words
-        elif "json" in words:
+        elif "json" in words and not {"--keys", "--example"} & {*words}:
             json.loads(out)

@@ -18,8 +18,8 @@ import click
 from lwa.base.progress import bar, shown
 from lwa.command.cli import HELP
 from lwa.command.cli import run as run_command
-from lwa.command.hints import called, help_end
-from lwa.command.options import quantities, quantity
+from lwa.command.hints import ValueOption, called, help_end
+from lwa.command.options import Words, quantities, quantity
 from validation.pictures import SUFFIXES
 from validation.report.result import Report, output_file
 from validation.report.table import WIDTH
@@ -152,6 +152,9 @@ def option(*names: str, default: Any = None, says: str = "", **settings: Any) ->
     if isinstance(default, float):
         settings.setdefault("callback", number)
         default = str(default)  # the callback reads text
+    if isinstance(default, str) and "type" not in settings:
+        # A refusal of another text proposes the default.
+        settings |= {"cls": ValueOption, "example": default}
     settings.setdefault("metavar", _METAVARS.get(settings.get("callback")))
     return click.option(*names, default=default, help=says, **settings)
 
@@ -209,7 +212,7 @@ _OUTPUT = (
     option(
         "--format",
         "style",
-        type=click.Choice(("text", "json", "csv")),
+        type=Words(("text", "json", "csv")),
         default="text",
         says="How to print the result.",
     ),

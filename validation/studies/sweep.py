@@ -319,7 +319,7 @@ def sweep(
     grid = _values(ks, "k"), _values(omegas, "omega")
     stretch = integer(stretch, "stretch", 2, 100)
     if address is not None and jobs is not None:
-        raise InputError(f"jobs is {jobs}: a cluster has workers of its own")
+        raise InputError(f"jobs is {jobs}: a cluster has its own workers", jobs=None)
     points = None
     if file is not None:
         points = PointFile(output_file("file", str(file), (".sqlite",)), stretch)

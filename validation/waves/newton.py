@@ -85,15 +85,15 @@ def rise(strain: Array, k: float, p0: float) -> Array:
 def respond(
     force: NDArray[np.complex128], inverse: Pair, half_period: float
 ) -> NDArray[np.complex128]:
-    """Return the Fourier coefficients of c² a from those of F_a by equations (1).
+    """Return the Fourier coefficients (…, n + 1) of c² a from those of F_a by equations (1).
 
     Coefficients are those of ``e^{iqξ}``, ``q = 0 … πn/L``; the mean of a is set to 0. ``inverse``
     holds 1/m1 and 1/m2.
     """
-    q = np.pi * np.arange(len(force)) / half_period
+    q = np.pi * np.arange(force.shape[-1]) / half_period
     mirrored = inverse[0] * np.expm1(-1j * q) + inverse[1] * np.expm1(1j * q)
     strain = 2j * sum(inverse) * force.imag - mirrored * force.conj()
-    strain[0] = 0
+    strain[..., 0] = 0
     return np.asarray(strain / np.maximum(q, q[1]) ** 2)
 
 
@@ -194,41 +194,21 @@ class Problem:
         return self.inverse
 
     def _everywhere(self, z: Array) -> Array:
-        """F_a at all grid points, (2n,), from the unknown forces z, (count,)."""
-        return np.append(z, z[self.n - 1 : 0 : -1]) if self.uniform else z
+        """F_a at all grid points, (…, 2n), from the unknown forces z, (…, count)."""
+        if not self.uniform:
+            return z
+        return np.concatenate((z, z[..., self.n - 1 : 0 : -1]), axis=-1)
 
     def strains(self, z: Array, inverse: Pair) -> Array:
-        """Return c² a, shifted to 0 at L, at the first ``count`` grid points, from the forces z."""
+        """Return c² a, shifted to 0 at L, at the first ``count`` grid points, from the forces z.
+
+        The strains are linear in the forces; z is one row of forces, or an array of rows.
+        """
         force = scipy.fft.rfft(self._everywhere(z))
         if self.uniform:  # the imaginary part is rounding, which 1/q² would enlarge
             force = force.real.astype(complex)
         a = scipy.fft.irfft(respond(force, inverse, self.L), 2 * self.n)
-        return np.asarray(a - a[self.n])[: self.count]
-
-    def responses(self, at: NDArray[np.int_], inverse: Pair) -> Array:
-        """Return the rows and columns ``at`` (grid points) of the Jacobian of `strains`."""
-        n = self.n
-        # Strain due to a force at one place and due to a force at its mirror image, as functions
-        # of the difference and of the sum of two places; two periods, as the sum exceeds one.
-        real = respond(np.full(n + 1, 1, complex), inverse, self.L)
-        imaginary = 1j * respond(np.full(n + 1, 1j), inverse, self.L)
-        if self.uniform:
-            near = np.tile(scipy.fft.irfft(real, 2 * n), 2)
-            mirrored = np.zeros_like(near)
-        else:
-            near = np.tile(scipy.fft.irfft((real - imaginary) / 2, 2 * n), 2)
-            mirrored = np.tile(scipy.fft.irfft((real + imaginary) / 2, 2 * n), 2)
-
-        def to(j: NDArray[np.int_]) -> Array:
-            """The strains at the places ``at``, less that at L, due to forces at the places j."""
-            at_end = near[n - j] + mirrored[n + j]
-            i = at[:, np.newaxis]
-            return np.asarray(near[i - j] + mirrored[i + j] - at_end)
-
-        if not self.uniform:
-            return to(at)
-        # A force stands at its mirror image, too; 0 and L are their own.
-        return np.asarray((to(at) + to(-at)) * np.where(at % n == 0, 0.5, 1.0))
+        return np.asarray(a - a[..., [self.n]])[..., : self.count]
 
     def _border(self, z: Array, slope: Array, a: Array, inverse: Pair) -> Border:
         """The condition of the peak force, and the derivative by c²."""
@@ -249,7 +229,10 @@ class Problem:
         known = np.where(on, 0, fault)
         right = (fault + slope * self.strains(known, inverse))[on]
         at = np.flatnonzero(on)
-        matrix = np.eye(len(at)) - slope[at][:, None] * self.responses(at, inverse)
+        # Strains due to a unit force at each grid point in turn are the columns of the Jacobian.
+        unit_forces = np.eye(self.count)[at]
+        jacobian = self.strains(unit_forces, inverse)[:, at].T
+        matrix = np.eye(len(at)) - slope[at][:, np.newaxis] * jacobian
         rows = np.array(border.rows)
         columns = np.array(border.columns).T
         solved = np.linalg.solve(

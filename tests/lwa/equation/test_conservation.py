@@ -30,6 +30,8 @@ CANONICAL = {"closure": "full"}
         (Cell([1, 2, 3]), 8, CANONICAL, True),
         (Dimer("m1", "m2"), 4, FIRST, True),
         (Dimer("m1", "m2"), 6, FIRST, False),
+        (Dimer("m1", "m2"), 6, FIRST | {"law": lwa.general()}, False),
+        (Cell([1, 2, 3]), 5, FIRST | {"law": lwa.general()}, False),
         (Dimer("m1", "m2"), 3, {}, False),  # asked of D^{k+3} at least
         (Dimer("m1", "m2"), 4, {"branch": "optical"}, False),
     ],

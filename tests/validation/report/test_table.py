@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 import sympy as sp
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from lwa import Estimate
@@ -23,9 +23,9 @@ TABLE = Table(
         Column("", "unit"),
     ),
     (
-        (sp.Rational(3, 2), "a", Estimate(2e-5, 0.25e-5), 0.25, "m/s"),
+        (sp.Rational(3, 2), "a", Estimate(4e-4, 0.5e-5), 0.25, "m/s"),
         (sp.Integer(2), "b", None, -0.5, "<m/s>"),
-        (sp.Integer(3), "a", Estimate(4e-4, 0.5e-5), None, "m/s"),
+        (sp.Integer(3), "a", Estimate(2e-7, 0.25e-7), math.nan, "m/s"),
     ),
     "rows",
     errors="a deviation",
@@ -37,9 +37,9 @@ def test_the_rows_of_a_document_and_of_a_csv():
     """In SI with all digits."""
     names = "k", "chain", "time_value", "time_error_value", "error_value.F_m"
     cells = (
-        ("3/2", "a", 2e-5, 0.25e-5, 0.25),
+        ("3/2", "a", 4e-4, 0.5e-5, 0.25),
         ("2", "b", None, None, -0.5),
-        ("3", "a", 4e-4, 0.5e-5, None),
+        ("3", "a", 2e-7, 0.25e-7, None),
     )
     rows = [dict(zip(names, row, strict=True)) for row in cells]
     for row, found in zip(rows, csv.DictReader(io.StringIO(TABLE.csv())), strict=True):
@@ -53,7 +53,7 @@ def test_text_falls_into_parts_and_has_one_prefix_a_column():
     heading, names, *lines = first.splitlines()
     assert heading == "chain a"
     assert names.split() == ["k", "arrival", "(µs)", "by", "F_m", "unit"]
-    assert [line.split()[:2] for line in lines] == [["3/2", "20"], ["3", "400"]]
+    assert [line.split()[:2] for line in lines] == [["3/2", "400"], ["3", "0.20"]]
     assert "+25.0%" in lines[0]
     assert second.splitlines()[2].split() == ["2", "-", "-50.0%", "<m/s>"]
     assert second.splitlines()[-1].startswith(
@@ -72,6 +72,8 @@ CELLS = st.lists(
 
 
 @given(CELLS, st.integers(20, 60))
+@example([["aaaaaaaaa"] * 4], 42)  # fills the line
+@example([["aaaaaaaaa"] * 4], 41)
 def test_columns_beyond_a_line_follow_in_blocks(lines, width):
     """No line is too long, no cell is lost, and each block begins with the first column."""
     text = aligned(lines, width)
@@ -79,6 +81,11 @@ def test_columns_beyond_a_line_follow_in_blocks(lines, width):
     blocks = [
         [line.split() for line in block.splitlines()] for block in text.split("\n\n")
     ]
+    fits = (
+        sum(max(map(len, column)) + 2 for column in zip(*lines, strict=True)) - 2
+        <= width
+    )
+    assert (len(blocks) == 1) == fits
     for i, line in enumerate(lines):
         assert all(block[i][0] == line[0] for block in blocks)
         assert [cell for block in blocks for cell in block[i][1:]] == line[1:]
