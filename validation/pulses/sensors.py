@@ -46,6 +46,7 @@ _QUICK = 0.9  # of the time of a small wave, of light beads: a pulse takes more
 # that collide, or of a Hertz chain's wave, has 1.5 or 1.9 √(m/spring) of one contact above half.
 _RESOLVED = 22.0
 _MOST_SAMPLES = 100_000  # spare memory
+_HIDDEN = 0.5  # relative error of the peak from which on rounding may make the pulse
 _LOOKS = 200  # times at which a sensor is searched for an earlier pulse
 READINGS = ("arrival", "peak", "fwhm")  # names of the numbers of a pulse
 SPEEDS = ("speed_sites", "speed")  # in sites per time, and in length per time
@@ -311,12 +312,10 @@ def _readings(fine: Track, coarse: Track, every: bool, rtol: float) -> list[Read
             found = [first_numbers(fine.force, coarse.force, rtol)]
     except MeasureError as error:
         return [replace(blank, missing=str(error))]
-    if found[0]["peak"].error >= found[0]["peak"].value:
-        return [
-            replace(
-                blank, missing="no pulse: the force is the static one, but for errors"
-            )
-        ]
+    found = [numbers for numbers in found if numbers["peak"].relative_error < _HIDDEN]
+    if not found:
+        reason = "no pulse: the force is the static one, but for errors"
+        return [replace(blank, missing=reason)]
     return [
         replace(blank, numbers=numbers, pulse=number)
         for number, numbers in enumerate(found, start=1)
