@@ -36,7 +36,7 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
     Parameters
     ----------
     path : str or Path
-        The file, whose ending tells the format.
+        The file, whose ending tells the format, or "-", standard input in either format.
     what : str
         The expected kind of file in messages, such as "a scene".
     reader : callable
@@ -56,15 +56,16 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
     if not isinstance(path, str | Path):
         raise InputError(f"{what} is read from a file: {shorten(path)} is no file name")
     suffix = Path(path).suffix.lower()
-    if suffix not in MOST_BYTES:
+    if suffix not in MOST_BYTES and str(path) != "-":
         raise InputError(
             f"{path}: {what} is a file ending in {' or '.join(MOST_BYTES)}"
         )
-    parse = tomllib.loads if suffix == ".toml" else json.loads
     try:
-        return reader(
-            parse(content(Path(path), MOST_BYTES[suffix]).decode("utf-8-sig"))
-        )
+        text = content(Path(path), MOST_BYTES.get(suffix, MOST_BYTES[".toml"]))
+        if str(path) == "-":
+            suffix = ".json" if text.lstrip().startswith(b"{") else ".toml"
+        parse = tomllib.loads if suffix == ".toml" else json.loads
+        return reader(parse(text.decode("utf-8-sig")))
     except (InputError, OSError) as error:
         fault = reason(error)
     except UnicodeDecodeError:
@@ -77,7 +78,7 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
 
 
 def content(file: Path, most: int = 10**9) -> bytes:
-    """Read a regular file of at most ``most`` bytes, by default a gigabyte.
+    """Read a regular file, or "-", standard input, of at most ``most`` bytes, or a gigabyte.
 
     Raises
     ------
@@ -86,6 +87,8 @@ def content(file: Path, most: int = 10**9) -> bytes:
     InputError
         For a folder, a pipe or a device (nothing is read then), and for a larger file.
     """
+    if str(file) == "-":
+        return sys.stdin.buffer.read(most)
     size = file.stat().st_size
     if not file.is_file():  # opening a pipe would wait for a writer
         raise InputError("only regular files are read")

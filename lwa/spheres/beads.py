@@ -26,10 +26,13 @@ them.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
+
+import sympy as sp
 
 from lwa.base.exact import InputError
 from lwa.base.files import (
@@ -44,6 +47,9 @@ from lwa.base.files import (
     table,
 )
 from lwa.spheres.hertz import MATERIALS, Material, Sphere
+
+GRAVITY = sp.Rational("9.81")
+"""Gravity in m/s², of strikers that drop and of the scenes."""
 
 FILE = (
     *(
@@ -63,14 +69,23 @@ FILE = (
 CHAIN = ("cell", "k", "law", "stiffnesses", "spacings", "repeat")
 """Keys of the table ``chain``; beads with names have ``cell`` and ``repeat`` alone."""
 
-STRIKER = ("velocity", "like")
-"""Keys of the table ``striker``: the velocity of bead 1, and the bead that it is like."""
+STRIKER = ("velocity", "drop", "like")
+"""Keys of the table ``striker``: the velocity of bead 1, or the height from which the bead falls,
+and the bead that it is like."""
 
 
 def read_materials(file: Table) -> dict[str, Material]:
-    """Materials by name: the built-in `MATERIALS`, and those of a file, which come first."""
+    """Materials by name: the built-in `MATERIALS` ("steel" is steel 316), and those of a file."""
     materials: dict[str, Material] = file.read("materials", named(_material), {})
-    return materials | MATERIALS | materials  # the names of the file come first
+    known = MATERIALS | {"steel": MATERIALS["steel 316"]}
+    return materials | known | materials  # the names of the file come first
+
+
+def striker_velocity(striker: Table) -> float:
+    """Read the velocity of the table ``striker``, or that of a fall from the height ``drop``."""
+    if striker.one("velocity", "drop") == "velocity":
+        return float(striker.read("velocity", finite))
+    return math.sqrt(2 * float(GRAVITY) * striker.read("drop", positive))
 
 
 def read_beads(file: Table, materials: Mapping[str, Material]) -> dict[str, Sphere]:

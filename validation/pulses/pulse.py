@@ -19,7 +19,6 @@ import scipy
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
-from lwa.base.arrays import Array
 from lwa.base.frozen import Estimate
 from validation.pulses.signals import MeasureError as MeasureError
 from validation.pulses.signals import Signal, spline
@@ -88,17 +87,14 @@ def all_pulses(signal: Signal) -> list[Pulse]:
     of its flanks does not fall to half its peak, as when two overlap, it is left out.
     Raises `MeasureError` for a record without any pulse.
     """
-    grid, whole = _Grid(signal), list[Pulse]()
-    tops, _ = scipy.signal.find_peaks(
-        grid.f, height=0.0, prominence=_LEAST * grid.f.max()
-    )
-    for top in tops.tolist():
-        higher = np.flatnonzero(grid.f > grid.f[top])
-        place = int(np.searchsorted(higher, top))
-        start = int(higher[place - 1]) + 1 if place else 0
-        stop = int(higher[place]) if place < len(higher) else len(grid.f)
+    grid = _Grid(signal)
+    least = _LEAST * grid.f.max()
+    _, sides = scipy.signal.find_peaks(grid.f, height=0.0, prominence=least)
+    whole: list[Pulse] = []
+    # From the lowest point before a top to the lowest one behind, up to higher neighbours
+    for start, end in zip(sides["left_bases"], sides["right_bases"], strict=True):
         with suppress(MeasureError):
-            whole += grid.highest(start, stop)
+            whole += grid.highest(start, end + 1)
     if not whole:
         raise MeasureError("no pulse is in the record")
     return whole
@@ -167,24 +163,23 @@ class _Grid:
         self, start: int = 0, stop: int | None = None, shares: Sequence[float] = (0.5,)
     ) -> list[Pulse]:
         """Measure the highest pulse between two grid points, once for each fraction of its peak."""
-        t, f = self.t, self.f[:stop]
-        top = start + int(np.argmax(f[start:]))
+        part = self.f[start:stop]
+        top = start + int(np.argmax(part))
         if top in (0, len(self.f) - 1):
             end = "end" if top else "start"
             raise MeasureError(f"{_PARTLY} it peaks at the {end} of the record")
-        arrival, peak = self._crest(t[top - 1], t[top + 1])
-        flanks = (self._flanks(f, top, share * peak) for share in shares)
-        return [Pulse(arrival, peak, *sides) for sides in flanks]
-
-    def _flanks(self, f: Array, top: int, level: float) -> tuple[float, float]:
-        """Return the times next to grid point ``top`` at which the signal passes a level."""
-        below = np.flatnonzero(f <= level)
-        place = int(np.searchsorted(below, top))
-        if place in (0, len(below)):
-            side = "back" if place else "front"
-            raise MeasureError(f"{_PARTLY} its {side} does not pass half its peak")
-        before, after = int(below[place - 1]), int(below[place])
-        return self.crossing(before, level), self.crossing(after - 1, level)
+        arrival, peak = self._crest(self.t[top - 1], self.t[top + 1])
+        pulses = []
+        for share in shares:
+            below = start + np.flatnonzero(part <= share * peak)
+            place = int(np.searchsorted(below, top))
+            if place in (0, len(below)):
+                side = "back" if place else "front"
+                raise MeasureError(f"{_PARTLY} its {side} does not pass half its peak")
+            rise = self.crossing(int(below[place - 1]), share * peak)
+            fall = self.crossing(int(below[place]) - 1, share * peak)
+            pulses.append(Pulse(arrival, peak, rise, fall))
+        return pulses
 
     def crossing(self, i: int, level: float) -> float:
         """Return the time between grid points i and i+1 at which the signal passes a level."""

@@ -10,7 +10,7 @@ the distance between them (`first_numbers`).
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
@@ -18,7 +18,6 @@ from typing import Any
 
 import numpy as np
 
-from lwa.base.arrays import Array
 from lwa.base.frozen import Estimate
 from validation.lattice.cost import RunProgress, silent
 from validation.lattice.equations import Motion
@@ -42,50 +41,105 @@ TOLERANCE = 1e-10  # default tolerance of the accurate run
 LESS = 10.0  # tolerance of the less accurate run over that of the accurate one
 _ROUNDING = 10  # rounding of the static compression over rtol; with more, steps follow the noise
 _UNSURE = 1e-4  # of half the maximum; two of 9,936 arrivals under load depend on its sixth digit
+_QUICK = 0.9  # of the time of a small wave, of light beads: a pulse takes more
+# Samples in the shortest time √(m/spring) of a bead between two contacts. The force of two beads
+# that collide, or of a Hertz chain's wave, has 1.5 or 1.9 √(m/spring) of one contact above half.
+_RESOLVED = 22.0
+_MOST_SAMPLES = 100_000  # spare memory
+_HIDDEN = 0.5  # relative error of the peak from which on rounding may make the pulse
+_LOOKS = 200  # times at which a sensor is searched for an earlier pulse
 READINGS = ("arrival", "peak", "fwhm")  # names of the numbers of a pulse
 SPEEDS = ("speed_sites", "speed")  # in sites per time, and in length per time
 
 
 @dataclass(frozen=True)
 class Reading:
-    """Measured numbers of a pulse at a sensor, or its speeds between two sensors."""
+    """Measured numbers of a pulse at a sensor, or its speeds between two sensors.
 
-    kind: str  # "bead" or "contact"
-    places: tuple[int, ...]  # number of the sensor, or of both, counted from 1
-    numbers: Mapping[
-        str, Estimate
-    ]  # `READINGS`, or `SPEEDS` (the second if there are spacings)
-    static: float  # static force at the (first) sensor
-    missing: str | None = None  # reason why there are no numbers
-    pulse: int = 1  # number of the pulse at the sensor, counted from 1
+    Parameters
+    ----------
+    kind : {"bead", "contact"}
+        Kind of the sensor.
+    places : tuple of int
+        Number of the sensor, or of both, counted from 1.
+    numbers : mapping of Estimate
+        Those of `READINGS` or of `SPEEDS` that are known, by name.
+    static : float
+        Static force at the (first) sensor.
+    missing : str, optional
+        Reason why numbers are missing.
+    pulse : int
+        Number of the pulse at the sensor, counted from 1.
+    quantity : {"force", "velocity"}
+        The measured signal.
+    """
+
+    kind: str
+    places: tuple[int, ...]
+    numbers: Mapping[str, Estimate]
+    static: float
+    missing: str | None = None
+    pulse: int = 1
+    quantity: str = "force"
 
     @property
     def name(self) -> str:
-        """The kind and the places as text, such as bead 15 → 34."""
-        return f"{self.kind} {' → '.join(map(str, self.places))}"
+        """Kind, places, and a quantity other than force, such as bead 15 → 34."""
+        places = " → ".join(map(str, self.places))
+        quantity = "" if self.quantity == "force" else f" {self.quantity}"
+        return f"{self.kind} {places}{quantity}"
 
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """A run, the pulses at the sensors, and the speeds from each sensor to the next."""
+    """A run, the pulses at the sensors, the speeds from each sensor to the next, and the end.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    tracks : tuple of Track
+        Dynamic forces at the sensors.
+    sensors, speeds : tuple of Reading
+        Pulses, and speeds.
+    end : mapping
+        Velocity and displacement at the end, by these names, of the bead sensors, counted from 1.
+    """
 
     run: Run
-    tracks: tuple[Track, ...]  # dynamic forces at the sensors
+    tracks: tuple[Track, ...]
     sensors: tuple[Reading, ...]
     speeds: tuple[Reading, ...]
+    end: Mapping[int, Mapping[str, Estimate]]
 
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """The dynamic force at one sensor as a function of time."""
+    """The dynamic force at a sensor, or the velocity of a bead, as a function of time.
 
-    kind: str  # "bead" or "contact"
-    number: int  # of the bead or contact, counted from 1
+    Parameters
+    ----------
+    kind : {"bead", "contact"}
+        Kind of the sensor.
+    number : int
+        Number of the bead or contact, counted from 1.
+    force : Signal
+        The force less the static force, or the velocity.
+    place : mapping of float
+        Place along the chain in sites and in lengths, by the names `SPEEDS`; empty for a bead
+        with one contact, whose force is that of a place half a site away.
+    static : float
+        Static force.
+    quantity : {"force", "velocity"}
+        The signal.
+    """
+
+    kind: str
+    number: int
     force: Signal
-    place: Mapping[
-        str, float
-    ]  # along the chain in sites and in lengths, by the names `SPEEDS`
-    static: float  # static force
+    place: Mapping[str, float]
+    static: float
+    quantity: str = "force"
 
 
 def record(
@@ -94,13 +148,28 @@ def record(
     method: str = COMPILED[0],
     rtol: Any = TOLERANCE,
     every: bool = False,
+    velocities: Container[str] = (),
     progress: RunProgress = silent,
 ) -> Recording:
     """Simulate a scene and measure the pulses at its sensors.
 
-    rtol : relative tolerance, from 1e-13 to 1e-5. every : True for all pulses at each sensor
-    instead of the first. Other options, and errors raised, are those of `validation.simulate`.
-    Raises `SceneError` where rounding hides the motion at this tolerance.
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    method, progress
+        Options of `validation.simulate`.
+    rtol : float
+        Relative tolerance, from 1e-13 to 1e-5.
+    every : bool
+        True for all pulses at each sensor instead of the first.
+    velocities : container of str
+        Names of bead sensors, such as "bead 15", whose velocity is measured, not the force.
+
+    Raises
+    ------
+    SceneError
+        If rounding hides the motion at this tolerance, and as `validation.simulate` does.
     """
     rtol = between(rtol, "rtol", 1e-13, 1e-5)
     motion = Motion(scene)
@@ -110,76 +179,147 @@ def record(
             f"{lost:.1g} of the motion; {lost / _ROUNDING:.1g} or more is wanted"
         )
     run, check = twice(scene, rtol, LESS * rtol, method=method, progress=progress)
-    pairs = tuple(zip(tracks(run, 1), tracks(check, 2), strict=True))
-    firsts = [next(_readings(pair, False, rtol)) for pair in pairs]
-    fine = tuple(track for track, _ in pairs)
+    fine = tracks(run, velocities)
+    firsts: list[Reading] = []
+    found: list[Reading] = []
+    for track, coarse in zip(fine, tracks(check, velocities, 2), strict=True):
+        firsts += _readings(track, coarse, False, rtol)
+        if every:
+            found += _readings(track, coarse, True, rtol)
+
+    def doubt(first: Reading, second: Reading, sites: float) -> str:
+        """Return why one pulse does not pass two sensors at a speed; "" if it may."""
+        peaks = [r.numbers["peak"].value + r.static for r in (first, second)]
+        numbers = sorted(first.places + second.places)
+        between = slice(numbers[0] - 1, numbers[1])
+        if sites * _QUICK * _time_of_a_site(motion, between, max(peaks)) > 1:
+            return "no wave is so fast: the sensors see different pulses"
+        start = first.numbers["arrival"].value
+        end = second.numbers["arrival"].value - second.numbers["fwhm"].value
+        force = fine[firsts.index(second)].force
+        if end > start and force(np.linspace(start, end, _LOOKS)).max() > peaks[0] / 2:
+            return "another pulse passes the second sensor before"
+        return ""
+
     # Errors of both arrivals are added: in the less accurate speed they may cancel.
-    speeds = speeds_between(firsts, [track.place for track in fine], operator.add)
-    found = (reading for pair in pairs for reading in _readings(pair, True, rtol))
-    return Recording(run, fine, tuple(found if every else firsts), speeds)
+    places = [track.place for track in fine]
+    speeds = speeds_between(firsts, places, operator.add, doubt)
+    end = {
+        i + 1: compared(partial(_state_at_end, bead=i), run, check, rtol)
+        for i in scene.bead_sensors
+    }
+    return Recording(run, fine, tuple(found or firsts), speeds, end)
 
 
-def tracks(run: Run, every: int = 1) -> tuple[Track, ...]:
+def _state_at_end(run: Run, bead: int) -> dict[str, float]:
+    """Return velocity and displacement of a bead at the end of a run."""
+    return {
+        "velocity": float(run.velocities[bead]),
+        "displacement": float(run.displacements[bead]),
+    }
+
+
+def enough_samples(scene: Scene) -> int:
+    """Return a number of samples that resolve pulses, from 1001 to `_MOST_SAMPLES`."""
+    wanted = _RESOLVED * scene.duration / Motion(scene).scales.time
+    return int(min(max(1001.0, wanted), _MOST_SAMPLES))
+
+
+def _time_of_a_site(motion: Motion, contacts: slice, force: float) -> float:
+    """Return the time in which a small wave passes a site where the contacts carry a force."""
+    if motion.scene.law is not None:
+        return motion.scales.time
+    A = motion.stiffnesses[contacts]
+    k = np.broadcast_to(motion.k, len(motion.stiffnesses))[contacts]
+    springs = k * A ** (1 / k) * force ** (1 - 1 / k)
+    beside = np.append(motion.masses, np.inf)  # the wall has no mass of its own
+    lighter = np.minimum(beside[:-1], beside[1:])[contacts]
+    return float(np.mean(np.sqrt(lighter[: len(A)] / springs)))
+
+
+def tracks(
+    run: Run, velocities: Container[str] = (), every: int = 1
+) -> tuple[Track, ...]:
     """Return the dynamic forces at the sensors of a run; beads first.
 
-    If the motion of a run takes too much memory, the forces are splines through the samples, or
-    through every other sample (``every=2``).
+    Parameters
+    ----------
+    run : Run
+        The run.
+    velocities : container of str
+        Names of bead sensors, such as "bead 15", whose velocity is returned, not the force.
+    every : int
+        Samples that count, each one or each second one, where the motion takes too much memory
+        to be kept and the signals are splines through the samples.
     """
-    scene, at_rest = run.scene, static_forces(run.scene)
+    scene = run.scene
+    at_rest = static_forces(scene)
     # A contact is midway between its beads, the wall's half a spacing behind the last bead.
     x = np.cumsum((0.0, *scene.spacings, *scene.spacings[-1:]))
+    found = []
+    for kind in ("bead", "contact"):
+        for row, i in enumerate(getattr(scene, f"{kind}_sensors")):
+            quantity = "force"
+            static = at_rest[f"{kind} {i + 1}"]
+            if f"{kind} {i + 1}" in velocities:
+                quantity = "velocity"
+                static = 0.0
+            if run.path is None:
+                samples = getattr(run, f"{kind}_{quantity}")[row]
+                signal: Signal = spline(run.time[::every], samples[::every])
+            else:
+                signal = run.signal(kind, i, quantity)
+            place = {}
+            if kind == "contact" or 0 < i < scene.contact_count:
+                site = i + 0.5 * (kind == "contact")
+                place["speed_sites"] = site
+                if scene.spacings:
+                    place["speed"] = float(np.interp(site, range(len(x)), x))
+            dynamic = _above(signal, static) if static else signal
+            found.append(Track(kind, i + 1, dynamic, place, static, quantity))
+    return tuple(found)
 
-    def track(kind: str, i: int, site: float, samples: Array) -> Track:
-        static = at_rest[f"{kind} {i + 1}"]
-        length = [float(np.interp(site, range(len(x)), x))] if scene.spacings else []
-        place = dict(zip(SPEEDS, (site, *length), strict=False))
-        force: Signal = (
-            spline(run.time[::every], samples[::every])
-            if run.path is None
-            else run.signal(kind, i)
-        )
-        dynamic: Signal = (
-            Piecewise(force.times, lambda t: force(t) - static) if static else force
-        )
-        return Track(kind, i + 1, dynamic, place, static)
 
-    beads = zip(scene.bead_sensors, run.bead_force, strict=True)
-    contacts = zip(scene.contact_sensors, run.contact_force, strict=True)
-    return (
-        *(track("bead", i, i, force) for i, force in beads),
-        *(track("contact", i, i + 0.5, force) for i, force in contacts),
-    )
+def _above(force: Signal, static: float) -> Piecewise:
+    """Return the dynamic force."""
+    return Piecewise(force.times, lambda t: force(t) - static)
 
 
 def static_forces(scene: Scene) -> dict[str, float]:
     """Return the static forces at the sensors of a scene, by names such as "bead 15"."""
-    load = np.zeros(
-        scene.size + 1
-    )  # of the contacts on the left and right of the beads
+    # Of the contacts on the left and right of the beads
+    load = np.zeros(scene.size + 1)
     load[1 : scene.contact_count + 1] = scene.load
-    beads = {
-        f"bead {i + 1}": float(load[i] + load[i + 1]) / 2 for i in scene.bead_sensors
-    }
-    return beads | {
-        f"contact {i + 1}": float(load[i + 1]) for i in scene.contact_sensors
-    }
+    forces = {}
+    for i in scene.bead_sensors:
+        forces[f"bead {i + 1}"] = float(load[i] + load[i + 1]) / 2
+    for i in scene.contact_sensors:
+        forces[f"contact {i + 1}"] = float(load[i + 1])
+    return forces
 
 
-def _readings(pair: tuple[Track, Track], every: bool, rtol: float) -> Iterator[Reading]:
-    """Measure the first pulse at a sensor, or every pulse that is in both runs."""
-    fine, coarse = pair
-    reading = partial(Reading, fine.kind, (fine.number,), static=fine.static)
+def _readings(fine: Track, coarse: Track, every: bool, rtol: float) -> list[Reading]:
+    """Measure the first pulse at a sensor, or every pulse, with errors from a second run."""
+    blank = Reading(fine.kind, (fine.number,), {}, fine.static, quantity=fine.quantity)
     try:
         if every:
-            both = zip(all_pulses(fine.force), all_pulses(coarse.force), strict=False)
-            found = [compared(readings, *same, rtol) for same in both]
+            others = all_pulses(coarse.force)
+            found = []
+            for pulse in all_pulses(fine.force):
+                same = min(others, key=lambda other: abs(other.arrival - pulse.arrival))
+                found.append(compared(readings, pulse, same, rtol))
         else:
             found = [first_numbers(fine.force, coarse.force, rtol)]
     except MeasureError as error:
-        yield reading({}, missing=str(error))
-        return
-    for number, numbers in enumerate(found, start=1):
-        yield reading(numbers, pulse=number)
+        return [replace(blank, missing=str(error))]
+    found = [numbers for numbers in found if numbers["peak"].relative_error < _HIDDEN]
+    if not found:
+        reason = "no pulse: the force is the static one, but for errors"
+        return [replace(blank, missing=reason)]
+    return [
+        replace(blank, numbers=numbers, pulse=number)
+        for number, numbers in enumerate(found, start=1)
+    ]
 
 
 def first_numbers(fine: Signal, coarse: Signal, rtol: float) -> dict[str, Estimate]:
@@ -208,31 +348,61 @@ def speeds_between(
     sensors: Sequence[Reading],
     places: Sequence[Mapping[str, float]],
     total: Callable[[float, float], float],
+    doubt: Callable[[Reading, Reading, float], str] = lambda *_: "",
 ) -> tuple[Reading, ...]:
     """Return the speeds of the pulse from each sensor to the next one of its kind.
 
-    places : of the sensors along the chain, by the names `SPEEDS`. total : error of a time between
-    two arrivals as a function of the errors of both.
+    Parameters
+    ----------
+    sensors : sequence of Reading
+        First pulses.
+    places : sequence of mappings
+        Places of the sensors along the chain, by the names `SPEEDS`.
+    total : callable
+        Error of a time between two arrivals as a function of the errors of both.
+    doubt : callable
+        Reason, "" if there is none, why one pulse does not pass two sensors at a speed in sites.
     """
-
-    def leg(first: Reading, second: Reading, distances: Mapping[str, float]) -> Reading:
-        reading = partial(
-            Reading, first.kind, (*first.places, *second.places), static=first.static
+    legs = []
+    for (first, at), (second, there) in pairwise(zip(sensors, places, strict=True)):
+        if first.kind != second.kind:
+            continue
+        leg = replace(
+            first, places=first.places + second.places, numbers={}, missing=None
         )
-        if first.missing or second.missing:
-            return reading({}, missing="one of the two has no pulse")
-        start, end = first.numbers["arrival"], second.numbers["arrival"]
-        if not (time := end.value - start.value) > 0:
-            return reading({}, missing="a speed needs a later second arrival")
-        error = total(start.error, end.error) / time
-        speeds = {name: distance / time for name, distance in distances.items()}
-        return reading({name: Estimate(V, V * error) for name, V in speeds.items()})
+        try:
+            time = _elapsed(first, second, total)
+            if not (at and there):
+                raise MeasureError(
+                    "a bead with one contact has a force of half a site away"
+                )
+            speeds = {name: abs(there[name] - at[name]) / time.value for name in at}
+            reason = doubt(first, second, speeds["speed_sites"])
+            if reason:
+                raise MeasureError(reason)
+        except MeasureError as reason:
+            legs.append(replace(leg, missing=str(reason)))
+            continue
+        error = time.relative_error
+        numbers = {name: Estimate(V, V * error) for name, V in speeds.items()}
+        legs.append(replace(leg, numbers=numbers))
+    return tuple(legs)
 
-    return tuple(
-        leg(one, other, {name: abs(there[name] - at[name]) for name in at})
-        for (one, at), (other, there) in pairwise(zip(sensors, places, strict=True))
-        if one.kind == other.kind
-    )
+
+def _elapsed(
+    first: Reading, second: Reading, total: Callable[[float, float], float]
+) -> Estimate:
+    """Return the time from one arrival to a later one; raises `MeasureError` if there is none."""
+    if "arrival" not in first.numbers or "arrival" not in second.numbers:
+        raise MeasureError("one of the two has no pulse")
+    start = first.numbers["arrival"]
+    end = second.numbers["arrival"]
+    time = Estimate(end.value - start.value, total(start.error, end.error))
+    if time.value <= 0:
+        raise MeasureError("a speed needs a later second arrival")
+    if time.value <= time.error:
+        raise MeasureError("the arrivals are equal but for their errors")
+    return time
 
 
 def echoes(
@@ -240,41 +410,43 @@ def echoes(
 ) -> list[tuple[Reading, bool]]:
     """Return the later pulses at sensors: delay behind the first pulse, and peak over its peak.
 
-    total : error of a delay or a ratio as a function of the errors of both pulses.
+    Parameters
+    ----------
+    sensors : sequence of Reading
+        First pulses, and later ones.
+    total : callable
+        Error of a delay or a ratio as a function of the errors of both pulses.
 
-    With each pulse comes whether it is reflected: whether it reaches this sensor and another one of
-    the kind in the reverse order of the first pulse, or no other sensor tells.
+    Returns
+    -------
+    list of (Reading, bool)
+        Later pulses, and whether each is reflected: whether it reaches this sensor and another one
+        of the kind in the reverse order of the first pulse, or no other sensor tells.
     """
-    found = {(r.kind, r.places, r.pulse): r for r in sensors}
+    firsts = {(r.kind, r.places): r.numbers for r in sensors if r.pulse == 1}
     later = []
     for r in sensors:
-        first = found[r.kind, r.places, 1]
-        if r.pulse == 1:
+        if r.pulse == 1 or not r.numbers:
             continue
-        if r.missing:
-            later.append((r, False))
-            continue
-        at, start = r.numbers["arrival"], first.numbers["arrival"]
-        ratio = r.numbers["peak"].value / first.numbers["peak"].value
-        error = total(*(one.numbers["peak"].relative_error for one in (r, first)))
-        delay = at.value - start.value
-        delays = {
-            "delay": Estimate(delay, total(at.error, start.error)),
-            "ratio": Estimate(ratio, ratio * error),
-        }
+        first = firsts[r.kind, r.places]
+        arrival = r.numbers["arrival"]
+        delay = arrival.value - first["arrival"].value
+        error = total(arrival.error, first["arrival"].error)
+        numbers = {"delay": Estimate(delay, error)}
+        if "peak" in r.numbers:
+            peaks = (r.numbers["peak"], first["peak"])
+            ratio = peaks[0].value / peaks[1].value
+            error = total(*(peak.relative_error for peak in peaks))
+            numbers["ratio"] = Estimate(ratio, ratio * error)
         reflected = True
         for other in sensors:
-            if (
-                (other.kind, other.pulse) == (r.kind, r.pulse)
-                and other is not r
-                and other.numbers
-            ):
-                ahead = (
-                    found[other.kind, other.places, 1].numbers["arrival"].value
-                    - start.value
-                )
-                reflected = ahead * (other.numbers["arrival"].value - at.value) < 0
-        later.append((replace(r, numbers=delays), reflected))
+            same = (other.kind, other.pulse) == (r.kind, r.pulse)
+            if same and other.places != r.places and other.numbers:
+                start = firsts[other.kind, other.places]["arrival"].value
+                ahead = start - first["arrival"].value
+                behind = other.numbers["arrival"].value - arrival.value
+                reflected = ahead * behind < 0
+        later.append((replace(r, numbers=numbers), reflected))
     return later
 
 

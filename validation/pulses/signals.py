@@ -38,14 +38,19 @@ class Signal(Protocol):
 def checked(time: ArrayLike, values: ArrayLike) -> tuple[Array, Array]:
     """Return sample times and values as arrays (S,), at least four; `MeasureError` for others."""
     try:
-        t, f = np.array(time, float), np.array(values, float)
+        t, f = np.asarray(time, float), np.asarray(values, float)
         if f.size < 4 or not f.shape == t.shape == (f.size,):
             raise ValueError(f"the shapes are {t.shape} and {f.shape}")
     except (TypeError, ValueError, OverflowError) as reason:
         wanted = "time and signal must be equally long rows of at least 4 numbers"
         raise MeasureError(f"{wanted}: {reason}") from None
-    if not np.isfinite((t, f)).all() or np.any(np.diff(t) <= 0):
-        raise MeasureError("time and signal must be finite, and time must increase")
+    if not np.isfinite((t, f)).all():
+        raise MeasureError("time and signal must be finite")
+    if np.any(np.diff(t) <= 0):
+        step = np.ptp(t) / (len(t) - 1)
+        raise MeasureError(
+            f"time must increase: of evenly spaced samples, --step {step:.6g} states it"
+        )
     return t, f
 
 

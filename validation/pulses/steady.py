@@ -100,34 +100,42 @@ def _measured(
     distant = [*near, far - chain.sites, far]
     rough = chain.passages(chain.run(distant, chain.crossing(far), less))
     # A place's time more: the front of a later, slower pulse is no leading pulse.
-    until = (1 + 1 / PLACES) * float(rough[:PLACES, :, 4].max())
+    until = (1 + 1 / PLACES) * float(rough["end"][:PLACES].max())
     fine = chain.passages(chain.run(near, until, rtol))
-    numbers, others = chain.numbers(fine), chain.numbers(rough)
-    values, less_accurate, far_away = (
-        numbers[:, 1:],
-        others[:, 1 : PLACES - 1],
-        others[:, -1:],
-    )
-    # A number that approaches its limit like n^{-1/2} has come half way to it at 4 n: twice.
-    steps = values - numbers[:, :-1], values - less_accurate, 2 * (values - far_away)
-    errors = np.abs(steps).max(axis=0)
-    # Relative errors; for the decay, the error of the force after a stretch.
-    worst = np.vstack((errors[:3] / values[:3], chain.sites * errors[3])).max(axis=0)
+    numbers = chain.numbers(fine)
+    less_accurate = chain.numbers(rough)
+    errors = {}
+    relative = []
+    for name, values in numbers.items():
+        others = less_accurate[name]
+        differences = (
+            values[1:] - values[:-1],
+            values[1:] - others[1 : PLACES - 1],
+            # A number that approaches its limit like n^{-1/2} has come half way to it at 4 n.
+            2 * (values[1:] - others[-1]),
+        )
+        error = np.abs(differences).max(axis=0)
+        errors[name] = error
+        # The decay's error is that of the force after a stretch.
+        scale = 1 / chain.sites if name == "decay" else values[1:]
+        relative.append(error / scale)
+    worst = np.max(relative, axis=0)
     if np.isnan(worst).all():
         raise MeasureError("not steady: the pulse does not arrive later at each place")
     best = int(np.nanargmin(worst))
-    place, values = near[best + 1], values[:, best]
-    predicted = fine[-1, :, 1] * math.exp(values[3] * (near[-1] - far))
-    higher = float(np.mean(rough[-1, :, 5] / predicted))
+    measured = {}
+    for name, values in numbers.items():
+        measured[name] = Estimate(float(values[1 + best]), float(errors[name][best]))
+    place = near[best + 1]
+    decayed = math.exp(measured["decay"].value * (near[-1] - far))
+    higher = float(np.mean(rough["highest"][-1] / (fine["peak"][-1] * decayed)))
     if not abs(higher - 1) <= STEADY:
         found = "a higher pulse has overtaken, or follows" if higher > 1 else "it fades"
         raise MeasureError(
             f"not steady: at {far} sites {found}, with {higher:.3g} times the force that the "
             f"leading pulse's decay at {place} sites predicts"
         )
-    measured = map(Estimate, values.tolist(), errors[:, best].tolist())
-    sites = place, place + chain.sites
-    return Point(k, omega, sites, dict(zip(LABELS, measured, strict=True)))
+    return Point(k, omega, (place, place + chain.sites), measured)
 
 
 @dataclass(frozen=True)
@@ -153,56 +161,59 @@ class StruckDimer:
         )  # the end is a pulse's length away as k → 1, too
         return simulate(struck((1.0, self.omega), beads, self.k, **options), rtol=rtol)
 
-    def passages(self, run: Run) -> Array:
-        """Six numbers of the leading pulse at both contacts of each place: (places, 2, 6).
+    def passages(self, run: Run) -> dict[str, Array]:
+        """Return numbers of the leading pulse at both contacts of each place, (places, 2), by name.
 
-        Returns arrival, peak, FWHM of force and of compression, end, and the highest pulse's peak.
-        Raises `MeasureError` if a pulse does not pass all places in time.
+        Names are arrival, peak, width of the force, strain_width, end, and highest, the peak of the
+        highest pulse. Raises `MeasureError` if a pulse does not pass all places in time.
         """
         shares = (0.5, 0.5**self.k)  # half of the force, and half of the compression
-        passages, sensors = [], run.scene.contact_sensors
+        sensors = run.scene.contact_sensors
+        found: dict[str, list[float]] = {}
         for force in (run.signal("contact", i) for i in sensors):
             try:
                 pulse, strain = leading_pulses(force, self.k, shares)
             except MeasureError:
-                sites, end = sensors[-2], run.scene.duration
-                missing = f"not steady: the pulse has not passed {sites} sites by t = {end:.3g}"
-                raise MeasureError(missing) from None
-            highest = max(pulse.peak, float(force(force.times).max()))
-            passages.append(
-                (
-                    pulse.arrival,
-                    pulse.peak,
-                    pulse.fwhm,
-                    strain.fwhm,
-                    pulse.fall,
-                    highest,
+                end = run.scene.duration
+                missing = (
+                    f"the pulse has not passed {sensors[-2]} sites by t = {end:.3g}"
                 )
-            )
-        return np.array(passages).reshape(-1, 2, 6)
+                raise MeasureError(f"not steady: {missing}") from None
+            numbers = {
+                "arrival": pulse.arrival,
+                "peak": pulse.peak,
+                "width": pulse.fwhm,
+                "strain_width": strain.fwhm,
+                "end": pulse.fall,
+                "highest": max(pulse.peak, float(force(force.times).max())),
+            }
+            for name, number in numbers.items():
+                found.setdefault(name, []).append(number)
+        return {name: np.reshape(row, (-1, 2)) for name, row in found.items()}
 
-    def numbers(self, passages: Array) -> Array:
-        """Return `LABELS` (rows) on each stretch; NaN where a pulse does not arrive later."""
-        arrival, peak, width, strain_width, *_ = np.moveaxis(
-            passages, 2, 0
-        )  # (places, contacts)
-        elapsed, fall = np.diff(arrival, axis=0), -np.diff(np.log(peak), axis=0)
+    def numbers(self, passages: Mapping[str, Array]) -> dict[str, Array]:
+        """Return `LABELS` on each stretch, (stretches,); NaN where a pulse does not arrive later.
+
+        Over N sites and the time T the peak force falls from F_1 to F_2. The decay is
+        ``d = ln(F_1/F_2)/N`` and the speed at contact force 1 is ``c = N (e^z - 1)/(z T F_1^q)``,
+        with ``q = (k-1)/(2k)`` and ``z = q d N``, as the integral of dn/(c F^q) over
+        ``F = F_1 e^{-d n}`` is T.
+        """
+        elapsed = np.diff(passages["arrival"], axis=0)
         elapsed[elapsed <= 0] = np.nan
-        # Over N sites and the time T the peak force falls from F_1 to F_2, the decay is
-        # d = ln(F_1/F_2)/N and the speed at contact force 1 is c = N (e^z - 1)/(z T F_1^q), with
-        # q = (k-1)/(2k) and z = q d N: the integral of dn/(c F^q) with F = F_1 e^{-d n} is T.
+        fall = -np.diff(np.log(passages["peak"]), axis=0)
         q = (self.k - 1) / (2 * self.k)
-        speed = self.sites * scipy.special.exprel(q * fall) / (elapsed * peak[:-1] ** q)
-        at_end = (
-            speed * peak[1:] ** q
-        )  # a width is a duration at a contact times the speed there
-        numbers = (
-            width[1:] * at_end,
-            strain_width[1:] * at_end,
-            speed,
-            fall / self.sites,
-        )
-        return np.asarray(np.mean(numbers, axis=2))
+        scaled = passages["peak"] ** q
+        speed = self.sites * scipy.special.exprel(q * fall) / (elapsed * scaled[:-1])
+        # A width is a duration at a contact times the speed there.
+        at_end = speed * scaled[1:]
+        numbers = {
+            "width": passages["width"][1:] * at_end,
+            "strain_width": passages["strain_width"][1:] * at_end,
+            "speed": speed,
+            "decay": fall / self.sites,
+        }
+        return {name: values.mean(axis=1) for name, values in numbers.items()}
 
 
 @dataclass(frozen=True)

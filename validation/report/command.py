@@ -15,7 +15,6 @@ from typing import Any, Generic, ParamSpec, TypeVar
 
 import click
 
-from lwa.base.exact import shorten
 from lwa.base.progress import bar, shown
 from lwa.command.cli import HELP, called, help_end
 from lwa.command.cli import run as run_command
@@ -165,37 +164,6 @@ def output_option(name: str, suffixes: Sequence[str], says: str) -> Any:
         return None if path is None else output_file(called(given), path, suffixes)
 
     return option(name, callback=read, metavar="FILE", type=click.Path(), says=says)
-
-
-_UNIT = (
-    "Unit of a column whose header has none, as in --unit time=ms, or its calibration, as in "
-    "--unit 'CH1=12.5 N/V'; repeatable. If one unit is stated, all are wanted."
-)
-_COLUMN = (
-    "Header that stands for a column in the file, as in --column time='CH1 t'; repeatable. The "
-    "lines before the header are skipped."
-)
-
-
-def column_options(function: Any) -> Any:
-    """Give a study that reads a measured file its options --column and --unit."""
-
-    def read(
-        context: click.Context, given: click.Parameter, pairs: Sequence[str]
-    ) -> Any:
-        renamed = {}
-        for pair in pairs:
-            name, equals, header = (part.strip() for part in pair.partition("="))
-            if not (name and equals and header) or name in renamed:
-                wanted = f"{given.metavar} is wanted, once a name"
-                raise SceneError(f"{called(given)} is {shorten(pair)}: {wanted}")
-            renamed[name] = header
-        return renamed
-
-    pairs = {"callback": read, "multiple": True}
-    unit = option("--unit", "units", metavar="NAME=UNIT", says=_UNIT, **pairs)
-    column = option("--column", "renamed", metavar="NAME=HEADER", says=_COLUMN, **pairs)
-    return column(unit(function))
 
 
 def number(

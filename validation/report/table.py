@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from lwa.base.frozen import Estimate
+from lwa.base.frozen import TABLE_DIGITS, Estimate
 from lwa.spheres.units import Unit, labelled
 
 WIDTH = 100
@@ -40,7 +40,8 @@ class Column:
         Text above the printed column; empty for a column that is not printed. A label that ends in
         an SI unit, as in "arrival (s)", is printed with the prefix that suits the largest cell.
     format : str or callable
-        Format of printed cells: a format specification such as ".1e", or a function of the cell.
+        Format of printed cells: a format specification such as ".1e", or a function of the cell; of
+        cells that are estimates the number of digits, at most.
     error : bool
         True for cells that are `lwa.Estimate` (or None): in JSON two numbers, KEY_value and
         KEY_error_value.
@@ -62,6 +63,8 @@ class Column:
             return "ok" if cell else "FAILS"
         if size != 1:
             cell = cell * (1 / size)
+        if isinstance(cell, Estimate):
+            return cell.text(int(self.format or TABLE_DIGITS))
         digits = ".6g" if isinstance(cell, float) else ""
         return format(cell, self.format or digits)
 

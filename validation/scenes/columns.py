@@ -1,252 +1,287 @@
-"""Columns of measured files, each with its unit.
+"""Columns of measured files: names and units, of the file and of the user.
 
-A file is text in UTF-8 or Latin-1, as oscilloscopes write it. The header is the first line that
-names the wanted columns, and the lines before the header are skipped. A header with a tab is
-separated by tabs, another one with a semicolon by semicolons, any other by commas; with tabs or
-semicolons numbers may have decimal commas. Blank entries end a column.
+A column is named by its header, in whatever line the header stands, or by its number, from 1. A
+record is the wanted columns in the rows where all of them are numbers; preambles, rows of units,
+footers and blank ends are not.
 
-Units are stated, never guessed: in the header, as in "Force (mN)" or "force [mN]"; in a row without
-numbers under the header; or by the user, who may also give a calibration per unit of the file, as
-in "12.5 N/V". Values are returned in SI. A file in which no unit is stated at all is
-in the scene's own numbers; if one unit is stated, every column that is used needs one.
+Units are stated, never guessed: by the user (`validation.scenes.units`), whose word stands above
+the file's, in brackets behind a header, as in "Force (mN)", or in a row of units. Values are in SI.
+A file whose named columns have no unit at all is in the scene's own numbers; if one has a unit,
+each that is used needs one.
 """
 
 from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import cycle
 from pathlib import Path
+from typing import TypedDict
 
 import numpy as np
 
-from lwa.base import files
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
+from lwa.base.files import reason
+from validation.scenes.cells import Cells
 from validation.scenes.checks import SceneError
+from validation.scenes.units import (
+    HEADER,
+    found_unit,
+    known,
+    read_statement,
+    size_of,
+)
 
-_SECOND = dict.fromkeys(("s", "sec", "second", "seconds"), 1.0)
-_UNITS = {
-    "time": _SECOND | {"ms": 1e-3, "µs": 1e-6, "us": 1e-6, "ns": 1e-9},
-    "displacement": {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "um": 1e-6},
-    "force": {"N": 1.0, "mN": 1e-3, "kN": 1e3, "Newton": 1.0},
-    "speed": {"m/s": 1.0, "km/s": 1e3, "mm/s": 1e-3},
-}  # by the last word of a column's name
-_UNITS |= {f"{name}_error": _UNITS[name] for name in ("force", "speed")}
-_SENSOR = re.compile(r"(?:(bead|contact) )?(?:([1-9]\d{0,8}) )?(?:dynamic )?force")
-_HEADER = re.compile(r"^(.*?) ?(?:[([] ?([^][()]*?) ?[])])?$")  # name, (unit) or [unit]
-_CALIBRATION = re.compile(
-    r"([-+.\deE]+)\s*(\S+)/(\w+)"
-)  # number, unit, unit of the file
+_NAME = re.compile(
+    "time|displacement|speed|force_error|speed_error"
+    r"|(?!contact.*velocity)(?:(bead|contact) )?(?:([1-9]\d{0,8}) )?(force|velocity)"
+)
+
+
+class Stated(TypedDict, total=False):
+    """Statements of the user about measured files, as keywords.
+
+    columns : headers, with or without their units, or numbers of columns, by the names "time",
+        "bead 8 force", "bead 8 velocity", "contact 8 force", "force", "speed", ….
+    units : statements (`validation.scenes.units`) by name, header or number of a column.
+    step : time from each sample to the next, as a statement, in place of a column.
+    """
+
+    columns: Mapping[str, str]
+    units: Mapping[str, str]
+    step: str | None
 
 
 @dataclass(frozen=True, eq=False)
-class MeasuredFile:
-    """Names, units and entries of the columns of a file; `read` makes one.
+class Record:
+    """Samples of a signal at a sensor.
 
-    names : of the columns, in the order of the file; names in lower case. units : of each column,
-    by the file and by the user, who may give a calibration; "" for none.
+    kind : "bead" or "contact". number : of the bead or contact, from 1; None if the file has no
+    other sensor and does not say it. quantity : "force" or "velocity". time, values : (S,).
+    inverted : option of the command line that changes the signal's sign.
     """
 
-    path: Path
-    names: Sequence[str]
-    units: Sequence[tuple[str, str]]
-    lines: Sequence[
-        tuple[int, list[str]]
-    ]  # number of the line in the file, and its entries
-    decimal: str  # the decimal separator
+    kind: str
+    number: int | None
+    quantity: str
+    time: Array
+    values: Array
+    inverted: str
 
-    @classmethod
-    def read(
-        cls,
+
+class MeasuredFile:
+    """The named columns of a file.
+
+    Parameters
+    ----------
+    path : str or Path
+        Name of the file; "-" is standard input.
+    columns, units, step
+        Statements of the user, see `Stated`.
+
+    Attributes
+    ----------
+    names : dict of str
+        Names by the numbers of the columns; number 0 is the time that a step states.
+
+    Raises
+    ------
+    SceneError
+        In one line, for a file that cannot be read or has no such columns, and for statements on
+        columns that the file does not have.
+    """
+
+    def __init__(
+        self,
         path: str | Path,
-        *wanted: str,
-        renamed: Mapping[str, str] | None = None,
+        columns: Mapping[str, str] | None = None,
         units: Mapping[str, str] | None = None,
-    ) -> MeasuredFile:
-        """Read a file. Its header is the first line with all wanted columns (the force of any
-        sensor is "force") and with all that are renamed.
-
-        renamed : headers as they stand in the file, with or without their unit, by the new names;
-        upper and lower case of other names are alike. units : by names, new or old, units
-        of columns without one, or calibrations, such as "12.5 N/V".
-
-        Raises `SceneError`, in one line, for a file that cannot be read or has no such header, for
-        an unknown new name, and for a unit of a column that the file does not have.
-        """
-        for name in renamed or {}:
-            if name.lower() not in _UNITS and not _SENSOR.fullmatch(name.lower()):
-                known = "time, bead 8 force, contact 8 force, speed, displacement"
-                raise SceneError(
-                    f"column is {shorten(name)}: a name such as {known} is wanted"
-                )
-        renamed = {name.lower(): header for name, header in (renamed or {}).items()}
-        given = {
-            name.lower(): unit.replace("μ", "µ") for name, unit in (units or {}).items()
-        }
-        new = {header: name for name, header in renamed.items()}
+        step: str | None = None,
+    ) -> None:
+        self.path = "standard input" if str(path) == "-" else path
         try:
-            lines = _text(Path(path)).split("\n")
-            for start, line in enumerate(lines, start=1):  # noqa: B007
-                mark = next((mark for mark in "\t;" if mark in line), ",")
-                header = [
-                    " ".join(x.split())
-                    for x in next(csv.reader([line], delimiter=mark))
-                ]
-                old = [_HEADER.sub(r"\1", cell) for cell in header]
-                names = []
-                for cell, name in zip(header, old, strict=True):
-                    other = "" if name.lower() in renamed else name.lower()
-                    names.append(new.get(cell, new.get(name, other)))
-                if {*wanted} <= {_SENSOR.sub("force", n) for n in names} and {
-                    *renamed
-                } <= {*names}:
-                    break
-            else:
-                columns = ", ".join((*wanted, *renamed.values()))
+            self._cells = Cells.read(path)
+        except (OSError, SceneError, csv.Error) as error:
+            raise SceneError(f"{self.path}: {reason(error)}") from None
+        # The cell in front is that of column 0.
+        self._head = [["", *row] for row in self._cells.head]
+        self.names = {0: "time"} if step else {}
+        self._stated = {0: step} if step else {}
+        self._name_columns(columns or {})
+        for key, statement in (units or {}).items():
+            numbers = self._named(_name(key)) or self._numbers(key)
+            if not numbers:
+                wrong = f"unit is of {shorten(key)}, which is no column"
+                raise self._fault(wrong, *(units or {}))
+            self._stated |= dict.fromkeys(numbers, str(statement))
+
+    def _name_columns(self, stated: Mapping[str, str]) -> None:
+        """Name the columns that the user states, and those whose headers are such names."""
+        for name, column in stated.items():
+            if not _NAME.fullmatch(_name(name)):
+                known = "time, bead 8 force, bead 8 velocity, contact 8 force, speed"
                 raise SceneError(
-                    f"no line names {columns}: --column NAME=HEADER names a column"
+                    f"column is {shorten(name)}: such as {known} is wanted"
                 )
-            reader = csv.reader(lines[start:], delimiter=mark)
-            rows = [
-                (start + reader.line_num, row)
-                for row in reader
-                if any(map(str.strip, row))
-            ]
-        except (OSError, TypeError, ValueError, csv.Error) as error:
-            raise SceneError(f"{path}: {files.reason(error)}") from None
-        decimal = "." if mark == "," else ","
-        stated = [_HEADER.sub(r"\2", cell) for cell in header]
-        if rows and np.isnan([_number(cell, decimal) for cell in rows[0][1]]).all():
-            below = [cell.strip(" ()[]") for cell in rows.pop(0)[1]] + [""] * len(names)
-            stated = [unit or under for unit, under in zip(stated, below, strict=False)]
-        low = [name.lower() for name in old]
-        if unknown := [
-            name for name in units or {} if name.lower() not in (*names, *low)
-        ]:
-            wrong = (
-                f"unit is of {shorten(unknown[0])}: the header has {shorten(header)}"
-            )
-            raise SceneError(f"{path}: {wrong}")
-        added = [
-            given.get(name) or given.get(n, "")
-            for name, n in zip(names, low, strict=True)
-        ]
-        return cls(Path(path), names, [*zip(stated, added, strict=True)], rows, decimal)
+            numbers = self._numbers(str(column))
+            if len(numbers) != 1:
+                raise self._fault(f"{len(numbers)} columns are {shorten(column)}", name)
+            self.names[numbers[0]] = _name(name)
+        for row in reversed(self._head):  # the lowest header counts
+            taken = {*self.names.values()}
+            for number, cell in enumerate(row):
+                name = _name(cell)
+                if _NAME.fullmatch(name) and name not in taken:
+                    self.names.setdefault(number, name)
+        self.names = dict(sorted(self.names.items()))
+
+    def _named(self, name: str) -> list[int]:
+        """Return the numbers of the columns of a name."""
+        return [number for number, known in self.names.items() if known == name]
+
+    def _numbers(self, column: str) -> list[int]:
+        """Return the numbers of the columns of a header, or the number that is given."""
+        if re.fullmatch(r"[1-9]\d{0,5}", column):
+            return [int(column)]
+        for row in reversed(self._head):
+            numbers = []
+            for number, cell in enumerate(row):
+                if column.lower() in (_name(cell), cell.lower()):
+                    numbers.append(number)
+            if numbers:
+                return numbers
+        return []
+
+    def _fault(self, words: str, *names: str) -> SceneError:
+        """Return an error that lists the columns, and ends in options that name some of them."""
+        paste = " ".join(f"--column '{name}={i}'" for i, name in enumerate(names, 1))
+        found = []
+        for number, entry in enumerate(self._cells.first, start=1):
+            above = [row[number] for row in self._head[-2:] if number < len(row)]
+            found.append(f"{number} {' '.join(above)[:20]!r} {entry[:12]}")
+        listed = ", ".join(found) or "no numbers"
+        return SceneError(f"{self.path}: {words}: found {listed}: {paste}")
+
+    @cached_property
+    def si(self) -> bool:
+        """Whether a unit is stated, by the file or by the user; values are in SI then."""
+        found = map(self._unit, self.names)
+        # A number alone is a factor.
+        return bool(
+            re.search(r"[^-+.\deE ]", "".join((*self._stated.values(), *found)))
+        )
 
     @property
-    def has_units(self) -> bool:
-        """Whether a unit is stated, by the file or by the user; values are in SI then."""
-        return any(map(any, self.units))
+    def notes(self) -> list[str]:
+        """Lines on units that the user states otherwise than the file."""
+        lines = []
+        for number, statement in self._stated.items():
+            name = self.names[number]
+            _, unit = read_statement(statement, name)
+            own = self._unit(number)
+            if unit and own and (known(unit) or unit) != (known(own) or own):
+                lines.append(f"{name}: {statement} is stated, the file says {own}.")
+        return lines
 
-    def column(self, name: str) -> Array:
-        """Return the values of a column, (N,), in SI if the file has units.
+    def rows(self, *names: str) -> Array:
+        """Return the record of columns, (rows, columns), in SI if a unit is stated.
 
-        Raises `SceneError`, in one line, unless there is one such column, its unit is one of this
-        quantity's, and its entries are finite numbers.
+        Raises `SceneError`, in one line, for two columns of one name, for a gap in the record, for
+        a value beyond the recorder's range, and for a unit of another quantity.
         """
-        if self.names.count(name) != 1:
-            wanted = f"one column {name} is wanted (see --column)"
-            raise SceneError(
-                f"{self.path}: {wanted}, the header has {shorten([*self.names])}"
-            )
-        return self._values(self.names.index(name))
+        numbers = []
+        for name in names:
+            own = self._named(name)
+            if len(own) != 1:
+                raise self._fault(f"{len(own)} columns are {name}", *names)
+            numbers += own
+        return self._record(numbers)
 
-    def sensors(
-        self, of: str = "contact"
-    ) -> dict[tuple[str, int | None], tuple[int, int]]:
-        """Return the places of time and force in the header, by kind and number of the sensor.
+    def records(self, of: str = "contact") -> list[Record]:
+        """Return the records of all sensors, those of beads first.
 
-        The kind is "bead" (these come first) or "contact". Numbers count from 1; the only sensor of
-        a file may have none. One column "time" is that of all sensors; of several columns the first
-        is that of the first force, and so on.
+        One column "time" is that of all sensors; of several columns the first is that of the first
+        sensor, and so on. The velocity of a bead whose force is there is left out.
 
         of : kind of the sensors whose names do not say it.
 
-        Raises `SceneError` for two columns of one sensor, for several sensors of which one has no
-        number, and for several columns of time that are not as many as the forces.
+        Raises `SceneError` as `rows` does, and for columns of time that are not as many as the
+        sensors.
         """
-        times = [i for i, name in enumerate(self.names) if name == "time"]
-        forces = {
-            i: m for i, name in enumerate(self.names) if (m := _SENSOR.fullmatch(name))
-        }
-        if len(times) not in (1, len(forces)):
-            found = f"{len(times)} columns time and {len(forces)} of forces"
-            raise SceneError(
-                f"{self.path}: {found}: one time for all or one for each is wanted"
-            )
-        sensors = {
-            (m[1] or of, int(m[2]) if m[2] else None): (time, force)
-            for time, (force, m) in zip(
-                times * len(forces), forces.items(), strict=False
-            )
-        }
-        if len(sensors) < len(forces) or (
-            len(sensors) > 1 and None in [n for _, n in sensors]
-        ):
-            names = shorten([self.names[force] for force in forces])
-            raise SceneError(
-                f"{self.path}: {names}: each sensor is wanted once, with its number"
-            )
-        return dict(sorted(sensors.items(), key=lambda sensor: sensor[0][0]))
+        times = self._named("time")
+        sensors = []
+        for number, name in self.names.items():
+            force = name.replace("velocity", "force")
+            if name.endswith("force") or (name != force and not self._named(force)):
+                sensors.append(number)
+        if not sensors or len(times) not in (1, len(sensors)):
+            there = f"{len(times)} columns are time and {len(sensors)} of sensors"
+            wanted = "one time for all, or one for each, is wanted"
+            raise self._fault(f"{there}: {wanted}", "time", "force")
+        pairs = zip(cycle(times), sensors, strict=False)
+        records = [self._signal(time, signal, of) for time, signal in pairs]
+        return sorted(records, key=lambda record: record.kind)
 
-    def record(self, time: int, force: int) -> tuple[Array, Array]:
-        """Return times and forces, each (N,), from their places in the header, as `column` does."""
-        t, f = self._values(time), self._values(force)
-        if len(t) < len(f):
-            raise SceneError(
-                f"{self.path}: {self.names[force]} has more samples than times"
-            )
-        return t[: len(f)], f
-
-    def _values(self, at: int) -> Array:
-        """Return the values of the column at a place of the header."""
-        cells = [
-            (line, row[at].strip() if at < len(row) else "") for line, row in self.lines
-        ]
-        while cells and not cells[-1][1]:
-            del cells[-1]
-        values = self._size(at) * np.array(
-            [_number(cell, self.decimal) for _, cell in cells]
+    def _signal(self, time: int, signal: int, of: str) -> Record:
+        """Return the record of a sensor from the columns of its time and signal."""
+        name = self.names[signal]
+        sensor = _NAME.fullmatch(name)
+        assert sensor is not None
+        kind, number, quantity = sensor.groups()
+        t, values = self._record([time, signal]).T
+        given = self._stated.get(signal) or self._unit(signal) or "1"
+        turned = f"-{given}".removeprefix("--")
+        return Record(
+            kind or ("bead" if quantity == "velocity" else of),
+            int(number) if number else None,
+            quantity,
+            t,
+            values,
+            f"--unit '{name}={turned}'",
         )
-        for i in np.flatnonzero(~np.isfinite(values))[:1]:
-            line, cell = cells[i]
-            fault = f"column {self.names[at]}, line {line}: {shorten(cell)} is no finite number"
-            raise SceneError(f"{self.path}: {fault}")
-        return values
 
-    def _size(self, at: int) -> float:
-        """Return the number in SI of one unit of a column, 1 in a file without units."""
-        if not self.has_units:
-            return 1.0
-        name, (unit, given) = self.names[at], self.units[at]
-        known, match = _UNITS[name.split()[-1]], _CALIBRATION.fullmatch(given)
-        number, to, of = (
-            match.groups() if match else ("1", given or unit, given or unit)
-        )
-        size = _number(number, ".") * known.get(to, np.nan)
-        if unit not in ("", of) or not np.isfinite(size):
-            says = f"the unit {shorten(unit)}" if unit else "no unit"
-            says += f" and is given {shorten(given)}" if given else ""
-            wanted = f"--unit states one of {', '.join(known)}, or such as 12.5 N/{unit or 'V'}"
-            raise SceneError(f"{self.path}: column {name} has {says}: {wanted}")
-        return size
+    def _record(self, numbers: list[int]) -> Array:
+        """Return columns, (rows, columns), in the rows where all of them are numbers."""
+        columns = self._columns
+        try:
+            start, end = self._cells.rows(
+                np.column_stack([columns[number] for number in numbers if number])
+            )
+            sizes = [self._size(number) for number in numbers]
+        except SceneError as error:
+            names = " and ".join(self.names[number] for number in numbers)
+            raise SceneError(f"{self.path}: {names}: {error}") from None
+        # The time that a step states starts with the record.
+        columns = columns | {0: np.arange(-start, end - start, dtype=float)}
+        table = np.column_stack([columns[number][start:end] for number in numbers])
+        return np.asarray(table * sizes)
+
+    @cached_property
+    def _columns(self) -> dict[int, Array]:
+        """Columns of all lines by number, with NaN where a cell is no number."""
+        found = [number for number in self.names if number]
+        try:
+            table = self._cells.numbers([number - 1 for number in found])
+        except (ValueError, csv.Error) as error:
+            raise SceneError(f"{self.path}: {shorten(str(error))}") from None
+        return dict(zip(found, table.T, strict=True))
+
+    def _unit(self, number: int) -> str:
+        """Return the unit that the file states for a column, "" for none."""
+        return found_unit([row[number] for row in self._head if number < len(row)])
+
+    def _size(self, number: int) -> float:
+        """Return the value in SI of an entry 1 of a column, 1 in a file without units."""
+        name = self.names[number]
+        if number in self._stated:
+            return read_statement(self._stated[number], name)[0]
+        return size_of(self._unit(number), name) if self.si else 1.0
 
 
-def _text(path: Path) -> str:
-    """Return the text of a file in UTF-8 or Latin-1, with one of Unicode's two signs for micro."""
-    content = files.content(path)
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = content.decode("latin-1")
-    return text.replace("μ", "µ")
-
-
-def _number(cell: str, decimal: str) -> float:
-    """Return the number in a cell, NaN if it holds none."""
-    try:
-        return float(cell.replace(decimal, "."))
-    except ValueError:
-        return np.nan
+def _name(header: str) -> str:
+    """Return a header without its unit as it is compared."""
+    return HEADER.sub(r"\1", header).lower().replace("dynamic ", "").strip("#% ")

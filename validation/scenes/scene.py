@@ -351,22 +351,25 @@ class Scene:
             raise SceneError(
                 f"beads is {shorten(given)}: a sequence of spheres is wanted"
             )
-
-        @cache  # exact numbers take their time, and a chain has few kinds of contacts
-        def contact(a: Sphere, b: Sphere) -> tuple[float, float]:
-            return _number(stiffness(a, b), "stiffness"), float(a.radius + b.radius)
-
-        mass = cache(lambda bead: _number(bead.mass, "mass"))
-        contacts = [contact(a, b) for a, b in pairwise(given)]
         return cls(
-            masses=tuple(map(mass, given)),
-            stiffnesses=tuple(A for A, _ in contacts),
-            k=1.5,
+            **contacts_of(given),
             wall=None if wall is None else float(stiffness(given[-1], wall)),
-            spacings=tuple(distance for _, distance in contacts),
             units="SI",
             **rest,
         )
+
+
+def contacts_of(beads: Sequence[Sphere]) -> dict[str, Any]:
+    """Return the fields of a `Scene` that spheres in Hertz contact determine, as lists."""
+    # Exact numbers take their time, and a chain has few kinds of beads and contacts.
+    mass = cache(lambda bead: _number(bead.mass, "mass"))
+    contact = cache(lambda a, b: _number(stiffness(a, b), "stiffness"))
+    return {
+        "masses": [mass(bead) for bead in beads],
+        "stiffnesses": [contact(a, b) for a, b in pairwise(beads)],
+        "spacings": [float(a.radius + b.radius) for a, b in pairwise(beads)],
+        "k": 1.5,
+    }
 
 
 def _exponent(value: Any, name: str) -> float:

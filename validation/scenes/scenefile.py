@@ -5,14 +5,17 @@ prints the list.
 
 Beads and contacts are counted from 1, as in the paper and on the command line (a `Scene` counts
 from 0). Stiffnesses are as many as the cell has beads, the last one joining it to the next cell,
-or as many as the whole chain has contacts; spacings likewise.
+or as many as the whole chain has contacts; spacings likewise. Exponents, laws and values of damping
+that differ are as many as the cell has beads, or as the scene has contacts, the wall's included.
 
 Unknown keys are refused, and every fault is one line that names the key.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -37,25 +40,22 @@ from lwa.spheres.beads import (
     read_beads,
     read_materials,
     read_row,
+    striker_velocity,
 )
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes.checks import SceneError, finite, positive
 from validation.scenes.columns import MeasuredFile
 from validation.scenes.forcing import DAMPINGS, Damping, Drive
-from validation.scenes.scene import Scene
+from validation.scenes.scene import Scene, contacts_of
 
 MOST_BEADS = 1_000_000
+_STATED = ("columns", "units", "step")  # of the file of a drive
 _TABLES = {  # that a file may leave out
     "wall": ("material", "stiffness"),
     "damping": DAMPINGS,
     "drive": (
-        "velocity",
-        "amplitude",
-        "frequency",
-        "ramp",
-        "file",
-        "time",
-        "displacement",
+        *("velocity", "amplitude", "frequency", "ramp", "file", *_STATED),
+        *("time", "displacement"),
     ),
     "striker": STRIKER,
     "start": ("velocities", "displacements"),
@@ -65,12 +65,23 @@ KEYS: Mapping[str, Sequence[str]] = {"file": FILE, "chain": CHAIN, **_TABLES}
 """Keys of a file, and of each of its tables."""
 
 
-def read_scene(path: str | Path) -> Scene:
-    """Read a scene from a TOML or a JSON file.
+def read_scene(
+    path: str | Path, samples: Callable[[Scene], int] | None = None
+) -> Scene:
+    """Read a scene from a file, TOML or JSON; "-" is standard input.
+
+    samples : number of samples of a scene whose file gives none; by default that of `Scene`.
 
     Raises `SceneError`, in one line, for a file that cannot be read or is not a scene.
     """
-    return load(path, "a scene", lambda content: scene(content, Path(path).parent))
+
+    def read(content: Any) -> Scene:
+        found = scene(content, Path(path).parent)
+        if samples is None or "samples" in content:
+            return found
+        return replace(found, samples=samples(found))
+
+    return load(path, "a scene", read)
 
 
 def scene(content: Any, folder: Path = Path()) -> Scene:
@@ -83,51 +94,57 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
         name: file.read(name, table(keys), Table({}, name, keys))
         for name, keys in _TABLES.items()
     }
+    start, sensors, striker = (tables[n] for n in ("start", "sensors", "striker"))
     materials = read_materials(file)
     beads = read_beads(file, materials)
+    row = read_row(file, beads)
+    if row.size > MOST_BEADS:
+        made = f"chain.cell and repeat make {shorten(row.size)} beads"
+        raise SceneError(f"{made}: at most {MOST_BEADS} are wanted")
     defects = [*file.read("defects", _defects, ())]
-    if "like" in (striker := tables["striker"]):
+    if "like" in striker:
         if any(defect.entries.get("bead") == 1 for defect in defects):
             raise SceneError(
                 "striker.like and defects name bead 1: one of them is wanted"
             )
         other = {"bead": 1, "like": striker.entries["like"]}
         defects.append(Table(other, "striker", ("bead", "like")))
-    row, chain = _chain(read_row(file, beads), beads, defects, folder)
-    n, start, sensors = len(chain["masses"]), tables["start"], tables["sensors"]
-    wall = _wall(tables["wall"], row, materials) if "wall" in file else None
-    velocities = start.read("velocities", each(finite), ())
+    spheres = row.spheres * row.repeat
+    _replace_spheres(spheres, beads, defects)
+    fields = _contacts(row, spheres)
+    _change_contacts(fields, defects)
+    contacts = row.size - 1
+    if "wall" in file:
+        fields["wall"] = _wall(tables["wall"], spheres, materials)
+        contacts += 1
+    own = partial(_own, period=len(row.spheres or row.masses), contacts=contacts)
+    if not spheres:
+        key = row.given.one("k", "law")
+        fields[key] = row.given.read(key, own(finite if key == "k" else read_law))
+    if "damping" in file:
+        kind = tables["damping"].one(*DAMPINGS)
+        value = tables["damping"].read(kind, own(finite))
+        fields["damping"] = Damping(kind, value)
+    fields["velocities"] = start.read("velocities", each(finite), ())
     if "striker" in file:
         if "start" in file:
             raise SceneError(
                 "striker and start are both there: one says how the beads start"
             )
-        velocities = (tables["striker"].read("velocity", finite),)
-    damping = None
-    if "damping" in file:
-        kind = tables["damping"].one(*DAMPINGS)
-        damping = Damping(kind, tables["damping"].entries[kind])
-    units = file.read("units", among({"SI": "SI"}), "SI" if row else "")
-    # A pulse that passes the chain once in the duration has 20 samples a bead: a half width of one
-    # bead then holds more than the 16 that `validation.pulses.noisy` wants. 100,000 spare memory.
-    samples = min(max(1001, 20 * n), 100_000)
+        fields["velocities"] = (striker_velocity(striker),)
+    units = file.read("units", among({"SI": "SI"}), "SI" if spheres else "")
+    if "drive" in file:
+        fields["drive"] = _drive(tables["drive"], units, folder)
+    for key in ("gravity", "precompression", "samples"):
+        if key in file:
+            fields[key] = file.entries[key]
     return Scene(
-        **chain,
-        **{
-            key: file.entries[key]
-            for key in ("gravity", "precompression")
-            if key in file
-        },
-        wall=wall,
+        **fields,
         duration=file.read("duration", positive),
-        samples=file.entries.get("samples", samples),
         units=units,
         displacements=start.read("displacements", each(finite), ()),
-        velocities=velocities,
-        damping=damping,
-        drive=_drive(tables["drive"], units, folder) if "drive" in file else None,
-        bead_sensors=sensors.read("beads", _sensors(n), ()),
-        contact_sensors=sensors.read("contacts", _sensors(n - (wall is None)), ()),
+        bead_sensors=sensors.read("beads", _sensors(row.size), ()),
+        contact_sensors=sensors.read("contacts", _sensors(contacts), ()),
     )
 
 
@@ -136,6 +153,23 @@ def _sensors(count: int) -> Reader:
     return lambda value, name: (
         range(count) if value == "all" else places(count)(value, name)
     )
+
+
+def _own(reader: Reader, period: int, contacts: int) -> Reader:
+    """Return a reader of one value for all contacts, or of one for each of a cell or a chain."""
+
+    def read(value: Any, name: str) -> Any:
+        if not isinstance(value, list):
+            return reader(value, name)
+        values = each(reader)(value, name)
+        if len(values) not in (period, contacts):
+            raise SceneError(
+                f"{name} holds {len(values)}: {period}, one for each bead of the cell, or "
+                f"{contacts}, one for each contact, are wanted, or one for all"
+            )
+        return (values * (contacts // len(values) + 1))[:contacts]
+
+    return read
 
 
 def _defects(value: Any, name: str) -> list[Table]:
@@ -158,46 +192,46 @@ def _defect(value: Any, name: str) -> Table:
     return given
 
 
-def _chain(
-    found: Row, beads: Mapping[str, Sphere], defects: Sequence[Table], folder: Path
-) -> tuple[list[Sphere], dict[str, Any]]:
-    """Return the named beads (none in a chain of masses), and the chain's fields of the `Scene`."""
-    n = found.size
-    if n > MOST_BEADS:
-        made = f"chain.cell and repeat make {shorten(n)} beads"
-        raise SceneError(f"{made}: at most {MOST_BEADS} are wanted")
-    row = found.spheres * found.repeat
-    if row:
-        for defect in defects:
-            if "like" in defect:
-                row[defect.read("bead", place(n))] = defect.read("like", among(beads))
-        plain = Scene.of_beads(row, duration=1)
-        masses, stiffnesses = list(plain.masses), list(plain.stiffnesses)
-        law, spacings = {"k": plain.k}, plain.spacings
-    else:
-        masses = found.masses * found.repeat
-        key = found.given.one("k", "law")
-        law = {key: found.given.read(key, finite if key == "k" else read_law)}
-        stiffnesses = found.by_contact(found.stiffnesses) or [1.0] * (n - 1)
-        spacings = tuple(found.by_contact(found.spacings))
+def _replace_spheres(
+    spheres: list[Sphere], beads: Mapping[str, Sphere], defects: Sequence[Table]
+) -> None:
+    """Put other beads in the places that defects name."""
+    for defect in defects:
+        if "like" in defect:
+            if not spheres:
+                named = defect.path("like")
+                raise SceneError(f"{named} names a bead in a chain of masses")
+            at = defect.read("bead", place(len(spheres)))
+            spheres[at] = defect.read("like", among(beads))
+
+
+def _contacts(row: Row, spheres: Sequence[Sphere]) -> dict[str, Any]:
+    """Return masses, stiffnesses and spacings of a chain, of spheres with their exponent."""
+    if spheres:
+        return contacts_of(spheres)
+    return {
+        "masses": row.masses * row.repeat,
+        "stiffnesses": row.by_contact(row.stiffnesses) or [1.0] * (row.size - 1),
+        "spacings": row.by_contact(row.spacings),
+    }
+
+
+def _change_contacts(fields: dict[str, Any], defects: Sequence[Table]) -> None:
+    """Change stiffnesses and masses in the places that defects name."""
     for defect in defects:
         if "contact" in defect:
-            at = defect.read("contact", place(n - 1))
+            stiffnesses = fields["stiffnesses"]
+            at = defect.read("contact", place(len(stiffnesses)))
             stiffnesses[at] = defect.read("stiffness", positive)
         elif "mass" in defect:
-            masses[defect.read("bead", place(n))] = defect.read("mass", positive)
-        elif not row:
-            raise SceneError(f"{defect.path('like')} names a bead in a chain of masses")
-    return row, {
-        "masses": masses,
-        "stiffnesses": stiffnesses,
-        "spacings": spacings,
-    } | law
+            at = defect.read("bead", place(len(fields["masses"])))
+            fields["masses"][at] = defect.read("mass", positive)
 
 
 def _wall(
     given: Table, row: Sequence[Sphere], materials: Mapping[str, Material]
 ) -> float:
+    """Read the stiffness of the wall's contact."""
     if given.one("material", "stiffness") == "stiffness":
         return float(given.read("stiffness", positive))
     if not row:
@@ -208,21 +242,22 @@ def _wall(
 
 
 def _drive(given: Table, units: str, folder: Path) -> Drive:
-    """Read the motion of bead 1; the key ``file`` names a CSV file of its time and displacement."""
+    """Read the motion of bead 1; the key ``file`` names a file of its time and displacement."""
     motion = dict(given.entries)
+    stated = {key: motion.pop(key) for key in _STATED if key in motion}
     if "file" in given:
-        if not isinstance(name := motion.pop("file"), str):
-            raise SceneError(
-                f"drive.file is {shorten(name)}: the name of a CSV file is wanted"
-            )
-        file = MeasuredFile.read(folder / name, "time", "displacement")
-        check_units(file, units)
-        motion |= {name: file.column(name) for name in ("time", "displacement")}
+        name = motion.pop("file")
+        if not isinstance(name, str):
+            raise SceneError(f"drive.file is {shorten(name)}: a file's name is wanted")
+        file = MeasuredFile(folder / name, **stated)
+        check_units(file.si, units, file.path)
+        motion["time"], motion["displacement"] = file.rows("time", "displacement").T
     return Drive(**motion)
 
 
-def check_units(file: MeasuredFile, units: str) -> None:
+def check_units(si: bool, units: str, name: Any) -> None:
     """Refuse a measured file that states its units beside a scene that does not."""
-    if file.has_units and not units:
-        wanted = "its units are stated, the scene's are not: units = 'SI' is wanted"
-        raise SceneError(f"{file.path}: {wanted}")
+    if si and not units:
+        raise SceneError(
+            f"{name}: it states units, the scene does not: units = 'SI' is wanted"
+        )

@@ -17,10 +17,10 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from typing import Any, Unpack
 
 import click
 import numpy as np
@@ -34,11 +34,12 @@ from lwa.base.frozen import Estimate
 from lwa.command.options import quantities, quantity
 from lwa.spheres.beads import spheres as read_spheres
 from validation.pictures import Curve, Panel
-from validation.report.command import column_options, option, study
+from validation.report.command import option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError
-from validation.scenes.columns import MeasuredFile
+from validation.scenes.columns import MeasuredFile, Stated
+from validation.studies.records import column_options
 from validation.waves.solver import exact_wave
 
 _DRAWS = 1000  # of the coefficients of ln V, for the errors
@@ -52,6 +53,23 @@ _POWER = (Column("", "F = A δ^k"), Column("", "value", error=True))
 _UNITS = "A bead's mass or the distance is 1 as none is given: see --masses, --spacing, --spheres."
 _NOTE = "±: 95 % intervals by the scatter of the data."
 _FEWEST = 6  # pulses: three more than the coefficients of the curvature's fit
+
+
+_EXAMPLE = """force (N),force_error (N),speed (m/s),speed_error (m/s)
+12,0.1,408,3
+25,0.2,463,3
+50,0.4,519,4
+101,0.8,584,4
+199,1.6,655,5
+402,3.2,735,6
+"""
+
+
+def _print(context: click.Context, given: click.Parameter, wanted: bool) -> None:
+    """Print an example of data, and end the command."""
+    if wanted and not context.resilient_parsing:  # completion parses resiliently
+        click.echo(_EXAMPLE, nl=False)
+        context.exit()
 
 
 @study(
@@ -73,7 +91,20 @@ _FEWEST = 6  # pulses: three more than the coefficients of the curvature's fit
         metavar="NAME",
         says="Material in this file whose modulus E is wanted.",
     ),
+    option(
+        "--example",
+        is_flag=True,
+        is_eager=True,
+        expose_value=False,
+        callback=_print,
+        says="Print an example of DATA: blows on steel balls of 19.05 mm and 29 g.",
+    ),
     column_options,
+    page="experiment",
+    examples=(
+        "lwa-validate law --example > pulses.csv",
+        "lwa-validate law pulses.csv --masses 29e-3 --spacing 19.05e-3",
+    ),
 )
 def law(
     data: str,
@@ -81,87 +112,84 @@ def law(
     spacing: Any = None,
     spheres: str | None = None,
     material: str | None = None,
-    renamed: Mapping[str, str] | None = None,
-    units: Mapping[str, str] | None = None,
+    **stated: Unpack[Stated],
 ) -> Report:
-    """Contact law from pulses. DATA, a CSV file, has the columns force (peak force) and speed.
-    Columns force_error and speed_error, if both are there, are standard deviations that weight the
-    pulses. Units are stated in the header or by --unit, or no column has one.
+    """Contact law from six or more pulses, of four or more forces. DATA, a file (- is standard
+    input), has the columns force (peak force) and speed. Columns force_error and speed_error, if
+    both are there, are standard deviations that weight the pulses. Units are stated in the file or
+    by --unit, or no column has one.
 
     Peak contact forces and speeds are in the units of the masses and the spacing, by default those
     of unit mass and spacing; with spheres they are in N and m/s. ``k_value``, ``A_value`` and, of
     an unknown material, ``E_value``, with their errors; ``correlation_value`` of k and ln A;
     ``residual_value`` of ln V; ``one_power``.
     """
-    force, speed, weight = _pulses(data, renamed, units)
+    file = MeasuredFile(data, **stated)
+    force, speed, weight = _pulses(file)
     content: dict[str, Any] = {}
     if spheres is None:
         cell = Cell(masses or (1,), spacing=1 if spacing is None else spacing)
     else:
         content = load(spheres, "a list of spheres", lambda x: entries(x, "the file"))
         cell = Cell.of_spheres(read_spheres(content))
-    medium = Medium.of(cell)
-    fit = fit_power(medium, force, speed, weight)
+    fit = fit_power(Medium.of(cell), force, speed, weight)
     numbers = {"k": fit.k, "A": fit.A}
     if material is not None:
         if spheres is None:
             raise SceneError("material is given: its E needs --spheres")
         numbers["E"] = _modulus(content, material, fit.hertz)
+    units = {"k": ""}
+    axes = ("peak contact force", "speed")
+    if file.si:
+        units |= {"A": f" (N/m^{fit.k.value:.3g})", "E": " (Pa)"}
+        axes = ("peak contact force (N)", "speed (m/s)")
     # Speeds beside one power, for which ln V is linear in ln F.
-    line = np.exp(
-        np.polyval(np.polyfit(np.log(force), np.log(speed), 1), np.log(force))
-    )
+    x = np.log(force)
+    line = np.exp(np.polyval(np.polyfit(x, np.log(speed), 1), x))
+    bars = None if weight is None else speed / weight
     curves = (
-        Curve("measured", force, speed, "C0o"),
+        Curve("measured", force, speed, "C0o", bars),
         Curve("one power", force, line, "C1-"),
     )
-    bend = f"curvature of ln V against ln F {fit.curvature.value:.2g} ± {fit.curvature.error:.1g}"
+    bend = f"curvature of ln V against ln F {fit.curvature.text(2)}"
+    notes = [f"One power is {'enough' if fit.one_power else 'not enough'}: {bend}."]
+    if not spheres and not (masses and spacing):
+        notes.append(_UNITS)
+    rows = []
+    values = {
+        "correlation_value": fit.correlation,
+        "residual_value": fit.residual,
+        "one_power": fit.one_power,
+    }
+    for name, number in numbers.items():
+        rows.append((name + units.get(name, ""), number))
+        values |= {f"{name}_value": number.value, f"{name}_error_value": number.error}
     return Report(
         f"{len(force)} pulses, forces {force[0]:.4g} … {force[-1]:.4g}",
-        (Table(_POWER, tuple(numbers.items())),),
-        panels=(Panel("peak contact force", "speed", curves, "xy"),),
-        notes=(
-            f"One power is {'enough' if fit.one_power else 'not enough'}: {bend}.",
-            *([] if spheres or (masses and spacing) else [_UNITS]),
-            _NOTE,
-        ),
-        data={f"{name}_value": number.value for name, number in numbers.items()}
-        | {f"{name}_error_value": number.error for name, number in numbers.items()}
-        | {
-            "correlation_value": fit.correlation,
-            "residual_value": fit.residual,
-            "one_power": fit.one_power,
-        },
+        (Table(_POWER, tuple(rows)),),
+        panels=(Panel(*axes, curves, "xy"),),
+        notes=(*file.notes, *notes, _NOTE),
+        data=values,
     )
 
 
-def _pulses(
-    data: str, renamed: Mapping[str, str] | None, units: Mapping[str, str] | None
-) -> tuple[Array, Array, Array | None]:
-    """Read `_FEWEST` or more pulses; return rising forces, speeds and weights (None if none)."""
-    file = MeasuredFile.read(data, "force", "speed", renamed=renamed, units=units)
-    errors = (name for name in ("force_error", "speed_error") if name in file.names)
-    read = [file.column(name) for name in ("force", "speed", *errors)]
-    if len({*map(len, read)}) > 1:
-        raise SceneError(
-            f"{data}: columns of one length are wanted, not of {[*map(len, read)]}"
-        )
-    order = np.argsort(read[0])
-    force, speed, *deviations = (values[order] for values in read)
+def _pulses(file: MeasuredFile) -> tuple[Array, Array, Array | None]:
+    """Return rising forces of `_FEWEST` or more pulses, their speeds and weights (None if none)."""
+    errors = [n for n in ("force_error", "speed_error") if n in file.names.values()]
+    read = file.rows("force", "speed", *errors).T
+    force, speed, *deviations = read[:, np.argsort(read[0])]
     if len(force) < _FEWEST or not (force[0] > 0 and speed.min() > 0):
-        raise SceneError(
-            f"{data}: at least {_FEWEST} pulses of positive force and speed are wanted"
-        )
-    if (different := len(np.unique(force))) < _FEWEST - 2:
-        raise SceneError(
-            f"{data}: {different} different forces: {_FEWEST - 2} or more are wanted"
-        )
+        wanted = f"at least {_FEWEST} pulses of positive force and speed are wanted"
+        raise SceneError(f"{file.path}: {wanted}")
+    different = len(np.unique(force))
+    if different < _FEWEST - 2:
+        wanted = f"{_FEWEST - 2} or more are wanted"
+        raise SceneError(f"{file.path}: {different} different forces: {wanted}")
     if not deviations:
         return force, speed, None
-    if len(deviations) != 2 or not min(map(np.min, deviations)) > 0:
-        raise SceneError(
-            f"{data}: force_error and speed_error are wanted together, and positive"
-        )
+    if len(deviations) != 2 or not np.min(deviations) > 0:
+        wanted = "force_error and speed_error are wanted together, and positive"
+        raise SceneError(f"{file.path}: {wanted}")
     return force, speed, weights(force, speed, *deviations)
 
 

@@ -1,45 +1,159 @@
-"""Measured records of forces: their pulses, and the simulation of their scene beside them."""
+"""Measured records of forces and velocities: their pulses, and their scene's simulation beside."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Unpack
 
 import click
 
-from lwa.base.arrays import Array
+from lwa.base.exact import shorten
 from lwa.base.frozen import Estimate
+from lwa.command.hints import called
 from validation.lattice.cost import RunProgress, silent
 from validation.pictures import Curve, Panel
-from validation.pulses.noisy import noisy_pulse, noisy_pulses
+from validation.pulses.discharge import corrected, suggested
+from validation.pulses.noisy import NoisyPulse, noisy_pulse, noisy_pulses
 from validation.pulses.pulse import MeasureError
-from validation.pulses.sensors import (
-    READINGS,
-    SPEEDS,
-    Reading,
-    record,
-    speeds_between,
-    static_forces,
-)
-from validation.report.command import column_options, number, option, study
+from validation.pulses.sensors import Reading, record, speeds_between, static_forces
+from validation.report.command import number, option, study
 from validation.report.result import Report
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError, one_of, positive
-from validation.scenes.columns import MeasuredFile
-from validation.scenes.scene import Scene
+from validation.scenes.columns import MeasuredFile, Record, Stated
 from validation.scenes.scenefile import check_units, read_scene
+from validation.scenes.units import BASES, read_statement
 from validation.studies.run import reading_tables
+
+Paths = str | Path | Sequence[str | Path]
+"""The name of a file, "-" for standard input, or the names of several files."""
 
 _KINDS = ("bead", "contact")
 _PULSES = (
-    "First pulse at each sensor, in {} units; forces are counted from the static force, the mean "
-    "before the pulse. ±: one standard deviation, from the noise before the pulse."
+    "First pulse at each sensor, in {} units; forces are counted from the static force, the base "
+    "before the pulse. ±: one standard deviation by the noise before the pulse; without noise, the "
+    "difference to every second sample."
+)
+_UNIT = (
+    "Unit of a column, as in --unit time=us, --unit 'time=0.04 us' (of an entry 1), --unit "
+    "'CH1=12.5 N/V' or, in SI, --unit CH1=12.5; repeatable. It stands above the file's own. If one "
+    "unit is stated, all are wanted."
+)
+_COLUMN = (
+    "Header or number, from 1, of a column, as in --column time=1 --column 'bead 8 force=CH1'; "
+    "repeatable. Names: time, bead 8 force, contact 8 force, bead 8 velocity, force, speed."
 )
 
 
+def column_options(function: Any) -> Any:
+    """Give a study that reads a measured file its options --column and --unit."""
+
+    def read(
+        context: click.Context, given: click.Parameter, pairs: Sequence[str]
+    ) -> dict[str, str]:
+        stated: dict[str, str] = {}
+        for pair in pairs:
+            name, equals, value = (part.strip() for part in pair.partition("="))
+            if not (name and equals and value) or name in stated:
+                wanted = f"{given.metavar} is wanted, once a name"
+                raise SceneError(f"{called(given)} is {shorten(pair)}: {wanted}")
+            stated[name] = value
+        return stated
+
+    for name, parameter, metavar, says in (
+        ("--unit", "units", "NAME=UNIT", _UNIT),
+        ("--column", "columns", "NAME=HEADER|NUMBER", _COLUMN),
+    ):
+        settings = {"callback": read, "multiple": True, "metavar": metavar}
+        function = option(name, parameter, says=says, **settings)(function)
+    return function
+
+
+def record_options(function: Any) -> Any:
+    """Give a study that reads records the options --step, --time-constant, --column and --unit."""
+    for name, says in (
+        (
+            "--time-constant",
+            "Time in which sensors lose their charge, which is corrected",
+        ),
+        ("--step", "Time from sample to sample, in place of a column"),
+    ):
+        says += f", as in {name} '0.4 ms'."
+        function = option(name, metavar="TIME", says=says)(function)
+    return column_options(function)
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """Records of sensors, from one or several files.
+
+    Parameters
+    ----------
+    signals : sequence of Record
+        Records, each sensor once.
+    si : bool
+        Whether they are in SI.
+    notes : sequence of str
+        Lines on their units.
+    """
+
+    signals: Sequence[Record]
+    si: bool
+    notes: Sequence[str]
+
+    @classmethod
+    def read(
+        cls, paths: Paths, of: str, time_constant: str | None, stated: Stated
+    ) -> Measured:
+        """Read files; records of sensors with a time constant are corrected.
+
+        Sensors of several files that have no number are numbered in the order of the files.
+        Raises `SceneError` for files of which some have no units, and for a sensor in two files.
+        """
+        names = [paths] if isinstance(paths, str | Path) else [*paths]
+        files = [MeasuredFile(name, **stated) for name in names]
+        signals: dict[tuple[str, int | None], Record] = {}
+        for place, file in enumerate(files, start=1):
+            if file.si != files[0].si:
+                raise SceneError(
+                    f"{file.path}: it has units, {names[0]} not, or the reverse"
+                )
+            for signal in file.records(of):
+                if len(files) > 1:
+                    signal = replace(signal, number=signal.number or place)
+                if time_constant:
+                    constant, _ = read_statement(time_constant, "time")
+                    values = corrected(signal.time, signal.values, constant)
+                    signal = replace(signal, values=values)
+                sensor = (signal.kind, signal.number)
+                if sensor in signals:
+                    named = f"{signal.kind} {signal.number or ''}".strip()
+                    raise SceneError(f"{file.path}: {named} is there twice")
+                signals[sensor] = signal
+        if len(signals) > 1 and None in [number for _, number in signals]:
+            raise SceneError(f"{names[0]}: each of several sensors needs its number")
+        notes = [note for file in files for note in file.notes]
+        return cls([*signals.values()], files[0].si, notes)
+
+    @property
+    def unit(self) -> str:
+        """Unit of the times, "" if it is the file's own."""
+        return "s" if self.si else ""
+
+    def panel(self, curves: Sequence[Curve]) -> Panel:
+        """Return a picture of the signals."""
+        axes = []
+        for quantity in ("time", *sorted({signal.quantity for signal in self.signals})):
+            axes.append(f"{quantity} ({BASES[quantity]})" if self.si else quantity)
+        time, *signals = axes
+        return Panel(time, ", ".join(signals), tuple(curves), legend_above=True)
+
+
 @study(
-    click.argument("records", type=click.Path()),
+    click.argument("records", type=click.Path(), nargs=-1, required=True),
     option(
         "--distance",
         callback=number,
@@ -51,20 +165,28 @@ _PULSES = (
         type=click.Choice(_KINDS),
         says="Where sensors sit whose columns do not say it.",
     ),
-    column_options,
+    record_options,
+    page="experiment",
+    examples=(
+        "lwa-validate run --example > scene.toml",
+        "lwa-validate run scene.toml --out forces.csv",
+        "lwa-validate pulses forces.csv --distance 4.76e-3",
+    ),
 )
 def pulses(
-    records: str,
+    records: Paths,
     distance: float | None = None,
     of: str = "contact",
-    renamed: Mapping[str, str] | None = None,
-    units: Mapping[str, str] | None = None,
+    time_constant: str | None = None,
+    **stated: Unpack[Stated],
 ) -> Report:
-    """Pulses at sensors, and the speeds between them. RECORDS, a CSV file, has the columns time
-    and, for each sensor, such as "bead 15 force", "contact 15 force", "15 force" or, of a single
-    sensor, "force". Beads and contacts are counted from 1. Units are stated in the header or by
-    --unit: results are then in SI, as is a distance; without any they are in the file's own units.
-    One column time serves all sensors; or the first serves the first force, the next the next.
+    """Pulses at sensors, and the speeds between them. RECORDS, files of any recorder or program (-
+    is standard input), have the columns time and, for each sensor, such as "bead 15 force", "15
+    force", "bead 15 velocity" or, of a single sensor, "force"; --column names others by header or
+    number. Beads and contacts are counted from 1; sensors of several files without a number, in the
+    order of the files. Units are stated in the file or by --unit: results are then in SI, as is a
+    distance; without any they are in the file's own units. One column time serves all sensors; or
+    the first serves the first one, the next the next.
 
     ``sensors``, ``speeds`` and ``echoes`` as of `validation.studies.run`, the static force from the
     record. A sensor has the speeds from the sensor before as well, so that the CSV holds them all.
@@ -73,158 +195,188 @@ def pulses(
     """
     one_of(of, _KINDS, "of")
     apart = None if distance is None else positive(distance, "distance")
-    file = MeasuredFile.read(records, "time", "force", renamed=renamed, units=units)
-    si = file.has_units
-    found, curves = [], []
-    for i, ((kind, which), columns) in enumerate(file.sensors(of).items()):
-        time, force = file.record(*columns)
-        place = (which or 1,)  # the only sensor of a file is number 1
-        number = 1
+    read = Measured.read(records, of, time_constant, stated)
+    found: list[Reading] = []
+    curves = []
+    places = []
+    notes = [*read.notes]
+    for i, signal in enumerate(read.signals):
+        site = signal.number or 1
+        blank = Reading(signal.kind, (site,), {}, math.nan, quantity=signal.quantity)
+        curves.append(Curve(blank.name, signal.time, signal.values, f"C{i}-"))
+        places.append({"speed_sites": float(site)})
+        if apart is not None:
+            places[-1]["speed"] = apart * site
+        place = 1
         try:
-            for pulse in noisy_pulses(time, force):
-                found.append(
-                    Reading(kind, place, pulse.numbers, pulse.base, pulse=number)
-                )
-                number += 1
+            for pulse in noisy_pulses(
+                signal.time, signal.values, read.unit, signal.inverted
+            ):
+                reading = replace(blank, numbers=pulse.numbers, missing=pulse.missing)
+                found.append(replace(reading, static=pulse.base, pulse=place))
+                hint = suggested(signal.time, signal.values, pulse, read.unit)
+                if place == 1 and hint and not time_constant:
+                    notes.append(f"{blank.name}: {hint}")
+                place += 1
         except MeasureError as error:
-            found.append(Reading(kind, place, {}, math.nan, str(error), number))
-        curves.append(Curve(found[-1].name, time, force, f"C{i}-"))
+            found.append(replace(blank, missing=str(error), pulse=place))
     firsts = [reading for reading in found if reading.pulse == 1]
-    if all(first.missing for first in firsts):
+    if not any(first.numbers for first in firsts):
         raise MeasureError(
-            f"{records}: no sensor has a pulse: {found[0].name}: {found[0].missing}"
+            f"no sensor has a pulse: {found[0].name}: {found[0].missing}"
         )
-    labels = (
-        ("arrival (s)", "peak (N)", "FWHM (s)") if si else ("arrival", "peak", "FWHM")
+    # The noise of two sensors is independent.
+    speeds = speeds_between(firsts, places, math.hypot)
+    tables, missing = reading_tables(found, speeds, "peak", read.si, math.hypot)
+    units = "SI" if read.si else "the file's own"
+    return Report(
+        ", ".join(map(str, [records] if isinstance(records, str | Path) else records)),
+        tables,
+        panels=(read.panel(curves),),
+        notes=(missing, *notes, _PULSES.format(units)),
     )
-    lengths = dict(zip(SPEEDS, (1.0,) if apart is None else (1.0, apart), strict=False))
-    places = [
-        {name: r.places[0] * size for name, size in lengths.items()} for r in firsts
-    ]
-    speeds = speeds_between(firsts, places, math.hypot)  # independent noise
-    tables, missing = reading_tables(found, speeds, labels, si, math.hypot)
-    axes = ("time (s)", "force (N)") if si else ("time", "force")
-    panel = Panel(*axes, tuple(curves), legend_above=True)
-    notes = (missing, _PULSES.format("SI" if si else "the file's own"))
-    return Report(str(records), tables, panels=(panel,), notes=notes)
 
 
 _COLUMNS = (
-    *(Column("", "first pulse"), Column("kind"), Column("number"), Column("quantity")),
-    *(
-        Column(name, name, error=True)
-        for name in ("simulated", "measured", "difference")
-    ),
+    Column("", "first pulse"),
+    Column("kind"),
+    Column("number"),
+    Column("quantity"),
+    Column("simulated", "simulated", error=True),
+    Column("measured", "measured", error=True),
+    Column("difference", "difference", error=True),
 )
-_LABELS = dict(zip(READINGS, ("arrival", "peak dynamic force", "FWHM"), strict=True))
 _COMPARED = (
     "First pulses of dynamic forces. Measured times are shifted by {}, so that the pulses arrive "
     "together at {}. ±: of the simulation, difference to a less accurate run; of the measurement, "
-    "one standard deviation, from the noise before the pulse."
+    "one standard deviation by the noise before the pulse."
 )
 
 
 @study(
     click.argument("scene", type=click.Path()),
-    click.argument("measured", type=click.Path()),
-    column_options,
+    click.argument("measured", type=click.Path(), nargs=-1, required=True),
+    record_options,
+    page="experiment",
+    examples=(
+        "lwa-validate run --example > scene.toml",
+        "lwa-validate run scene.toml --out forces.csv",
+        "lwa-validate compare scene.toml forces.csv",
+    ),
 )
 def compare(
     scene: str,
-    measured: str,
-    renamed: Mapping[str, str] | None = None,
-    units: Mapping[str, str] | None = None,
+    measured: Paths,
+    time_constant: str | None = None,
     run_progress: RunProgress = silent,
+    **stated: Unpack[Stated],
 ) -> Report:
     """Measured forces at the sensors of a scene beside the simulated ones: arrival, peak, FWHM.
 
-    SCENE is a scene file, as of `lwa-validate run`. MEASURED, a CSV file, has the columns time and,
-    for each sensor, such as "bead 15 force"; for a single sensor also "force". Units are stated in
-    the header or by --unit; without any the file is in the scene's own numbers. Base and slope of a
-    record are those of its part before the pulse.
+    SCENE is a scene file, as of `lwa-validate run`. MEASURED, files as of `lwa-validate pulses`,
+    have the columns time and, for each sensor, such as "bead 15 force" or "bead 15 velocity"; for a
+    single sensor also "force". Without units they are in the scene's own numbers. Base and slope of
+    a record are those of its part before the pulse.
 
     ``rows``: ``kind``, ``number``, ``quantity`` ("arrival", "peak" or "fwhm"), ``simulated_value``,
     ``measured_value`` and ``difference_value``, measured less simulated, with errors;
     ``shift_value``.
     """
     chain = read_scene(scene)
-    records = _read(measured, chain, renamed, units)
-    simulation = record(chain, progress=run_progress)
-    label, t = simulation.run.label, simulation.run.time
-    rows: list[tuple[Any, ...]] = []
+    read = Measured.read(measured, "contact", time_constant, stated)
+    check_units(read.si, chain.units, "the measured file")
+    found = _first_pulses(read, [*static_forces(chain)])
+    velocities = [name for name, (s, _) in found.items() if s.quantity == "velocity"]
+    simulation = record(chain, velocities=velocities, progress=run_progress)
+    run = simulation.run
+    rows: list[dict[str, Any]] = []
     curves: list[Curve] = []
-    shift, first, start = 0.0, "", Estimate(0.0, 0.0)
-    for i, (reading, track) in enumerate(
-        zip(simulation.sensors, simulation.tracks, strict=True)
-    ):
-        if reading.name not in records:
+    shift: Estimate | None = None
+    first = ""
+    for reading, track in zip(simulation.sensors, simulation.tracks, strict=True):
+        sensor = f"{track.kind} {track.number}"
+        if sensor not in found:
             continue
-        if reading.missing:
+        if not reading.numbers:
             raise SceneError(f"{reading.name}: {reading.missing}")
-        time, force, pulse = records[reading.name]
-        if not first:
-            first, start = reading.name, pulse["arrival"]
-            shift = reading.numbers["arrival"].value - start.value
-        arrival = pulse["arrival"]
-        error = (
-            arrival.error
-            if reading.name == first
-            else math.hypot(arrival.error, start.error)
-        )
-        pulse["arrival"] = Estimate(arrival.value + shift, error)
-        for name, quantity in _LABELS.items():
-            ours, theirs = reading.numbers[name], pulse[name]
-            less = theirs.value - ours.value
-            numbers = ours, theirs, Estimate(less, ours.error + theirs.error)
-            printed = f"{reading.name}: {label(quantity)}"
-            rows.append((printed, track.kind, track.number, name, *numbers))
+        signal, pulse = found[sensor]
+        theirs = dict(pulse.numbers)
+        arrival = theirs["arrival"]
+        error = arrival.error
+        if shift is None:
+            first = reading.name
+            off = reading.numbers["arrival"].value - arrival.value
+            shift = Estimate(off, arrival.error)
+        else:
+            error = math.hypot(arrival.error, shift.error)
+        theirs["arrival"] = Estimate(arrival.value + shift.value, error)
+        labels = {
+            "arrival": "arrival",
+            "peak": f"peak dynamic {track.quantity}",
+            "fwhm": "FWHM",
+        }
+        for quantity, number_read in theirs.items():
+            ours = reading.numbers[quantity]
+            rows.append(
+                {
+                    "first pulse": f"{reading.name}: {run.label(labels[quantity])}",
+                    "kind": track.kind,
+                    "number": track.number,
+                    "quantity": quantity,
+                    "simulated": ours,
+                    "measured": number_read,
+                    "difference": Estimate(
+                        number_read.value - ours.value, ours.error + number_read.error
+                    ),
+                }
+            )
+        color = f"C{len(curves) // 2}"
         curves += [
-            Curve(f"{reading.name}, simulated", t, track.force(t), f"C{i}-"),
-            Curve("measured", time + shift, force, f"C{i}."),
+            Curve(
+                f"{reading.name}, simulated",
+                run.time,
+                track.force(run.time),
+                f"{color}-",
+            ),
+            Curve(
+                "measured",
+                signal.time + shift.value,
+                signal.values - pulse.base,
+                f"{color}.",
+            ),
         ]
-    unit = f"{shift:.6g} s" if chain.units else f"{shift:.6g}"
+    assert shift is not None
+    shown = f"{shift.value:.6g} {chain.units and 's'}".strip()
     return Report(
         str(chain),
-        (Table(_COLUMNS, tuple(rows), "rows"),),
-        panels=(
-            Panel(
-                label("time"), label("dynamic force"), tuple(curves), legend_above=True
-            ),
-        ),
-        notes=(_COMPARED.format(unit, first),),
-        data={"shift_value": shift},
+        (Table.of(_COLUMNS, rows, "rows"),),
+        panels=(read.panel(curves),),
+        notes=(*read.notes, _COMPARED.format(shown, first)),
+        data={"shift_value": shift.value},
     )
 
 
-def _read(
-    file: str,
-    chain: Scene,
-    renamed: Mapping[str, str] | None,
-    units: Mapping[str, str] | None,
-) -> dict[str, tuple[Array, Array, dict[str, Estimate]]]:
-    """Read measured forces at sensors of a scene, at least one.
-
-    Returns, by the sensors' names, times, forces over their base, and the numbers of the first
-    pulse.
-    """
-    names = [*static_forces(chain)]
-    if not names:
-        raise SceneError("the scene names no sensors")
-    measured = MeasuredFile.read(file, "time", "force", renamed=renamed, units=units)
-    check_units(measured, chain.units)
-    records = {}
-    for (kind, which), columns in measured.sensors().items():
-        alone = which is None and len(names) == 1
-        name = names[0] if alone else f"{kind} {which}"
-        if name in names:
-            time, force = measured.record(*columns)
+def _first_pulses(
+    read: Measured, sensors: Sequence[str]
+) -> dict[str, tuple[Record, NoisyPulse]]:
+    """Return measured signals and their first pulses by the scene's sensors, at least one."""
+    found = {}
+    for signal in read.signals:
+        name = f"{signal.kind} {signal.number}"
+        if signal.number is None and len(sensors) == 1:
+            (name,) = sensors
+        if name in sensors:
             try:
-                pulse = noisy_pulse(time, force)
+                pulse = noisy_pulse(
+                    signal.time, signal.values, read.unit, signal.inverted
+                )
             except MeasureError as error:
-                raise MeasureError(f"{file}: {name}: {error}") from None
-            records[name] = time, force - pulse.base, dict(pulse.numbers)
-    if not records:
-        raise SceneError(
-            f"{file}: no column is {' or '.join(f'{name} force' for name in names)}"
+                raise MeasureError(f"{name}: {error}") from None
+            found[name] = (signal, pulse)
+    if not found:
+        wanted = (
+            " or ".join(f"{name} force" for name in sensors[:5])
+            or "wanted: the scene has none"
         )
-    return records
+        raise SceneError(f"no measured sensor is {wanted}")
+    return found

@@ -9,8 +9,9 @@ header, but not the result. Forces are total: static forces are included.
 from __future__ import annotations
 
 import json
+import math
 import operator
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -23,12 +24,11 @@ from validation.lattice.simulate import COMPILED
 from validation.lattice.steppers import METHODS
 from validation.pulses.sensors import (
     LESS,
-    READINGS,
-    SPEEDS,
     TOLERANCE,
     Reading,
     Recording,
     echoes,
+    enough_samples,
     record,
 )
 from validation.report.command import option, output_option, study
@@ -36,6 +36,7 @@ from validation.report.result import Report, replacing
 from validation.report.table import Column, Table, plain
 from validation.scenes import scenefile
 from validation.scenes.checks import SceneError
+from validation.scenes.units import BASES
 
 EXAMPLES = ("paper", "vertical", "precompressed", "defect", "trimer", "striker")
 """Names of the examples of scene files."""
@@ -60,7 +61,8 @@ def report(recording: Recording, every: bool = False) -> Report:
     ``echoes`` of later pulses: ``kind``, ``number``, ``pulse``, ``reflected``, ``delay_value``
     behind the first pulse and ``ratio_value`` of their peaks (`validation.pulses.sensors.echoes`);
     ``speeds``: ``kind``, ``from``, ``to``, ``speed_sites_value``, ``speed_value`` (null without
-    spacings), ``missing``; each measured value with its error, as ``arrival_error_value``, and all
+    spacings), ``missing``; ``end`` of the bead sensors: ``bead``, ``velocity_value`` and
+    ``displacement_value`` at the end; each value with its error, as ``arrival_error_value``, and
     null where ``missing`` is the reason; ``energy_drift_value``, and ``momentum_drift_value``, null
     with a wall; with damping the energy ``dissipated_value``, with a drive its ``work_value``.
     """
@@ -83,19 +85,27 @@ def report(recording: Recording, every: bool = False) -> Report:
     note = _NOTE.format(which, scene.units or "the scene's own") + _DYNAMIC * any(
         scene.load
     )
-    peak = "peak dynamic force" if any(scene.load) else "peak force"
-    labels = [run.label(name) for name in ("arrival", peak, "FWHM")]
     tables, missing = reading_tables(
         recording.sensors,
         recording.speeds,
-        labels,
+        "peak dynamic force" if any(scene.load) else "peak force",
         bool(scene.units),
         operator.add,
         every,
     )
+    columns = (
+        Column("", "at the end"),
+        Column("bead"),
+        Column("velocity", run.label("velocity"), error=True),
+        Column("displacement", run.label("displacement"), error=True),
+    )
+    end = [
+        {"at the end": f"bead {bead}", "bead": bead, **state}
+        for bead, state in recording.end.items()
+    ]
     return Report(
         f"{title}, momentum {momentum}",
-        tables,
+        (*tables, Table.of(columns, end, "end")),
         panels=tuple(run.pictured()),
         notes=(missing, note if recording.sensors else ""),
         data=data,
@@ -105,7 +115,7 @@ def report(recording: Recording, every: bool = False) -> Report:
 def reading_tables(
     sensors: Sequence[Reading],
     speeds: Sequence[Reading],
-    labels: Sequence[str],
+    peak: str,
     si: bool,
     total: Callable[[float, float], float],
     every: bool = False,
@@ -113,76 +123,115 @@ def reading_tables(
     """Return the tables ``sensors`` and ``speeds``, with later pulses also ``echoes``, and lines on
     the numbers that are missing.
 
-    sensors : with later pulses of a sensor behind its first one. labels : of arrival, peak and
-    FWHM. si : True for results in SI units. total : error of a difference as a function of two
-    errors. every : True for all pulses in the table ``sensors``, in a column with the number of the
-    pulse at its sensor, False for the first ones.
-
     The table of the sensors, which is the CSV, also holds the speeds of the first pulses from the
     sensor before; they are not printed twice.
+
+    Parameters
+    ----------
+    sensors : sequence of Reading
+        Pulses at the sensors; later pulses of a sensor behind its first one.
+    speeds : sequence of Reading
+        Speeds between sensors.
+    peak : str
+        Label of the peaks.
+    si : bool
+        Whether results are in SI units.
+    total : callable
+        Error of a difference as a function of two errors.
+    every : bool
+        True for later pulses in the table ``sensors``, too, in a column ``pulse``.
     """
-    columns = [Column("", "sensor"), Column("kind"), Column("number")]
+    units = ("s", "m/s", " (s)") if si else ("time", "length/time", "")
+    quantities = sorted({reading.quantity for reading in sensors})
+    if si:
+        peak = f"{peak} ({', '.join(BASES[quantity] for quantity in quantities)})"
+    kind = Column("kind")
+    number = Column("number")
+    pulse = Column("pulse", "pulse")
+    missing = Column("missing")
+    columns = [Column("", "sensor"), kind, number]
+    if "velocity" in quantities:
+        columns.append(Column("signal"))
     if every:
-        columns.append(Column("pulse", "pulse"))
-    for name, label in zip(READINGS, labels, strict=True):
-        columns.append(Column(name, label, error=True))
-    columns += [Column("static_force_value"), Column("missing")]
-    columns += [Column(name, error=True) for name in SPEEDS]
-    arriving = {f"{r.kind} {r.places[1]}": r.numbers for r in speeds}
-    pulses = []
-    for r in (r for r in sensors if every or r.pulse == 1):
-        before = arriving.get(r.name, {}) if r.pulse == 1 else {}
-        row = [r.name, r.kind, *r.places, *([r.pulse] if every else [])]
-        row += [
-            *map(r.numbers.get, READINGS),
-            r.static,
-            r.missing,
-            *map(before.get, SPEEDS),
-        ]
-        pulses.append(tuple(row))
-    speed_columns = [Column("", "speed"), Column("kind"), Column("from"), Column("to")]
-    units = ("sites/s", "m/s") if si else ("sites/time", "length/time")
-    for name, label in zip(SPEEDS, units, strict=True):
-        speed_columns.append(Column(name, label, error=True))
-    speed_columns.append(Column("missing"))
-    legs = (
-        (r.name, r.kind, *r.places, *map(r.numbers.get, SPEEDS), r.missing)
-        for r in speeds
-    )
-    tables = [
-        Table(tuple(columns), tuple(pulses), "sensors"),
-        Table(tuple(speed_columns), tuple(legs), "speeds"),
+        columns.append(pulse)
+    columns += [
+        Column("arrival", f"arrival{units[2]}", _digits(sensors), error=True),
+        Column("peak", peak, error=True),
+        Column("fwhm", f"FWHM{units[2]}", error=True),
+        Column("static_force_value"),
+        missing,
+        Column("speed_sites", error=True),
+        Column("speed", error=True),
     ]
-    if later := echoes(sensors, total):
-        time = "delay (s)" if si else "delay"
-        echo_columns = (
+    arriving = {(leg.kind, leg.places[1]): leg.numbers for leg in speeds}
+    rows = []
+    for reading in sensors:
+        before = arriving.get((reading.kind, reading.places[0]), {})
+        if every or reading.pulse == 1:
+            rows.append(_row("sensor", reading, before if reading.pulse == 1 else {}))
+    legs = [
+        Column("", "between"),
+        kind,
+        Column("from"),
+        Column("to"),
+        Column("speed_sites", f"sites/{units[0]}", error=True),
+        Column("speed", units[1], error=True),
+        missing,
+    ]
+    tables = [
+        Table.of(columns, rows, "sensors"),
+        Table.of(legs, [_row("between", leg) for leg in speeds], "speeds"),
+    ]
+    later = [
+        _row("later pulse", reading, {"reflected": back})
+        for reading, back in echoes(sensors, total)
+    ]
+    if later:
+        echo = [
             Column("", "later pulse"),
-            Column("kind"),
-            Column("number"),
-            Column("pulse", "pulse"),
-            Column("reflected", "runs", format=lambda back: "back" if back else "on"),
-            Column("delay", time, error=True),
+            kind,
+            number,
+            pulse,
+            Column("reflected", "runs", lambda back: "back" if back else "on"),
+            Column("delay", f"delay{units[2]}", error=True),
             Column("ratio", "peak/first", error=True),
-        )
-        rows = [
-            (
-                r.name,
-                r.kind,
-                *r.places,
-                r.pulse,
-                back,
-                *map(r.numbers.get, ("delay", "ratio")),
-            )
-            for r, back in later
-            if not r.missing
         ]
-        tables.append(Table(echo_columns, tuple(rows), "echoes"))
-    lines = (
-        f"{r.name}{f', pulse {r.pulse}' if r.pulse > 1 else ''}: {r.missing}"
-        for r in (*sensors, *speeds)
-        if r.missing
-    )
+        tables.append(Table.of(echo, later, "echoes"))
+    lines = []
+    for reading in (*sensors, *speeds):
+        if reading.missing:
+            later_one = f", pulse {reading.pulse}" if reading.pulse > 1 else ""
+            lines.append(f"{reading.name}{later_one}: {reading.missing}")
     return tuple(tables), "\n".join(lines)
+
+
+def _row(
+    label: str, reading: Reading, more: Mapping[str, Any] | None = None
+) -> dict[str, Any]:
+    """Return the cells of a reading by the keys of columns, and by the label of its name."""
+    places = ("number",) if len(reading.places) == 1 else ("from", "to")
+    row: dict[str, Any] = dict(zip(places, reading.places, strict=True))
+    row |= dict(reading.numbers) | dict(more or {})
+    return row | {
+        label: reading.name,
+        "kind": reading.kind,
+        "signal": reading.quantity,
+        "pulse": reading.pulse,
+        "static_force_value": reading.static,
+        "missing": reading.missing,
+    }
+
+
+def _digits(sensors: Sequence[Reading]) -> str:
+    """Return the most digits of arrivals: of late ones to a ten-thousandth of their width."""
+    late = 1.0
+    for reading in sensors:
+        if "fwhm" in reading.numbers:
+            arrival, width = (
+                reading.numbers[name].value for name in ("arrival", "fwhm")
+            )
+            late = max(late, abs(arrival) / width)
+    return str(max(6, math.ceil(math.log10(late)) + 4))
 
 
 def keys() -> str:
@@ -241,6 +290,11 @@ _RTOL = f"Relative tolerance. Errors are differences to a run with {LESS:g} time
         default=False,
         says="Measure all pulses at each sensor, not only the first.",
     ),
+    page="recipes",
+    examples=(
+        "lwa-validate run --example > scene.toml",
+        "lwa-validate run scene.toml --out forces.csv --plot forces.svg",
+    ),
 )
 def run(
     scene: str,
@@ -251,8 +305,13 @@ def run(
     run_progress: RunProgress,
 ) -> Report:
     """A scene from a file, TOML or JSON: arrival, peak force, FWHM and speed at its sensors."""
-    chain = scenefile.read_scene(scene)
-    if out is not None and out.exists() and out.samefile(scene):
+    chain = scenefile.read_scene(scene, enough_samples)
+    if (
+        out is not None
+        and out.exists()
+        and Path(scene).exists()
+        and out.samefile(scene)
+    ):
         raise SceneError(
             f"out is {out}: it is the scene's own file, which would be lost"
         )

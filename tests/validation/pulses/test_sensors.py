@@ -6,13 +6,22 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import example as also
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.special import erf
 
 from lwa import Dimer
 from lwa.linear.dispersion import Dispersion
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import MeasureError, all_pulses, first_pulse
-from validation.pulses.sensors import TOLERANCE, first_numbers, record, tracks
+from validation.pulses.sensors import (
+    TOLERANCE,
+    enough_samples,
+    first_numbers,
+    record,
+    tracks,
+)
 from validation.pulses.signals import spline
 from validation.scenes.chains import struck
 from validation.scenes.scene import Scene
@@ -52,11 +61,71 @@ def test_sensors_without_a_pulse_say_why():
     assert "a speed needs a later second arrival" in backwards.missing
 
 
-def test_sensors_sit_between_the_beads_they_join():
+def test_a_chain_at_rest_has_no_pulses():
+    """Rounding moves beads that carry their weight."""
+    at_rest = replace(scene(tomllib.loads(example("vertical"))), velocities=())
+    for reading in record(at_rest, every=True).sensors:
+        assert reading.missing.startswith("no pulse: the force is the static one")
+
+
+@pytest.mark.parametrize(
+    ("velocities", "duration", "reason"),
+    [
+        # Blows on both ends meet in the middle, at equal times.
+        ((1.0, *[0.0] * 58, -1.0), 52, "no wave is so fast"),
+        # The small pulse from the left passes contact 20 before the large one from the right.
+        ((0.3, *[0.0] * 58, -1.0), 52, "another pulse passes the second sensor before"),
+        ((1.0,), 40, None),
+    ],
+)
+def test_a_speed_is_that_of_one_pulse(velocities, duration, reason):
+    """A heavy striker's pulses are followed, too."""
+    sensors = (17, 40) if reason == "no wave is so fast" else (9, 19)
+    scene = struck((1,), 60, velocities=velocities, duration=duration)
+    (speed,) = record(replace(scene, contact_sensors=sensors)).speeds
+    assert bool(speed.numbers) == (reason is None)
+    assert (speed.missing or "").startswith(reason or "")
+    heavy = replace(scene, masses=(20.0, *scene.masses[1:]), velocities=(1.0,))
+    (speed,) = record(replace(heavy, contact_sensors=(9, 19))).speeds
+    assert speed.numbers
+
+
+def test_beads_with_one_contact_have_no_place():
+    """Their force is that of a place half a site away."""
     every = dict(bead_sensors=(0, 1, 2), contact_sensors=(0, 1, 2))
     scene = struck((1,), 3, wall=1, duration=1, spacings=(1, 3), **every)
-    places = [track.place["speed"] for track in tracks(simulate(scene))]
-    assert places == [0, 1, 4, 0.5, 2.5, 5.5]
+    found = tracks(simulate(scene))
+    places = {f"{track.kind} {track.number}": track.place for track in found}
+    assert places.pop("bead 1") == {}
+    assert [place["speed"] for place in places.values()] == [1, 4, 0.5, 2.5, 5.5]
+    last = replace(
+        scene, bead_sensors=(1, 2), contact_sensors=(), wall=None, duration=5
+    )
+    (leg,) = record(last).speeds
+    assert leg.missing == "a bead with one contact has a force of half a site away"
+
+
+def test_velocities_are_measured_like_forces():
+    scene = struck((1,), 30, bead_sensors=(9, 19), duration=30, samples=2001)
+    found = record(scene, velocities=["bead 20"])
+    (force, velocity), (speed,) = found.sensors, found.speeds
+    assert (force.quantity, velocity.quantity) == ("force", "velocity")
+    run = found.run
+    assert velocity.numbers["peak"].value == pytest.approx(
+        run.bead_velocity[1].max(), rel=1e-4
+    )
+    # Force and velocity of the wave arrive together at a bead.
+    (both,) = record(scene).speeds
+    V, other = (leg.numbers["speed_sites"].value for leg in (speed, both))
+    assert pytest.approx(other, rel=2e-3) == V
+
+
+@pytest.mark.parametrize("name", ["paper", "vertical", "trimer", "striker"])
+def test_default_samples_resolve_a_pulse_by_32(name):
+    chain = scene(tomllib.loads(example(name)))
+    step = chain.duration / (enough_samples(chain) - 1)
+    for reading in record(chain).sensors:
+        assert reading.numbers["fwhm"].value > 32 * step
 
 
 def test_the_first_pulse_is_not_the_highest_one():
@@ -73,6 +142,20 @@ def test_the_first_pulse_is_not_the_highest_one():
         first_pulse(spline(t, -first))
     every = all_pulses(spline(t, small + first + echo))
     assert [p.peak for p in every] == pytest.approx([0.4, 1.0, 1.5], rel=1e-6)
+
+
+@given(st.lists(st.tuples(st.floats(0.2, 1), st.floats(1, 9)), min_size=1, max_size=5))
+@also([(1.0, 4.0), (0.9, 5.8)])
+def test_all_pulses_of_a_record_backwards_are_the_same(humps):
+    """The force falls to half of its peak, or below the hump between two, on both sides."""
+    t = np.linspace(-4, 14, 3601)
+    f = sum(peak * np.exp(-((t - at) ** 2)) for peak, at in humps)
+    there = all_pulses(spline(t, f))
+    back = all_pulses(spline(-t[::-1], f[::-1]))[::-1]
+    for one, other in zip(there, back, strict=True):
+        assert one.arrival == pytest.approx(-other.arrival, abs=1e-6)
+        assert (one.peak, one.fwhm) == pytest.approx((other.peak, other.fwhm), rel=1e-6)
+        assert (one.rise, one.fall) == pytest.approx((-other.fall, -other.rise))
 
 
 @pytest.mark.parametrize("off", [-1e-3, -1e-6, 1e-6, 1e-3])

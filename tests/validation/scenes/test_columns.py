@@ -1,35 +1,85 @@
-"""The reader of measured files: units that are stated, and what is refused."""
+"""Measured files: cells, names and units of columns, and what is refused."""
 
 import re
+from contextlib import suppress
 
+import numpy as np
 import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
 
+from lwa import InputError
 from validation.scenes.columns import MeasuredFile
-from validation.scenes.scene import SceneError
+from validation.scenes.units import in_si
 
 
-def read(tmp_path, text, *wanted, encoding="utf-8", **options):
+def read(tmp_path, text, encoding="utf-8", **stated):
     file = tmp_path / "record.csv"
     file.write_bytes(text.encode(encoding))
-    return MeasuredFile.read(file, *(wanted or ("time", "force")), **options)
+    return MeasuredFile(file, **stated)
 
 
-def values(file, *names):
-    return [file.column(name).tolist() for name in names]
+@pytest.mark.parametrize(
+    ("text", "encoding"),
+    [
+        ("\ufefftime (ms)\tforce (N)\n1,5\t-2e3\n2.5\t4\n", "utf-8"),
+        (
+            "# 1 MHz; 8 bit\nTime,12:03\n time (ms) , force (N) \r\n1.5,-2e3\r\n\r\n2.5,4",
+            "utf-16",
+        ),
+        (
+            'CH2,"time (ms)","force (N)"\n7,"1.5","-2e3"\n8,2.5,4\n9,,\nEnd,of,data\n',
+            "latin-1",
+        ),
+        ("% time(ms)  force (N)\n 1.5 −2e3\n 2.5   4\n\n", "utf-8"),
+        ("Zeit;Kraft\ntime [ms];force in N\n1,5;-2000,0;x\n2,5;4;y\n", "latin-1"),
+    ],
+)
+def test_separators_decimals_and_what_stands_around_the_numbers(
+    tmp_path, text, encoding
+):
+    found = read(tmp_path, text, encoding=encoding).rows("time", "force")
+    assert found == pytest.approx(np.array([[1.5e-3, -2000], [2.5e-3, 4]]), rel=1e-15)
 
 
-UNITS = {
-    **{"time [ms]": 1e-3, "time [\u03bcs]": 1e-6, "time (us)": 1e-6, "time (ns)": 1e-9},
-    **{"displacement(mm)": 1e-3, "displacement [ µm ]": 1e-6, "speed (km/s)": 1e3},
-    **{"speed_error (mm/s)": 1e-3, "force_error (kN)": 1e3},
-}
+def test_rows_of_numbers_above_a_record_belong_to_the_preamble(tmp_path):
+    """They are few, and lines without numbers follow them; a gap in a record is refused."""
+    record = "".join(f"{n},{2 * n}\n" for n in range(40))
+    stated = {"columns": {"force": "2"}, "step": "1"}
+    file = read(tmp_path, f"Range,5\nOffset,0\nt,CH1\n{record}", **stated)
+    assert file.rows("force").ravel().tolist() == list(range(0, 80, 2))
+    for gap in ("7,\n", "x,y\n"):
+        file = read(tmp_path, f"t,CH1\n{record}{gap}{record}", **stated)
+        with pytest.raises(InputError, match="line 42 is a gap"):
+            file.rows("force")
 
 
-def test_units_are_read(tmp_path):
-    for column, size in UNITS.items():
-        name = re.match(r"\w+", column)[0]
-        file = read(tmp_path, f"{column},strain\n7,2\n", name)
-        assert file.column(name) == pytest.approx([7 * size], rel=1e-15), column
+@pytest.mark.parametrize(
+    ("unit", "base", "size"),
+    [
+        *(("ms", "s", 1e-3), ("µs", "s", 1e-6), ("uSec", "s", 1e-6), ("NS", "s", 1e-9)),
+        *(
+            ("Microseconds", "s", 1e-6),
+            ("S", "s", 1),
+            ("Ms", "s", 1e6),
+            ("MN", "N", 1e6),
+        ),
+        *(
+            ("mm", "m", 1e-3),
+            ("um", "m", 1e-6),
+            ("kNewton", "N", 1e3),
+            ("mN", "N", 1e-3),
+        ),
+        *(
+            ("mm/s", "m/s", 1e-3),
+            ("N", "s", None),
+            ("lbf", "N", None),
+            ("min", "s", None),
+        ),
+    ],
+)
+def test_units_with_any_prefix_in_the_spellings_of_recorders(unit, base, size):
+    assert in_si(unit, base) == (size and pytest.approx(size, rel=1e-15))
 
 
 @pytest.mark.parametrize(
@@ -37,138 +87,119 @@ def test_units_are_read(tmp_path):
     [
         ("time (s),CH1", {"force": "kN"}, 1e3),
         ("time (s),CH1 (V)", {"ch1": "1.5 kN/V"}, 1.5e3),
-        ("time (s),CH1", {"CH1": "-2 N/V"}, -2),
-        ("time (s),CH1 (pC)", {"CH1": "5 mN/pC"}, 5e-3),
-        ("time (s),CH1\nms", {"force": "kN"}, 1e3),
+        ("time (s),CH1", {"2": "-2"}, -2),
+        ("time (s),CH1 (m/s^2)", {"CH1": "0.029 N/m/s^2"}, 0.029),
+        ("time (s),CH1\nms,kN", {}, 1e3),  # a header's unit stands above a row's
+        ("time (s),CH1 (mN)", {"force": "kN"}, 1e3),
         ("time,CH1", {}, 1),
+        ("time,CH1", {"force": "-3"}, -3),
     ],
 )
-def test_units_are_stated_by_header_row_or_user(tmp_path, header, units, size):
-    file = read(tmp_path, f"{header}\n1,7\n", renamed={"force": "CH1"}, units=units)
-    assert file.column("time").tolist() == [1]
-    assert file.column("force") == pytest.approx([7 * size], rel=1e-15)
+def test_units_are_stated_by_the_user_or_by_the_file(tmp_path, header, units, size):
+    text = f"{header}\n1,7\n"
+    file = read(tmp_path, text, columns={"force": "CH1"}, units=units)
+    assert file.rows("time", "force") == pytest.approx(
+        np.array([[1, 7 * size]]), rel=1e-15
+    )
+    assert file.si == (header != "time,CH1")
+    assert bool(file.notes) == ("mN" in header)
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "\ufefftime (ms)\tforce (N)\n1,5\t-2e3\n2.5\t4\n",
-        "# 1 MHz; 8 bit\n\nTime,12:03\n time (ms) , force (N) \r\n1.5,-2e3\r\n\r\n2.5,4",
-        'CH2,"time (ms)","force (N)"\n7,"1.5","-2e3"\n8,2.5,4\n9,,\n',
-    ],
-)
-def test_separators_decimals_and_lines_before_the_header(tmp_path, text):
-    found = values(read(tmp_path, text), "time", "force")
-    assert found == [pytest.approx([1.5e-3, 2.5e-3], rel=1e-15), [-2000, 4]]
-
-
-def test_names_are_compared_without_regard_to_case_but_for_renamed_ones(tmp_path):
-    text = "Time (s),FORCE (N),T (s),t (s)\n1,2,3,4\n"
-    assert values(read(tmp_path, text), "time", "force") == [[1], [2]]
-    for header, value in (("t", 4.0), ("T", 3.0), ("FORCE", 2.0), ("T (s)", 3.0)):
-        file = read(
-            tmp_path, text.replace("(N)", "(s)"), "time", renamed={"time": header}
-        )
-        assert values(file, "time") == [[value]]
+def test_a_column_is_named_by_its_lowest_header_or_by_its_number(tmp_path):
+    text = "time,off,Volt\nCH1,time (s),FORCE (N),Volt\n0,1,2,3\n"
+    assert read(tmp_path, text).rows("time", "force").tolist() == [[1, 2]]
+    stated = {"columns": {"time": "1", "force": "force (n)"}, "units": {"1": "ms"}}
+    assert read(tmp_path, text, **stated).rows("time", "force").tolist() == [[0, 2]]
+    stated = {"columns": {"force": "4"}, "units": {"4": "2 N/V"}, "step": "0.5 us"}
+    assert read(tmp_path, text, **stated).rows("time", "force").tolist() == [[0, 6]]
 
 
 @pytest.mark.parametrize(
     ("text", "times"),
     [
-        ("time,1 force,time,2 force\n1,5,2,6\n", {1: [1], 2: [2]}),
+        ("time,1 force,2 force\n1,5,6\n", {1: [1], 2: [1]}),
         ("Time,Time,2 force,1 force\n1,2,5,6\n", {2: [1], 1: [2]}),
         (
             "time,2 force,time,bead 1 force\n1,5,2,6\n",
             {1: [2], 2: [1]},
         ),  # beads come first
-        ("force,time\n5,1\n,2\n", {None: [1]}),
         ("1 force,time,2 force\n5,1,6\n,2,7\n", {1: [1], 2: [1, 2]}),
+        (
+            "time,bead 1 force,bead 1 velocity,bead 2 velocity\n1,5,2,6\n",
+            {1: [1], 2: [1]},
+        ),
     ],
 )
-def test_one_time_is_that_of_all_sensors_or_the_first_that_of_the_first_force(
+def test_one_time_is_that_of_all_sensors_or_the_first_that_of_the_first(
     tmp_path, text, times
 ):
-    file = read(tmp_path, text)
-    found = {
-        number: file.record(*at)[0].tolist()
-        for (_, number), at in file.sensors().items()
-    }
-    assert list(found.items()) == list(times.items())
+    """A bead whose force is there is read by its force."""
+    found = read(tmp_path, text).records()
+    assert {record.number: record.time.tolist() for record in found} == times
+    assert [record.values[0] for record in found if record.number == 1] in ([5], [6])
+
+
+def test_an_inverted_record_is_turned_by_the_users_own_statement(tmp_path):
+    text = "time (s),force (mV)\n1,7\n2,8\n"
+    (record,) = read(tmp_path, text, units={"2": "12.5 N/mV"}).records()
+    assert record.inverted == "--unit 'force=-12.5 N/mV'"
+    (record,) = read(tmp_path, text.replace("mV", "N")).records()
+    assert record.inverted == "--unit 'force=-N'"
+    (record,) = read(tmp_path, text, units={"force": "-N", "time": "s"}).records()
+    assert record.values.tolist() == [-7, -8]
+    assert record.inverted == "--unit 'force=N'"
 
 
 HEAD = "time (s),force (N)\n"
 
 
 @pytest.mark.parametrize(
-    ("text", "options", "named"),
+    ("text", "stated", "named"),
     [
-        (
-            "time (s),force (lbf)\n1,2\n",
-            {},
-            "force has the unit 'lbf': --unit states one of N",
-        ),
-        (
-            "time (s),force (V)\n1,2\n",
-            {},
-            "one of N, mN, kN, Newton, or such as 12.5 N/V",
-        ),
-        ("time (s),force\n1,2\n", {}, "column force has no unit"),
+        ("time (s),force (lbf)\n1,2\n", {}, "has the unit 'lbf': --unit 'force=N'"),
         ("time,force\n1,2\n", {"units": {"force": "N"}}, "column time has no unit"),
-        (f"{HEAD}1,2\n", {"units": {"force": "mN"}}, "'N' and is given 'mN'"),
-        (
-            f"{HEAD}1,2\n",
-            {"units": {"force": "12.5 N/V"}},
-            "'N' and is given '12.5 N/V'",
-        ),
-        ("time (s),force (mV)\n1,2\n", {"units": {"force": "12.5 N/V"}}, "12.5 N/mV"),
-        (f"{HEAD}1,2\n", {"units": {"force": "x N/V"}}, "is given 'x N/V'"),
+        (f"{HEAD}1,2\n", {"units": {"force": "x N/V"}}, "unit of force is 'x N/V'"),
         (f"{HEAD}1,2\n", {"units": {"CH9": "N"}}, "unit is of 'CH9'"),
-        ("time (s),force (N),force (N)\n1,2,3\n", {}, "one column force is wanted"),
-        ("time,strain\n1,2\n", {}, "no line names time, force: --column"),
         (
-            "time,lateral force\nbead 8 time,force\n",
+            "TIME (s),CH1\n0.1,2\n",
             {},
-            "no line names time, force: --column",
+            "0 of sensors: .* wanted: found 1 'TIME .s.' 0.1, 2 'CH1' 2: --c",
         ),
-        ("\x00\xff\n", {"encoding": "latin-1"}, "--column"),
-        ("time;force\n1,5;2;3\n1.500,5;2\n", {}, "column time, line 3: '1.500,5'"),
-        ("# a\ntime,force\n1,2\n3\n4,5\n", {}, "column force, line 4: ''"),
-        ("time,force\n1,inf\n", {}, "column force, line 2: 'inf'"),
-        (
-            "time,force\n1,2\n",
-            {"renamed": {"time": "CH1"}},
-            "no line names time, force, CH1",
-        ),
-        (
-            "time,force\n1,2\n",
-            {"renamed": {"8 force": "CH1"}},
-            "no line names time, force, CH1",
-        ),
-        (
-            "time,force\n1,2\n",
-            {"renamed": {"bead x force": "force"}},
-            "column is 'bead x force'",
-        ),
+        ("time,V,V\n1,2,3\n", {"columns": {"force": "V"}}, "2 columns are 'V'"),
+        ("time,force\n1,2\n", {"columns": {"bead x": "1"}}, "column is 'bead x'"),
+        ("\x00\xff\n", {"encoding": "latin-1"}, "found no numbers"),
+        ("time,force\n1,2\n1.5,∞\n2,3\n", {}, "line 3 holds ∞, the signal is clipped"),
+        ("time,1 force,time\n1,5,2\n", {}, "2 columns are time and 1 of sensors"),
+        ("time,force\n1,x\n", {"columns": {"force": "9"}}, "no row has numbers"),
     ],
 )
-def test_bad_files_are_refused_in_one_line(tmp_path, text, options, named):
-    with pytest.raises(SceneError, match=rf"^[^\n]*{re.escape(named)}[^\n]*$"):
-        values(read(tmp_path, text, **options), "time", "force")
+def test_a_bad_file_is_refused_in_a_short_line(tmp_path, text, stated, named):
+    with pytest.raises(InputError) as refused:
+        read(tmp_path, text, **stated).records()
+    message = str(refused.value)
+    assert re.search(named, message), message
+    assert "\n" not in message
+    assert len(message) <= 300
 
 
-@pytest.mark.parametrize(
-    ("text", "named"),
-    [
-        ("time,1 force\n1,2\n,3\n", "1 force has more samples than times"),
-        ("time,1 force,time\n1,5,2\n", "2 columns time and 1 of forces"),
-        ("time,time,1 force,2 force,3 force\n", "2 columns time and 3 of forces"),
-        ("time,force,2 force\n", "'force', '2 force'.: each sensor is wanted once"),
-        ("time,2 force,contact 2 dynamic force\n", "each sensor is wanted once"),
-    ],
+cells = st.sampled_from(
+    ["time", "force", "1", "-2.5e3", "1,5", "", "∞", "x (N)", "ms", '"', "#"]
 )
-def test_sensors_without_a_time_or_a_number_of_their_own_are_refused(
-    tmp_path, text, named
-):
-    file = read(tmp_path, text)
-    with pytest.raises(SceneError, match=named):
-        [file.record(*places) for places in file.sensors().values()]
+rows = st.lists(st.lists(cells, max_size=4), max_size=6)
+texts = st.builds(
+    lambda rows, mark, end: end.join(mark.join(row) for row in rows),
+    rows,
+    st.sampled_from([",", ";", "\t", " ", " , "]),
+    st.sampled_from(["\n", "\r\n", "\r"]),
+)
+
+
+@settings(max_examples=300)
+@given(texts | st.text(max_size=80), st.sampled_from(["utf-8", "utf-16", "latin-1"]))
+@example('"\n1', "utf-8")
+def test_any_text_is_read_or_refused(tmp_path_factory, text, encoding):
+    file = tmp_path_factory.mktemp("any") / "record.csv"
+    file.write_bytes(text.encode(encoding, "replace"))
+    for stated in ({}, {"columns": {"time": "1", "8 force": "2"}}, {"step": "1 ms"}):
+        with suppress(InputError):
+            MeasuredFile(file, **stated).records()

@@ -2,6 +2,7 @@
 
 import copy
 import dataclasses
+import io
 import json
 import os
 import re
@@ -47,20 +48,17 @@ def test_the_experiment_of_the_paper():
 
 
 def test_every_other_key():
-    wanted = {
-        "k": 1.25,
-        "duration": 20,
-        "precompression": 0.5,
-        "wall": 4,
-        "spacings": (1,) * 8,
-    }
-    wanted |= {"velocities": (1, 1), "displacements": (0.1,), "bead_sensors": (8, 0)}
-    masses, stiffnesses = (
-        (1, 1, 0.25, 1, 7, 0.25, 1, 1, 0.25),
-        (0.5, 2, 3, 1, 2, 3, 1, 2),
-    )
     assert scene(tomllib.loads(TRIMER)) == Scene(
-        masses=masses, stiffnesses=stiffnesses, **wanted
+        masses=(1, 1, 0.25, 1, 7, 0.25, 1, 1, 0.25),
+        stiffnesses=(0.5, 2, 3, 1, 2, 3, 1, 2),
+        k=1.25,
+        duration=20,
+        precompression=0.5,
+        wall=4,
+        spacings=(1,) * 8,
+        velocities=(1, 1),
+        displacements=(0.1,),
+        bead_sensors=(8, 0),
     )
 
 
@@ -73,11 +71,11 @@ def test_the_list_of_keys_holds_every_key():
     for name in ("chain", "striker", "start", "sensors"):
         assert set(content[name]) == set(scenefile.KEYS[name])
     start = content.pop("start")  # what excludes each other
-    assert [set(content.pop(name)) for name in ("damping", "drive")] == [
-        set(scenefile.KEYS[name]) for name in ("damping", "drive")
-    ]
+    for name in ("damping", "drive"):
+        assert set(content.pop(name)) == set(scenefile.KEYS[name])
     assert content["chain"].pop("law") == "hertz2:1,2"
     balls = {key: content["chain"].pop(key) for key in ("k", "stiffnesses", "spacings")}
+    del content["striker"]["drop"]
     assert scene(content).size == 38
     del content["striker"]
     content |= {"start": start, "chain": {"cell": [1.0, 2.0], "repeat": 19} | balls}
@@ -128,36 +126,16 @@ ALL = {"sensors": {"beads": "all", "contacts": "all"}}
 BALL = GOOD["beads"]["ball"]
 NAN = float("nan")
 
+# A row for each kind of fault
 REFUSED = [
-    ({"duration": 0}, "duration is 0"),
     ({"durations": 1}, "durations is unknown: did you mean duration"),
     ({"__import__('os')": 1}, r"\"__import__\('os'\)\" is unknown"),
-    ({"chain": {"cell": []}}, "chain.cell is empty"),
     (
         {"chain": {"cell": [1], "repeat": 10**6 + 1}},
-        "chain.cell and repeat make 1000001 beads",
+        "chain.cell and repeat make 1000001",
     ),
-    ({"chain": {"cell": "ball"}}, "chain.cell is 'ball'"),
-    ({"chain": {"cell": ["ball", 1]}}, "chain.cell number 2 is 1"),
-    ({"chain": {"cell": ["bal"]}}, "chain.cell number 1 is 'bal': did you mean ball"),
-    ({"chain": {"cell": [1]}}, "chain has neither k nor law"),
-    ({"chain": {"cell": ["ball"], "k": 1.5}}, "chain.k is given"),
-    (
-        {"chain": {"cell": [1, 2, 3], "k": 2, "stiffnesses": [1]}},
-        "chain.stiffnesses holds 1",
-    ),
-    ({"materials": {"x": {"E": 1}}}, "materials.x.nu is missing"),
-    (
-        {"beads": {"b": BALL | {"material": "stel"}}},
-        "beads.b.material is 'stel': did you mean",
-    ),
-    ({"defects": {"bead": 1}}, "defects is {'bead': 1}"),
+    ({"chain": {"cell": [1, 2, 3], "k": [1] * 4}}, "chain.k holds 4: 3, .* or 2, one"),
     ({"defects": [{"bead": 1}]}, "defects number 1 has neither like nor mass"),
-    (
-        {"defects": [{"bead": 1, "mass": 1, "like": "ball"}]},
-        "defects number 1 has both like and m",
-    ),
-    ({"defects": [{"bead": 4, "mass": 1}]}, "defects number 1.bead is 4"),
     ({"defects": [{"bead": 1, "like": "ball"}]}, "defects number 1.like names a bead"),
     ({"defects": [{"contact": 3, "stiffness": 1}]}, "defects number 1.contact is 3"),
     (
@@ -165,20 +143,11 @@ REFUSED = [
         "defects has two tables of bead 3",
     ),
     ({"wall": {"material": "steel"}}, "wall.material is given"),
-    (
-        {"wall": {"material": "wood"}} | BALLS,
-        "wall.material is 'wood': one of steel, steel 316, ",
-    ),
     ({"striker": {"velocity": 1}, "start": {}}, "striker and start are both there"),
-    ({"striker": {"velocity": 1, "like": "wood"}} | BALLS, "striker.like is 'wood'"),
-    ({"striker": {"like": "ball"}} | BALLS, "striker.velocity is missing"),
+    ({"striker": {"like": "ball"}} | BALLS, "striker has neither velocity nor drop"),
     (
         {"striker": {"like": "ball"}, "defects": [{"bead": 1, "mass": 1.0}]},
         "striker.like and def",
-    ),
-    (
-        {"striker": {"velocity": 1, "like": "ball"}},
-        "striker.like names a bead in a chain of",
     ),
     ({"sensors": {"beads": "some"}}, "sensors.beads is 'some'"),
     ({"units": "cgs"}, "units is 'cgs'"),
@@ -187,7 +156,6 @@ REFUSED = [
 
 @pytest.mark.parametrize(("change", "named"), REFUSED)
 def test_a_bad_scene_is_refused_by_the_key(change, named):
-    scene(GOOD)
     with pytest.raises(SceneError, match=rf"^{named}[^\n]{{,160}}$"):
         scene(GOOD | change)
 
@@ -199,12 +167,9 @@ FILES = [
     ("s.toml", b"x = " + DEEP, "nested too deeply"),
     ("s.toml", "# Länge\nduration = 1".encode("latin-1"), "not a text in UTF-8"),
     ("s.toml", b"#" * (files.MOST_BYTES[".toml"] + 1), "more than [0-9]+ bytes"),
-    ("s.json", b'{"duration": 1', "not JSON"),
     ("s.json", b"[1, 2]", r"the file is \[1, 2\]"),
-    ("s.json", DEEP, "nested too deeply"),
     ("s.json", b'{"duration": 1' + b"0" * 10**6 + b"}", "not JSON"),
     ("s.txt", b"duration = 1", "a scene is a file ending in .toml or .json"),
-    ("folder.toml", None, "only regular files"),
     ("pipe.json", None, "only regular files"),
     ("missing.toml", None, "No such file"),
 ]
@@ -213,7 +178,6 @@ FILES = [
 @pytest.mark.parametrize(("name", "content", "named"), FILES, ids=range(len(FILES)))
 def test_a_bad_file_is_refused_by_its_name(tmp_path, name, content, named):
     file = tmp_path / name
-    (tmp_path / "folder.toml").mkdir()
     os.mkfifo(tmp_path / "pipe.json")  # which nobody writes to
     if content is not None:
         file.write_bytes(content)
@@ -283,8 +247,22 @@ def test_keys_and_the_fields_that_they_set(keys, fields):
     assert {name: getattr(found, name) for name in fields} == fields
 
 
+def test_values_of_contacts_that_differ_are_lists():
+    """As long as the cell, or as the row of contacts with the wall's, the last one."""
+    toda = named("exponential", 1)
+    laws = ["power:3/2", "exponential:1"]
+    found = scene(GOOD | WALL | four(law=laws) | {"damping": {"contact": [0, 2]}})
+    assert found.contact_laws == ((1.5, None), (1.0, toda)) * 2
+    assert found.damping == Damping("contact", (0, 2, 0, 2))
+    found = scene(GOOD | WALL | four(k=[1, 2, 3, 4]))
+    assert found.k == (1, 2, 3, 4)
+    assert scene(GOOD | four(k=[1.5, 2])).k == (1.5, 2, 1.5)
+    assert scene(GOOD | four(law=["power:3/2"] * 3)).law is None
+
+
 def test_a_drive_is_read_from_a_file_beside_the_scene(tmp_path):
-    path, file = tmp_path / "shaker.csv", tmp_path / "scene.json"
+    path = tmp_path / "shaker.csv"
+    file = tmp_path / "scene.json"
     chain = {
         "duration": 1,
         "chain": {"cell": [1, 2], "k": 1.5},
@@ -292,17 +270,22 @@ def test_a_drive_is_read_from_a_file_beside_the_scene(tmp_path):
     }
     path.write_text("time (s),displacement (mm)\n0,0\n0.5,1\n1,2\n2,0\n")
     assert scene(chain | {"units": "SI"}).drive.displacement == (0, 1e-3, 2e-3, 0)
-    with pytest.raises(
-        SceneError, match=r"shaker.csv: its units are stated, the scene's are not"
-    ):
+    with pytest.raises(SceneError, match="it states units"):
         scene(chain)
     path.write_text("time,displacement\n0,0\n0.5,1\n1,2\n2,0\n")
     file.write_text(json.dumps(chain | {"drive": {"file": path.name}}))
     assert read_scene(file) == scene(chain)
-    for content in ("0,1\n", "time,displacement\n0,x\n", ""):
-        path.write_text(content)
-        with pytest.raises(SceneError, match=r"shaker.csv: .*(line names|column)"):
-            scene(chain)
+    stated = {
+        "columns": {"displacement": 1},
+        "units": {"displacement": "um"},
+        "step": "0.5 s",
+    }
+    moved = scene(chain | {"units": "SI", "drive": chain["drive"] | stated})
+    assert moved.drive.displacement == pytest.approx((0, 5e-7, 1e-6, 2e-6), rel=1e-15)
+    assert moved.drive.time == (0, 0.5, 1, 1.5)
+    path.write_text("time,displacement\n0,x\n")
+    with pytest.raises(SceneError, match=r"shaker.csv: .*displacement"):
+        scene(chain)
     with pytest.raises(SceneError, match=r"^none.csv: No such file"):
         scene(chain | {"drive": {"file": "none.csv"}})
 
@@ -312,3 +295,15 @@ def test_a_striker_like_another_bead_is_a_defect_of_bead_1():
     struck = scene(paper | {"striker": paper["striker"] | {"like": "ptfe"}})
     assert struck == scene(paper | {"defects": [{"bead": 1, "like": "ptfe"}]})
     assert struck.masses[0] != scene(paper).masses[0]
+
+
+def test_a_striker_that_drops_has_the_velocity_of_a_fall():
+    paper = tomllib.loads(PAPER)
+    (velocity,) = scene(paper | {"striker": {"drop": 0.05}}).velocities
+    assert velocity**2 == pytest.approx(2 * 9.81 * 0.05, rel=1e-15)
+
+
+def test_a_scene_is_read_from_standard_input(monkeypatch):
+    for text in (PAPER, json.dumps(tomllib.loads(PAPER))):
+        monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(text.encode())))
+        assert read_scene("-") == scene(tomllib.loads(PAPER))

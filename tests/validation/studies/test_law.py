@@ -176,10 +176,9 @@ ROWS = "".join(f"{n},{n}\n" for n in range(1, 9))
 @pytest.mark.parametrize(
     ("text", "options", "named"),
     [
-        ("force,time\n1,2\n", {}, "no line names force, speed"),
+        ("force,time\n1,2\n", {}, "0 columns are speed"),
         ("force,speed\n1,2\n", {}, "at least 6 pulses"),
         ("force,speed\n" + "-1,2\n" * 9, {}, "positive force and speed"),
-        ("F,speed\n" + "1,2\n" * 9, {"renamed": {"F": "force"}}, "column is 'F'"),
         ("force,speed\n" + "1,2\n" * 9, {}, "1 different forces"),
         ("force,speed\n" + ROWS, {"masses": (1, 2, 3)}, "the cell has 3 beads"),
         ("force,speed\n" + ROWS, {"masses": (sp.Symbol("m"),)}, "mass is m"),

@@ -1,0 +1,164 @@
+"""The base of a record before a pulse, and the noise about it.
+
+Two bases are fitted to samples before the pulse: a straight line, for drift and hum, and a level
+under three exponentials that grow towards the pulse, for what may rise slowly before the pulse
+arrives; a third one has all these terms. They are averaged with Akaike's weights exp(-(χ² + 2p)/2),
+p the number of terms, χ² by the noise and its correlations. Each drawn record takes one of the
+bases, by their weights: so errors hold the doubt between them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy
+
+from lwa.base.arrays import Array
+
+_BEFORE = 2.0  # widths between the samples of the base and the rise
+_CLOSE = 1.0  # likewise in a record that begins less than 2.5 widths before them
+_LONG = 10.0  # widths of the base: drift and hum are straight over such a time
+FEWEST = 16  # samples of the base
+_GROWTHS = (0.5, 1.0, 2.0)  # widths in which what rises before the pulse grows e-fold
+# Terms of the bases, 0 the level, 1 the slope, 2 to 4 the exponentials, and what they add to χ²:
+# twice the terms beyond two; more for the third, to which noise alone would often give a weight.
+_BASES = {(0, 1): 0.0, (0, 2, 3, 4): 4.0, (0, 1, 2, 3, 4): 16.0}
+_SLOW = 5.0  # widths of a base, at least, that tells a slow rise from a level
+_GUESSED = 5  # samples at the start of a record that begins too late
+DRAWS = 200  # records that are drawn for an error
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A fitted base: numbers of its terms, their sizes, and the noise that is left, (B,)."""
+
+    terms: Sequence[int]
+    sizes: Array
+    noise: Array
+
+    @classmethod
+    def of(cls, x: Array, f: Array, terms: Sequence[int]) -> Fit:
+        """Fit terms to samples f, (B,) or (B, draws), at times x in widths from the rise."""
+        columns = _columns(x, terms)
+        sizes = np.asarray(np.linalg.lstsq(columns, f)[0], float)
+        return cls(terms, sizes, f - columns @ sizes)
+
+    def at(self, x: Array) -> Array:
+        """Return the base at times of the pulse, without what rises before it."""
+        straight = np.array(self.terms) < 2
+        return _columns(x, self.terms) * straight @ self.sizes
+
+    @property
+    def variance(self) -> float:
+        """Variance of the noise."""
+        return float(np.sum(self.noise**2)) / (len(self.noise) - len(self.terms))
+
+    @cached_property
+    def length(self) -> float:
+        """Samples whose noise, for its correlations, tells as much as that of one sample."""
+        products = self.correlations
+        return float(2 * products.sum() / products[0] - 1) if products[0] else 1.0
+
+    @cached_property
+    def correlations(self) -> Array:
+        """Mean products of the noise with itself by lag, up to the first lag without any."""
+        count = len(self.noise)
+        spectrum = np.abs(np.fft.rfft(self.noise, 2 * count)) ** 2
+        products = np.fft.irfft(spectrum)[:count] / count
+        return products[: max(1, int(np.argmax(np.append(products, 0.0) <= 0)))]
+
+
+@dataclass(frozen=True, eq=False)
+class Base:
+    """The base before a pulse and its noise.
+
+    rise, width : of the pulse. x : times of the samples, (B,), in widths from the rise. fits :
+    bases, whose mean with the weights is the base. best : the fit that tells the noise.
+    """
+
+    rise: float
+    width: float
+    x: Array
+    fits: Sequence[Fit]
+    weights: Array
+    best: Fit
+
+    @classmethod
+    def before(cls, t: Array, f: Array, rise: float, width: float) -> Base | None:
+        """Return the base before a pulse; None if the record begins too late."""
+        late = rise - t[0] < (_BEFORE + 2.5) * width
+        end = rise - (_CLOSE if late else _BEFORE) * width
+        calm = (t < end) & (t > end - _LONG * width)
+        x = (t[calm] - rise) / width
+        if len(x) < FEWEST or np.ptp(x) < 0.9:
+            return None
+        bases = _BASES if np.ptp(x) > _SLOW else {(0, 1): 0.0}
+        fits = [Fit.of(x, f[calm], terms) for terms in bases]
+        scale = fits[-1].variance * fits[-1].length or 1.0  # of the base with all terms
+        chi = [np.sum(fit.noise**2) / scale for fit in fits]
+        weights = scipy.special.softmax(-np.add(chi, [*bases.values()]) / 2)
+        return cls(rise, width, x, fits, weights, fits[int(np.argmax(weights))])
+
+    @classmethod
+    def guessed(cls, f: Array, noise: float) -> Base:
+        """Return the base of a record that begins too late: its first values, or its lowest.
+
+        noise : standard deviation of its noise.
+        """
+        levels = (f[:_GUESSED].mean(), np.quantile(f, 0.1))
+        samples = np.array([noise, 0.0])  # of this variance, and white
+        fits = [Fit([0], np.array([level]), samples) for level in levels]
+        return cls(0.0, 1.0, np.zeros(0), fits, np.full(2, 0.5), fits[0])
+
+    def at(self, t: Array) -> Array:
+        """Return the base at times of the pulse."""
+        x = (t - self.rise) / self.width
+        return np.asarray(self.weights @ [fit.at(x) for fit in self.fits])
+
+    def drawn(self, t: Array, pulse: Array, variance: float, step: float) -> Array:
+        """Draw what noise adds to a pulse over its base, (len(t), `DRAWS`), at times t.
+
+        pulse : without noise, (len(t),). variance : of the noise during the pulse. step : distance
+        of the levels to which samples are rounded, 0 if they are not.
+        """
+        rng = np.random.default_rng(0)
+        count = len(self.x)
+        noise = self._noise(rng, count + len(t))
+        noise[:count] *= self.best.noise.std()
+        noise[count:] *= math.sqrt(max(0.0, variance - step**2 / 12))
+        if step:
+            # Base and pulse lie anywhere between two levels.
+            exact = np.append(np.zeros(count), pulse)[:, np.newaxis]
+            offsets = step * rng.uniform(-0.5, 0.5, (2, DRAWS))
+            exact = exact + np.repeat(offsets, (count, len(t)), axis=0)
+            noise = step * np.round((exact + noise) / step) - exact
+        calm, added = noise[:count], noise[count:]
+        x = (t - self.rise) / self.width
+        chosen = rng.choice(len(self.fits), DRAWS, p=self.weights)
+        for i, fit in enumerate(self.fits):
+            draws = chosen == i
+            added[:, draws] -= Fit.of(self.x, calm[:, draws], fit.terms).at(x)
+            added[:, draws] += (self.at(t) - fit.at(x))[:, np.newaxis]
+        return added
+
+    def _noise(self, rng: np.random.Generator, count: int) -> Array:
+        """Draw records with the correlations of the noise and variance 1, (count, `DRAWS`)."""
+        products = self.best.correlations
+        size = count + len(products)
+        white = rng.normal(size=(size, DRAWS))
+        spectrum = np.maximum(np.fft.rfft(products, size).real - products[0] / 2, 0)
+        if not spectrum.any():
+            return white[:count]
+        factors = np.sqrt(spectrum / spectrum.mean())[:, np.newaxis]
+        shaped = np.fft.irfft(np.fft.rfft(white, axis=0) * factors, size, axis=0)
+        return np.asarray(shaped[:count])
+
+
+def _columns(x: Array, terms: Sequence[int]) -> Array:
+    """Return terms of a base, (len(x), terms), at times x in widths from the rise."""
+    growths = [np.exp(np.minimum(x, 0) / growth) for growth in _GROWTHS]
+    return np.column_stack([np.ones_like(x), x, *growths])[:, terms]

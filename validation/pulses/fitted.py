@@ -1,0 +1,126 @@
+"""Splines fitted to noisy pulses, and the errors of arrival, peak and width.
+
+A spline of degree 5 is fitted to the samples about a pulse by least squares. The number of its
+coefficients is the best by Schwarz's criterion (Ann. Statist. 6, 461, 1978), for as many samples as
+are independent, times `_FINER`, and at least `_MORE` more: where the criterion stops a bias is as
+large as the scatter.
+
+Errors are one standard deviation: records of noise are drawn, base and spline are fitted to each,
+and `_WITHIN` of the numbers lie within the error. So an arrival is uncertain by the distance of two
+humps if the noise hides which of them is the higher. If the record has too few samples for the
+wanted coefficients, the error also holds the difference to a coarser spline.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.interpolate import BSpline, make_lsq_spline
+from scipy.signal import peak_widths
+
+from lwa.base.arrays import Array
+from lwa.base.frozen import Estimate
+from validation.pulses.base import Base
+from validation.pulses.signals import MeasureError
+
+_BESIDE = 0.3  # widths in front of the rise and behind the fall that the fit takes in
+_READ = 0.1  # widths likewise in which the spline is read: its ends follow the noise
+_DEGREE = 5  # of the spline
+_LOWEST = 8  # coefficients
+_HIGHEST = 120
+_RATIO = 1.2  # of numbers of coefficients that are tried
+_FINER = 1.5  # coefficients in the end over the best number,
+_MORE = 8  # and at least so many more
+_DENSEST = 0.8  # coefficients over samples, at most
+_COARSER = 1.3  # coefficients over those of the spline that shows what is not resolved
+_WITHIN = 0.7  # 0.68 and a little: the number of coefficients depends on the noise
+_GRID = 400  # intervals on which splines are read
+_MISFIT = 2.0  # residuals over σ², from which on they are the noise
+_LOUDEST = 0.05  # greatest noise over the peak, for which the pulse is located
+
+
+def fitted(
+    t: Array, f: Array, base: Base, sides: tuple[float, float], step: float
+) -> dict[str, Estimate]:
+    """Return arrival, peak and fwhm of a pulse between two times, with their errors.
+
+    t, f : samples over their base, (N,). sides : times at which the pulse passes half of its peak.
+    step : distance of the levels to which samples are rounded, if it is more than their noise.
+    """
+    width = sides[1] - sides[0]
+    near = (t >= sides[0] - _BESIDE * width) & (t <= sides[1] + _BESIDE * width)
+    ends = (sides[0] - _READ * width, sides[1] + _READ * width)
+    t, f = t[near], f[near]
+    rounding = (np.finfo(float).eps * np.abs(f).max()) ** 2
+    variance = base.best.variance + rounding
+    most = min(_HIGHEST, int(_DENSEST * len(t)))
+    wanted, spline, left = _smoothed(t, f, variance, base.best.length, most)
+    if left > _MISFIT * variance:  # the noise during the pulse is larger
+        variance = left
+        wanted, spline, left = _smoothed(t, f, variance, base.best.length, most)
+        variance = max(variance, left)
+    share = math.sqrt(variance) / float(spline(t).max())
+    if share > _LOUDEST:
+        raise MeasureError(
+            f"the noise is {share:.1%} of the peak: at most {_LOUDEST:.0%} is read"
+        )
+    noise = base.drawn(t, spline(t), variance, step)
+    drawn = _fit(t, noise, len(spline.c)).c
+    best = spline.c[:, np.newaxis]
+    found = _read(BSpline(spline.t, np.hstack((best, best + drawn)), _DEGREE), ends)
+    numbers = found[0]
+    errors = np.quantile(np.abs(found[1:] - numbers), _WITHIN, axis=0)
+    if wanted > most:
+        count = max(_LOWEST, round(most / _COARSER))
+        coarse = _read(_fit(t, f[:, np.newaxis], count), ends)
+        errors = np.hypot(errors, numbers - coarse[0])
+    estimates = map(Estimate, numbers.tolist(), errors.tolist())
+    return dict(zip(("arrival", "peak", "fwhm"), estimates, strict=True))
+
+
+def _smoothed(
+    t: Array, f: Array, variance: float, length: float, most: int
+) -> tuple[int, BSpline, float]:
+    """Return the wanted number of coefficients, the spline with at most ``most`` of them, and the
+    variance of its residuals.
+
+    variance : of the noise. length : samples that tell as much as one.
+    """
+    tries = math.ceil(math.log(most / _LOWEST) / math.log(_RATIO))
+    counts = np.geomspace(_LOWEST, most, tries + 1).round().astype(int)
+    squares = [np.sum((_fit(t, f, count)(t) - f) ** 2) for count in counts]
+    penalty = math.log(max(len(t) / length, 2))
+    criterion = np.array(squares) / (variance * length) + counts * penalty
+    best = int(counts[np.argmin(criterion)])
+    wanted = max(math.ceil(_FINER * best), best + _MORE)
+    spline = _fit(t, f, min(wanted, most))
+    left = float(np.sum((spline(t) - f) ** 2)) / (len(t) - len(spline.c))
+    return wanted, spline, left
+
+
+def _fit(t: Array, f: Array, count: int) -> BSpline:
+    """Fit a spline of so many coefficients to samples."""
+    # Equally many samples lie between neighbouring knots, so that gaps in a record do no harm.
+    at = np.linspace(0, len(t) - 1, count - _DEGREE + 1)
+    knots = np.pad(np.interp(at, np.arange(len(t)), t), _DEGREE, mode="edge")
+    return make_lsq_spline(t, f, knots, _DEGREE)
+
+
+def _read(splines: BSpline, ends: tuple[float, float]) -> Array:
+    """Return arrival, peak and FWHM of each of several splines between two times, (splines, 3)."""
+    grid = np.linspace(*ends, _GRID + 1)
+    numbers = []
+    for f in splines(grid).T:
+        # The vertex of the parabola through the highest value and its neighbours
+        top = min(max(int(np.argmax(f)), 1), _GRID - 1)
+        slope = (f[top + 1] - f[top - 1]) / 2
+        bend = f[top - 1] - 2 * f[top] + f[top + 1]
+        shift = min(max(-slope / bend, -1.0), 1.0) if bend < 0 else 0.0
+        peak = f[top] + slope * shift / 2
+        # SciPy's width at half of a height: here of the vertex above the base, on the whole grid
+        bounds = (np.array([2 * f[top] - peak]), np.array([0]), np.array([_GRID]))
+        width, *_ = peak_widths(f, [top], 0.5, bounds)
+        numbers.append((top + shift, peak, width[0]))
+    step = grid[1] - grid[0]
+    return np.asarray(np.array(numbers) * (step, 1.0, step) + (ends[0], 0.0, 0.0))

@@ -1,0 +1,195 @@
+"""Tables of cells: the texts of recorders and programs, whatever stands around their numbers.
+
+Cells are separated by tabs, semicolons, commas or blanks, by those that make most numbers; where
+commas do not separate they are decimal commas.
+"""
+
+from __future__ import annotations
+
+import codecs
+import csv
+import re
+from collections.abc import Iterator, Sequence
+from itertools import chain, islice, repeat
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lwa.base import files
+from lwa.base.arrays import Array
+from validation.scenes.checks import SceneError
+
+_LINE = re.compile(r"[^\r\n]*\S[^\r\n]*")  # a line that is not blank
+# Signs with several codes, and the sign of recorders for a value beyond their range
+_SIGNS = {"μ": "µ", "−": "-", "∞": "inf"}
+_HEAD = 1000  # lines in which the separator and the first numbers are looked for
+_MARKS = "\t;, "
+# What NumPy's reader does not take, by the separator: some loggers write + 1.5.
+_SIGNED = {"+ ": "+", "- ": "-"}
+_PLAIN = {
+    "\t": _SIGNED | {",": "."},
+    ";": _SIGNED | {",": "."},
+    ",": _SIGNED,
+    " ": {",": "."},
+}
+_FEW = 0.1  # rows of numbers in a preamble, at most, over the rows of the record
+_BLOCK = 10_000  # rows of numbers that are read at once
+
+
+class Cells:
+    """A text as a table of cells.
+
+    Attributes
+    ----------
+    head : list of rows
+        Cells of the lines above the numbers.
+    first : row
+        Cells of the first line of numbers; empty in a text without any.
+    """
+
+    def __init__(self, text: str) -> None:
+        self._text = text
+        lines = [line[0] for line in islice(_LINE.finditer(text), _HEAD)]
+        tables = {mark: [_split(line, mark) for line in lines] for mark in _MARKS}
+
+        def weight(mark: str) -> float:
+            """Count the cells; texts beside the numbers of a row take some of its weight."""
+            return sum(len(row) * _share(row, mark) ** 2 for row in tables[mark])
+
+        self._mark = max(_MARKS, key=weight)
+        rows = tables[self._mark]
+        # A row of numbers may hold as many texts: states, dates.
+        start, end = longest([_share(row, self._mark) >= 1 / 2 for row in rows])
+        self.head = rows[:start] if end else rows
+        self.first = rows[start] if end else []
+
+    @classmethod
+    def read(cls, path: str | Path) -> Cells:
+        """Read a file, or standard input ("-"): UTF-8, UTF-16 by its mark, or Latin-1."""
+        content = files.content(Path(path))
+        marked = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+        try:
+            text = content.decode("utf-16" if marked else "utf-8-sig")
+        except UnicodeDecodeError:
+            text = content.decode("latin-1")
+        # A translation would take as much memory again.
+        for sign, plain in _SIGNS.items():
+            text = text.replace(sign, plain)
+        return cls(text)
+
+    def numbers(self, places: Sequence[int]) -> Array:
+        """Return columns, (lines, columns), at increasing places; NaN for a cell without a number.
+
+        Blank lines are left out.
+        """
+        if not self.first:
+            return np.empty((0, len(places)))
+        # NumPy's reader parses 2 million rows in a second, Python's in twelve.
+        return np.loadtxt(
+            self._lines(places),
+            delimiter=self._mark.strip(" ") or None,
+            comments=None,
+            quotechar='"',
+            usecols=places,
+            ndmin=2,
+        )
+
+    def _lines(self, places: Sequence[int]) -> Iterator[str]:
+        """Yield the lines, NaN in place of other cells, as NumPy's reader takes them."""
+        mark = self._mark
+        number = _number(mark)
+        between = "[ \t]+" if mark == " " else f" *{mark} *"
+        other = r"[^ \t\r\n]+" if mark == " " else f'(?:"[^"]*"|[^"\r\n{mark}]*)'
+        count = places[-1] + 1
+        wanted = f'"?{number}"?'
+        cells = between.join(wanted if i in places else other for i in range(count))
+        row = rf"[\r\n]* *{cells} *(?:{mark}[^\r\n]*)?(?![^\r\n])"
+        # Blocks of rows of numbers: a loop over lines takes longer than NumPy's reader.
+        rows = re.compile(f"(?:{row}){{1,{_BLOCK}}}+")
+        start = 0
+        while start < len(self._text):
+            block = rows.match(self._text, start)
+            if block:
+                text = block[0]
+            else:
+                block = _LINE.search(self._text, start)
+                if block is None:
+                    return
+                found = islice(chain(_split(block[0], mark), repeat("")), count)
+                line = [x if re.fullmatch(number, x) else "nan" for x in found]
+                text = mark.join(line)
+            for sign, plain in _PLAIN[mark].items():
+                text = text.replace(sign, plain)
+            yield from text.splitlines()
+            start = block.end()
+
+    def rows(self, table: Array) -> tuple[int, int]:
+        """Return start and end of the record in a table of columns: the rows without any NaN.
+
+        Raises `SceneError` without any such row, and for a gap or an infinite value in the record.
+        """
+        numbers = ~np.isnan(table)
+        complete = np.all(numbers, axis=1)
+        start, end = longest(complete)
+        if not end:
+            raise SceneError("no row has numbers in all of these columns")
+        for first, last in runs(complete):
+            # A preamble may hold rows of numbers, few, with lines without any behind them.
+            gap = slice(last, start) if last <= start else slice(end, first)
+            large = last - first > _FEW * (end - start)
+            if first != start and (large or numbers[gap].any()):
+                raise SceneError(f"line {self._line(gap.start)} is a gap in the record")
+        beyond = np.flatnonzero(np.isinf(table[start:end]).any(axis=1))
+        if len(beyond):
+            raise SceneError(
+                f"line {self._line(start + int(beyond[0]))} holds ∞, the signal is clipped: a "
+                "larger range of the recorder is wanted"
+            )
+        return start, end
+
+    def _line(self, row: int) -> int:
+        """Return the number, from 1, of a line that is counted without blank lines, from 0."""
+        above = next(islice(_LINE.finditer(self._text), row, None)).start()
+        return len(self._text[:above].splitlines()) + 1
+
+
+def longest(flags: ArrayLike) -> tuple[int, int]:
+    """Return start and end of the longest run of true flags, (0, 0) without any."""
+    return max(runs(flags), key=lambda run: run[1] - run[0], default=(0, 0))
+
+
+def runs(flags: ArrayLike) -> list[tuple[int, int]]:
+    """Return starts and ends of the runs of true flags.
+
+    >>> runs([False, True, True, False, True])
+    [(1, 3), (4, 5)]
+    """
+    edges = np.flatnonzero(
+        np.diff(np.asarray(flags, bool), prepend=False, append=False)
+    )
+    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+
+
+def _number(mark: str) -> str:
+    """Return the pattern of a number beside a separator."""
+    point = "." if mark == "," else ".,"
+    digits = rf"(?:\d+[{point}]?\d*|[{point}]\d+)(?:[eE][-+]?\d+)?"
+    blank = "" if mark == " " else " ?"  # some loggers write + 1.5
+    return f"(?:[-+]?{blank}(?:{digits}|inf))"
+
+
+def _split(line: str, mark: str) -> list[str]:
+    """Return the cells of a line."""
+    if mark == " ":
+        # The blank between a header and its unit in brackets does not separate.
+        line, mark = re.sub(r"[ \t]+(?![([])", "\t", line.strip("#% \t")), "\t"
+    cells = next(csv.reader([line], delimiter=mark, skipinitialspace=True))
+    return [" ".join(cell.split()) for cell in cells]
+
+
+def _share(row: Sequence[str], mark: str) -> float:
+    """Return the share of numbers among the cells of a row that are not blank."""
+    filled = [*filter(None, row)]
+    numbers = [cell for cell in filled if re.fullmatch(_number(mark), cell)]
+    return len(numbers) / max(len(filled), 1)
