@@ -82,9 +82,8 @@ class ExactWave(Pictured):
     def __repr__(self) -> str:
         kind = "solitary" if self.solitary else f"tail {self.tail:.2g}"
         m1, m2 = self.masses
-        return (
-            f"ExactWave(masses=({m1:g}, {m2:g}), k={self.k:g}, c={self.c:.12g}, {kind})"
-        )
+        parameters = f"masses=({m1:g}, {m2:g}), k={self.k:g}"
+        return f"ExactWave({parameters}, c={self.c:.12g}, {kind})"
 
     @property
     def c(self) -> float:
@@ -119,27 +118,31 @@ class ExactWave(Pictured):
         if callable(value):
             value = value(*arguments)
         bend = (self.k - 1) * (1 - self.background)
-        error = ROUNDING + CANCELLED / bend + self.residual + self.tail
-        return Estimate(value, error if name == "tail" else error * value)
+        share = ROUNDING + CANCELLED / bend + self.residual + self.tail
+        if name == "tail":  # a share of the peak strain already
+            return Estimate(value, share)
+        return Estimate(value, share * value)
 
     def times(self, s: float) -> ExactWave:
         """Return the wave with all strains, the background's too, multiplied by s."""
         s = between(s, "s", 1e-30, 1e30)
         force = s**self.k
+        stiffness = force / s
         return replace(
             self,
-            c2=float(self.c2 * s ** (self.k - 1)),
+            c2=self.c2 * stiffness,
             even=self.even * force,
             odd=self.odd * force,
-            background=s * self.background,
+            background=self.background * s,
         )
 
     def strain(self, xi: ArrayLike, contact: int = 0) -> Array:
         """Strain a(ξ) of the contacts behind beads m1 (contact 0), or b(ξ) of the others (1)."""
         at = finite(xi, "xi")
         if integer(contact, "contact", 0) % 2:
-            at = -at
-        return np.where(self._ended(at), 0.0, self._sum(at, *self._strains))
+            at = -at  # b is the mirror image of a
+        even, odd = self._strains
+        return np.where(self._ended(at), 0.0, self._sum(at, even, odd))
 
     def force(self, xi: ArrayLike, contact: int = 0) -> Array:
         """Force F_a(ξ) or F_b(ξ) of a contact, above the static force."""
@@ -148,10 +151,12 @@ class ExactWave(Pictured):
     def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
         """Velocity of beads m1 (bead 0) or m2 (bead 1) at ξ; a cell far away has no momentum."""
         at = finite(xi, "xi")
-        end = np.array(self.half_period)
-        first, second = self._velocity(end, 0), self._velocity(end, 1)
-        mean = float((first + self.omega * second) / (1 + self.omega))
-        moving = self._velocity(at, integer(bead, "bead", 0)) - mean
+        bead = integer(bead, "bead", 0)
+        momentum = 0.0  # of a cell at the end of the period
+        for place, mass in enumerate(self.masses):
+            momentum += mass * float(self._velocity(self.half_period, place))
+        drift = momentum / sum(self.masses)
+        moving = self._velocity(at, bead) - drift
         return np.where(self._ended(at), 0.0, moving)
 
     def peak(self, quantity: QuantityName) -> float:
@@ -159,8 +164,7 @@ class ExactWave(Pictured):
 
         Strain and force are those of contact 0, the velocity is that of bead 0.
         """
-        xi = np.linspace(-self.half_period, self.half_period, len(self.even) + 1)
-        _, peak = summit(self._profile(quantity), xi)
+        _, peak = summit(self._profile(quantity), self._points)
         return peak
 
     def fwhm(self, quantity: QuantityName = "strain") -> float:
@@ -168,18 +172,22 @@ class ExactWave(Pictured):
 
         Raises `MeasureError` for a hump that does not fall to half its peak.
         """
-        xi = np.linspace(-self.half_period, self.half_period, len(self.even) + 1)
-        return highest_pulse(Piecewise(xi, self._profile(quantity))).fwhm
+        profile = Piecewise(self._points, self._profile(quantity))
+        return highest_pulse(profile).fwhm
 
     def pictured(self) -> list[Panel]:
         """Panel of strain, force and velocity as functions of ξ, each divided by its peak."""
         xi = np.linspace(-self.half_period, self.half_period, 2001)
         curves = []
         for name, style in zip(QUANTITIES, ("-", "--", ":"), strict=True):
-            curves.append(
-                Curve(name, xi, self._profile(name)(xi) / self.peak(name), style)
-            )
+            share = self._profile(name)(xi) / self.peak(name)
+            curves.append(Curve(name, xi, share, style))
         return [Panel("ξ / D", "over its peak", tuple(curves))]
+
+    @property
+    def _points(self) -> Array:
+        """Points of a period, half as many as the solution has, for a search."""
+        return np.linspace(-self.half_period, self.half_period, len(self.even) + 1)
 
     def _profile(self, quantity: QuantityName) -> Callable[[ArrayLike], Array]:
         """The method of a quantity."""
@@ -194,26 +202,32 @@ class ExactWave(Pictured):
         force = self.even - 1j * self.odd
         if m1 == m2:  # the odd part is rounding, which 1/q² would enlarge
             force = self.even.astype(complex)
-        strain = newton.respond(force, (1 / m1, 1 / m2), self.half_period) / self.c2
-        e, o = strain.real, -strain.imag
-        e[0] = e[1::2].sum() - e[2::2].sum()  # the strain is 0 at L
-        o[-1] = 0
-        return e, o
+        response = newton.respond(force, (1 / m1, 1 / m2), self.half_period)
+        strain = response / self.c2
+        even = strain.real
+        even[0] = even[1::2].sum() - even[2::2].sum()  # the strain is 0 at L
+        odd = -strain.imag
+        odd[-1] = 0  # a sine that is 0 at every point of the grid
+        return even, odd
 
     def _velocity(self, xi: ArrayLike, bead: int) -> Array:
         """Velocity up to a constant: the integral of v' = (force ahead - force behind)/(m c)."""
-        second = bead % 2
+        kind = bead % 2
         q = np.pi / self.half_period * np.arange(1, len(self.even))
-        odd = (
-            2 * np.cos(q / 2) * self.odd[1:]
-        )  # of the opposite sign in the force on m2
-        push = -2 * np.sin(q / 2) * self.even[1:] + (-odd if second else odd)
-        row = np.append(0.0, -push / q) / (self.masses[second] * self.c)
+        # The force ahead less the force behind, a sum of sin qξ.
+        push = -2 * np.sin(q / 2) * self.even[1:]
+        uneven = 2 * np.cos(q / 2) * self.odd[1:]
+        if kind == 0:
+            push += uneven
+        else:
+            push -= uneven
+        row = np.append(0.0, -push / q) / (self.masses[kind] * self.c)
         return self._sum(xi, row, np.zeros_like(row))
 
     def _sum(self, xi: ArrayLike, even: Array, odd: Array) -> Array:
         """Evaluate the Fourier sum Σ even_j cos(q_j ξ) + odd_j sin(q_j ξ) at any ξ."""
-        phase = np.multiply.outer(xi, np.pi / self.half_period * np.arange(len(even)))
+        q = np.pi / self.half_period * np.arange(len(even))
+        phase = np.multiply.outer(xi, q)
         return np.asarray(np.cos(phase) @ even + np.sin(phase) @ odd)
 
     def _ended(self, xi: ArrayLike) -> NDArray[np.bool_]:
