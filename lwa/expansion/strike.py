@@ -30,7 +30,6 @@ from lwa.base.words import ExtentName, QuantityName
 from lwa.cell import Cell, exponent
 from lwa.expansion.lattice_wave import LatticeWave, lattice_wave
 
-GRAVITY = sp.Rational("9.81")
 """Gravity in m/s², of strikers that drop and of the scenes."""
 
 MEASURED = (sp.Rational(5, 4), sp.Integer(3))

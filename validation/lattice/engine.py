@@ -100,9 +100,10 @@ def integrate(
         if run.now["t"] < end:
             # The work of a piston grows in proportion to the time.
             response *= end / run.now["t"]
-        elif motion.scene.drive is None:
-            return run.finished()
-        elif not 8 * _NOISE * energy < response < _WEAK * energy:  # less is rounding
+        elif (
+            motion.scene.drive is None
+            or not 8 * _NOISE * energy < response < _WEAK * energy
+        ):
             return run.finished()
         motion = Motion(motion.scene, response)
     raise IntegrationError(

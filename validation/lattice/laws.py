@@ -22,7 +22,6 @@ from lwa.base.exact import shorten
 from lwa.law import ContactLaw
 from validation.scenes.checks import SceneError
 
-
 # Of the rest compression: the energy of a smaller change is integrated, as in the difference of two
 # energies its digits cancel. Eight points integrate any power to 1e-16 up to this change.
 _SMALL = 0.05

@@ -38,7 +38,6 @@ import numpy as np
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Pair, Splitting, Sums
 
-
 _ROUNDING = 1e-25  # of a table with thirty digits
 
 

@@ -110,7 +110,9 @@ def damping_ratio(share: float) -> float:
     )
 
 
-def oscillation(t: Any, amplitude: float, w: float, ramp: float) -> tuple[Any, Any, Any]:
+def oscillation(
+    t: Any, amplitude: float, w: float, ramp: float
+) -> tuple[Any, Any, Any]:
     """Return amplitude r(t) sin(wt) and its first and second derivative at times t of any shape.
 
     r grows from 0 to 1 within ``ramp``; r = 1 for a ramp of 0. The engine compiles this function.

@@ -105,7 +105,10 @@ def coefficients(force: Array) -> tuple[Array, Array]:
     """Return the coefficients of cos qξ in E and of sin qξ in O, from F_a on a `periodic_grid`."""
     n = len(force) // 2
     series = scipy.fft.rfft(force) / n
-    ends = [0, n]  # the mean and the fastest cosine stand once in a Fourier sum, not twice
+    ends = [
+        0,
+        n,
+    ]  # the mean and the fastest cosine stand once in a Fourier sum, not twice
     series[ends] /= 2
     return series.real, -series.imag
 

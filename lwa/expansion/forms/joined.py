@@ -80,6 +80,7 @@ ORDERS = {"strain": 1}
 """Highest power of ε from which φ is made, 2 unless it stands here: the strain's φ hardly changes,
 and [0/1] is within 1e-3, [1/1] within 3e-3 (a pole at k = 10)."""
 
+
 @lru_cache(maxsize=16)
 def joined(quantity: str) -> sp.Expr:
     """The closed form of a quantity of `TWO_BODIES` as a function of the symbol k."""

@@ -19,7 +19,7 @@ from typing import Any
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel import kinks
-from validation.lattice.kernel.arrays import TILE, Beads, Chain, Plan, Sums
+from validation.lattice.kernel.arrays import TILE, Beads, Chain, Plan
 from validation.lattice.kernel.compiled import (
     ONE,
     ZERO,
