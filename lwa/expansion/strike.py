@@ -29,8 +29,7 @@ from lwa.base.frozen import Estimate, Value
 from lwa.base.words import ExtentName, QuantityName
 from lwa.cell import Cell, exponent
 from lwa.expansion.lattice_wave import LatticeWave, lattice_wave
-
-"""Gravity in m/s², of strikers that drop and of the scenes."""
+from lwa.spheres.beads import GRAVITY
 
 MEASURED = (sp.Rational(5, 4), sp.Integer(3))
 """Range of k in which chains were struck: 16 masses of strikers at each of six exponents."""

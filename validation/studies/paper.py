@@ -39,7 +39,7 @@ from lwa import (
 from lwa.base.exact import number
 from lwa.base.frozen import Estimate
 from lwa.base.progress import Progress
-from lwa.expansion.strike import GRAVITY
+from lwa.spheres.beads import GRAVITY
 from validation.lattice.cost import RunProgress, silent
 from validation.lattice.result import Run
 from validation.lattice.simulate import simulate, simulate_many, twice

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any, Unpack
 
 import click
-from lwa.command.hints import called
 
 from lwa.base.exact import shorten
 from lwa.base.frozen import Estimate
+from lwa.command.cli import called
 from validation.lattice.cost import RunProgress, silent
 from validation.pictures import Curve, Panel
 from validation.pulses.discharge import corrected, suggested
