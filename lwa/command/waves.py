@@ -169,19 +169,27 @@ def width_row(
     return Row(f"{key}.{quantity}", label, width, unit, symbol, **settings)
 
 
-def pulse_rows(wave: Any, rise: str, form: Form) -> Iterator[Row]:
+def in_spacings(wave: Any, spacing: sp.Expr) -> Any:
+    """The wave with the spacing as the unit of length, if the spacing is a symbol."""
+    return wave.at(**{spacing.name: 1}) if spacing.is_Symbol else wave
+
+
+def pulse_rows(wave: Any, spacing: sp.Expr, rise: str, form: Form) -> Iterator[Row]:
     """Rows of the size, the speed and the widths of a wave.
 
     Parameters
     ----------
     wave : PhysicalWave or LoadedWave
         The wave of a peak force.
+    spacing : Expr
+        The spacing of its chain.
     rise : str
         What its strain is called: "peak", or "rise of the" static strain.
     form : {"both", "formula", "number"}
         What is shown of the widths.
     """
-    speed = estimated(wave, "speed")
+    measured = in_spacings(wave, spacing)
+    speed = estimated(measured, "speed")
     yield Row("force", "peak contact force F", wave.force, "N")
     yield Row("B", f"{rise} strain B", wave.strain)
     yield Row("compression", f"{rise} compression", wave.compression, "m")
@@ -192,7 +200,7 @@ def pulse_rows(wave: Any, rise: str, form: Form) -> Iterator[Row]:
             width = attempt(wave.fwhm, q, extent)
             if isinstance(width, InputError):  # under a load widths are numbers
                 return
-            error = estimated(wave, "fwhm", q, extent)
+            error = estimated(measured, "fwhm", q, extent)
             yield width_row(q, width, extent, form=form, estimate=error)
 
 
@@ -265,7 +273,7 @@ def of_force(chain: ChainInput, theory: Theory, force: sp.Expr) -> Answer:
         "the compact wave in a chain without load:",
         *closure_lines(theory),
         "",
-        *pulse_rows(wave, "peak", "both"),
+        *pulse_rows(wave, chain.cell.spacing, "peak", "both"),
         Row("beta", "", wave.wave.beta, "1/m"),
         Row("width", "", wave.wave.width, "m", r"\frac{\pi}{\beta}"),
         *_canonical(chain, theory, wave.force),
@@ -275,11 +283,16 @@ def of_force(chain: ChainInput, theory: Theory, force: sp.Expr) -> Answer:
     return Answer(settings_json(theory), rows, chain.scale, shown, notes=notes)
 
 
+_BEST = 0.25
+"""Relative error from which on the compact wave, wrong by a sixth at most where that was measured,
+may be as near to the lattice."""
+
+
 def _put_lattice(rows: Lines, chain: ChainInput, force: sp.Expr | None) -> list[str]:
     """Put the lattice's own wave, where it is known, among the rows of the compact wave.
 
-    Behind the line on the chain if the error is known, which is then below that of the compact
-    wave; else at the end. Returns a note where the lattice has no such wave.
+    Behind the line on the chain if every error is known and below `_BEST`, else at the end.
+    Returns a note where the lattice has no such wave.
     """
     try:
         wave = lattice_wave(
@@ -290,7 +303,8 @@ def _put_lattice(rows: Lines, chain: ChainInput, force: sp.Expr | None) -> list[
     except NoSolitaryWave as reason:
         return [reason.reason]
     part = _lattice(chain.scale, wave, force)
-    if any(isinstance(row, Row) and row.measured for row in part.rows):
+    measured = [row.measured for row in part.rows if isinstance(row, Row)]
+    if all(found and found.relative_error < _BEST for found in measured):
         rows[1:1] = [part, ""]
     else:
         rows.append(part)
@@ -299,9 +313,7 @@ def _put_lattice(rows: Lines, chain: ChainInput, force: sp.Expr | None) -> list[
 
 def _lattice(scale: Scale, wave: LatticeWave, force: sp.Expr | None) -> Answer:
     """Speed and widths of the lattice's own wave; without a force those at B = 1."""
-    measured = wave
-    if scale.spacing.is_Symbol:  # the unit of length
-        measured = wave.at(**{scale.spacing.name: 1})
+    measured = in_spacings(wave, scale.spacing)
     extents = EXTENTS
     error = estimated(measured, "speed")
     speed = Row("speed", "speed dx/dt", wave.speed, "m/s", latex.SPEED, estimate=error)
@@ -370,7 +382,7 @@ def under_load(
         *closure_lines(theory),
         chain.text,
         "",
-        *pulse_rows(wave, "rise of the", "number"),
+        *pulse_rows(wave, chain.cell.spacing, "rise of the", "number"),
         Row("precompression", "static force F0", wave.precompression, "N"),
         Row("background", "static strain p0", wave.background),
         Row("static_compression", "static compression", wave.static_compression, "m"),
