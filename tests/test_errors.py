@@ -85,11 +85,16 @@ def struck_dimer(law, mass, load=0.0, velocity=1.0, duration=140.0):
 @pytest.mark.parametrize(
     ("k", "mass", "which"),
     [
-        ("11/10", "3/5", (1,)), ("11/10", "7/10", (0, 1)), ("23/20", "1/2", (1,)),
-        ("23/20", "3/5", (0,)), ("6/5", "7/10", (0,)), ("6/5", "4/5", (0, 1)), ("5/4", "9/10", (1,)),
+        ("11/10", "3/5", (1,)),
+        ("11/10", "7/10", (0, 1)),
+        ("23/20", "1/2", (1,)),
+        ("23/20", "3/5", (0,)),
+        ("6/5", "7/10", (0,)),
+        ("6/5", "4/5", (0, 1)),
+        ("5/4", "9/10", (1,)),
         ("3/2", "4/5", (0,)),
     ],
-)  # fmt: skip
+)
 def test_the_errors_of_sums_of_unlike_beads(k, mass, which):
     """c² (0) and widths (1) of a pulse that radiates; a term small by chance ends no series."""
     series, (pace, force, width) = (

@@ -274,8 +274,8 @@ def factored(value: sp.Expr) -> sp.Expr:
 def rearranged(method: Callable[[sp.Expr], sp.Expr], value: sp.Expr) -> sp.Expr:
     """Apply SymPy's `factor` or `cancel`; powers with long exponents are taken for symbols.
 
-    SymPy takes x^{p/q} for the power p of x^{1/q}. Polynomials of such a degree fill the memory
-    where an exponent comes from a decimal such as 1.2345.
+    SymPy takes ``x^{p/q}`` for the power p of ``x^{1/q}``. Polynomials of such a degree fill the
+    memory where an exponent comes from a decimal such as 1.2345.
 
     >>> x = sp.Symbol("x", positive=True)
     >>> [rearranged(sp.factor, x ** sp.Rational(2, q) - 1) for q in (5, 13)]

@@ -41,6 +41,7 @@ from validation.lattice.kernel.advance import advance
 from validation.lattice.kernel.arrays import (
     LAW,
     MARGIN,
+    ROOM,
     SHORTEST,
     Beads,
     Chain,
@@ -51,7 +52,7 @@ from validation.lattice.kernel.arrays import (
     initial_progress,
     records,
 )
-from validation.lattice.kernel.kinks import EDGES, ROOM
+from validation.lattice.kernel.kinks import EDGES
 from validation.lattice.kernel.symplectic import advance_split
 from validation.lattice.knots import Recorder
 from validation.lattice.laws import Contact
@@ -77,8 +78,8 @@ _FIRST = 4.0
 # Numbers of a sample that a run holds at a time: motion of a bead and its two neighbours, forces
 # and compressions, and the copies that NumPy makes of them.
 _NUMBERS = 16
-# Beyond a free end nothing presses, but 0 times the force of another law, or of so high a power, may
-# be no number.
+# Beyond a free end nothing presses, but 0 times the force of another law, or of so high a power,
+# may be no number.
 _UNBOUNDED = 5.0
 _FREE = Drive(np.zeros(1), np.zeros((1, 4)), 0.0, 0.0, 0.0, False)
 _ANY_POWER = 0.25  # a general law may begin with δ^{1/4}
@@ -155,7 +156,8 @@ class _Integration:
         if not np.isfinite(self.beads.force[1:]).all() or now["h"] == 0:
             return f"a force is not a number near {where}: no step is short enough for the law"
         if now["t"] + now["h"] == now["t"]:
-            return f"no step is left at {where}: its length, {now['h']:.1g}, is rounding of the time"
+            length = f"its length, {now['h']:.1g}, is rounding of the time"
+            return f"no step is left at {where}: {length}"
         rounding = self.motion.scales.rounding
         if rounding * self.motion.scales.displacement > _HIDDEN * self.plan.y:
             cause = (

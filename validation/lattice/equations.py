@@ -70,6 +70,8 @@ class Motion:
         The different laws of the contacts, for unit stiffness.
     law_of : array of int, (contacts,)
         Number of each contact's law.
+    k : array, (contacts,)
+        Exponents of the powers; 1 for other laws.
     damping : array, (contacts,)
         Damping coefficients.
     """
@@ -108,24 +110,27 @@ class Motion:
     def _read_laws(self) -> None:
         """Read the laws of the contacts and their damping."""
         scene, contacts = self.scene, len(self.stiffnesses)
-        damping, k = scene.damping, scene.k
-        self.law_of, self.damping = np.zeros(contacts, int), np.zeros(contacts)
-        if isinstance(k, tuple) or isinstance(scene.law, tuple):
+        damping = scene.damping
+        self.damping = np.zeros(contacts)
+        if isinstance(scene.k, tuple) or isinstance(scene.law, tuple):
             laws = scene.contact_laws
-            numbers = {law: n for n, law in enumerate(dict.fromkeys(laws))}
-            self.law_of = np.array([numbers[law] for law in laws], int)
-            k = np.array([exponent for exponent, _ in laws])
         else:
-            numbers = {(k, scene.law): 0}
+            laws = ((scene.k, scene.law),)
+        numbers = {law: n for n, law in enumerate(dict.fromkeys(laws))}
+        self.law_of = np.zeros(contacts, int)
+        self.law_of[:] = [numbers[law] for law in laws]
+        self.k = np.zeros(contacts)
+        self.k[:] = [exponent for exponent, _ in laws]
         # A wall has infinite mass.
         if damping is not None:
             ahead = np.append(self.masses[1:], math.inf)[:contacts]
             reduced = 1 / (1 / self.masses[:contacts] + 1 / ahead)
-            self.damping = damping.coefficients(k, self.stiffnesses, reduced)
-        self.laws = tuple(
-            Contact(exponent, law, damping and damping.power(exponent))
-            for exponent, law in numbers
-        )
+            self.damping = damping.coefficients(self.k, self.stiffnesses, reduced)
+        kinds = []
+        for exponent, law in numbers:
+            power = None if damping is None else float(damping.power(exponent))
+            kinds.append(Contact(exponent, law, power))
+        self.laws = tuple(kinds)
 
     def _each(
         self, contacts: Any, evaluate: Callable[..., Array], *rows: Array
@@ -186,7 +191,7 @@ class Motion:
         return np.concatenate((v, acceleration, (lost, work)))
 
     def energies(self, state: Array) -> tuple[Array, Array]:
-        """Return kinetic energies, (n,), and elastic ones less the static forces' work, (contacts,).
+        """Return kinetic energies, (n,), and elastic ones less static forces' work, (contacts,).
 
         All are 0 in equilibrium. Small ones have all digits.
         """
@@ -254,10 +259,7 @@ class Motion:
         # F′ of the two contacts of each bead; the last one's is a wall's.
         springs = np.zeros(n + 1)
         for number, law in enumerate(self.laws if len(A) else ()):
-            own, ahead = slice(0, len(A)), slice(1, len(A) + 1)
-            if len(self.laws) > 1:
-                own = np.flatnonzero(self.law_of == number)
-                ahead = own + 1
+            own = np.flatnonzero(self.law_of == number)
             static, largest = float(self.rest[own].max()), float(A[own].max())
             depth = static
             if energy > 0:
@@ -271,7 +273,7 @@ class Motion:
             stiffest = max(stiffest, largest * slope)
             stiff = law.k * slope * A[own]
             springs[own] += stiff
-            springs[ahead] += stiff
+            springs[own + 1] += stiff
         if not deepest:
             return Scales(energy, 0.0, 1.0, 1.0, math.inf)
         time = 1 / np.sqrt((springs[:n] / self.masses).max())

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
 from validation.lattice.equations import Motion
-from validation.lattice.kernel.arrays import Chain, Knots
-from validation.lattice.kernel.kinks import EDGES, ROOM
+from validation.lattice.kernel.arrays import ROOM, Chain, Knots
+from validation.lattice.kernel.kinks import EDGES
 from validation.lattice.kernel.samples import interpolate
 from validation.lattice.signal import Beads
 

@@ -20,7 +20,7 @@ read it:
    then the differences to the weights of one or two less accurate solutions;
 3. name the power of h to which the estimated error is proportional, 1 + the less accurate order.
 
-The number of stages is the table's, at most `validation.lattice.kernel.kinks.ROOM`.
+The number of stages is the table's, at most `validation.lattice.kernel.arrays.ROOM`.
 `validation.lattice.engine` chooses the pair of a scene.
 
 Sources: Dormand, El-Mikkawy and Prince 1987, IMA J. Numer. Anal. 7, 423: RKN8(6)9FM. Hairer,
@@ -36,7 +36,7 @@ from fractions import Fraction
 import numpy as np
 
 from lwa.base.arrays import Array
-from validation.lattice.kernel.arrays import Pair, Splitting, Sums
+from validation.lattice.kernel.arrays import ROOM, Pair, Splitting
 
 _ROUNDING = 1e-25  # of a table with thirty digits
 
@@ -48,20 +48,6 @@ def _rows(table: str) -> Array:
     return np.array([row + [Fraction(0)] * (size - len(row)) for row in rows])
 
 
-def _sums(rows: Array) -> Sums:
-    """Leave out the stages whose weight is 0, up to the rounding of the tables."""
-    rows = np.where(np.abs(rows) < _ROUNDING, 0.0, rows)
-    counts = np.count_nonzero(rows, axis=1)
-    # `pair._move` reads the weights in nines; missing ones are 0.
-    stages = np.zeros((len(rows), 9 * -(-int(counts.max()) // 9)), int)
-    weights = np.zeros(stages.shape)
-    for row, values in enumerate(rows):
-        used = np.flatnonzero(values)
-        stages[row, : len(used)] = used
-        weights[row, : len(used)] = values[used]
-    return Sums(counts, stages, weights)
-
-
 def _pair(
     nodes: Array,
     moments: Array,
@@ -71,12 +57,22 @@ def _pair(
     order: int,
 ) -> Pair:
     """Build a pair from exact coefficients; nodes are floats."""
-    a, b, e, thirds = (x.astype(float) for x in (moments, impulses, errors, thirds))
-    n = len(nodes)
-    pad = lambda x: np.pad(x, ((0, 0), (0, 18 - x.shape[1])))
     return Pair(
-        nodes, pad(a), pad(b), pad(e), thirds, order, _sums(np.concatenate((a, b, e)))
+        nodes=nodes,
+        moments=_padded(moments),
+        impulses=_padded(impulses),
+        errors=_padded(errors),
+        thirds=thirds.astype(float),
+        order=order,
     )
+
+
+def _padded(exact: Array) -> Array:
+    """Return weights as floats, with zeros for stages up to `ROOM`, which `pair._move` reads."""
+    weights = exact.astype(float)
+    # A decimal that was rounded leaves 1e-31 in place of 0.
+    weights[np.abs(weights) < _ROUNDING] = 0.0
+    return np.pad(weights, ((0, 0), (0, ROOM - exact.shape[1])))
 
 
 def _nystrom(table: str, order: int) -> Pair:
@@ -98,7 +94,7 @@ def _explicit(table: str, order: int) -> Pair:
     a[:, :-1] = rows[:stages]
     errors = []
     for difference in rows[stages:]:
-        full = np.append(difference, Fraction(0))
+        full = np.array([*difference, Fraction(0)])
         errors += [full @ a, full]
     nodes = a.sum(axis=1).astype(float)
     return _pair(nodes, a @ a, a, np.array(errors), a[-1] @ a @ a, order)

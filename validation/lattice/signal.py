@@ -107,9 +107,13 @@ def recorded(
     forces, means = _forces(motion, beads, compressions, v)
     at_contacts = np.searchsorted(beads, motion.scene.contact_sensors)
     at_beads = np.searchsorted(beads, motion.scene.bead_sensors)
-    rows = (forces, at_contacts), (compressions, at_contacts)
-    rows += (means, at_beads), (y, at_beads), (v, at_beads)
-    return {name: _rows(*row) for name, row in zip(_RECORDS, rows, strict=True)}
+    return {
+        "contact_force": _rows(forces, at_contacts),
+        "compression": _rows(compressions, at_contacts),
+        "bead_force": _rows(means, at_beads),
+        "bead_displacement": _rows(y, at_beads),
+        "bead_velocity": _rows(v, at_beads),
+    }
 
 
 def _rows(values: Array, numbers: NDArray[np.int_]) -> Array:

@@ -29,7 +29,7 @@ so that the closed forms hold nothing that was fitted.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import mpmath
 import sympy as sp
@@ -76,6 +76,9 @@ _SQUARED = {
 }
 """The q of the quantities that grow as √(q/ε): 16 I ln 2, 4πI and 2πI with I = 1/12."""
 
+_REGULARIZED = {"betainc_regularized": partial(mpmath.betainc, regularized=True)}
+"""I_x(a, b) for `sympy.lambdify`, which takes the integral that is not divided by B(a, b)."""
+
 ORDERS = {"strain": 1}
 """Highest power of ε from which φ is made, 2 unless it stands here: the strain's φ hardly changes,
 and [0/1] is within 1e-3, [1/1] within 3e-3 (a pole at k = 10)."""
@@ -86,19 +89,22 @@ def joined(quantity: str) -> sp.Expr:
     """The closed form of a quantity of `TWO_BODIES` as a function of the symbol k."""
     limit = TWO_BODIES[quantity]
     epsilon = k - 1
-    terms = phi_series(quantity, ORDERS.get(quantity, 2))
-    phi = pade(terms, 1).subs(EPSILON, epsilon)
-    rest = sp.exp(-epsilon * phi)
+    rest = sp.exp(-epsilon * phi(quantity).subs(EPSILON, epsilon))
     if quantity == "c":
         return limit * (1 + (1 / limit.subs(k, 1) - 1) * rest)
     return sp.sqrt(limit**2 + _SQUARED[quantity] * rest / epsilon)
+
+
+def phi(quantity: str) -> sp.Expr:
+    """The Padé approximant of φ, a function of `EPSILON`."""
+    return pade(phi_series(quantity, ORDERS.get(quantity, 2)), 1)
 
 
 def phi_series(quantity: str, order: int) -> list[mpmath.mpf]:
     """Coefficients of φ up to ε^order, to `DIGITS` digits.
 
     >>> [round(float(term), 6) for term in phi_series("momentum", 1)]
-    [1.259859, -0.064701]
+    [1.259859, -0.0647]
     """
     limit = TWO_BODIES[quantity].subs(k, 1 + EPSILON)
     whole = polynomial(equal_beads(quantity, order + 1))
@@ -117,7 +123,7 @@ def polynomial(coefficients: Iterable[sp.Expr]) -> sp.Expr:
 def taylor(function: sp.Expr, order: int) -> list[mpmath.mpf]:
     """Taylor coefficients at ε = 0 of a function of `EPSILON`, to `DIGITS` digits."""
     with mpmath.workdps(DIGITS):
-        numeric = sp.lambdify(EPSILON, function, "mpmath")
+        numeric = sp.lambdify(EPSILON, function, [_REGULARIZED, "mpmath"])
         return list(mpmath.taylor(numeric, 0, order))
 
 

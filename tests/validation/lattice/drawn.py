@@ -86,7 +86,8 @@ def drawn(seed, most=40):
     if random.random() < 0.3:  # gaps
         y += np.cumsum((random.random(n) < 0.2) * random.uniform(0, 0.3, n))
         y -= max(0, y[-1]) if "wall" in rest else y[0]
-    # A contact that touches at the start, with a force that jumps there, is neither open nor closed.
+    # A contact that touches at the start, with a force that jumps there, is neither open nor
+    # closed.
     y += np.cumsum(random.uniform(0, 1e-3, n)) - 1e-3 * n
     driven = random.choice(["none", "none", "piston", "harmonic", "ramp", "file"])
     if driven != "none":

@@ -8,7 +8,7 @@ the scene's numbers with the engine, and nothing else.
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 import sympy as sp
@@ -41,6 +41,11 @@ def functions(k, law):
     return F, lambda d: U(d) - zero, pulls, attracts
 
 
+def _excess(F, force, d):
+    """Force of a law at a compression d less a given force."""
+    return F(d) - force
+
+
 class Reference:
     """The equations of motion of a scene; ``closed`` holds the state of its contacts."""
 
@@ -59,11 +64,12 @@ class Reference:
         self.k = np.array([k for k, _ in scene.contact_laws])
         self.load, self.rest = np.array(scene.load), np.zeros(count)
         if self.load.any():
-            for i, (F, _, pulls, _) in enumerate(laws):
+            for i, (F, *_) in enumerate(laws):
                 force = self.load[i] / self.A[i]
                 self.rest[i] = force ** (1 / self.k[i])
                 if scene.contact_laws[i][1] is not None:
-                    self.rest[i] = brentq(lambda d: F(d) - force, 1e-12, 50, xtol=1e-16)
+                    excess = partial(_excess, F, force)
+                    self.rest[i] = brentq(excess, 1e-12, 50, xtol=1e-16)
             self.load = self.A * self.law("F", self.rest)
         self.c, self.p = np.zeros(count), np.zeros(count)
         if scene.damping is not None:

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from validation.lattice.kernel.arrays import LAW
+from validation.lattice.kernel.arrays import LAW, ROOM
 from validation.lattice.kernel.compiled import cached
-from validation.lattice.kernel.kinks import EDGES, ROOM, find_edges, integrals
+from validation.lattice.kernel.kinks import EDGES, find_edges, integrals
 
 
 @cached

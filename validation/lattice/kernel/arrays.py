@@ -18,6 +18,7 @@ BLOCK = 8  # doubles in the widest vector register; the number of moved beads is
 # Beads whose memory stays in the processor's cache throughout a step. Measured for 20,000 beads:
 # 128 and 256 take the same time, 512 a tenth more, 1,024 a fifth more.
 TILE = 256
+ROOM = 18  # most stages of a pair: `pair._move` adds nine in a pass
 
 
 class Drive(NamedTuple):
@@ -52,9 +53,9 @@ LAW = np.dtype(
 """A contact law for unit stiffness, F(δ) + r [δ]_+^p dδ/dt.
 
 k : exponent of a power law F = [δ]_+^k. p : exponent of the damping. q : the force is smooth in u
-if δ = u^q. generated : True for any other law. pulls : True if contacts hold where δ < 0. sticks : True if
-damping may pull, as the law pulls, or attracts where the contact opens. force, slope, energy :
-addresses of the machine code of F, F′ and ∫ F dδ of another law.
+if δ = u^q. generated : True for any other law. pulls : True if contacts hold where δ < 0. sticks :
+True if damping may pull, as the law pulls, or attracts where the contact opens. force, slope,
+energy : addresses of the machine code of F, F′ and ∫ F dδ of another law.
 """
 
 
@@ -97,7 +98,7 @@ class Beads(NamedTuple):
     given : (2,), accelerations of a driven bead at the step's ends.
     books : (5,), corrections at kinks: heat and its error, work of the drive and its error, and the
         sum of the squared errors of the corrections themselves, in units of the tolerance.
-    points : (3, `kinks.ROOM`), places in a step, their weights, and the forces there.
+    points : (3, `ROOM`), places in a step, their weights, and the forces there.
     edges : (`kinks.EDGES`,), places between which the force of a contact is smooth.
     """
 
@@ -131,18 +132,6 @@ class Knots(NamedTuple):
     watched: Numbers
 
 
-class Sums(NamedTuple):
-    """Weighted sums over stages, one a row, without the stages whose weight is 0.
-
-    counts : (rows,), numbers of weights. stages : (rows, most), numbers of the stages. weights :
-    (rows, most).
-    """
-
-    counts: Numbers
-    stages: Numbers
-    weights: Array
-
-
 class Pair(NamedTuple):
     """Coefficients of an embedded pair in Nyström form; the last stage is the step's end.
 
@@ -153,7 +142,7 @@ class Pair(NamedTuple):
     counts if forces do not depend on velocities. errors : (2 or 4, stages), differences of the two
     solutions, in displacement and velocity; two more rows for a third solution of lower order.
     thirds : (stages,), weights of ∫ (1 - x)²/2 f(x) dx. order : the error of a step is estimated in
-    proportion to h^order. sums : rows 0 … stages - 1 the moments, then the impulses, then `errors`.
+    proportion to h^order.
     """
 
     nodes: Array
@@ -162,7 +151,6 @@ class Pair(NamedTuple):
     errors: Array
     thirds: Array
     order: int
-    sums: Sums
 
 
 class Splitting(NamedTuple):

@@ -45,8 +45,6 @@ _INNER: Any = _OUTER | {"no_cpython_wrapper": True}
 # compiled apart is optimised and translated twice, by itself and in its caller, which took a fifth
 # of the compilation.
 inlined: Callable[[Function], Function] = njit(inline="always", **_INNER)
-# Functions that stay apart: long ones, with more callers than one.
-alone: Callable[[Function], Function] = njit(**_INNER)
 # Long functions with several callers, which stay apart.
 alone: Callable[[Function], Function] = njit(**_INNER)
 # Small functions with many callers, inlined by LLVM, as the calls would take a quarter of a run's
@@ -87,12 +85,8 @@ def cached(function: Function) -> Function:
     if compiled is function:  # NUMBA_DISABLE_JIT
         return function
     cache = compiled._cache
-    cache._cache_file._source_stamp = (
-        SOURCES  # in place of the time and size of one file
-    )
-    cache._cache_file._source_stamp = (
-        SOURCES  # in place of the time and size of one file
-    )
+    # In place of the time and size of one file.
+    cache._cache_file._source_stamp = SOURCES
     known, keep = cache.load_overload, cache.save_overload
 
     def load_if_possible(signature: Any, context: Any) -> Any:

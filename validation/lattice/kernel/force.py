@@ -172,9 +172,9 @@ def contact_forces(
 ) -> None:
     """Compute the forces of the contacts ahead of beads lo … hi-1, less the static forces.
 
-    y, v : displacements and velocities. s : the stage. The forces go to row 1 of ``beads.force``, in
-    column i + 1 for the contact ahead of bead i; the dissipated power and the power of the drive go
-    to ``beads.power``.
+    y, v : displacements and velocities. s : the stage. The forces go to row 1 of ``beads.force``,
+    in column i + 1 for the contact ahead of bead i; the dissipated power and the power of the drive
+    go to ``beads.power``.
     """
     f, lost, start = beads.force[1], beads.power[0, s] if lo > 0 else 0.0, lo
     while lo < hi:

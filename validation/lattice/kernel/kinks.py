@@ -27,7 +27,6 @@ Curve = tuple[float, float, float, float, float, float, float, float]
 """Coefficients c0 … c5 of p, and e and s of a bend, s [x - e]_+^2/2, that p has besides."""
 
 POINTS = 12  # of the rule: three of the machine's vectors
-ROOM = 18  # places of a step: points of the rule, or stages of a pair
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(POINTS)
 _U, _W = (1 + _NODES) / 2, _WEIGHTS / 2
 _PLACES = 8  # parts of a step at whose ends a contact is looked at
@@ -47,7 +46,7 @@ def stored(law: Any, d: float) -> float:
         return 0.0
     if law.generated:
         return float(call(law.energy, d))
-    return elastic(law, d) * d / (law.k + 1.0)
+    return float(elastic(law, d) * d / (law.k + 1.0))
 
 
 @part

@@ -322,7 +322,7 @@ def evaluate_stages(
 
 @summed
 def _squared_error(errors: Array, row: int, hi: int) -> float:
-    """Return the sum over all beads of squared errors of displacements, in a row, and velocities."""
+    """Return the sum over all beads of the squared errors of displacements and velocities."""
     total, ys, vs = 0.0, errors[row], errors[row + 1]
     for i in range(index(hi)):
         total += ys[i] * ys[i] + vs[i] * vs[i]
