@@ -266,7 +266,13 @@ class PDE(OfClosure):
                 "`lwa.loaded_wave` has the waves of any law, on a background or of a force"
             )
         # G, H, I refuse an order below 4 and the optical branch.
-        wave = CompactWave(cell=self.cell, k=self.k, G=self.G, H=self.H, I=self.I)
+        wave = CompactWave(
+            cell=self.cell,
+            k=self.k,
+            G=self.G,
+            H=self.H,
+            I=self.I,
+        )
         # u_x^{k-2} u_xx² breaks the symmetry x → -x, u → -u, which an even pulse has.
         if 2 not in self.vanishing:
             raise InputError(

@@ -69,7 +69,10 @@ class Bloch:
         # The columns of the matrix
         a, _ = self._carried(one, none)
         _, f = self._carried(none, one)
-        return [a_m + f_m for a_m, f_m in zip(a, f, strict=True)]
+        trace = []
+        for a_m, f_m in zip(a, f, strict=True):
+            trace.append(a_m + f_m)
+        return trace
 
     def _carried(
         self,
@@ -86,7 +89,9 @@ class Bloch:
     @property
     def Pi(self) -> fmpq_mpoly:
         """The product ``m̂_0 m̂_1 C_0 C_1``: Π in a dimer's relation ``sin²κ = Ω² - Π Ω⁴``."""
-        return self.mu[0] * self.mu[1] * self.c[0] * self.c[1]
+        masses = self.mu[0] * self.mu[1]
+        shares = self.c[0] * self.c[1]
+        return masses * shares
 
     def acoustic(self, order: int) -> list[fmpq_mpoly]:
         """Coefficients ``L_0 … L_order`` of the acoustic root ``Ω² = Σ L_n κ^{2n} = κ² + …``.

@@ -114,12 +114,6 @@ class Dispersion(Value):
             series["optical"] = self.optical(order)
         return series
 
-    @cached_property
-    def trace(self) -> dict[int, sp.Expr]:
-        """Mapping from m to ``t_m`` in the dispersion relation ``2 cos(Pκ) = Σ t_m Ω^{2m}``."""
-        trace = self._bloch.trace(self.cell.size)
-        return {m: self._expression(t) for m, t in enumerate(trace)}
-
     def acoustic(self, order: int = 4) -> dict[int, sp.Expr]:
         """The series of the acoustic branch.
 
@@ -153,7 +147,8 @@ class Dispersion(Value):
                 f"the optical series needs a cell of 2 masses, not {self.cell.size}"
             )
         # The two roots have the sum 1/Π.
-        series = {0: 1 / self._expression(self._bloch.Pi)}
+        Pi = self._expression(self._bloch.Pi)
+        series = {0: 1 / Pi}
         for n, coefficient in self.acoustic(order).items():
             series[n] = -coefficient
         return series
@@ -164,7 +159,8 @@ class Dispersion(Value):
 
         It is that of the acoustic branch ``Ω² = κ² (1 - (I/D²) κ² + …)``.
         """
-        return -self.acoustic(4)[4] * self.cell.spacing**2
+        fourth = self.acoustic(4)[4]
+        return -fourth * self.cell.spacing**2
 
     @cached_property
     def _model(self) -> Model:
@@ -263,11 +259,12 @@ class LoadedChain(Value):
     @cached_property
     def spring_constants(self) -> tuple[sp.Expr, ...]:
         """The spring constants ``A_i F′(δ_i)``."""
-        # Once for each stiffness: the search for δ takes a while.
         constants = {}
+        # Each stiffness once: the search for δ takes a while.
         for A in set(self.cell.stiffnesses):
             delta = self.law.inverse(self.precompression / A)
-            constants[A] = sp.powsimp(A * self.law.at(delta, 1))
+            slope = self.law.at(delta, 1)
+            constants[A] = sp.powsimp(A * slope)
         return tuple(constants[A] for A in self.cell.stiffnesses)
 
     @cached_property

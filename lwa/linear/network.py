@@ -122,7 +122,8 @@ class Network(NamedTuple):
             # At s^m the unknown a_m stands in k_0 a_m alone; all other terms are known forces.
             known = zero.copy()
             for n in range(1, m + 1):
-                known += (k[n] @ a[m - n][..., None])[..., 0]
+                column = a[m - n][..., None]
+                known += (k[n] @ column)[..., 0]
                 if n in square:
                     known += square[n][..., None] * masses * a[m - n]
             if m % 2 == 0:
