@@ -3,22 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 
 from lwa.base.exact import InputError, demand_numbers
 from lwa.cell import Cell
-from lwa.envelopes.response import CLOSE, Contacts, Matrix, Mode
+from lwa.envelopes.response import DRIVEN, SOUND, TOUCHING, Contacts, Mode
 from lwa.law import ContactLaw
-
-# A force on a mode, relative to the largest, that counts as none
-ROUNDING = 1e-7
-# 1 - (c_g/c_0)² from which on floats give the mean flow to six digits (1e-11/SOUND)
-SOUND = 1e-5
 
 K2, K3, K4 = sp.symbols("K2 K3 K4", positive=True)
 """Coefficients of the force ``K2 δ + K3 δ² + K4 δ³`` on top of the load, under `lwa.general`."""
@@ -65,7 +58,7 @@ def cell_mode(
     branch: int,
     floats: bool,
 ) -> Mode:
-    """Return the mode of a branch of a loaded cell.
+    """Return the mode of a branch of a loaded cell, in the units of the cell.
 
     Parameters
     ----------
@@ -81,27 +74,32 @@ def cell_mode(
         Number of the branch, from 0.
     floats : bool
         True for floats, False for exact numbers.
+
+    Raises
+    ------
+    InputError
+        Where branches touch, for sound, and where the mode drives a mode of twice its frequency.
     """
     loaded = LoadedLaw.of(law, compression * cell.shares(law.exponent)[0])
     compliances = cell.compliances(law.exponent)
     mass = cell.masses[0]
-    exact = Contacts(
+    contacts = Contacts(
         masses=np.array([m / mass for m in cell.masses]),
         c=np.array([sp.powsimp(part / compliances[0]) for part in compliances]),
         s=loaded.s,
         t=loaded.t,
     )
     if floats:
-        numbers = (*exact.masses, *exact.c, exact.s, exact.t, wavenumber)
+        numbers = (*contacts.masses, *contacts.c, contacts.s, contacts.t, wavenumber)
         free = set().union(*(x.free_symbols for x in numbers))
         demand_numbers(free, "floats need numbers")
-    sample = _sample(cell, exact, wavenumber, branch)
-    if floats:
-        mode = sample.mode()
+        mode = contacts.floats().mode(float(wavenumber), branch)
+    elif wavenumber.is_zero and branch == 0:
+        raise InputError(SOUND)
     elif cell.size == 1:
-        mode = equal_beads(exact.s, exact.t, wavenumber)
+        mode = equal_beads(contacts.s, contacts.t, wavenumber)
     else:
-        mode = edge_mode(cell, exact, sp.cos(wavenumber), branch, sample.bead)
+        mode = pair_at_edge(contacts, sp.cos(wavenumber), branch)
     rate = sp.powsimp(cell.stiffnesses[0] * loaded.slope / mass)  # unit of ω²
     length = loaded.length
     return Mode(
@@ -118,139 +116,6 @@ def cell_mode(
 def _scaled(values: Iterable[Any], unit: sp.Expr) -> list[sp.Expr]:
     """Values in a unit."""
     return [sp.sympify(value) * unit for value in values]
-
-
-def _sample(cell: Cell, exact: Contacts, wavenumber: sp.Expr, branch: int) -> Sampled:
-    """The modes in floats, at sample values of symbols."""
-    floats = Contacts(
-        masses=np.array([_sampled(cell, m) for m in exact.masses]),
-        c=np.array([_sampled(cell, c) for c in exact.c]),
-        s=_sampled(cell, exact.s),
-        t=_sampled(cell, exact.t),
-    )
-    return Sampled.of(floats, _sampled(cell, wavenumber), branch)
-
-
-def _sampled(cell: Cell, value: sp.Expr) -> float:
-    """Float of an expression at sample values of its symbols, to order the branches.
-
-    Samples are π/3, π/6, … along the cell, so that the first mass is the heaviest and no sample is
-    one of the numbers in the cell, and 1.5 for symbols of neither masses nor stiffnesses.
-    """
-    symbols = dict.fromkeys(value.free_symbols, 1.5)
-    for values in (cell.stiffnesses, cell.masses):
-        # A symbol that occurs twice has its first sample.
-        for i, part in reversed([*enumerate(values)]):
-            symbols |= dict.fromkeys(part.free_symbols, np.pi / (3 + 3 * i))
-    return float(value.xreplace(symbols))
-
-
-@dataclass(frozen=True, eq=False)
-class Sampled:
-    """Modes of a cell in floats.
-
-    Parameters
-    ----------
-    contacts : Contacts
-        The cell.
-    z : complex or int
-        ``e^{iκ}``, real at the edges.
-    squares, vectors : array
-        Squared frequencies, and ``√m`` times the modes.
-    branch : int
-        Number of the branch.
-    """
-
-    contacts: Contacts
-    z: complex | int
-    squares: NDArray[Any]
-    vectors: NDArray[Any]
-    branch: int
-
-    @classmethod
-    def of(cls, contacts: Contacts, kappa: float, branch: int) -> Sampled:
-        """Modes at a wavenumber; raises `lwa.InputError` where branches touch, and for sound."""
-        z = complex(np.exp(1j * kappa))
-        z = round(z.real) if abs(z.imag) < CLOSE else z
-        squares, vectors = np.linalg.eigh(contacts.secular(z, 0) / contacts.units)
-        found = cls(contacts, z, squares, vectors, branch)
-        if np.min(np.abs(found.gaps), initial=np.inf) < contacts.close:
-            raise InputError(
-                "two branches touch at this wavenumber: an envelope has one mode"
-            )
-        if kappa == 0 == branch:
-            raise InputError(
-                "the frequency is zero at this wavenumber: sound, c_g = c_0, has no envelope; its "
-                "mean flow runs along with it"
-            )
-        return found
-
-    @property
-    def gaps(self) -> NDArray[Any]:
-        """Differences x_j - x of the squared frequencies of the other branches."""
-        others = np.delete(self.squares, self.branch)
-        return np.asarray(others - self.squares[self.branch])
-
-    @property
-    def shape(self) -> NDArray[Any]:
-        """Mode φ of the branch."""
-        return np.asarray(self.vectors[:, self.branch] / np.sqrt(self.contacts.masses))
-
-    @property
-    def bead(self) -> int:
-        """Index of the bead with the largest displacement."""
-        return int(np.argmax(np.abs(self.shape)))
-
-    def mode(self) -> Mode:
-        """The mode and its response; `lwa.InputError` where floats cannot resolve the response."""
-        contacts = self.contacts
-        z = self.z
-        x = float(self.squares[self.branch])
-        # T(x) - 2 cos κ = Π m Π c Π_j (x_j - x) over the modes j, differentiated at a root
-        first = -np.prod(contacts.masses * contacts.c * np.append(self.gaps, 1))
-        second = -2 * first * (1 / self.gaps).sum()
-        sound = 1 / (contacts.masses.sum() * contacts.c.sum())  # c_0²
-        if x < contacts.close or 1 - (z.imag / first) ** 2 / x / sound < SOUND:
-            exact = "; exact results stand" if len(contacts.masses) == 1 else ""
-            raise InputError(
-                "the mode's group velocity is too close to that of sound, c_g = c_0, for floats: "
-                f"its mean flow runs along with it{exact}"
-            )
-        projector = np.outer(self.shape, self.shape.conj())
-        found = contacts.mode(
-            z, z.imag, x, (first, second), projector, self._resolvent(4 * x)
-        )
-        phase = abs(self.shape[self.bead]) / self.shape[self.bead]
-        return Mode(
-            square=x,
-            slope=found.slope,
-            curvature=np.real(found.curvature),
-            cubic=np.real(found.cubic),
-            mean=np.real(found.mean),
-            size=np.real(found.size),
-            shape=self.shape * phase,
-        )
-
-    def _resolvent(self, square: float) -> Matrix:
-        """Inverse of K(2κ) - 4ω²M; a mode of the frequency 2ω that is not driven is left out."""
-        contacts = self.contacts
-        z = self.z
-        squares, vectors = np.linalg.eigh(contacts.secular(z * z, 0) / contacts.units)
-        vectors = vectors / np.sqrt(contacts.masses)[:, None]
-        d = contacts.strains(z) @ self.shape
-        drive = contacts.strains(1 / (z * z)).T @ (d * d / contacts.c**2)
-        near = np.abs(squares - square) < contacts.close
-        driven = np.abs(vectors.conj().T @ drive) > ROUNDING * np.abs(drive).max()
-        if np.any(near & driven):
-            raise InputError(
-                "the second harmonic is a mode too, or too near one for floats: the envelope's "
-                "equation fails"
-            )
-        rates = np.where(near, 0, 1 / np.where(near, 1, squares - square))
-        return np.asarray((vectors * rates) @ vectors.conj().T)
-
-
-# --- exact ---
 
 
 def equal_beads(s: sp.Expr, t: sp.Expr, wavenumber: sp.Expr) -> Mode:
@@ -273,90 +138,76 @@ def equal_beads(s: sp.Expr, t: sp.Expr, wavenumber: sp.Expr) -> Mode:
     )
 
 
-def edge_mode(
-    cell: Cell, contacts: Contacts, edge: sp.Integer, branch: int, bead: int
-) -> Mode:
-    """The mode of two beads at the edge of a band, in exact numbers.
+def pair_at_edge(contacts: Contacts, edge: sp.Integer, branch: int) -> Mode:
+    """The mode of two beads at the edge of a band in closed form.
 
-    Symbols stand for all numbers until the end: a pole at the frequency 2ω that no force drives
-    cancels then.
+    At ``κ = 0`` the beads swing against each other. At ``κ = π`` one of two unlike beads between
+    equal contacts swings alone, and one of two unlike contacts between equal beads works alone.
+
+    The second harmonic has the wavenumber 0. It shifts the first bead by y against the second, and
+    so compresses the contacts by y and -y::
+
+        (K2_1 + K2_2 - 4x μ) y = K3_2 d_2² - K3_1 d_1²,    μ = m_1 m_2/(m_1 + m_2).
 
     Parameters
     ----------
-    cell : Cell
-        The chain; its symbols have sample values by which the branches are ordered.
     contacts : Contacts
-        The cell under load; at ``κ = π`` masses or contacts are alike.
+        The cell under load; at ``κ = π`` masses or contacts are alike. Of symbols the first mass is
+        taken to be the heavier one, and the first contact the stiffer one.
     edge : {1, -1}
-        ``e^{iκ}``.
+        ``cos κ``.
     branch : int
-        Number of the branch.
-    bead : int
-        Index of the bead whose φ is positive.
+        0 for the acoustic branch, 1 for the optical one.
 
     Raises
     ------
     InputError
-        Where the second harmonic is a mode that the mode drives.
+        Where the branches touch, and where the second harmonic is a mode that the mode drives.
     """
-    letters, values = _letters(contacts)
-    squares = _edge_squares(letters, edge)
-    squares.sort(key=lambda square: _sampled(cell, square.xreplace(values)))
-    square = squares[branch]
-    x = sp.Dummy("x")
-    secular = sp.Matrix(letters.secular(edge, x))
-    relation = secular.det() * np.prod(letters.c)  # T(x) - 2 cos κ
-    first, second = (sp.factor(relation.diff(x, n).subs(x, square)) for n in (1, 2))
-    adjugate = np.array(secular.subs(x, square).adjugate())
-    projector = adjugate / (np.diagonal(adjugate) * letters.masses).sum()
-    resolvent = np.array(sp.Matrix(letters.secular(sp.S.One, 4 * square)).inv())
-    found = letters.mode(edge, 0, square, (first, second), projector, resolvent)
-
-    def number(value: Any) -> sp.Expr:
-        return sp.factor(value).xreplace(values)
-
-    cubic = number(found.cubic)
-    if cubic.has(sp.zoo, sp.nan):
-        raise InputError(
-            "the second harmonic is a mode too: the envelope's equation fails"
-        )
-    root = sp.sqrt(number(projector[bead, bead]))
-    return Mode(
-        square=number(square),
-        slope=sp.S.Zero,
-        curvature=number(found.curvature),
-        cubic=cubic,
-        mean=[number(e) for e in found.mean],
-        size=[number(d) for d in found.size],
-        shape=[number(phi) / root for phi in projector[:, bead]],
-    )
-
-
-def _letters(contacts: Contacts) -> tuple[Contacts, dict[sp.Symbol, sp.Expr]]:
-    """A cell with symbols for its numbers, one for equal numbers, and the numbers by symbol."""
-    values: dict[sp.Symbol, sp.Expr] = {}
-
-    def named(numbers: Iterable[sp.Expr]) -> Matrix:
-        symbols: dict[sp.Expr, sp.Symbol] = {}
-        for number in numbers:
-            if number not in symbols:
-                symbols[number] = sp.Dummy(positive=True)
-                values[symbols[number]] = number
-        return np.array([symbols[number] for number in numbers])
-
-    masses = named(contacts.masses)
-    c = named(contacts.c)
-    s, t = sp.Dummy("s"), sp.Dummy("t")
-    values |= {s: contacts.s, t: contacts.t}
-    return replace(contacts, masses=masses, c=c, s=s, t=t), values
-
-
-def _edge_squares(contacts: Contacts, edge: sp.Integer) -> list[sp.Expr]:
-    """Squared frequencies of two beads: at κ = 0, or of like masses or contacts at π."""
     m1, m2 = contacts.masses
-    k1, k2 = 1 / contacts.c
+    c1, c2 = contacts.c
+    total = m1 + m2
+    reduced = m1 * m2 / total
+    stiffness = 1 / c1 + 1 / c2
+    light = 0 if (m1 - m2).is_negative else 1
     if edge == 1:
-        return [sp.S.Zero, (k1 + k2) * (1 / m1 + 1 / m2)]
-    if m1 == m2:
-        return [2 * k1 / m1, 2 * k2 / m1]
-    return [2 * k1 / m1, 2 * k1 / m2]
+        x = stiffness / reduced
+        phi = np.array([m2, -m1]) / sp.sqrt(m1 * m2 * total)
+        if light == 1:
+            phi = -phi
+    elif m1 != m2:
+        bead = light if branch == 1 else 1 - light
+        mass = contacts.masses[bead]
+        x = 2 / (c1 * mass)
+        phi = np.array([sp.S.Zero, sp.S.Zero])
+        phi[bead] = 1 / sp.sqrt(mass)
+    elif c1 != c2:
+        stiff = 1 if (c1 - c2).is_positive else 0
+        contact = stiff if branch == 1 else 1 - stiff
+        x = 2 / (contacts.c[contact] * m1)
+        # The beads on both sides of the contact move against each other.
+        phi = np.array([1, -1 if contact == 0 else 1]) / sp.sqrt(2 * m1)
+    else:
+        raise InputError(TOUCHING)
+    size = np.array([phi[0] - phi[1], phi[1] - edge * phi[0]]) ** 2
+    K3 = contacts.s / contacts.c**2
+    K4 = contacts.t / contacts.c**3
+    drive = K3[1] * size[1] - K3[0] * size[0]
+    y = sp.S.Zero
+    if drive != 0:
+        rate = stiffness - 4 * x * reduced
+        if rate.is_zero:
+            raise InputError(DRIVEN)
+        y = drive / rate
+    # c_g is 0 at the edge, and so is the lasting force.
+    mean = -2 * contacts.c * K3 * size
+    return Mode(
+        square=x,
+        slope=sp.S.Zero,
+        # m_1 m_2 x² - (K2_1 + K2_2)(m_1 + m_2) x + 2 K2_1 K2_2 (1 - cos κ) = 0 twice by κ
+        curvature=edge / (c1 * c2 * (stiffness * total - 2 * m1 * m2 * x)),
+        cubic=(3 * K4 * size**2 + 2 * K3 * size * mean).sum() - 2 * drive * y,
+        mean=mean,
+        size=size,
+        shape=phi,
+    )

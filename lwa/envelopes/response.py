@@ -24,9 +24,7 @@ load is held. At third order the frequency rises by ``χ|Ψ|²``, with the sum o
     2ω χ = Σ_i [3 K4_i |d_i|⁴ + 2 K3_i (d̄_i² e2_i + |d_i|² e0_i)].
 
 The frequencies are the roots ``x = ω²`` of ``T(x) = 2 cos κ``, where
-``det(K(κ) - xM) Π c_i = T(x) - 2 cos κ``, and φφ† is the adjugate of ``K(κ) - xM`` over its trace
-with M. So all results are rational functions of x and ``z = e^{iκ}``, which one formula evaluates
-in floats and, where z is 1 or -1, in symbols.
+``det(K(κ) - xM) Π c_i = T(x) - 2 cos κ``.
 """
 
 from __future__ import annotations
@@ -37,10 +35,26 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lwa.base.exact import InputError
+
 Matrix = NDArray[Any]
 
-CLOSE = 1e-11
-"""Relative difference of squared frequencies that counts as none."""
+# Relative difference of squared frequencies that counts as none
+_CLOSE = 1e-11
+# Force on a mode, over the largest on a contact, that counts as none
+_ROUNDING = 1e-7
+# 1 - (c_g/c_0)² from which on floats give the mean flow to six digits (_CLOSE/_SLOWER)
+_SLOWER = 1e-5
+
+TOUCHING = "two branches touch at this wavenumber: an envelope has one mode"
+SOUND = (
+    "the frequency is zero at this wavenumber: sound, c_g = c_0, has no envelope; its mean flow "
+    "runs along with it"
+)
+DRIVEN = (
+    "the second harmonic is a mode too, or too near one: the envelope's equation fails"
+)
+"""Reasons why a mode has no envelope."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,76 +93,88 @@ class Contacts:
     s: Any
     t: Any
 
-    @property
-    def units(self) -> Matrix:
-        """Matrix ``√(m_i m_j)``, by which K divided is the matrix of the squared frequencies."""
-        return np.asarray(np.sqrt(np.outer(self.masses, self.masses)))
+    def floats(self) -> Contacts:
+        """The same cell in floats."""
+        return Contacts(
+            masses=self.masses.astype(float),
+            c=self.c.astype(float),
+            s=float(self.s),
+            t=float(self.t),
+        )
 
     @property
-    def close(self) -> float:
-        """Difference of squared frequencies that counts as none in floats."""
-        return CLOSE / float(self.c.min() * self.masses.min())
+    def _close(self) -> float:
+        """Difference of squared frequencies that counts as none."""
+        return _CLOSE / float(self.c.min() * self.masses.min())
 
-    def strains(self, z: Any) -> Matrix:
-        """The matrix B(κ), shape (contacts, beads), ``z = e^{iκ}``; B† is the transpose for 1/z."""
-        identity = np.diag(self.masses * 0 + 1)
+    def _strains(self, z: complex) -> Matrix:
+        """The matrix B(κ) in floats, shape (contacts, beads), ``z = e^{iκ}``."""
+        identity = np.eye(len(self.masses))
         after = np.roll(identity, 1, axis=1)
-        after = np.vstack([after[:-1], after[-1:] * z])
-        return np.asarray(identity - after)
+        return np.asarray(identity - np.vstack([after[:-1], z * after[-1:]]))
 
-    def secular(self, z: Any, x: Any) -> Matrix:
-        """The matrix ``K(κ) - xM``, shape (beads, beads), ``z = e^{iκ}``."""
-        K = self.strains(1 / z).T @ (self.strains(z) / self.c[:, None])
-        return np.asarray(K - np.diag(self.masses) * x)
+    def _modes(self, z: complex) -> tuple[Matrix, Matrix]:
+        """Squared frequencies, and the modes φ as columns."""
+        B = self._strains(z)
+        roots = np.sqrt(self.masses)
+        K = B.conj().T @ (B / self.c[:, None])
+        squares, vectors = np.linalg.eigh(K / np.outer(roots, roots))
+        return squares, vectors / roots[:, None]
 
-    def mode(
-        self,
-        z: Any,
-        sine: Any,
-        x: Any,
-        slopes: tuple[Any, Any],
-        projector: Matrix,
-        resolvent: Matrix,
-    ) -> Mode:
-        """Response of the mode with the squared frequency x.
-
-        The shape of the mode is left as the matrix φφ†.
-
-        Parameters
-        ----------
-        z, sine : number
-            ``e^{iκ}``, and sin κ.
-        x : number
-            The squared frequency.
-        slopes : tuple of two numbers
-            ``T′`` and ``T″`` at x.
-        projector : array, shape (beads, beads)
-            The matrix φφ†.
-        resolvent : array, shape (beads, beads)
-            The inverse of K(2κ) - 4xM.
-        """
-        first, second = slopes
-        slope = -2 * sine / first  # x′, as T′ x′ = -2 sin κ
-        square = slope**2
-        # x″, as T″ x′² + T′ x″ = -2 cos κ
-        bend = (-(z + 1 / z) - second * square) / first
-        speed = self.masses.sum() * self.c.sum() * square / (4 * x)  # (c_g/c_0)²
+    def mode(self, kappa: float, branch: int) -> Mode:
+        """The mode of a branch at a wavenumber, in floats."""
+        z = complex(np.exp(1j * kappa))
+        if abs(z.imag) < _CLOSE:
+            z = round(z.real)  # the edges of bands have real modes
+        squares, modes = self._modes(z)
+        x = float(squares[branch])
+        gaps = np.delete(squares, branch) - x
+        if np.any(np.abs(gaps) < self._close):
+            raise InputError(TOUCHING)
+        if kappa == 0 and branch == 0:
+            raise InputError(SOUND)
+        # T(x) - 2 cos κ = Π m Π c Π_j (x_j - x) over the modes j, differentiated at a root
+        first = -np.prod(self.masses * self.c * np.append(gaps, 1))
+        second = -2 * first * (1 / gaps).sum()
+        slope = -2 * z.imag / first  # x′, as T′ x′ = -2 sin κ
+        bend = (-2 * z.real - second * slope**2) / first  # T″ x′² + T′ x″ = -2 cos κ
+        speed = self.masses.sum() * self.c.sum() * slope**2 / (4 * x)  # (c_g/c_0)²
+        if x < self._close or 1 - speed < _SLOWER:
+            exact = "; exact results stand" if len(self.masses) == 1 else ""
+            raise InputError(
+                "the mode's group velocity is too close to that of sound, c_g = c_0, for floats: "
+                f"its mean flow runs along with it{exact}"
+            )
+        phi = modes[:, branch]
+        d = self._strains(z) @ phi
+        size = np.abs(d) ** 2
         K3 = self.s / self.c**2
         K4 = self.t / self.c**3
-        products = self.strains(z) @ projector @ self.strains(1 / z).T  # d d†
-        size = np.diagonal(products)
-        G = self.strains(z * z) @ resolvent @ self.strains(1 / (z * z)).T
         driven = (self.c * K3 * size).sum() / self.c.sum()
         force = 2 * driven * speed / (speed - 1)
         mean = self.c * (force - 2 * K3 * size)
-        cubic = (3 * K4 * size**2 + 2 * K3 * size * mean).sum()
-        cubic -= 2 * K3 @ (G * products.T**2) @ K3
+        harmonic = np.real(d.conj() ** 2 * self._harmonic(z * z, 4 * x, K3 * d * d))
+        bead = np.argmax(np.abs(phi))
         return Mode(
             square=x,
             slope=slope,
-            curvature=bend / 2 - square / (4 * x),
-            cubic=cubic,
+            curvature=bend / 2 - slope**2 / (4 * x),
+            cubic=(3 * K4 * size**2 + 2 * K3 * (harmonic + size * mean)).sum(),
             mean=mean,
             size=size,
-            shape=projector,
+            shape=phi * abs(phi[bead]) / phi[bead],
         )
+
+    def _harmonic(self, z: complex, square: float, pressed: Matrix) -> Matrix:
+        """Compressions e2 under the forces ``K3 d²`` in the contacts; z is ``e^{2iκ}``."""
+        squares, modes = self._modes(z)
+        bent = self._strains(z) @ modes
+        forces = bent.conj().T @ pressed
+        gaps = squares - square
+        # A mode of the frequency 2ω that no force drives is left out.
+        near = np.abs(gaps) < self._close
+        driven = np.abs(forces) > _ROUNDING * np.abs(pressed).max()
+        if np.any(near & driven):
+            raise InputError(DRIVEN)
+        amplitudes = np.where(near, 0, forces / np.where(near, 1, gaps))
+        return np.asarray(-bent @ amplitudes)

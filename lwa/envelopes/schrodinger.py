@@ -36,6 +36,7 @@ from lwa.base.arrays import Array
 from lwa.base.exact import (
     InputError,
     demand_distinct,
+    factored,
     integer,
     positive,
     shorten,
@@ -48,12 +49,6 @@ from lwa.cell import k as symbol_k
 from lwa.envelopes.modes import cell_mode
 from lwa.envelopes.response import Mode
 from lwa.law import ContactLaw, for_cell, substituted
-
-# Operations in a result that from there on would take minutes to factor
-LONG = 400
-# Greatest q of powers x^{p/q} that are factored, as polynomials in x^{1/q}: a decimal k such as
-# 3.1185 makes polynomials of thousands of terms.
-FINE = 100
 
 KindName = Literal["bright", "dark"]
 """A kind of envelope: localised, ``ω″χ < 0``, or a dip in a wave train."""
@@ -170,8 +165,7 @@ class Envelope(Value):
             raise InputError(
                 "the dispersion or the nonlinearity vanishes: no envelope has a shape"
             )
-        if _short(sign):
-            sign = sp.simplify(sign)
+        sign = self._tidy(sign)
         if sign.is_negative is None:
             raise InputError("kind depends on symbols: give numbers")
         return "bright" if sign.is_negative else "dark"
@@ -251,18 +245,8 @@ class Envelope(Value):
         return tuple(self._tidy(value) for value in values)
 
     def _tidy(self, value: sp.Expr) -> sp.Expr:
-        """A value as a float, or with its factors unless that would take minutes."""
-        if self.floats:
-            return sp.N(value)
-        return sp.powsimp(sp.factor(value)) if _short(value) else value
-
-
-def _short(value: sp.Expr) -> bool:
-    """Return True for an expression that is factored within seconds."""
-    if sp.count_ops(value) >= LONG:
-        return False
-    roots = [p.exp.q for p in value.atoms(sp.Pow) if p.exp.is_Rational]
-    return max(roots, default=1) <= FINE
+        """A value as a float, or with its factors."""
+        return sp.N(value) if self.floats else sp.powsimp(factored(value))
 
 
 @dataclass(frozen=True)
@@ -329,13 +313,7 @@ class Breather(Value):
     def _square(self) -> sp.Expr:
         """Square a² of the envelope's amplitude."""
         square = self._shift * self.detuning / self.envelope.nonlinearity
-        return sp.powsimp(self._factored(square))
-
-    def _factored(self, value: sp.Expr) -> sp.Expr:
-        """The value with its factors, unless SymPy would take minutes, as where Δ is a surd."""
-        if _short(value) and not self.detuning.is_irrational:
-            return sp.factor(value)
-        return value
+        return sp.powsimp(factored(square))
 
     @cached_property
     def amplitude(self) -> tuple[sp.Expr, ...]:
@@ -346,7 +324,7 @@ class Breather(Value):
     def width(self) -> sp.Expr:
         """Width 1/b, in cells, of the envelope sech(bn) or tanh(bn)."""
         ratio = self.envelope.dispersion / (self._shift * self.detuning)
-        return sp.sqrt(self._factored(-ratio if self.kind == "bright" else ratio))
+        return sp.sqrt(factored(-ratio if self.kind == "bright" else ratio))
 
     @cached_property
     def opening_detuning(self) -> sp.Expr:
@@ -397,7 +375,8 @@ def envelope(
     Parameters
     ----------
     cell : Cell
-        The periodic cell. Of masses that are symbols the first one is taken to be the heaviest.
+        The periodic cell. Of two masses that are symbols the first one is taken to be the heavier
+        one, and of two stiffnesses the larger one.
     law : ContactLaw, optional
         The contact law, by default a power; under `lwa.general` results hold the symbols K2, K3, K4
         of the force ``K2 δ + K3 δ² + K4 δ³`` on top of the load, for equal contacts.
