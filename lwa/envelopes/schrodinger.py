@@ -5,7 +5,7 @@
 To leading order the displacements in cell n are ``u = Ψ(X,T) U e^{i(κn - ωt)} + c.c.``: U is the
 mode, with ``Σ m_i |U_i|² = 1`` over the beads of a cell, ω its frequency, κ its wavenumber per
 cell, ``ω″`` the second derivative of ω by κ, ``X = n - (dω/dκ) t``, ``T = t``, and χ the nonlinear
-coefficient (`lwa.envelopes.response`). The load is held, not the length. Equal beads under a power
+coefficient (`lwa.envelopes.modes`). The load is held, not the length. Equal beads under a power
 law of the exponent k have ``χ = -ω (k-1) (k - cos² κ/2)/(m δ0²)``, δ0 the static compression.
 
 At the edge of a band, where the group velocity is 0, envelopes stand. Such a breather of the
@@ -35,6 +35,7 @@ from lwa.base import latex
 from lwa.base.arrays import Array
 from lwa.base.exact import (
     InputError,
+    brief,
     demand_distinct,
     factored,
     integer,
@@ -46,8 +47,7 @@ from lwa.base.frozen import Value
 from lwa.base.words import BRANCHES, BranchName, one_of
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
-from lwa.envelopes.modes import cell_mode
-from lwa.envelopes.response import Mode
+from lwa.envelopes.modes import Mode, cell_mode
 from lwa.law import ContactLaw, for_cell, substituted
 
 KindName = Literal["bright", "dark"]
@@ -249,7 +249,7 @@ class Envelope(Value):
         return sp.N(value) if self.floats else sp.powsimp(factored(value))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Breather(Value):
     """The standing envelope of a frequency (see `lwa.Envelope.breather`).
 
@@ -289,6 +289,13 @@ class Breather(Value):
         """Raise an error that names the detuning."""
         detuning = sp.sstr(sp.N(self.detuning, 5), full_prec=False)
         raise InputError(f"detuning 1 - f/f0 is {detuning}: {why}")
+
+    def __repr__(self) -> str:
+        beads = ", ".join(map(brief, self.amplitude))
+        return (
+            f"Breather({self.kind}, frequency={brief(self.frequency)}, "
+            f"width={brief(self.width)}, amplitudes {beads})"
+        )
 
     def latex_rows(self) -> list[str]:
         shape = r"\operatorname{sech}" if self.kind == "bright" else r"\tanh"
