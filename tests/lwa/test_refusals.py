@@ -160,11 +160,11 @@ CALLS = [
         lambda: front(1, 0, law=BENT),
         "changes its sign between the strains 0.67[0-9]* and 0.66",
     ),
-    (lambda: front(5, 1, law=WAVY), "changes its sign at the strain 3.1"),
+    (lambda: front(5, 1, law=WAVY), "changes its sign between the strains 3.1"),
     (lambda: front(1 + sp.Rational(1, 10**16), 1), "1e-15 of it at least"),
     (
         lambda: lwa.piston(Cell(["m"]), 1, law=named("exponential", 1)),
-        "numbers are wanted",
+        "results are computed in numbers",
     ),
 ]
 
