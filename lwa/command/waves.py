@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 import sympy as sp
 
+from lwa.base import latex
 from lwa.base.exact import InputError, read_exact
 from lwa.base.frozen import NoSolitaryWave, Shown
 from lwa.base.words import EXTENTS, LANGUAGES, QUANTITIES, ExtentName, QuantityName
@@ -19,7 +20,7 @@ from lwa.command.answer import (
     Form,
     Lines,
     Row,
-    Values,
+    Scale,
     as_float,
     attempt,
     estimated,
@@ -35,6 +36,7 @@ from lwa.command.options import (
     given,
     theory_options,
 )
+from lwa.expansion.lattice_wave import LatticeWave, lattice_wave
 from lwa.theory import Theory, homogenize
 from lwa.wave.compact import CompactWave, canonical_wave
 from lwa.wave.reduction import Reduction
@@ -219,9 +221,10 @@ def any_amplitude(chain: ChainInput, theory: Theory) -> Answer:
         *_reduction_rows(reduction),
         *_canonical(chain, theory, None),
     ]
+    notes = _put_lattice(rows, chain, None)
     shown: list[Shown | str] = [theory.pde, wave]
     shown += [reduction] if _is_short(reduction) else RELATIONS
-    return Answer(settings_json(theory), rows, chain.scale, shown)
+    return Answer(settings_json(theory), rows, chain.scale, shown, notes=notes)
 
 
 RELATIONS = (
@@ -258,19 +261,66 @@ def of_force(chain: ChainInput, theory: Theory, force: sp.Expr) -> Answer:
     """The compact wave of a peak contact force, in space and time."""
     wave = _compact(theory).at_force(force)
     rows: Lines = [
-        "endless chain without load",
-        *closure_lines(theory),
         chain.text,
+        "the compact wave in a chain without load:",
+        *closure_lines(theory),
         "",
         *pulse_rows(wave, "peak", "both"),
         Row("beta", "", wave.wave.beta, "1/m"),
         Row("width", "", wave.wave.width, "m", r"\frac{\pi}{\beta}"),
         *_canonical(chain, theory, wave.force),
     ]
+    notes = _put_lattice(rows, chain, wave.force) + chain.hertz_notes(wave.force)
     shown: list[Shown | str] = [wave.wave, wave]
-    head: Values = settings_json(theory)
-    notes = chain.hertz_notes(wave.force)
-    return Answer(head, rows, chain.scale, shown, notes=notes)
+    return Answer(settings_json(theory), rows, chain.scale, shown, notes=notes)
+
+
+def _put_lattice(rows: Lines, chain: ChainInput, force: sp.Expr | None) -> list[str]:
+    """Put the lattice's own wave, where it is known, among the rows of the compact wave.
+
+    Behind the line on the chain if the error is known, which is then below that of the compact
+    wave; else at the end. Returns a note where the lattice has no such wave.
+    """
+    try:
+        wave = lattice_wave(
+            chain.cell, law=chain.law, force=1 if force is None else force
+        )
+    except InputError:  # a cell without a closed form
+        return []
+    except NoSolitaryWave as reason:
+        return [reason.reason]
+    part = _lattice(chain.scale, wave, force)
+    if any(isinstance(row, Row) and row.measured for row in part.rows):
+        rows[1:1] = [part, ""]
+    else:
+        rows.append(part)
+    return []
+
+
+def _lattice(scale: Scale, wave: LatticeWave, force: sp.Expr | None) -> Answer:
+    """Speed and widths of the lattice's own wave; without a force those at B = 1."""
+    measured = wave
+    if scale.spacing.is_Symbol:  # the unit of length
+        measured = wave.at(**{scale.spacing.name: 1})
+    extents = EXTENTS
+    error = estimated(measured, "speed")
+    speed = Row("speed", "speed dx/dt", wave.speed, "m/s", latex.SPEED, estimate=error)
+    if force is None:
+        extents = EXTENTS[:1]
+        error = estimated(measured, "scaled_speed", 1)
+        scaled = wave.scaled_speed(1)
+        speed = Row("speed", "V_s at B = 1", scaled, symbol="V_{s}", estimate=error)
+    rows = [speed]
+    for extent in extents:
+        for q in QUANTITIES:
+            error = estimated(measured, "fwhm", q, extent)
+            rows.append(width_row(q, wave.fwhm(q, extent), extent, estimate=error))
+    lines: Lines = ["", f"the lattice's own wave ({wave.theory}):"]
+    for row in rows:
+        # LaTeX has the compact wave's quantities of the same names, too.
+        symbol = rf"{row.symbol}\big|_{{\mathrm{{lattice}}}}"
+        lines.append(replace(row, symbol=symbol))
+    return Answer({"theory": wave.theory}, lines, scale, errors=_ERRORS, key="lattice")
 
 
 def _canonical(

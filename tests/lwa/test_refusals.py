@@ -62,7 +62,7 @@ CALLS = [
         lambda: homogenize(Cell([1, 2], [1, 2]), law=lwa.general()),
         "shares of the strain",
     ),
-    (lambda: homogenize(Dimer(3, 1)).pde.energy, 'closure="full"'),
+    (lambda: homogenize(Dimer(3, 1)).pde.energy, "closure='full'"),
     (lambda: homogenize(DIMER, branch="optical").pde.energy, "acoustic"),
     (lambda: homogenize(DIMER, branch="optical").pde.traveling_wave(), "acoustic"),
     (
