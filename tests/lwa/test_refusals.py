@@ -61,7 +61,7 @@ CALLS = [
         lambda: homogenize(Cell([1, 2], [1, 2]), law=lwa.general()),
         "shares of the strain",
     ),
-    (lambda: homogenize(Dimer(3, 1)).pde.energy, 'closure="full"'),
+    (lambda: homogenize(Dimer(3, 1)).pde.energy, "closure='full'"),
     (lambda: homogenize(DIMER, branch="optical").pde.energy, "acoustic"),
     (lambda: homogenize(DIMER, branch="optical").pde.traveling_wave(), "acoustic"),
     (
@@ -154,12 +154,15 @@ CALLS = [
     (lambda: front(1, 2).peak, "a rarefaction has no pulse"),
     (lambda: front("p", 1, law=Power("k")).kind, "kind depends on symbols"),
     (lambda: front(1, 0, law=Power(1)), "a front without load wants k > 1"),
-    (lambda: front(1, 0, law=BENT), "changes its sign at the strain 0.66667"),
-    (lambda: front(5, 1, law=WAVY), "changes its sign at the strain 3.1"),
+    (
+        lambda: front(1, 0, law=BENT),
+        "changes its sign between the strains 0.67[0-9]* and 0.66",
+    ),
+    (lambda: front(5, 1, law=WAVY), "changes its sign between the strains 3.1"),
     (lambda: front(1 + sp.Rational(1, 10**16), 1), "1e-15 of it at least"),
     (
         lambda: lwa.piston(Cell(["m"]), 1, law=named("exponential", 1)),
-        "numbers are wanted",
+        "results are computed in numbers",
     ),
 ]
 

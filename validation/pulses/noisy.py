@@ -168,6 +168,7 @@ def _exact(t: Array, f: Array, size: float) -> Iterator[NoisyPulse]:
     signal = spline(t, f - level)
     coarse = [spline(t[start::2], f[start::2] - level) for start in (0, 1)]
     first = first_pulse(signal)
+    doubt = _before_start(f)
     later = [
         pulse
         for pulse in all_pulses(signal)
@@ -188,8 +189,25 @@ def _exact(t: Array, f: Array, size: float) -> Iterator[NoisyPulse]:
             value = getattr(pulse, name)
             error = max(abs(value - getattr(other, name)) for other in rough)
             numbers[name] = Estimate(value, error)
+        # A base that is off by this much moves the peak as much, and both flanks at its half.
+        for name in ("peak", "fwhm"):
+            numbers[name] = numbers[name].widened(doubt / pulse.peak)
         numbers["peak"] *= size
         yield NoisyPulse(numbers, level * size)
+
+
+def _before_start(f: Array) -> float:
+    """Return the error of the first sample as the base: the growth e^{t/T} that it may end.
+
+    A record may begin in the front of its pulse; a contact that is open at first has no such error.
+    """
+    if f[0] == 0:
+        return 0.0
+    first, second = map(float, np.diff(f[:3]))
+    if not 0 < first < second:
+        return abs(first)
+    # Differences of a + b e^{t/T} are as b (q - 1) and b (q - 1) q, q the growth in one step.
+    return first**2 / (second - first)
 
 
 def in_unit(time: float, unit: str) -> str:
