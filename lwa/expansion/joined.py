@@ -189,7 +189,7 @@ STEPS = 8
 """Steps up to Γ(z + 8), where the next term of Stirling's series is 2e-8 and changes slowly."""
 
 TERMS = 24
-"""Terms of the sum of the incomplete beta function, which fall as ``x^j/√j``, and x is at most ½."""
+"""Terms of the sum of the incomplete beta function, falling as ``x^j/√j``; x is at most ½."""
 
 
 def elementary(value: sp.Expr) -> sp.Expr:
