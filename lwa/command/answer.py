@@ -139,7 +139,7 @@ class Row:
             found["_value"] = float(self.value)
         else:
             floats = self._floats(scale)
-            closed = not any(x.has(sp.Float) for x in self._each)
+            closed = not any(x.is_Float for x in self._each)
             if closed and self.form != "number":
                 found[""] = self.value
             if self.form != "formula" and floats is not None:
@@ -196,12 +196,16 @@ class Row:
             return formula if exact else number
         return number if len(formula) > LONG else f"{formula} ≈ {number}"
 
-    def latex(self) -> str:
+    def latex(self, scale: Scale) -> str:
         """The row as ``symbol = value``; "" without a symbol or a value."""
         if not self.symbol or isinstance(self.value, InputError):
             return ""
         if self.measured is not None:
-            return f"{self.symbol} = {self.measured.latex()}"
+            number = self.measured.latex()
+            unit = not isinstance(self.value, Estimate) and scale.unit_of(self.value)
+            if unit:
+                number = rf"\left({number}\right) {unit}"
+            return f"{self.symbol} = {number}"
         return f"{self.symbol} = {', '.join(map(latex.expression, self._each))}"
 
 
@@ -338,7 +342,8 @@ class Answer:
 
     def latex(self) -> str:
         """The display that ``--format latex`` prints, units and notes as comments behind it."""
-        lines = [latex.align(list(self._equations()))]
+        # A row may be among those of a result.
+        lines = [latex.align(list(dict.fromkeys(self._equations())))]
         if self.scale.si:
             lines.append("% numbers are in SI: m, s, kg, N, rad")
         lines += [f"% {note}" for note in self.notes]
@@ -350,8 +355,8 @@ class Answer:
         for row in self.rows:
             if isinstance(row, Answer):
                 yield from row._equations()
-            elif isinstance(row, Row) and row.latex():
-                yield row.latex()
+            elif isinstance(row, Row) and row.latex(self.scale):
+                yield row.latex(self.scale)
 
 
 def _put(result: Values, key: str, ending: str, value: Any) -> None:

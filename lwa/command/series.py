@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from lwa.base import InputError, NoSolitaryWave
+from lwa.base.frozen import Estimate
 from lwa.base.words import QUANTITIES
 from lwa.cell import k
 from lwa.command.answer import Answer, Lines, Row, Values, attempt
 from lwa.command.chain import take_chain
 from lwa.command.options import command, series_options
 from lwa.expansion.expand import Expansion, expand
+from lwa.expansion.lattice_wave import lattice_wave
 from lwa.expansion.series import EpsilonSeries
 
 _ORDER = 8
@@ -19,7 +23,10 @@ _ORDER = 8
 _SYMBOLIC_ORDER = 4
 """Order of a series with symbols, whose terms grow with the order."""
 
-_ERRORS = "estimate of the sum's error, by its last terms and by radiation"
+_ERRORS = (
+    "estimate of a sum's error, by its last terms and by radiation; bound of the error of a "
+    "closed form, as measured"
+)
 
 
 @command(
@@ -34,7 +41,8 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
     """Expand the lattice's own wave in ``ε = k - 1``, and sum the series.
 
     Each sum comes with an estimate of its absolute error, at the peak force 1 on the first contact
-    and with lengths in D; k and the cell must be numbers.
+    and with lengths in D; k and the cell must be numbers. The closed form of the lattice's wave
+    stands in place of a sum with a larger error.
 
     In JSON c² is the sum of ``c2[n] ε^n``.
     """
@@ -71,13 +79,35 @@ def _sum_rows(
 ) -> Iterator[Row | str]:
     """Rows of the sums at the expansion's k."""
     yield f"at k = {expanded.k}, order {expanded.order}:"
-    for key, (label, part) in series.items():
-        yield Row(key, label, attempt(part.at))
+    closed = _closed_forms(expanded)
+    sums = {key: (label, attempt(part.at)) for key, (label, part) in series.items()}
     mass = attempt(expanded.effective_mass.at)
-    yield Row("effective_mass", "effective mass P²/2E", mass)
+    sums["effective_mass"] = ("effective mass P²/2E", mass)
+    for key, (label, found) in sums.items():
+        error = math.inf if isinstance(found, InputError) else found.error
+        if key in closed and closed[key].error < error:
+            yield Row(key, f"{label}, closed form", closed[key])
+        else:
+            yield Row(key, label, found)
     if expanded.cell.size == 2:
         yield "  (of the mean of a dimer's two contacts, which differ behind a striker)"
     yield ""
+
+
+def _closed_forms(expanded: Expansion) -> dict[str, Estimate]:
+    """The quantities by their keys, in the closed form of the wave; {} for other cells."""
+    cell = expanded.cell
+    try:
+        wave = lattice_wave(cell.at(**{cell.spacing.name: 1}), k=expanded.k)
+    except (InputError, NoSolitaryWave):
+        return {}
+    speed = wave.estimate("speed")
+    found = {"c2": (speed * speed.value).widened(speed.relative_error)}
+    for q in QUANTITIES:
+        found[f"fwhm.{q}"] = wave.estimate("fwhm", q)
+    for name in ("momentum", "energy", "effective_mass"):
+        found[name] = wave.estimate(name)
+    return found
 
 
 def _series_rows(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 import sympy as sp
 
+from lwa.base import latex
 from lwa.base.exact import InputError, read_exact
 from lwa.base.frozen import NoSolitaryWave, Shown
 from lwa.base.words import EXTENTS, LANGUAGES, QUANTITIES, ExtentName, QuantityName
@@ -19,7 +20,7 @@ from lwa.command.answer import (
     Form,
     Lines,
     Row,
-    Values,
+    Scale,
     as_float,
     attempt,
     estimated,
@@ -35,6 +36,7 @@ from lwa.command.options import (
     given,
     theory_options,
 )
+from lwa.expansion.lattice_wave import LatticeWave, lattice_wave
 from lwa.theory import Theory, homogenize
 from lwa.wave.compact import CompactWave, canonical_wave
 from lwa.wave.reduction import Reduction
@@ -167,19 +169,27 @@ def width_row(
     return Row(f"{key}.{quantity}", label, width, unit, symbol, **settings)
 
 
-def pulse_rows(wave: Any, rise: str, form: Form) -> Iterator[Row]:
+def in_spacings(wave: Any, spacing: sp.Expr) -> Any:
+    """The wave with the spacing as the unit of length, if the spacing is a symbol."""
+    return wave.at(**{spacing.name: 1}) if spacing.is_Symbol else wave
+
+
+def pulse_rows(wave: Any, spacing: sp.Expr, rise: str, form: Form) -> Iterator[Row]:
     """Rows of the size, the speed and the widths of a wave.
 
     Parameters
     ----------
     wave : PhysicalWave or LoadedWave
         The wave of a peak force.
+    spacing : Expr
+        The spacing of its chain.
     rise : str
         What its strain is called: "peak", or "rise of the" static strain.
     form : {"both", "formula", "number"}
         What is shown of the widths.
     """
-    speed = estimated(wave, "speed")
+    measured = in_spacings(wave, spacing)
+    speed = estimated(measured, "speed")
     yield Row("force", "peak contact force F", wave.force, "N")
     yield Row("B", f"{rise} strain B", wave.strain)
     yield Row("compression", f"{rise} compression", wave.compression, "m")
@@ -190,7 +200,7 @@ def pulse_rows(wave: Any, rise: str, form: Form) -> Iterator[Row]:
             width = attempt(wave.fwhm, q, extent)
             if isinstance(width, InputError):  # under a load widths are numbers
                 return
-            error = estimated(wave, "fwhm", q, extent)
+            error = estimated(measured, "fwhm", q, extent)
             yield width_row(q, width, extent, form=form, estimate=error)
 
 
@@ -219,9 +229,10 @@ def any_amplitude(chain: ChainInput, theory: Theory) -> Answer:
         *_reduction_rows(reduction),
         *_canonical(chain, theory, None),
     ]
+    notes = _put_lattice(rows, chain, None)
     shown: list[Shown | str] = [theory.pde, wave]
     shown += [reduction] if _is_short(reduction) else RELATIONS
-    return Answer(settings_json(theory), rows, chain.scale, shown)
+    return Answer(settings_json(theory), rows, chain.scale, shown, notes=notes)
 
 
 RELATIONS = (
@@ -258,19 +269,70 @@ def of_force(chain: ChainInput, theory: Theory, force: sp.Expr) -> Answer:
     """The compact wave of a peak contact force, in space and time."""
     wave = _compact(theory).at_force(force)
     rows: Lines = [
-        "endless chain without load",
-        *closure_lines(theory),
         chain.text,
+        "the compact wave in a chain without load:",
+        *closure_lines(theory),
         "",
-        *pulse_rows(wave, "peak", "both"),
+        *pulse_rows(wave, chain.cell.spacing, "peak", "both"),
         Row("beta", "", wave.wave.beta, "1/m"),
         Row("width", "", wave.wave.width, "m", r"\frac{\pi}{\beta}"),
         *_canonical(chain, theory, wave.force),
     ]
+    notes = _put_lattice(rows, chain, wave.force) + chain.hertz_notes(wave.force)
     shown: list[Shown | str] = [wave.wave, wave]
-    head: Values = settings_json(theory)
-    notes = chain.hertz_notes(wave.force)
-    return Answer(head, rows, chain.scale, shown, notes=notes)
+    return Answer(settings_json(theory), rows, chain.scale, shown, notes=notes)
+
+
+_BEST = 0.25
+"""Relative error from which on the compact wave, wrong by a sixth at most where that was measured,
+may be as near to the lattice."""
+
+
+def _put_lattice(rows: Lines, chain: ChainInput, force: sp.Expr | None) -> list[str]:
+    """Put the lattice's own wave, where it is known, among the rows of the compact wave.
+
+    Behind the line on the chain if every error is known and below `_BEST`, else at the end.
+    Returns a note where the lattice has no such wave.
+    """
+    try:
+        wave = lattice_wave(
+            chain.cell, law=chain.law, force=1 if force is None else force
+        )
+    except InputError:  # a cell without a closed form
+        return []
+    except NoSolitaryWave as reason:
+        return [reason.reason]
+    part = _lattice(chain.scale, wave, force)
+    measured = [row.measured for row in part.rows if isinstance(row, Row)]
+    if all(found and found.relative_error < _BEST for found in measured):
+        rows[1:1] = [part, ""]
+    else:
+        rows.append(part)
+    return []
+
+
+def _lattice(scale: Scale, wave: LatticeWave, force: sp.Expr | None) -> Answer:
+    """Speed and widths of the lattice's own wave; without a force those at B = 1."""
+    measured = in_spacings(wave, scale.spacing)
+    extents = EXTENTS
+    error = estimated(measured, "speed")
+    speed = Row("speed", "speed dx/dt", wave.speed, "m/s", latex.SPEED, estimate=error)
+    if force is None:
+        extents = EXTENTS[:1]
+        error = estimated(measured, "scaled_speed", 1)
+        scaled = wave.scaled_speed(1)
+        speed = Row("speed", "V_s at B = 1", scaled, symbol="V_{s}", estimate=error)
+    rows = [speed]
+    for extent in extents:
+        for q in QUANTITIES:
+            error = estimated(measured, "fwhm", q, extent)
+            rows.append(width_row(q, wave.fwhm(q, extent), extent, estimate=error))
+    lines: Lines = ["", f"the lattice's own wave ({wave.theory}):"]
+    for row in rows:
+        # LaTeX has the compact wave's quantities of the same names, too.
+        symbol = rf"{row.symbol}\big|_{{\mathrm{{lattice}}}}"
+        lines.append(replace(row, symbol=symbol))
+    return Answer({"theory": wave.theory}, lines, scale, errors=_ERRORS, key="lattice")
 
 
 def _canonical(
@@ -320,7 +382,7 @@ def under_load(
         *closure_lines(theory),
         chain.text,
         "",
-        *pulse_rows(wave, "rise of the", "number"),
+        *pulse_rows(wave, chain.cell.spacing, "rise of the", "number"),
         Row("precompression", "static force F0", wave.precompression, "N"),
         Row("background", "static strain p0", wave.background),
         Row("static_compression", "static compression", wave.static_compression, "m"),

@@ -25,7 +25,6 @@ BALL, CHAIN = lwa.Sphere(1, 1, STEEL), Cell([1])
 TWO_A = Cell([sp.Symbol("a"), sp.Symbol("a", positive=True)])
 DIMER, TWO = Dimer("m1", "m2"), Cell([1, 2])
 WAVE, ONE = canonical_wave(DIMER), canonical_wave(Cell([1], spacing=1), "3/2")
-AT_X = Cell([sp.Symbol("X"), 2])
 HERTZ, LINK = Power("3/2"), Link(0, 1, Power("3/2"))
 EQUAL, BEADS = Cell([1], spacing=1), Lattice([1], [LINK])
 SOFT = Law(DELTA - DELTA**2)
@@ -62,7 +61,7 @@ CALLS = [
         lambda: homogenize(Cell([1, 2], [1, 2]), law=lwa.general()),
         "shares of the strain",
     ),
-    (lambda: homogenize(Dimer(3, 1)).pde.energy, 'closure="full"'),
+    (lambda: homogenize(Dimer(3, 1)).pde.energy, "closure='full'"),
     (lambda: homogenize(DIMER, branch="optical").pde.energy, "acoustic"),
     (lambda: homogenize(DIMER, branch="optical").pde.traveling_wave(), "acoustic"),
     (
@@ -110,9 +109,8 @@ CALLS = [
     (lambda: expand(Cell([1], [8]), 6, k="3/2").c2.at("6/5"), "that of k = 3/2"),
     (lambda: expand(CHAIN, 6).c2.at(1), "k is 1"),
     (lambda: expand(CHAIN, 5).c2.at("3/2"), "from order 6 on"),
-    (lambda: expand(TWO, 8).c2.at("3/2"), "over 10% of it"),
-    (lambda: expand(AT_X, 1).log_force(), "X names a property of the chain"),
-    (lambda: expand(Cell(["a", "b"]), 100), "takes more than .* terms"),
+    (lambda: expand(TWO, 8).c2.at("3/2"), "more than 10% of it"),
+    (lambda: expand(Cell(["a", "b"]), 100), "some .* terms"),
     (lambda: expand(Cell(["ε", 1]), 1), "ε is k - 1"),
     (
         lambda: expand(CHAIN, 2, law=Law(sp.exp(DELTA) - 1, DELTA)),
@@ -156,12 +154,15 @@ CALLS = [
     (lambda: front(1, 2).peak, "a rarefaction has no pulse"),
     (lambda: front("p", 1, law=Power("k")).kind, "kind depends on symbols"),
     (lambda: front(1, 0, law=Power(1)), "a front without load wants k > 1"),
-    (lambda: front(1, 0, law=BENT), "changes its sign at the strain 0.66667"),
-    (lambda: front(5, 1, law=WAVY), "changes its sign at the strain 3.1"),
+    (
+        lambda: front(1, 0, law=BENT),
+        "changes its sign between the strains 0.67[0-9]* and 0.66",
+    ),
+    (lambda: front(5, 1, law=WAVY), "changes its sign between the strains 3.1"),
     (lambda: front(1 + sp.Rational(1, 10**16), 1), "1e-15 of it at least"),
     (
         lambda: lwa.piston(Cell(["m"]), 1, law=named("exponential", 1)),
-        "numbers are wanted",
+        "results are computed in numbers",
     ),
 ]
 
