@@ -176,27 +176,19 @@ def width_row(
     return Row(f"{key}.{quantity}", label, width, unit, symbol, **settings)
 
 
-def in_spacings(wave: Any, spacing: sp.Expr) -> Any:
-    """The wave with the spacing as the unit of length, if the spacing is a symbol."""
-    return wave.at(**{spacing.name: 1}) if spacing.is_Symbol else wave
-
-
-def pulse_rows(wave: Any, spacing: sp.Expr, rise: str, form: Form) -> Iterator[Row]:
+def pulse_rows(wave: Any, rise: str, form: Form) -> Iterator[Row]:
     """Rows of the size, the speed and the widths of a wave.
 
     Parameters
     ----------
     wave : PhysicalWave or LoadedWave
         The wave of a peak force.
-    spacing : Expr
-        The spacing of its chain.
     rise : str
         What its strain is called: "peak", or "rise of the" static strain.
     form : {"both", "formula", "number"}
         What is shown of the widths.
     """
-    measured = in_spacings(wave, spacing)
-    speed = estimated(measured, "speed")
+    speed = estimated(wave, "speed")
     yield Row("force", "peak contact force F", wave.force, "N")
     yield Row("B", f"{rise} strain B", wave.strain)
     yield Row("compression", f"{rise} compression", wave.compression, "m")
@@ -207,7 +199,7 @@ def pulse_rows(wave: Any, spacing: sp.Expr, rise: str, form: Form) -> Iterator[R
             width = attempt(wave.fwhm, q, extent)
             if isinstance(width, InputError):  # under a load widths are numbers
                 return
-            error = estimated(measured, "fwhm", q, extent)
+            error = estimated(wave, "fwhm", q, extent)
             yield width_row(q, width, extent, form=form, estimate=error)
 
 
@@ -280,7 +272,7 @@ def of_force(chain: ChainInput, theory: Theory, force: sp.Expr) -> Answer:
         "the compact wave in a chain without load:",
         *closure_lines(theory),
         "",
-        *pulse_rows(wave, chain.cell.spacing, "peak", "both"),
+        *pulse_rows(wave, "peak", "both"),
         Row("beta", "", wave.wave.beta, "1/m"),
         Row("width", "", wave.wave.width, "m", r"\frac{\pi}{\beta}"),
         *_canonical(chain, theory, wave.force),
@@ -321,7 +313,9 @@ def _put_lattice(rows: Lines, chain: ChainInput, force: sp.Expr | None) -> list[
 
 def _lattice(scale: Scale, wave: LatticeWave, force: sp.Expr | None) -> Answer:
     """Speed and widths of the lattice's own wave; without a force those at B = 1."""
-    measured = in_spacings(wave, scale.spacing)
+    measured = wave
+    if scale.spacing.is_Symbol:  # the unit of length
+        measured = wave.at(**{scale.spacing.name: 1})
     if force is None:
         error = estimated(measured, "scaled_speed", 1)
         rows = [_speed_row(wave.scaled_speed(1), force, error)]
@@ -394,7 +388,7 @@ def under_load(
         *closure_lines(theory),
         chain.text,
         "",
-        *pulse_rows(wave, chain.cell.spacing, "rise of the", "number"),
+        *pulse_rows(wave, "rise of the", "number"),
         Row("precompression", "static force F0", wave.precompression, "N"),
         Row("background", "static strain p0", wave.background),
         Row("static_compression", "static compression", wave.static_compression, "m"),
