@@ -21,7 +21,7 @@ from lwa import (
     lattice_wave,
     loaded_wave,
 )
-from lwa.expansion.forms.joined import TWO_BODIES, joined
+from lwa.expansion.joined import TWO_BODIES, joined
 from lwa.law import NAMES, named
 from tests.book.prose import BOOK, limited, said, told
 from validation import Damping, MeasureError, exact_wave, measure, simulate

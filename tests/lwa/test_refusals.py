@@ -25,7 +25,6 @@ BALL, CHAIN = lwa.Sphere(1, 1, STEEL), Cell([1])
 TWO_A = Cell([sp.Symbol("a"), sp.Symbol("a", positive=True)])
 DIMER, TWO = Dimer("m1", "m2"), Cell([1, 2])
 WAVE, ONE = canonical_wave(DIMER), canonical_wave(Cell([1], spacing=1), "3/2")
-AT_X = Cell([sp.Symbol("X"), 2])
 HERTZ, LINK = Power("3/2"), Link(0, 1, Power("3/2"))
 EQUAL, BEADS = Cell([1], spacing=1), Lattice([1], [LINK])
 SOFT = Law(DELTA - DELTA**2)
@@ -110,9 +109,8 @@ CALLS = [
     (lambda: expand(Cell([1], [8]), 6, k="3/2").c2.at("6/5"), "that of k = 3/2"),
     (lambda: expand(CHAIN, 6).c2.at(1), "k is 1"),
     (lambda: expand(CHAIN, 5).c2.at("3/2"), "from order 6 on"),
-    (lambda: expand(TWO, 8).c2.at("3/2"), "over 10% of it"),
-    (lambda: expand(AT_X, 1).log_force(), "X names a property of the chain"),
-    (lambda: expand(Cell(["a", "b"]), 100), "takes more than .* terms"),
+    (lambda: expand(TWO, 8).c2.at("3/2"), "more than 10% of it"),
+    (lambda: expand(Cell(["a", "b"]), 100), "some .* terms"),
     (lambda: expand(Cell(["ε", 1]), 1), "ε is k - 1"),
     (
         lambda: expand(CHAIN, 2, law=Law(sp.exp(DELTA) - 1, DELTA)),

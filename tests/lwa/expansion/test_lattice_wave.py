@@ -6,8 +6,8 @@ import sympy as sp
 
 from lwa import Cell, Dimer, NoSolitaryWave, lattice_wave
 from lwa.cell import k as symbol_k
-from lwa.expansion.forms.following import exponent_of_light_beads
-from lwa.expansion.forms.joined import TWO_BODIES, phi_series
+from lwa.expansion.dimers import exponent_of_light_beads
+from lwa.expansion.joined import TWO_BODIES, phi_series
 from tests.lwa.expansion.test_exact_waves import lattice
 from tests.test_errors import LOOSE, holds
 from validation.pulses.steady import point
