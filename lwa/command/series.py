@@ -49,6 +49,7 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
     chain = take_chain(options)
     cell = chain.cell
     expanded = expand(cell, order or _SYMBOLIC_ORDER, law=chain.law)
+    # Whether an expansion is one in numbers is known when it is made; four orders take no time.
     if order is None and expanded.numeric:
         expanded = expand(cell, _ORDER, law=chain.law)
     head: Values = {
@@ -84,7 +85,10 @@ def _sum_rows(
     mass = attempt(expanded.effective_mass.at)
     sums["effective_mass"] = ("effective mass P²/2E", mass)
     for key, (label, found) in sums.items():
-        error = math.inf if isinstance(found, InputError) else found.error
+        error = math.inf  # there is no sum
+        if isinstance(found, Estimate):
+            error = found.error
+        # A closed form of unknown error, NaN, is below no error.
         if key in closed and closed[key].error < error:
             yield Row(key, f"{label}, closed form", closed[key])
         else:
@@ -115,7 +119,7 @@ def _series_rows(
 ) -> Iterator[Row | str]:
     """Rows of the coefficients of each series."""
     for label, part in series.values():
-        factors = []
+        factors = []  # of the whole series
         if part.prefactor != 1:
             factors.append(str(part.prefactor))
         if part.power != 0:
