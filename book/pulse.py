@@ -36,9 +36,12 @@ def struck_pulse(k: float, omega: Any, near: int = 40, far: int = 80) -> StruckP
     """Strike a chain and measure its leading pulse between the contacts ``near`` and ``far``."""
     chain = StruckDimer(float(k), float(Fraction(str(omega))), far - near)
     passages = chain.passages(chain.run((near, far), chain.crossing(far), 1e-8))
-    width, _, unit_speed, decay = chain.numbers(passages)[:, 0]
+    numbers = chain.numbers(passages)
+    peaks = passages["peak"][-1]  # of the cell's two contacts at the far end
     q = (chain.k - 1) / (2 * chain.k)  # the speed is proportional to F^q
-    speed = float(np.mean(unit_speed * passages[1, :, 1] ** q))
     return StruckPulse(
-        speed, float(np.mean(passages[1, :, 1])), float(width), float(decay)
+        speed=float(np.mean(numbers["speed"] * peaks**q)),
+        force=float(np.mean(peaks)),
+        width=float(numbers["width"][0]),
+        decay=float(numbers["decay"][0]),
     )

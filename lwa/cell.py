@@ -97,8 +97,11 @@ class Cell(Value):
         object.__setattr__(self, "spacing", positive(spacing, "spacing"))
 
     def latex_rows(self) -> list[str]:
-        masses, stiffnesses = sp.Tuple(*self.masses), sp.Tuple(*self.stiffnesses)
-        return latex.rows({"m": masses, "A": stiffnesses, "D": self.spacing})
+        rows = []
+        for name, values in (("m", self.masses), ("A", self.stiffnesses)):
+            written = ", ".join(map(latex.expression, values))
+            rows.append(rf"{name} = \left({written}\right)")
+        return [*rows, *latex.rows({"D": self.spacing})]
 
     @classmethod
     def of_spheres(cls, spheres: Sequence[Sphere]) -> Cell:
@@ -183,9 +186,6 @@ class Cell(Value):
 
     def shares(self, k: Any = k) -> tuple[sp.Expr, ...]:
         """The shares ``C_i``: strain of contact i divided by the mean strain (`lwa.cell`)."""
-        # Equal contacts have equal shares, whatever k is.
-        if self.equal_contacts:
-            return (sp.Integer(1),) * self.size
         compliances = self.compliances(k)
         total = sp.Add(*compliances)
         return tuple(self.size * compliance / total for compliance in compliances)

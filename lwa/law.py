@@ -194,11 +194,11 @@ class ContactLaw(Value):
         demand_numbers(self.symbols, "an array of forces needs numbers for the law")
         compressions = finite(delta, "delta")
         slope = function_of(self.delta, self.slope(n))
-        if self.pulls:
-            return slope(compressions)
-        with np.errstate(divide="ignore"):  # derivatives of powers at 0
-            forces = slope(np.maximum(compressions, 0.0))
-        return np.where(compressions < 0, 0.0, forces)
+        carries = (compressions >= 0) | self.pulls
+        # Derivatives of powers are infinite at 0.
+        with np.errstate(divide="ignore"):
+            forces = slope(np.where(carries, compressions, 0.0))
+        return np.where(carries, forces, 0.0)
 
     @property
     def formless(self) -> bool:
@@ -476,9 +476,7 @@ def named(name: str, *parameters: Any) -> ContactLaw:
     build = _NAMED[one_of(name, NAMES, "law")]
     letters = list(signature(build).parameters)
     if len(parameters) > len(letters):
-        wanted = "none"
-        if letters:
-            wanted = f"at most {len(letters)} ({', '.join(letters)})"
+        wanted = ", ".join(letters) or "none"
         raise InputError(
             f"law {name} has {len(parameters)} parameters: {wanted} are wanted"
         )

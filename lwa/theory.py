@@ -76,8 +76,11 @@ class Theory(OfClosure):
 
         The field of particle i (from 0) is ``w_i = u + u_x Σ D^n J_n``; u itself is left out.
         """
-        found = {}
-        for i, series in enumerate(self.closure.solution.slaved):
+        found: dict[int, dict[int, Terms]] = {}
+        # The linear closure's field is the `ansatz`.
+        if self.closure.name == "linear":
+            return found
+        for i, series in enumerate(self.closure.solution.fields):
             if any(not S.is_zero() for S in series):
                 orders = enumerate(series, start=1)
                 found[i] = {n: terms(self.closure, S, STRAIN) for n, S in orders}
@@ -107,9 +110,10 @@ class Theory(OfClosure):
     @property
     def phi(self) -> dict[int, sp.Expr]:
         """Mapping from n to φ_n in the compression; {} for powers and laws without expression."""
-        if self.law.homogeneous or self.law.formless:
+        if self.law.formless:
             return {}
-        last = max(self.order - 1, 2)
+        # The ring of a power has no φ_n.
+        last = self.closure.model.ring.highest
         return {n: self.law.phi(n) for n in range(2, last + 1)}
 
     def __repr__(self) -> str:

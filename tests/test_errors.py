@@ -23,7 +23,7 @@ from lwa import (
     loaded_wave,
     shock,
 )
-from lwa.expansion.sums import resum
+from lwa.expansion.series import resum
 from lwa.law import named
 from tests.lwa.expansion.test_exact_waves import lattice, series
 from validation import Drive, Scene, measure, simulate

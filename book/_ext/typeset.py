@@ -15,7 +15,10 @@ UNITS = (
     "%", "percent", "mm", "cm", "m/s", "m", "µm", "nm", "N", "kN", "GPa", "MPa", "µs", "ms", "s",
     "kHz", "Hz", "kg", "g", "J", "MB", "sites", "beads", "balls", "loads", "orders", "ratios",
 )  # fmt: skip
-APART = re.compile(rf"(?<=\d) (?=(?:{'|'.join(map(re.escape, UNITS))})(?!\w))")
+_UNIT = rf" (?=(?:{'|'.join(map(re.escape, UNITS))})(?!\w))"
+APART = re.compile(rf"(?<=\d){_UNIT}")
+FIRST = re.compile(rf"^{_UNIT}")
+NO_BREAK = "\u00a0"
 LITERAL = (nodes.literal, nodes.literal_block, nodes.math, nodes.math_block, nodes.raw)
 
 
@@ -25,26 +28,19 @@ class Units(SphinxPostTransform):
     default_priority = 900
 
     def run(self, **options: object) -> None:
-        for text in list(self.document.findall(nodes.Text)):
-            parent = text.parent
-            joined = APART.sub("\u00a0", text)
-            # a formula in front of the text may end in the number
-            if isinstance(previous(text), nodes.math):
-                joined = re.sub(
-                    APART.pattern.replace(r"(?<=\d)", "^"), "\u00a0", joined
-                )
-            if joined != text and not isinstance(parent, LITERAL):
-                parent.replace(text, nodes.Text(joined))
-
-
-def previous(node: nodes.Node) -> nodes.Node | None:
-    """The node before a node in its parent."""
-    before = None
-    for child in node.parent.children:
-        if child is node:
-            return before
-        before = child
-    return None
+        for parent in list(self.document.findall(nodes.Element)):
+            if isinstance(parent, LITERAL):
+                continue
+            before: nodes.Node | None = None
+            for place, child in enumerate(parent.children):
+                if isinstance(child, nodes.Text):
+                    joined = APART.sub(NO_BREAK, child)
+                    # a formula in front of the text may end in the number
+                    if isinstance(before, nodes.math):
+                        joined = FIRST.sub(NO_BREAK, joined)
+                    if joined != child:
+                        parent[place] = nodes.Text(joined)
+                before = child
 
 
 class Solutions(SphinxPostTransform):

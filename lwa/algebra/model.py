@@ -55,14 +55,10 @@ class Model(Value):
         On the optical branch all contacts are compressed by equal amounts. There the C_i are shares
         of the stiffness, proportional to A_i, instead of shares of the strain.
         """
-        stiffnesses = self.cell.stiffnesses
         if self.branch == "optical":
-            contacts = Partition(stiffnesses, 1, "c")
-        elif self.cell.equal_contacts:
-            # The shares are 1 whatever the law is: no A^{-1/k} is needed.
-            contacts = Partition(stiffnesses, self.cell.size, "c")
+            contacts = Partition(self.cell.stiffnesses, 1, "c")
         else:
-            compliances = self.cell.compliances(self.k)
+            compliances = self.cell.compliances(self.law.exponent)
             contacts = Partition(compliances, self.cell.size, "c")
         highest = 0
         if not self.law.homogeneous:

@@ -127,8 +127,8 @@ class Solution:
     ansatz : tuple of elements
         The numbers ``b_0 … b_order``. The second particle's field is ``λ Σ b_n D^n ∂_x^n φ`` in the
         linear closure, and has this linear part in the full one.
-    slaved : tuple of tuples of elements
-        The `fields` of the full closure; else ().
+    fields : tuple of tuples of elements
+        The ``S_0, S_1, …`` of each field ``w_i = φ + D φ_x Σ D^n S_n``; () on the optical branch.
     defect : tuple of elements
         The ``E_n`` of the first equation of motion minus those of the second.
     """
@@ -136,23 +136,8 @@ class Solution:
     algebra: JetAlgebra
     acceleration: tuple[fmpq_mpoly, ...]
     ansatz: tuple[fmpq_mpoly, ...] = ()
-    slaved: tuple[tuple[fmpq_mpoly, ...], ...] = ()
+    fields: tuple[tuple[fmpq_mpoly, ...], ...] = ()
     defect: tuple[fmpq_mpoly, ...] = ()
-
-    @property
-    def fields(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
-        """Polynomials ``S_0, S_1, …`` of each field ``w_i = φ + D φ_x Σ D^n S_n`` (acoustic)."""
-        if self.slaved:
-            return self.slaved
-        # In the linear closure φ is the first particle's field.
-        first = (self.algebra.zero,) * len(self.acceleration)
-        if not self.ansatz:
-            return (first,)
-        second = []
-        # b_n D^n ∂_x^n φ = D φ_x (b_n D^{n-1} r_{n-1}); the algebra's last r_n belong to the rest.
-        for b, r in zip(self.ansatz[1:], self.algebra.r, strict=False):
-            second.append(b * r)
-        return first, tuple(second)
 
 
 def full(
@@ -172,7 +157,12 @@ def full(
         ansatz = [algebra.one, fields[1][0]]
         for n in range(1, len(fields[1])):
             ansatz.append(algebra.slope(fields[1][n], n))
-    return Solution(algebra, tuple(chain.E), tuple(ansatz), fields)
+    return Solution(
+        algebra,
+        acceleration=tuple(chain.E),
+        ansatz=tuple(ansatz),
+        fields=fields,
+    )
 
 
 class _Slaving:

@@ -65,13 +65,16 @@ class Words(click.Choice[str]):
         try:
             return one_of(value, words, name)
         except InputError as refusal:
+            # The line to paste has the nearest word, or the first.
             near = similar(value, words) or words
             raise InputError(refusal.reason, **{name: near[0]}) from None
 
 
 def quantity(context: click.Context, option: click.Parameter, text: str | None) -> Any:
     """Read an integer, a decimal, a fraction or a plain name, as a callback of Click."""
-    return None if text is None else read_exact(text, called(option))
+    if text is None:
+        return None
+    return read_exact(text, called(option))
 
 
 def quantities(
@@ -94,11 +97,14 @@ def _exponent(text: str, name: str) -> sp.Expr:
 def not_negative(text: str, name: str) -> sp.Expr:
     """Read a positive quantity or zero."""
     number = read_exact(text, name)
-    return number if number.is_zero else positive(number, name)
+    if number.is_zero:
+        return number
+    return positive(number, name)
 
 
 def angle(text: str, name: str) -> sp.Expr:
     """Read a quantity or a part of pi, such as pi, pi/3 or 2pi/3."""
+    # A number of parts and a denominator, either of them absent where it is 1.
     part = re.fullmatch(r"([0-9]*)\*?pi(?:/([1-9][0-9]*))?", text.strip())
     if part is None:
         return read_exact(text, name)
@@ -130,6 +136,7 @@ ALTERNATIVES = (
 
 def given(option: str) -> bool:
     """True if the option was given on the command line."""
+    # Click knows where a value comes from: an option that is given as its default is given.
     source = click.get_current_context().get_parameter_source(option)
     return source is ParameterSource.COMMANDLINE
 

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from lwa.base import InputError, NoSolitaryWave
+from lwa.base.frozen import Estimate
 from lwa.base.words import QUANTITIES
 from lwa.cell import k
 from lwa.command.answer import Answer, Lines, Row, Values, attempt
 from lwa.command.chain import take_chain
 from lwa.command.options import command, series_options
 from lwa.expansion.expand import Expansion, expand
+from lwa.expansion.lattice_wave import lattice_wave
 from lwa.expansion.series import EpsilonSeries
 
 _ORDER = 8
@@ -19,7 +23,10 @@ _ORDER = 8
 _SYMBOLIC_ORDER = 4
 """Order of a series with symbols, whose terms grow with the order."""
 
-_ERRORS = "estimate of the sum's error, by its last terms and by radiation"
+_ERRORS = (
+    "estimate of a sum's error, by its last terms and by radiation; bound of the error of a "
+    "closed form, as measured"
+)
 
 
 @command(
@@ -34,13 +41,16 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
     """Expand the lattice's own wave in ``ε = k - 1``, and sum the series.
 
     Each sum comes with an estimate of its absolute error, at the peak force 1 on the first contact
-    and with lengths in D; k and the cell must be numbers.
+    and with lengths in D; k and the cell must be numbers. The closed form of the lattice's wave
+    stands in place of a sum with a larger error.
 
-    In JSON c² is the sum of ``c2[n] ε^n``.
+    In JSON c² is the sum of ``c2[n] ε^n``. `fwhm` is that of the first contact, `fwhm_contact_2`
+    that of the second where contacts are unlike, and so on.
     """
     chain = take_chain(options)
     cell = chain.cell
     expanded = expand(cell, order or _SYMBOLIC_ORDER, law=chain.law)
+    # Whether an expansion is one in numbers is known when it is made; four orders take no time.
     if order is None and expanded.numeric:
         expanded = expand(cell, _ORDER, law=chain.law)
     head: Values = {
@@ -53,6 +63,12 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
     series = {"c2": ("c²", expanded.c2)}
     for q in QUANTITIES:
         series[f"fwhm.{q}"] = (f"FWHM of the {q}", expanded.fwhm(q))
+    # Unlike contacts have unlike widths; series with symbols are long enough for one.
+    if expanded.numeric and len(set(cell.stiffnesses)) > 1:
+        for i in range(1, cell.size):
+            for q in QUANTITIES:
+                label = f"FWHM of the {q}, contact {i + 1}"
+                series[f"fwhm_contact_{i + 1}.{q}"] = (label, expanded.fwhm(q, i))
     series["momentum"] = ("momentum", expanded.momentum)
     series["energy"] = ("energy", expanded.energy)
     sums: Lines = [
@@ -71,13 +87,38 @@ def _sum_rows(
 ) -> Iterator[Row | str]:
     """Rows of the sums at the expansion's k."""
     yield f"at k = {expanded.k}, order {expanded.order}:"
-    for key, (label, part) in series.items():
-        yield Row(key, label, attempt(part.at))
+    closed = _closed_forms(expanded)
+    sums = {key: (label, attempt(part.at)) for key, (label, part) in series.items()}
     mass = attempt(expanded.effective_mass.at)
-    yield Row("effective_mass", "effective mass P²/2E", mass)
-    if expanded.cell.size == 2:
+    sums["effective_mass"] = ("effective mass P²/2E", mass)
+    for key, (label, found) in sums.items():
+        error = math.inf  # there is no sum
+        if isinstance(found, Estimate):
+            error = found.error
+        # A closed form of unknown error, NaN, is below no error.
+        if key in closed and closed[key].error < error:
+            yield Row(key, f"{label}, closed form", closed[key])
+        else:
+            yield Row(key, label, found)
+    if expanded.cell.size == 2 and len(set(expanded.cell.stiffnesses)) == 1:
         yield "  (of the mean of a dimer's two contacts, which differ behind a striker)"
     yield ""
+
+
+def _closed_forms(expanded: Expansion) -> dict[str, Estimate]:
+    """The quantities by their keys, in the closed form of the wave; {} for other cells."""
+    cell = expanded.cell
+    try:
+        wave = lattice_wave(cell.at(**{cell.spacing.name: 1}), k=expanded.k)
+    except (InputError, NoSolitaryWave):
+        return {}
+    speed = wave.estimate("speed")
+    found = {"c2": (speed * speed.value).widened(speed.relative_error)}
+    for q in QUANTITIES:
+        found[f"fwhm.{q}"] = wave.estimate("fwhm", q)
+    for name in ("momentum", "energy", "effective_mass"):
+        found[name] = wave.estimate(name)
+    return found
 
 
 def _series_rows(
@@ -85,7 +126,7 @@ def _series_rows(
 ) -> Iterator[Row | str]:
     """Rows of the coefficients of each series."""
     for label, part in series.values():
-        factors = []
+        factors = []  # of the whole series
         if part.prefactor != 1:
             factors.append(str(part.prefactor))
         if part.power != 0:

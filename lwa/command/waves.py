@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 import click
 import sympy as sp
 
+from lwa.base import latex
 from lwa.base.exact import InputError, read_exact
-from lwa.base.frozen import NoSolitaryWave, Shown
+from lwa.base.frozen import Estimate, NoSolitaryWave, Shown
 from lwa.base.words import EXTENTS, LANGUAGES, QUANTITIES, ExtentName, QuantityName
 from lwa.command.answer import (
     LONG,
@@ -19,7 +20,7 @@ from lwa.command.answer import (
     Form,
     Lines,
     Row,
-    Values,
+    Scale,
     as_float,
     attempt,
     estimated,
@@ -35,6 +36,7 @@ from lwa.command.options import (
     given,
     theory_options,
 )
+from lwa.expansion.lattice_wave import LatticeWave, lattice_wave
 from lwa.theory import Theory, homogenize
 from lwa.wave.compact import CompactWave, canonical_wave
 from lwa.wave.reduction import Reduction
@@ -66,6 +68,9 @@ def wave(
 ) -> None:
     """Compact traveling wave: β, width, FWHM, amplitude and speed.
 
+    Beside it stands the lattice's own wave, for equal beads, light beads between heavy ones and
+    beads nearly alike: in JSON `lattice`.
+
     With --force the wave of this peak contact force, in space and time; with --spheres in m, s, kg
     and N. With --background or --precompression the wave in a chain under load, in the canonical
     field (--closure full --field center), and its Korteweg-de Vries limit for small amplitudes.
@@ -79,12 +84,10 @@ def wave(
     """
     spheres = options["spheres"] is not None
     chain = take_chain(options)
-    precompression = chain.load(precompression)
-    load = precompression if background is None else background
-    loaded = load is not None and not load.is_zero
-    if not chain.law.homogeneous:
-        # The compact wave is that of a power: under another law no load is a load, too.
-        loaded = load is not None or force is not None
+    static = chain.load(precompression)
+    # Options of which one says the other are not given together.
+    load = static if background is None else background
+    loaded = _is_loaded(chain, load, force)
     if loaded:
         _take_canonical(options)
     if style in LANGUAGES and (loaded or force is not None):
@@ -93,25 +96,36 @@ def wave(
             format="text",
         )
     theory = homogenize(chain.cell, law=chain.law, **options)
-    if not loaded and not chain.law.homogeneous:
+    if style in LANGUAGES:
+        click.echo(_compact(theory).code(style))
+        return
+    # Numbers in SI are those of a force; without one results hold the symbol F.
+    peak = read_exact("F", "force") if force is None else force
+    if loaded and background is not None:
+        answer = on_background(chain, theory, background)
+    elif loaded:
+        answer = under_load(chain, theory, peak, static or sp.S.Zero)
+    elif spheres or force is not None:
+        answer = of_force(chain, theory, peak)
+    else:
+        answer = any_amplitude(chain, theory)
+    answer.print(style)
+
+
+def _is_loaded(chain: ChainInput, load: sp.Expr | None, force: sp.Expr | None) -> bool:
+    """True if the wave is that of a chain under a load, or of a law that is no power.
+
+    The compact wave is that of a power law. Under another law a load of zero is a load, too.
+    """
+    if chain.law.homogeneous:
+        return load is not None and not load.is_zero
+    if load is None and force is None:
         raise InputError(
             f"law is {chain.law.text}: the compact wave is that of a power law; waves under a "
             "load or of a force have any law",
             background="1/10",
         )
-    peak = read_exact("F", "force") if force is None else force
-    if style in LANGUAGES:
-        click.echo(_compact(theory).code(style))
-    elif not loaded and force is None and not spheres:
-        any_amplitude(chain, theory).print(style)
-    elif not loaded:
-        of_force(chain, theory, peak).print(style)
-    else:
-        if background is None:
-            static = precompression or sp.S.Zero
-            under_load(chain, theory, peak, static).print(style)
-        else:
-            on_background(chain, theory, background).print(style)
+    return True
 
 
 def _take_canonical(options: dict[str, Any]) -> None:
@@ -121,6 +135,7 @@ def _take_canonical(options: dict[str, Any]) -> None:
         ("field", "center"),
         ("branch", "acoustic"),
     ):
+        # A default is no wish.
         if given(name) and options[name] != wanted:
             raise InputError(
                 f"{name} is {options[name]!r}: under load the wave is that of the canonical field",
@@ -134,12 +149,13 @@ def _compact(theory: Theory) -> CompactWave:
     try:
         return theory.pde.traveling_wave()
     except (InputError, NoSolitaryWave) as refusal:
+        # Below order 4 there is no dispersion, and no wave in any field.
         if not depends_on_first(theory) or theory.order < 4:
             raise
         canonical = canonical_wave(theory.cell, theory.k)
         width = as_float(canonical.fwhm("force") / canonical.D)
         speed = as_float(canonical.speed(sp.S.One))
-        if width is None or speed is None:
+        if width is None or speed is None:  # symbols
             raise
         raise NoSolitaryWave(
             f"{refusal.reason}; this is the field of the first bead. In {CANONICAL}, V_s = "
@@ -219,9 +235,13 @@ def any_amplitude(chain: ChainInput, theory: Theory) -> Answer:
         *_reduction_rows(reduction),
         *_canonical(chain, theory, None),
     ]
+    notes = _put_lattice(rows, chain, None)
     shown: list[Shown | str] = [theory.pde, wave]
-    shown += [reduction] if _is_short(reduction) else RELATIONS
-    return Answer(settings_json(theory), rows, chain.scale, shown)
+    if _is_short(reduction):
+        shown.append(reduction)
+    else:
+        shown += RELATIONS
+    return Answer(settings_json(theory), rows, chain.scale, shown, notes=notes)
 
 
 RELATIONS = (
@@ -246,7 +266,9 @@ def _reduction_rows(reduction: Reduction) -> Lines:
             "  σ = 1/(I (k p + a));  s = 2/(1 - η)",
         ]
     for name in names:
-        lines.append(Row(name, name if short else "", getattr(reduction, name)))
+        # JSON has the values, however long.
+        label = name if short else ""
+        lines.append(Row(name, label, getattr(reduction, name)))
     return lines
 
 
@@ -258,19 +280,81 @@ def of_force(chain: ChainInput, theory: Theory, force: sp.Expr) -> Answer:
     """The compact wave of a peak contact force, in space and time."""
     wave = _compact(theory).at_force(force)
     rows: Lines = [
-        "endless chain without load",
-        *closure_lines(theory),
         chain.text,
+        "the compact wave in a chain without load:",
+        *closure_lines(theory),
         "",
         *pulse_rows(wave, "peak", "both"),
         Row("beta", "", wave.wave.beta, "1/m"),
         Row("width", "", wave.wave.width, "m", r"\frac{\pi}{\beta}"),
         *_canonical(chain, theory, wave.force),
     ]
+    notes = _put_lattice(rows, chain, wave.force) + chain.hertz_notes(wave.force)
     shown: list[Shown | str] = [wave.wave, wave]
-    head: Values = settings_json(theory)
-    notes = chain.hertz_notes(wave.force)
-    return Answer(head, rows, chain.scale, shown, notes=notes)
+    return Answer(settings_json(theory), rows, chain.scale, shown, notes=notes)
+
+
+_BEST = 0.25
+"""Relative error from which on the compact wave, wrong by a sixth at most where that was measured,
+may be as near to the lattice."""
+
+
+def _put_lattice(rows: Lines, chain: ChainInput, force: sp.Expr | None) -> list[str]:
+    """Put the lattice's own wave, where it is known, among the rows of the compact wave.
+
+    Behind the line on the chain if every error is known and below `_BEST`, else at the end.
+    Returns a note where the lattice has no such wave.
+    """
+    cell = chain.cell
+    if not cell.uniform and any(m.free_symbols for m in cell.masses):
+        return []  # nobody knows which bead is light, if any
+    peak = sp.S.One if force is None else force
+    try:
+        wave = lattice_wave(cell, law=chain.law, force=peak)
+    except InputError:  # a cell without a closed form
+        return []
+    except NoSolitaryWave as reason:
+        return [reason.reason]
+    part = _lattice(chain.scale, wave, force)
+    measured = [row.measured for row in part.rows if isinstance(row, Row)]
+    if all(found and found.relative_error < _BEST for found in measured):
+        rows[1:1] = [part, ""]
+    else:
+        rows.append(part)
+    return []
+
+
+def _lattice(scale: Scale, wave: LatticeWave, force: sp.Expr | None) -> Answer:
+    """Speed and widths of the lattice's own wave; without a force those at B = 1."""
+    measured = wave
+    if scale.spacing.is_Symbol:  # the unit of length
+        measured = wave.at(**{scale.spacing.name: 1})
+    if force is None:
+        error = estimated(measured, "scaled_speed", 1)
+        rows = [_speed_row(wave.scaled_speed(1), force, error)]
+        extents = EXTENTS[:1]  # a time of passage is that of a force
+    else:
+        rows = [_speed_row(wave.speed, force, estimated(measured, "speed"))]
+        extents = EXTENTS
+    for extent in extents:
+        for q in QUANTITIES:
+            error = estimated(measured, "fwhm", q, extent)
+            rows.append(width_row(q, wave.fwhm(q, extent), extent, estimate=error))
+    lines: Lines = ["", f"the lattice's own wave ({wave.theory}):"]
+    for row in rows:
+        # LaTeX has the compact wave's quantities of the same names, too.
+        symbol = rf"{row.symbol}\big|_{{\mathrm{{lattice}}}}"
+        lines.append(replace(row, symbol=symbol))
+    return Answer({"theory": wave.theory}, lines, scale, errors=_ERRORS, key="lattice")
+
+
+def _speed_row(
+    speed: sp.Expr, force: sp.Expr | None, error: Estimate | None = None
+) -> Row:
+    """The row of a speed dx/dt, or without a force of V_s at B = 1."""
+    if force is None:
+        return Row("speed", "V_s at B = 1", speed, "", "V_{s}", estimate=error)
+    return Row("speed", "speed dx/dt", speed, "m/s", latex.SPEED, estimate=error)
 
 
 def _canonical(
@@ -283,24 +367,21 @@ def _canonical(
     """
     cell = chain.cell
     k = chain.law.exponent
-    numbers = (k, *cell.masses, *cell.stiffnesses)
+    numbers = [k, *cell.masses, *cell.stiffnesses]
     if force is not None:
-        numbers += (force,)
+        numbers.append(force)
     if not depends_on_first(theory) or any(x.free_symbols for x in numbers):
         return []
     wave = canonical_wave(cell, k=k)
-    rows: Lines = ["", f"{CANONICAL}:"]
-    if force is None:
-        at: Any = wave
-        speed = Row("speed", "V_s at B = 1", wave.speed(sp.S.One))
-    else:
-        at = wave.at_force(force)
-        speed = Row("speed", "speed dx/dt", at.speed, "m/s")
-    widths = (width_row(q, at.fwhm(q)) for q in QUANTITIES)
-    for row in (speed, *widths):
-        # A comparison needs no formula, and no LaTeX beside that of the field asked for.
-        rows.append(replace(row, form="number", symbol=""))
-    return [Answer({}, rows, chain.scale, key="canonical")]
+    speed = wave.speed(sp.S.One)
+    if force is not None:
+        speed = wave.at_force(force).speed
+    rows = [_speed_row(speed, force)]
+    rows += [width_row(q, wave.fwhm(q)) for q in QUANTITIES]
+    # A comparison needs no formula, and no LaTeX beside that of the field asked for.
+    numeric = [replace(row, form="number", symbol="") for row in rows]
+    lines: Lines = ["", f"{CANONICAL}:", *numeric]
+    return [Answer({}, lines, chain.scale, key="canonical")]
 
 
 # --- under load ---
@@ -316,9 +397,9 @@ def under_load(
 
     wave = loaded_wave(chain.cell, force=force, precompression=static, law=chain.law)
     rows: Lines = [
-        f"endless chain {'without load' if static.is_zero else 'under a load'}",
-        *closure_lines(theory),
         chain.text,
+        f"the wave in a chain under the load {static}:",
+        *closure_lines(theory),
         "",
         *pulse_rows(wave, "rise of the", "number"),
         Row("precompression", "static force F0", wave.precompression, "N"),
@@ -347,6 +428,7 @@ def on_background(chain: ChainInput, theory: Theory, p0: sp.Expr) -> Answer:
         *_unit_rise(field),
     ]
     shown: list[Shown | str] = [field]
+    # Small waves of a law without curvature have another equation, and a chain without load none.
     try:
         kdv = field.kdv
     except NoSolitaryWave as reason:

@@ -5,7 +5,7 @@
 To leading order the displacements in cell n are ``u = Ψ(X,T) U e^{i(κn - ωt)} + c.c.``: U is the
 mode, with ``Σ m_i |U_i|² = 1`` over the beads of a cell, ω its frequency, κ its wavenumber per
 cell, ``ω″`` the second derivative of ω by κ, ``X = n - (dω/dκ) t``, ``T = t``, and χ the nonlinear
-coefficient (`lwa.envelopes.response`). The load is held, not the length. Equal beads under a power
+coefficient (`lwa.envelopes.modes`). The load is held, not the length. Equal beads under a power
 law of the exponent k have ``χ = -ω (k-1) (k - cos² κ/2)/(m δ0²)``, δ0 the static compression.
 
 At the edge of a band, where the group velocity is 0, envelopes stand. Such a breather of the
@@ -35,7 +35,9 @@ from lwa.base import latex
 from lwa.base.arrays import Array
 from lwa.base.exact import (
     InputError,
+    brief,
     demand_distinct,
+    factored,
     integer,
     positive,
     shorten,
@@ -45,15 +47,8 @@ from lwa.base.frozen import Value
 from lwa.base.words import BRANCHES, BranchName, one_of
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
-from lwa.envelopes.modes import cell_mode
-from lwa.envelopes.response import Mode
+from lwa.envelopes.modes import Mode, cell_mode
 from lwa.law import ContactLaw, for_cell, substituted
-
-# Operations in a result that from there on would take minutes to factor
-LONG = 400
-# Greatest q of powers x^{p/q} that are factored, as polynomials in x^{1/q}: a decimal k such as
-# 3.1185 makes polynomials of thousands of terms.
-FINE = 100
 
 KindName = Literal["bright", "dark"]
 """A kind of envelope: localised, ``ω″χ < 0``, or a dip in a wave train."""
@@ -170,8 +165,7 @@ class Envelope(Value):
             raise InputError(
                 "the dispersion or the nonlinearity vanishes: no envelope has a shape"
             )
-        if _short(sign):
-            sign = sp.simplify(sign)
+        sign = self._tidy(sign)
         if sign.is_negative is None:
             raise InputError("kind depends on symbols: give numbers")
         return "bright" if sign.is_negative else "dark"
@@ -251,21 +245,11 @@ class Envelope(Value):
         return tuple(self._tidy(value) for value in values)
 
     def _tidy(self, value: sp.Expr) -> sp.Expr:
-        """A value as a float, or with its factors unless that would take minutes."""
-        if self.floats:
-            return sp.N(value)
-        return sp.powsimp(sp.factor(value)) if _short(value) else value
+        """A value as a float, or with its factors."""
+        return sp.N(value) if self.floats else sp.powsimp(factored(value))
 
 
-def _short(value: sp.Expr) -> bool:
-    """Return True for an expression that is factored within seconds."""
-    if sp.count_ops(value) >= LONG:
-        return False
-    roots = [p.exp.q for p in value.atoms(sp.Pow) if p.exp.is_Rational]
-    return max(roots, default=1) <= FINE
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Breather(Value):
     """The standing envelope of a frequency (see `lwa.Envelope.breather`).
 
@@ -306,6 +290,13 @@ class Breather(Value):
         detuning = sp.sstr(sp.N(self.detuning, 5), full_prec=False)
         raise InputError(f"detuning 1 - f/f0 is {detuning}: {why}")
 
+    def __repr__(self) -> str:
+        beads = ", ".join(map(brief, self.amplitude))
+        return (
+            f"Breather({self.kind}, frequency={brief(self.frequency)}, "
+            f"width={brief(self.width)}, amplitudes {beads})"
+        )
+
     def latex_rows(self) -> list[str]:
         shape = r"\operatorname{sech}" if self.kind == "bright" else r"\tanh"
         return [
@@ -329,13 +320,7 @@ class Breather(Value):
     def _square(self) -> sp.Expr:
         """Square a² of the envelope's amplitude."""
         square = self._shift * self.detuning / self.envelope.nonlinearity
-        return sp.powsimp(self._factored(square))
-
-    def _factored(self, value: sp.Expr) -> sp.Expr:
-        """The value with its factors, unless SymPy would take minutes, as where Δ is a surd."""
-        if _short(value) and not self.detuning.is_irrational:
-            return sp.factor(value)
-        return value
+        return sp.powsimp(factored(square))
 
     @cached_property
     def amplitude(self) -> tuple[sp.Expr, ...]:
@@ -346,7 +331,7 @@ class Breather(Value):
     def width(self) -> sp.Expr:
         """Width 1/b, in cells, of the envelope sech(bn) or tanh(bn)."""
         ratio = self.envelope.dispersion / (self._shift * self.detuning)
-        return sp.sqrt(self._factored(-ratio if self.kind == "bright" else ratio))
+        return sp.sqrt(factored(-ratio if self.kind == "bright" else ratio))
 
     @cached_property
     def opening_detuning(self) -> sp.Expr:
@@ -397,7 +382,8 @@ def envelope(
     Parameters
     ----------
     cell : Cell
-        The periodic cell. Of masses that are symbols the first one is taken to be the heaviest.
+        The periodic cell. Of two masses that are symbols the first one is taken to be the heavier
+        one, and of two stiffnesses the larger one.
     law : ContactLaw, optional
         The contact law, by default a power; under `lwa.general` results hold the symbols K2, K3, K4
         of the force ``K2 δ + K3 δ² + K4 δ³`` on top of the load, for equal contacts.

@@ -1,19 +1,20 @@
 """Conserved quantities of the wave equation: momentum and energy.
 
-Letters: D is the spacing, P the number of particles of a cell, m̂_i a mass fraction, C_i the strain
-share of a contact; p = u_x is the strain, r_n = ∂_x^n p / p (`lwa.algebra.jets`); E_n, a polynomial
-in the r_n, is the term of the wave equation u_ττ = u_x^k Σ_{n≥1} D^{n-1} E_n.
+Letters: D is the spacing, P the number of particles of a cell, ``m̂_i`` a mass fraction, ``C_i`` the
+strain share of a contact; ``p = u_x`` is the strain, ``r_n = ∂_x^n p / p`` (`lwa.algebra.jets`).
+``E_n``, a polynomial in the ``r_n``, is the term of the wave equation
+``u_ττ = u_x^k Σ_{n≥1} D^{n-1} E_n``.
 
-**Momentum.** The momentum ∫ u_τ dx is conserved if every order has a flux, a polynomial F_n with
-u_x^k E_n = ∂_x (u_x^k F_n).
+**Momentum.** The momentum ``∫ u_τ dx`` is conserved if every order has a flux, a polynomial ``F_n``
+with ``u_x^k E_n = ∂_x (u_x^k F_n)``.
 
-**Energy of the chain.** Let w_i be the field of particle i, C_i p (1 + X_i) the strain of contact
-i, F the force in the units of the wave equation (p^k/k for a power) and W its energy, W′ = F. The
-energy of a cell per length is
+**Energy of the chain.** Let ``w_i`` be the field of particle i, ``C_i p (1 + X_i)`` the strain of
+contact i, F the force in the units of the wave equation (``p^k/k`` for a power) and W its energy,
+``W′ = F``. The energy of a cell per length is::
 
     e = ½ Σ m̂_i (∂_τ w_i)² + Σ C_i W(p (1 + X_i)) / P = u_τ²/2 + W(u_x) + ….
 
-With F_{-1} the force on particle 0 from the cell before, the equations of motion give
+With ``F_{-1}`` the force on particle 0 from the cell before, the equations of motion give::
 
     ∂_τ e = (e^{PD∂} - 1) (F_{-1} ∂_τ w_0) / (PD),    ∂ = ∂_x,
 
@@ -21,10 +22,13 @@ the derivative of the flux of energy. This holds for any wave equation that the 
 satisfy, in every field, whether or not the equation derives from a potential. The density is given
 up to derivatives, so that no highest jet stands in it linearly.
 
-**Theorem** (proof: the book on cells). At D^{k+3} the equation of the canonical field φ,
-the mean Σ m̂_i w_i of the fields shifted to one point, derives from a potential for every cell:
-G = I(k-1)(k-2)/2, H = 2I(k-1), and I is the coefficient in the linear chain's dispersion
-Ω² = κ² (1 - Iκ² + …). With W(φ_x) in place of the power it holds for every law with equal contacts.
+**Theorem** (proof: the book on cells). At ``D^{k+3}`` the equation of the canonical field φ, the
+mean ``Σ m̂_i w_i`` of the fields shifted to one point, derives from a potential for every cell::
+
+    G = I(k-1)(k-2)/2,    H = 2I(k-1),
+
+and I is the coefficient in the linear chain's dispersion ``Ω² = κ² (1 - (I/D²) κ² + …)``. With
+``W(φ_x)`` in place of the power it holds for every law with equal contacts.
 """
 
 from __future__ import annotations
@@ -40,16 +44,19 @@ from lwa.closure.slaving import Force
 
 
 def conservative(closure: Closure) -> bool:
-    """True if every order n ≥ 2 has a flux F_n, u_x^k E_n = ∂_x (u_x^k F_n)."""
+    """True if every order ``n ≥ 2`` has a flux ``F_n`` with ``u_x^k E_n = ∂_x (u_x^k F_n)``."""
     algebra = closure.solution.algebra
     orders = closure.solution.acceleration[2:]
     return all(algebra.antiderivative(E, algebra.k) is not None for E in orders)
 
 
 def energy(closure: Closure) -> list[fmpq_mpoly]:
-    """The terms of (e - W(u_x)) / (u_x² F′(u_x)) to D^{order-2}.
+    """The terms of ``(e - W(u_x)) / (u_x² F′(u_x))`` to ``D^{order-2}``.
 
-    Raises `lwa.InputError` on the optical branch, and for a closure that leaves a defect.
+    Raises
+    ------
+    InputError
+        On the optical branch, and for a closure that leaves a defect.
     """
     if closure.model.branch != "acoustic":
         raise InputError(
@@ -58,7 +65,8 @@ def energy(closure: Closure) -> list[fmpq_mpoly]:
     if any(not d.is_zero() for d in closure.solution.defect):
         raise InputError(
             "the linear closure does not satisfy both equations of motion (see the defect), so "
-            'that no energy is conserved: closure="full" has one'
+            "that no energy is conserved",
+            closure="full",
         )
     fields = _Fields(closure)
     algebra = closure.solution.algebra
@@ -73,9 +81,14 @@ def energy(closure: Closure) -> list[fmpq_mpoly]:
 class _Fields:
     """Velocities and strains of a closure as series in D.
 
-    S : the series of each field w_i = φ + D φ_x S_i.
-    velocities : the terms of each ∂_τ w_i, divided by p^{(k+1)/2}.
-    forces : the forces of the contacts.
+    Attributes
+    ----------
+    S : list of GradedSeries
+        The series of each field ``w_i = φ + D φ_x S_i``.
+    velocities : list of lists of elements
+        The terms of each ``∂_τ w_i``, divided by ``p^{(k+1)/2}``.
+    forces : list of Force
+        The forces of the contacts.
     """
 
     def __init__(self, closure: Closure) -> None:
@@ -102,14 +115,14 @@ class _Fields:
                 force.append(strain / share)  # without a remainder
 
     def _strains(self, n: int) -> list[fmpq_mpoly]:
-        """Coefficients of D^n in (w_{i+1} - w_i)/(D p), i < P; w_P is w_0 of the next cell."""
+        """Coefficients of ``D^n`` in ``(w_{i+1} - w_i)/(D p)``, ``w_P`` that of the next cell."""
         S, P = self.S, len(self.S)
         strains = [after[n] - before[n] for before, after in pairwise(S)]
         next_cell = S[0][n] + self.algebra.shift(P, n) + S[0].increment(P, n)
         return [*strains, next_cell - S[-1][n]]
 
     def kinetic(self, n: int) -> fmpq_mpoly:
-        """Coefficient of D^n in the kinetic energy ½ Σ m̂_i (∂_τ w_i)², divided by p² F′."""
+        """Coefficient of ``D^n`` in the kinetic energy ``½ Σ m̂_i (∂_τ w_i)²`` over ``p² F′``."""
         total = self.algebra.zero
         for mu, velocity in zip(self.algebra.mu, self.velocities, strict=True):
             for j in range(n + 1):
@@ -117,7 +130,7 @@ class _Fields:
         return total
 
     def elastic(self, n: int) -> fmpq_mpoly:
-        """Coefficient of D^n in Σ C_i W(p (1 + X_i)) / P, divided by p² F′; 0 for n = 0."""
+        """Coefficient of ``D^n`` in ``[Σ C_i W(p (1 + X_i)) / P - W(p)] / (p² F′)``."""
         total = self.algebra.zero
         # At D^0 every strain is the mean one, whose energy W(p) stands apart.
         if n == 0:

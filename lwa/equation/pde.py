@@ -1,13 +1,14 @@
 """The quasi-continuum wave equation of a chain, at any order.
 
 Acoustic branch (the wave equation of Porter et al. 2008 is order 4 of the dimer), in the time
-τ = t · `Cell.time_scale`:
+``τ = t`` · `Cell.time_scale`::
 
     u_ττ = u_x^{k-1} u_xx + u_x^k Σ_{n≥2} D^{n-1} Σ_jets coefficient · Π_i (∂_x^i u / u_x)^{e_i},
 
-where a jet is a set of pairs (i, e_i), and order n collects the terms with D^{k+n} in the equations
-of motion; G, H and I are the coefficients of n = 3. Under a law F(δ) that is no power F′(D u_x)
-replaces u_x^{k-1}, and coefficients hold φ_2, φ_3, … (`lwa.law`). Optical branch, in its time unit:
+where a jet is a set of pairs (i, e_i), and order n collects the terms with ``D^{k+n}`` in the
+equations of motion; G, H and I are the coefficients at order 3, times ``D²``. Under a law F(δ) that
+is no power ``F′(D u_x)`` replaces ``u_x^{k-1}``, and coefficients hold ``φ_2, φ_3, …`` (`lwa.law`).
+Optical branch, in its time unit::
 
     u_ττ = -u^k + u^k Σ_{n≥1} D^n Σ_jets coefficient · Π_i (∂_x^i u / u)^{e_i}.
 """
@@ -39,8 +40,12 @@ from lwa.equation.terms import (
 )
 from lwa.wave.compact import CompactWave
 
-LETTERS = {"G": Jet(((2, 3),)), "H": Jet(((2, 1), (3, 1))), "I": Jet(((4, 1),))}
-"""The paper's letters for the coefficients at D^{k+3}, and their jets."""
+LETTERS = {
+    "G": Jet(((2, 3),)),
+    "H": Jet(((2, 1), (3, 1))),
+    "I": Jet(((4, 1),)),
+}
+"""The paper's letters for the coefficients at ``D^{k+3}``, and their jets."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -71,9 +76,10 @@ class PDE(OfClosure):
 
     @cached_property
     def coefficients(self) -> Mapping[int, Terms]:
-        """Mapping from n to the terms of D^{k+n} (optical: D^n), without D; {} if they vanish.
+        """Mapping from n to the terms of ``D^{k+n}`` (optical: ``D^n``), without D.
 
-        The leading term u_x^{k-1} u_xx (or -u^k) is left out.
+        The leading term ``u_xx u_x^{k-1}`` (optical: ``-u^k``) is left out. The terms of an order
+        that vanishes are {}.
         """
         # The leading term is E_1 on the acoustic branch, E_0 on the optical one.
         base = self.closure.model.base
@@ -107,27 +113,27 @@ class PDE(OfClosure):
 
     @property
     def G(self) -> sp.Expr:
-        """The coefficient of u_x^{k-3} u_xx^3, D² included."""
+        """The coefficient of ``u_x^{k-3} u_xx^3``, with its factor ``D²``."""
         return self._at_third_order("G")
 
     @property
     def H(self) -> sp.Expr:
-        """The coefficient of u_x^{k-2} u_xx u_xxx, D² included."""
+        """The coefficient of ``u_x^{k-2} u_xx u_xxx``, with its factor ``D²``."""
         return self._at_third_order("H")
 
     @property
     def I(self) -> sp.Expr:
-        """The coefficient of u_x^{k-1} u_xxxx, D² included."""
+        """The coefficient of ``u_x^{k-1} u_xxxx``, with its factor ``D²``."""
         return self._at_third_order("I")
 
     @property
     def vanishing(self) -> tuple[int, ...]:
-        """The n whose order D^{k+n} (optical: D^n) vanishes identically."""
+        """The n whose order ``D^{k+n}`` (optical: ``D^n``) vanishes identically."""
         return tuple(n for n, of_order in self.coefficients.items() if not of_order)
 
     @cached_property
     def conservative(self) -> bool:
-        """True if all orders, D^{k+3} at least, are ∂_x of a flux: ∫ u_τ dx is conserved."""
+        """True if ``∫ u_τ dx`` is conserved: each order, at least to ``D^{k+3}``, has a flux."""
         if not self.acoustic:
             return False
         closure = self.closure
@@ -138,14 +144,18 @@ class PDE(OfClosure):
 
     @cached_property
     def energy(self) -> Mapping[int, Terms]:
-        """Mapping from n ≤ order - 2 to the terms e_n of the conserved energy density.
+        """Mapping from n to the terms ``e_n`` of the conserved energy density, n to order - 2.
 
-        The density is W(u_x) + Σ D^n e_n, where W′ = F(u_x) in the units of the equation:
-        W = u_x^{k+1}/(k(k+1)) for a power, e_0 = u_τ²/2. It is the energy of the chain in the
-        slaved fields (`lwa.equation.energy`), conserved to the order of the closure in every field.
-        Coefficients are those of u_x² F′(u_x) times a jet.
+        The density is ``W(u_x) + Σ D^n e_n``, where W is the energy of the contacts in the units of
+        the equation, ``W′ = F``, such as ``u_x^{k+1}/(k(k+1))`` for a power, and
+        ``e_0 = u_τ²/2``. It is the energy of the chain in the slaved fields
+        (`lwa.equation.energy`), conserved to the order of the closure in every field. Coefficients
+        are those of ``u_x² F′(u_x)`` times a jet.
 
-        Raises `lwa.InputError` on the optical branch, and for a closure that leaves a defect.
+        Raises
+        ------
+        InputError
+            On the optical branch, and for a closure that leaves a defect.
         """
         densities = energy(self.closure)
         return {n: terms(self.closure, e, ENERGY) for n, e in enumerate(densities)}
@@ -188,7 +198,7 @@ class PDE(OfClosure):
 
     @property
     def heading(self) -> str:
-        """Format string for the heading of an order n, such as D^(k+{})."""
+        """Format string for the heading of an order n, such as ``D^(k+{})``."""
         # F′ stands in the place of the power of D u_x.
         if not self.law.homogeneous:
             return "order {}"
@@ -208,7 +218,7 @@ class PDE(OfClosure):
         return "\n".join(lines)
 
     def latex_rows(self, most: int | None = None) -> list[str]:
-        """LaTeX of the equation to D^{k+most} (all orders if None), of τ, and of G, H, I."""
+        """LaTeX of the equation to ``D^{k+most}`` (all orders if None), of τ, and of G, H, I."""
         right_side = latex_by_order(
             self._summands(Terms.latex),
             self._without_letters,
@@ -226,14 +236,17 @@ class PDE(OfClosure):
         return latex.display(self.latex_rows(3))
 
     def at(self, **values: Any) -> PDE:
-        """The equation for these values of the named symbols, and of ω = m2/m1 by ``omega``.
+        """The equation for these values of the named symbols, and of m2/m1 by ``omega``.
 
-        Raises `lwa.InputError` for a name that does not occur or a value that is no quantity.
+        Raises
+        ------
+        InputError
+            For a name that does not occur, or a value that is no quantity.
         """
         return PDE(self.closure.at(**values))
 
     def traveling_wave(self) -> CompactWave:
-        """The compact wave of the equation truncated at D^{k+3}, in closed form.
+        """The compact wave of the equation truncated at ``D^{k+3}``, in closed form.
 
         Returns
         -------
@@ -245,7 +258,7 @@ class PDE(OfClosure):
             For numbers without a wave.
         InputError
             If the closed form does not apply: the law is no power, the order is below 4, the branch
-            optical, or D^{k+2} does not vanish (the linear closure with unequal contacts).
+            optical, or ``D^{k+2}`` does not vanish (the linear closure with unequal contacts).
         """
         if not self.law.homogeneous:
             raise InputError(
@@ -253,7 +266,13 @@ class PDE(OfClosure):
                 "`lwa.loaded_wave` has the waves of any law, on a background or of a force"
             )
         # G, H, I refuse an order below 4 and the optical branch.
-        wave = CompactWave(cell=self.cell, k=self.k, G=self.G, H=self.H, I=self.I)
+        wave = CompactWave(
+            cell=self.cell,
+            k=self.k,
+            G=self.G,
+            H=self.H,
+            I=self.I,
+        )
         # u_x^{k-2} u_xx² breaks the symmetry x → -x, u → -u, which an even pulse has.
         if 2 not in self.vanishing:
             raise InputError(

@@ -1,8 +1,8 @@
-r"""The terms of one order in the spacing: jets with their coefficients, and their notation.
+"""The terms of one order in the spacing: jets with their coefficients, and their notation.
 
-A jet is a product of (∂_x^i u / base)^e and (∂_x^i u_τ / base^{(k+1)/2})^e, the base u_x (on the
-optical branch u). A term is coefficient · base^{a + bk} · jet, a + bk the same for all of them; the
-powers of the base are collected in print, as in u_x^{k-3} u_xx^3.
+A jet is a product of ``(∂_x^i u / base)^e`` and ``(∂_x^i u_τ / base^{(k+1)/2})^e``, where the base
+is ``u_x`` (on the optical branch u). A term is ``coefficient · base^{a + bk} · jet``, with the same
+``a + bk`` for all terms; the powers of the base are collected in print, as in ``u_x^{k-3} u_xx^3``.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _SHOWN = 3  # terms that `Terms.__repr__` prints in full
 
 
 class BasePower(NamedTuple):
-    """The power base^{a + bk}; under a law that is no power base^{a + b} F′^b."""
+    """The power ``base^{a + bk}``; under a law that is no power ``base^{a + b} F′^b``."""
 
     a: Fraction | int
     b: Fraction | int
@@ -108,7 +108,7 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
         return f"{{{', '.join(rows)}}}"
 
     def text(self, jet: Jet) -> str:
-        """The jet as text with its power of the base, such as u_x^(k-3) u_xx^3."""
+        """The jet as text with its power of the base, such as ``u_x^(k-3) u_xx^3``."""
         factors = []
         for name, exponent in self._factors(jet):
             name = re.sub("[{}]", "", name).replace(r"\tau", "τ")
@@ -120,7 +120,7 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
         return " ".join(factors) or "1"
 
     def latex(self, jet: Jet) -> str:
-        """The jet in the paper's notation, such as u_x^{k-3} u_{xx}^{3}."""
+        """The jet in the paper's notation, such as ``u_x^{k-3} u_{xx}^{3}``."""
         factors = []
         for name, exponent in self._factors(jet):
             power = sp.latex(exponent, fold_short_frac=True)
@@ -208,9 +208,24 @@ def latex_by_order(
     base: int = 0,
     most: int | None = None,
 ) -> str:
-    r"""LaTeX of a sum: leading summands, then D^{n - base} (terms of order n) for each order.
+    """LaTeX of a sum: leading summands, then ``D^{n - base}`` times the terms of each order n.
 
-    Orders above ``most`` (None: no order) are dots.
+    Parameters
+    ----------
+    leading : sequence of str
+        The leading summands.
+    orders : mapping
+        The terms by their orders.
+    spacing : expression
+        The spacing D.
+    base : int
+        The order at ``D^0``.
+    most : int, optional
+        Orders above this one are dots; all are written when not given.
+
+    Returns
+    -------
+    str
     """
     summands = [(sp.S.One, summand) for summand in leading]
     for n, of_order in orders.items():

@@ -1,9 +1,10 @@
-"""The expansion of a chain's traveling waves in ε = k - 1, exact at every order.
+"""The expansion of a chain's traveling waves in ``ε = k - 1``, exact at every order.
 
-Near k = 1 a wave is long, of width 1/√ε, and the long-wave theory is its leading order. The
-lattice's own equations are expanded (`lwa.expansion.recursion`); for equal beads the first order is
-the wave of Chatterjee, Phys. Rev. E 59, 5912 (1999). Speed, profile, widths, momentum and energy
-(`lwa.expansion.observables`) become series in ε (`lwa.expansion.series`) in the cell's units.
+Near k of 1 a wave is long, and the long-wave theory is the leading order of its width,
+``1/√ε``. The lattice's own equations are expanded (`lwa.expansion.recursion`); for equal beads the
+first order is the wave of Chatterjee, Phys. Rev. E 59, 5912 (1999). Speed, widths, momentum and
+energy (`lwa.expansion.observables`) become series in ε (`lwa.expansion.series`) in the cell's
+units.
 """
 
 from __future__ import annotations
@@ -16,9 +17,9 @@ from typing import Any
 import sympy as sp
 
 from lwa.algebra.model import Model
-from lwa.base.exact import InputError, integer, shorten, signed
-from lwa.base.frozen import QUANTITIES as QUANTITIES
-from lwa.base.frozen import Value, known_quantity
+from lwa.base.exact import InputError, integer, shorten
+from lwa.base.frozen import Value
+from lwa.base.words import QUANTITIES, QuantityName, one_of
 from lwa.cell import Cell, exponent, read_cell, substitution
 from lwa.cell import k as symbol_k
 from lwa.expansion.observables import Observables, shares_model
@@ -32,11 +33,11 @@ LARGEST = 3_000_000
 
 @dataclass(frozen=True)
 class Expansion(Value):
-    """The traveling wave of a chain as a series in ε = k - 1 (see `expand`).
+    """The traveling wave of a chain as a series in ``ε = k - 1`` (see `expand`).
 
     The first contact has the peak force 1; lengths are in D (sites), masses and A in the cell's
     units. Behind a striker the two contacts of a dimer differ (their peaks by 0.5 % at
-    m2/m1 = 0.99, by 5 % at 0.9): widths and their errors hold for the mean of the two.
+    m2/m1 of 0.99, by 5 % at 0.9): widths and their errors hold for the mean of the two.
 
     Attributes
     ----------
@@ -59,14 +60,9 @@ class Expansion(Value):
         values = (*self.cell.masses, *self.cell.stiffnesses, self.k)
         return not any(x.free_symbols for x in values) and bool(self.k > 1)
 
-    @property
-    def I(self) -> sp.Expr:
-        """Coefficient I in the linear chain's dispersion Ω² = κ² - I κ⁴ + …, in units of D²."""
-        return self._observables.I
-
     @cached_property
     def compliance(self) -> sp.Expr:
-        """The mean ā of A_i^{-1/k}."""
+        """The mean ā of ``A_i^{-1/k}``."""
         return sp.Add(*self.cell.compliances(self.k)) / self.cell.size
 
     @cached_property
@@ -74,12 +70,9 @@ class Expansion(Value):
         """The square c² of the speed in sites per unit of time."""
         return self._series("c2", self._sound, sp.S.Zero)
 
-    @cached_property
-    def c(self) -> EpsilonSeries:
-        """The speed in sites per unit of time."""
-        return self._series("c", sp.sqrt(self._sound), sp.S.Zero)
-
-    def fwhm(self, quantity: str = "strain", contact: Any = 0) -> EpsilonSeries:
+    def fwhm(
+        self, quantity: QuantityName = "strain", contact: Any = 0
+    ) -> EpsilonSeries:
         """Full width at half maximum.
 
         Parameters
@@ -95,32 +88,36 @@ class Expansion(Value):
             A length in D.
         """
         i = integer(contact, "contact", 0, self.cell.size - 1)
+        one_of(quantity, QUANTITIES, "quantity")
         # The Gaussian F = e^{-Z²/4}, Z = √(ε/I) ξ, is 1/2 at Z = 2√log 2.
-        unit = 4 * sp.sqrt(self.I * sp.log(2))
-        return self._series(known_quantity(quantity), unit, -sp.S.Half, i)
+        unit = 4 * sp.sqrt(self._observables.I * sp.log(2))
+        return self._series(quantity, unit, -sp.S.Half, i)
 
     @cached_property
     def momentum(self) -> EpsilonSeries:
-        """Momentum Σ m v of the chain: mean mass times c times the displacement behind the wave."""
+        """Momentum ``Σ m v``, mean mass times c times the displacement behind the wave."""
         # ∫ e^{-Z²/4} dξ = 2√(πI/ε), times ā (M/P) c = 1/c.
-        unit = 2 * sp.sqrt(sp.pi * self.I / self._sound)
+        unit = 2 * sp.sqrt(sp.pi * self._observables.I / self._sound)
         return self._series("momentum", unit, -sp.S.Half)
 
     @cached_property
     def energy(self) -> EpsilonSeries:
         """Kinetic and elastic energy of the chain."""
-        unit = self.compliance * sp.sqrt(2 * sp.pi * self.I)  # ā ∫ e^{-Z²/2} dξ
+        # ā ∫ e^{-Z²/2} dξ
+        unit = self.compliance * sp.sqrt(2 * sp.pi * self._observables.I)
         return self._series("energy", unit, -sp.S.Half)
 
     @cached_property
     def effective_mass(self) -> EpsilonSeries:
         """The mass P²/(2E) of a particle with the wave's momentum P and energy E, at any force."""
-        unit = sp.sqrt(2 * sp.pi * self.I) * self.cell.mass / self.cell.size
+        # The square of the unit of momentum over twice that of energy
+        unit = sp.sqrt(2 * sp.pi * self._observables.I)
+        unit *= self.cell.mass / self.cell.size
         return self._series("effective_mass", unit, -sp.S.Half)
 
     @cached_property
     def _sound(self) -> sp.Expr:
-        """The value of c² at k = 1."""
+        """The value of c² in the limit of k to 1."""
         return self.cell.size / (self.cell.mass * self.compliance)
 
     def _series(
@@ -129,38 +126,8 @@ class Expansion(Value):
         coefficients = self._observables.coefficients(quantity, contact)
         return EpsilonSeries(unit, power, coefficients, self.k, self.cell, quantity)
 
-    def log_force(self, contact: Any = 0, X: Any = None) -> dict[sp.Rational, sp.Expr]:
-        """Mapping from n = 0, 1/2, 1, … to φ_n(X) ≠ 0 in log F = Σ ε^n φ_n(X), X = √ε ξ.
-
-        F is the force of the contact, ξ the distance in sites from the peak of the first contact,
-        in the frame of the cell: contact i is i sites behind the first one. A truncated sum holds
-        near the peak; far out its last term may rise.
-
-        Parameters
-        ----------
-        contact : int
-            Number of the contact in the cell.
-        X : symbol or number, optional
-            The place; a symbol of this name unless given.
-
-        Returns
-        -------
-        dict of sympy.Rational to sympy.Expr
-        """
-        i = integer(contact, "contact", 0, self.cell.size - 1)
-        place = sp.Symbol("X") if X is None else signed(X, "X")
-        names = {s.name for s in (*self.cell.symbols, *self.k.free_symbols)}
-        if shared := names & {s.name for s in place.free_symbols}:
-            raise InputError(
-                f"{min(shared)} names a property of the chain: give X another name"
-            )
-        result = {}
-        for n, phi in self._observables.log_force(i).items():
-            result[n] = sp.Add(*(a * place**d for d, a in phi.items()))
-        return result
-
     def at(self, **values: Any) -> Expansion:
-        """The expansion for these values of the named symbols, and of ω = m2/m1 by ``omega``.
+        """The expansion for these values of the named symbols, and of m2/m1 by ``omega``.
 
         Raises
         ------
@@ -183,7 +150,7 @@ class Expansion(Value):
 def expand(
     cell: Cell, order: Any = 4, *, k: Any = symbol_k, law: ContactLaw | None = None
 ) -> Expansion:
-    """Expand the traveling wave of a chain in ε = k - 1, from the lattice's equations.
+    """Expand the traveling wave of a chain in ``ε = k - 1``, from the lattice's equations.
 
     Parameters
     ----------
@@ -194,7 +161,7 @@ def expand(
     k : number or symbol
         The exponent. Shares of strain of unlike contacts depend on it.
     law : Power, optional
-        A power law in place of k; other laws have no ε = k - 1.
+        A power law in place of k; other laws have no ε.
 
     Returns
     -------
@@ -226,26 +193,18 @@ def expand(
     if not k.free_symbols and k <= 1:
         raise InputError(f"k is {k}: the expansion in k - 1 wants k > 1")
     names = {s.name for s in (*cell.symbols, *k.free_symbols)}
+    # The letter of the expansion in text and in LaTeX
     if shared := names & {"ε", r"\varepsilon"}:
         raise InputError(
             f"{min(shared)} is k - 1 in the expansion: choose another name"
         )
-    model = shares_model(cell, k)
-    if _terms(model, order) > LARGEST:
-        ratios = _ratios(model)
-        other = "a lower order"
-        if ratios:
-            other = "give numbers for the cell, or a lower order"
+    terms = _terms(shares_model(cell, k), order)
+    if terms > LARGEST:
         raise InputError(
-            f"order is {order}: with {ratios} symbolic ratios in a cell of {cell.size} this takes "
-            f"more than {LARGEST:.0e} terms, beyond memory; {other}"
+            f"order is {order}: polynomials of some {terms:.0e} terms are beyond memory; a lower "
+            "order, or numbers for symbols, takes fewer"
         )
     return Expansion(cell, order, k)
-
-
-def _ratios(model: Model) -> int:
-    """The number of symbolic ratios of masses and of stiffnesses."""
-    return len(model.ring.masses.names) + len(model.ring.contacts.names)
 
 
 def _terms(model: Model, order: int) -> int:
@@ -256,6 +215,7 @@ def _terms(model: Model, order: int) -> int:
     of degree 3n in the symbolic ratios of the cell; n runs to 2·order. Counted: 1.06 million terms
     for equal beads to order 80 (estimated: 1.02), 1.4 million for unlike contacts to 16 (1.2).
     """
-    ratios = _ratios(model)
+    ratios = len(model.ring.masses.names) + len(model.ring.contacts.names)
+    # Any larger order is refused, and binomials of it take long.
     n = min(order, 10**6)
     return 2 * n**3 * comb(9 * n + ratios, ratios)

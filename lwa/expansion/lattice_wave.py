@@ -2,15 +2,15 @@
 
 One class for each theory, of which `lattice_wave` takes the one that is nearest to the lattice:
 
-- `LatticeWave`: equal beads, in closed form (`lwa.expansion.forms.joined`) for every k > 1;
-- `FollowingWave`: m2/m1 < 0.75, light beads that follow (`lwa.expansion.forms.following`);
-- `AlikeWave`: m2/m1 ≥ 0.75, equal beads of the mean mass.
+- `LatticeWave`: equal beads, in closed form (`lwa.expansion.joined`) for every k > 1;
+- `FollowingWave`: m2/m1 < 0.75, light beads that follow (`lwa.expansion.dimers`);
+- `AlikeWave`: from m2/m1 of 0.75 on, equal beads of the mean mass.
 
-Errors of the force's width: below 1e-3; for spheres 0.2 % at m2/m1 = 0.1 and 4 % at 0.27; 0.9 % at
-0.8. From 0.5 to 0.75 and above k = 1.2 the light beads resonate, and the pulse of a struck chain
-decays. The force of a light bead's contacts has several humps from k = 7/4 on (at 7/4 for m2/m1 >
+Errors of the force's width: below 1e-3; for spheres 0.2 % at m2/m1 of 0.1 and 4 % at 0.27; 0.9 % at
+0.8. From 0.5 to 0.75 and above k of 1.2 the light beads resonate, and the pulse of a struck chain
+decays. The force of a light bead's contacts has several humps from k of 7/4 on (at 7/4 for m2/m1 >
 0.3, at 2 for > 0.1): the width of the highest means little there, as its error says. The series of
-`lwa.expand` is nearer for equal beads at k < 3, and for any cell near k = 1.
+`lwa.expand` is nearer for equal beads at k < 3, and for any cell near k of 1.
 
 With the compression ``δ = (F/A)^{1/k}`` of contacts by the peak force F and the mean mass m, speeds
 are in units of ``D √(F/(m δ))``, momenta of ``√(m F δ)`` and energies of ``F δ``.
@@ -37,17 +37,16 @@ from lwa.base.words import (
 )
 from lwa.cell import Cell, exponent, read_cell, substitution
 from lwa.cell import k as symbol_k
-from lwa.expansion.forms.code import source
-from lwa.expansion.forms.errors import (
+from lwa.expansion.dimers import (
     ALIKE,
     alike_error,
+    exponent_of_light_beads,
     following_error,
-    joined_error,
     resonates,
 )
-from lwa.expansion.forms.following import exponent_of_light_beads
-from lwa.expansion.forms.joined import TWO_BODIES, joined
+from lwa.expansion.joined import TWO_BODIES, elementary, joined, joined_error
 from lwa.law import ContactLaw, Power, for_cell
+from lwa.wave.source import Functions, module
 
 _PARTS = {
     "speed": ("c",),
@@ -57,6 +56,22 @@ _PARTS = {
     "effective_mass": ("momentum", "momentum", "energy"),
 }
 """Quantities in a result, in the units of the module; their relative errors add up."""
+
+
+_TITLE = (
+    "The lattice's own solitary wave, written by lwa: exact to 1e-5 (speed) and",
+    "1e-3 for equal beads at every k > 1. Peak contact force F, lengths in units of D.",
+)
+
+_MEANINGS = {
+    "speed": "dx/dt",
+    "fwhm_strain": "Full width at half maximum of the strain",
+    "fwhm_force": "Full width at half maximum of the force",
+    "fwhm_velocity": "Full width at half maximum of the velocity",
+    "momentum": "Momentum of the chain",
+    "energy": "Kinetic and elastic energy of the chain",
+}
+"""Functions of a program, and their comments."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -131,20 +146,21 @@ class LatticeWave(Value):
         return self._result("c")
 
     def scaled_speed(self, B: Any = RISE) -> sp.Expr:
-        """The speed V_s = dx/dτ of the wave whose strain peaks at B, as `CompactWave.speed`."""
+        """The speed ``V_s = dx/dτ`` of the wave whose strain peaks at B, as `CompactWave.speed`."""
         scale = power(positive(B, "B"), (self.k - 1) / 2)
-        return self._value("c") * scale / sp.sqrt(self.k)  # τ/t = √(k A D^{k+1}/m)
+        # τ/t = √(k A D^{k+1}/m)
+        return self._value("c") * scale / sp.sqrt(self.k)
 
     @property
     def short_speed(self) -> sp.Expr:
-        """The `speed` of equal beads by c = c₂ [1 + (π/√8 - 1) 4^{1-k}], to 0.2 %."""
+        """The `speed` of equal beads by ``c = c₂ [1 + (π/√8 - 1) 4^{1-k}]``, to 0.2 %."""
         rest = (sp.pi / sp.sqrt(8) - 1) * 4 ** (1 - self.k)
         c = TWO_BODIES["c"].subs(symbol_k, self.k) * (1 + rest)
         return self.speed * c / self._value("c")
 
     @property
     def momentum(self) -> sp.Expr:
-        """The momentum Σ m v of the chain."""
+        """The momentum ``Σ m v`` of the chain."""
         return self._result("momentum")
 
     @property
@@ -165,7 +181,7 @@ class LatticeWave(Value):
         Parameters
         ----------
         quantity : {"force", "strain", "velocity"}
-            Force or strain of a contact, or velocity of a bead, as of `bead_velocity`.
+            Force or strain of a contact, or velocity of a bead (of a dimer, a heavy one).
         extent : {"length", "time"}
             Extent in space, or time of passage.
 
@@ -217,7 +233,7 @@ class LatticeWave(Value):
         return replace(self, force=F)
 
     def at(self, **values: Any) -> LatticeWave:
-        """Substitute numbers or other symbols for named symbols, and for ω = m2/m1 by ``omega``.
+        """Substitute numbers or other symbols for named symbols, and for m2/m1 by ``omega``.
 
         >>> lattice_wave(Cell(["m"], spacing=1)).at(m=1, k=2).estimate("speed")
         0.845861 ± 9e-06
@@ -253,8 +269,12 @@ class LatticeWave(Value):
         for quantity in QUANTITIES:
             values[f"fwhm_{quantity}"] = self.fwhm(quantity)
         cell = self.cell
-        arguments = (self.force, self.k, *cell.masses, *cell.stiffnesses, cell.spacing)
-        return source(values, arguments, language)
+        functions = Functions(
+            self.force, self.k, *cell.masses, *cell.stiffnesses, cell.spacing
+        )
+        for name, value in values.items():
+            functions.define(name, _MEANINGS[name], elementary(value))
+        return module([*functions.values()], language, _TITLE)
 
 
 @dataclass(frozen=True, repr=False)
@@ -288,7 +308,7 @@ class FollowingWave(LatticeWave):
 
 
 def mass_ratio(cell: Cell) -> sp.Expr:
-    """The ratio m2/m1 ≤ 1 of two beads' masses; of symbols, the second over the first."""
+    """The lesser of two beads' masses over the other; of symbols, the second over the first."""
     first, second = cell.masses
     if first.is_number and second.is_number and second > first:
         return first / second
@@ -311,7 +331,7 @@ def lattice_wave(
         light one that follows its heavy neighbours, or beads that are nearly alike. Of two symbols
         the second is the light bead.
     k : number or symbol
-        Exponent k > 1 of the contact law F = A δ^k.
+        Exponent k > 1 of the contact law ``F = A δ^k``.
     force : number or symbol
         Peak force of the contacts.
     law : Power, optional
@@ -328,7 +348,7 @@ def lattice_wave(
     lwa.InputError
         For other cells and laws.
     lwa.NoSolitaryWave
-        For k ≤ 1, and where the light beads resonate so that the pulse of a struck chain decays.
+        For k up to 1, and where the light beads resonate and the pulse of a struck chain decays.
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""Speed, widths, momentum, energy and profile of a wave of `lwa.expansion.recursion`.
+"""Speed, widths, momentum and energy of a wave of `lwa.expansion.recursion`.
 
 Letters as in that module. Each quantity, divided by its leading term or in the unit stated, is a
-series in t. The even terms, polynomials in √log 2 over the recursion's ring, become the
+series in t. The even terms, polynomials in ``√log 2`` over the recursion's ring, become the
 coefficients of a series in ε, in the caller's symbols.
 """
 
@@ -18,28 +18,32 @@ from lwa.cell import Cell
 from lwa.expansion.pulse import (
     Series,
     by_degree,
-    even_product,
     half_width,
     logarithm,
     moments,
     power,
     product,
-    width_of_power,
 )
 from lwa.expansion.recursion import Recursion
 from lwa.law import Power
 
 
 class Observables:
-    """Speed, widths, momentum, energy and profile of a wave: series in t ∝ √ε, computed on demand.
+    """Speed, widths, momentum and energy of a wave: series in t, computed on demand.
 
-    wave : the solved recursion.
+    Parameters
+    ----------
+    wave : Recursion
+        The solved recursion.
+
+    Notes
+    -----
+    Full widths at half maximum are in units of ``4 √(I log 2/ε)``, the width of the Gaussian.
     """
 
     def __init__(self, wave: Recursion) -> None:
         self.wave = wave
         self.order = wave.order
-        self._widths: dict[int, Series] = {}  # of the force, by contact
 
     @cached_property
     def c2(self) -> Series:
@@ -52,48 +56,44 @@ class Observables:
         return power(self.c2, fmpq(1, 2))
 
     def force(self, contact: int = 0) -> Series:
-        """Full width at half maximum of a contact's force, in units of 4 √(I log 2/ε)."""
-        if contact not in self._widths:
-            log = self.wave.fields.force[contact].log
-            self._widths[contact] = half_width(log)
-        return self._widths[contact]
+        """Full width at half maximum of a contact's force."""
+        return half_width(self.wave.force[contact].log)
 
     def strain(self, contact: int = 0) -> Series:
-        """Full width at half maximum of a contact's strain F^{1/k}, in units of 4 √(I log 2/ε)."""
-        return width_of_power(self.force(contact), self.wave.epsilon)
+        """Full width at half maximum of a contact's strain."""
+        return half_width(self.wave.strain[contact].log)
 
     def velocity(self, contact: int = 0) -> Series:
-        """Full width at half maximum of a bead's velocity, in units of 4 √(I log 2/ε).
-
-        The bead is the one before the contact.
-        """
-        return half_width(logarithm(self.wave.fields.slope[contact]))
+        """Full width at half maximum of the velocity of the bead before a contact."""
+        return half_width(logarithm(self.wave.slope[contact]))
 
     @cached_property
     def momentum(self) -> Series:
         """Momentum, mean mass · c · displacement behind the wave, divided by its leading term."""
-        means = [terms[0] for terms in self.wave.fields.means]
+        means = [terms[0] for terms in self.wave.means]
+        # e^{-Z²/4} is a normal distribution of variance 2.
         return product(self.c, moments(means, 2))
 
     @cached_property
     def energy(self) -> Series:
-        """Kinetic and elastic energy in units of ā √(2πI/ε), (k + 3)/2 times the elastic energy.
+        """Kinetic and elastic energy in units of ``ā √(2πI/ε)``.
 
-        This virial theorem follows from dE = c dP along the waves of all amplitudes, where
-        P = 2 T/c is the momentum and T the kinetic energy: E ∝ F^{(k+1)/k} and c ∝ F^{(k-1)/2k}.
+        The energy is (k + 3)/2 times its elastic part. This virial theorem follows from ``dE = c
+        dP`` along the waves of all amplitudes, with the momentum ``P = 2 T/c``, T the kinetic
+        energy: E goes as ``F^{(k+1)/k}`` and c as ``F^{(k-1)/2k}``.
         """
         wave = self.wave
-        # (k + 3)/2 of 1/(k + 1), per contact, is (1 + 1/(1 + ε/2))/(2 P)
+        # (k + 3)/2 of the elastic 1/(k + 1) is (1 + 1/(1 + ε/2))/2; here per contact
         share = [wave.zero for _ in self.c2]
         for n in range(0, len(share), 2):
             share[n] = (-wave.epsilon / 2) ** (n // 2) / (2 * wave.P)
         share[0] = share[0] + fmpq(1, 2 * wave.P)
-        work = [wave.zero for _ in self.c2]  # ∫ Σ C_i f_i r_i dξ over ∫ e^{-Z²/2} dξ
-        fields = zip(wave.c, wave.fields.force, wave.fields.strain, strict=True)
-        for c, force, strain in fields:
-            for n, term in enumerate(even_product(force.series, strain.series)):
+        # ∫ Σ C_i f_i r_i dξ over ∫ e^{-Z²/2} dξ, whose variance is 1
+        work = [wave.zero for _ in self.c2]
+        for c, force, strain in zip(wave.c, wave.force, wave.strain, strict=True):
+            for n, term in enumerate(product(force.series, strain.series)):
                 work[n] = work[n] + c * term
-        return even_product(share, moments(work, 1))
+        return product(share, moments(work, 1))
 
     @cached_property
     def effective_mass(self) -> Series:
@@ -102,36 +102,24 @@ class Observables:
         return product(square, power(self.energy, fmpq(-1)))
 
     def coefficients(self, quantity: str, contact: int = 0) -> tuple[sp.Expr, ...]:
-        """Coefficients of ε^0, ε^1, … of the named quantity; of a width, at Z² = log 2.
-
-        Raises `AttributeError` for a name that is no quantity of this class.
-        """
+        """Coefficients of the powers of ε in the named quantity, from the power 0 on."""
         found = getattr(self, quantity)
         terms: Series = found(contact) if callable(found) else found
         result = []
         for n in range(self.order + 1):
             total = sp.S.Zero
+            # Widths are polynomials in y², which is log 2 at half of the peak.
             for d, coefficient in by_degree(terms[2 * n]).items():
-                total += self._over_I(coefficient, 3 * n) * sp.log(2) ** (d // 2)
+                # t² = ε/I³
+                part = self._over_I(coefficient, 3 * n)
+                total += part * sp.log(2) ** (d // 2)
             result.append(total)
         return tuple(result)
 
-    def log_force(self, contact: int) -> dict[sp.Rational, dict[int, sp.Expr]]:
-        """Mapping n → d → coefficient of X^d in φ_n (`lwa.Expansion.log_force`)."""
-        # t = ε^{1/2} I^{-3/2} and Z = X I^{-1/2}: a term c Z^d t^n is c I^{-(3n+d)/2} X^d ε^{n/2}.
-        phi = {sp.S.Zero: {2: -1 / (4 * self.I)}}
-        for n, q in enumerate(self.wave.fields.force[contact].log):
-            parts = {}
-            for d, coefficient in by_degree(q).items():
-                parts[d] = self._over_I(coefficient, (3 * n + d) // 2)
-            if parts:
-                phi[sp.Rational(n, 2)] = parts
-        return phi
-
     @cached_property
     def I(self) -> sp.Expr:
-        """Coefficient I in the linear chain's dispersion Ω² = κ² - I κ⁴ + …, in units of D²."""
-        return self._over_I(self.wave.I, 0)
+        """Coefficient I in the linear chain's dispersion ``Ω² = κ² - I κ⁴ + …``, in units of D²."""
+        return self._expression(self.wave.I)
 
     def _over_I(self, numerator: fmpq_mpoly, e: int) -> sp.Expr:
         """The quotient numerator / I^e, in the caller's symbols."""
@@ -144,11 +132,7 @@ class Observables:
                 break
             numerator = quotient
             e -= 1
-        return self._expression(numerator) / self._I**e
-
-    @cached_property
-    def _I(self) -> sp.Expr:
-        return self._expression(self.wave.I)
+        return self._expression(numerator) / self.I**e
 
     def _expression(self, polynomial: fmpq_mpoly) -> sp.Expr:
         """A polynomial without Z in the caller's symbols."""
@@ -164,7 +148,7 @@ def _number(polynomial: fmpq_mpoly) -> fmpq:
 
 
 def shares_model(cell: Cell, k: sp.Expr) -> Model:
-    """The model of a cell; with k = 1 for equal contacts, whose shares do not depend on k."""
+    """The model of a cell; with 1 for k if contacts are equal, whose shares do not depend on k."""
     if len({*cell.stiffnesses}) == 1:
         k = sp.S.One
     return Model(cell, Power(k))

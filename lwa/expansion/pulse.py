@@ -1,43 +1,38 @@
-"""Pulses e^{-Z²/4} Σ S_n(Z) t^n: logarithm and exponential, width at half maximum, moments.
+"""Pulses ``e^{-Z²/4} Σ S_n(Z) t^n``: logarithm and exponential, width at half maximum, moments.
 
 A series is the list of its coefficients, polynomials over a ring of python-flint whose first
 generator is Z; t is its small parameter. The waves of `lwa.expansion.expand` are such pulses.
-`product`, `power` and `logarithm` also take coefficients that are SymPy expressions.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from functools import partial
-from math import factorial, prod
+from collections.abc import Callable
 from typing import Any
 
 from flint import fmpq, fmpq_mpoly
 from sympy import factorial2
 
 Series = list[fmpq_mpoly]
-"""The coefficients of t^0, t^1, …"""
-
-
-def last(a: Series, b: Series) -> fmpq_mpoly:
-    """Coefficient of t^n in the product of two series, n the last order of the first one."""
-    total = 0 * b[0]
-    for term, other in zip(a, b[len(a) - 1 :: -1], strict=True):
-        if term:
-            total = total + term * other
-    return total
+"""The coefficients of 1, t, t², …"""
 
 
 def log_term(S: Series, log: Series) -> fmpq_mpoly:
-    """The next coefficient of log Σ S_n t^n (S_0 = 1), by n log_n = n S_n - Σ j log_j S_{n-j}."""
+    """The next coefficient of ``log Σ S_n t^n``, where S_0 is 1.
+
+    By ``n log_n = n S_n - Σ j log_j S_{n-j}``.
+    """
     n = len(log)
+    # At the order of the Gaussian S_0 is 1, and its logarithm S_0 - 1.
     if n == 0:
         return S[0] - 1
     return S[n] - _weighted(log, S, n - 1, n) / n
 
 
 def exp_term(log: Series, S: Series) -> fmpq_mpoly:
-    """The next coefficient of exp Σ log_n t^n (log_0 = 0), by n S_n = Σ j log_j S_{n-j}."""
+    """The next coefficient of ``exp Σ log_n t^n``, where log_0 is 0.
+
+    By ``n S_n = Σ j log_j S_{n-j}``.
+    """
     n = len(S)
     if n == 0:
         return log[0] + 1
@@ -48,13 +43,14 @@ def _weighted(log: Series, S: Series, end: int, n: int) -> fmpq_mpoly:
     """The sum Σ j log_j S_{n-j}, j = 1 … end, of the coefficients of ln S and of S."""
     total = 0 * log[0]
     for j in range(1, end + 1):
+        # Equal beads have no odd terms.
         if log[j]:
             total = total + j * log[j] * S[n - j]
     return total
 
 
 def logarithm(S: Series) -> Series:
-    """The series of log Σ S_n t^n, S_0 = 1."""
+    """The series of ``log Σ S_n t^n``, where S_0 is 1."""
     log: Series = []
     for _ in S:
         log.append(log_term(S, log))
@@ -63,83 +59,81 @@ def logarithm(S: Series) -> Series:
 
 def product(a: Series, b: Series) -> Series:
     """The product of two series, to the length of the first one."""
-    return _product(a, b, 1)
-
-
-def even_product(a: Series, b: Series) -> Series:
-    """The even powers of t in the product of two series; the coefficients of odd ones are 0."""
-    return _product(a, b, 2)
-
-
-def _product(a: Series, b: Series, step: int) -> Series:
-    """The coefficients of t^0, t^step, … in the product of two series; 0 between them."""
     total = [0 * a[0] for _ in a]
     for n, term in enumerate(a):
         if not term:
             continue
-        for m in range(-n % step, len(a) - n, step):
+        for m in range(len(a) - n):
             if b[m]:
                 total[n + m] = total[n + m] + term * b[m]
     return total
 
 
 def power(S: Series, a: fmpq) -> Series:
-    """The power (Σ S_n t^n)^a, S_0 = 1, by n R_n = Σ_{j≥1} (a j - (n - j)) S_j R_{n-j}."""
+    """The power ``(Σ S_n t^n)^a``, where S_0 is 1.
+
+    By ``n R_n = Σ_j (a j - (n - j)) S_j R_{n-j}`` for j from 1 to n.
+    """
     R = [S[0]]
-    for n in range(1, len(S)):  # from S R' = a S' R
+    # The recurrence is the coefficient of t^n in S R' = a S' R.
+    for n in range(1, len(S)):
         total = 0 * S[0]
         for j in range(1, n + 1):
-            total = total + (a * j - (n - j)) * S[j] * R[n - j]
+            weight = a * j - (n - j)
+            total = total + weight * S[j] * R[n - j]
         R.append(total / n)
     return R
 
 
 def by_degree(polynomial: fmpq_mpoly) -> dict[int, fmpq_mpoly]:
-    """Coefficients of Z^d by d."""
+    """Coefficients of the powers of Z, by the exponent."""
     parts: dict[int, dict[tuple[int, ...], Any]] = {}
     for exponents, coefficient in polynomial.terms():
         d, *rest = map(int, exponents)
-        parts.setdefault(d, {})[0, *rest] = coefficient
+        part = parts.setdefault(d, {})
+        part[0, *rest] = coefficient
     context = polynomial.context()
     return {d: context.from_dict(part) for d, part in parts.items()}
 
 
-def moment(polynomial: fmpq_mpoly, variance: int) -> fmpq_mpoly:
-    """The mean of a polynomial in Z under the normal distribution: Z^{2m} → (2m-1)!! v^m."""
-    total = 0 * polynomial
-    for d, coefficient in by_degree(polynomial).items():
-        if d % 2 == 0:
-            mean = int(factorial2(d - 1)) * variance ** (d // 2)
-            total = total + coefficient * mean
-    return total
-
-
-def moments(terms: Iterable[fmpq_mpoly], variance: int) -> Series:
-    """The `moment` of each coefficient of a series."""
-    return [moment(term, variance) for term in terms]
+def moments(series: Series, variance: int) -> Series:
+    """The means of the coefficients of a series under the normal distribution of Z."""
+    means = []
+    for polynomial in series:
+        total = 0 * polynomial
+        for d, coefficient in by_degree(polynomial).items():
+            # The mean of Z^{2m} is (2m - 1)!! v^m, and odd powers have none.
+            if d % 2 == 0:
+                mean = int(factorial2(d - 1)) * variance ** (d // 2)
+                total = total + coefficient * mean
+        means.append(total)
+    return means
 
 
 def half_width(log: Series) -> Series:
-    """Coefficients h_n of the width of a pulse e^{-Z²/4 + Σ log_n t^n} at e^{-y²} times its peak.
+    """Coefficients h_n of the width of a pulse ``e^{-Z²/4 + Σ log_n t^n}``.
 
-    The full width is 4y Σ h_n t^n; in the h_n, polynomials in y², Z stands for y. Counted from the
-    peak the exponent is -Z²/4 + p(Z), p = O(t), and Z²/4 = y² + p(Z) is solved by Lagrange's
-    series::
+    The full width at ``e^{-y²}`` of the peak is ``4y Σ h_n t^n``; in the h_n, polynomials in y², Z
+    stands for y. Counted from the peak the exponent is ``-Z²/4 + p(Z)``, p small with t, and the
+    equation ``Z²/4 = y² + p(Z)`` is solved by Lagrange's series::
 
         Z/2 = y + Σ_{m≥1} 1/m! (d/dy²)^{m-1} p(2y)^m/(2y),
 
-    whose odd part in y is a quarter of the width. Below, the terms of the sum are multiplied by y.
+    whose odd part in y is a quarter of the width.
     """
+    # p(2y): the coefficient of Z^d is multiplied by 2^d
     p = [_reweighted(term, lambda d: fmpq(2) ** d) for term in _from_peak(log)]
     y = p[0].context().gen(0)
     powers = [p]
     while any(powers[-1]):
         powers.append(product(powers[-1], p))
+    # The sum over m by Horner's rule, times y, so that no odd powers of 1/y appear.
     total = powers[-1]
     for m in range(len(powers) - 1, 0, -1):
         following = []
         for term, own in zip(total, powers[m - 1], strict=True):
-            slope = _over_square(y * term.derivative(0) - term, y)  # d/dy² of a/y
+            # d/dy² of a/y is (y a' - a)/(2 y³)
+            slope = _over_square(y * term.derivative(0) - term, y)
             following.append(own / 2 + slope / (2 * m + 2))
         total = following
     even = [_reweighted(term, lambda d: fmpq(1 - d % 2)) for term in total]
@@ -162,6 +156,7 @@ def _from_peak(log: Series) -> Series:
             phi = _shifted(phi, place, n)
     if phi[0] != -(Z**2) / 4:
         raise ArithmeticError("the pulse has no quadratic maximum")
+    # The constants of Z^0 are the logarithm of the peak.
     return [0 * Z, *(_reweighted(term, lambda d: fmpq(min(d, 1))) for term in phi[1:])]
 
 
@@ -174,25 +169,6 @@ def _shifted(phi: Series, place: fmpq_mpoly, n: int) -> Series:
         for m in range(j * n, len(phi)):
             moved[m] = moved[m] + derivatives[m - j * n]
     return moved
-
-
-def width_of_power(width: Series, epsilon: fmpq_mpoly) -> Series:
-    """Width series h_n of the pulse raised to the power 1/(1+ε), at the same height; ε = O(t²).
-
-    Raising the pulse to this power replaces y² by (1+ε) y²: each y^d of 4y Σ h_n t^n becomes
-    (1+ε)^{(d+1)/2} y^d.
-    """
-    new = list(width)
-    for n, term in enumerate(width):
-        for j in range(1, (len(width) - 1 - n) // 2 + 1):
-            part = _reweighted(term, partial(_binomial_of_root, j=j))
-            new[n + 2 * j] = new[n + 2 * j] + epsilon**j * part
-    return new
-
-
-def _binomial_of_root(d: int, j: int) -> fmpq:
-    """The binomial coefficient "(d+1)/2 choose j"."""
-    return fmpq(prod(range(d + 1, d + 1 - 2 * j, -2)), 2**j * factorial(j))
 
 
 def _over_square(polynomial: fmpq_mpoly, y: fmpq_mpoly) -> fmpq_mpoly:

@@ -1,9 +1,12 @@
-"""The bands of a chain in floats: frequencies and group velocities of all Bloch waves.
+"""The bands of a chain in floats: frequencies of all Bloch waves.
 
-With the displacements a_i and forces f_i of `lwa.linear.bloch`, the vectors of the components
-a_i √(P m̂_i) and f_i √C_i are related by a matrix B(κ): f = B a, -Ω² a = -Bᴴ f. The frequencies Ω_j
-are therefore the singular values of B. The eigenvalues Ω² of BᴴB would lose half the digits of a
-small Ω.
+Let a and f be the vectors of displacements ``a_i √(P m̂_i)`` and forces ``f_i √C_i`` (letters as in
+`lwa.linear.bloch`). They are related by a matrix B(κ)::
+
+    f = B a,    Ω² a = Bᴴ f.
+
+The frequencies are therefore the singular values of B. Its eigenvalue problem, that of ``BᴴB`` for
+``Ω²``, would lose half the digits of a small Ω.
 """
 
 from __future__ import annotations
@@ -24,7 +27,7 @@ class Bands(Value):
     Attributes
     ----------
     fractions, shares : ndarray, shape (P,)
-        Mass fractions m̂_i of the particles, strain shares C_i of the contacts.
+        Mass fractions ``m̂_i`` of the particles, strain shares ``C_i`` of the contacts.
     rate, length : float
         Units of the frequencies, and of the lengths in wavenumbers.
     """
@@ -53,25 +56,31 @@ class Bands(Value):
             For wavenumbers that are not finite.
         """
         # Whole turns are dropped: P κ would lose the digits that they take up.
-        kappa = np.angle(np.exp(1j * finite(q, "wavenumber") * self.length))
+        angle = finite(q, "wavenumber") * self.length
+        kappa = np.angle(np.exp(1j * angle))
         P = len(self.fractions)
         mass = np.sqrt(P * self.fractions)
         share = np.sqrt(self.shares)
+        # f_i = (a_{i+1} - a_i)/C_i: contact i pulls on particle i and on the next one.
         B = np.zeros((*kappa.shape, P, P), complex)
         for i in range(P):
             B[..., i, i] = -1 / (share[i] * mass[i])
         for i in range(P - 1):
             B[..., i, i + 1] = 1 / (share[i] * mass[i + 1])
-        # The last contact joins the next cell's first particle: for P = 1 the entry above.
-        B[..., -1, 0] += np.exp(1j * P * kappa) / (share[-1] * mass[0])
-        ascending = np.linalg.svd(B, compute_uv=False)[..., ::-1]
-        return ascending.astype(float) * self.rate
+        # The last contact joins the next cell's first particle, a_P = e^{iPκ} a_0. In a cell of one
+        # particle this is the entry that is set above, hence the sum.
+        phase = np.exp(1j * P * kappa)
+        B[..., -1, 0] += phase / (share[-1] * mass[0])
+        # NumPy's singular values descend.
+        descending = np.linalg.svd(B, compute_uv=False)
+        return descending[..., ::-1].astype(float) * self.rate
 
     def edges(self) -> Array:
-        """Least and largest frequency of each branch, shape (P, 2), at κ = 0 and π/P."""
-        # Branches of a chain have their least and largest frequency at the ends of the zone.
+        """Least and largest frequency of each branch, shape (P, 2), at the ends of the zone."""
+        # In a chain of neighbours Ω of a branch is monotonic in κ from 0 to π/P.
         edge = np.pi / len(self.fractions) / self.length
         ends = self.branches([0.0, edge])
+        ends[0, 0] = 0.0  # a shift of all particles, but for rounding
         return np.asarray(np.sort(ends, axis=0).T)
 
     def __repr__(self) -> str:

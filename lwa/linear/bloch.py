@@ -1,14 +1,15 @@
 """Bloch's dispersion relation of the linear chain as polynomials in (m̂, C), solved in series.
 
-With a_i the amplitude of particle i, f_i that of the force of contact i, Ω the frequency and κ the
-wavenumber in the theory's units, m̂_i mass fractions and C_i strain shares, the particles obey
+Let ``a_i`` be the amplitude of particle i, ``f_i`` that of the force of contact i, Ω the frequency
+and κ the wavenumber in the theory's units, ``m̂_i`` mass fractions and ``C_i`` strain shares. The
+particles obey::
 
     -P m̂_i Ω² a_i = f_i - f_{i-1},    a_{i+1} - a_i = C_i f_i,    a_P = e^{iPκ} a_0.
 
-Carrying (a, f) through one cell gives a matrix of determinant 1 whose trace is a polynomial in Ω²,
-and the branches are the roots of 2 cos(Pκ) = trace (Brillouin, *Wave Propagation in Periodic
-Structures*, 1946). Since trace = 2 - P²Ω² + …, the coefficients of the acoustic root follow one
-from another. A dimer's two roots have the sum 1/Π, Π = m̂_0 m̂_1 C_0 C_1.
+Carrying (a, f) through one cell gives a matrix of determinant 1 whose trace is a polynomial in
+``Ω²``, and the branches are the roots of ``2 cos(Pκ) = trace`` (Brillouin, *Wave Propagation in
+Periodic Structures*, 1946). Since ``trace = 2 - P²Ω² + …``, the coefficients of the acoustic root
+follow one from another. A dimer's two roots have the sum 1/Π, ``Π = m̂_0 m̂_1 C_0 C_1``.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from flint import (
 from lwa.algebra.model import Model
 
 Polynomial = list[fmpq_mpoly]
-"""Coefficients of a truncated polynomial in Ω²."""
+"""Coefficients of a truncated polynomial in ``Ω²``."""
 
 
 class Bloch:
@@ -49,17 +50,29 @@ class Bloch:
         self.zero = context.constant(0)
 
     def trace(self, most: int) -> Polynomial:
-        """Coefficients t_0 … t_P (or t_most) of the trace Σ t_m Ω^{2m} of a cell's matrix.
+        """Coefficients ``t_0 … t_P`` of the trace ``Σ t_m Ω^{2m}`` of a cell's matrix.
 
-        The matrix maps (a, f) of a cell to the next cell's; its diagonal is a of (1, 0) and f of
-        (0, 1), polynomials in Ω² as lists of coefficients.
+        The matrix maps (a, f) of a cell to that of the next cell; its diagonal is a of (1, 0) and f
+        of (0, 1), polynomials in ``Ω²`` as lists of coefficients.
+
+        Parameters
+        ----------
+        most : int
+            Index of the last coefficient that is wanted, if it is less than P.
+
+        Returns
+        -------
+        list of elements
         """
         none = [self.zero] * (min(self.P, most) + 1)
         one = [self.one, *none[1:]]
         # The columns of the matrix
         a, _ = self._carried(one, none)
         _, f = self._carried(none, one)
-        return [a_m + f_m for a_m, f_m in zip(a, f, strict=True)]
+        trace = []
+        for a_m, f_m in zip(a, f, strict=True):
+            trace.append(a_m + f_m)
+        return trace
 
     def _carried(
         self,
@@ -75,14 +88,19 @@ class Bloch:
 
     @property
     def Pi(self) -> fmpq_mpoly:
-        """Coefficient Π = m̂_0 m̂_1 C_0 C_1 in a dimer's dispersion relation sin²κ = Ω² - Π Ω⁴."""
-        return self.mu[0] * self.mu[1] * self.c[0] * self.c[1]
+        """The product ``m̂_0 m̂_1 C_0 C_1``: Π in a dimer's relation ``sin²κ = Ω² - Π Ω⁴``."""
+        masses = self.mu[0] * self.mu[1]
+        shares = self.c[0] * self.c[1]
+        return masses * shares
 
     def acoustic(self, order: int) -> list[fmpq_mpoly]:
-        """Coefficients L_0 … L_order of the acoustic root Ω² = Σ L_n κ^{2n} = κ² + ….
+        """Coefficients ``L_0 … L_order`` of the acoustic root ``Ω² = Σ L_n κ^{2n} = κ² + …``.
 
-        Divided by -P² the relation is Ω² = (2 - 2 cos Pκ)/P² + Σ_{m≥2} t_m/P² Ω^{2m}; each
-        coefficient of the powers on the right depends on earlier L_n only.
+        Divided by ``-P²`` the relation is::
+
+            Ω² = (2 - 2 cos Pκ)/P² + Σ_{m≥2} t_m/P² Ω^{2m},
+
+        where each coefficient of the powers on the right depends on earlier ``L_n`` only.
         """
         P = self.P
         trace = self.trace(order)
@@ -90,7 +108,8 @@ class Bloch:
         powers = {1: omega2}  # powers[m] is that of Ω^{2m}
         for n in range(1, order + 1):
             # (2 - 2 cos Pκ)/P² = Σ -2 (-1)^n P^{2n-2} κ^{2n}/(2n)!
-            cosine = fmpq(-2 * (-1) ** n * P ** (2 * n - 2), factorial(2 * n))
+            above = -2 * (-1) ** n * P ** (2 * n - 2)
+            cosine = fmpq(above, factorial(2 * n))
             following = self.one * cosine
             for m in range(2, len(trace)):
                 product = self.zero
@@ -106,17 +125,24 @@ def dispersion_of_chain(
     masses: Sequence[Any],
     shares: Sequence[Any],
 ) -> Any:
-    """Coefficient I/D² in Ω² = κ² (1 - (I/D²) κ² + …) of a chain.
+    """Coefficient ``I/D²`` in ``Ω² = κ² (1 - (I/D²) κ² + …)`` of a chain.
 
     Parameters
     ----------
     masses, shares : sequences of numbers, expressions or arrays
-        Mass fractions m̂_i of the particles, strain shares C_i of the contacts.
+        Mass fractions ``m̂_i`` of the particles, strain shares ``C_i`` of the contacts.
+
+    Returns
+    -------
+    number, expression or array
 
     Notes
     -----
-    The terms Ω² and Ω⁴ of the dispersion relation give P²/12 - Σ_{i<j} m̂_i m̂_j S (P - S), where
-    S = C_i + … + C_{j-1} is the strain from i to j.
+    The terms in ``Ω²`` and ``Ω⁴`` of the dispersion relation give::
+
+        I/D² = P²/12 - Σ_{i<j} m̂_i m̂_j S (P - S),    S = C_i + … + C_{j-1},
+
+    where S is the strain from particle i to particle j.
     """
     P = len(masses)
     pairs: Any = 0
@@ -124,5 +150,6 @@ def dispersion_of_chain(
         strain: Any = 0
         for j in range(i + 1, P):
             strain = strain + shares[j - 1]
-            pairs = pairs + masses[i] * masses[j] * strain * (P - strain)
+            product = strain * (P - strain)
+            pairs = pairs + masses[i] * masses[j] * product
     return (P**2 - 12 * pairs) / 12

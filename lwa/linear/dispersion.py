@@ -1,13 +1,13 @@
 """The linear chain: its dispersion relation, the series of its branches, its bands under a load.
 
-A chain at k = 1, or a chain of any k linearised about a uniform compression, is a chain of springs
-of compliances C_i (`Cell.shares`). In the theory's units (time τ, wavenumber κ = qD, so that Ω = κ
-to leading order) its acoustic branch is a series
+A chain with the exponent 1, or a chain of any k linearised about a uniform compression, is a chain
+of springs of compliances ``C_i`` (`Cell.shares`). In the theory's units (time τ, wavenumber
+``κ = qD``, so that Ω is κ to leading order) its acoustic branch is the series::
 
-    Ω² = κ² (1 - (I/D²) κ² + …)
+    Ω² = κ² (1 - (I/D²) κ² + …),
 
-where I is the coefficient of u_x^{k-1} u_4x in the wave equation. `lwa.linear.bloch` derives
-relation and series, `lwa.linear.bands` computes frequencies and group velocities.
+where I is the coefficient of ``u_x^{k-1} u_xxxx`` in the wave equation. `lwa.linear.bloch` derives
+relation and series, `lwa.linear.bands` computes frequencies.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class Dispersion(Value):
     """The dispersion relation Ω(κ) of the linear chain with a cell's masses and strain shares.
 
     Ω is the frequency in τ times D and κ the wavenumber times D. In time t the frequency is
-    Ω/D · `Cell.time_scale`, times p^{(k-1)/2} under a mean strain p.
+    Ω/D · `Cell.time_scale`, times ``p^{(k-1)/2}`` under a mean strain p.
 
     Parameters
     ----------
@@ -83,39 +83,36 @@ class Dispersion(Value):
 
     def __repr__(self) -> str:
         relation = "Ω² = κ² + …"
-        with suppress(InputError):  # too many symbols for a term at κ⁴
+        # A cell may have too many symbols for a term at κ⁴.
+        with suppress(InputError):
             relation = f"Ω² = κ² + ({shorten(self.acoustic(4)[4])}) κ⁴ + …"
         return f"Dispersion({self.cell!r}, k={self.k}: {relation})"
 
     def at(self, **values: Any) -> Dispersion:
-        """Substitute values for symbols, and for ω = m2/m1, as `lwa.Cell.at`."""
+        """The relation for these values of the named symbols; see `lwa.cell.substitution`."""
         new = substitution(values, self.cell, self.k)
         return Dispersion(self.cell.replaced(new), self.k.xreplace(new))
 
     def latex_rows(self, order: int = 4) -> list[str]:
-        """LaTeX of Ω²(κ) to κ^order, of the acoustic and of a dimer's optical branch."""
+        """LaTeX of ``Ω²(κ)`` to ``κ^order``, of the acoustic and of a dimer's optical branch."""
         # The branches of one chain, in the same units
         rows = []
         for branch, series in self.series(order).items():
             terms = []
             for n, coefficient in series.items():
-                terms.append((coefficient, latex.power(_KAPPA, n) if n else ""))
+                # At κ^0 the coefficient stands alone.
+                power = latex.power(_KAPPA, n) if n else ""
+                terms.append((coefficient, power))
             letter = rf"\Omega_{{\mathrm{{{branch}}}}}^{{2}}"
             rows.append(rf"{letter} = {latex.total(terms)} + \cdots")
         return rows
 
     def series(self, order: int = 4) -> dict[str, dict[int, sp.Expr]]:
-        """Mapping from "acoustic", and for dimers "optical", to the coefficients of Ω²(κ)."""
+        """Mapping from "acoustic", and for dimers "optical", to the coefficients of ``Ω²(κ)``."""
         series = {"acoustic": self.acoustic(order)}
         if self.cell.size == 2:
             series["optical"] = self.optical(order)
         return series
-
-    @cached_property
-    def trace(self) -> dict[int, sp.Expr]:
-        """Mapping m → t_m, m = 0 … P, in the dispersion relation 2 cos(Pκ) = Σ t_m Ω^{2m}."""
-        trace = self._bloch.trace(self.cell.size)
-        return {m: self._expression(t) for m, t in enumerate(trace)}
 
     def acoustic(self, order: int = 4) -> dict[int, sp.Expr]:
         """The series of the acoustic branch.
@@ -128,35 +125,42 @@ class Dispersion(Value):
         Returns
         -------
         dict
-            Mapping from n = 2, 4, … ≤ ``order`` to the coefficient of κ^n in Ω².
+            Mapping from the even n, 2 to ``order``, to the coefficient of ``κ^n`` in ``Ω²``.
 
         Raises
         ------
         InputError
             For more terms than `MOST_TERMS`.
         """
+        found = {}
+        # A branch of long waves begins at κ².
         series = self._bloch.acoustic(self._length(order))
-        return {2 * n: self._expression(c) for n, c in enumerate(series) if n > 0}
+        for n, coefficient in enumerate(series[1:], start=1):
+            found[2 * n] = self._expression(coefficient)
+        return found
 
     def optical(self, order: int = 4) -> dict[int, sp.Expr]:
-        """The series of a dimer's optical branch, with n = 0, 2, …; see `acoustic`."""
-        if self.cell.size != 2:  # the roots of other cells are not rational
+        """The series of a dimer's optical branch, with n from 0 on; see `acoustic`."""
+        # The roots of other cells are not rational.
+        if self.cell.size != 2:
             raise InputError(
                 f"the optical series needs a cell of 2 masses, not {self.cell.size}"
             )
         # The two roots have the sum 1/Π.
-        series = {0: 1 / self._expression(self._bloch.Pi)}
+        Pi = self._expression(self._bloch.Pi)
+        series = {0: 1 / Pi}
         for n, coefficient in self.acoustic(order).items():
             series[n] = -coefficient
         return series
 
     @cached_property
     def I(self) -> sp.Expr:
-        """The wave equation's coefficient I of u_x^{k-1} u_xxxx, D² included.
+        """The wave equation's coefficient I of ``u_x^{k-1} u_xxxx``, with its factor ``D²``.
 
-        It is that of the acoustic branch Ω² = κ² (1 - (I/D²) κ² + …).
+        It is that of the acoustic branch ``Ω² = κ² (1 - (I/D²) κ² + …)``.
         """
-        return -self.acoustic(4)[4] * self.cell.spacing**2
+        fourth = self.acoustic(4)[4]
+        return -fourth * self.cell.spacing**2
 
     @cached_property
     def _model(self) -> Model:
@@ -167,14 +171,15 @@ class Dispersion(Value):
         return Bloch(self._model)
 
     def _expression(self, polynomial: fmpq_mpoly) -> sp.Expr:
-        expression = self._model.ring.expression(list(polynomial.terms()))
-        return sp.together(expression)  # compliances enter as 1/A
+        terms = list(polynomial.terms())
+        # Compliances enter as 1/A.
+        return sp.together(self._model.ring.expression(terms))
 
     def _length(self, order: Any) -> int:
         """Return the number of powers of κ² up to κ^order; raise `lwa.InputError` for too many.
 
-        The coefficient of κ^{2n} has the degree 2n - 2 in the masses and in the compliances, and
-        comes from about n² products.
+        The coefficient of ``κ^{2n}`` has the degree 2n - 2 in the masses and in the compliances,
+        and comes from about ``n²`` products.
         """
         # Odd powers of κ have no term.
         n = integer(order, "order", 1) // 2
@@ -192,18 +197,20 @@ class Dispersion(Value):
     @cached_property
     def bands(self) -> Bands:
         """The bands in floats, Ω by κ; raises `lwa.InputError` for symbols."""
-        import numpy as np  # start-up: `import lwa` does not load it
+        # Here: `import lwa` does not load NumPy.
+        import numpy as np
 
         from lwa.linear.bands import Bands
 
         weights = sp.Tuple(*self.cell.fractions, *self.cell.shares(self.k))
         demand_numbers(weights.free_symbols, "bands want numbers")
-        fractions, shares = np.array(list(map(float, weights))).reshape(2, -1)
+        floats = np.array(list(map(float, weights)))
         # A float below 1e-308 is 0.
-        if not (np.all(fractions > 0) and np.all(shares > 0)):
+        if not np.all(floats > 0):
             raise InputError(
                 "masses or compliances differ by more than the range of a float"
             )
+        fractions, shares = np.split(floats, 2)
         return Bands(fractions, shares)
 
 
@@ -211,9 +218,9 @@ class Dispersion(Value):
 class LoadedChain(Value):
     """The linear chain about a static load, the same force F0 in all contacts.
 
-    Frequencies and speeds are in the units of the cell, s⁻¹ and m/s in SI. About the load contact i
-    is a spring of the constant A_i F′(δ_i), A_i F(δ_i) = F0; for A δ^k that is
-    k A_i^{1/k} F0^{(k-1)/k}.
+    Frequencies and speeds are in the units of the cell, 1/s and m/s in SI. About the load contact i
+    is a spring of the constant ``A_i F′(δ_i)``, where ``A_i F(δ_i) = F0``; under a power it is
+    ``k A_i^{1/k} F0^{(k-1)/k}``.
 
     Parameters
     ----------
@@ -251,12 +258,13 @@ class LoadedChain(Value):
 
     @cached_property
     def spring_constants(self) -> tuple[sp.Expr, ...]:
-        """The spring constants A_i F′(δ_i)."""
-        # Once for each stiffness: the search for δ takes a while.
+        """The spring constants ``A_i F′(δ_i)``."""
         constants = {}
+        # Each stiffness once: the search for δ takes a while.
         for A in set(self.cell.stiffnesses):
             delta = self.law.inverse(self.precompression / A)
-            constants[A] = sp.powsimp(A * self.law.at(delta, 1))
+            slope = self.law.at(delta, 1)
+            constants[A] = sp.powsimp(A * slope)
         return tuple(constants[A] for A in self.cell.stiffnesses)
 
     @cached_property
@@ -273,8 +281,13 @@ class LoadedChain(Value):
     def bands(self) -> Bands:
         """The bands in floats, in the units of the cell; raises `lwa.InputError` for symbols."""
         D = self.cell.spacing
-        rate = self.sound_speed / D  # ω/Ω, in s⁻¹ for a cell in SI
+        rate = self.sound_speed / D  # ω/Ω, in 1/s for a cell in SI
         # A symbol is the unit of length.
         length = sp.S.One if D.is_Symbol else D
-        demand_numbers(rate.free_symbols | length.free_symbols, "bands want numbers")
-        return replace(self.springs.bands, rate=float(rate), length=float(length))
+        free = rate.free_symbols | length.free_symbols
+        demand_numbers(free, "bands want numbers")
+        return replace(
+            self.springs.bands,
+            rate=float(rate),
+            length=float(length),
+        )

@@ -1,14 +1,15 @@
 """The acoustic branch of a lattice of springs along one axis, for long waves, in floats.
 
-With the displacement u_n = a_i e^{s n} of the particle n, i = n mod P, and lengths in spacings, a
-link from i to j with the spring constant K and the range r = j - i has the compression b·a e^{s i},
-b = cosine (e_i - e^{s r} e_j). The particles obey
+Let the particle n have the displacement ``u_n = a_i e^{s n + λt}``, ``i = n mod P``; lengths are in
+spacings. A link from i to j with the spring constant K and the range ``r = j - i`` then has the
+compression ``b·a e^{s i}``, ``b = cosine (e_i - e^{s r} e_j)``. The particles obey::
 
     λ² m_i a_i + Σ_n s^n (k_n a)_i = 0,    Σ s^n k_n = Σ_links K b(-s) b(s)ᵀ.
 
-At the imaginary s = iq the frequency is Ω² = -λ². The powers of s, with a = 1 + s a_1 + s² a_2 + …,
-give λ² = F′/m̄ (s² + I s⁴ + …) one after the other: F′ is the stiffness of the lattice, m̄ the mean
-mass, and I, here with D = 1, the coefficient in Ω² = c² (q² - I q⁴ + …).
+At the imaginary ``s = iq`` the frequency is ``Ω² = -λ²``. The powers of s, with the series
+``a = 1 + s a_1 + s² a_2 + …``, give ``λ² = F′/m̄ (s² + (I/D²) s⁴ + …)`` one after the other, where
+``F′`` is the stiffness of the lattice, m̄ the mean mass, and I the coefficient in
+``Ω² = c² (q² - (I/D²) q⁴ + …)``.
 """
 
 from __future__ import annotations
@@ -22,7 +23,17 @@ from lwa.base.arrays import Array
 
 
 class Acoustic(NamedTuple):
-    """Stiffness F′, dispersion I, and strain dδ/d(Dp) of each link per mean compression."""
+    """The acoustic branch of a lattice for long waves.
+
+    Attributes
+    ----------
+    stiffness : ndarray
+        Stiffness of the lattice: force per mean compression of a spacing.
+    dispersion : ndarray
+        Coefficient ``I/D²`` of the fourth power of the wavenumber.
+    shares : ndarray
+        Compression of each link per mean compression of a spacing.
+    """
 
     stiffness: Array
     dispersion: Array
@@ -38,7 +49,15 @@ class Bond(NamedTuple):
 
 
 class Network(NamedTuple):
-    """The links of a cell of ``size`` particles; j ≥ size is a particle of a cell ahead."""
+    """The links of one cell.
+
+    Attributes
+    ----------
+    size : int
+        Number P of the particles in a cell.
+    links : tuple of Bond
+        Springs from particles of the cell; an end j of P or more lies in a cell ahead.
+    """
 
     size: int
     links: tuple[Bond, ...]
@@ -47,17 +66,22 @@ class Network(NamedTuple):
     def in_series(self) -> bool:
         """True if each particle has one link, to the next particle."""
         pairs = sorted((bond.i, bond.j) for bond in self.links)
-        return pairs == [(n, n + 1) for n in range(self.size)]
+        neighbours = [(n, n + 1) for n in range(self.size)]
+        return pairs == neighbours
 
     @property
     def order(self) -> list[int]:
         """Numbers of the links by their first particles."""
-        return sorted(range(len(self.links)), key=lambda n: self.links[n].i)
+        numbers = range(len(self.links))
+        return sorted(numbers, key=lambda n: self.links[n].i)
 
     @property
     def spans(self) -> Array:
         """Compression of each link per mean compression of a spacing: cosine · (j - i)."""
-        return np.array([bond.cosine * (bond.j - bond.i) for bond in self.links])
+        spans = []
+        for bond in self.links:
+            spans.append(bond.cosine * (bond.j - bond.i))
+        return np.array(spans)
 
     @property
     def incidence(self) -> Array:
@@ -87,37 +111,48 @@ class Network(NamedTuple):
             Arrays of the shape of the leading axes, and of ``springs``.
         """
         total = masses.sum()
-        k = [np.tensordot(springs, self._powers(n), 1) for n in range(5)]
-        rest = np.zeros((*springs.shape[:-1], self.size))
-        a: list[Array] = [rest + 1]  # a_0, a_1, …
+        # k_0 … k_4: the fourth power of s has the dispersion.
+        k = []
+        for n in range(5):
+            k.append(np.tensordot(springs, self._powers(n), 1))
+        zero = np.zeros((*springs.shape[:-1], self.size))
+        a: list[Array] = [zero + 1]  # a_0, a_1, …
         square: dict[int, Array] = {}  # coefficients of s² and s⁴ in λ²
         for m in range(1, 5):
             # At s^m the unknown a_m stands in k_0 a_m alone; all other terms are known forces.
-            forces = rest.copy()
+            known = zero.copy()
             for n in range(1, m + 1):
-                forces += (k[n] @ a[m - n][..., None])[..., 0]
+                column = a[m - n][..., None]
+                known += (k[n] @ column)[..., 0]
                 if n in square:
-                    forces += square[n][..., None] * masses * a[m - n]
+                    known += square[n][..., None] * masses * a[m - n]
             if m % 2 == 0:
                 # The forces k_0 a_m inside the cell have the sum 0.
-                square[m] = -forces.sum(axis=-1) / total
-                forces += square[m][..., None] * masses
-            a_m = rest.copy()  # the first particle moves by the 1 of a_0 alone
+                square[m] = -known.sum(axis=-1) / total
+                known += square[m][..., None] * masses
+            # The first particle moves by the 1 of a_0 alone; a_4 is not needed.
+            a_m = zero.copy()
             if self.size > 1 and m < 4:
-                a_m[..., 1:] = solved(k[0][..., 1:, 1:], -forces[..., 1:])
+                held = k[0][..., 1:, 1:]
+                a_m[..., 1:] = solved(held, -known[..., 1:])
             a.append(a_m)
-        with np.errstate(all="ignore"):  # 0/0 is NaN, which is no error
+        # 0/0 is NaN, the answer where no particle is held.
+        with np.errstate(all="ignore"):
             dispersion = square[4] / square[2]
-        stiffness = square[2] * total / self.size
-        return Acoustic(stiffness, dispersion, self.spans - a[1] @ self.incidence.T)
+        return Acoustic(
+            stiffness=square[2] * total / self.size,
+            dispersion=dispersion,
+            shares=self.spans - a[1] @ self.incidence.T,
+        )
 
     def _powers(self, n: int) -> Array:
-        """Coefficients of s^n in b(-s) b(s)ᵀ, shape (links, size, size)."""
+        """Coefficients of ``s^n`` in ``b(-s) b(s)ᵀ``, shape (links, size, size)."""
         parts = np.zeros((len(self.links), self.size, self.size))
         for part, (i, j, cosine) in zip(parts, self.links, strict=True):
             # The particle of a cell ahead moves as its image in this cell, times e^{s (j - last)}.
             last = j % self.size
-            coefficient = cosine**2 * (j - i) ** n / factorial(n)  # of e^{s r}
+            # The coefficient of s^n in cosine² e^{s r}
+            coefficient = cosine**2 * (j - i) ** n / factorial(n)
             part[i, last] -= coefficient
             part[last, i] -= (-1) ** n * coefficient
             # The terms without e^{±s r}
@@ -142,14 +177,17 @@ def solved(
     -------
     ndarray, shape (…, n)
     """
-    scale = np.abs(matrix).max(axis=(-2, -1), keepdims=True)
-    usable = np.isfinite(scale) & (scale > 0)
-    scale = np.where(usable, scale, 1)
+    # The determinant of entries of order 1 neither over- nor underflows.
+    largest = np.abs(matrix).max(axis=(-2, -1), keepdims=True)
+    usable = np.isfinite(largest) & (largest > 0)
+    scale = np.where(usable, largest, 1)
     # NumPy refuses all systems if one is singular: the identity stands in for those.
     identity = np.eye(matrix.shape[-1])
-    matrix = np.where(usable, matrix, identity) / scale
-    sign, _ = np.linalg.slogdet(matrix)
+    scaled = np.where(usable, matrix, identity) / scale
+    sign, _ = np.linalg.slogdet(scaled)
     usable &= (sign != 0)[..., None, None]
-    matrix = np.where(usable, matrix, identity)
-    found = np.linalg.solve(matrix, right[..., None] / scale)
-    return np.asarray(np.where(usable, found, np.nan)[..., 0])
+    scaled = np.where(usable, scaled, identity)
+    column = right[..., None] / scale
+    found = np.linalg.solve(scaled, column)
+    found = np.where(usable, found, np.nan)
+    return np.asarray(found[..., 0])

@@ -259,7 +259,7 @@ class LoadedWave(States):
         Parameters
         ----------
         name : {"speed", "fwhm"}
-            The result.
+            The result; a length in spacings where the spacing of a cell is a symbol.
         quantity, extent : str
             Arguments of `fwhm`.
 
@@ -276,7 +276,11 @@ class LoadedWave(States):
         >>> abs(speed.value - lattice) < speed.error < 30 * abs(speed.value - lattice)
         True
         """
-        if one_of(name, get_args(EstimatedName), "name") == "speed":
+        one_of(name, get_args(EstimatedName), "name")
+        spacing = self.chain.spacing
+        if spacing.is_Symbol and not self.exact_compression.has(spacing):
+            return self.at(**{spacing.name: 1}).estimate(name, quantity, extent)
+        if name == "speed":
             speed = number(self.speed)
             return Estimate(speed, speed * self._bounds.speed)
         width = number(self.fwhm(quantity, extent))

@@ -16,14 +16,14 @@ that the speeds are ``2/r - 1`` and ``√(r(r-1))/arcosh √r``.
 
 Doubling rule. The leading pulse is the solitary wave on p₊ whose beads move at 2 v_p at most; exact
 for Toda's law, small jumps (KdV) and hard spheres. `lwa.shocks.pulse` has the closed forms of the
-canonical wave, `lwa.shocks.errors` the errors of both rules.
+canonical wave, and the errors of both rules.
 """
 
 from __future__ import annotations
 
 import math
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal, get_args
 
@@ -45,9 +45,14 @@ from lwa.cell import Cell
 from lwa.cell import k as symbol_k
 from lwa.law import ContactLaw, for_cell
 from lwa.loaded.background import Background
-from lwa.shocks import errors
 from lwa.shocks.digits import WORKING, evaluated, floats, tidy
-from lwa.shocks.pulse import Pulse
+from lwa.shocks.pulse import (
+    Pulse,
+    leading_error,
+    rise_error,
+    speed_error,
+    trailing_error,
+)
 from lwa.shocks.simple import demand_one_sign, strain, velocity
 
 RuleName = Literal["dispersion", "doubling"]
@@ -61,6 +66,12 @@ EstimatedName = Literal["trailing_speed", "leading_speed", "peak", "peak_force"]
 # r up to which the trailing edge is given; against the lattice it is 3 % too slow for Hertz
 # contacts at p₋/p₊ = 2, r = 1.19, and 9 % at p₋/p₊ = 3, r = 1.32
 STEEPEST = sp.Rational(13, 10)
+
+RESTING = 2
+"""r up to which the beads at the wall come to rest beside it.
+
+A theorem for Toda's law (Venakides, Deift & Oba, Comm. Pure Appl. Math. 44, 1171 (1991)).
+"""
 
 SMALLEST = sp.Rational(1, 10**15)
 """Smallest jump of the strain, relative; 30 digits of the floats are left there."""
@@ -112,7 +123,7 @@ class Shock(Value):
     @property
     def oscillates(self) -> bool:
         """True if the beads at the wall go on oscillating: a shock of numbers with c₋ > 2 c₊."""
-        return bool(self.ratio.is_number and self.ratio > errors.RESTING)
+        return bool(self.ratio.is_number and self.ratio > RESTING)
 
     def sound(self, p: Any) -> sp.Expr:
         """Speed of sound ``dx/dt`` on the strain p; 0 without load under a power law."""
@@ -243,33 +254,43 @@ class Shock(Value):
         True
         """
         one_of(name, get_args(EstimatedName), "name")
+        front = self._unscaled
         if name == "leading_speed":
-            result = self.leading_speed(rule)
+            value = number(front.leading_speed(rule))
         else:
-            result = getattr(self, name)
-        demand_numbers(self._free, "an error is that of a number")
-        scale = dict.fromkeys(self.cell.symbols, sp.S.One)
-        value = number(result.subs(scale))
-        if self.kind == "rarefaction":
+            value = number(getattr(front, name))
+        if front.kind == "rarefaction":
             return Estimate(value, math.nan)
         try:
-            relative = self._relative_error(name, rule)
+            relative = front._relative_error(name, rule)
         except InputError:
             relative = math.nan
         return Estimate(value, abs(value) * relative)
+
+    @cached_property
+    def _unscaled(self) -> Shock:
+        """This front in numbers, with 1 for the symbols of the cell, which only scale results."""
+        demand_numbers(self._free, "an error is that of a number")
+        units = dict.fromkeys(self.cell.symbols, sp.S.One)
+        return replace(
+            self,
+            cell=self.cell.replaced(units),
+            behind=self.behind.xreplace(units),
+            ahead=self.ahead.xreplace(units),
+        )
 
     def _relative_error(self, name: EstimatedName, rule: RuleName) -> float:
         """The relative error of a result of a shock."""
         delta = self._pulse.steepness
         if name == "leading_speed" and rule == "doubling":
-            return errors.speed_error(delta)
+            return speed_error(delta)
         if name == "leading_speed":
-            return errors.leading_error(self._edges_differ(), delta)
+            return leading_error(self._edges_differ(), delta)
         if name == "trailing_speed":
             sound = self.sound(self.behind) / self.trailing_speed
-            return errors.trailing_error(self._edges_differ()) * abs(float(sound))
+            return trailing_error(self._edges_differ()) * abs(float(sound))
         peak = sp.N(self.peak)
-        error = errors.rise_error(delta) * sp.N(self._pulse.contact_rise)
+        error = rise_error(delta) * sp.N(self._pulse.contact_rise)
         if name == "peak":
             return abs(float(error / peak))
         # towards the strain ahead: the rule is too high, and a law may have a pole beyond the peak
@@ -317,10 +338,11 @@ class Shock(Value):
 
     @property
     def _free(self) -> set[sp.Symbol]:
-        """Symbols of the law and the strains, and of the spacing unless the law is a power."""
-        strains = self.ratio.free_symbols | self.behind.free_symbols
+        """Symbols that do more than scale results."""
         spacing = set() if self.law.homogeneous else self.cell.spacing.free_symbols
-        return {*strains, *self.law.symbols, *spacing}
+        strains = self.behind.free_symbols | self.ahead.free_symbols
+        named = strains - {*self.cell.symbols}
+        return {*self.ratio.free_symbols, *named, *self.law.symbols, *spacing}
 
     @cached_property
     def _gained(self) -> sp.Expr:

@@ -11,7 +11,6 @@ in the units ``du/dτ`` of the wave equation.
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Any
 
 import mpmath
 import sympy as sp
@@ -21,7 +20,7 @@ from lwa.base.exact import InputError, demand_numbers
 from lwa.loaded.background import Background
 from lwa.shocks.digits import DIGITS
 
-_PLACES = 128  # intervals on which F″ that is no polynomial is checked
+_PLACES = 129  # strains at which the sign of F″ is checked
 
 
 def velocity(field: Background, p: sp.Expr) -> sp.Expr:
@@ -76,17 +75,24 @@ def strain(field: Background, gained: sp.Expr) -> sp.Expr:
         return sp.powdenest(raised ** (1 / power), force=True)
     x = sp.Dummy("x", positive=True)
     rest = velocity(field, field.p0 + x) - gained
-    return field.p0 + rising_root(rest, x, DIGITS)
+    return field.p0 + rising_root(field, rest, x, DIGITS)
 
 
-def rising_root(rising: sp.Expr, x: sp.Symbol, digits: int) -> sp.Expr:
+def rising_root(
+    field: Background, rising: sp.Expr, x: sp.Symbol, digits: int
+) -> sp.Expr:
     """The root of an expression that rises with x from a negative value at 0.
 
     Raises
     ------
     InputError
-        Without a root, and for other symbols.
+        Without a root, and for other symbols, such as the spacing of the field.
     """
+    spacing = field.cell.spacing
+    if spacing in rising.free_symbols:
+        raise InputError(
+            f"spacing is {spacing}: here results are computed in numbers", spacing=1
+        )
     demand_numbers(rising.free_symbols - {x}, "numbers are wanted under this law")
     with mpmath.workdps(digits):
         root = growing_root(rising, x)
@@ -109,32 +115,13 @@ def demand_one_sign(field: Background, start: sp.Expr, end: sp.Expr) -> None:
     bend = field.force(x, 2)
     if field.law.homogeneous or (bend + start + end).free_symbols - {x}:
         return
-    low, high = sorted((start, end))
-    place = _inflection(bend, x, low, high)
-    if place is not None:
-        raise InputError(
-            f"F″ changes its sign at the strain {sp.N(place, 5)}, an inflection between "
-            f"{sp.N(low, 5)} and {sp.N(high, 5)}: the wave is a kink or a compound one"
-        )
-
-
-def _inflection(bend: sp.Expr, x: sp.Symbol, low: sp.Expr, high: sp.Expr) -> Any:
-    """The first place between two strains at which F″ changes its sign, or None.
-
-    F″ is checked exactly where it is a polynomial, else at 127 places.
-    """
-    if bend.is_zero:
-        return None
-    if bend.is_polynomial(x):
-        for root, times in sp.Poly(bend, x).real_roots(multiple=False):
-            if times % 2 == 1 and low < root < high:
-                return root
-        return None
     curve = real_function(sp.lambdify(x, bend, "mpmath"))
     with mpmath.workdps(DIGITS):
-        ends = (mpmath.mpf(sp.N(p, DIGITS)) for p in (low, high))
-        places = mpmath.linspace(*ends, _PLACES + 1)[1:-1]
-        for before, after in pairwise(places):
+        ends = [mpmath.mpf(sp.N(p, DIGITS)) for p in (start, end)]
+        for before, after in pairwise(mpmath.linspace(*ends, _PLACES)[1:-1]):
             if mpmath.sign(curve(before)) != mpmath.sign(curve(after)):
-                return after
-    return None
+                raise InputError(
+                    f"F″ changes its sign between the strains {mpmath.nstr(before, 4)} and "
+                    f"{mpmath.nstr(after, 4)}, an inflection of F within the front: the wave is a "
+                    "kink or a compound one"
+                )

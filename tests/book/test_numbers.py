@@ -21,7 +21,7 @@ from lwa import (
     lattice_wave,
     loaded_wave,
 )
-from lwa.expansion.forms.joined import phi
+from lwa.expansion.joined import TWO_BODIES, joined
 from lwa.law import NAMES, named
 from tests.book.prose import BOOK, limited, said, told
 from validation import Damping, MeasureError, exact_wave, measure, simulate
@@ -183,12 +183,13 @@ def test_the_map():
 
 def test_the_closed_form_by_hand():
     """The approximant of the speed, the first correction, and the form without more of them."""
-    k, e = lwa.cell.k, sp.Symbol("e")
+    k = lwa.cell.k
     words = "\\frac{# + #\\,\\varepsilon}{1 + #\\,\\varepsilon}"
     a, b, c = map(float, said("expansion", words))
-    ours = phi("c").subs(k, 1 + e) if k in phi("c").free_symbols else phi("c")
+    limit = TWO_BODIES["c"]
+    rest = (joined("c") / limit - 1) / (1 / limit.subs(k, 1) - 1)
     for value in (0.1, 0.5, 3):
-        number = float(ours.subs(next(iter(ours.free_symbols)), value))
+        number = -math.log(rest.subs(k, 1 + value).evalf(30)) / value
         assert number == pytest.approx((a + b * value) / (1 + c * value), abs=2e-6)
     L = sp.log(2)
     f1 = expand(Cell([1]), 3).fwhm("force").coefficients[1]

@@ -29,6 +29,7 @@ def theory(order=4, **kind):
 
 MADE = {
     "cell": lambda: Dimer(m1, m2, spacing="h"),
+    "decimals": lambda: Cell(["0.45", sp.sqrt(2)], [1, "0.123456789"], 2),
     "linear": theory,
     "full": lambda: theory(6, closure="full", field="center"),
     "optical": lambda: theory(branch="optical"),

@@ -45,6 +45,7 @@ _HUMP = 0.25
 _LATER = 0.1  # smallest peak of a later pulse over the first
 _EQUAL = 1e-6  # of the record's range: samples that differ less are equal
 _CONSTANT = 1e-8  # range of a signal without pulses, over its size
+_SUDDEN = 11.0  # growth, in a width, of a force that begins: two widths before a Gaussian's top
 _EXACT = 1e-4  # noise over the peak of a record without noise
 
 
@@ -143,11 +144,11 @@ def noisy_pulses(
         (level,) = base.at(np.array([rise])).tolist()
         noise = math.sqrt(base.best.variance) * size
         yield NoisyPulse(numbers, level * size, missing, noise)
-        behind = t > 2 * fall - rise
-        later = f[behind] - base.at(t[behind])
+        behind = at > 2 * fall - rise
+        later = means[behind] - base.at(at[behind])
         if not later.max(initial=0.0) > _LATER * highest:
             return
-        rise, fall = _place(t[behind], later, turned)
+        rise, fall = _place(at[behind], later, turned)
 
 
 def _is_exact(f: Array) -> bool:
@@ -168,6 +169,7 @@ def _exact(t: Array, f: Array, size: float) -> Iterator[NoisyPulse]:
     signal = spline(t, f - level)
     coarse = [spline(t[start::2], f[start::2] - level) for start in (0, 1)]
     first = first_pulse(signal)
+    doubt = _front(f, first.fwhm / float(t[1] - t[0]))
     later = [
         pulse
         for pulse in all_pulses(signal)
@@ -188,8 +190,26 @@ def _exact(t: Array, f: Array, size: float) -> Iterator[NoisyPulse]:
             value = getattr(pulse, name)
             error = max(abs(value - getattr(other, name)) for other in rough)
             numbers[name] = Estimate(value, error)
+        # A base that is off by this much moves the peak as much, and both flanks at its half.
+        for name in ("peak", "fwhm"):
+            numbers[name] = numbers[name].widened(doubt / pulse.peak)
         numbers["peak"] *= size
         yield NoisyPulse(numbers, level * size)
+
+
+def _front(f: Array, width: float) -> float:
+    """Return the error of the first sample as the base of a record that begins in a front.
+
+    width : of the pulse, in samples.
+    """
+    first, second = map(float, np.diff(f[:3]))
+    if not 0 < first < second:
+        return abs(first)
+    # Differences of a + b e^{n g}, n the number of a sample, grow by the factor e^g.
+    growth = math.log(second / first)
+    if growth * width > _SUDDEN:
+        return 0.0
+    return first / math.expm1(growth)
 
 
 def in_unit(time: float, unit: str) -> str:

@@ -230,7 +230,7 @@ def _time_of_a_site(motion: Motion, contacts: slice, force: float) -> float:
     if motion.scene.law is not None:
         return motion.scales.time
     A = motion.stiffnesses[contacts]
-    k = np.broadcast_to(motion.k, len(motion.stiffnesses))[contacts]
+    k = np.broadcast_to(motion.scene.k, len(motion.stiffnesses))[contacts]
     springs = k * A ** (1 / k) * force ** (1 - 1 / k)
     beside = np.append(motion.masses, np.inf)  # the wall has no mass of its own
     lighter = np.minimum(beside[:-1], beside[1:])[contacts]

@@ -258,7 +258,8 @@ class MeasuredFile:
         # The time that a step states starts with the record.
         columns = columns | {0: np.arange(-start, end - start, dtype=float)}
         table = np.column_stack([columns[number][start:end] for number in numbers])
-        return np.asarray(table * sizes)
+        table *= sizes  # in place: long records are large
+        return table
 
     @cached_property
     def _columns(self) -> dict[int, Array]:

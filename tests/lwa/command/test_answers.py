@@ -95,8 +95,28 @@ ANSWERS = {
         "order": 8, "c2.1": "-1/2", "c2.2": "2/5", "c2_value": pytest.approx(0.819959, abs=1e-5),
         "fwhm_value.force": pytest.approx(1.411928, abs=2e-5),
     },
-    "expansion --k 20 --masses 1 --order 10": {"c2_value": None, "fwhm_value": dict.fromkeys(
-        QUANTITIES)},
+    # Widths of both contacts on the lattice.
+    "expansion --k 11/10 --masses 1,1 --stiffnesses 1,6/25": {
+        "fwhm_value.force": pytest.approx(5.035, rel=0.004),
+        "fwhm_contact_2_value.force": pytest.approx(4.549, rel=0.004),
+    },
+    "expansion --k 3 --masses 1,2,3 --order 6": {
+        "c2_value": None, "fwhm_value": dict.fromkeys(QUANTITIES),
+    },
+    # Two beads collide at a time; what the sum gives is as wrong as it is large.
+    "expansion --k 40 --masses 1": {
+        "c2_value": (two_bodies := 4 * sp.gamma(sp.Rational(43, 82))**2
+                     / (41 * sp.pi * sp.gamma(sp.Rational(42, 41))**2)),
+        "effective_mass_value": pytest.approx(1, rel=1e-9),
+    },
+    "wave --k 40 --masses 1": {"lattice.speed_value": sp.sqrt(two_bodies / 40)},
+    "wave --k 3/2 --masses 1": {
+        "lattice.speed_value": pytest.approx(math.sqrt(0.819967 / 1.5), rel=1e-5),
+        "lattice.fwhm_value.force": pytest.approx(1.411928, rel=1e-3),
+        "lattice.fwhm_error_value.force": pytest.approx(1e-3 / 2, abs=1e-3 / 2),
+    },
+    "wave --k 3/2 --masses 1,3/5": {"lattice": None},
+    "wave --k 3/2 --masses 1,2,3": {"lattice": None},
     "envelope --masses 1,1/2 --k 3/2 --spacing 1 --background 2 --detuning 1/1000": {
         "kind": "bright", "branch": "1", "group_velocity_value": 0, "amplitude_value.0": 0,
         "amplitude_value.1": 2 * math.sqrt(0.032 / 0.75),  # p0 √(32 Δ/(k (k - 1)))
@@ -181,7 +201,9 @@ TEXTS = {
     "expansion --k 2 --masses 1 --order 6": ("±", "c² = Σ a_n ε^n"),
     "wave --k 2 --masses 1 --force 123456789012/1234567891": ("F = 123456789012/1234567891\n",),
     "wave --k 2 --masses 1 --force 1234567890121/123456789017": ("F = 9.9999999996031\n",),
-    "expansion --k 20 --masses 1 --order 10": ("velocity: no sum at k = 20", "c²: no sum"),
+    "expansion --k 3 --masses 1,2,3 --order 6": ("velocity: no sum at k = 3", "c²: no sum"),
+    "expansion --k 3/2 --masses 1": ("c², closed form = 0.8199", "FWHM of the force = 1.4119"),
+    "wave --k 3/2 --masses 1,3/5": ("Note: m2/m1 is 3/5 at k = 3/2: the light beads resonate",),
     "dispersion --format latex": (r"\kappa^{4}",),
     "dispersion": ("κ^4: -(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)",),
     "dispersion --masses 1 --precompression 2": ("band 1",),
@@ -238,6 +260,17 @@ def test_the_canonical_numbers_stand_beside_the_linear_closures(capsys):
     assert own["speed_value"] == pytest.approx(
         heavy["canonical"]["speed_value"], rel=1e-14
     )
+
+
+def test_the_lattices_own_wave_stands_first_if_its_error_is_known(capsys):
+    for line, first in (
+        ("--k 3/2 --masses 1", True),
+        ("--k 3/2 --masses 0.45,0.123", True),
+        ("--masses 1", False),
+        ("--k 5 --masses 1,1/10", False),
+    ):
+        out = said(capsys, "wave", *line.split())
+        assert (out.index("the lattice's own wave") < out.index("β")) == first, line
 
 
 def test_closed_forms_of_a_shock_stand_in_json(capsys):

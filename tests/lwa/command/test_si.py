@@ -87,6 +87,13 @@ def test_a_wave_of_spheres_has_the_values_of_python(capsys, file):
         speed,
     ):
         assert words in out
+    lattice = lwa.lattice_wave(cell, k="3/2", force=10)
+    speed = lattice.estimate("speed")
+    assert found["lattice"]["speed_value"] == speed.value
+    assert found["lattice"]["speed_error_value"] == speed.error
+    for extent, key in (("length", "fwhm_value"), ("time", "fwhm_time_value")):
+        width = lattice.estimate("fwhm", "force", extent)
+        assert found["lattice"][key]["force"] == width.value
     symbolic = result(capsys, *options)
     assert (symbolic["force"], symbolic["fwhm_value"]) == ("F", found["fwhm_value"])
     assert not {"speed_value", "force_value", "fwhm_time_value"} & set(symbolic)

@@ -9,6 +9,8 @@ import sympy as sp
 
 from lwa import Cell, Dimer, canonical_wave
 from lwa.expansion.expand import expand
+from lwa.expansion.observables import Observables, shares_model
+from lwa.expansion.recursion import Recursion
 from lwa.expansion.series import radiated
 from tests.identity import same
 from tests.lwa.expansion.test_exact_waves import series
@@ -29,12 +31,19 @@ def wave(name, order=4):
     return expand(CELLS[name], order, k=3 if name == "contacts" else "k")
 
 
-def contact(expansion, i, order, epsilon):
+def contact(fields, I, i, order, epsilon):
     """Strain of contact i, over its share, as a function of ξ: the series cut after ε^order."""
-    X, size = sp.symbols("X size", positive=True)
-    log = sum(size**n * p for n, p in expansion.log_force(i, X).items() if n <= order)
-    cut = sp.lambdify((X, size), sp.exp(log / (1 + size)), "mpmath")
-    return lambda xi: cut(mpmath.sqrt(epsilon) * xi, epsilon)
+    log = fields.force[i].log[: 2 * order + 1]
+
+    def strain(xi):
+        Z, t = mpmath.sqrt(epsilon / I) * xi, mpmath.sqrt(epsilon / I**3)
+        total = -(Z**2) / 4
+        for n, polynomial in enumerate(log):
+            for (d,), c in polynomial.terms():
+                total += mpmath.mpf(int(c.p)) / int(c.q) * Z ** int(d) * t**n
+        return mpmath.exp(total / (1 + epsilon))
+
+    return strain
 
 
 @pytest.mark.parametrize("name", ["equal", "dimer", "three"])
@@ -42,6 +51,7 @@ def test_residual_of_newtons_equations_falls_as_the_order_promises(name):
     """γ c_i r_i'' = (f_{i+1} - f_i)/(P μ_{i+1}) - (f_i - f_{i-1})/(P μ_i), with 50 digits."""
     cell, order, residuals = CELLS[name], 3, []
     expansion, P = wave(name), cell.size
+    fields = Recursion(shares_model(cell, sp.S.One), order + 1)
     assert expansion.c2.prefactor == P / (cell.mass * expansion.compliance)
     for epsilon in (sp.Rational(1, n) for n in (400, 800, 1600)):
         coefficients = enumerate(expansion.c2.coefficients[: order + 1])
@@ -49,7 +59,8 @@ def test_residual_of_newtons_equations_falls_as_the_order_promises(name):
         with mpmath.workdps(50):
             c2, small = mpmath.mpmathify(c2), mpmath.mpf(1) / epsilon.q
             mu = [mpmath.mpmathify(sp.N(m / cell.mass, 50)) for m in cell.masses]
-            strains = [contact(expansion, i, order, small) for i in range(P)]
+            I = mpmath.mpmathify(Observables(fields).I)
+            strains = [contact(fields, I, i, order, small) for i in range(P)]
             worst = mpmath.mpf(0)
             for at in (-1.5, -0.3, 0.4, 1.1):
                 xi = mpmath.mpf(at) / mpmath.sqrt(small)

@@ -182,6 +182,16 @@ def test_a_record_without_noise_gives_the_pulse_of_the_signal(signals, samples, 
         assert number.error < bound, name
 
 
+@pytest.mark.parametrize("at", [40, 60, 80, 100])
+def test_a_record_may_begin_in_the_front_of_its_pulse(at):
+    """A Gaussian of width 30: what it has risen to by its first sample is in the errors."""
+    t = np.arange(400.0)
+    found = noisy_pulse(t, np.exp(-(((t - at) / 30) ** 2))).numbers
+    for name, true in (("peak", 1), ("fwhm", 60 * math.sqrt(math.log(2)))):
+        number = found[name]
+        assert abs(number.value - true) < number.error < 30 * abs(number.value - true)
+
+
 def test_pulses_come_one_after_the_other():
     t = np.arange(0, 25, 0.01)
     f = 0.7 - 0.01 * t + 0.005 * np.random.default_rng(0).normal(size=len(t))

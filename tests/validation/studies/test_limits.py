@@ -56,9 +56,12 @@ def law(quantity):
     angle = eps * sp.sqrt(6 / (k * (k + 1))) * X / sp.sqrt(eps)
     theory = 2 / eps * (-(angle**2) / 2 - angle**4 / 12)
     theory = sp.series(sp.expand(theory), eps, 0, 2).removeO()
-    force = series.log_force(X=X)  # k times the log of the strain
-    difference = sp.expand(theory.coeff(eps, 1) - (force[1] - force[0]))
-    assert sp.expand(theory.coeff(eps, 0) - force[0]) == 0
+    # log of the lattice's strain, -3X² + ε (18/5 X² - 3/10 X⁴) + …: 3X² = log 2 + ε first there
+    first = sp.Rational(18, 5) * X**2 - sp.Rational(3, 10) * X**4
+    widened = first.subs(X, sp.sqrt(sp.log(2) / 3)) / (2 * sp.log(2))
+    assert sp.expand(series.fwhm("strain").coefficients[1] - widened) == 0
+    difference = sp.expand(theory.coeff(eps, 1) - first)
+    assert sp.expand(theory.coeff(eps, 0) + 3 * X**2) == 0
     if quantity == SUPPORT:
         # mean over the Gaussian e^{-3X²}: ⟨X²⟩ = 1/6, ⟨X⁴⟩ = 1/12
         return 1, difference.coeff(X, 2) / 6 + difference.coeff(X, 4) / 12

@@ -1,1 +1,0 @@
-"""Closed forms of the lattice's own wave, their errors, and their source text."""
