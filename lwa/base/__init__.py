@@ -20,8 +20,9 @@ def cut(text: str, longest: int = LONGEST_MESSAGE) -> str:
     line = " ".join(text.split())
     if len(line) <= longest:
         return line
+    # The reason stands in front and the next step at the end: both stay.
     head = longest // 2
-    tail = longest - head - 3
+    tail = longest - head - 3  # " … "
     return f"{line[:head].rstrip()} … {line[-tail:].lstrip()}"
 
 
@@ -48,8 +49,11 @@ class Refusal(ValueError):
     def __init__(self, reason: str, **change: object) -> None:
         self.reason = cut(reason)
         self.change = change
-        keywords = ", ".join(f"{name}={value!r}" for name, value in change.items())
-        super().__init__(cut(f"{reason}; try {keywords}" if change else reason))
+        message = reason
+        if change:
+            keywords = ", ".join(f"{name}={value!r}" for name, value in change.items())
+            message = f"{reason}; try {keywords}"
+        super().__init__(cut(message))
 
 
 class InputError(Refusal):

@@ -18,6 +18,7 @@ def integral(F: sp.Expr, x: sp.Symbol) -> sp.Expr:
     """
     total = sp.S.Zero
     for term in sp.Add.make_args(F):
+        # A term c (a + b x)^e has the integral c (a + b x)^{e+1}/(b (e + 1)).
         factor, rest = term.as_independent(x, as_Add=False)
         base, e = rest.as_base_exp()
         slope = base.diff(x)
@@ -36,9 +37,8 @@ def ratio(top: sp.Expr, bottom: sp.Expr) -> sp.Expr:
 _FIRST_STEP = mpmath.mpf(2) ** -20
 """The first step of a search; a root below it is found by bisection."""
 
-_LEAST_STEP = (
-    mpmath.mpf(2) ** -150
-)  # relative to the place: beyond 45 digits there is no root
+# Relative to the place: a root that is not found to 45 digits is none.
+_LEAST_STEP = mpmath.mpf(2) ** -150
 _FARTHEST = 2**40  # no strain is that large
 _LONGER = mpmath.mpf("1.2")  # ratio of a step to the one before
 
@@ -70,7 +70,7 @@ def growing_root(F: sp.Expr, x: sp.Symbol) -> Any:
         above = value(low + step)
         grows = slope(low + step) > 0
         if above >= 0 and grows:
-            break
+            break  # the root is within this step
         if above > value(low) and grows:
             low += step
             step *= _LONGER

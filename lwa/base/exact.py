@@ -78,11 +78,13 @@ def read_exact(value: Any, name: str) -> sp.Expr:
     if isinstance(value, str):
         expression = _from_text(value.strip(), name)
     elif isinstance(value, sp.Expr):
+        # SymPy prints a float to its own digits, so that 0.1 is 1/10 here, too.
         floats = real(value, name).atoms(sp.Float)
         expression = value.xreplace({x: sp.Rational(str(x)) for x in floats})
     else:
         expression = _from_number(value, name)
     for number in expression.atoms(sp.Rational):
+        # Longer numbers would fill the memory as coefficients of high orders.
         p = abs(int(number.p))
         q = int(number.q)
         if max(p, q) >= 10**DIGITS or p >= q * _FIRST_BEYOND:
@@ -99,6 +101,7 @@ def _from_number(value: Any, name: str) -> sp.Rational:
     scalar = hasattr(value, "item") and getattr(value, "size", 1) == 1
     if scalar and not hasattr(value, "mask"):
         value = value.item()
+    # True is an integer of Python.
     if isinstance(value, bool) or not isinstance(value, int | float | Fraction):
         raise InputError(f"{name} is {shorten(value)}: a number or a symbol is wanted")
     if not isinstance(value, float):
@@ -112,6 +115,7 @@ def _from_text(text: str, name: str) -> sp.Expr:
     """Read a number, or a name as a positive symbol."""
     short = len(text) <= _LONGEST_TEXT
     if short and _NUMBER.fullmatch(text):
+        # Fraction reads this grammar and decimals exactly; SymPy's reader would evaluate text.
         try:
             return sp.Rational(Fraction(text))
         except ZeroDivisionError:
@@ -124,6 +128,7 @@ def _from_text(text: str, name: str) -> sp.Expr:
             f"{name} is {shorten(text)}: an integer, a decimal, a fraction such as 3/2, or a plain "
             "name is wanted"
         )
+    # Printed results are read again by SymPy, and source code has the names as variables.
     if keyword.iskeyword(text) or hasattr(sp, text):
         raise InputError(
             f"{name} is {text!r}, a word with a meaning of its own: choose another"
@@ -139,6 +144,7 @@ def real(value: Any, name: str) -> sp.Expr:
         )
     if not isinstance(value, sp.Expr):
         return read_exact(value, name)
+    # is_real is None for an expression whose symbols may be anything.
     if value.is_real is False or value.has(sp.nan, sp.oo, -sp.oo, sp.zoo):
         raise InputError(f"{name} is {shorten(value)}: a finite real number is wanted")
     return value
@@ -167,7 +173,7 @@ def integer(value: Any, name: str, low: int, high: int = _UNLIMITED) -> int:
     try:
         number = operator.index(value)
     except TypeError:
-        number = low - 1
+        number = low - 1  # refused below
     if isinstance(value, bool) or not low <= number <= high:
         wanted = f"from {low} to {high}"
         if high == _UNLIMITED:
@@ -245,6 +251,7 @@ def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
     """
     number, rest = base.as_coeff_Mul()
     if number not in (0, 1) and number.is_Rational and exponent.is_Rational:
+        # SymPy multiplies out by the larger part of the exponent: x^{p/q} has x^p in a root.
         bits = int(number.p).bit_length() + int(number.q).bit_length()
         if bits * max(abs(int(exponent.p)), int(exponent.q)) > _POWER_BITS:
             base = Unmultiplied(number) * rest

@@ -61,10 +61,13 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
             f"{path}: {what} is a file ending in {' or '.join(MOST_BYTES)}"
         )
     try:
+        # Standard input may be of either format, and has the smaller limit.
         text = content(Path(path), MOST_BYTES.get(suffix, MOST_BYTES[".toml"]))
         if str(path) == "-":
+            # A JSON object begins with a brace, which no TOML file does.
             suffix = ".json" if text.lstrip().startswith(b"{") else ".toml"
         parse = tomllib.loads if suffix == ".toml" else json.loads
+        # Editors on Windows put a mark of three bytes in front of UTF-8.
         return reader(parse(text.decode("utf-8-sig")))
     except (InputError, OSError) as error:
         fault = reason(error)
@@ -73,6 +76,7 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
     except RecursionError:
         fault = f"nested too deeply for {what}"
     except ValueError as error:  # raised by the parsers
+        # Python's advice on integers of too many digits stands behind a semicolon.
         fault = f"not {suffix[1:].upper()}: {str(error).partition(';')[0]}"
     raise InputError(f"{path}: {fault}") from None
 
@@ -170,6 +174,7 @@ class Table:
         """Read an entry by ``reader``; an entry without a default must be present."""
         if key in self:
             return reader(self.entries[key], self.path(key))
+        # No reader returns None, which therefore stands for "no default".
         if default is None:
             raise InputError(f"{self.path(key)} is missing")
         return default
@@ -253,6 +258,7 @@ def places(count: int) -> Reader:
 
     def read(value: Any, name: str) -> list[int]:
         indices: list[int] = each(place(count))(value, name)
+        # A sensor named twice would be two columns of one name.
         if len(set(indices)) < len(indices):
             raise InputError(f"{name} is {shorten(value)}: each may be named once")
         return indices
@@ -261,4 +267,7 @@ def places(count: int) -> Reader:
 
 
 def _plain(key: str) -> str:
-    return key if key.isidentifier() and len(key) < 60 else shorten(key)
+    """A key as it is written, or in quotes and shortened if it is no plain name."""
+    if key.isidentifier() and len(key) < 60:
+        return key
+    return shorten(key)

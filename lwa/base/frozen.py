@@ -68,9 +68,12 @@ class Shown:
 
     def _repr_latex_(self) -> str | None:
         rows = self.latex_rows()
-        return latex.display(rows) if rows else None
+        if not rows:
+            return None  # a notebook then shows the repr
+        return latex.display(rows)
 
     def _latex(self, printer: Any) -> str:  # SymPy's name: `sympy.latex` calls it
+        # SymPy puts its own dollars around.
         return (self._repr_latex_() or str(self)).strip("$")
 
 
@@ -140,11 +143,13 @@ class Estimate(Value):
         >>> print(Estimate(4859925635.0, 99925635.0), Estimate(1.4119284, 3e-6))
         4.86e+09 ± 1.0e+08 1.41193 ± 1e-05
         """
+        # NaN or infinite if either number is.
         if not math.isfinite(self.value + self.error):
             return f"{self.value:.{UNKNOWN_DIGITS}g}, error unknown"
         first = _place(self.value)
         last = first - most + 1
         if not self.error:
+            # An exact number has no ±, unless digits are left out.
             short = f"{self.value:.{most}g}"
             if most == EXACT_DIGITS or float(short) == self.value:
                 return short
@@ -153,7 +158,7 @@ class Estimate(Value):
         else:
             own = _place(self.error)
             if self.error < 2 * 10.0**own:
-                own -= 1
+                own -= 1  # rounding 1.1 up to 2 would nearly double the error
             last = min(max(own, last), first)
         unit = 10.0**last
         # An error of 3e-06 is 3.0000000000000004 units of 1e-06 in floats: no reason for 4e-06.
@@ -162,7 +167,9 @@ class Estimate(Value):
         if not PLAIN[0] <= first <= PLAIN[1]:
             return f"{self.value:.{first - last}e} ± {scientific}"
         decimals = max(0, -last)
-        width = f"{error:.{decimals}f}" if error >= LEAST_PLAIN else scientific
+        width = scientific
+        if error >= LEAST_PLAIN:
+            width = f"{error:.{decimals}f}"
         return f"{round(self.value, -last):.{decimals}f} ± {width}"
 
     @property

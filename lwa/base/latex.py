@@ -14,9 +14,8 @@ from lwa.base.exact import evaluated
 
 NUMBER = 24  # symbols of an exact number beyond which its digits stand in its place
 DIGITS = 6  # digits of an irrational number behind its formula
-_LONG_FRACTION = (
-    2  # parts of a numerator for one of its denominator, beyond which it is moved out
-)
+# Parts of a numerator for one of its denominator, beyond which it stands beside the fraction.
+_LONG_FRACTION = 2
 WIDTH = 64
 """Symbols in a line of a display, of a fraction in both parts; a page holds about 70 in a row."""
 
@@ -99,6 +98,7 @@ def row(name: str, value: sp.Expr) -> str:
     ('x = \\\\sqrt{2} \\\\approx 1.41421', 'y = \\\\frac{1}{2}')
     """
     text = expression(value)
+    # Digits stand behind a formula, not behind the digits of a long one.
     irrational = value.is_number and not value.is_Rational and not value.has(sp.Float)
     if irrational and text == _formula(value):
         text += rf" \approx {sp.latex(evaluated(value, DIGITS))}"

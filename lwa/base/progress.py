@@ -7,7 +7,6 @@ import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from importlib import import_module
 from typing import Any, TypeVar
 
 EVERY = 30.0
@@ -19,14 +18,6 @@ QUIET = 10.0
 T = TypeVar("T")
 Progress = Callable[[Iterable[T]], Iterable[T]]
 """A wrapper of an iterable that shows how far an iteration is, such as `tqdm.tqdm`."""
-
-
-def announced(what: str) -> Progress[Any]:
-    """Print to standard error that a computation takes minutes; return `shown`, its progress."""
-    # Imported before the line is printed: Python may lose a Ctrl-C during an import.
-    import_module("tqdm")
-    print(f"{what}: this may take minutes", file=sys.stderr, flush=True)
-    return shown
 
 
 def shown(items: Iterable[T], label: str = "orders") -> Iterable[T]:

@@ -25,8 +25,12 @@ from lwa.base.exact import InputError, evaluated
 from lwa.base.frozen import EXACT_DIGITS, TABLE_DIGITS, Estimate, Shown
 from lwa.spheres.units import fitting
 
-FRACTION = 24  # characters of a fraction beyond which text has its digits alone
-LONG = 160  # characters of an exact number beyond which text has its digits alone
+FRACTION = 24
+"""Most characters of a fraction in text, about a quarter of a line; a longer one has its digits
+alone."""
+
+LONG = 160
+"""Most characters of another exact number in text, two lines; a longer one has its digits alone."""
 
 Form = Literal["both", "formula", "number"]
 """What a row shows of an expression: the formula and its digits, or one of them."""
@@ -49,16 +53,22 @@ class Scale:
 
     def plain(self, value: sp.Expr) -> sp.Expr:
         """The value at ``V_s = 1``, ``|B| = 1``, and at ``D = 1`` where the spacing is a symbol."""
-        ones: dict[sp.Expr, int] = {self.spacing: 1} if self.spacing.is_Symbol else {}
+        ones: dict[sp.Expr, int] = {}
+        if self.spacing.is_Symbol:
+            ones[self.spacing] = 1
         for symbol in value.free_symbols:
             if symbol.name in ("V_s", "B"):
+                # B is negative in chains that soften.
                 ones[symbol] = -1 if symbol.is_negative else 1
+        if value.free_symbols <= ones.keys():
+            return value.subs(ones)
         # Substitution in an expression with other symbols would take long, for no number.
-        return value.subs(ones) if value.free_symbols <= ones.keys() else value
+        return value
 
     def unit_of(self, value: sp.Expr) -> str | None:
         """The unit of a number times powers of symbols, such as ``" D^2"``; None for others."""
         unit = sp.S.One
+        # A sum such as a D + b D becomes a product.
         for base, n in sp.factor_terms(value).as_powers_dict().items():
             if base.is_Symbol and n.is_number:
                 unit *= base**n
@@ -71,6 +81,7 @@ class Scale:
         if not self.si:
             return number.text()
         fitted = fitting(unit, abs(number.value))
+        # The unit stands before the words on an unknown error.
         text, comma, unknown = (number * (1 / fitted.size)).text().partition(",")
         return f"{text} {fitted.name}".rstrip() + comma + unknown
 
@@ -139,6 +150,7 @@ class Row:
             found["_value"] = float(self.value)
         else:
             floats = self._floats(scale)
+            # A float is a result of numerics; closed forms of the lattice hold floats as factors.
             closed = not any(x.is_Float for x in self._each)
             if closed and self.form != "number":
                 found[""] = self.value
@@ -146,7 +158,9 @@ class Row:
                 found["_value"] = floats
         if self.measured is not None:
             error = float(self.measured.error)
-            found["_error_value"] = None if math.isnan(error) else error
+            found["_error_value"] = error
+            if math.isnan(error):  # JSON has no NaN
+                found["_error_value"] = None
         return found
 
     def _floats(self, scale: Scale) -> Any:
@@ -154,7 +168,9 @@ class Row:
         if not isinstance(self.value, tuple):
             return as_float(scale.plain(self.value))
         floats = [as_float(scale.plain(x)) for x in self.value]
-        return None if None in floats else floats
+        if None in floats:
+            return None
+        return floats
 
     @property
     def _each(self) -> Sequence[sp.Expr]:
@@ -170,14 +186,15 @@ class Row:
             texts = [self._expression(x, scale) for x in self._each]
             return f"{self.label} = {', '.join(texts)}"
         number = scale.measured(self.measured, self.unit)
-        if not isinstance(self.value, Estimate):
-            unit = "" if scale.si else scale.unit_of(self.value)
-            number = self._beside(self.value, f"{number}{unit or ''}", scale)
+        if not scale.si and not isinstance(self.value, Estimate):
+            number += scale.unit_of(self.value) or ""
+            number = self._beside(self.value, number, scale)
         return f"{self.label} = {number}"
 
     def _expression(self, value: sp.Expr, scale: Scale) -> str:
         """An expression as text: the formula, its digits, or both."""
         unit = scale.unit_of(value)
+        # The functions φ_n of a general law have no value, though no free symbol.
         symbolic = value.free_symbols - {scale.spacing} or value.has(AppliedUndef)
         if scale.si or self.form == "formula" or symbolic or unit is None:
             return scale.written(value, self.unit)
@@ -188,13 +205,17 @@ class Row:
 
     def _beside(self, value: sp.Expr, number: str, scale: Scale) -> str:
         """A number behind its formula, or one of them where the other says no more."""
-        if scale.si or self.form == "number" or value.has(sp.Float):
+        if self.form == "number" or value.has(sp.Float):
             return number
         formula = str(value)
         if scale.plain(value).is_Rational:
-            exact = self.measured is None and len(formula) <= FRACTION
-            return formula if exact else number
-        return number if len(formula) > LONG else f"{formula} ≈ {number}"
+            # A fraction says all that its digits say, but for an error.
+            if self.measured is None and len(formula) <= FRACTION:
+                return formula
+            return number
+        if len(formula) > LONG:
+            return number
+        return f"{formula} ≈ {number}"
 
     def latex(self, scale: Scale) -> str:
         """The row as ``symbol = value``; "" without a symbol or a value."""
@@ -213,6 +234,7 @@ def as_float(value: sp.Expr) -> float | None:
     """The nearest float of an exact number; None if symbolic, complex or out of range."""
     if value.free_symbols:
         return None
+    # Thirty digits, so that the float is the nearest one.
     number = evaluated(value, 30)
     if not number.is_real or not (number == 0 or 1e-300 < abs(number) < 1e300):
         return None
@@ -231,8 +253,10 @@ def estimated(result: Any, name: str, *arguments: Any) -> Estimate | None:
     """The estimate of a result's number; None with symbols, and for results that have none."""
     if not hasattr(result, "estimate"):
         return None
-    found = attempt(result.estimate, name, *arguments)
-    return None if isinstance(found, InputError) else found
+    found: Estimate | InputError = attempt(result.estimate, name, *arguments)
+    if isinstance(found, InputError):
+        return None
+    return found
 
 
 WIDTH = 100
@@ -315,8 +339,11 @@ class Answer:
         for part in self.rows:
             if isinstance(part, Answer):
                 result[part.key] = part.json()
+        # Several values may be missing for one reason.
         notes = list(dict.fromkeys((*self.notes, *faults)))
-        return result | {"notes": notes} if notes else result
+        if notes:
+            result["notes"] = notes
+        return result
 
     def text(self) -> str:
         """The lines that ``--format text`` prints."""

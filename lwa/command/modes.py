@@ -55,6 +55,7 @@ def dispersion(
     spheres = options["spheres"] is not None
     chain = take_chain(options)
     precompression = chain.load(precompression)
+    # The series of equal contacts is that of any k; the bands are those of spheres then.
     if precompression is not None and not (spheres or given("k")):
         chain = replace(chain, law=Power(EXPONENT))
     linear = Dispersion(chain.cell, chain.law.exponent)
@@ -68,7 +69,8 @@ def dispersion(
         head[name] = series
         rows.append(f"{name}:")
         for n, c in series.items():
-            rows.append(f"  {f'κ^{n}' if n else '1'}: {c}")
+            power = f"κ^{n}" if n else "1"
+            rows.append(f"  {power}: {c}")
     shown: list[Shown | str] = [linear]
     if precompression is not None:
         loaded = LoadedChain(chain.cell, chain.law, precompression)
@@ -83,19 +85,23 @@ def dispersion(
         numbers = (*chain.cell.masses, *loaded.spring_constants)
         if not any(x.free_symbols for x in numbers):
             edges = loaded.bands.edges()
+            frequencies = edges / (2 * math.pi)
             head["band_edges_value"] = edges.tolist()
-            head["band_edges_frequency_value"] = (edges / (2 * math.pi)).tolist()
-            turn = 2 * math.pi if chain.si else 1.0
-            for i, band in enumerate(edges.tolist(), start=1):
-                ends = tuple(sp.Float(x / turn) for x in band)
-                unit = "" if chain.si else ", in rad per unit of time"
+            head["band_edges_frequency_value"] = frequencies.tolist()
+            # Text has Hz for a chain in SI. Other chains have no unit of time, and rad.
+            shown_edges = frequencies if chain.si else edges
+            unit = "" if chain.si else ", in rad per unit of time"
+            for i, band in enumerate(shown_edges, start=1):
+                ends = tuple(sp.Float(float(x)) for x in band)
                 rows.append(Row("", f"band {i}{unit}", ends, "Hz", form="number"))
     Answer(head, rows, chain.scale, shown).print(style)
 
 
 def _branch(text: str, name: str) -> BranchName | int:
     """Read a branch by its name or its number."""
-    return int(text) if text.isdecimal() else one_of(text, BRANCHES, name)
+    if text.isdecimal():
+        return int(text)
+    return one_of(text, BRANCHES, name)
 
 
 @command(
@@ -169,8 +175,11 @@ def envelope(
         wavenumber=wavenumber,
         branch=branch,
     )
-    turn = 2 * sp.pi if chain.si else sp.S.One
-    name = "ω/(2π)" if chain.si else "ω"
+    turn = sp.S.One
+    name = "ω"
+    if chain.si:  # Hz
+        turn = 2 * sp.pi
+        name = "ω/(2π)"
     kind = attempt(getattr, equation, "kind")
     head: dict[str, str | None] = {"branch": str(equation.branch), "kind": None}
     described = f"  bright or dark: {kind}"
@@ -191,10 +200,10 @@ def envelope(
     ]
     shown: list[Shown | str] = [equation]
     if frequency is not None or detuning is not None:
-        angular = None if frequency is None else frequency * turn
+        angular = frequency and frequency * turn
         breather = equation.breather(angular, detuning=detuning)
         shown.append(breather)
-        shape = "sech" if breather.kind == "bright" else "tanh"
+        shape = {"bright": "sech", "dark": "tanh"}[breather.kind]
         own = breather.frequency / turn
         rows += [
             "",

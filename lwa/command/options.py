@@ -71,7 +71,9 @@ class Words(click.Choice[str]):
 
 def quantity(context: click.Context, option: click.Parameter, text: str | None) -> Any:
     """Read an integer, a decimal, a fraction or a plain name, as a callback of Click."""
-    return None if text is None else read_exact(text, called(option))
+    if text is None:
+        return None
+    return read_exact(text, called(option))
 
 
 def quantities(
@@ -94,7 +96,9 @@ def _exponent(text: str, name: str) -> sp.Expr:
 def not_negative(text: str, name: str) -> sp.Expr:
     """Read a positive quantity or zero."""
     number = read_exact(text, name)
-    return number if number.is_zero else positive(number, name)
+    if number.is_zero:
+        return number
+    return positive(number, name)
 
 
 def angle(text: str, name: str) -> sp.Expr:

@@ -12,7 +12,7 @@ import sympy as sp
 
 from lwa.base import latex
 from lwa.base.exact import InputError, read_exact
-from lwa.base.frozen import NoSolitaryWave, Shown
+from lwa.base.frozen import Estimate, NoSolitaryWave, Shown
 from lwa.base.words import EXTENTS, LANGUAGES, QUANTITIES, ExtentName, QuantityName
 from lwa.command.answer import (
     LONG,
@@ -81,12 +81,9 @@ def wave(
     """
     spheres = options["spheres"] is not None
     chain = take_chain(options)
-    precompression = chain.load(precompression)
-    load = precompression if background is None else background
-    loaded = load is not None and not load.is_zero
-    if not chain.law.homogeneous:
-        # The compact wave is that of a power: under another law no load is a load, too.
-        loaded = load is not None or force is not None
+    static = chain.load(precompression)
+    load = static if background is None else background
+    loaded = _is_loaded(chain, load, force)
     if loaded:
         _take_canonical(options)
     if style in LANGUAGES and (loaded or force is not None):
@@ -95,25 +92,35 @@ def wave(
             format="text",
         )
     theory = homogenize(chain.cell, law=chain.law, **options)
-    if not loaded and not chain.law.homogeneous:
+    if style in LANGUAGES:
+        click.echo(_compact(theory).code(style))
+        return
+    peak = read_exact("F", "force") if force is None else force
+    if loaded and background is not None:
+        answer = on_background(chain, theory, background)
+    elif loaded:
+        answer = under_load(chain, theory, peak, static or sp.S.Zero)
+    elif spheres or force is not None:
+        answer = of_force(chain, theory, peak)
+    else:
+        answer = any_amplitude(chain, theory)
+    answer.print(style)
+
+
+def _is_loaded(chain: ChainInput, load: sp.Expr | None, force: sp.Expr | None) -> bool:
+    """True if the wave is that of a chain under a load, or of a law that is no power.
+
+    The compact wave is that of a power law. Under another law a load of zero is a load, too.
+    """
+    if chain.law.homogeneous:
+        return load is not None and not load.is_zero
+    if load is None and force is None:
         raise InputError(
             f"law is {chain.law.text}: the compact wave is that of a power law; waves under a "
             "load or of a force have any law",
             background="1/10",
         )
-    peak = read_exact("F", "force") if force is None else force
-    if style in LANGUAGES:
-        click.echo(_compact(theory).code(style))
-    elif not loaded and force is None and not spheres:
-        any_amplitude(chain, theory).print(style)
-    elif not loaded:
-        of_force(chain, theory, peak).print(style)
-    else:
-        if background is None:
-            static = precompression or sp.S.Zero
-            under_load(chain, theory, peak, static).print(style)
-        else:
-            on_background(chain, theory, background).print(style)
+    return True
 
 
 def _take_canonical(options: dict[str, Any]) -> None:
@@ -169,27 +176,19 @@ def width_row(
     return Row(f"{key}.{quantity}", label, width, unit, symbol, **settings)
 
 
-def in_spacings(wave: Any, spacing: sp.Expr) -> Any:
-    """The wave with the spacing as the unit of length, if the spacing is a symbol."""
-    return wave.at(**{spacing.name: 1}) if spacing.is_Symbol else wave
-
-
-def pulse_rows(wave: Any, spacing: sp.Expr, rise: str, form: Form) -> Iterator[Row]:
+def pulse_rows(wave: Any, rise: str, form: Form) -> Iterator[Row]:
     """Rows of the size, the speed and the widths of a wave.
 
     Parameters
     ----------
     wave : PhysicalWave or LoadedWave
         The wave of a peak force.
-    spacing : Expr
-        The spacing of its chain.
     rise : str
         What its strain is called: "peak", or "rise of the" static strain.
     form : {"both", "formula", "number"}
         What is shown of the widths.
     """
-    measured = in_spacings(wave, spacing)
-    speed = estimated(measured, "speed")
+    speed = estimated(wave, "speed")
     yield Row("force", "peak contact force F", wave.force, "N")
     yield Row("B", f"{rise} strain B", wave.strain)
     yield Row("compression", f"{rise} compression", wave.compression, "m")
@@ -200,7 +199,7 @@ def pulse_rows(wave: Any, spacing: sp.Expr, rise: str, form: Form) -> Iterator[R
             width = attempt(wave.fwhm, q, extent)
             if isinstance(width, InputError):  # under a load widths are numbers
                 return
-            error = estimated(measured, "fwhm", q, extent)
+            error = estimated(wave, "fwhm", q, extent)
             yield width_row(q, width, extent, form=form, estimate=error)
 
 
@@ -273,7 +272,7 @@ def of_force(chain: ChainInput, theory: Theory, force: sp.Expr) -> Answer:
         "the compact wave in a chain without load:",
         *closure_lines(theory),
         "",
-        *pulse_rows(wave, chain.cell.spacing, "peak", "both"),
+        *pulse_rows(wave, "peak", "both"),
         Row("beta", "", wave.wave.beta, "1/m"),
         Row("width", "", wave.wave.width, "m", r"\frac{\pi}{\beta}"),
         *_canonical(chain, theory, wave.force),
@@ -294,10 +293,11 @@ def _put_lattice(rows: Lines, chain: ChainInput, force: sp.Expr | None) -> list[
     Behind the line on the chain if every error is known and below `_BEST`, else at the end.
     Returns a note where the lattice has no such wave.
     """
+    cell = chain.cell
+    if not cell.uniform and any(m.free_symbols for m in cell.masses):
+        return []  # nobody knows which bead is light, if any
     try:
-        wave = lattice_wave(
-            chain.cell, law=chain.law, force=1 if force is None else force
-        )
+        wave = lattice_wave(cell, law=chain.law, force=1 if force is None else force)
     except InputError:  # a cell without a closed form
         return []
     except NoSolitaryWave as reason:
@@ -313,16 +313,16 @@ def _put_lattice(rows: Lines, chain: ChainInput, force: sp.Expr | None) -> list[
 
 def _lattice(scale: Scale, wave: LatticeWave, force: sp.Expr | None) -> Answer:
     """Speed and widths of the lattice's own wave; without a force those at B = 1."""
-    measured = in_spacings(wave, scale.spacing)
-    extents = EXTENTS
-    error = estimated(measured, "speed")
-    speed = Row("speed", "speed dx/dt", wave.speed, "m/s", latex.SPEED, estimate=error)
+    measured = wave
+    if scale.spacing.is_Symbol:  # the unit of length
+        measured = wave.at(**{scale.spacing.name: 1})
     if force is None:
-        extents = EXTENTS[:1]
         error = estimated(measured, "scaled_speed", 1)
-        scaled = wave.scaled_speed(1)
-        speed = Row("speed", "V_s at B = 1", scaled, symbol="V_{s}", estimate=error)
-    rows = [speed]
+        rows = [_speed_row(wave.scaled_speed(1), force, error)]
+        extents = EXTENTS[:1]
+    else:
+        rows = [_speed_row(wave.speed, force, estimated(measured, "speed"))]
+        extents = EXTENTS
     for extent in extents:
         for q in QUANTITIES:
             error = estimated(measured, "fwhm", q, extent)
@@ -335,6 +335,15 @@ def _lattice(scale: Scale, wave: LatticeWave, force: sp.Expr | None) -> Answer:
     return Answer({"theory": wave.theory}, lines, scale, errors=_ERRORS, key="lattice")
 
 
+def _speed_row(
+    speed: sp.Expr, force: sp.Expr | None, error: Estimate | None = None
+) -> Row:
+    """The row of a speed dx/dt, or without a force of V_s at B = 1."""
+    if force is None:
+        return Row("speed", "V_s at B = 1", speed, "", "V_{s}", estimate=error)
+    return Row("speed", "speed dx/dt", speed, "m/s", latex.SPEED, estimate=error)
+
+
 def _canonical(
     chain: ChainInput, theory: Theory, force: sp.Expr | None
 ) -> list[Answer]:
@@ -345,24 +354,21 @@ def _canonical(
     """
     cell = chain.cell
     k = chain.law.exponent
-    numbers = (k, *cell.masses, *cell.stiffnesses)
+    numbers = [k, *cell.masses, *cell.stiffnesses]
     if force is not None:
-        numbers += (force,)
+        numbers.append(force)
     if not depends_on_first(theory) or any(x.free_symbols for x in numbers):
         return []
     wave = canonical_wave(cell, k=k)
-    rows: Lines = ["", f"{CANONICAL}:"]
-    if force is None:
-        at: Any = wave
-        speed = Row("speed", "V_s at B = 1", wave.speed(sp.S.One))
-    else:
-        at = wave.at_force(force)
-        speed = Row("speed", "speed dx/dt", at.speed, "m/s")
-    widths = (width_row(q, at.fwhm(q)) for q in QUANTITIES)
-    for row in (speed, *widths):
-        # A comparison needs no formula, and no LaTeX beside that of the field asked for.
-        rows.append(replace(row, form="number", symbol=""))
-    return [Answer({}, rows, chain.scale, key="canonical")]
+    speed = wave.speed(sp.S.One)
+    if force is not None:
+        speed = wave.at_force(force).speed
+    rows = [_speed_row(speed, force)]
+    rows += [width_row(q, wave.fwhm(q)) for q in QUANTITIES]
+    # A comparison needs no formula, and no LaTeX beside that of the field asked for.
+    numeric = [replace(row, form="number", symbol="") for row in rows]
+    lines: Lines = ["", f"{CANONICAL}:", *numeric]
+    return [Answer({}, lines, chain.scale, key="canonical")]
 
 
 # --- under load ---
@@ -382,7 +388,7 @@ def under_load(
         *closure_lines(theory),
         chain.text,
         "",
-        *pulse_rows(wave, chain.cell.spacing, "rise of the", "number"),
+        *pulse_rows(wave, "rise of the", "number"),
         Row("precompression", "static force F0", wave.precompression, "N"),
         Row("background", "static strain p0", wave.background),
         Row("static_compression", "static compression", wave.static_compression, "m"),

@@ -1,1 +1,1 @@
-"""The expansion of a chain's traveling wave in ε = k - 1, exact at every order, and its sums."""
+"""The lattice's own wave: its expansion near the linear law, and closed forms for every k."""

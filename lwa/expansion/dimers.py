@@ -13,7 +13,7 @@ Harbola, Rosas, Romero & Lindenberg, arXiv:1005.0852.
 The recursion of `lwa.expansion.recursion` runs on this chain. Its series in ε diverges early for
 ω > 0 (S has poles where ``cos²(q/2) = -1/ω``), but its first order in ω sums well: quantities of
 the chain of heavy beads are multiplied by ``(1 + ω)^{-e(ε)}``, where e is ``-d ln Q/dω`` at ω of 0,
-with the Padé approximant [2/2] of e's exact series, within 0.02 of e up to k of 3. For k ≤ 3/2 this
+with the Padé approximant [2/2] of e's exact series, within 0.02 of e up to k of 3. Up to 3/2 this
 is as near to the lattice as the reduced chain itself. Spheres: ``c² = 1.63992 (1 + ω)^{-0.9213}``,
 and the width of the force is ``2.82386 (1 + ω)^{-0.6759}`` sites.
 
@@ -45,7 +45,7 @@ _OMEGA = sp.Symbol("omega", positive=True)
 
 # At k = 1, c² goes as 1/(1 + ω), and I as (1 + ω)^{-3}.
 _LEADING = {"c": sp.S.Half, "momentum": sp.S.One}
-"""e in the limit of k to 1; a quantity that is not named goes as √I."""
+"""e in the limit of k to 1; a quantity that is not named goes as ``√I``."""
 
 
 class FollowingRecursion(Recursion):

@@ -37,7 +37,7 @@ class Expansion(Value):
 
     The first contact has the peak force 1; lengths are in D (sites), masses and A in the cell's
     units. Behind a striker the two contacts of a dimer differ (their peaks by 0.5 % at
-    m2/m1 = 0.99, by 5 % at 0.9): widths and their errors hold for the mean of the two.
+    m2/m1 of 0.99, by 5 % at 0.9): widths and their errors hold for the mean of the two.
 
     Attributes
     ----------
@@ -59,11 +59,6 @@ class Expansion(Value):
         """True if the series can be summed: k > 1 and the cell are numbers."""
         values = (*self.cell.masses, *self.cell.stiffnesses, self.k)
         return not any(x.free_symbols for x in values) and bool(self.k > 1)
-
-    @property
-    def I(self) -> sp.Expr:
-        """Coefficient I in the linear chain's dispersion ``Ω² = κ² - I κ⁴ + …``, in units of D²."""
-        return self._observables.I
 
     @cached_property
     def compliance(self) -> sp.Expr:
@@ -95,27 +90,29 @@ class Expansion(Value):
         i = integer(contact, "contact", 0, self.cell.size - 1)
         one_of(quantity, QUANTITIES, "quantity")
         # The Gaussian F = e^{-Z²/4}, Z = √(ε/I) ξ, is 1/2 at Z = 2√log 2.
-        unit = 4 * sp.sqrt(self.I * sp.log(2))
+        unit = 4 * sp.sqrt(self._observables.I * sp.log(2))
         return self._series(quantity, unit, -sp.S.Half, i)
 
     @cached_property
     def momentum(self) -> EpsilonSeries:
         """Momentum ``Σ m v``, mean mass times c times the displacement behind the wave."""
         # ∫ e^{-Z²/4} dξ = 2√(πI/ε), times ā (M/P) c = 1/c.
-        unit = 2 * sp.sqrt(sp.pi * self.I / self._sound)
+        unit = 2 * sp.sqrt(sp.pi * self._observables.I / self._sound)
         return self._series("momentum", unit, -sp.S.Half)
 
     @cached_property
     def energy(self) -> EpsilonSeries:
         """Kinetic and elastic energy of the chain."""
-        unit = self.compliance * sp.sqrt(2 * sp.pi * self.I)  # ā ∫ e^{-Z²/2} dξ
+        # ā ∫ e^{-Z²/2} dξ
+        unit = self.compliance * sp.sqrt(2 * sp.pi * self._observables.I)
         return self._series("energy", unit, -sp.S.Half)
 
     @cached_property
     def effective_mass(self) -> EpsilonSeries:
         """The mass P²/(2E) of a particle with the wave's momentum P and energy E, at any force."""
-        # the units of momentum, squared, and of energy, in terms of the mean mass
-        unit = sp.sqrt(2 * sp.pi * self.I) * self.cell.mass / self.cell.size
+        # The square of the unit of momentum over twice that of energy
+        unit = sp.sqrt(2 * sp.pi * self._observables.I)
+        unit *= self.cell.mass / self.cell.size
         return self._series("effective_mass", unit, -sp.S.Half)
 
     @cached_property
@@ -130,7 +127,7 @@ class Expansion(Value):
         return EpsilonSeries(unit, power, coefficients, self.k, self.cell, quantity)
 
     def at(self, **values: Any) -> Expansion:
-        """The expansion for these values of the named symbols, and of ω = m2/m1 by ``omega``.
+        """The expansion for these values of the named symbols, and of m2/m1 by ``omega``.
 
         Raises
         ------

@@ -189,8 +189,7 @@ STEPS = 8
 """Steps up to Γ(z + 8), where the next term of Stirling's series is 2e-8 and changes slowly."""
 
 TERMS = 24
-"""Terms of the sum of the incomplete beta function: ``2^{-24}`` is 6e-8, and C(48, 24) x^24/4^24
-a ninth of that."""
+"""Terms of the sum of the incomplete beta function, falling as ``x^j/√j``; x is at most ½."""
 
 
 def elementary(value: sp.Expr) -> sp.Expr:

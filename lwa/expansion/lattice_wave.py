@@ -233,7 +233,7 @@ class LatticeWave(Value):
         return replace(self, force=F)
 
     def at(self, **values: Any) -> LatticeWave:
-        """Substitute numbers or other symbols for named symbols, and for ω = m2/m1 by ``omega``.
+        """Substitute numbers or other symbols for named symbols, and for m2/m1 by ``omega``.
 
         >>> lattice_wave(Cell(["m"], spacing=1)).at(m=1, k=2).estimate("speed")
         0.845861 ± 9e-06
@@ -308,7 +308,7 @@ class FollowingWave(LatticeWave):
 
 
 def mass_ratio(cell: Cell) -> sp.Expr:
-    """The ratio m2/m1 ≤ 1 of two beads' masses; of symbols, the second over the first."""
+    """The lesser of two beads' masses over the other; of symbols, the second over the first."""
     first, second = cell.masses
     if first.is_number and second.is_number and second > first:
         return first / second
@@ -331,7 +331,7 @@ def lattice_wave(
         light one that follows its heavy neighbours, or beads that are nearly alike. Of two symbols
         the second is the light bead.
     k : number or symbol
-        Exponent k > 1 of the contact law F = A δ^k.
+        Exponent k > 1 of the contact law ``F = A δ^k``.
     force : number or symbol
         Peak force of the contacts.
     law : Power, optional
@@ -348,7 +348,7 @@ def lattice_wave(
     lwa.InputError
         For other cells and laws.
     lwa.NoSolitaryWave
-        For k ≤ 1, and where the light beads resonate so that the pulse of a struck chain decays.
+        For k up to 1, and where the light beads resonate and the pulse of a struck chain decays.
 
     Examples
     --------

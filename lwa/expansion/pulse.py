@@ -114,8 +114,8 @@ def half_width(log: Series) -> Series:
     """Coefficients h_n of the width of a pulse ``e^{-Z²/4 + Σ log_n t^n}``.
 
     The full width at ``e^{-y²}`` of the peak is ``4y Σ h_n t^n``; in the h_n, polynomials in y², Z
-    stands for y. Counted from the peak the exponent is ``-Z²/4 + p(Z)``, p = O(t), and ``Z²/4 = y²
-    + p(Z)`` is solved by Lagrange's series::
+    stands for y. Counted from the peak the exponent is ``-Z²/4 + p(Z)``, p small with t, and the
+    equation ``Z²/4 = y² + p(Z)`` is solved by Lagrange's series::
 
         Z/2 = y + Σ_{m≥1} 1/m! (d/dy²)^{m-1} p(2y)^m/(2y),
 

@@ -8,7 +8,7 @@ function of the place ξ of its cell in the frame of the wave, and ``∂ = d/dξ
     ∫_0^P s_0(ξ + x) dx = Σ C_i r_i(ξ),    γ Σ P m̂_i s_i(ξ) = ∫_0^P f_{P-1}(ξ - x) dx,
 
 where the strains are in units of their leading shares C_i and ``c² = γ P/(M ā)``, ā the mean
-compliance. The averages are series in ∂. In the stretched place ``Z = √(ε/I) ξ``, with
+compliance. The averages are series in the derivative. In the stretched place ``Z = √(ε/I) ξ``, with
 ``Ω² = κ² - I κ⁴ + …`` the linear chain's dispersion (`lwa.linear.bloch`), the force of the first
 contact is::
 

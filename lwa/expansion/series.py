@@ -140,7 +140,7 @@ class EpsilonSeries(Value):
         Raises
         ------
         lwa.InputError
-            If k or the cell holds symbols, for k ≤ 1, for a k besides that of the series, for
+            If k or the cell holds symbols, for k up to 1, for a k besides that of the series, for
             orders below `LOWEST`, and where the error is as large as the sum of these positive
             quantities, or `UNLIKE` of it for unlike beads.
         """

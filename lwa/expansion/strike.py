@@ -1,14 +1,15 @@
 """The pulse that a striker sends into a chain of equal beads.
 
-The wave of equal beads has the momentum P and the energy E of a particle of mass m_eff = P²/(2E),
-and collides nearly like such a quasi-particle. An elastic collision of a striker of mass m_s and
-velocity v with a particle of mass M gives it the velocity w = 2 m_s v/(m_s + M) and the energy
-½ M w². E ∝ F^{(k+1)/k} then is the peak force F:
+The wave of equal beads has the momentum P and the energy E of a particle of the mass ``m_eff =
+P²/(2E)``, and collides nearly like such a quasi-particle. An elastic collision of a striker of mass
+m_s and velocity v with a particle of mass M gives it the velocity ``w = 2 m_s v/(m_s + M)`` and the
+energy ½ M w². As E grows as ``F^{(k+1)/k}``, the peak force F follows:
 
-- m_s ≤ m, the mass of a bead: M = m, and a share η of the energy is the pulse's (0.9936 for spheres
-  behind their equal): F = F_eq [2 m_s v/(m_s + m)]^{2k/(k+1)}.
-- m_s > m: M = m_eff. A heavy striker drives the chain like a wall, and its leading bead reaches
-  twice the velocity (`lwa.shocks`); the rule falls short of this limit by 25.7 % for spheres.
+- m_s up to the mass m of a bead: M is m, and a share η of the energy is the pulse's (0.9936 for
+  spheres behind their equal), so that ``F = F_eq [2 m_s v/(m_s + m)]^{2k/(k+1)}``.
+- m_s above m: M is m_eff. A heavy striker drives the chain like a wall, and its leading bead
+  reaches twice the velocity (`lwa.shocks`); the rule falls short of this limit by 25.7 % for
+  spheres.
 
 These are rules; their errors are bounds of measured errors (cf. Job et al., Granular Matter 10, 13
 (2007)).
@@ -35,7 +36,7 @@ MEASURED = (sp.Rational(5, 4), sp.Integer(3))
 """Range of k in which chains were struck: 16 masses of strikers at each of six exponents."""
 
 NEAR = 0.007
-"""Largest error for strikers of 1.3 to 1.6 beads."""
+"""Largest relative error of the force for strikers of 1.3 to 1.6 beads."""
 
 
 @dataclass(frozen=True)
@@ -53,9 +54,9 @@ class Strike(Value):
 
     Notes
     -----
-    The error of the force bounds the differences to struck chains at k = 5/4 … 3, for strikers of
-    any mass, and is NaN at other exponents. A contact of the striker half or twice as stiff changes
-    the force by up to 2 %.
+    The error of the force bounds the differences to struck chains at k from 5/4 to 3, for strikers
+    of any mass, and is NaN at other exponents. A contact of the striker half or twice as stiff
+    changes the force by up to 2 %.
 
     Examples
     --------
@@ -70,11 +71,6 @@ class Strike(Value):
     k: sp.Expr
 
     @property
-    def _unit(self) -> LatticeWave:
-        """The wave of peak force 1."""
-        return lattice_wave(self.chain, k=self.k)
-
-    @property
     def _ratio(self) -> float:
         """Mass of the striker over that of a bead."""
         return float(self.mass / self.chain.masses[0])
@@ -82,17 +78,18 @@ class Strike(Value):
     @cached_property
     def wave(self) -> LatticeWave:
         """The chain's wave of the same peak force; its errors leave out that of the rule."""
-        epsilon = float(self.k) - 1
+        unit = lattice_wave(self.chain, k=self.k)
         particle = float(self.chain.masses[0])
-        share = 1 - 0.03 * math.exp(-3.1 * epsilon)  # η, measured to 4e-4
+        # η as measured behind equal strikers at six exponents, to 4e-4
+        share = 1 - 0.03 * math.exp(-3.1 * float(self.k - 1))
         if self._ratio > 1:
-            particle = self._unit.estimate("effective_mass").value
+            particle = unit.estimate("effective_mass").value
             share = 1.0
-        unit = self._unit.estimate("energy").value
         velocity = 2 * float(self.mass * self.velocity) / (float(self.mass) + particle)
-        power = float(self.k / (self.k + 1))  # w² may be beyond a double where F is not
-        force = (share * particle / (2 * unit)) ** power * velocity ** (2 * power)
-        return self._unit.at_force(force)
+        # The square of the velocity may be beyond a double where its power is not.
+        power = float(self.k / (self.k + 1))
+        at_rest = share * particle / (2 * unit.estimate("energy").value)
+        return unit.at_force(at_rest**power * velocity ** (2 * power))
 
     @property
     def force(self) -> Estimate:
@@ -109,11 +106,18 @@ class Strike(Value):
             return math.nan
         if ratio <= 1:
             # Largest for strikers of a third of a bead; η alone is wrong at equal masses.
-            return 5e-4 + 0.028 * math.exp(-1.44 * epsilon) * min(1, 3 * (1 - ratio))
+            unequal = min(1, 3 * (1 - ratio))
+            return 5e-4 + 0.028 * math.exp(-1.44 * epsilon) * unequal
         # A bead before a heavy striker reaches twice the velocity: the limit of the error.
         limit = 0.45 * math.exp(-0.5 * epsilon)
-        just_above = NEAR + 0.021 * math.exp(-5.5 * (epsilon - 0.25))  # one bead
+        # Just above one bead the rule is off by the share η, which it leaves out.
+        just_above = NEAR + 0.021 * math.exp(-5.5 * (epsilon - 0.25))
         return max(just_above, limit * (ratio - 1) / (ratio + 14))
+
+    @property
+    def _share(self) -> float:
+        """Relative error of speed and time, which go as F^{±(k-1)/(2k)}, by that of the force."""
+        return float((self.k - 1) / (2 * self.k)) * self._error
 
     @property
     def speed(self) -> Estimate:
@@ -125,26 +129,23 @@ class Strike(Value):
     ) -> Estimate:
         """Full width at half maximum; arguments as in `lwa.LatticeWave.fwhm`."""
         width = self.wave.estimate("fwhm", quantity, extent)
+        # A length does not depend on the force.
         if extent == "length":
             return width
         return width.widened(self._share)
 
     def latex_rows(self) -> list[str]:
         """LaTeX of peak force, speed and width of the force, without units."""
+        width = self.fwhm("force", "length")
         return [
             f"F = {self.force.latex()}",
             f"{latex.SPEED} = {self.speed.latex()}",
-            rf"\mathrm{{FWHM}}_{{\mathrm{{force}}}} = {self.fwhm('force', 'length').latex()}",
+            rf"\mathrm{{FWHM}}_{{\mathrm{{force}}}} = {width.latex()}",
         ]
 
     @property
-    def _share(self) -> float:
-        """Relative error of F^{±(k-1)/(2k)} by that of the force."""
-        return float((self.k - 1) / (2 * self.k)) * self._error
-
-    @property
     def train(self) -> bool:
-        """True if m_s > 2 m: over a few per cent of the energy go into further pulses."""
+        """True for strikers above two beads: over a few per cent of the energy follow later."""
         return self._ratio > 2
 
 
@@ -160,7 +161,7 @@ def pulse_of_strike(
     mass : number
         Mass of the striker, in the units of the cell.
     velocity, drop : number
-        Speed v of the striker, or the height h in m of its free fall, v = √(2 g h).
+        Speed v of the striker, or the height h in m of its free fall, ``v = √(2 g h)``.
     k : number
         Exponent of the contact law.
 

@@ -1,6 +1,6 @@
 """Files of beads: materials, beads and the table of the chain, in scenes and lists of spheres.
 
-A file of spheres holds, in units that agree (SI if A is to be in N/m^{3/2})::
+A file of spheres holds, in units that agree (SI if A is to be in ``N/m^{3/2}``)::
 
     [materials.resin]             # any name
     E = 3e9                       # Young's modulus
@@ -100,10 +100,16 @@ def read_beads(file: Table, materials: Mapping[str, Material]) -> dict[str, Sphe
 class Row:
     """The table ``chain`` of a file.
 
-    given : the table itself, for ``k`` and ``law``.
-    spheres, masses : the beads in one cell, one of the two; the other is empty.
-    repeat : number of cells.
-    stiffnesses, spacings : by contact, of one cell or of the whole chain; empty where not given.
+    Parameters
+    ----------
+    given : Table
+        The table itself, for ``k`` and ``law``.
+    spheres, masses : list of Sphere, list of float
+        The beads in one cell, as one of the two; the other is empty.
+    repeat : int
+        Number of cells.
+    stiffnesses, spacings : list of float
+        Values by contact, of one cell or of the whole chain; empty where not given.
     """
 
     given: Table

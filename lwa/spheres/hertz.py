@@ -1,10 +1,11 @@
-"""Hertz's contact between elastic spheres, F = A δ^{3/2}, and a table of materials.
+"""Hertz's contact between elastic spheres, and a table of materials.
 
-Two spheres pressed together by δ repel each other with F = A δ^{3/2}::
+Two spheres pressed together by δ repel each other with the force::
 
+    F = A δ^{3/2},
     A = 4 E1 E2 √(R1 R2 / (R1 + R2)) / (3 [E2 (1 - ν1²) + E1 (1 - ν2²)])
 
-(Porter et al. 2008, eq. 1); a flat wall is the limit R2 → ∞. In SI units A is in N/m^{3/2}.
+(Porter et al. 2008, eq. 1); a flat wall is the limit R2 → ∞. In SI units A is in ``N/m^{3/2}``.
 `lwa.Cell.of_spheres` makes the cell of a chain from them.
 """
 
@@ -24,10 +25,21 @@ EXPONENT = sp.Rational(3, 2)
 
 @dataclass(frozen=True)
 class Material(Value):
-    """An isotropic elastic solid: Young's modulus E, Poisson's ratio ν and perhaps its density.
+    """An isotropic elastic solid.
 
-    The values are numbers, in any consistent units, or symbols. Raises `lwa.InputError` unless
-    E > 0, -1 < ν ≤ 1/2, and the density, where it is given, is positive.
+    Parameters
+    ----------
+    E : number or symbol
+        Young's modulus, in any units that agree with the others.
+    nu : number or symbol
+        Poisson's ratio, above -1 and up to 1/2.
+    density : number or symbol, optional
+        The density.
+
+    Raises
+    ------
+    lwa.InputError
+        For other values.
     """
 
     E: sp.Expr
@@ -49,8 +61,20 @@ class Material(Value):
     def named(cls, name: str, **changed: Any) -> Material:
         """A material of `MATERIALS`, in SI, with some of its values changed.
 
-        Raises `lwa.InputError`, with the known names, for another name.
+        Parameters
+        ----------
+        name : str
+            The name of the material.
+        **changed
+            Other values of E, nu and density.
 
+        Raises
+        ------
+        lwa.InputError
+            For another name.
+
+        Examples
+        --------
         >>> Material.named("PTFE", E="0.6e9")
         Material(E=600000000, nu=23/50, density=2178)
         """
@@ -82,9 +106,19 @@ compressed, differ by much more.
 
 @dataclass(frozen=True)
 class Sphere(Value):
-    """A sphere: mass, radius and material, numbers or symbols.
+    """An elastic sphere.
 
-    Raises `lwa.InputError` unless mass and radius are positive.
+    Parameters
+    ----------
+    mass, radius : number or symbol
+        Mass and radius, both positive.
+    material : Material
+        The elastic solid.
+
+    Raises
+    ------
+    lwa.InputError
+        For other values.
     """
 
     mass: sp.Expr
@@ -101,8 +135,19 @@ class Sphere(Value):
 
     @classmethod
     def solid(cls, radius: Any, material: Material, density: Any = None) -> Sphere:
-        """The solid sphere of mass (4π/3) ρ R³, of the material's density unless one is given.
+        """The solid sphere of a radius, whose mass follows from a density.
 
+        Parameters
+        ----------
+        radius : number or symbol
+            Radius R; the mass is (4π/3) ρ R³.
+        material : Material
+            The elastic solid.
+        density : number or symbol, optional
+            Density ρ; that of the material unless it is given.
+
+        Examples
+        --------
         >>> Sphere.solid("R", Material.named("steel 316")).mass
         32000*pi*R**3/3
         """
@@ -117,7 +162,25 @@ class Sphere(Value):
 
 
 def stiffness(sphere: Sphere, other: Sphere | Material) -> sp.Expr:
-    """Stiffness A of F = A δ^{3/2} between two spheres or sphere and flat wall; SI: N/m^{3/2}."""
+    """Stiffness A of Hertz's contact between two spheres, or between a sphere and a flat wall.
+
+    Parameters
+    ----------
+    sphere : Sphere
+        The one side of the contact.
+    other : Sphere or Material
+        The other side: a sphere, or the material of a wall.
+
+    Returns
+    -------
+    sympy.Expr
+        A in ``F = A δ^{3/2}``; in ``N/m^{3/2}`` for values in SI.
+
+    Raises
+    ------
+    lwa.InputError
+        For anything else.
+    """
     if not isinstance(sphere, Sphere):
         raise InputError(f"sphere is {shorten(sphere)}: a Sphere is wanted")
     if not isinstance(other, Sphere | Material):

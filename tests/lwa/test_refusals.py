@@ -1,6 +1,5 @@
 """Bad arguments that no command reaches, and waves that do not exist: one line says why."""
 
-import numpy as np
 import pytest
 import sympy as sp
 
@@ -41,28 +40,17 @@ def front(*strains, law=HERTZ, cell=EQUAL):
 
 
 CALLS = [
-    (lambda: Cell([]), "at least one mass"),
     (lambda: Cell([sp.sqrt(2) - 2]), r"mass 1 is -2 \+ sqrt\(2\): it must be positive"),
-    (lambda: Cell([-y]), "mass 1 is -y: it must be positive"),
-    (lambda: Cell([1, 10**5000]), "mass 2 is a number beyond"),
-    (lambda: Dimer(1, 2, N=1.5), "N is 1.5"),
-    (
-        lambda: lwa.Dispersion(Cell([1, 1], [1, 2]), "1e-9"),
-        "exponents from 1/100 to 1000",
-    ),
     (lambda: Cell(["m1"]).at(omega=1), "a cell with two masses"),
     (lambda: DIMER.at(m1=1, m2=2, omega=2), "omega is m2/m1: one of the masses"),
     (lambda: DIMER.at(m3=1), "'m3' is not among the symbols: D, m1, m2"),
     (lambda: TWO_A.at(a=1), "'a' names two symbols"),
-    (lambda: homogenize([1, 2]), r"cell is \[1, 2\]"),
-    (lambda: homogenize(CHAIN, law="hertz2"), "law is 'hertz2'"),
     (lambda: canonical_wave(CHAIN, k="3/2", law=3), "one of them"),
     (
         lambda: homogenize(Cell([1, 2], [1, 2]), law=lwa.general()),
         "shares of the strain",
     ),
     (lambda: homogenize(Dimer(3, 1)).pde.energy, "closure='full'"),
-    (lambda: homogenize(DIMER, branch="optical").pde.energy, "acoustic"),
     (lambda: homogenize(DIMER, branch="optical").pde.traveling_wave(), "acoustic"),
     (
         lambda: homogenize(DIMER, law=lwa.general(), branch="optical"),
@@ -77,10 +65,6 @@ CALLS = [
         lambda: homogenize(CHAIN, law=Law(y * sp.Symbol("a"), y)).at(a="y"),
         "a .y.: the name means",
     ),
-    *(
-        (lambda delta=delta: Power("3/2").at(delta), "delta is")
-        for delta in ("1", float("nan"), sp.I, ["x"])
-    ),
     (
         lambda: lwa.Dispersion(Cell(["a", "b"], ["d", "e"])).acoustic(10000),
         "is 10000: .* lower",
@@ -93,17 +77,7 @@ CALLS = [
         lambda: lwa.Dispersion(Cell(["1e200", "1e-200"])).bands.branches(1),
         "the range of a float",
     ),
-    (
-        lambda: ONE.at_force([1, 2]),
-        r"force is \[1, 2\]: a number or a symbol is wanted",
-    ),
-    (lambda: ONE.at_force(1).curve([0], "pressure"), "quantity is 'pressure'"),
-    (lambda: WAVE.numeric().beta(np.nan, 1.0), "k is nan"),
     (lambda: WAVE.numeric().beta(1.5, 1e151), "ω = m2/m1 is not between"),
-    (
-        lambda: WAVE.numeric().beta(1.5, -1.0),
-        r"ω = m2/m1 is -1\.0: it must be positive",
-    ),
     (lambda: canonical_wave(Cell(["m1", "m2"], ["A1", "A2"])).numeric(), "two masses"),
     (lambda: canonical_wave(Cell([sp.Symbol("x y")])).code("c"), "'x y' is no name"),
     (lambda: expand(Cell([1], [8]), 6, k="3/2").c2.at("6/5"), "that of k = 3/2"),
@@ -116,17 +90,11 @@ CALLS = [
         lambda: expand(CHAIN, 2, law=Law(sp.exp(DELTA) - 1, DELTA)),
         "only a power law has a k",
     ),
-    (lambda: lwa.lattice_wave(CHAIN, force=-1), "force is -1"),
     (lambda: lwa.lattice_wave(Cell([1, 2, 3])), "equal beads"),
-    (lambda: lwa.Material(1, "0.51"), "nu is '0.51'"),
-    (lambda: lwa.Material.named("wood"), "'wood': one of steel 316, steel 440C"),
-    (lambda: lwa.Sphere(1, 1, "steel"), "material is 'steel': a Material"),
     (lambda: lwa.Sphere.solid(1, STEEL), "a Material with a density"),
     (lambda: stiffness(BALL, 1), "other is 1: a Sphere"),
-    (lambda: Cell.of_spheres([BALL, STEEL]), "sphere is Material"),
     (lambda: Cell.of_spheres(BALL), "spheres is .*: a sequence"),
     (lambda: loaded(HERTZ, -1, 1), "must not be negative"),
-    (lambda: loaded(HERTZ, 1, 0), "rise is 0"),
     (lambda: loaded(lwa.general(), 1, 1).fwhm(), "no expression"),
     (lambda: lwa.loaded_wave(EQUAL, force=2, rise=1), "not by both"),
     (lambda: lwa.loaded_wave(EQUAL, force=2, precompression=1, law=SOFT), "reach"),
@@ -136,8 +104,6 @@ CALLS = [
     ),
     (lambda: Link(1, 1, HERTZ), "second particle"),
     (lambda: Link(0, 1, "3/2"), "no contact law"),
-    (lambda: Lattice([], [LINK]), "at least one mass"),
-    (lambda: Lattice([1], [HERTZ]), "a Link is wanted"),
     (lambda: Lattice([1], [Link(1, 2, HERTZ)]), "particles 0 to 0"),
     (lambda: Lattice([1, 1], [Link(0, 2, HERTZ)]), "free"),
     (lambda: Lattice([1, 1], [LINK]), "carry no load"),
