@@ -52,7 +52,7 @@ window.addEventListener("load", async () => {
   for (const details of document.querySelectorAll("details")) details.open = true;
   await Promise.all([...document.images].map(image => image.decode().catch(() => 0)));
   const asked = document.querySelectorAll(".lwa-answers");
-  const early = [...document.querySelectorAll("canvas")].filter(e => e.clientWidth).length;
+  const early = [...document.querySelectorAll(".lwa-below")].filter(e => e.clientWidth).length;
   asked.forEach(row => row.firstChild.click());
   const math = [...document.querySelectorAll(".math")];
   const body = document.querySelector("article") || document.body;
@@ -108,7 +108,7 @@ window.addEventListener("load", async () => {
     faint: [...body.querySelectorAll("p, td, th, pre, figcaption, output, label, .tag")]
       .filter(e => e.textContent.trim() && e.getClientRects().length && contrast(e) < 3)
       .map(e => e.textContent.trim().slice(0, 60)),
-    silent: [...body.querySelectorAll("img, svg:not([aria-hidden])")]
+    silent: [...body.querySelectorAll("img:not(.stacked), svg:not([aria-hidden])")]
       .filter(i => !i.alt && !i.getAttribute("aria-label") && !i.closest("button"))
       .map(i => i.src || i.outerHTML),
     unnamed: [...body.querySelectorAll("canvas, input, select, [role=img]:not(svg)")]
