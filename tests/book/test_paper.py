@@ -35,7 +35,8 @@ def test_the_widths():
 
 SECTIONS = (
     "Summary", "Statement of need", "State of the field", "Software design",
-    "Evidence of correctness", "Research impact statement", "References",
+    "Evidence of correctness", "Tests and contributions", "Research impact statement",
+    "References",
 )  # fmt: skip
 
 
