@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 import sympy as sp
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Circle, Rectangle
 from studies.breather import Standing, continued
+from studies.gravity import Upright
 
-from lwa import Cell, Envelope
-from validation.scenes.chains import PTFE_BEAD, STEEL_BEAD
+from lwa import Cell, Dispersion, Envelope, LoadedWave
+from lwa.wave.numeric import NumericWave
+from validation.scenes.chains import PTFE_BEAD, STEEL_BEAD, numeric_cell
 from validation.studies.paper import RECORDED, forces
 
 BEAD, INNER = "#8FA3B5", "#E69F00"
@@ -40,7 +43,35 @@ def dimer(axes: Axes) -> None:
     axes.axis("off")
 
 
-def lattices(sketches: Sequence[Axes]) -> None:
+def lattices(figure: Figure, rows: Sequence[dict[str, Any]]) -> None:
+    """Four lattices; below them speeds and widths of struck ones, beside the theory's."""
+    _sketch(figure.subplots(1, 4, gridspec_kw=dict(bottom=0.8, top=0.97)))
+    below = dict(top=0.72, bottom=0.1, wspace=0.28)
+    speeds, widths = figure.subplots(1, 2, gridspec_kw=below)
+    groups = {"unlike links": "δ", "resonators": "m_r", "packing": "a"}
+    for (name, start), marker in zip(groups.items(), "osD", strict=True):
+        for row in rows:
+            theory = row["speed_theory_value"]
+            if not (row["chain"].startswith(start) and theory):
+                continue
+            point = dict(color=f"C{'osD'.index(marker)}", marker=marker, mfc="none")
+            speeds.loglog(row["speed_value"], theory, **point, ls="none", label=name)
+            error = 100 * row["fwhm_error_value"]
+            widths.semilogx(row["fwhm_value"], error, **point, ls="none")
+    equal = [0.09, 1.4]
+    speeds.plot(equal, equal, ":", color="0.4")
+    widths.axhline(0, ls=":", color="0.4")
+    speeds.set(xlabel="speed on the lattice", ylabel="speed by the theory")
+    widths.set(xlabel="width on the lattice", ylabel="error of the width in percent")
+    ticks = [1, 1.5, 2, 3, 4, 5]
+    widths.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    widths.minorticks_off()
+    lines, names = speeds.get_legend_handles_labels()
+    once = dict(zip(names, lines, strict=True))  # each point is a line with its name
+    speeds.legend(once.values(), once.keys())
+
+
+def _sketch(sketches: Sequence[Axes]) -> None:
     """Unlike links, resonators, farther neighbours and a hexagonal packing."""
     titles = ("unlike links", "resonators", "farther neighbours", "packing")
     for sketch, title in zip(sketches, titles, strict=True):
@@ -220,3 +251,134 @@ def shock(above: Axes, below: Axes, over: Any, train: Any) -> Any:
     below.grid(False)
     below.set(xlabel=over.x, ylabel=over.y)
     return image
+
+
+def observers(
+    panels: Sequence[Axes],
+    paper: NumericWave,
+    first: NumericWave,
+    canonical: NumericWave,
+) -> None:
+    """Length of the pulse of spheres over the mass ratio, in two closures and three fields."""
+    left, right = panels
+    omega = np.geomspace(1e-2, 1e2, 401)
+    left.semilogx(omega, paper.width(1.5, omega), label="paper's closure")
+    left.semilogx(omega, first.width(1.5, omega), label="full closure")
+    left.axvline(0.123 / 0.45, color="k", lw=1.2, ls=":")
+    right.semilogx(omega, first.width(1.5, omega), "C1--", label="beads $m_1$")
+    right.semilogx(omega, first.width(1.5, 1 / omega), "C2-.", label="beads $m_2$")
+    right.semilogx(omega, canonical.width(1.5, omega), "k-", lw=1.2, label="canonical")
+    left.set(ylabel=r"length $\pi/(\beta D)$ in sites", ylim=(0, None))
+    left.set_title("field of the beads $m_1$", loc="left", fontsize=11)
+    right.set_title("full closure, three fields", loc="left", fontsize=11)
+    right.tick_params(labelleft=True)
+    for axes in panels:
+        axes.set_xlabel(r"mass ratio $\omega = m_2/m_1$")
+        axes.legend()
+
+
+def bands(axes: Axes, chain: Dispersion) -> None:
+    """Both branches of a linear dimer, with their long-wave series."""
+    kappa = np.linspace(0, np.pi / 2, 200)
+    wide = dict(color="0.75", ls="-", lw=5, solid_capstyle="butt")
+    lines = axes.plot(kappa / np.pi, chain.bands.branches(kappa), **wide)
+    lines[0].set_label("exact")
+    for order, look in ((4, dict(color="C1", ls="--")), (12, dict(color="C0", ls="-"))):
+        for series in (chain.acoustic, chain.optical):
+            squared = np.zeros(len(kappa))
+            for n, coefficient in series(order).items():
+                squared += float(coefficient) * kappa**n
+            squared[squared <= 0] = np.nan
+            label = f"series, order {order}" if series == chain.acoustic else None
+            axes.plot(kappa / np.pi, np.sqrt(squared), label=label, **look)
+    (_, low), (high, _) = chain.bands.edges()
+    axes.axhspan(low, high, color="#56B4E9", alpha=0.15, lw=0)
+    axes.text(0.02, (low + high) / 2, "no wave", va="center", fontsize=10)
+    axes.set_xlabel(r"wavenumber $\kappa/\pi$ (1/2: the end of the zone)")
+    axes.set(ylabel=r"frequency $\Omega$", xlim=(0, 0.5), ylim=(0, 2.75))
+    axes.legend(loc="center right", bbox_to_anchor=(1, 0.61))
+
+
+def ridges(figure: Figure, runs: dict[str, Any]) -> None:
+    """Force in every contact of struck chains, by their mass ratio, over place and time."""
+    panels = figure.subplots(1, 2, sharex=True, sharey=True)
+    for axes, (ratio, run) in zip(panels, runs.items(), strict=True):
+        place = np.array(run.scene.contact_sensors) + 0.5
+        look = dict(cmap="magma_r", norm="asinh", shading="nearest", rasterized=True)
+        image = axes.pcolormesh(place, run.time, run.contact_force.T, **look)
+        image.norm.linear_width = 0.02  # weak ripples are seen, too
+        image.norm.vmin = 0
+        image.norm.vmax = 0.5
+        axes.grid(False)
+        axes.set_title(rf"$\omega = {ratio}$", loc="left")
+        axes.set_xlabel("position $x/D$")
+    panels[0].set_ylabel("time $t$ ($m_1 = A = D = 1$)")
+    bar = figure.colorbar(image, ax=panels, pad=0.01)
+    bar.ax.set_title("$F$", fontsize=11)
+    bar.set_ticks([0, 0.05, 0.2, 0.5], labels=["0", "0.05", "0.2", "0.5"])
+    bar.minorticks_off()
+
+
+def upright(panels: Sequence[Axes], weak: Any, strong: Any) -> None:
+    """Width over depth: fronts of weak blows, and pulses of three strong ones in equal spheres."""
+    left, right = panels
+    chains = {"equal spheres": (1,), "dimer": (1, "1/2")}
+    for i, (name, row) in enumerate(zip(chains, weak, strict=True)):
+        depth, width, _ = Upright(numeric_cell(chains[name]), 1.5, 1500).fronts()
+        left.loglog(depth, width, f"C{i}{'os'[i]}", mfc="none", label=name)
+        line = row["prefactor_theory_value"] * np.cbrt(depth)
+        left.loglog(depth, line, f"C{i}-", lw=1)
+    for i, blow in enumerate((10.0, 100.0, 1000.0)):
+        rows = []
+        for row in strong:
+            if len(row["masses"]) == 1 and row["blow_value"] == blow:
+                rows.append(row)
+        sites = [row["site_value"] for row in rows]
+        widths = [row["width_value"] for row in rows]
+        alone = [row["solitary_value"] for row in rows]
+        right.loglog(sites, widths, f"C{i}{'osD'[i]}", label=f"blow of {blow:g}")
+        label = "solitary waves" if blow == 1000 else None
+        right.loglog(sites, alone, f"C{i}--", lw=1, label=label)
+    left.set(ylabel="FWHM of the velocity in sites")
+    right.set(ylabel="FWHM of the force in sites")
+    for axes, ticks in ((left, [8, 10, 12, 15, 18]), (right, [2, 5, 10, 20, 40])):
+        axes.set(xlabel="depth in sites")
+        axes.set_yticks(ticks, [str(tick) for tick in ticks])
+        axes.minorticks_off()
+        axes.legend()
+
+
+def forms(
+    axes: Axes,
+    exponents: Sequence[sp.Rational],
+    exact: Sequence[float],
+    theories: dict[str, Callable[[sp.Rational], Any]],
+) -> None:
+    """Errors of the theories' widths of equal beads, against exact waves, over k - 1."""
+    for (name, width), marker in zip(theories.items(), "osD^", strict=True):
+        errors = []
+        for k, truth in zip(exponents, exact, strict=True):
+            error = abs(float(width(k)) / truth - 1)
+            errors.append(max(error, 1e-13))  # rounding
+        axes.loglog([k - 1 for k in exponents], errors, marker=marker, label=name)
+    axes.axvline(0.5, color="0.6", lw=0.8, ls="-")
+    axes.text(0.52, 3e-12, "spheres", fontsize=10, color="0.3")
+    axes.set_xlabel(r"$\varepsilon = k - 1$")
+    axes.set(ylabel="relative error of the FWHM", ylim=(1e-13, 2))
+    axes.legend(loc="lower right")
+
+
+def laws(panels: Sequence[Axes], waves: dict[str, LoadedWave]) -> None:
+    """Force over compression, and speed over peak strain, of laws by name."""
+    left, right = panels
+    heights = np.linspace(1e-3, 0.3, 120)
+    for name, wave in waves.items():
+        left.plot(heights, wave.law.at(heights), label=name)
+        right.plot(heights, [float(wave.field.speed(sp.Float(B))) for B in heights])
+    left.set(xlabel=r"compression $\delta$", ylabel="force $F$", ylim=(0, 1))
+    right.set(xlabel="peak strain $B$", ylabel="speed $V_s$")
+    right.set(yscale="log", ylim=(0.2, 10))
+    ticks = [0.2, 0.5, 1, 2, 5, 10]
+    right.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
+    right.minorticks_off()
+    left.legend(loc="upper right", fontsize=9)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from validation.report.result import Report
+from validation.report.study import Report
 from validation.report.table import Column, Table
 
 

@@ -24,7 +24,7 @@ STUDIES = {
         "limits",
         "The theory's limits: equal masses, m1 ≫ m2, k → 1 (a few seconds).",
     ),
-    "materials": ("materials", "Names and constants of the materials of beads."),
+    "materials": ("run", "Names and constants of the materials of beads."),
     "paper": (
         "paper",
         "The steel:PTFE chain of the paper: speed, peak force and FWHM.",

@@ -29,8 +29,7 @@ from validation.lattice.simulate import COMPILED, simulate
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import MeasureError, Pulse, highest_pulse
 from validation.pulses.sensors import READINGS, readings, tracks
-from validation.report.command import option, study
-from validation.report.result import Report
+from validation.report.study import Report, option, study
 from validation.report.table import Column, Table
 from validation.scenes import chains
 from validation.scenes.checks import one_of

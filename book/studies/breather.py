@@ -47,8 +47,7 @@ from lwa.base.frozen import Estimate
 from lwa.base.progress import Progress
 from lwa.command.options import quantities
 from validation.pictures import Curve, Panel
-from validation.report.command import EXPONENT, option, study
-from validation.report.result import Report
+from validation.report.study import EXPONENT, Report, option, study
 from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import numeric_cell
 from validation.scenes.checks import SceneError, between, integer

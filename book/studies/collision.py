@@ -36,8 +36,7 @@ from lwa.loaded.background import Background
 from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import measure
-from validation.report.command import option, study
-from validation.report.result import Report
+from validation.report.study import Report, option, study
 from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import carrying
 from validation.scenes.checks import SceneError, between

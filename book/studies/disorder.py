@@ -33,8 +33,7 @@ from validation.lattice.result import Run
 from validation.lattice.simulate import simulate, simulate_many
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import highest_pulse
-from validation.report.command import EXPONENT, option, study
-from validation.report.result import Report
+from validation.report.study import EXPONENT, Report, option, study
 from validation.report.table import Column, Finding, Table
 from validation.scenes.chains import struck
 from validation.scenes.checks import between, integer

@@ -48,8 +48,7 @@ from validation.lattice.simulate import simulate, twice
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import highest_pulse, leading_pulses
 from validation.pulses.sensors import tracks
-from validation.report.command import EXPONENT, option, study
-from validation.report.result import Report
+from validation.report.study import EXPONENT, Report, option, study
 from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import numeric_cell, struck
 from validation.scenes.checks import between, integer

@@ -24,8 +24,7 @@ from lwa.base.progress import Progress
 from lwa.law import ContactLaw
 from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
-from validation.report.command import option, study
-from validation.report.result import Report
+from validation.report.study import Report, option, study
 from validation.report.table import (
     FINDING_COLUMNS,
     Column,

@@ -39,8 +39,7 @@ from lwa.base.words import QuantityName
 from lwa.law import DELTA
 from validation.lattice.laws import Contact
 from validation.pictures import Curve, Panel
-from validation.report.command import option, study
-from validation.report.result import Report
+from validation.report.study import Report, option, study
 from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.checks import Failure, one_of
 

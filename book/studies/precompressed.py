@@ -42,8 +42,7 @@ from validation.pulses.pulse import (
     leading_pulses,
 )
 from validation.pulses.sensors import tracks
-from validation.report.command import EXPONENT, option, study
-from validation.report.result import Report
+from validation.report.study import EXPONENT, Report, option, study
 from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import carrying, numeric_cell
 from validation.scenes.checks import SceneError, between

@@ -39,8 +39,7 @@ from lwa.law import ContactLaw, named
 from validation.lattice.result import Run
 from validation.lattice.simulate import simulate, simulate_many
 from validation.pictures import Curve, Map, Panel
-from validation.report.command import option, study
-from validation.report.result import Report
+from validation.report.study import Report, option, study
 from validation.report.table import Column, Finding, Table
 from validation.scenes.checks import between
 from validation.scenes.forcing import Drive

@@ -35,8 +35,7 @@ from lwa.loaded.lattice import DirectionName
 from validation.lattice.laws import Contact
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Pulse, measure
-from validation.report.command import option, study
-from validation.report.result import Report
+from validation.report.study import Report, option, study
 from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.checks import one_of
 

@@ -30,8 +30,7 @@ from lwa.spheres.hertz import stiffness
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import MeasureError
 from validation.pulses.sensors import echoes, record
-from validation.report.command import option, study
-from validation.report.result import Report
+from validation.report.study import Report, option, study
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError, integer, items, positive
 from validation.scenes.scene import Scene

@@ -21,8 +21,7 @@ from validation.lattice.simulate import twice
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import compared
 from validation.pulses.sensors import Train
-from validation.report.command import study
-from validation.report.result import Report
+from validation.report.study import Report, study
 from validation.report.table import Column, Table, percent
 from validation.scenes.chains import DIAMETER
 from validation.studies.paper import (

@@ -41,6 +41,10 @@ MOST_CANCELLED = 20_000
 
 _UNLIMITED = 2**63 - 1  # the largest integer that NumPy and files hold
 
+_FACTORED_BITS = 200
+"""Most bits of a number in a polynomial that is factored: SymPy takes half a second then, and a
+minute for 1e300."""
+
 _FINEST_ROOT = 12
 """Greatest q of powers ``x^{p/q}`` that are rearranged as polynomials in ``x^{1/q}``."""
 
@@ -274,7 +278,10 @@ def replaced(value: sp.Expr, new: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
 
 
 def factored(value: sp.Expr) -> sp.Expr:
-    """The expression in lowest terms, factored; see `rearranged`."""
+    """The expression in lowest terms, factored if its numbers are short; see `rearranged`."""
+    for number in value.atoms(sp.Rational):
+        if max(int(abs(number.p)), int(number.q)).bit_length() > _FACTORED_BITS:
+            return rearranged(sp.cancel, value)
     return rearranged(sp.factor, value)
 
 

@@ -123,7 +123,7 @@ def _formula(value: sp.Expr) -> str:
     # A power such as a^{1/k} is printed first, as SymPy asks at length whether 1/k is constant.
     powers = {}
     for p in value.atoms(sp.Pow):
-        if p.base.is_Symbol and p.exp.free_symbols:
+        if p.exp.free_symbols and (p.base.is_Symbol or p.base.is_number):
             powers[p] = sp.Symbol(sp.latex(p))
     plain = value.xreplace(powers)
     formula = str(sp.latex(plain))

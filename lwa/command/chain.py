@@ -77,12 +77,13 @@ class ChainInput:
     @property
     def text(self) -> str:
         """One line of text with the masses, the contacts and the spacing of the chain."""
+        # The exponent with which a force begins gives the unit of A.
         k = self.law.exponent
         force = f"A F, F = {self.law.F}"
         if self.law.homogeneous:
             force = f"A δ^k, k = {k}"
         contacts = self.cell.stiffnesses
-        if len(set(contacts)) == 1:
+        if len(set(contacts)) == 1:  # as most chains have them
             contacts = contacts[:1]
         write = self.scale.written
         masses = ", ".join(write(m, "kg") for m in self.cell.masses)
@@ -107,6 +108,7 @@ class ChainInput:
         """A note on a force that presses spheres too much for Hertz's contact; [] for others."""
         if not self.si or self.law.exponent != EXPONENT or force.free_symbols:
             return []
+        # Of unlike contacts the mean: a note is no measurement.
         strain = float(self.law.compression(self.cell, force) / self.cell.spacing)
         if strain < HERTZIAN:
             return []
@@ -124,6 +126,7 @@ def take_chain(options: dict[str, Any]) -> ChainInput:
     if file is not None:
         return read_chain(file)
     cell = Cell(chosen["masses"], chosen["stiffnesses"] or (), chosen.get("spacing", D))
+    # D = 1 would then set k, too.
     if cell.spacing.is_Symbol and chosen["k"] == cell.spacing:
         raise InputError(
             f"k is {cell.spacing}: the name is that of the spacing, a unit of length"
@@ -146,6 +149,7 @@ def _chain(content: Any) -> ChainInput:
     force = _number(file, "precompression", finite) or sp.S.Zero
     if force < 0:
         raise InputError(f"precompression is {force}: it must not be negative")
+    # A striker of zero velocity is none; it may be given by an option then.
     described = file.read("striker", table(STRIKER), Table({}, "striker", STRIKER))
     like = described.read("like", among(beads)) if "like" in described else None
     striker = Striker(
@@ -154,7 +158,7 @@ def _chain(content: Any) -> ChainInput:
         mass=like and like.mass,
     )
     gravity = file.read("gravity", finite, 0.0)
-    if row.spheres:
+    if row.spheres:  # beads with names are in Hertz contact, and in SI
         cell = Cell.of_spheres(row.spheres)
         return ChainInput(cell, Power(EXPONENT), force, True, striker, gravity)
     law: ContactLaw
@@ -181,6 +185,6 @@ def _cell_of_masses(row: Row) -> Cell:
     P = period(masses, stiffnesses)
     contacts = [stiffnesses[i % len(stiffnesses)] for i in range(P)]
     spacing: sp.Expr = D
-    if row.spacings:
+    if row.spacings:  # the theory knows their mean
         spacing = sp.Rational(str(sum(row.spacings) / len(row.spacings)))
     return Cell(tuple(masses[:P]), tuple(contacts), spacing)

@@ -155,11 +155,14 @@ def next_step(
     chosen: click.Command | None = command
     line = list(arguments)
     if isinstance(command, click.Group):
+        # Options of the group itself end it, so that the first word is a command.
         chosen = command.get_command(context, line[0])
     examples = {}
     for option in chosen.params if chosen else ():
+        # Options of `lwa` have an example; the default of others is a valid text.
         examples[called(option)] = getattr(option.type, "example", option.default)
     change = refusal.change or _example(refusal.reason, examples, line)
+    # A change of Python's arguments that are no options is said as Python writes it.
     if not change or not examples.keys() >= change.keys():
         return str(refusal)
     for changed, value in change.items():
@@ -187,6 +190,7 @@ def _example(
         return {}
     name = subject[1] or _HOLDER.get(subject[2], "masses")
     example = examples.get(name)
+    # A refusal of the example itself is about something else.
     if not isinstance(example, str) or example in line:
         return {}
     return {name: example}

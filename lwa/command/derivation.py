@@ -78,7 +78,7 @@ def derive(style: str, **options: Any) -> None:
     pde = theory.pde
     head: Values = settings_json(theory)
     head["lambda"] = theory.amplitude_ratio
-    head["ansatz"] = {}
+    head["ansatz"] = {}  # the rows' keys follow
     head |= dict.fromkeys("GHI") | pde.third_order
     head["terms"] = _terms_json(pde.coefficients)
     head["defect"] = _terms_json(theory.defect)
@@ -95,12 +95,14 @@ def derive(style: str, **options: Any) -> None:
         "",
         *_defect_lines(theory),
     ]
+    # G, H and I are the coefficients at D^{k+3}, which an ansatz to D^4 has.
     if depends_on_first(theory) and theory.order >= 4:
         canonical = canonical_wave(theory.cell, theory.k)
         letters = [Row(x, x, getattr(canonical, x), form="formula") for x in "GHI"]
         rows.append(Answer({}, ["", FIRST, *letters], key="canonical"))
     shown: list[Shown | str] = [theory]
     if theory.defect:
+        # The equations of motion of the two beads in one cell.
         defect = latex_by_order([], theory.defect, theory.cell.spacing)
         difference = r"{u_{\tau\tau}^{(1)} - u_{\tau\tau}^{(2)}}"
         shown.append(f"{difference} = {defect}")

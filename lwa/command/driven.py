@@ -75,6 +75,7 @@ def strike(
             f"precompression is {chain.precompression} in {spheres}: the pulse of a strike is that "
             "of a chain without load; leave the key out"
         )
+    # Options stand above the file.
     if velocity is None and drop is None:
         velocity, drop = striker.velocity, striker.drop
     if velocity is None and drop is None:
@@ -149,6 +150,7 @@ def shock(
         raise InputError("neither --behind nor --piston is given", behind=1)
     chain = take_chain(options)
     cell, law, static = chain.cell, chain.law, chain.precompression
+    # A load of the file is the state ahead of the front, as a strain.
     if ahead is None:
         ahead = law.compression(cell, static) / cell.spacing if static else sp.S.Zero
     if behind is None:
@@ -164,6 +166,7 @@ def shock(
         error = estimated(front, name, *rule)
         return Row(".".join((name, *rule)), label, result, unit, estimate=error)
 
+    # With symbols nobody knows whether the front is a shock.
     kind = attempt(getattr, front, "kind")
     named = None if isinstance(kind, InputError) else kind
     rows: Lines = [
@@ -177,7 +180,7 @@ def shock(
     ]
     for rule in riemann.RULES:
         rows.append(row("leading_speed", f"leading edge, {rule}", "m/s", rule))
-    if kind != "rarefaction":
+    if kind != "rarefaction":  # which has no leading pulse
         rows.append(row("peak", "peak strain, doubling"))
         rows.append(row("peak_force", "peak force, doubling", "N"))
     notes = []

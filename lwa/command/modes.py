@@ -180,6 +180,7 @@ def envelope(
     if chain.si:  # Hz
         turn = 2 * sp.pi
         name = "ω/(2π)"
+    # Whether envelopes are bright depends on the values of symbols.
     kind = attempt(getattr, equation, "kind")
     head: dict[str, str | None] = {"branch": str(equation.branch), "kind": None}
     described = f"  bright or dark: {kind}"

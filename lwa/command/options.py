@@ -65,6 +65,7 @@ class Words(click.Choice[str]):
         try:
             return one_of(value, words, name)
         except InputError as refusal:
+            # The line to paste has the nearest word, or the first.
             near = similar(value, words) or words
             raise InputError(refusal.reason, **{name: near[0]}) from None
 
@@ -103,6 +104,7 @@ def not_negative(text: str, name: str) -> sp.Expr:
 
 def angle(text: str, name: str) -> sp.Expr:
     """Read a quantity or a part of pi, such as pi, pi/3 or 2pi/3."""
+    # A number of parts and a denominator, either of them absent where it is 1.
     part = re.fullmatch(r"([0-9]*)\*?pi(?:/([1-9][0-9]*))?", text.strip())
     if part is None:
         return read_exact(text, name)
@@ -134,6 +136,7 @@ ALTERNATIVES = (
 
 def given(option: str) -> bool:
     """True if the option was given on the command line."""
+    # Click knows where a value comes from: an option that is given as its default is given.
     source = click.get_current_context().get_parameter_source(option)
     return source is ParameterSource.COMMANDLINE
 

@@ -44,11 +44,13 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
     and with lengths in D; k and the cell must be numbers. The closed form of the lattice's wave
     stands in place of a sum with a larger error.
 
-    In JSON c² is the sum of ``c2[n] ε^n``.
+    In JSON c² is the sum of ``c2[n] ε^n``. `fwhm` is that of the first contact, `fwhm_contact_2`
+    that of the second where contacts are unlike, and so on.
     """
     chain = take_chain(options)
     cell = chain.cell
     expanded = expand(cell, order or _SYMBOLIC_ORDER, law=chain.law)
+    # Whether an expansion is one in numbers is known when it is made; four orders take no time.
     if order is None and expanded.numeric:
         expanded = expand(cell, _ORDER, law=chain.law)
     head: Values = {
@@ -61,6 +63,12 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
     series = {"c2": ("c²", expanded.c2)}
     for q in QUANTITIES:
         series[f"fwhm.{q}"] = (f"FWHM of the {q}", expanded.fwhm(q))
+    # Unlike contacts have unlike widths; series with symbols are long enough for one.
+    if expanded.numeric and len(set(cell.stiffnesses)) > 1:
+        for i in range(1, cell.size):
+            for q in QUANTITIES:
+                label = f"FWHM of the {q}, contact {i + 1}"
+                series[f"fwhm_contact_{i + 1}.{q}"] = (label, expanded.fwhm(q, i))
     series["momentum"] = ("momentum", expanded.momentum)
     series["energy"] = ("energy", expanded.energy)
     sums: Lines = [
@@ -84,12 +92,15 @@ def _sum_rows(
     mass = attempt(expanded.effective_mass.at)
     sums["effective_mass"] = ("effective mass P²/2E", mass)
     for key, (label, found) in sums.items():
-        error = math.inf if isinstance(found, InputError) else found.error
+        error = math.inf  # there is no sum
+        if isinstance(found, Estimate):
+            error = found.error
+        # A closed form of unknown error, NaN, is below no error.
         if key in closed and closed[key].error < error:
             yield Row(key, f"{label}, closed form", closed[key])
         else:
             yield Row(key, label, found)
-    if expanded.cell.size == 2:
+    if expanded.cell.size == 2 and len(set(expanded.cell.stiffnesses)) == 1:
         yield "  (of the mean of a dimer's two contacts, which differ behind a striker)"
     yield ""
 
@@ -115,7 +126,7 @@ def _series_rows(
 ) -> Iterator[Row | str]:
     """Rows of the coefficients of each series."""
     for label, part in series.values():
-        factors = []
+        factors = []  # of the whole series
         if part.prefactor != 1:
             factors.append(str(part.prefactor))
         if part.power != 0:

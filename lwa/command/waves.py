@@ -68,6 +68,9 @@ def wave(
 ) -> None:
     """Compact traveling wave: β, width, FWHM, amplitude and speed.
 
+    Beside it stands the lattice's own wave, for equal beads, light beads between heavy ones and
+    beads nearly alike: in JSON `lattice`.
+
     With --force the wave of this peak contact force, in space and time; with --spheres in m, s, kg
     and N. With --background or --precompression the wave in a chain under load, in the canonical
     field (--closure full --field center), and its Korteweg-de Vries limit for small amplitudes.
@@ -82,6 +85,7 @@ def wave(
     spheres = options["spheres"] is not None
     chain = take_chain(options)
     static = chain.load(precompression)
+    # Options of which one says the other are not given together.
     load = static if background is None else background
     loaded = _is_loaded(chain, load, force)
     if loaded:
@@ -95,6 +99,7 @@ def wave(
     if style in LANGUAGES:
         click.echo(_compact(theory).code(style))
         return
+    # Numbers in SI are those of a force; without one results hold the symbol F.
     peak = read_exact("F", "force") if force is None else force
     if loaded and background is not None:
         answer = on_background(chain, theory, background)
@@ -130,6 +135,7 @@ def _take_canonical(options: dict[str, Any]) -> None:
         ("field", "center"),
         ("branch", "acoustic"),
     ):
+        # A default is no wish.
         if given(name) and options[name] != wanted:
             raise InputError(
                 f"{name} is {options[name]!r}: under load the wave is that of the canonical field",
@@ -143,12 +149,13 @@ def _compact(theory: Theory) -> CompactWave:
     try:
         return theory.pde.traveling_wave()
     except (InputError, NoSolitaryWave) as refusal:
+        # Below order 4 there is no dispersion, and no wave in any field.
         if not depends_on_first(theory) or theory.order < 4:
             raise
         canonical = canonical_wave(theory.cell, theory.k)
         width = as_float(canonical.fwhm("force") / canonical.D)
         speed = as_float(canonical.speed(sp.S.One))
-        if width is None or speed is None:
+        if width is None or speed is None:  # symbols
             raise
         raise NoSolitaryWave(
             f"{refusal.reason}; this is the field of the first bead. In {CANONICAL}, V_s = "
@@ -230,7 +237,10 @@ def any_amplitude(chain: ChainInput, theory: Theory) -> Answer:
     ]
     notes = _put_lattice(rows, chain, None)
     shown: list[Shown | str] = [theory.pde, wave]
-    shown += [reduction] if _is_short(reduction) else RELATIONS
+    if _is_short(reduction):
+        shown.append(reduction)
+    else:
+        shown += RELATIONS
     return Answer(settings_json(theory), rows, chain.scale, shown, notes=notes)
 
 
@@ -256,7 +266,9 @@ def _reduction_rows(reduction: Reduction) -> Lines:
             "  σ = 1/(I (k p + a));  s = 2/(1 - η)",
         ]
     for name in names:
-        lines.append(Row(name, name if short else "", getattr(reduction, name)))
+        # JSON has the values, however long.
+        label = name if short else ""
+        lines.append(Row(name, label, getattr(reduction, name)))
     return lines
 
 
@@ -296,8 +308,9 @@ def _put_lattice(rows: Lines, chain: ChainInput, force: sp.Expr | None) -> list[
     cell = chain.cell
     if not cell.uniform and any(m.free_symbols for m in cell.masses):
         return []  # nobody knows which bead is light, if any
+    peak = sp.S.One if force is None else force
     try:
-        wave = lattice_wave(cell, law=chain.law, force=1 if force is None else force)
+        wave = lattice_wave(cell, law=chain.law, force=peak)
     except InputError:  # a cell without a closed form
         return []
     except NoSolitaryWave as reason:
@@ -319,7 +332,7 @@ def _lattice(scale: Scale, wave: LatticeWave, force: sp.Expr | None) -> Answer:
     if force is None:
         error = estimated(measured, "scaled_speed", 1)
         rows = [_speed_row(wave.scaled_speed(1), force, error)]
-        extents = EXTENTS[:1]
+        extents = EXTENTS[:1]  # a time of passage is that of a force
     else:
         rows = [_speed_row(wave.speed, force, estimated(measured, "speed"))]
         extents = EXTENTS
@@ -384,9 +397,9 @@ def under_load(
 
     wave = loaded_wave(chain.cell, force=force, precompression=static, law=chain.law)
     rows: Lines = [
-        f"endless chain {'without load' if static.is_zero else 'under a load'}",
-        *closure_lines(theory),
         chain.text,
+        f"the wave in a chain under the load {static}:",
+        *closure_lines(theory),
         "",
         *pulse_rows(wave, "rise of the", "number"),
         Row("precompression", "static force F0", wave.precompression, "N"),
@@ -415,6 +428,7 @@ def on_background(chain: ChainInput, theory: Theory, p0: sp.Expr) -> Answer:
         *_unit_rise(field),
     ]
     shown: list[Shown | str] = [field]
+    # Small waves of a law without curvature have another equation, and a chain without load none.
     try:
         kdv = field.kdv
     except NoSolitaryWave as reason:

@@ -53,23 +53,23 @@ class Bands(Value):
         Raises
         ------
         InputError
-            For wavenumbers that are not finite.
+            For wavenumbers that are not finite, in units of the length too.
         """
-        # Whole turns are dropped: P κ would lose the digits that they take up.
-        angle = finite(q, "wavenumber") * self.length
-        kappa = np.angle(np.exp(1j * angle))
         P = len(self.fractions)
+        # A product beyond the range of a float is infinite.
+        with np.errstate(over="ignore"):
+            turn = finite(q, "wavenumber") * (P * self.length)
+        phase = np.exp(1j * finite(turn, "wavenumber times length"))
         mass = np.sqrt(P * self.fractions)
         share = np.sqrt(self.shares)
         # f_i = (a_{i+1} - a_i)/C_i: contact i pulls on particle i and on the next one.
-        B = np.zeros((*kappa.shape, P, P), complex)
+        B = np.zeros((*phase.shape, P, P), complex)
         for i in range(P):
             B[..., i, i] = -1 / (share[i] * mass[i])
         for i in range(P - 1):
             B[..., i, i + 1] = 1 / (share[i] * mass[i + 1])
         # The last contact joins the next cell's first particle, a_P = e^{iPκ} a_0. In a cell of one
         # particle this is the entry that is set above, hence the sum.
-        phase = np.exp(1j * P * kappa)
         B[..., -1, 0] += phase / (share[-1] * mass[0])
         # NumPy's singular values descend.
         descending = np.linalg.svd(B, compute_uv=False)

@@ -604,7 +604,7 @@ class PhysicalWave(Value):
             "velocity": self.bead_velocity,
         }
         peak = number(peaks[known_quantity(quantity)])
-        bearer = one_of(of or self.of, BEARERS, "of")
+        bearer = one_of(self.of if of is None else of, BEARERS, "of")
         xi = finite(x, "x")
         # The strain is B cos^m(βξ), m = 2/(k-1); the force scales as strain^k.
         k = number(self.wave.k)

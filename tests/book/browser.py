@@ -51,10 +51,8 @@ window.addEventListener("load", async () => {
   for (const image of document.images) image.loading = "eager";
   for (const details of document.querySelectorAll("details")) details.open = true;
   await Promise.all([...document.images].map(image => image.decode().catch(() => 0)));
-  const home = document.querySelector(".lwa-chain, .lwa-shock, .lwa-breather, .lwa-arch");
-  const {scale, pace} = home?.scene ?? {};
   const asked = document.querySelectorAll(".lwa-answers");
-  const early = [...document.querySelectorAll("canvas")].filter(e => e.clientWidth).length;
+  const early = [...document.querySelectorAll(".lwa-below")].filter(e => e.clientWidth).length;
   asked.forEach(row => row.firstChild.click());
   const math = [...document.querySelectorAll(".math")];
   const body = document.querySelector("article") || document.body;
@@ -110,52 +108,29 @@ window.addEventListener("load", async () => {
     faint: [...body.querySelectorAll("p, td, th, pre, figcaption, output, label, .tag")]
       .filter(e => e.textContent.trim() && e.getClientRects().length && contrast(e) < 3)
       .map(e => e.textContent.trim().slice(0, 60)),
-    silent: [...body.querySelectorAll("img, svg:not([aria-hidden])")]
+    silent: [...body.querySelectorAll("img:not(.stacked), svg:not([aria-hidden])")]
       .filter(i => !i.alt && !i.getAttribute("aria-label") && !i.closest("button"))
       .map(i => i.src || i.outerHTML),
     unnamed: [...body.querySelectorAll("canvas, input, select, [role=img]:not(svg)")]
       .filter(e => !e.getAttribute("aria-label") && !e.closest("label")).map(e => e.outerHTML),
     sliders: body.querySelectorAll("input[type=range]").length,
-    calculator: [...body.querySelectorAll(".lwa-calculator [data-name]")]
-      .map(e => [e.dataset.name, e.textContent]),
     asked: asked.length,
     early,
     errors: errors,
     foreign: window.foreign,
   };
-  const blow = document.querySelector("[data-slider=v]");
-  if (home?.scene.ghost) {
-    for (let i = 0; i < 150; i++) home.next();
-    const {chain: now, ghost, scale: wide, pace: clock} = home.scene;
-    const [passed, forces] = [c => c.arrivals.length, c => c.arrivals[10].force];
-    report.harder = {scales: [scale, wide], paces: [pace, clock],
-      passed: [ghost, now].map(passed), forces: [ghost, now].map(forces)};
-    for (blow.value of [1.5, 1.1, 0.5]) blow.dispatchEvent(new Event("input"));
-    report.dragged = [home.scene.ghost.v, home.scene.chain.v];
-  }
-  report.presets = [...document.querySelectorAll("[data-omega]")].map(e => e.scene.chain.omega);
-  if (document.querySelector(".lwa-calculator")) {
-    const typed = rows => {
-      for (const [name, value] of rows) {
-        const input = body.querySelector(`.lwa-calculator [name="${name}"]`);
-        input.value = value;
-        input.dispatchEvent(new Event("input", {bubbles: true}));
-      }
-      return body.querySelector(".lwa-calculator [data-name]").textContent;
-    };
-    report.typed = ["2,38", "2.38", "2.380,5", "two"].map(text => typed([["radiusB", text]]));
-    const own = [["radiusB", "2,38"], ["b", "own"], ["E b", "1,46"], ["nu b", "0.46"]];
-    report.own = [typed([...own, ["density b", "2178"]]), typed([["density b", "-1"]])];
-    const beads = {a: "steel 316", b: "PTFE", radiusA: 2.38e-3, radiusB: 2.38e-3};
-    report.blows = [
-      {load: 0, blow: 1.37, kind: "velocity"}, {load: 2, blow: 1.37, kind: "velocity"},
-      {load: 2, blow: 12, kind: "force"}, {load: 0, blow: 12, kind: "force"},
-      {load: 0, blow: 100, kind: "drop"}, {load: 0, blow: 1, kind: "velocity", b: "steel 316"},
-      {load: 200, blow: 0.01, kind: "velocity"},
-      {load: 0, blow: 1, kind: "velocity", radiusB: 3e-4},
-      {load: 0, blow: -1, kind: "velocity"},
-      {load: 0, blow: 1, kind: "velocity", b: "steel 316", radiusB: 2.3e-3},
-    ].map(blow => [blow, lwaTurn.calculate({...beads, ...blow})]);
+  const size = body.querySelector('.lwa-calculator [name="diameterB"]');
+  if (size) {
+    const told = () => [...body.querySelectorAll(".lwa-calculator [data-name]")]
+      .map(e => [e.dataset.name, e.textContent]);
+    report.calculator = told();
+    report.typed = [];
+    for (const text of ["4,76", "4.76", "4.760,5", "two"]) {
+      size.value = text;
+      size.dispatchEvent(new Event("input", {bubbles: true}));
+      await new Promise(done => setTimeout(done, 500)); // the page waits for further letters
+      report.typed.push(told());
+    }
   }
   const answer = await fetch("/probe", {method: "POST", body: JSON.stringify(report)});
   const next = await answer.text();

@@ -7,6 +7,7 @@ import sympy as sp
 
 from lwa import Cell, canonical_wave
 from validation import exact_wave
+from validation.studies.paper import figures
 
 BOOK = Path(__file__).parents[2] / "book"
 TEXT = (BOOK / "paper" / "paper.md").read_text(encoding="utf-8")
@@ -33,9 +34,23 @@ def test_the_widths():
     assert wave.beta == sp.sqrt(10) / (5 * D)
 
 
+def test_the_errors_of_the_width_are_those_of_the_command():
+    """Theirs and ours; the old sentence said that one command reproduces them."""
+    number = r"([+−]?[\d.]+)"
+    theirs = rf"errors of the width, {number}, {number} and {number} percent there"
+    ours = rf"the command finds {number}, {number} and {number}, by"
+    (stated,) = re.findall(theirs, TEXT)
+    (found,) = re.findall(ours, TEXT)
+    rows = figures().document()["widths"]
+    for row, there, here in zip(rows, stated, found, strict=True):
+        assert there == f"{100 * row['stated_error_value']:.3g}"
+        assert here.replace("−", "-") == f"{100 * row['error_value']:+.1f}"
+
+
 SECTIONS = (
     "Summary", "Statement of need", "State of the field", "Software design",
-    "Evidence of correctness", "Research impact statement", "References",
+    "Evidence of correctness", "Tests and contributions", "Research impact statement",
+    "References",
 )  # fmt: skip
 
 

@@ -16,17 +16,20 @@ from lwa import (
     Dimer,
     Lattice,
     Link,
+    Material,
     Power,
     Resonator,
+    Sphere,
     canonical_wave,
     hexagonal,
     homogenize,
+    lattice_wave,
     loaded_wave,
     piston,
 )
 from lwa.law import named
 from tests.book.prose import BOOK
-from validation import MeasureError, simulate
+from validation import MeasureError, Scene, measure, simulate
 from validation.pulses.pulse import first_pulse
 from validation.pulses.sensors import tracks
 from validation.scenes.chains import struck
@@ -356,3 +359,75 @@ console.log(JSON.stringify([...speeds, forces]));
     without, loaded, (weak, strong) = seen
     assert loaded == pytest.approx(without, rel=1e-4)
     assert (weak, "Hertz" in strong) == ("", True)
+
+
+STEEL, PTFE = (
+    Sphere.solid("2.38e-3", Material.named(name)) for name in ("steel 316", "PTFE")
+)
+TABLE = Cell.of_spheres([STEEL, PTFE])
+
+
+@pytest.mark.parametrize("load", [0, 2])
+def test_the_calculator_has_the_theories_closed_forms(load):
+    """Speed and width of both theories at the force that the page integrates."""
+    (found,) = in_node(
+        BLOW + "console.log(JSON.stringify([struck(LOAD, 1.37)]))", LOAD=load
+    )
+    closed = {"canonical wave": canonical_wave(TABLE, "3/2")}
+    if not load:
+        closed["paper's closure"] = homogenize(TABLE, k="3/2").pde.traveling_wave()
+    loads = {"precompression": load} if load else {}
+    for name, wave in closed.items():
+        pulse = wave.at_force(sp.Float(found["F"], 17), **loads)
+        ours = found["theories"][name]
+        assert ours["speed"] == pytest.approx(float(pulse.speed), rel=1e-12)
+        # the width under a load by the midpoint rule
+        width = float(pulse.fwhm("force", "time"))
+        assert ours["width"] == pytest.approx(width, rel=1e-4)
+
+
+@pytest.mark.parametrize("load", [0, 2])
+def test_the_calculator_integrates_the_row(load):
+    """Force, width and speed at contact 80, and the forces of the beads there, by the engine."""
+    (found,) = in_node(
+        BLOW + "console.log(JSON.stringify([struck(LOAD, 1.37)]))", LOAD=load
+    )
+    lattice = found["lattice"]
+    before_the_echo = 92 * 4.76e-3 / lattice["speed"]
+    run = simulate(Scene.of_cell(
+        TABLE, 50, "3/2", velocities=(found["v"],), duration=before_the_echo, samples=20001,
+        contact_sensors=CONTACTS, bead_sensors=(80, 81), precompression=float(load),
+        wall=float(TABLE.stiffnesses[0]) if load else None,
+    ))  # fmt: skip
+    pulses = [measure(run.time, force - force[0]) for force in run.contact_force]
+    passed = sum(p.arrival for p in pulses[2:]) - sum(p.arrival for p in pulses[:2])
+    peak = sum(p.peak for p in pulses[2:]) / 2
+    width = sum(p.fwhm for p in pulses[2:]) / 2
+    # the page's Verlet steps; its speed is that at contact 80, not the mean of the way
+    assert found["F"] - load == pytest.approx(peak, rel=3e-3)
+    assert lattice["width"] == pytest.approx(width, rel=1e-2)
+    assert lattice["speed"] == pytest.approx(80 * 4.76e-3 / passed, rel=1e-2)
+    beads = [measure(run.time, f - f[0]).peak + f[0] for f in run.bead_force]
+    assert found["beads"] == pytest.approx(beads, rel=1e-2)
+
+
+def test_the_calculator_has_the_nearest_closed_form():
+    """Between the 41 ratios of its table, at equal beads, and where no pulse is steady."""
+    program = """
+console.log(JSON.stringify([2.38e-3, 1.5e-3, 2.05e-3].map(radiusB =>
+  struck(0, 1.37, {b: "steel 316", radiusB}))));
+"""
+    *steady, decays = in_node(BLOW + program)
+    for found in steady:
+        ratio = sp.Rational(round(1e9 * found["omega"]), 10**9)
+        cell = Cell([1], spacing=1) if ratio == 1 else Dimer(1, ratio, spacing=1)
+        wave = lattice_wave(cell, k="3/2")
+        ours = found["theories"]["closed form"]
+        spacing = 2.38e-3 * (1 + ratio ** sp.Rational(1, 3))
+        sites = ours["width"] * ours["speed"] / float(spacing)
+        assert sites == pytest.approx(float(wave.fwhm("force")), rel=1e-3)
+        speed, both = ours["errors"]
+        assert speed == pytest.approx(wave.estimate("speed").relative_error, rel=0.1)
+        width = wave.estimate("fwhm").relative_error
+        assert both - speed == pytest.approx(width, rel=0.1)
+    assert decays["theories"]["closed form"]["refused"] == "no steady pulse"

@@ -1,10 +1,11 @@
 """From a cell to its theory: shares, mass ratios, decimals, progress, particles in any order."""
 
+import pytest
 import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lwa import Cell, Dimer, homogenize
+from lwa import Cell, Dimer, InputError, homogenize
 from tests.commands import terminal
 from tests.identity import same
 
@@ -40,6 +41,14 @@ def test_the_closure_is_the_papers_where_the_paper_has_one():
     assert "closure='full', branch='acoustic', field='center'" in repr(theories[0])
     # one chain, whichever bead is called the first
     assert len({theory.pde.I for theory in theories}) == 1
+
+
+def test_derivations_are_refused_by_an_estimate_of_their_terms():
+    """Four masses: 420,000 terms at order 10, in half a gigabyte, and twice as many at 11."""
+    cell = Cell(["a", "b", "c", "d"])
+    assert homogenize(cell, 10).order == 10
+    with pytest.raises(InputError, match="order is 11"):
+        homogenize(cell, 11)
 
 
 def test_floats_enter_as_their_decimals():

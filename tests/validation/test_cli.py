@@ -13,8 +13,8 @@ import pytest
 from lwa.base import progress
 from tests.commands import ended, small_disk, terminal
 from validation import cli
-from validation.report import command
-from validation.report.result import Report
+from validation.report import study
+from validation.report.study import Report
 from validation.report.table import Column, Finding, Table
 from validation.studies.run import EXAMPLES
 
@@ -31,7 +31,7 @@ def shown(capsys, found, *arguments):
     def made():
         return found
 
-    return ended(capsys, command.study()(made).main, *arguments)
+    return ended(capsys, study.study()(made).main, *arguments)
 
 
 @pytest.mark.parametrize("most", [1.0, 0.1])
@@ -53,11 +53,11 @@ def test_text_is_as_wide_as_the_terminal_and_a_pipe_gets_100(monkeypatch):
 
     columns = tuple(Column("", f"a long label {i}") for i in range(9))
     wide = Report("wide", (Table(columns, (tuple(range(9)),)),), notes=("word " * 60,))
-    texts = {100: command.printed_as("text", wide)}
+    texts = {100: study.printed_as("text", wide)}
     monkeypatch.setattr("sys.stdout", Screen())
     for width in (80, 60):
         monkeypatch.setenv("COLUMNS", str(width))
-        texts[width] = command.printed_as("text", wide)
+        texts[width] = study.printed_as("text", wide)
     for width, text in texts.items():
         assert width - 15 < max(map(len, text.splitlines())) <= width
         assert all(column.label in text for column in columns)
@@ -227,12 +227,12 @@ def test_a_command_draws_without_a_display_and_takes_no_threads_of_numba(
 
 
 def test_without_a_terminal_only_long_runs_show_their_progress(capsys, monkeypatch):
-    with command.run_progress() as tell:
+    with study.run_progress() as tell:
         tell(0.75)
-    assert list(command.progress(range(3))) == [0, 1, 2]
+    assert list(study.progress(range(3))) == [0, 1, 2]
     assert capsys.readouterr().err == ""
     monkeypatch.setattr(progress, "EVERY", 0.0)
-    with command.run_progress() as tell:
+    with study.run_progress() as tell:
         tell(0.25)
     assert "lattice run: 25.0 %" in capsys.readouterr().err
 
@@ -240,7 +240,7 @@ def test_without_a_terminal_only_long_runs_show_their_progress(capsys, monkeypat
 def test_the_progress_bar_appears_before_the_first_case_ends():
     """The bar stands on a terminal before the second case begins."""
     with terminal() as written:
-        each = iter(command.progress([1, 2, 3]))
+        each = iter(study.progress([1, 2, 3]))
         assert next(each) == 1
         bar = written()
     assert "cases:   0%|" in bar

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from lwa import InputError
 from validation.lattice.simulate import simulate
 from validation.pictures import SUFFIXES, Curve, Map, Panel, figure
-from validation.report.result import Report
+from validation.report.study import Report
 from validation.scenes.chains import struck
 
 SIGNATURES = {".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml"}

@@ -54,8 +54,7 @@ class Column:
 
     def text(self, cell: Any, size: float = 1.0) -> str:
         """Format one cell, in a unit of a size; ``-`` for None, NaN and ∞, as JSON has null."""
-        number = cell.value if isinstance(cell, Estimate) else cell
-        if plain(number) is None:
+        if plain(without_error(cell)) is None:
             return "-"
         if callable(self.format):
             return self.format(cell)
@@ -194,44 +193,36 @@ class Table:
         width : int
             Characters of a line, at most; columns beyond it follow in a block of their own.
         """
-        shown = [place for place, column in enumerate(self.columns) if column.label]
-        if not (shown and self.rows):
+        if not (self.rows and any(column.label for column in self.columns)):
             return ""
-        parts: dict[str, list[Row]] = {}
-        for row in self.rows:
-            parts.setdefault(self._heading(row), []).append(row)
         units = [self._unit(place) for place in range(len(self.columns))]
+        labels = [unit.name for unit in units if unit.name]
+        parts: dict[str, list[list[str]]] = {}
+        for row in self.rows:
+            heading = ""
+            cells = []
+            for column, cell, unit in zip(self.columns, row, units, strict=True):
+                if self.by and column.key == self.by:
+                    heading = column.text(cell)
+                if column.label:
+                    cells.append(column.text(cell, unit.size))
+            # The labels stand above each part.
+            parts.setdefault(heading, [labels]).append(cells)
         blocks = []
-        for heading, rows in parts.items():
-            lines = [[units[place].name for place in shown]]
-            for row in rows:
-                cells = []
-                for place in shown:
-                    column = self.columns[place]
-                    cells.append(column.text(row[place], units[place].size))
-                lines.append(cells)
-            block = aligned(lines, width)
-            blocks.append(f"{heading}\n{block}" if heading else block)
-        about = ""
+        for heading, lines in parts.items():
+            blocks.append(f"{heading}\n{aligned(lines, width)}".strip("\n"))
+        # A note is one paragraph, however its lines are broken in the source.
+        notes = " ".join(self.note.split())
         if self.errors:
-            about = f"±: {self.errors}; at least one in the last digit shown."
-        notes = wrap(f"{self.note}\n{about}".strip(), width)
-        texts = wrap(self.title, width), "\n\n".join(blocks), notes
+            notes += f"\n±: {self.errors}; at least one in the last digit shown."
+        texts = wrap(self.title, width), "\n\n".join(blocks), wrap(notes.strip(), width)
         return "\n".join(filter(None, texts))
-
-    def _heading(self, row: Row) -> str:
-        """The heading of the part of the printed table in which a row stands."""
-        for column, cell in zip(self.columns, row, strict=True):
-            if self.by and column.key == self.by:
-                return column.text(cell)
-        return ""
 
     def _unit(self, place: int) -> Unit:
         """The label of a column in text, with its unit fitted to the largest cell."""
         largest = 0.0
         for row in self.rows:
-            cell = row[place]
-            number = cell.value if isinstance(cell, Estimate) else cell
+            number = without_error(row[place])
             if isinstance(number, float) and math.isfinite(number):
                 largest = max(largest, abs(number))
         return labelled(self.columns[place].label, largest)
@@ -284,16 +275,16 @@ FINDING_COLUMNS = (
     Column("most_value"),
     Column("ok", "holds"),
 )
-"""Columns of findings: value and bounds as text, the numbers in JSON."""
+"""Columns of findings: value with error and bounds in text, the numbers in JSON."""
 
 
 def findings_table(findings: Iterable[Finding]) -> Table:
     """Return the table of findings."""
     records = []
     for finding in findings:
-        value = f"{finding.value:.6g}"
+        value: Any = finding.value
         if finding.error is not None:
-            value += f" ± {finding.error:.0e}"
+            value = Estimate(finding.value, finding.error)
         records.append(
             {
                 "quantity": finding.quantity,
@@ -307,6 +298,11 @@ def findings_table(findings: Iterable[Finding]) -> Table:
             }
         )
     return Table.of(FINDING_COLUMNS, records)
+
+
+def without_error(cell: Any) -> Any:
+    """Return the value of an estimate, and any other cell as it is."""
+    return cell.value if isinstance(cell, Estimate) else cell
 
 
 def plain(value: Any) -> Any:

@@ -10,8 +10,7 @@ import sympy as sp
 from lwa.base.words import QUANTITIES
 from lwa.command.options import quantities
 from validation.pictures import Curve, Panel
-from validation.report.command import EXPONENT, option, study
-from validation.report.result import Report
+from validation.report.study import EXPONENT, Report, option, study
 from validation.report.table import Column, Table
 from validation.waves.profile import Number
 from validation.waves.solver import exact_wave

@@ -34,8 +34,7 @@ from lwa.base.frozen import Estimate
 from lwa.command.options import quantities, quantity
 from lwa.spheres.beads import spheres as read_spheres
 from validation.pictures import Curve, Panel
-from validation.report.command import option, study
-from validation.report.result import Report
+from validation.report.study import Report, option, study
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError
 from validation.scenes.columns import MeasuredFile, Stated

@@ -25,8 +25,7 @@ from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import derived, highest_pulse, speed
 from validation.pulses.signals import integral
-from validation.report.command import study
-from validation.report.result import Report
+from validation.report.study import Report, study
 from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import carrying
 

@@ -46,8 +46,7 @@ from validation.lattice.simulate import simulate, simulate_many, twice
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Pulse, compared, exponent
 from validation.pulses.sensors import Train
-from validation.report.command import option, study
-from validation.report.result import Report
+from validation.report.study import Report, option, study
 from validation.report.table import Column, Table, percent
 from validation.scenes.chains import DIAMETER, PTFE, PTFE_BEAD, STEEL, STEEL_BEAD
 from validation.scenes.checks import between, positive

@@ -19,8 +19,7 @@ from validation.pulses.discharge import corrected, suggested
 from validation.pulses.noisy import NoisyPulse, noisy_pulse, noisy_pulses
 from validation.pulses.pulse import MeasureError
 from validation.pulses.sensors import Reading, record, speeds_between, static_forces
-from validation.report.command import number, option, study
-from validation.report.result import Report
+from validation.report.study import Report, number, option, study
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError, one_of, positive
 from validation.scenes.columns import MeasuredFile, Record, Stated

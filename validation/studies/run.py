@@ -19,6 +19,7 @@ from typing import Any
 import click
 import numpy as np
 
+from lwa.spheres.hertz import MATERIALS
 from validation.lattice.cost import RunProgress
 from validation.lattice.simulate import COMPILED
 from validation.lattice.steppers import METHODS
@@ -31,8 +32,7 @@ from validation.pulses.sensors import (
     enough_samples,
     record,
 )
-from validation.report.command import option, output_option, study
-from validation.report.result import Report, replacing
+from validation.report.study import Report, option, output_option, replacing, study
 from validation.report.table import Column, Table, plain
 from validation.scenes import scenefile
 from validation.scenes.checks import SceneError
@@ -334,3 +334,37 @@ def run(
             records = {f"{name}_value": plain(getattr(done, name)) for name in RECORDS}
             stream.write(json.dumps({**result.document(), "records": records}).encode())
     return result
+
+
+# --- materials ---
+
+_MATERIALS = (
+    Column("name", "material"),
+    Column("E_value", "E (Pa)"),
+    Column("nu_value", "ν"),
+    Column("density_value", "density (kg/m³)"),
+)
+_MATERIALS_NOTE = """\
+A bead of a file names its material, as in material = "PTFE". A material of the file's own may be
+like another one but for the constants that are stated: [materials.soft], like = "PTFE", E = 6e8."""
+
+
+@study(
+    page="recipes",
+    examples=("lwa-validate materials", "lwa-validate materials --format csv"),
+)
+def materials() -> Report:
+    """Names and constants of the materials of beads.
+
+    ``rows``: ``name``, Young's modulus ``E_value`` in Pa, Poisson's ratio ``nu_value`` and
+    ``density_value`` in kg/m³. Sources: `lwa.spheres.hertz`.
+    """
+    rows = []
+    for name, material in MATERIALS.items():
+        row: dict[str, object] = {"name": name}
+        for constant in ("E", "nu", "density"):
+            row[f"{constant}_value"] = float(getattr(material, constant))
+        rows.append(row)
+    return Report(
+        "Materials", (Table.of(_MATERIALS, rows, "rows", note=_MATERIALS_NOTE),)
+    )

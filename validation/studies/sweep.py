@@ -29,8 +29,7 @@ from lwa.base.progress import Progress
 from validation.lattice.threads import cluster, threads
 from validation.pictures import Curve, Panel
 from validation.pulses.steady import LABELS, STRETCH, Key, Point, PointFile, point
-from validation.report.command import option, study
-from validation.report.result import Report, output_file
+from validation.report.study import Report, option, output_file, study
 from validation.report.table import Column, Table, percent
 from validation.scenes.checks import Failure, SceneError, integer, items
 

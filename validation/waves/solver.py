@@ -104,7 +104,8 @@ def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWa
     given = [between(m, "mass", 1e-100, 1e100) for m in items(masses, "masses")]
     if len(given) not in (1, 2):
         raise SceneError(
-            f"{len(given)} masses: exact waves are found for a cell of 1 or 2 beads"
+            f"{len(given)} masses: exact waves are found for cells of 1 or 2 beads; others are "
+            "simulated, see lwa-validate run --example trimer"
         )
     p0 = _background(background)
     most = STEEPEST_LOADED if p0 else STEEPEST
@@ -177,8 +178,9 @@ def _dimer(pair: newton.Pair, k: float) -> ExactWave:
     near = min(special, key=lambda wave: abs(wave.omega / ratio - 1))
     if abs(near.omega / ratio - 1) < NEAR:
         return near
-    seen = f"see resonances (nearest ratio {near.omega:.9g}) and sweep"
-    raise NoWave("no solitary wave", pair, k, f": {seen}")
+    struck = f"lwa-validate sweep --k {k:.10g} --omega {ratio:.10g} measures a pulse"
+    more = f": the nearest ratio with one is {near.omega:.9g} (resonances); {struck}"
+    raise NoWave("no solitary wave", pair, k, more)
 
 
 def solve(problem: newton.Problem, start: ExactWave | None = None) -> ExactWave:

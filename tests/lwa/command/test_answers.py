@@ -95,6 +95,11 @@ ANSWERS = {
         "order": 8, "c2.1": "-1/2", "c2.2": "2/5", "c2_value": pytest.approx(0.819959, abs=1e-5),
         "fwhm_value.force": pytest.approx(1.411928, abs=2e-5),
     },
+    # Widths of both contacts on the lattice.
+    "expansion --k 11/10 --masses 1,1 --stiffnesses 1,6/25": {
+        "fwhm_value.force": pytest.approx(5.035, rel=0.004),
+        "fwhm_contact_2_value.force": pytest.approx(4.549, rel=0.004),
+    },
     "expansion --k 3 --masses 1,2,3 --order 6": {
         "c2_value": None, "fwhm_value": dict.fromkeys(QUANTITIES),
     },

@@ -29,13 +29,10 @@ def refused(capsys, words, *arguments):
 
 LINES = [
     ("explain", "No such command"),
-    ("derive --nonsense", "--nonsense"),
     ("derive --k 0", "k is 0: it must be positive; try: lwa derive --k 3/2"),
     ("derive --k __import__('os').system('true')", 'k is "__import__'),
-    ("derive --masses 1,0", "masses is 0"),
     ("derive --masses 1,2,3 --closure linear", "try: lwa derive --masses 1,2,3 --clos"),
     ("derive --stiffnesses 1,2,3", "3 stiffnesses for 2 masses"),
-    ("derive --masses 1 --branch optical", "optical"),
     ("derive --order 0", "order is 0"),
     ("derive --order 200", "order is 200"),
     ("derive --order 20 --closure full", "order is 20"),
@@ -58,29 +55,18 @@ LINES = [
     ("wave --k 3 --masses 1,100", "V_s = 0.408248 at B = 1"),
     ("wave --law hertz2", "law is hertz2"),
     ("wave --background 1 --closure linear", "canonical field"),
-    ("wave --background 1 --precompression 1", "both given"),
-    ("wave --background 1 --force 1", "both given"),
-    ("wave --background 2 --law magnetic:4,1", "a pole before it"),
     ("wave --precompression 1 --format c", "without load"),
-    ("wave --k 3/2 --precompression 2 --force 1", "only B > 0"),
     ("wave --spheres none.toml", "No such file"),
-    ("expansion --k 1", "k is 1"),
     ("expansion --order 100", "order is 100"),
     ("strike --velocity 1", "--spheres chain.toml"),
     ("envelope", "neither --background nor --precompression"),
     ("envelope --background 1 --wavenumber 4", "0 … pi"),
     ("envelope --background 1 --wavenumber pi*2", "wavenumber is 'pi*2'"),
     ("envelope --background 1 --branch up", "branch is 'up'"),
-    ("envelope --background 1 --detuning 1 --frequency 1", "both given"),
-    ("envelope --precompression 1 --masses 1,1/2 --k 2 --detuning -1", "below"),
-    ("envelope --law hertz2:1,2 --background 0 --masses 1", "F′ is 0"),
     ("envelope --law general --precompression 1", "law is general"),
     ("envelope --law polynomial:1/2,-1/4 --masses 1 --background 3", "F′ is -2.75"),
     ("shock", "neither --behind nor --piston"),
-    ("shock --law general --behind 1", "law is general"),
     ("shock --law magnetic:4,1 --behind 0.123", "spacing is D"),
-    ("shock --behind 1 --piston 1", "both given"),
-    ("shock --behind 1 --ahead 1", "there is no shock"),
     # of minutes, if powers of a decimal were factored
     ("shock --k 3.1085 --masses 3,1 --piston D", "'D' has no value"),
 ]
@@ -92,77 +78,35 @@ def test_lines_are_refused(capsys, line, words):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "more", "words"),
+    ("old", "new", "words"),
     [
-        ("", "", ("--masses", "m1,m2"), "--spheres and --masses are both given"),
-        ("", "", ("--force", "1 N"), "force is '1 N': an integer, a decimal"),
-        ("", "", ("--force", "1", "--format", "c"), "whose functions take any force"),
-        (
-            '"light"]',
-            '"ligth"]',
-            (),
-            "chain.cell number 2 is 'ligth': did you mean light",
-        ),
-        (
-            "[chain]",
-            "[chains]",
-            (),
-            "spheres.toml: chains is unknown: did you mean chain",
-        ),
-        (
-            "cell =",
-            "k = 1.5\ncell =",
-            (),
-            "chain.k is given, but named beads are in Hertz contact",
-        ),
-        ("[chain]", "[striker]\nlike = 'wood'\n[chain]", (), "striker.like is 'wood'"),
-        (
-            "0.3",
-            "0.6",
-            (),
-            "materials.steel.nu is 0.6: Poisson's ratio lies between -1 and 1/2",
-        ),
-        ('"ptfe"', '"peek"', (), "beads.light.material is 'peek'"),
-        (
-            "mass = 0.45e-3",
-            "mass = 1, density = 1",
-            (),
-            "beads.heavy has both mass and density",
-        ),
-        ("mass = 0.45e-3, ", "", (), "beads.heavy.mass is missing: it, or a density"),
-        (", nu = 0.46", "", (), "materials.ptfe.nu is missing"),
-        ("193e9", "nan", (), "materials.steel.E is nan: a finite number is wanted"),
-        (
-            "[chain]",
-            "precompression = 1\n[chain]",
-            (),
-            "beads.precompression is 1: a table",
-        ),
-        ("[chain]", "[chain", (), "spheres.toml: not TOML"),
+        ('"light"]', '"ligth"]', "cell number 2 is 'ligth': did you mean light"),
+        ("[chain]", "[chains]", "chains is unknown: did you mean chain"),
+        ("cell =", "k = 1.5\ncell =", "chain.k is given"),
+        ("0.3", "0.6", "steel.nu is 0.6"),
+        ("mass = 0.45e-3", "mass = 1, density = 1", "both mass and density"),
+        ("mass = 0.45e-3, ", "", "heavy.mass is missing"),
+        ("193e9", "nan", "E is nan"),
+        ("[chain]", "precompression = 1\n[chain]", "precompression is 1"),
+        ("[chain]", "[chain", "spheres.toml: not TOML"),
     ],
 )
-def test_files_of_spheres_are_refused(capsys, tmp_path, old, new, more, words):
+def test_files_of_spheres_are_refused(capsys, tmp_path, old, new, words):
     file = tmp_path / "spheres.toml"
     file.write_text(STEEL_AND_PTFE.replace(old, new))
-    refused(capsys, words, "wave", "--spheres", str(file), *more)
+    refused(capsys, words, "wave", "--spheres", str(file))
 
 
 @pytest.mark.parametrize(
     ("chain", "more", "words"),
     [
         ({"cell": []}, "wave", "chain.cell is empty"),
-        ({"cell": [1, -1]}, "wave", "chain.cell number 2 is -1"),
         ({"stiffnesses": [1, 2, 3]}, "wave", "chain.stiffnesses holds 3"),
         ({"law": "hertz2"}, "wave", "chain has both k and law"),
-        ({"mass": 1}, "wave", "chain.mass is unknown"),
         ({}, "wave --precompression 1", "the file has a precompression of 2"),
-        ({}, "envelope --precompression 1", "the file has a precompression of 2"),
         ({}, "strike --velocity 1", "precompression is 2"),
         (FREE, "strike", "no striker that moves"),
-        (FREE, "strike --velocity 1 --drop 1", "both given"),
         (FREE, "strike --velocity v", "velocity is v: a number is wanted"),
-        (FREE, "strike --drop -1", "drop is -1: it must be positive"),
-        (FREE, "strike --velocity 1 --mass -1", "mass is -1: it must be positive"),
         (FREE | {"cell": [1, 2]}, "strike --velocity 1", "equal beads"),
     ],
 )

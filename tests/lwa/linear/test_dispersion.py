@@ -4,13 +4,24 @@ The exact parts are compared exactly; each numerical bound says where it comes f
 value is good to some 1e-16 of the largest, which for these cells is below 20.
 """
 
+from dataclasses import replace
+
 import mpmath
 import numpy as np
 import pytest
 import sympy as sp
 
-from lwa import Cell, Dimer, Dispersion, LoadedChain, Power, homogenize
+from lwa import (
+    Cell,
+    Dimer,
+    Dispersion,
+    InputError,
+    LoadedChain,
+    Power,
+    homogenize,
+)
 from lwa.law import named
+from lwa.linear.network import solved
 
 ROUNDING = 1e-13
 
@@ -101,6 +112,9 @@ def test_bands_have_all_digits(cell):
     assert inside.min(axis=0) == pytest.approx(low, abs=ROUNDING)
     assert inside.max(axis=0) == pytest.approx(high, abs=ROUNDING)
     assert np.all(low[1:] > high[:-1])
+    assert low[0] == 0
+    with pytest.raises(InputError, match="finite numbers"):
+        replace(bands, length=1e300).branches(1e300)
 
 
 def test_springs_of_the_laws():
@@ -126,3 +140,10 @@ def test_long_decimals():
     speed = np.sqrt(2 * spring / sum(masses))
     assert float(chain.sound_speed) == pytest.approx(speed, rel=1e-14)
     assert chain.bands.branches(1e-6)[0] == pytest.approx(speed * 1e-6, rel=1e-9)
+
+
+def test_a_singular_system_is_nan_beside_the_others():
+    right = np.array([[2.0, 2.0]] * 3)
+    found = solved(np.array([np.eye(2) / 4, np.ones((2, 2)), np.zeros((2, 2))]), right)
+    assert np.array_equal(found[0], [8, 8])
+    assert np.all(np.isnan(found[1:]))

@@ -5,7 +5,7 @@ import errno
 import pytest
 
 from lwa import InputError
-from validation.report.result import output_file, replacing
+from validation.report.study import output_file, replacing
 
 
 @pytest.mark.parametrize(
@@ -13,7 +13,7 @@ from validation.report.result import output_file, replacing
     [
         ("no/p.svg", "it cannot be written, No such file or directory"),
         ("folder.svg", "a regular file is wanted"),
-        ("p.txt", "a file ending in .svg is wanted"),
+        ("p.txt", r"a file ending in .svg is wanted; try plot=.*p.svg."),
         ("p\0.svg", "it cannot be written, embedded null byte"),
     ],
 )

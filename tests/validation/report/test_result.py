@@ -9,8 +9,8 @@ import pytest
 import validation.report as room
 from lwa import InputError
 from validation.pictures import Curve, Panel
-from validation.report import command
-from validation.report.result import Report
+from validation.report import study
+from validation.report.study import Report
 from validation.report.table import Column, Finding, Table
 
 TABLE = Table((Column("n", "sites"),), ((8,),))
@@ -59,7 +59,7 @@ def test_the_recipe_of_a_study_is_a_command_with_numbers_in_json(capsys):
     """The program of the room's docstring; its help ends with its example."""
     _, _, code = room.__doc__.partition("::\n")
     program = "\n".join(re.findall(r"^    (.*)$", code, re.MULTILINE))
-    names = {**vars(command), "Report": Report, "Column": Column, "Table": Table}
+    names = {**vars(study), "Column": Column, "Table": Table}
     exec(program, names)
     for arguments, shown in (
         (["--k", "2", "--format", "json"], '"rows"'),

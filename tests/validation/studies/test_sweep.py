@@ -20,7 +20,7 @@ from tests.commands import ended
 from validation import cli
 from validation.lattice.threads import cluster, threads
 from validation.pulses.steady import LABELS, Point, PointFile
-from validation.report import command
+from validation.report import study
 from validation.scenes.checks import Failure
 from validation.studies.limits import theory_at
 from validation.studies.sweep import AHEAD, measured, report, sweep, theory
@@ -84,7 +84,7 @@ def test_an_interrupted_sweep_resumes_and_grows(capsys, file, reference):
     [("", "--file points.sqlite keeps"), ("--file s.sqlite", "goes on from s.sqlite")],
 )
 def test_ctrl_c_says_how_points_are_kept(capsys, folder, monkeypatch, options, says):
-    monkeypatch.setattr(command, "progress", stopped(KeyboardInterrupt))
+    monkeypatch.setattr(study, "progress", stopped(KeyboardInterrupt))
     line = f"sweep --k 3 --omega 1,3/4 --stretch 2 --jobs 1 {options}"
     status, out, err = ended(capsys, cli.main, *line.split())
     assert (status, out) == (INTERRUPTED, "")

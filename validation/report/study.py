@@ -1,0 +1,417 @@
+"""Studies: functions that return a `Report`, each with a command that prints the report.
+
+A report has a title, tables, findings, panels and notes, as text, JSON, CSV, picture or page. Files
+of results are checked before the work, and replaced only by complete files.
+"""
+
+from __future__ import annotations
+
+import inspect
+import io
+import json
+import shutil
+import sys
+import tempfile
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import update_wrapper
+from html import escape
+from pathlib import Path
+from typing import Any, Generic, ParamSpec, TypeVar
+
+import click
+
+from lwa.base.exact import InputError
+from lwa.base.files import reason
+from lwa.base.progress import bar, shown
+from lwa.command.cli import HELP, called, help_end
+from lwa.command.cli import run as run_command
+from lwa.command.options import Words, quantities, quantity
+from validation.pictures import SUFFIXES, Panel, Pictured, svg
+from validation.report.table import WIDTH, Finding, Table, findings_table, plain, wrap
+from validation.scenes.checks import Failure, SceneError
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+_DELAY = 1.0  # seconds of a run without a bar: most runs end before
+_LONGEST = 120  # characters of a path in a message
+
+# --- reports ---
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Report(Pictured):
+    """Result of a study.
+
+    Parameters
+    ----------
+    title : str
+        What was computed, in one or a few lines.
+    tables : tuple of Table
+        Tables; text shows those with column labels. JSON has a table under its key, and tables
+        without a key in the list ``tables``.
+    findings : tuple of Finding
+        Numbers with bounds. In a report with tables, text shows only the findings that fail.
+    panels : tuple of Panel
+        Panels of the picture.
+    notes : tuple of str
+        Explanations below the tables.
+    data : mapping
+        Entries that go to JSON unchanged.
+
+    >>> from validation.report.table import Column
+    >>> row = Table((Column("n", "sites"), Column("c_value", "speed", format=".3f")), ((8, 1.25),))
+    >>> Report("one chain", (row,))
+    one chain
+    <BLANKLINE>
+    sites  speed
+    8      1.250
+    """
+
+    title: str
+    tables: tuple[Table, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    panels: tuple[Panel, ...] = ()
+    notes: tuple[str, ...] = ()
+    data: Mapping[str, Any] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        return self.text()
+
+    @property
+    def ok(self) -> bool:
+        """True if every finding holds."""
+        return all(finding.ok for finding in self.findings)
+
+    @property
+    def verdict(self) -> str:
+        """Number of findings that hold; empty for a report without findings.
+
+        >>> Report("", findings=(Finding("order", 2.4, 2.0, 3.0),)).verdict
+        '1 check: all hold'
+        """
+        count = len(self.findings)
+        if not count:
+            return ""
+        failed = [finding for finding in self.findings if not finding.ok]
+        outcome = f"{len(failed)} of {count} fail" if failed else "all hold"
+        return f"{count} check{'s' * (count > 1)}: {outcome}"
+
+    def text(self, width: int = WIDTH) -> str:
+        """The report as plain text: beside other printed tables only the findings that fail.
+
+        Parameters
+        ----------
+        width : int
+            Characters of a line, at most.
+        """
+        parts = [wrap(self.title, width)]
+        parts += [table.text(width) for table in self.tables]
+        printed = [finding for finding in self.findings if not finding.ok]
+        if not any(parts[1:]):
+            printed = list(self.findings)
+        parts.append(findings_table(printed).text(width))
+        parts += [wrap(note, width) for note in self.notes]
+        parts.append(self.verdict)
+        return "\n\n".join(filter(None, parts))
+
+    def _repr_html_(self) -> str:
+        """The text and the picture, for a notebook."""
+        return f"<pre>{escape(self.text())}</pre>{svg(self.panels)}"
+
+    def document(self) -> dict[str, Any]:
+        """The report for JSON: ``data``, the tables, and the findings.
+
+        With findings: ``ok``, ``findings``, and KEY_value of each finding that has a key.
+        """
+        result: dict[str, Any] = dict(plain(self.data))
+        unnamed = []
+        for table in self.tables:
+            if table.key:
+                result[table.key] = table.document()
+            else:
+                unnamed.append(table.document())
+        if unnamed:
+            result["tables"] = unnamed
+        for finding in self.findings:
+            if finding.key:
+                result[f"{finding.key}_value"] = plain(finding.value)
+        if self.findings:
+            result["findings"] = findings_table(self.findings).document()
+            result["ok"] = self.ok
+        return result
+
+    def csv(self) -> str:
+        """Return the first table that has rows as CSV.
+
+        Raises
+        ------
+        InputError
+            For a report without tables.
+        """
+        if not self.tables:
+            raise InputError("format is csv: this result has no table")
+        for table in self.tables:
+            if table.rows:
+                return table.csv()
+        return self.tables[0].csv()
+
+    def pictured(self) -> tuple[Panel, ...]:
+        """The panels, curves and maps, of which a picture of the result is made."""
+        return self.panels
+
+    def save(self, file: Path) -> None:
+        """Draw the picture into a file; an old file is replaced only by a complete picture."""
+        # In memory first: Matplotlib prints a traceback for a file that cannot be closed.
+        drawn = io.BytesIO()
+        self.figure().savefig(drawn, dpi=150, format=file.suffix[1:].lower())
+        with replacing(file) as new:
+            new.write_bytes(drawn.getvalue())
+
+
+# --- studies ---
+
+
+class Study(Generic[P]):
+    """A function that returns a `Report`, with a ``command`` that prints the report.
+
+    Parameters
+    ----------
+    function : callable
+        The function.
+    options : sequence of decorators
+        Options of the command, see `study`.
+    help_end : str
+        Text at the end of the command's help.
+    """
+
+    def __init__(
+        self, function: Callable[P, Report], options: Sequence[Any], help_end: str = ""
+    ) -> None:
+        self.function = function
+        self.options = options
+        self.help_end = help_end
+        update_wrapper(self, function)
+
+    def __call__(self, *arguments: P.args, **options: P.kwargs) -> Report:
+        return self.function(*arguments, **options)
+
+    @property
+    def command(self) -> click.Command:
+        """The Click command, named like the function; its exit status is 1 if a finding fails."""
+
+        def run(style: str, plot: Path | None, **values: Any) -> int:
+            report = self._report(values)
+            printed = printed_as(style, report)
+            if plot is not None:
+                report.save(plot)
+            click.echo(printed)
+            return 0 if report.ok else 1
+
+        # Click shows the last decoration first.
+        for decorate in (*_OUTPUT, *reversed(self.options)):
+            run = decorate(run)
+        summary, _, _ = (inspect.getdoc(self.function) or "").partition("\n\n")
+        make = click.command(
+            self.function.__name__,
+            help=summary,
+            epilog=self.help_end,
+            context_settings=HELP,
+        )
+        return make(run)
+
+    def _report(self, values: dict[str, Any]) -> Report:
+        """Call the function with the values of its options and the displays that it wants."""
+        function: Callable[..., Report] = self.function
+        parameters = inspect.signature(function).parameters
+        if "progress" in parameters:
+            values["progress"] = progress
+        if "run_progress" in parameters:
+            values["run_progress"] = run_progress
+        try:
+            with warnings.catch_warnings():
+                # NumPy warns of an overflow, which is then refused or NaN.
+                warnings.simplefilter("ignore", RuntimeWarning)
+                return function(**values)
+        except Failure as error:
+            raise click.ClickException(str(error)) from None
+
+    def main(self, arguments: Sequence[str] | None = None) -> None:
+        """Run the command as a program, for a file that defines one study and is executed."""
+        run_command(self.command, f"{self.function.__name__}.py", arguments)
+
+
+def study(
+    *options: Any, page: str = "", examples: Sequence[str] = ()
+) -> Callable[[Callable[P, Report]], Study[P]]:
+    """Return a decorator that gives a function returning a `Report` a command (see `Study`).
+
+    The command has the function's name, and the first paragraph of its docstring as its help. A
+    function may have two further parameters, which the command sets: ``progress`` shows how many
+    cases are done, and ``run_progress`` how far a run of the lattice is
+    (`validation.lattice.cost.RunProgress`).
+
+    Parameters
+    ----------
+    *options : decorators
+        Options and arguments of the command, made by `option` or Click, one for each parameter.
+    page : str
+        Page of the book on the study, the name of its file.
+    examples : sequence of str
+        Lines that run one after another in an empty folder, shown at the end of the help.
+    """
+    end = help_end(examples, page)
+    return lambda function: Study(function, options, end)
+
+
+def printed_as(style: str, report: Report) -> str:
+    """Return a report as "text" for the terminal, "json" or "csv"."""
+    if style == "json":
+        return json.dumps(report.document(), indent=2, allow_nan=False)
+    if style == "csv":
+        return report.csv().rstrip("\n")
+    # A pipe has no width of its own.
+    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else WIDTH
+    return report.text(min(width, WIDTH))
+
+
+# --- options and files ---
+
+
+def option(*names: str, default: Any = None, says: str = "", **settings: Any) -> Any:
+    """Return a Click option.
+
+    Parameters
+    ----------
+    *names : str
+        Its flags, and the parameter's name where it differs from them.
+    default : object
+        Default value, shown in the help; an option whose default is a float reads a `number`.
+    says : str
+        Help text.
+    **settings : object
+        Further settings of `click.option`.
+    """
+    settings.setdefault("show_default", default is not None and default is not False)
+    if isinstance(default, float):
+        settings.setdefault("callback", number)
+    settings.setdefault("metavar", _METAVARS.get(settings.get("callback")))
+    if type(default) in (int, float):
+        # As a text, which the callback reads, and which a refusal proposes.
+        settings.setdefault("type", str if "callback" in settings else int)
+        default = str(default)
+    return click.option(*names, default=default, help=says, **settings)
+
+
+def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
+    """Return the path of an output file that can be written.
+
+    Parameters
+    ----------
+    name : str
+        Name of the option in messages.
+    path : str
+        The path.
+    suffixes : sequence of str
+        Endings that are allowed, such as ".json".
+
+    Raises
+    ------
+    InputError
+        For another ending, and where no file can be written.
+    """
+    file = Path(path)
+    change = {}
+    try:
+        if file.suffix.lower() not in suffixes:
+            fault = f"a file ending in {', '.join(suffixes)} is wanted"
+            change[name] = str(file.with_suffix(suffixes[-1]))
+        elif file.exists() and not file.is_file():
+            fault = "a regular file is wanted"
+        else:
+            with tempfile.TemporaryFile(dir=file.resolve().parent):
+                return file
+    except (OSError, ValueError, RuntimeError) as error:  # a null byte, a loop of links
+        fault = f"it cannot be written, {reason(error)}"
+    raise InputError(f"{name} is {path[:_LONGEST]}: {fault}", **change)
+
+
+@contextmanager
+def replacing(file: Path) -> Iterator[Path]:
+    """Yield a temporary file that replaces ``file`` at the end, and is removed after a failure.
+
+    A symbolic link keeps its target, and a file its mode. Raises `lwa.InputError`.
+    """
+    target = file.resolve()
+    try:
+        with tempfile.TemporaryDirectory(prefix=".", dir=target.parent) as folder:
+            new = Path(folder, "new")
+            yield new
+            if target.exists():
+                new.chmod(target.stat().st_mode)
+            new.replace(target)
+    except OSError as error:
+        raise InputError(f"{file} is not written: {reason(error)}") from None
+
+
+def output_option(name: str, suffixes: Sequence[str], says: str) -> Any:
+    """Return an option of an output file, which is checked before the work (`output_file`)."""
+
+    def read(
+        context: click.Context, given: click.Parameter, path: str | None
+    ) -> Path | None:
+        return None if path is None else output_file(called(given), path, suffixes)
+
+    return option(name, callback=read, metavar="FILE", type=click.Path(), says=says)
+
+
+def number(
+    context: click.Context, given: click.Parameter, value: str | None
+) -> float | None:
+    """Read an option that is an integer, a decimal or a fraction."""
+    exact = quantity(context, given, value)
+    if exact is None:
+        return None
+    if not exact.is_number:
+        raise SceneError(f"{called(given)} is {exact}: a number is wanted")
+    return float(exact)
+
+
+_METAVARS: dict[Any, str] = {
+    number: "NUMBER",
+    quantity: "NUMBER",
+    quantities: "NUMBERS",
+}
+EXPONENT = option(
+    "--k", callback=number, default="3/2", says="Exponent k of the force F = A δ^k."
+)
+
+
+def progress(cases: Iterable[T]) -> Iterable[T]:
+    """Show how many cases are done."""
+    return shown(cases, "cases")
+
+
+@contextmanager
+def run_progress() -> Iterator[Callable[[float], None]]:
+    """Show how far a lattice run is, by a bar."""
+    form = "{desc}: {percentage:.1f} %|{bar}| {elapsed}<{remaining}"
+    with bar("lattice run", total=1.0, delay=_DELAY, bar_format=form) as shares:
+        yield lambda share: shares.update(share - shares.n)
+
+
+_OUTPUT = (
+    output_option(
+        "--plot", SUFFIXES, f"Draw the result into a file ({', '.join(SUFFIXES)})."
+    ),
+    option(
+        "--format",
+        "style",
+        type=Words(("text", "json", "csv")),
+        default="text",
+        says="How to print the result.",
+    ),
+)
