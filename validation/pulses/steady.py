@@ -4,9 +4,10 @@ Bead 0 of a chain of masses 1, ω, 1, … at rest is struck (with ``A = D = 1``)
 is recorded at `PLACES` cells at equal distances (the places). The law ``F = A δ^k`` has no scale of
 its own. So a pulse that leaves energy behind in every cell comes to lose the same fraction of its
 peak force F in each cell, ``F ~ e^{-d n}`` after n sites; the speed then scales as
-``F^{(k-1)/(2k)}``, and the width, in sites, stays constant. All numbers are means over the two contacts of a cell, from the stretch (two
-neighbouring places) where their errors are least. Each number is compared with the stretch before,
-with a less accurate run, and with a stretch that is `FARTHER` times as far as the last place.
+``F^{(k-1)/(2k)}``, and the width, in sites, stays constant. All numbers are means over the two
+contacts of a cell, from the stretch (two neighbouring places) where their errors are least. Each
+number is compared with the stretch before, with a less accurate run, and with a stretch that is
+`FARTHER` times as far as the last place.
 
 A pulse that decays is overtaken in the end by a higher one from behind, as higher pulses are
 faster. So at the far stretch the highest pulse must have the force predicted from the decay, within

@@ -30,9 +30,10 @@ class Damping:
     Parameters
     ----------
     kind : {"contact", "kuwabara_kono", "restitution"}
-        "contact" adds ``γ dδ/dt`` to the force of a closed contact. "kuwabara_kono" adds
-        ``γ δ^{k-1} dδ/dt`` (Kuwabara and Kono 1987). "restitution" adds ``c δ^{(k-1)/2} dδ/dt``: two
-        beads that collide part with the same share of their speed, whatever the speed (`restitution`).
+        "contact" adds ``γ dδ/dt`` to the force of a closed contact. "kuwabara_kono" adds ``γ
+        δ^{k-1} dδ/dt`` (Kuwabara and Kono 1987). "restitution" adds ``c δ^{(k-1)/2} dδ/dt``: two
+        beads that collide part with the same share of their speed, whatever the speed
+        (`restitution`).
     value : float or sequence of float
         γ, or the share, the coefficient of restitution; one for all contacts, or one for each,
         the wall's last. In a sequence a γ of 0 and a share of 1 stand for no damping.
@@ -86,9 +87,9 @@ def restitution(ratio: float) -> float:
     """Return the coefficient of restitution at a damping ratio ζ.
 
     In the variable ``s = δ^{(k+1)/2}`` a collision under ``F = A δ^k + c δ^{(k-1)/2} dδ/dt`` is a
-    damped linear oscillator, ``ζ = c/√(2(k+1) m A)`` with the reduced mass m (Antypov and Elliott 2011,
-    EPL 94, 50004, for spheres). As contacts do not pull, it ends where the force is zero (Schwager
-    and Pöschel 2007, Granular Matter 9, 465).
+    damped linear oscillator, ``ζ = c/√(2(k+1) m A)`` with the reduced mass m (Antypov and Elliott
+    2011, EPL 94, 50004, for spheres). As contacts do not pull, it ends where the force is zero
+    (Schwager and Pöschel 2007, Granular Matter 9, 465).
     """
     # s = e^{-ζτ} sin(√(1-ζ²) τ)/√(1-ζ²) in units of time of the undamped oscillator; its second
     # derivative, proportional to the force, vanishes at the phase below.
