@@ -25,7 +25,7 @@ from typing import Any, Self
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, power, read_exact, real, shorten, signed
+from lwa.base.exact import InputError, power, read_exact, real, shorten
 from lwa.base.frozen import FALL, RISE, NoSolitaryWave, Value
 from lwa.cell import Cell
 from lwa.law import ContactLaw, for_cell
@@ -232,7 +232,3 @@ class KdV(Value):
         """Width ``L = √(12 γ / (α B))`` of ``v = B sech²(ξ/L)``; the FWHM is ``2 arcosh(√2) L``."""
         ratio = sp.simplify(self.dispersion / self.nonlinearity)
         return sp.sqrt(12 * ratio / self._read_rise(B))
-
-    def profile(self, xi: Any, B: Any = None) -> sp.Expr:
-        """Strain ``v = B sech²(ξ/L)`` above the background."""
-        return self._read_rise(B) * sp.sech(signed(xi, "xi") / self.width(B)) ** 2
