@@ -204,11 +204,6 @@ class Envelope(Value):
         return Breather(self, signed(detuning, "detuning"), kind or self.kind)
 
     @property
-    def load(self) -> sp.Expr:
-        """The static force, in the units of the cell."""
-        return self.cell.stiffnesses[0] * self.law.at(self.static_compressions[0])
-
-    @property
     def static_compressions(self) -> tuple[sp.Expr, ...]:
         """Static compression of each contact."""
         return tuple(c * self.compression for c in self.cell.shares(self.law.exponent))

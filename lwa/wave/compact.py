@@ -22,6 +22,7 @@ under a load are those of `lwa.loaded.wave`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, Self, get_args, overload
@@ -249,7 +250,10 @@ class CompactWave(Value):
         >>> canonical_wave(Cell(["m1", "m2"]), "k").at(k="3/2", omega=1).beta
         sqrt(10)/(5*D)
         """
-        new = substitution(values, self.cell, self.k)
+        return self._replaced(substitution(values, self.cell, self.k))
+
+    def _replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Self:
+        """The wave with other values of symbols."""
         return replace(
             self,
             cell=self.cell.replaced(new),
@@ -623,12 +627,7 @@ class PhysicalWave(Value):
 
     def at(self, **values: Any) -> PhysicalWave:
         """Substitute values for symbols of the wave and of the force, as `CompactWave.at`."""
-        force_symbols = {s.name: s for s in self.force.free_symbols}
-        new = {}
-        rest = {}
-        for name, value in values.items():
-            if name in force_symbols:
-                new[force_symbols[name]] = positive(value, name)
-            else:
-                rest[name] = value
-        return PhysicalWave(self.wave.at(**rest), self.force.xreplace(new), self.of)
+        own = {*self.wave.cell.symbols, *self.wave.k.free_symbols}
+        more = sorted(self.force.free_symbols - own, key=str)
+        new = substitution(values, self.wave.cell, self.wave.k, more)
+        return PhysicalWave(self.wave._replaced(new), self.force.xreplace(new), self.of)

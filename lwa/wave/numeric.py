@@ -180,13 +180,15 @@ class NumericWave(Value):
             "G+H+I > 0": coefficient_sum > 0,
             "V² > 0": factor > 0,
         }
-        exists = np.logical_and.reduce([*conditions.values()])
-        if self.missing == "raise" and not np.all(exists):
-            first = np.argmin(exists)
-            at = f"k = {float(k.flat[first])}, ω = {float(omega.flat[first])}"
-            for name, holds in conditions.items():
-                if not holds.flat[first]:
-                    raise NoSolitaryWave(f"{at}: a compact wave needs {name}")
+        exists = np.ones(k.shape, bool)
+        for name, holds in conditions.items():
+            if self.missing == "raise" and not np.all(holds):
+                first = np.argmin(holds)
+                raise NoSolitaryWave(
+                    f"k = {float(k.flat[first])}, ω = {float(omega.flat[first])}: "
+                    f"a compact wave needs {name}"
+                )
+            exists &= holds
         nan = np.where(exists, 0.0, np.nan)
         return Domain(k + nan, coefficient_sum + nan, factor + nan, excess + nan)
 
