@@ -125,6 +125,7 @@ class Contacts:
         if kappa == 0 and branch == 0:
             raise InputError(SOUND)
         c = 1 / self.K2
+        # Derivatives of x by κ follow from those of T by x.
         # T(x) - 2 cos κ = Π m Π c Π_j (x_j - x) over the modes j, differentiated at a root
         first = -np.prod(self.masses * c * np.append(gaps, 1))
         second = -2 * first * (1 / gaps).sum()
@@ -137,6 +138,7 @@ class Contacts:
                 "the mode's group velocity is too close to that of sound, c_g = c_0, for floats: "
                 f"its mean flow runs along with it{exact}"
             )
+        # From here on letters are those of the module.
         phi = modes[:, branch]
         d = self._strains(z) @ phi
         size = np.abs(d) ** 2
@@ -145,7 +147,7 @@ class Contacts:
         force = 2 * driven * speed / (speed - 1)
         mean = c * (force - 2 * K3 * size)
         harmonic = np.real(d.conj() ** 2 * self._harmonic(z * z, 4 * x, K3 * d * d))
-        bead = np.argmax(np.abs(phi))
+        bead = np.argmax(np.abs(phi))  # the one whose φ becomes positive
         return Mode(
             square=x,
             slope=slope,
@@ -233,11 +235,13 @@ def pair_at_edge(contacts: Contacts, edge: sp.Integer, branch: int) -> Mode:
     reduced = m1 * m2 / total
     light = 0 if (m1 - m2).is_negative else 1
     if edge == 1:
+        # The branch is the optical one. Momentum is 0, and the light bead moves farther.
         x = (k1 + k2) / reduced
         phi = np.array([m2, -m1]) / sp.sqrt(m1 * m2 * total)
         if light == 1:
             phi = -phi
     elif m1 != m2:
+        # The bead between two contacts that both push it back; its neighbours rest.
         bead = light if branch == 1 else 1 - light
         mass = contacts.masses[bead]
         x = 2 * k1 / mass
@@ -255,7 +259,7 @@ def pair_at_edge(contacts: Contacts, edge: sp.Integer, branch: int) -> Mode:
     K3 = contacts.K3
     drive = K3[1] * size[1] - K3[0] * size[0]
     y = sp.S.Zero
-    if drive != 0:
+    if drive != 0:  # else a resonance does not matter
         rate = k1 + k2 - 4 * x * reduced
         if rate.is_zero:
             raise InputError(DRIVEN)
