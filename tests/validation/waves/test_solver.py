@@ -87,7 +87,7 @@ def test_the_equations_of_motion_hold_at_any_point(k, p0):
 
 
 def test_the_residual_under_load_is_a_share_of_the_waves_own_peak():
-    """Waves of small rises are alike but for their size, and so are their errors on coarse grids."""
+    """Small waves are alike but for their size, and so are their errors on a coarse grid."""
     residuals = []
     for load in (0.9, 0.99):
         wave = exact_wave([1], 1.5, background=load)
