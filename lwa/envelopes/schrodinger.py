@@ -165,6 +165,7 @@ class Envelope(Value):
             raise InputError(
                 "the dispersion or the nonlinearity vanishes: no envelope has a shape"
             )
+        # Only then is the sign of an expression in symbols known.
         sign = self._tidy(sign)
         if sign.is_negative is None:
             raise InputError("kind depends on symbols: give numbers")
@@ -195,18 +196,13 @@ class Envelope(Value):
         """
         if (frequency is None) == (detuning is None):
             raise InputError("frequency or detuning: one of the two is wanted")
-        if detuning is None:
+        if detuning is None:  # Δ = 1 - f/f0
             detuning = 1 - positive(frequency, "frequency") / self.frequency
         if self.group_velocity.is_zero is not True:
             raise InputError(
                 f"wavenumber is {self.wavenumber}: a breather stands where dω/dκ = 0"
             )
         return Breather(self, signed(detuning, "detuning"), kind or self.kind)
-
-    @property
-    def load(self) -> sp.Expr:
-        """The static force, in the units of the cell."""
-        return self.cell.stiffnesses[0] * self.law.at(self.static_compressions[0])
 
     @property
     def static_compressions(self) -> tuple[sp.Expr, ...]:
@@ -218,14 +214,12 @@ class Envelope(Value):
         """The ``|Ψ|²`` at which a contact's compression reaches its static one; ∞ if it pulls."""
         if self.law.pulls or self.law.formless:
             return sp.oo
-        limits = [
-            static**2 / (4 * strain)
-            for static, strain in zip(
-                self.static_compressions, self.strains, strict=True
-            )
-            if strain
-        ]
-        smallest = sp.Min(*limits)
+        smallest = sp.oo
+        contacts = zip(self.static_compressions, self.strains, strict=True)
+        for static, strain in contacts:
+            if strain:  # a contact that the mode does not compress never opens
+                # 2|Ψ||d| is the largest change of the compression.
+                smallest = sp.Min(smallest, static**2 / (4 * strain))
         return sp.N(smallest) if self.floats else smallest
 
     @cached_property
@@ -275,12 +269,14 @@ class Breather(Value):
 
     def __post_init__(self) -> None:
         one_of(self.kind, KINDS, "kind")
+        # With symbols every condition is taken to hold.
         if self.detuning.is_number and self.detuning >= 1:
             self._refuse("a frequency is positive, and the detuning below 1")
         if self._square.is_positive is False:
             if self.envelope.nonlinearity.is_negative:
                 self._refuse(f"{self.kind} breathers lie below f0, at values > 0")
             self._refuse(f"{self.kind} breathers lie above f0, at values < 0")
+        # A ratio, as both may be negative
         part = self.detuning / self.opening_detuning
         if part.is_number and part > 1:
             self._refuse(f"contacts open from {float(self.opening_detuning):.5g} on")
@@ -314,7 +310,9 @@ class Breather(Value):
     def _shift(self) -> sp.Expr:
         """The ratio χ a²/Δ: 2Ω/Δ for bright, Ω/Δ for dark breathers."""
         rate = -self.envelope.frequency  # Ω/Δ
-        return 2 * rate if self.kind == "bright" else rate
+        if self.kind == "bright":
+            return 2 * rate
+        return rate
 
     @cached_property
     def _square(self) -> sp.Expr:
@@ -331,7 +329,9 @@ class Breather(Value):
     def width(self) -> sp.Expr:
         """Width 1/b, in cells, of the envelope sech(bn) or tanh(bn)."""
         ratio = self.envelope.dispersion / (self._shift * self.detuning)
-        return sp.sqrt(factored(-ratio if self.kind == "bright" else ratio))
+        if self.kind == "bright":  # ω″ b² = -2Ω, in place of Ω
+            ratio = -ratio
+        return sp.sqrt(factored(ratio))
 
     @cached_property
     def opening_detuning(self) -> sp.Expr:
@@ -357,7 +357,11 @@ class Breather(Value):
         """
         n = np.asarray(cells, float)
         x = n / float(self.width)
-        profile = 1 / np.cosh(x) if self.kind == "bright" else np.tanh(x)
+        if self.kind == "bright":
+            profile = 1 / np.cosh(x)
+        else:
+            profile = np.tanh(x)
+        # At the edge of a band e^{iκn} is real.
         phase = np.cos(float(self.envelope.wavenumber) * n)
         amplitude = np.array(self.amplitude, float)
         return np.asarray(np.multiply.outer(profile * phase, amplitude))
@@ -417,8 +421,10 @@ def envelope(
         load = positive(precompression, "precompression")
         static = law.compression(cell, load)
     else:
-        read = positive if law.homogeneous else signed  # powers only push
-        load = read(background, "background")
+        if law.homogeneous:  # a power only pushes
+            load = positive(background, "background")
+        else:
+            load = signed(background, "background")
         static = cell.spacing * load
         law.check_strain(load, cell)
     kappa = signed(wavenumber, "wavenumber")
@@ -440,6 +446,7 @@ def envelope(
 
 def _branch_number(branch: Any, cell: Cell) -> int:
     """Read a branch; by default the acoustic one of equal beads, else the lowest optical one."""
+    # Breathers of a dimer are those of the gap below its optical branch.
     if branch is None:
         return min(1, cell.size - 1)
     if isinstance(branch, str) and branch in BRANCHES:

@@ -60,6 +60,7 @@ class FollowingRecursion(Recursion):
         return super()._dispersion() - self.mu[1] ** 2
 
     def _next_force(self, i: int, n: int) -> fmpq_mpoly:
+        # in the equations both contacts have the mean force
         return self.force[0].series[n]
 
     def _last_force(self, n: int) -> fmpq_mpoly:
@@ -69,6 +70,7 @@ class FollowingRecursion(Recursion):
 @lru_cache(maxsize=1)
 def following(order: int) -> Observables:
     """The quantities of the reduced chain of masses 1 and ω, to this order in ε."""
+    # k does not matter to the shares of equal contacts.
     model = shares_model(Cell((1, _OMEGA)), sp.S.One)
     return Observables(FollowingRecursion(model, order))
 
@@ -77,6 +79,7 @@ def following(order: int) -> Observables:
 def exponent_of_light_beads(quantity: str) -> sp.Expr:
     """The exponent e of a quantity as a function of the symbol k."""
     series = polynomial(following(ORDER).coefficients(quantity))
+    # d ln Q/dω of the series, behind that of its leading term
     log_change = series.diff(_OMEGA) / series
     e = _LEADING.get(quantity, sp.Rational(3, 2)) - log_change.subs(_OMEGA, 0)
     return pade(taylor(e, ORDER), 2).subs(EPSILON, k - 1)
@@ -107,6 +110,7 @@ _SIZES = {
 def following_error(quantity: str, k_value: sp.Expr, ratio: sp.Expr) -> float:
     """Relative error by light beads that follow; NaN beyond the range of the measurement."""
     exponent = float(k_value)
+    # Momentum and energy of struck dimers were not measured.
     if quantity not in _SIZES or exponent > _EXPONENTS[-1]:
         return math.nan
     power = np.interp(exponent, _EXPONENTS, _POWERS[quantity])
@@ -132,6 +136,7 @@ def alike_error(quantity: str, k_value: sp.Expr, ratio: sp.Expr) -> float:
     }
     if float(k_value) > _EXPONENTS[-1]:
         return math.nan
+    # Each bead of the lattice has a width of its own, the closed form one for both.
     if quantity == "velocity":
         return 0.35 * (1 - omega)
     return sizes.get(quantity, math.nan) * ((1 - omega) / (1 + omega)) ** 2

@@ -57,8 +57,8 @@ class Expansion(Value):
     @cached_property
     def numeric(self) -> bool:
         """True if the series can be summed: k > 1 and the cell are numbers."""
-        values = (*self.cell.masses, *self.cell.stiffnesses, self.k)
-        return not any(x.free_symbols for x in values) and bool(self.k > 1)
+        values = sp.Tuple(*self.cell.masses, *self.cell.stiffnesses, self.k)
+        return not values.free_symbols and bool(self.k > 1)
 
     @cached_property
     def compliance(self) -> sp.Expr:
@@ -123,6 +123,7 @@ class Expansion(Value):
     def _series(
         self, quantity: str, unit: sp.Expr, power: sp.Expr, contact: int = 0
     ) -> EpsilonSeries:
+        # Those of other contacts are counted for widths alone.
         coefficients = self._observables.coefficients(quantity, contact)
         return EpsilonSeries(unit, power, coefficients, self.k, self.cell, quantity)
 
@@ -134,6 +135,7 @@ class Expansion(Value):
         lwa.InputError
             For a name that does not occur or a value that is not positive.
         """
+        # Cells of numbers have a simpler ring than those of symbols: expanded anew.
         new = substitution(values, self.cell, self.k)
         cell = self.cell.replaced(new)
         return expand(cell, self.order, k=self.k.xreplace(new))

@@ -93,12 +93,15 @@ class LatticeWave(Value):
     theory = "equal beads, closed form"
 
     def __post_init__(self) -> None:
+        # A frozen dataclass takes a value that was read in this way only.
         object.__setattr__(self, "force", positive(self.force, "force"))
+        # A symbol k is taken for one above 1.
         if self.k.is_number and not self.k > 1:
             raise NoSolitaryWave(f"k is {self.k}: a solitary wave needs k > 1")
 
     def __repr__(self) -> str:
         shown = f"force={self.force}"
+        # The answer is shown where there is one: numbers.
         if not self.speed.free_symbols:
             shown = f"speed {self.estimate('speed')}, width {self.estimate('fwhm')}"
         return f"{type(self).__name__}({self.cell!r}, k={self.k}, {shown})"
@@ -122,6 +125,7 @@ class LatticeWave(Value):
             "momentum": sp.sqrt(mass * work),
             "energy": work,
         }
+        # Every other quantity is a width.
         return units.get(quantity, self.cell.spacing)
 
     def _result(self, quantity: str) -> sp.Expr:
@@ -154,6 +158,7 @@ class LatticeWave(Value):
     @property
     def short_speed(self) -> sp.Expr:
         """The `speed` of equal beads by ``c = c₂ [1 + (π/√8 - 1) 4^{1-k}]``, to 0.2 %."""
+        # e^{-εφ} with ln 4 for φ, which is 1.539 at k = 1 and 1.226 in the limit of large k
         rest = (sp.pi / sp.sqrt(8) - 1) * 4 ** (1 - self.k)
         c = TWO_BODIES["c"].subs(symbol_k, self.k) * (1 + rest)
         return self.speed * c / self._value("c")
@@ -216,12 +221,15 @@ class LatticeWave(Value):
         """
         one_of(name, (*_PARTS, "fwhm"), "name")
         value = getattr(self, name)
+        # A method is read with its arguments, an attribute has none.
         if callable(value):
             value = value(*arguments)
         parts = list(_PARTS.get(name, ()))
         if name == "fwhm":
-            parts.append(arguments[0] if arguments else "force")
-            if "time" in arguments:
+            quantity, *extent = arguments or ("force",)
+            parts.append(quantity)
+            # A time is a length over the speed.
+            if "time" in extent:
                 parts.append("c")
         result = Estimate(number(value), 0.0)
         for part in parts:
@@ -238,10 +246,12 @@ class LatticeWave(Value):
         >>> lattice_wave(Cell(["m"], spacing=1)).at(m=1, k=2).estimate("speed")
         0.845861 ± 9e-06
         """
+        # The force may hold symbols that the cell does not have.
         more = sorted(self.force.free_symbols, key=str)
         new = substitution(values, self.cell, self.k, more)
         cell = self.cell.replaced(new)
         force = self.force.xreplace(new)
+        # Numbers may belong to another theory than their symbols.
         return lattice_wave(cell, k=self.k.xreplace(new), force=force)
 
     def latex_rows(self) -> list[str]:
@@ -297,10 +307,11 @@ class FollowingWave(LatticeWave):
     def _value(self, quantity: str) -> sp.Expr:
         # From the units of heavy beads to the module's: m1 = 2m/(1 + ω), D and δ are doubled.
         shift = {"c": sp.S.Half, "momentum": -sp.S.Half}
-        power = exponent_of_light_beads(quantity).subs(symbol_k, self.k)
-        ratio = 1 + mass_ratio(self.cell)
-        value = super()._value(quantity) * ratio ** (shift.get(quantity, 0) - power)
-        return value if quantity == "c" else 2 * value
+        own = exponent_of_light_beads(quantity).subs(symbol_k, self.k)
+        factor = (1 + mass_ratio(self.cell)) ** (shift.get(quantity, 0) - own)
+        if quantity != "c":
+            factor *= 2
+        return super()._value(quantity) * factor
 
     def _error(self, quantity: str) -> float:
         ratio = mass_ratio(self.cell)
@@ -310,6 +321,7 @@ class FollowingWave(LatticeWave):
 def mass_ratio(cell: Cell) -> sp.Expr:
     """The lesser of two beads' masses over the other; of symbols, the second over the first."""
     first, second = cell.masses
+    # Which of two symbols is less is not known.
     if first.is_number and second.is_number and second > first:
         return first / second
     return second / first
@@ -370,9 +382,9 @@ def lattice_wave(
         )
     k = exponent(law.exponent)
     if cell.uniform:
-        return LatticeWave(
-            Cell(cell.masses[:1], cell.stiffnesses[:1], cell.spacing), k, force
-        )
+        # However many equal beads a cell lists, its wave is that of one.
+        one = Cell(cell.masses[:1], cell.stiffnesses[:1], cell.spacing)
+        return LatticeWave(one, k, force)
     if cell.size != 2 or len(set(cell.stiffnesses)) > 1:
         raise InputError(
             f"cell is {shorten(cell)}: closed forms are those of equal beads and of two beads with "

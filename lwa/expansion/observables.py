@@ -124,8 +124,10 @@ class Observables:
     def _over_I(self, numerator: fmpq_mpoly, e: int) -> sp.Expr:
         """The quotient numerator / I^e, in the caller's symbols."""
         I = self.wave.I
+        # Numbers need no polynomial division.
         if not self.wave.model.ring.names:
             return to_sympy(_number(numerator) / _number(I) ** e)
+        # Lowest terms: factors I cancel as long as they divide without remainder.
         while e:
             quotient, remainder = divmod(numerator, I)
             if remainder:
@@ -136,6 +138,7 @@ class Observables:
 
     def _expression(self, polynomial: fmpq_mpoly) -> sp.Expr:
         """A polynomial without Z in the caller's symbols."""
+        # Z is the first generator.
         terms = [(tuple(map(int, e[1:])), c) for e, c in polynomial.terms()]
         return self.wave.model.ring.expression(terms)
 
@@ -149,6 +152,7 @@ def _number(polynomial: fmpq_mpoly) -> fmpq:
 
 def shares_model(cell: Cell, k: sp.Expr) -> Model:
     """The model of a cell; with 1 for k if contacts are equal, whose shares do not depend on k."""
+    # With symbols for k the ring of the recursion would have one generator more.
     if len({*cell.stiffnesses}) == 1:
         k = sp.S.One
     return Model(cell, Power(k))

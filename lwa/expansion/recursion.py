@@ -51,6 +51,7 @@ class Pulse:
     def append(self, term: fmpq_mpoly) -> None:
         """Append a coefficient of the series."""
         self.series.append(term)
+        # A power of the field needs its logarithm.
         self.log.append(log_term(self.series, self.log))
 
     def append_log(self, term: fmpq_mpoly) -> None:
@@ -176,6 +177,7 @@ class Recursion:
 
     def _append(self, n: int, q: fmpq_mpoly) -> None:
         """Append the terms at t^n to the fields, with q for q_n."""
+        # Forces from contact to contact, then strains, then slopes: each needs those before.
         self.force[0].append_log(q)
         for i in range(1, self.P):
             self.force[i].append(self._next_force(i, n))
@@ -198,6 +200,7 @@ class Recursion:
 
     def _inertia(self, i: int, n: int) -> fmpq_mpoly:
         """Coefficient of t^n in P m̂_i γ ∂s_i, mass times acceleration of bead i."""
+        # The derivative raises the power of t by one.
         if n == 0:
             return self.zero
         slope = self._accelerated(self.slope[i], n - 1)
@@ -234,6 +237,7 @@ class Recursion:
 
     def _accelerated(self, slope: Series, n: int) -> fmpq_mpoly:
         """Coefficient of t^n in γ s_i, s_i the slope of a bead's displacement."""
+        # γ may end before t^n: what is missing is the next unknown, see `_residual`.
         total = self.zero
         for a, factor in enumerate(self.gamma[: n + 1]):
             if factor and slope[n - a]:

@@ -152,11 +152,13 @@ class EpsilonSeries(Value):
             )
         values = sp.Tuple(self.k, self.prefactor, *self.coefficients)
         demand_numbers(values.free_symbols, "a sum needs numbers")
+        # x = 1 - 1/k is positive for k > 1 only.
         if not self.k > 1:
             raise InputError(
                 f"k is {self.k}: the expansion in k - 1 is summed for k > 1"
             )
         total = self._summed()
+        # A sum with a larger error tells nothing.
         largest = UNLIKE
         if self.cell.uniform:
             largest = 1
@@ -173,6 +175,7 @@ class EpsilonSeries(Value):
         unit = self.prefactor * epsilon**self.power
         if self.cell.uniform:
             return resum(self.coefficients, epsilon, unit)
+        # Large terms of both cancel in the difference to equal beads.
         base = equal_beads(self.quantity, self.order)
         radiation = radiated(self.cell, self.k)
         return resum(self.coefficients, epsilon, unit, base, radiation)
@@ -197,10 +200,11 @@ class EpsilonSeries(Value):
     def latex_rows(self) -> list[str]:
         """The series as a paper prints it: its name, its first `SHOWN` terms and dots."""
         epsilon = sp.Symbol(r"\varepsilon")
-        terms = []
-        for n, a in enumerate(self.coefficients[:SHOWN]):
-            if a:
-                terms.append((a, latex.power(epsilon, n) if n else ""))
+        # The constant has no factor.
+        terms = [(self.coefficients[0], "")]
+        for n in range(1, min(SHOWN, len(self.coefficients))):
+            if self.coefficients[n]:
+                terms.append((self.coefficients[n], latex.power(epsilon, n)))
         value = latex.total(terms) + r" + \dots"
         unit = self.prefactor * epsilon**self.power
         if unit != 1:
@@ -268,6 +272,7 @@ def _transformed(coefficients: Sequence[sp.Expr]) -> list[mpmath.mpf]:
 def _sum(b: Sequence[mpmath.mpf], x: mpmath.mpf) -> Estimate:
     """Sum Σ b_n x^n to the last term, or to that of x^LAST."""
     b = b[: LAST + 1]
+    # The terms left out are at most as large as a geometric series, 1/(1 - x) times the first.
     k = 1 / (1 - x)
     largest = max(abs(term) for term in b[-WINDOW:])
     error = max(SAFETY, REST * k) * largest * x ** len(b)

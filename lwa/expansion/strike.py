@@ -94,6 +94,7 @@ class Strike(Value):
     @property
     def force(self) -> Estimate:
         """Peak force of a contact."""
+        # The wave's force is exact for the rule; the rule has an error.
         return Estimate(float(self.wave.force), 0.0).widened(self._error)
 
     @property
@@ -180,6 +181,7 @@ def pulse_of_strike(
         )
     if (velocity is None) == (drop is None):
         raise InputError("velocity or drop: one of the two is wanted")
+    # In free fall m g h becomes ½ m v².
     if velocity is None:
         velocity = sp.sqrt(2 * GRAVITY * positive(drop, "drop"))
     given = {
@@ -190,6 +192,7 @@ def pulse_of_strike(
         "stiffness": chain.stiffnesses[0],
         "spacing": chain.spacing,
     }
+    # The rules are numbers that were measured.
     for name, value in given.items():
         if value.free_symbols:
             raise InputError(f"{name} is {shorten(value)}: a number is wanted")

@@ -25,7 +25,7 @@ from typing import Any, Self
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, power, read_exact, real, shorten, signed
+from lwa.base.exact import InputError, power, read_exact, real, shorten
 from lwa.base.frozen import FALL, RISE, NoSolitaryWave, Value
 from lwa.cell import Cell
 from lwa.law import ContactLaw, for_cell
@@ -83,9 +83,13 @@ class Background(Value):
 
     def __post_init__(self) -> None:
         for_cell(self.law, self.cell)
-        # Floats keep their digits: those of a shock's strains are its own.
-        read = real if isinstance(self.p0, sp.Expr) else read_exact
-        object.__setattr__(self, "p0", read(self.p0, "background"))
+        if isinstance(self.p0, sp.Expr):
+            p0 = real(
+                self.p0, "background"
+            )  # floats keep the digits of a shock's strains
+        else:
+            p0 = read_exact(self.p0, "background")
+        object.__setattr__(self, "p0", p0)
         if self.law.homogeneous and self.p0.is_negative:
             raise InputError(
                 f"background is {shorten(self.p0)}: under a power law it must not be negative"
@@ -127,12 +131,15 @@ class Background(Value):
         """The symbol B: positive, negative under a power with k < 1, real under other laws."""
         if not self.law.homogeneous:
             return sp.Symbol("B", real=True)
+        # For k < 1 speeds fall with the strain: the fastest part of a wave is its lowest strain.
         return FALL if (self.law.exponent - 1).is_negative else RISE
 
     def squared_speed(self, B: sp.Expr) -> sp.Expr:
         """Squared speed Q(B) of the wave that rises by B, whether it exists or not."""
-        work = self.force(sp.expand(self.p0 + B), -1) - self.force(self.p0, -1)
-        return sp.powsimp(squared_speed(work, self.force(self.p0), B))
+        at_rest = self.force(self.p0, -1)
+        at_peak = self.force(sp.expand(self.p0 + B), -1)
+        square = squared_speed(at_peak - at_rest, self.force(self.p0), B)
+        return sp.powsimp(square)
 
     def speed(self, B: sp.Expr) -> sp.Expr:
         """Speed ``V = √Q(B)`` of the wave that rises by B, whether it exists or not."""
@@ -232,7 +239,3 @@ class KdV(Value):
         """Width ``L = √(12 γ / (α B))`` of ``v = B sech²(ξ/L)``; the FWHM is ``2 arcosh(√2) L``."""
         ratio = sp.simplify(self.dispersion / self.nonlinearity)
         return sp.sqrt(12 * ratio / self._read_rise(B))
-
-    def profile(self, xi: Any, B: Any = None) -> sp.Expr:
-        """Strain ``v = B sech²(ξ/L)`` above the background."""
-        return self._read_rise(B) * sp.sech(signed(xi, "xi") / self.width(B)) ** 2

@@ -184,18 +184,20 @@ class Lattice(Value):
         resonators: Iterable[Resonator] = (),
         spacing: Quantity = 1,
     ) -> None:
-        numbered = enumerate(items(masses, "masses"), start=1)
-        read = tuple(positive(m, f"mass {n}") for n, m in numbered)
-        object.__setattr__(self, "masses", read)
+        read = []
+        for n, mass in enumerate(items(masses, "masses"), start=1):
+            read.append(positive(mass, f"mass {n}"))
+        object.__setattr__(self, "masses", tuple(read))
         object.__setattr__(self, "links", _parts(links, Link, "links"))
         parts = _parts(resonators, Resonator, "resonators")
         object.__setattr__(self, "resonators", parts)
         object.__setattr__(self, "spacing", positive(spacing, "spacing"))
         if not self.masses or not self.links:
             raise InputError("a lattice needs at least one mass and one link")
-        last = max(
-            [link.i for link in self.links] + [part.bead for part in self.resonators]
-        )
+        # A link's second particle may be in a cell ahead, the first one may not.
+        named = [link.i for link in self.links]
+        named += [resonator.bead for resonator in self.resonators]
+        last = max(named)
         if last >= self.size:
             raise InputError(
                 f"particle {last}: the cell has particles 0 to {self.size - 1}"
@@ -206,7 +208,9 @@ class Lattice(Value):
     def of_cell(cls, cell: Cell, law: ContactLaw) -> Self:
         """The chain of a cell whose contacts share a law."""
         for_cell(law, cell)
-        links = [Link(i, i + 1, law, A) for i, A in enumerate(cell.stiffnesses)]
+        links = []
+        for i, A in enumerate(cell.stiffnesses):
+            links.append(Link(i, i + 1, law, factor=A))
         return cls(cell.masses, links, (), cell.spacing)
 
     @property
@@ -237,6 +241,7 @@ class Lattice(Value):
     @property
     def exact(self) -> bool:
         """True for links in series whose laws are powers: all results are closed forms."""
+        # The energy of another law by the force may be no closed form.
         powers = all(isinstance(link.law, Power) for link in self.links)
         return self.in_series and powers
 
@@ -259,10 +264,14 @@ class Lattice(Value):
         load = read_exact(force, "force")
         if self.in_series:
             compressions = tuple(link.compression(load) for link in self.links)
-            pairs = zip(self.links, compressions, strict=True)
-            mean = sp.Add(*(delta / link.cosine for link, delta in pairs)) / self.size
-            return Equilibrium(load, mean / self.spacing, compressions)
+            # Along the lattice a link shortens by δ over its cosine.
+            length = sp.S.Zero
+            for link, delta in zip(self.links, compressions, strict=True):
+                length += delta / link.cosine
+            strain = length / (self.size * self.spacing)
+            return Equilibrium(load, strain, compressions)
         demand_numbers(load.free_symbols, "numbers are wanted")
+        # Without a force all links are open or slack, whatever their laws.
         e = self.statics.mean_compression(float(load)) if load else 0.0
         found = self.statics.compressions(np.array(e))
         return Equilibrium(
@@ -273,7 +282,8 @@ class Lattice(Value):
         """The energy per particle at rest."""
         total = sp.S.Zero
         for link, delta in zip(self.links, state.compressions, strict=True):
-            total += link.factor * link.law.energy.subs(link.law.delta, delta)
+            energy = link.law.energy.subs(link.law.delta, delta)
+            total += link.factor * energy
         return total / self.size
 
     def stiffness(self, state: Equilibrium) -> sp.Expr:
@@ -282,6 +292,7 @@ class Lattice(Value):
         for link, delta in zip(self.links, state.compressions, strict=True):
             # The spring constant along the lattice is dF/dδ times the cosine squared.
             spring = link.factor * link.cosine**2 * link.law.at(delta, 1)
+            # One contact that only touches makes the whole lattice soft.
             if spring.is_zero:
                 return sp.S.Zero
             compliance += 1 / spring
@@ -305,10 +316,13 @@ class Lattice(Value):
         forces = []
         bonds = []
         for link in self.links:
-            derivatives = (link.factor * link.law.at(x, n) for n in range(3))
-            functions = [function_of(x, f) for f in derivatives]
-            if not link.law.pulls:
-                functions = [_pushing(function) for function in functions]
+            functions = []
+            for n in range(3):
+                function = function_of(x, link.factor * link.law.at(x, n))
+                # The expression of a law that only pushes has no meaning at δ < 0.
+                if not link.law.pulls:
+                    function = _pushing(function)
+                functions.append(function)
             forces.append(LinkForces(*functions))
             bonds.append(Bond(link.i, link.j, float(link.cosine)))
         masses = np.array([float(m) for m in self.masses])
@@ -321,8 +335,10 @@ class Lattice(Value):
 
     def _check_paths(self) -> None:
         """Raise `lwa.InputError` unless the links join all particles and carry a load."""
+        # Particles that hang together move against each other in size - 1 ways.
         if np.linalg.matrix_rank(self._network.incidence) < self.size - 1:
             raise InputError("the links leave a particle of the cell free")
+        # Springs and masses of 1: whether links carry a load does not depend on their strength.
         branch = self._network.acoustic(np.ones(len(self.links)), np.ones(self.size))
         if not branch.stiffness > _NO_LOAD:
             raise InputError("the links carry no load from cell to cell")
@@ -343,6 +359,7 @@ def _pushing(function: Function) -> Function:
     """The function of a law's compression that is 0 where the contact is open, δ < 0."""
 
     def value(delta: Array) -> Array:
+        # `where` evaluates both sides: powers of negative numbers would be NaN with a warning.
         return np.where(delta < 0, 0.0, function(np.maximum(delta, 0.0)))
 
     return value
@@ -379,7 +396,8 @@ def hexagonal(
     law = law if isinstance(law, ContactLaw) else Power(law)
     a = positive(diameter, "diameter")
     if direction == "along":
+        # A row's own contact spans two layers: the layers of its neighbours lie between.
         links = [Link(0, 1, law, factor=2, cosine=sp.S.Half), Link(0, 2, law)]
         return Lattice([mass], links, spacing=a / 2)
-    cosine = sp.sqrt(3) / 2
+    cosine = sp.sqrt(3) / 2  # of 30°
     return Lattice([mass], [Link(0, 1, law, 2, cosine)], spacing=a * cosine)

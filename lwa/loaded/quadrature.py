@@ -80,12 +80,15 @@ class Grid:
     def strains(self, p0: float, B: float) -> Array:
         """The strains at the nodes."""
         # From p0 or p0 + B, whichever is nearer: p has its digits next to a pole at either.
-        return np.where(self.rest < 0.5, (p0 + B) - B * self.rest, p0 + B * self.s)
+        from_peak = (p0 + B) - B * self.rest
+        from_foot = p0 + B * self.s
+        return np.where(self.rest < 0.5, from_peak, from_foot)
 
     @property
     def logs(self) -> Array:
         """ln s at the nodes, with all digits near the peak."""
-        return np.where(self.rest < 0.5, np.log1p(-self.rest), np.log(self.s))
+        near_peak = np.log1p(-self.rest)
+        return np.where(self.rest < 0.5, near_peak, np.log(self.s))
 
     @staticmethod
     def from_peak(values: Array) -> Array:
@@ -97,17 +100,22 @@ class Grid:
 def grid(steps: int, start: float = _NEAR) -> Grid:
     """Build the grid of ``steps`` nodes per unit of t, with rows from ``start`` on."""
     t = np.arange(-_END * steps, _END * steps + 1) / steps
-    grown = np.exp(np.pi * np.sinh(t))
-    s = grown / (1 + grown)
-    rest = 1 / (1 + grown)
+    odds = np.exp(np.pi * np.sinh(t))  # s over 1 - s
+    s = odds / (1 + odds)
+    rest = 1 / (1 + odds)
     rate = np.pi * np.cosh(t) / steps  # d ln(s/(1-s)) from node to node
     ds = s * rest * rate
-    first = int(np.argmax((rate < _STEEPEST) & (t >= start)))
+    # Towards the foot the nodes are too far apart for a polynomial through their neighbours.
+    smooth = (rate < _STEEPEST) & (t >= start)
+    first = int(np.argmax(smooth))
     rows = slice(first, None)
 
     sums = _cumulated(len(t))
-    to_node = sums[rows]  # integrals from the foot to a row
-    to_peak = sums[::-1, ::-1][rows]  # the nodes lie symmetrically about t = 0
+    # Integrals from the foot to a row
+    to_node = sums[rows]
+    # Integrals from a row to the peak: the nodes lie symmetrically about t = 0.
+    mirrored = sums[::-1, ::-1]
+    to_peak = mirrored[rows]
     # The kernel K/(1-u), u = v/B, is (1-s)²/(1-u) for s > u. Below it is
     # s (2 (1-s) - s (1-u)/u)/u, which does not cancel.
     u = s[rows, None]
@@ -115,7 +123,16 @@ def grid(steps: int, start: float = _NEAR) -> Grid:
     kernel = to_node * (2 * s * rest * ds) / u
     kernel -= to_node * (s**2 * ds) * above_u / u**2
     kernel += to_peak * (rest**2 * ds) / above_u
-    return Grid(s, rest, ds, rows, to_peak, kernel, (rate * np.sqrt(rest))[rows])
+    length = rate * np.sqrt(rest)
+    return Grid(
+        s=s,
+        rest=rest,
+        ds=ds,
+        rows=rows,
+        to_peak=to_peak,
+        kernel=kernel,
+        length=length[rows],
+    )
 
 
 def _cumulated(count: int) -> Array:
@@ -124,20 +141,27 @@ def _cumulated(count: int) -> Array:
     The integral over a cell is that of the polynomial through the `_WINDOW` nearest places; the
     function vanishes beyond the ends.
     """
+    # The cell from 0 to 1, with as many places before it as behind it
     places = range(1 - _WINDOW // 2, _WINDOW // 2 + 1)
+    # Gauss's rule of this many nodes is exact for the polynomial.
     x, w = np.polynomial.legendre.leggauss(_WINDOW)
     x = (x + 1) / 2
     w = w / 2
     weights = []
     for j in places:
-        others = [i for i in places if i != j]
-        lagrange = np.prod([(x - i) / (j - i) for i in others], axis=0)
+        lagrange = np.ones(_WINDOW)  # 1 at the place j, 0 at the others
+        for i in places:
+            if i != j:
+                lagrange *= (x - i) / (j - i)
         weights.append(w @ lagrange)
     cells = np.zeros((count - 1, count + _WINDOW))
     for i, row in enumerate(cells):
         row[i : i + _WINDOW] = weights
-    sums = np.cumsum(cells, axis=0)[:, -places[0] : count - places[0]]
-    return np.vstack([np.zeros(count), sums])
+    sums = np.cumsum(cells, axis=0)
+    # The columns of places beyond the ends go: there the function is 0.
+    before = -places[0]
+    inside = sums[:, before : before + count]
+    return np.vstack([np.zeros(count), inside])
 
 
 def _interpolated(x: Array, y: Array, at: Array) -> Array:
@@ -147,6 +171,7 @@ def _interpolated(x: Array, y: Array, at: Array) -> Array:
     """
     nearest = np.searchsorted(x, at) - _PLACES // 2
     first = np.clip(nearest, 0, len(x) - _PLACES)
+    # One column of places for each value that is wanted
     window = first + np.arange(_PLACES)[:, None]
     x = x[window]
     y = y[window]
@@ -185,6 +210,7 @@ class Quadrature:
 
     def half_width(self, of_force: bool = False) -> float:
         """The distance from the peak at which the strain, or the force F, has half of its rise."""
+        # A width of the force is interpolated, and wants a finer grid.
         if of_force:
             return float(self._converged(Nodes.half_width_of_force, _STEPS[1:]).item())
         return float(self._converged(Nodes.half_width))
@@ -209,7 +235,8 @@ class Quadrature:
             F1, F2, _ = self.law(g.strains(self.p0, self.B))
             slope_at_peak = F2 @ (2 * g.s * g.rest * g.ds)  # Q′(B)
             above_sound = F2 @ (g.rest**2 * g.ds)  # (Q(B) - Q(0))/B
-            gaps = np.append(g.kernel @ F2, [slope_at_peak, above_sound])
+            above_smaller = g.kernel @ F2  # (Q(B) - Q(v))/(B - v)
+            gaps = np.append(above_smaller, [slope_at_peak, above_sound])
         if not np.all(F1 >= 0) or not np.isfinite(F1[-1]):
             return "F′ is not positive and finite from p0 to p0 + B"
         if np.any(F1 == 0):
@@ -220,14 +247,17 @@ class Quadrature:
             return "the law does not stiffen towards p0 + B: a smaller wave would be as fast"
         # Closer to the foot I may be a rounding error.
         parts = np.linspace(0.01, 1, 100)
-        if not np.all(self.inertia(self.law(self.p0 + self.B * parts)) > 0):
+        law = self.law(self.p0 + self.B * parts)
+        if not np.all(self.inertia(law) > 0):
             return "I is not positive from the load to the peak"
         return ""
 
     def inertia(self, law: Samples) -> Array:
         """The coefficient ``J = I F′ + R V⁴``."""
         J = law.slope * law.dispersion
-        return J + self.resonance * self.square**2 if self.resonance else J
+        if self.resonance:  # V² costs time, and most lattices have no resonators
+            J = J + self.resonance * self.square**2
+        return J
 
     def _converged(
         self,
@@ -250,6 +280,7 @@ class Quadrature:
             Size of a result below which its error is absolute.
         """
         for count in steps:
+            # Every second node of the fine grid is a node of the coarse one.
             fine = grid(count, start)
             coarse = grid(count // 2, start)
             with np.errstate(all="ignore"):
@@ -282,7 +313,7 @@ class Nodes:
         first = g.ds * g.rest
         second = g.ds * g.rest**2
         change = self.wave.B / 3 * (self.law.bend @ second) / second.sum()
-        if abs(change) < F1[0] / 4:
+        if abs(change) < F1[0] / 4:  # a small wave, whose V² - F′(p0) has its digits
             return np.asarray(F1[0] + change)
         return np.asarray((F1 @ first) / first.sum())
 
@@ -292,7 +323,8 @@ class Nodes:
         B = self.wave.B
         J = self.wave.inertia(self.law)[self.grid.rows]
         # Roots first: their quotient neither over- nor underflows.
-        gap = np.sqrt(np.sign(B) * (self.grid.kernel @ self.law.bend)) * np.sqrt(abs(B))
+        above_smaller = np.sign(B) * (self.grid.kernel @ self.law.bend)
+        gap = np.sqrt(above_smaller) * np.sqrt(abs(B))
         return np.asarray(self.grid.length * np.sqrt(J) / gap)
 
     @property
@@ -317,8 +349,10 @@ class Nodes:
         g = self.grid
         xi = g.from_peak(self._to_peak @ self.distances)
         logs = g.from_peak(g.logs[g.rows])
-        inside = _interpolated(xi, logs, np.minimum(places, xi[-1]))
+        last = xi[-1]
+        inside = _interpolated(xi, logs, np.minimum(places, last))
         # v decays exponentially behind the last node under a load, and ends there without.
-        steps = g.from_peak((g.ds / g.s)[g.rows])[-1]
-        decay = steps / g.from_peak(self.distances)[-1]
-        return np.asarray(np.exp(inside - decay * np.maximum(places - xi[-1], 0)))
+        fall = g.from_peak((g.ds / g.s)[g.rows])[-1]  # of ln v, from node to node
+        decay = fall / g.from_peak(self.distances)[-1]
+        beyond = np.maximum(places - last, 0)
+        return np.asarray(np.exp(inside - decay * beyond))

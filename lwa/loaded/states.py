@@ -68,7 +68,7 @@ class States(Value):
             rise = _compression(chain, law, force) - ahead
             return cls(chain, law, load, force, ahead, rise, law.homogeneous)
         ahead = chain.equilibrium(load).strain * chain.spacing
-        if chain.in_series:
+        if chain.in_series:  # exact: no digits are lost in the difference
             rise = chain.equilibrium(force).strain * chain.spacing - ahead
         else:
             gap = number(force - load)
@@ -89,9 +89,14 @@ class States(Value):
             raise NoSolitaryWave(str(fault)) from None
         A = cell.stiffness(law.exponent)
         D = cell.spacing
-        load = A * law.at(D * p0)
-        force = A * law.at(D * (p0 + B))
-        return cls(cell, law, load, force, D * p0, D * B)
+        return cls(
+            chain=cell,
+            law=law,
+            precompression=A * law.at(D * p0),
+            force=A * law.at(D * (p0 + B)),
+            exact_static_compression=D * p0,
+            exact_compression=D * B,
+        )
 
     @cached_property
     def lattice(self) -> Lattice:

@@ -106,14 +106,17 @@ class Statics:
                 force = self.values(delta, 0)
                 springs = self.values(delta, 1)
                 rises = (force > 0) & (springs > 0)
-                gain = force / springs  # dδ/d ln f
+                # dδ/d ln f of each link
+                gain = force / springs
                 logs = np.log(force * spans)
                 # ln f of the force at which the compressions add up, to first order
-                missing = total - ((delta - logs * gain) / spans).sum(axis=-1)
+                at_unit_force = (delta - logs * gain) / spans
+                missing = total - at_unit_force.sum(axis=-1)
                 common = missing / (gain / spans).sum(axis=-1)
                 forward = (common[..., None] - logs) * gain / delta
                 back = np.log(inside / delta) / 2
                 step = np.where(rises, forward, back)
+                # Far from the state the first order overshoots.
                 bounded = np.clip(step, -_BOLDEST, _BOLDEST)
                 step = np.where(np.isfinite(step), bounded, 0.0)
                 inside = np.where(rises, delta, inside)
@@ -127,9 +130,8 @@ class Statics:
 
         The energy is convex where laws rise. Its slope along a step tells if the step is too long.
         """
-        incidence = self.network.incidence[
-            :, 1:
-        ]  # the first particle stays where it is
+        # The first particle stays where it is.
+        incidence = self.network.incidence[:, 1:]
         delta = e[..., None] * self.network.spans
         with np.errstate(all="ignore"):  # far beyond the wave forces are infinite
             for _ in range(_MOST):
@@ -138,7 +140,8 @@ class Statics:
                 stiffest = springs.max(axis=-1, keepdims=True)
                 held = np.maximum(springs, _OPEN * stiffest)
                 matrix = incidence.T @ (held[..., None] * incidence)
-                change = -solved(matrix, force @ incidence) @ incidence.T
+                unbalanced = force @ incidence  # on each particle
+                change = -solved(matrix, unbalanced) @ incidence.T
                 step = self._part(delta, change) * change
                 delta = delta + step
                 if not np.any(np.abs(step).max(axis=-1) > _ROUNDING * e):
@@ -148,12 +151,14 @@ class Statics:
     def _part(self, delta: Array, change: Array) -> Array:
         """The part 1, 1/2, 1/4, … of a step behind which the energy is no steeper than before."""
         force = self.values(delta, 0)
+        # The energy's slope along the step, and what rounding may add to this slope
         steep = np.abs((force * change).sum(axis=-1))
         steep += _NOISE * (np.abs(force) * np.abs(change)).sum(axis=-1)
         part = np.ones_like(steep)
         for _ in range(_HALVINGS):
             ahead = self.values(delta + part[..., None] * change, 0)
-            fine = np.abs((ahead * change).sum(axis=-1)) <= steep
+            slope = (ahead * change).sum(axis=-1)
+            fine = np.abs(slope) <= steep
             if np.all(fine | np.isnan(steep)):
                 break
             part = np.where(fine, part, part / 2)
@@ -161,8 +166,11 @@ class Statics:
 
     def values(self, delta: Array, n: int) -> Array:
         """The n-th derivative of each link's force at compressions of shape (…, links)."""
+        columns = []
         with np.errstate(all="ignore"):
-            columns = [link[n](delta[..., i]) for i, link in enumerate(self.forces)]
+            for i, link in enumerate(self.forces):
+                function = link[n]
+                columns.append(function(delta[..., i]))
         return np.stack(columns, axis=-1)
 
     def force(self, e: Array) -> Array:
@@ -181,12 +189,16 @@ class Statics:
         springs = self.values(delta, 1)
         with np.errstate(all="ignore"):
             if self.network.in_series:
+                # Springs along the lattice, one behind the other
                 spans = self.network.spans
                 compliances = 1 / (springs * spans**2)
                 stiffness = size / compliances.sum(axis=-1)
                 shares = stiffness[..., None] / (springs * spans)
-                row = [compliances[..., n] * stiffness for n in self.network.order]
-                dispersion = dispersion_of_chain(self.masses / self.masses.sum(), row)
+                row = []
+                for n in self.network.order:
+                    row.append(compliances[..., n] * stiffness)
+                weights = self.masses / self.masses.sum()
+                dispersion = dispersion_of_chain(weights, row)
             else:
                 closed = np.where(springs == 0, np.inf, np.abs(springs))
                 softest = closed.min(axis=-1, keepdims=True)
@@ -196,12 +208,14 @@ class Statics:
                     springs, self.masses
                 )
         bend = (self.values(delta, 2) * shares**3).sum(axis=-1) / size
+        # I of a chain of alike links is one number for all e.
         return Samples(stiffness, bend, dispersion + 0 * e)
 
     def mean_compression(self, force: float) -> float:
         """The mean compression under a force > 0; raises `lwa.InputError` if it is not reached."""
         unreached = InputError(f"force is {force:g}: the links do not reach it")
         e: Array = np.exp2(np.arange(*_REACH))
+        # 4e-16 is two units of the last place: the bounds are neighbours.
         while e[-1] > e[0] * (1 + 4e-16):
             # A force beyond the reach of a law is NaN.
             above = np.flatnonzero(~(self.force(e) < force))
@@ -223,5 +237,7 @@ class Statics:
         if abs(rough) > _SMALL * e:
             return rough
         places, weights = np.polynomial.legendre.leggauss(_NODES)
-        slopes = self.samples(e + rough * (1 + places) / 2).slope
-        return added / float(slopes @ weights / 2)
+        # Gauss's places and weights are those of the interval from -1 to 1.
+        between = e + rough * (1 + places) / 2
+        mean_slope = self.samples(between).slope @ weights / 2
+        return added / float(mean_slope)

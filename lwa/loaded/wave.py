@@ -102,8 +102,8 @@ class LoadedWave(States):
         if reason:
             raise NoSolitaryWave(reason)
         for resonator in self.lattice.resonators:
-            sites = number(self.speed / self.chain.spacing)
-            ratio = self.lattice.resonance(resonator) / (2 * pi * sites)
+            rate = number(self.speed / self.chain.spacing)  # V/D
+            ratio = self.lattice.resonance(resonator) / (2 * pi * rate)
             if ratio < _FASTEST:
                 raise InputError(
                     f"a resonator's ω0 is {ratio:.3g} times 2πV/D: the relation holds from "
@@ -132,7 +132,9 @@ class LoadedWave(States):
             width = self.estimate("fwhm").latex()
             rows[-1] += rf" \approx {speed}"
             rows.append(f"{latex.fwhm('force')} = {width}")
-        return rows if self.law is None else [*self.law.latex_rows(), *rows]
+        if self.law is None:
+            return rows
+        return [*self.law.latex_rows(), *rows]
 
     def at(self, **values: Any) -> LoadedWave:
         """Substitute values for symbols of a chain, as `lwa.CompactWave.at`."""
@@ -160,13 +162,13 @@ class LoadedWave(States):
     @cached_property
     def speed(self) -> sp.Expr:
         """The speed V."""
+        D = self.chain.spacing
         if self.work is None:
             square = self._quadrature.square / number(self.lattice.mass)
-            return sp.Float(sqrt(square)) * self.chain.spacing
+            return D * sp.Float(sqrt(square))
         square = squared_speed(self.work, self.precompression, self.exact_compression)
-        return self.chain.spacing * self.written(
-            power(square / self.lattice.mass, sp.S.Half)
-        )
+        rate = power(square / self.lattice.mass, sp.S.Half)
+        return D * self.written(rate)
 
     @cached_property
     def sound_speed(self) -> sp.Expr:
@@ -174,9 +176,8 @@ class LoadedWave(States):
         stiffness = self.stiffness
         if stiffness is None:
             stiffness = sp.Float(float(self._quadrature.at(_FOOT).slope))
-        return self.chain.spacing * self.written(
-            power(stiffness / self.lattice.mass, sp.S.Half)
-        )
+        rate = power(stiffness / self.lattice.mass, sp.S.Half)
+        return self.chain.spacing * self.written(rate)
 
     @property
     def bead_velocity(self) -> sp.Expr:
@@ -204,7 +205,8 @@ class LoadedWave(States):
             bend = sp.Float(float(law.bend))
             # Resonators follow the acceleration of a wave with V̂² = F′.
             resonance = self.lattice.resonance_sum * slope / self.lattice.mass**2
-            I = D**2 * (sp.Float(float(law.dispersion)) + resonance)
+            dispersion = sp.Float(float(law.dispersion)) + resonance
+            I = D**2 * dispersion  # the dispersion of a lattice is that of D = 1
         return KdV.of_slopes(self.sound_speed, slope, D * bend, I)
 
     def fwhm(
@@ -242,11 +244,15 @@ class LoadedWave(States):
             force: Function = self.lattice.statics.force
         else:
             force = function_of(self.law.delta, self.law.F)
-        low = max(wave.p0, _FOOT * abs(wave.B))  # no force is computed at 0
+        # A law may have no value at 0: the foot of a wave without load stands a little above.
+        low = max(wave.p0, _FOOT * abs(wave.B))
         at_rest = force(np.array(low))
-        rises = force(np.maximum(wave.p0 + wave.B * ratio, low)) - at_rest
+        strains = np.maximum(wave.p0 + wave.B * ratio, low)
+        rises = force(strains) - at_rest
         peak = force(np.array(wave.p0 + wave.B)) - at_rest
-        return np.asarray(rises / peak * number(self.force - self.precompression))
+        # The unit of the force in floats is not that of the chain; the ratio has none.
+        known_peak = number(self.force - self.precompression)
+        return np.asarray(rises / peak * known_peak)
 
     def estimate(
         self,
@@ -281,20 +287,23 @@ class LoadedWave(States):
         if spacing.is_Symbol and not self.exact_compression.has(spacing):
             return self.at(**{spacing.name: 1}).estimate(name, quantity, extent)
         if name == "speed":
-            speed = number(self.speed)
-            return Estimate(speed, speed * self._bounds.speed)
-        width = number(self.fwhm(quantity, extent))
-        relative = self._bounds.width
-        if extent == "time":
-            relative += self._bounds.speed
-        return Estimate(width, width * relative)
+            value = number(self.speed)
+            relative = self._bounds.speed
+        else:
+            value = number(self.fwhm(quantity, extent))
+            relative = self._bounds.width
+            if extent == "time":  # the width divided by the speed
+                relative += self._bounds.speed
+        return Estimate(value, value * relative)
 
     @cached_property
     def _bounds(self) -> Bounds:
         """Bounds on the relative errors of the speed and of widths."""
         wave = self._quadrature
-        added = 1 - float(wave.at(_FOOT).slope) / wave.square
-        delta = steepness(float(wave.at(1).slope), wave.square)
+        slope_at_rest = float(wave.at(_FOOT).slope)
+        slope_at_peak = float(wave.at(1).slope)
+        added = 1 - slope_at_rest / wave.square
+        delta = steepness(slope_at_peak, wave.square)
         return bounds(self.lattice, delta, added, rises=wave.B > 0)
 
     @cached_property
@@ -306,7 +315,8 @@ class LoadedWave(States):
             resonance = self.lattice.resonance_sum / self.lattice.mass**2
             return Quadrature(self._samples, number(p0), number(B), number(resonance))
         if self.law.homogeneous:
-            # A power has no length of its own: the unit is the larger compression.
+            # A power has no length of its own: the unit is the larger compression, at the peak,
+            # or for k < 1, where waves lower it, ahead.
             unit = p0 + B if (self.law.exponent - 1).is_positive else p0
             p0 = p0 / unit
             B = B / unit
@@ -320,10 +330,12 @@ class LoadedWave(States):
         x = sp.Symbol("delta", positive=True)
         slope = function_of(x, self.law.at(x, 1))
         bend = function_of(x, self.law.at(x, 2))
+        # All contacts of a cell share one law up to a factor, so that I is one number.
         I = number(self.field.I / self.chain.spacing**2)
 
         def samples(e: Array) -> Samples:
-            return Samples(slope(e), bend(e), np.full(e.shape, I))
+            dispersion = np.full(e.shape, I)
+            return Samples(slope(e), bend(e), dispersion)
 
         return samples
 
@@ -425,6 +437,7 @@ def loaded_wave(
     try:
         return LoadedWave.of_forces(chain, contact, load, peak)
     except NoSolitaryWave as reason:
+        # The user may have taken the total force for the rise.
         below = "below " if (peak - load).is_negative else ""
         raise NoSolitaryWave(
             f"force is {shorten(peak)}, {below}precompression {shorten(load)}: {reason}"

@@ -7,9 +7,6 @@ strain loses 30 of them in the work of a pulse.
 
 from __future__ import annotations
 
-from functools import reduce
-from operator import or_
-
 import sympy as sp
 
 from lwa.base.exact import InputError, demand_numbers
@@ -41,11 +38,17 @@ def floats(law: ContactLaw, *values: sp.Expr) -> tuple[sp.Expr, ...]:
         For symbols of a value or of the law beside long fractions.
     """
     constants = {x for x in values if x.is_Rational} | law.F.atoms(sp.Rational)
-    if all(max(abs(int(x.p)), int(x.q)) <= SHORT for x in constants):
+    largest = max(max(abs(int(x.p)), int(x.q)) for x in constants | {sp.S.One})
+    if largest <= SHORT:
         return values
-    free = reduce(or_, (x.free_symbols for x in values), {*law.symbols})
-    demand_numbers(free, f"beside fractions above {SHORT} a front needs numbers")
-    return tuple(x if x.is_zero else sp.N(x, WORKING) for x in values)
+    why = f"beside fractions above {SHORT} a front needs numbers"
+    demand_numbers(law.symbols, why)
+    found = []
+    for value in values:
+        demand_numbers(value.free_symbols, why)
+        # 0 stays exact: without load a power law has closed forms.
+        found.append(value if value.is_zero else sp.N(value, WORKING))
+    return tuple(found)
 
 
 def evaluated(value: sp.Expr) -> sp.Expr:
@@ -70,5 +73,6 @@ def tidy(value: sp.Expr) -> sp.Expr:
         raise InputError("the strains are too near, or too far apart, for a number")
     if not value.has(sp.Float):
         return sp.powsimp(value)
+    # The factors without symbols are one float.
     factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
     return factor.n(DIGITS) * rest

@@ -78,16 +78,16 @@ class Pulse(Value):
         w = self.velocity
         if self._bare:  # Q(B) = 2 B^{k-1}/(k (k+1))
             k = self.field.law.exponent
-            parts = sp.expand_power_base(
-                (k * (k + 1) * w**2 / 2) ** (1 / (k + 1)), force=True
-            )
+            rise = (k * (k + 1) * w**2 / 2) ** (1 / (k + 1))
+            # All quantities are positive, so that powers of products may be taken apart.
+            parts = sp.expand_power_base(rise, force=True)
             return sp.powsimp(sp.powdenest(parts, force=True), force=True)
         x = sp.Dummy("x", positive=True)
         p0 = sp.N(self.field.p0, WORKING)
         # A power has no strain of its own: that of the load is the unit.
         unit = sp.sign(w) * (p0 if self.field.law.homogeneous else 1)
-        square = self.field.on(p0).squared_speed(unit * x) * (unit * x) ** 2
-        rising = square - sp.N(w, WORKING) ** 2
+        B = unit * x
+        rising = self.field.on(p0).squared_speed(B) * B**2 - sp.N(w, WORKING) ** 2
         return unit * rising_root(self.field, rising, x, WORKING)
 
     @property
@@ -109,7 +109,8 @@ class Pulse(Value):
         k = field.law.exponent
         if self._bare:  # F = B^k/k, V² = 2 B^{k-1}/(k (k+1))
             return B * (1 - (k - 1) / (2 * k * (k + 1)))
-        bend = field.force(field.p0 + B) - field.force(field.p0) - self.velocity**2 / B
+        added = field.force(field.p0 + B) - field.force(field.p0)
+        bend = added - self.velocity**2 / B  # V² B = w²/B
         return B - bend / (2 * field.force(field.p0 + B, 1))
 
     @property
@@ -121,6 +122,7 @@ class Pulse(Value):
 def speed_error(delta: float) -> float:
     """Relative error of the doubling rule's speed on the canonical wave of a steepness."""
     rho = -expm1(-delta)
+    # The second term is the canonical wave's: 5 % too fast for cubic contacts without load.
     return 0.01 * rho + 0.08 * rho**3
 
 
@@ -134,6 +136,7 @@ def rise_error(delta: float) -> float:
 
 def leading_error(off: float, delta: float) -> float:
     """Relative error of El's leading edge, from which the doubling rule differs by ``off``."""
+    # The doubling rule stands between: its own error is known.
     return off + (1 + off) * speed_error(delta)
 
 

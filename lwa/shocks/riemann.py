@@ -106,6 +106,7 @@ class Shock(Value):
 
     def latex_rows(self) -> list[str]:
         rows = {"p_{-}": self.behind, "p_{+}": self.ahead, "v_{p}": self.plateau}
+        # Rows that this front does not have are left out.
         with suppress(InputError):
             rows["s_{-}"] = self.trailing_speed
         with suppress(InputError):
@@ -132,6 +133,7 @@ class Shock(Value):
     def _sound(self, p: sp.Expr) -> sp.Expr:
         """Speed of sound on the strain p, with all digits."""
         field = self._field.on(p)
+        # At k < 1 the speed is infinite there, and fronts are refused.
         if self.law.homogeneous and p.is_zero:
             return sp.S.Zero
         return evaluated(field.sound_speed * field.time_scale)
@@ -139,6 +141,7 @@ class Shock(Value):
     @cached_property
     def ratio(self) -> sp.Expr:
         """Ratio r of the speeds of sound behind and ahead, infinite without load."""
+        # Without the time scale, whose symbols would have to cancel
         behind = self._sound(self.behind) / self._field.time_scale
         ahead = self._sound(self.ahead) / self._field.time_scale
         if ahead.is_zero:
@@ -173,14 +176,18 @@ class Shock(Value):
         >>> shock(Cell([1], spacing=1), 2, "9/5", k=3).trailing_speed
         8*sqrt(3)/5
         """
-        if self._gain.is_negative:
+        if (
+            self._gain.is_negative
+        ):  # a rarefaction ends where sound behind it has come to
             return self.sound(self.behind)
         r = self._edge_ratio()
         if r.is_number and r > STEEPEST:
             raise InputError(
                 f"c₋/c₊ is {sp.N(r, 5)}: the trailing edge holds up to 1.3"
             )
-        return tidy(sp.expand(self._sound(self.behind) * (2 / r - 1)))
+        # f′ = cos κ/2 at -2 ln cos κ/4 = ln r
+        speed = self._sound(self.behind) * (2 / r - 1)
+        return tidy(sp.expand(speed))
 
     def leading_speed(self, rule: RuleName = "doubling") -> sp.Expr:
         """Speed of the leading pulse or edge; for a rarefaction the speed c₊.
@@ -206,6 +213,7 @@ class Shock(Value):
             return self.sound(self.ahead)
         if rule == "doubling":
             return tidy(evaluated(self._pulse.speed * self._field.time_scale))
+        # f̃(q)/q = sinh(q/2)/(q/2) at 2 ln cosh q/4 = ln r
         r = self._edge_ratio()
         edge = sp.sqrt(r * (r - 1)) / sp.acosh(sp.sqrt(r))
         return tidy(evaluated(self._sound(self.ahead) * edge))
@@ -263,7 +271,7 @@ class Shock(Value):
             return Estimate(value, math.nan)
         try:
             relative = front._relative_error(name, rule)
-        except InputError:
+        except InputError:  # the pulse, by which errors are measured, is not known
             relative = math.nan
         return Estimate(value, abs(value) * relative)
 
@@ -289,6 +297,7 @@ class Shock(Value):
         if name == "trailing_speed":
             sound = self.sound(self.behind) / self.trailing_speed
             return trailing_error(self._edges_differ()) * abs(float(sound))
+        # Floats of 15 digits are enough for an error.
         peak = sp.N(self.peak)
         error = rise_error(delta) * sp.N(self._pulse.contact_rise)
         if name == "peak":
@@ -310,6 +319,7 @@ class Shock(Value):
             raise InputError(
                 "sound is slower behind the front: a rarefaction has no pulse"
             )
+        # The doubling rule
         pulse = Pulse(self._field, 2 * self._gained)
         if not self.law.homogeneous:
             demand_one_sign(self._field, self.ahead, self.ahead + pulse.rise)
@@ -451,7 +461,6 @@ def piston(
     sqrt(2)*3**(3/4)*sqrt(v)/3
     """
     contact = _read(law, cell, k)
-    _demand_stiffening(contact)
     speed = positive(velocity, "velocity")
     if speed.is_number and not speed.is_Rational:
         speed = sp.N(speed, WORKING)  # powers of roots take long
@@ -460,17 +469,10 @@ def piston(
     return _front(cell, contact, strain(field, speed / field.time_scale), p0)
 
 
-def _demand_stiffening(law: ContactLaw) -> None:
-    """Raise `lwa.InputError` for a linear law."""
-    if law.slope(2).is_zero:
-        raise InputError(
-            "sound is as fast behind as ahead: there is no shock and no rarefaction"
-        )
-
-
 def _front(cell: Cell, law: ContactLaw, behind: sp.Expr, ahead: sp.Expr) -> Shock:
     """Return the front between two strains, or refuse the strains."""
     for name, p in (("behind", behind), ("ahead", ahead)):
+        # Also where the sign of p or of k - 1 is unknown: symbols are taken to be in range.
         if law.homogeneous and p.is_negative:
             raise InputError(
                 f"{name} is {shorten(p)}: contacts of a power law only push"
@@ -479,8 +481,8 @@ def _front(cell: Cell, law: ContactLaw, behind: sp.Expr, ahead: sp.Expr) -> Shoc
             raise InputError(
                 f"{name} is 0 and k {law.exponent}: a front without load wants k > 1"
             )
-    _demand_stiffening(law)
     jump = behind - ahead
+    # Equal strains are refused below, with the words for equal speeds of sound.
     if behind.is_number and ahead.is_number and not jump.is_zero:
         least = SMALLEST * max(abs(behind), abs(ahead))
         if abs(jump) < least:
@@ -488,6 +490,7 @@ def _front(cell: Cell, law: ContactLaw, behind: sp.Expr, ahead: sp.Expr) -> Shoc
                 f"the jump of the strain is {sp.N(jump, 3)}: 1e-15 of it at least is wanted"
             )
     strains = floats(law, behind, ahead)
+    # The sign of a sum of floats and powers of a symbol is not known.
     hold_floats = any(p.has(sp.Float) for p in strains)
     scaled = law.homogeneous and not any(p.free_symbols for p in strains)
     if hold_floats and not scaled and cell.spacing.is_Symbol:

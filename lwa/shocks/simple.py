@@ -43,15 +43,19 @@ def velocity(field: Background, p: sp.Expr) -> sp.Expr:
     p**2/2
     """
     if field.law.homogeneous:
-        power = (field.law.exponent + 1) / 2
-        return 2 * (p**power - field.p0**power) / (field.law.exponent + 1)
+        power = (field.law.exponent + 1) / 2  # c = p^{(k-1)/2}
+        return (p**power - field.p0**power) / power
     x = sp.Dummy("p", positive=True)
     c = sp.powdenest(sp.sqrt(field.force(x, 1)), force=True)
+    # SymPy is asked for no other antiderivative: the search may have no end.
     if isinstance(c, sp.exp) or not c.has(x):
         return sp.integrate(c, (x, field.p0, p))
     # from 0 to p - p0, where no digits cancel
-    gained = sp.Integral(c.subs(x, field.p0 + x), (x, 0, p - field.p0))
-    return gained if gained.free_symbols else gained.evalf(DIGITS)
+    risen = c.subs(x, field.p0 + x)
+    gained = sp.Integral(risen, (x, 0, p - field.p0))
+    if gained.free_symbols:
+        return gained
+    return gained.evalf(DIGITS)
 
 
 def strain(field: Background, gained: sp.Expr) -> sp.Expr:

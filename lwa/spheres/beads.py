@@ -28,7 +28,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -52,17 +52,21 @@ GRAVITY = sp.Rational("9.81")
 """Gravity in m/s², of strikers that drop and of the scenes."""
 
 FILE = (
-    *(
-        "duration",
-        "units",
-        "samples",
-        "gravity",
-        "precompression",
-        "materials",
-        "beads",
-        "chain",
-    ),
-    *("defects", "wall", "damping", "drive", "striker", "start", "sensors"),
+    "duration",
+    "units",
+    "samples",
+    "gravity",
+    "precompression",
+    "materials",
+    "beads",
+    "chain",
+    "defects",
+    "wall",
+    "damping",
+    "drive",
+    "striker",
+    "start",
+    "sensors",
 )
 """Keys of a file."""
 
@@ -70,15 +74,15 @@ CHAIN = ("cell", "k", "law", "stiffnesses", "spacings", "repeat")
 """Keys of the table ``chain``; beads with names have ``cell`` and ``repeat`` alone."""
 
 STRIKER = ("velocity", "drop", "like")
-"""Keys of the table ``striker``: the velocity of bead 1, or the height from which the bead falls,
-and the bead that it is like."""
+"""Keys of the table ``striker``: velocity of bead 1 or height of its fall, and a bead like it."""
 
 
 def read_materials(file: Table) -> dict[str, Material]:
     """Materials by name: the built-in `MATERIALS` ("steel" is steel 316), and those of a file."""
     materials: dict[str, Material] = file.read("materials", named(_material), {})
     known = MATERIALS | {"steel": MATERIALS["steel 316"]}
-    return materials | known | materials  # the names of the file come first
+    # A file's own names come first in lists, and its values stand above the built-in ones.
+    return materials | known | materials
 
 
 def striker_velocity(striker: Table) -> float:
@@ -126,8 +130,11 @@ class Row:
 
     def by_contact(self, values: list[float]) -> list[float]:
         """Return one value for each contact between two beads of the chain; [] if none is given."""
-        whole = values if len(values) == self.size - 1 else values * self.repeat
-        return whole[: self.size - 1]
+        contacts = self.size - 1
+        if len(values) == contacts:
+            return values
+        # The last contact of the last cell joins the chain to nothing.
+        return (values * self.repeat)[:contacts]
 
 
 def read_row(file: Table, beads: Mapping[str, Sphere]) -> Row:
@@ -139,30 +146,30 @@ def read_row(file: Table, beads: Mapping[str, Sphere]) -> Row:
             "chain.cell is empty: names, or masses, of one bead or more are wanted"
         )
     repeat = given.read("repeat", partial(integer, low=1), 1)
-    names = isinstance(cell[0], str)
-    for key in ("k", "law", "stiffnesses", "spacings"):
-        if names and key in given:
-            raise InputError(
-                f"chain.{key} is given, but named beads are in Hertz contact"
-            )
+    spheres: list[Sphere] = []
+    masses: list[float] = []
+    if isinstance(cell[0], str):
+        spheres = each(among(beads))(cell, "chain.cell")
+        # Spheres have the law of Hertz, and touch where the chain is unloaded.
+        for key in ("k", "law", "stiffnesses", "spacings"):
+            if key in given:
+                raise InputError(
+                    f"chain.{key} is given, but named beads are in Hertz contact"
+                )
+    else:
+        masses = each(positive)(cell, "chain.cell")
     contacts = partial(_by_contact, period=len(cell), beads=len(cell) * repeat)
-    return Row(
-        given,
-        each(among(beads))(cell, "chain.cell") if names else [],
-        [] if names else each(positive)(cell, "chain.cell"),
-        repeat,
-        given.read("stiffnesses", contacts, []),
-        given.read("spacings", contacts, []),
-    )
+    stiffnesses = given.read("stiffnesses", contacts, [])
+    spacings = given.read("spacings", contacts, [])
+    return Row(given, spheres, masses, repeat, stiffnesses, spacings)
 
 
 def _by_contact(value: Any, name: str, period: int, beads: int) -> list[float]:
     """Read one number for all contacts, one for each of a cell, or one for each of the chain."""
-    numbers: list[float] = each(positive)(
-        value if isinstance(value, list) else [value], name
-    )
     if not isinstance(value, list):
-        return numbers * period
+        return [positive(value, name)] * period
+    numbers: list[float] = each(positive)(value, name)
+    # A row of beads has one contact less than beads.
     if len(numbers) not in (period, beads - 1):
         wanted = " or ".join(map(str, sorted({period, beads - 1})))
         raise InputError(
@@ -173,10 +180,11 @@ def _by_contact(value: Any, name: str, period: int, beads: int) -> list[float]:
 
 def period(*rows: Sequence[Any]) -> int:
     """Size of the smallest cell whose repetition, the last one whole or cut, gives all rows."""
-    sizes = range(1, len(rows[0]) + 1)
-    return next(
-        P for P in sizes if all(row[P:] == row[: max(len(row) - P, 0)] for row in rows)
-    )
+    size = 1
+    # A row has the period P if, moved by P, it agrees with itself where the two overlap.
+    while any(row[size:] != row[: max(len(row) - size, 0)] for row in rows):
+        size += 1
+    return size
 
 
 def spheres(content: Any) -> list[Sphere]:
@@ -195,20 +203,25 @@ def spheres(content: Any) -> list[Sphere]:
 
 
 def _material(value: Any, name: str) -> Material:
+    """Read a material: a material like it, E, ν and the density."""
     entries = Table(value, name, ("like", "E", "nu", "density"))
-    like = entries.read("like", among(MATERIALS)) if "like" in entries else None
-    readers = {"E": positive, "nu": finite, "density": positive}
-    keys = [
-        key for key in readers if key in entries or (like is None and key != "density")
-    ]
-    values = {key: entries.read(key, readers[key]) for key in keys}
+    needed = {"E", "nu"}
+    values: dict[str, Any] = {}
+    if "like" in entries:
+        values = vars(entries.read("like", among(MATERIALS)))
+        needed = set()
+    for key, read in {"E": positive, "nu": finite, "density": positive}.items():
+        # A needed key that is missing is refused by its reader.
+        if key in entries or key in needed:
+            values = values | {key: entries.read(key, read)}
     try:
-        return replace(like, **values) if like else Material(**values)
+        return Material(**values)
     except InputError as fault:
         raise InputError(f"{name}.{fault}") from None
 
 
 def _bead(value: Any, name: str, materials: Mapping[str, Material]) -> Sphere:
+    """Read a bead: its radius and material, and its mass or the density of a solid sphere."""
     entries = Table(value, name, ("mass", "density", "radius", "material"))
     radius = entries.read("radius", positive)
     material = entries.read("material", among(materials))
@@ -220,6 +233,5 @@ def _bead(value: Any, name: str, materials: Mapping[str, Material]) -> Sphere:
         raise InputError(
             f"{name}.mass is missing: it, or a density here or of the material"
         )
-    return Sphere.solid(
-        radius, material, entries.read("density", positive, material.density)
-    )
+    density = entries.read("density", positive, material.density)
+    return Sphere.solid(radius, material, density)

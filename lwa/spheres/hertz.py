@@ -84,10 +84,10 @@ class Material(Value):
 MATERIALS = {
     # E, density: ASM/MatWeb, AISI Type 316, annealed bar; ν: Porter et al. 2008
     "steel 316": Material("193e9", "0.30", "8000"),
-    "steel 440C": Material(
-        "200e9", "0.28", "7700"
-    ),  # makeitfrom.com, AISI 440C, annealed
-    "aluminium": Material("68.9e9", "0.33", "2700"),  # ASM/MatWeb, aluminium 6061-T6
+    # makeitfrom.com, AISI 440C, annealed
+    "steel 440C": Material("200e9", "0.28", "7700"),
+    # ASM/MatWeb, aluminium 6061-T6
+    "aluminium": Material("68.9e9", "0.33", "2700"),
     # Gere & Goodno, Mechanics of Materials, appendix: 96-110 GPa, 8400-8600 kg/m³
     "brass": Material("103e9", "0.34", "8500"),
     # soda-lime-magnesia-silicate: Sci. Rep., doi 10.1038/s41598-021-04045-6, table 1
@@ -187,9 +187,11 @@ def stiffness(sphere: Sphere, other: Sphere | Material) -> sp.Expr:
         raise InputError(
             f"other is {shorten(other)}: a Sphere, or a wall's Material, is wanted"
         )
-    first, R = sphere.material, sphere.radius
+    first = sphere.material
+    R = sphere.radius
     if isinstance(other, Sphere):
-        second, R = other.material, R * other.radius / (R + other.radius)
+        second = other.material
+        R = R * other.radius / (R + other.radius)
     else:
         second = other
     # 1/A = 3 (compliance)/(4 √R), R the reduced radius; a wall's radius is infinite.

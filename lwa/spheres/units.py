@@ -51,10 +51,11 @@ def fitting(unit: str, magnitude: float) -> Unit:
     if unit == "kg":  # prefixes stand before the gram
         own = 1e-3
         unit = "g"
+    # A prefix stands for a power of a thousand.
     thousands = math.floor(math.log10(magnitude / own) / 3)
     place = min(max(thousands + PREFIXES.index(""), 0), len(PREFIXES) - 1)
     power = 3 * (place - PREFIXES.index(""))
-    return Unit(PREFIXES[place] + unit, float(f"1e{power}") * own)
+    return Unit(PREFIXES[place] + unit, 10.0**power * own)
 
 
 def labelled(label: str, magnitude: float) -> Unit:

@@ -22,6 +22,7 @@ under a load are those of `lwa.loaded.wave`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, Self, get_args, overload
@@ -98,6 +99,7 @@ class CompactWave(Value):
     I: sp.Expr
 
     def __post_init__(self) -> None:
+        # With symbols every condition is taken to hold.
         if self.k.is_number and not self.k > 1:
             raise NoSolitaryWave(f"k is {self.k}: a compact wave needs k > 1")
         if self.coefficient_sum.is_number and not self.coefficient_sum > 0:
@@ -189,11 +191,13 @@ class CompactWave(Value):
     def speed(self, B: Any = RISE) -> sp.Expr:
         """Speed ``V = dx/dτ`` of the wave whose strain peaks at B."""
         factor = square_root(self.speed_factor)
-        return factor * power(positive(B, "B"), (self.k - 1) / 2)
+        growth = power(positive(B, "B"), (self.k - 1) / 2)
+        return factor * growth
 
     def amplitude(self, V: Any = SPEED) -> sp.Expr:
         """Peak strain ``B = (V² / speed_factor)^{1/(k-1)}`` of the wave of speed ``V = dx/dτ``."""
-        return power(positive(V, "V") ** 2 / self.speed_factor, 1 / (self.k - 1))
+        scaled = positive(V, "V") ** 2 / self.speed_factor  # B^{k-1}
+        return power(scaled, 1 / (self.k - 1))
 
     @property
     def force_exponent(self) -> sp.Expr:
@@ -249,7 +253,10 @@ class CompactWave(Value):
         >>> canonical_wave(Cell(["m1", "m2"]), "k").at(k="3/2", omega=1).beta
         sqrt(10)/(5*D)
         """
-        new = substitution(values, self.cell, self.k)
+        return self._replaced(substitution(values, self.cell, self.k))
+
+    def _replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Self:
+        """The wave with other values of symbols."""
         return replace(
             self,
             cell=self.cell.replaced(new),
@@ -314,18 +321,16 @@ class CompactWave(Value):
         from lwa.loaded.wave import loaded_wave  # start-up: it loads NumPy
 
         canonical = canonical_wave(self.cell, self.k)
-        differences = (
-            self.G - canonical.G,
-            self.H - canonical.H,
-            self.I - canonical.I,
-        )
-        if any(sp.cancel(x) != 0 for x in differences):
-            raise InputError(
-                "waves on a background are those of the canonical field, which conserves momentum "
-                "and energy; canonical_wave(cell, k) is such a wave",
-                closure="full",
-                field="center",
-            )
+        # Equal coefficients may be written in different ways.
+        for name in ("G", "H", "I"):
+            difference = getattr(self, name) - getattr(canonical, name)
+            if sp.cancel(difference) != 0:
+                raise InputError(
+                    "waves on a background are those of the canonical field, which conserves "
+                    "momentum and energy; canonical_wave(cell, k) is such a wave",
+                    closure="full",
+                    field="center",
+                )
         return loaded_wave(self.cell, k=self.k, **states)
 
     def numeric(self, missing: Missing = "raise") -> NumericWave:
@@ -409,9 +414,11 @@ def canonical_wave(
         k = law.exponent
     read_cell(cell)
     k = exponent(k)
+    # Masses and contacts enter by I alone.
     I = Dispersion(cell, k).I
     G = I * (k - 1) * (k - 2) / 2
-    return CompactWave(cell=cell, k=k, G=G, H=2 * I * (k - 1), I=I)
+    H = 2 * I * (k - 1)
+    return CompactWave(cell=cell, k=k, G=G, H=H, I=I)
 
 
 @dataclass(frozen=True, repr=False)
@@ -470,6 +477,7 @@ class PhysicalWave(Value):
     def _bead_share(self) -> sp.Expr:
         """Ratio cos^{mk}(βD/2) of a bead's peak force to its contacts'."""
         k = self.wave.k
+        # From the sum itself, not from β, in which roots were taken out
         angle = (k - 1) / (4 * sp.sqrt(self.wave.coefficient_sum))  # βD/2
         exponent = 2 * k / (k - 1)
         # At ξ = 0 the mean of cos^e(βξ ± angle) has its maximum only where it is concave.
@@ -512,13 +520,9 @@ class PhysicalWave(Value):
         cell = self.wave.cell
         k = self.wave.k
         rate = power(self.wave.speed_factor * cell.size * k / cell.mass, sp.S.Half)
-        softness = power(cell.stiffness(k), 1 / (2 * k))
-        return (
-            cell.spacing
-            * rate
-            * softness
-            * power(self.contact_force, (k - 1) / (2 * k))
-        )
+        hardness = power(cell.stiffness(k), 1 / (2 * k))
+        growth = power(self.contact_force, (k - 1) / (2 * k))
+        return cell.spacing * rate * hardness * growth
 
     @cached_property
     def bead_velocity(self) -> sp.Expr:
@@ -553,7 +557,9 @@ class PhysicalWave(Value):
             For other words.
         """
         length = self.wave.fwhm(quantity)
-        return length if known_extent(extent) == "length" else length / self.speed
+        if known_extent(extent) == "length":
+            return length
+        return length / self.speed
 
     def curve(
         self,
@@ -614,8 +620,11 @@ class PhysicalWave(Value):
         def arch(x: Array) -> Array:
             phase = beta * x
             inside = np.abs(phase) < np.pi / 2
-            return np.asarray(np.where(inside, np.cos(phase), 0.0) ** exponent)
+            # The cosine of a phase outside is negative: its power would be NaN.
+            cosine = np.where(inside, np.cos(phase), 0.0)
+            return np.asarray(cosine**exponent)
 
+        # Strain and force are those of contacts; a bead has a velocity of its own.
         if bearer == "bead" and quantity != "velocity":
             half = number(self.wave.D) / 2
             return np.asarray(peak * (arch(xi - half) + arch(xi + half)) / 2)
@@ -623,12 +632,8 @@ class PhysicalWave(Value):
 
     def at(self, **values: Any) -> PhysicalWave:
         """Substitute values for symbols of the wave and of the force, as `CompactWave.at`."""
-        force_symbols = {s.name: s for s in self.force.free_symbols}
-        new = {}
-        rest = {}
-        for name, value in values.items():
-            if name in force_symbols:
-                new[force_symbols[name]] = positive(value, name)
-            else:
-                rest[name] = value
-        return PhysicalWave(self.wave.at(**rest), self.force.xreplace(new), self.of)
+        # Symbols that the force has besides those of the wave
+        own = {*self.wave.cell.symbols, *self.wave.k.free_symbols}
+        more = sorted(self.force.free_symbols - own, key=str)
+        new = substitution(values, self.wave.cell, self.wave.k, more)
+        return PhysicalWave(self.wave._replaced(new), self.force.xreplace(new), self.of)

@@ -118,6 +118,7 @@ class NumericWave(Value):
             return total
 
         forms = []
+        # V²/B^{k-1} is 1 at k = 1, where this ratio is finite.
         excess = factored((self.speed_factor - 1) / (self.k - 1))
         for value in (self.coefficient_sum, self.speed_factor, excess):
             numerator, denominator = sp.fraction(value)
@@ -144,7 +145,8 @@ class NumericWave(Value):
         k = np.asarray(k, np.float64)
         # arccos(2^-x) = arctan √(4^x - 1), which keeps its digits as x → 0
         x = (k - 1) / (2 * strain_power(quantity, k))
-        return np.asarray(2 * np.arctan(np.sqrt(np.expm1(x * np.log(4.0)))) / beta)
+        half_phase = np.arctan(np.sqrt(np.expm1(x * np.log(4.0))))
+        return np.asarray(2 * half_phase / beta)
 
     def speed(self, k: ArrayLike, omega: ArrayLike, B: ArrayLike = 1.0) -> Array:
         """Speed ``V = dx/dτ`` of the wave whose strain peaks at B."""
@@ -159,10 +161,11 @@ class NumericWave(Value):
         at = self._domain(k, omega)
         less_one = (at.k - 1) * at.excess
         near = np.abs(less_one) < _NEAR_ONE
-        log_factor = np.where(
-            near, np.log1p(np.where(near, less_one, 0.0)), np.log(at.speed_factor)
-        )
-        return np.asarray((2 * np.log(_positive(V, "V")) - log_factor) / (at.k - 1))
+        # `where` evaluates both sides: far from 1 the logarithm's argument may be negative.
+        log_near = np.log1p(np.where(near, less_one, 0.0))
+        log_factor = np.where(near, log_near, np.log(at.speed_factor))
+        log_square = 2 * np.log(_positive(V, "V"))
+        return np.asarray((log_square - log_factor) / (at.k - 1))
 
     def _domain(self, k: ArrayLike, omega: ArrayLike) -> Domain:
         """Evaluate the closed forms; treat points without a wave as ``missing`` says."""
@@ -180,14 +183,16 @@ class NumericWave(Value):
             "G+H+I > 0": coefficient_sum > 0,
             "V² > 0": factor > 0,
         }
-        exists = np.logical_and.reduce([*conditions.values()])
-        if self.missing == "raise" and not np.all(exists):
-            first = np.argmin(exists)
-            at = f"k = {float(k.flat[first])}, ω = {float(omega.flat[first])}"
-            for name, holds in conditions.items():
-                if not holds.flat[first]:
-                    raise NoSolitaryWave(f"{at}: a compact wave needs {name}")
-        nan = np.where(exists, 0.0, np.nan)
+        exists = np.ones(k.shape, bool)
+        for name, holds in conditions.items():
+            if self.missing == "raise" and not np.all(holds):
+                first = np.argmin(holds)
+                raise NoSolitaryWave(
+                    f"k = {float(k.flat[first])}, ω = {float(omega.flat[first])}: "
+                    f"a compact wave needs {name}"
+                )
+            exists &= holds
+        nan = np.where(exists, 0.0, np.nan)  # added, it leaves a value or makes it NaN
         return Domain(k + nan, coefficient_sum + nan, factor + nan, excess + nan)
 
 

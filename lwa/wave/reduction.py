@@ -86,15 +86,20 @@ class Reduction(Value):
 
 def roots(total: sp.Expr, H_over_I: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
     """The two roots p; ``total`` is (G + H + I)/I. The paper has the first root."""
+    # A p² - B p + 2 = 0
     A = factored(total)
     B = factored(H_over_I + 3)
+    root = square_root(factored(B**2 - 8 * A))
     # Any sign of the root will do, as both are returned.
-    root = square_root(factored(B**2 - 8 * A)).replace(sp.Abs, lambda x: x)
-    return sp.together((B - root) / (2 * A)), sp.together((B + root) / (2 * A))
+    root = root.replace(sp.Abs, lambda x: x)
+    first = (B - root) / (2 * A)
+    second = (B + root) / (2 * A)
+    return sp.together(first), sp.together(second)
 
 
 def square_root(value: sp.Expr) -> sp.Expr:
     """Square root of a rational expression in positive quantities, squares taken out."""
+    # SymPy takes squares of positive symbols out of a root.
     plain, back = sp.posify(value)
     numerator, denominator = sp.fraction(plain)
     root = power(numerator, sp.S.Half) / power(denominator, sp.S.Half)

@@ -161,6 +161,7 @@ def module(
         For other languages, and for symbols that are no names.
     """
     words = LANGUAGES[one_of(language, LANGUAGES, "language")]
+    # The functions call each other by their own names.
     calls = {f.name: f.name for f in functions}
     known = words.settings.get("user_functions", {})
     printer = words.printer({**words.settings, "user_functions": {**known, **calls}})
@@ -169,9 +170,11 @@ def module(
     def text(value: sp.Basic) -> str:
         new: dict[sp.Basic, sp.Basic] = {**names}
         for number in value.atoms(sp.Rational, sp.NumberSymbol):
+            # Printers write π, and quotients of long integers, in ways that C does not know.
             if number.is_NumberSymbol or max(abs(number.p), number.q) > _EXACT:
                 new[number] = sp.Float(number, 17)
         written = str(printer.doprint(value.xreplace(new)))
+        # SymPy's printer writes the module's full name.
         return written.replace("numpy.", "np.")
 
     lines = [f"{words.comment} {line}" for line in title]
@@ -182,9 +185,8 @@ def module(
         opening = words.opening
         if listed and words.entry:
             opening += (words.entry,)
-        lines += [
-            line.format(name=f.name, doc=f.doc, arguments=listed) for line in opening
-        ]
+        for line in opening:
+            lines.append(line.format(name=f.name, doc=f.doc, arguments=listed))
         for symbol, value in f.local:
             lines.append(words.statement.format(names[symbol], text(value)))
         lines.append(words.result.format(text(f.value)))
@@ -222,9 +224,8 @@ _F = sp.Dummy("F", positive=True)
 _ARGUMENTS = (_XI, _B, _V, _F)  # arguments that are no symbols of the chain
 
 _SHIFT = sp.Dummy("k_2", real=True)  # k - 2
-_INSIDE = sp.Dummy(
-    "h", real=True
-)  # distance of the phase βξ from the end of the support
+# Distance of the phase βξ from the end of the support
+_INSIDE = sp.Dummy("h", real=True)
 
 TITLE = (
     "The compact traveling wave v = u_x = B cos^m(beta xi), m = 2/(k - 1),",
@@ -345,19 +346,25 @@ def _stable(ratio: sp.Expr, k: sp.Expr, variables: dict[sp.Expr, sp.Symbol]) -> 
 
     Powers A^{1/k} become new entries of ``variables``.
     """
-    if not k.is_Symbol:
+    if not k.is_Symbol:  # a number has no digits to lose
         return ratio
 
     def root(power: sp.Pow) -> sp.Expr:
+        # A^{n/k} is the power n of the variable A^{1/k}.
         n, _ = (power.exp * k).as_coeff_Mul()
         symbol = sp.Dummy(f"r_{len(variables)}", positive=True)
         return variables.setdefault(power.base ** (power.exp / n), symbol) ** n
 
     def about_two(total: sp.Expr) -> sp.Expr:
-        terms = sp.Poly(total.subs(k, _SHIFT + 2), _SHIFT).terms()
-        return sp.Add(*(sp.factor(c) * _SHIFT**n for (n,), c in terms))
+        shifted = sp.Poly(total.subs(k, _SHIFT + 2), _SHIFT)
+        rewritten = sp.S.Zero
+        for (n,), coefficient in shifted.terms():
+            rewritten += sp.factor(coefficient) * _SHIFT**n
+        return rewritten
+
+    def is_sum(part: sp.Expr) -> bool:
+        # k - 1 and its like lose no digits.
+        return bool(part.is_Add and part.has(k) and not (part - k).is_number)
 
     ratio = ratio.replace(lambda e: e.is_Pow and e.exp.has(k), root)
-    return ratio.replace(
-        lambda e: e.is_Add and e.has(k) and not (e - k).is_number, about_two
-    )
+    return ratio.replace(is_sum, about_two)

@@ -199,7 +199,14 @@ def test_without_arguments_the_commands_are_listed(capsys):
     assert (status, out, "Commands:" in err) == (2, "", True)
 
 
-@pytest.mark.parametrize("name", ["", *sorted(cli.STUDIES)])
+LONG_ONES = ("figures", "limits", "sweep")  # a few seconds each
+COMMANDS = [
+    pytest.param(name, marks=[pytest.mark.slow] * (name in LONG_ONES))
+    for name in ["", *sorted(cli.STUDIES)]
+]
+
+
+@pytest.mark.parametrize("name", COMMANDS)
 def test_the_examples_of_a_help_run_and_its_page_is_in_the_book(capsys, folder, name):
     """One after another in an empty folder."""
     status, text, _ = run(capsys, *name.split(), "--help")

@@ -323,7 +323,7 @@ def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
     n, stages, estimates = motion.size, 1, 0
     if isinstance(scheme, Pair):
         estimates, stages = len(scheme.errors), len(scheme.nodes)
-    rows = _lines(8 + estimates + 18, padded + 1, 1)
+    rows = _lines(6 + estimates + ROOM, padded + 1, 0)
     y, v, next_y, next_v, still, marks = rows[:6]
     y[:n] = next_y[:n] = motion.start[:n]
     v[:n] = next_v[:n] = motion.start[n : 2 * n]
@@ -336,12 +336,12 @@ def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
         next_y=next_y,
         next_v=next_v,
         still=still,
-        force=rows[6:8],
+        force=_lines(2, padded + 1, 1),
         border=np.zeros(stages),
-        push=rows[8 + estimates :],
-        errors=rows[8 : 8 + estimates],
+        push=rows[6 + estimates :],
+        errors=rows[6 : 6 + estimates],
         marks=marks,
-        power=np.zeros((2, 18)),
+        power=np.zeros((2, ROOM)),
         given=given,
         books=np.zeros(5),
         points=np.zeros((3, ROOM)),

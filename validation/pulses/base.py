@@ -76,8 +76,18 @@ class Fit:
 class Base:
     """The base before a pulse and its noise.
 
-    rise, width : of the pulse. x : times of the samples, (B,), in widths from the rise. fits :
-    bases, whose mean with the weights is the base. best : the fit that tells the noise.
+    Parameters
+    ----------
+    rise, width : float
+        Time at which the pulse rises, and its width.
+    x : array
+        Times of the samples, (B,), in widths from the rise.
+    fits : sequence of Fit
+        Fitted bases, whose mean is the base.
+    weights : array
+        Weights of the fits in the mean.
+    best : Fit
+        The fit whose residuals are the noise.
     """
 
     rise: float
@@ -107,7 +117,12 @@ class Base:
     def guessed(cls, f: Array, noise: float) -> Base:
         """Return the base of a record that begins too late: its first values, or its lowest.
 
-        noise : standard deviation of its noise.
+        Parameters
+        ----------
+        f : array
+            Samples.
+        noise : float
+            Standard deviation of their noise.
         """
         levels = (f[:_GUESSED].mean(), np.quantile(f, 0.1))
         samples = np.array([noise, 0.0])  # of this variance, and white
@@ -120,10 +135,21 @@ class Base:
         return np.asarray(self.weights @ [fit.at(x) for fit in self.fits])
 
     def drawn(self, t: Array, pulse: Array, variance: float, step: float) -> Array:
-        """Draw what noise adds to a pulse over its base, (len(t), `DRAWS`), at times t.
+        """Draw errors that noise makes in a pulse over its base.
 
-        pulse : without noise, (len(t),). variance : of the noise during the pulse. step : distance
-        of the levels to which samples are rounded, 0 if they are not.
+        Parameters
+        ----------
+        t, pulse : array
+            Times, (N,), and the pulse without noise.
+        variance : float
+            Variance of the noise during the pulse.
+        step : float
+            Distance of the levels to which samples are rounded, 0 if they are not.
+
+        Returns
+        -------
+        array
+            Draws, (N, `DRAWS`).
         """
         rng = np.random.default_rng(0)
         count = len(self.x)

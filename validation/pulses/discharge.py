@@ -1,7 +1,7 @@
 """Sensors that lose their charge, as piezoelectric ones do.
 
-Behind such a sensor and its amplifier a force f gives a signal v with v' = f' - v/T, T the time
-constant. So f = v + ∫ v dt/T, and v swings below its base behind a pulse.
+Behind such a sensor and its amplifier a force f gives a signal v with ``v' = f' - v/T``, T the time
+constant. So ``f = v + ∫ v dt/T``, and v swings below its base behind a pulse.
 """
 
 from __future__ import annotations

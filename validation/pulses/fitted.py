@@ -43,10 +43,28 @@ _LOUDEST = 0.05  # greatest noise over the peak, for which the pulse is located
 def fitted(
     t: Array, f: Array, base: Base, sides: tuple[float, float], step: float
 ) -> dict[str, Estimate]:
-    """Return arrival, peak and fwhm of a pulse between two times, with their errors.
+    """Measure arrival, peak and fwhm of a pulse on a spline that is fitted to its samples.
 
-    t, f : samples over their base, (N,). sides : times at which the pulse passes half of its peak.
-    step : distance of the levels to which samples are rounded, if it is more than their noise.
+    Parameters
+    ----------
+    t, f : array
+        Times and samples over their base, (N,).
+    base : Base
+        Base and noise before the pulse.
+    sides : tuple of float
+        Times at which the pulse rises and falls through half of its peak.
+    step : float
+        Distance of the levels to which samples are rounded, 0 if their noise hides it.
+
+    Returns
+    -------
+    dict of Estimate
+        Numbers by their names, with one standard deviation.
+
+    Raises
+    ------
+    MeasureError
+        If the noise is too large.
     """
     width = sides[1] - sides[0]
     near = (t >= sides[0] - _BESIDE * width) & (t <= sides[1] + _BESIDE * width)

@@ -53,12 +53,25 @@ class Pulse:
 def measure(time: ArrayLike | Signal, values: ArrayLike | None = None) -> Pulse:
     """Measure the highest pulse of a signal, or of samples.
 
-    time : a signal such as `Run.signal(...)`, or increasing sample times (S,).
-    values : sample values (S,); they are measured on the cubic spline through them.
+    Parameters
+    ----------
+    time : Signal or array_like
+        A signal such as `Run.signal(...)`, or increasing sample times (S,).
+    values : array_like, optional
+        Sample values (S,), of which the cubic spline through them is measured.
 
-    Raises `MeasureError` for a record without a pulse, for a pulse that is not wholly in the
-    record, and for fewer than `FEWEST` samples above half its peak.
+    Returns
+    -------
+    Pulse
 
+    Raises
+    ------
+    MeasureError
+        For a record without a pulse, for a pulse that is not wholly in the record, and for fewer
+        than `FEWEST` samples above half its peak.
+
+    Examples
+    --------
     >>> t = np.linspace(-1, 1, 201)
     >>> pulse = measure(t, np.cos(np.pi * t / 2) ** 2)
     >>> round(pulse.peak, 6), round(pulse.fwhm, 6)
@@ -130,12 +143,23 @@ def first_pulses(signal: Signal, shares: Sequence[float] = (0.5,)) -> list[Pulse
 def leading_pulses(
     signal: Signal, k: float, shares: Sequence[float] = (0.5,)
 ) -> list[Pulse]:
-    """Measure the leading pulse of a contact's force F = A δ^k, or (k = 1) of its compression δ.
+    """Measure the leading pulse of a contact's force, or of its compression.
 
     The pulse ends where the compression first falls to a quarter of its highest value so far.
 
-    shares : fractions of the peak; the pulses returned differ in the times at which the signal
-        rises and falls through each fraction.
+    Parameters
+    ----------
+    signal : Signal
+        The contact's force ``A δ^k``, or its compression δ.
+    k : float
+        Exponent of the signal's power of δ: 1 for a compression.
+    shares : sequence of float
+        Fractions of the peak.
+
+    Returns
+    -------
+    list of Pulse
+        The pulse, once for each fraction: it rises and falls through this fraction of its peak.
     """
     grid, quarter = _Grid(signal), 0.25**k
     start = int(np.argmax(grid.f > quarter * grid.f.max()))
@@ -236,7 +260,7 @@ def derived(function: Callable[..., float], *numbers: Estimate) -> Estimate:
 
 
 def exponent(x: Sequence[Estimate], y: Sequence[Estimate]) -> Estimate:
-    """Return the exponent p of y ~ x^p, from a least-squares fit of the logarithms."""
+    """Return the exponent p of ``y ~ x^p``, from a least-squares fit of the logarithms."""
     log_x, log_y = (np.log([number.value for number in row]) for row in (x, y))
     log_x -= log_x.mean()
     weights = log_x / (log_x @ log_x)
@@ -254,9 +278,21 @@ def compared(
     coarse: Source,
     rtol: float = 0,
 ) -> dict[str, Estimate]:
-    """Return the numbers of the run ``fine``, with errors from the less accurate ``coarse``.
+    """Return numbers of a run, with errors by their differences to a less accurate run.
 
-    rtol : least relative error, the tolerance of ``fine``, as two runs may agree by chance.
+    Parameters
+    ----------
+    numbers : callable
+        Function of a run that returns its numbers by name.
+    fine, coarse : object
+        The run, and the less accurate run.
+    rtol : float
+        Least relative error, the tolerance of ``fine``, as two runs may agree by chance.
+
+    Returns
+    -------
+    dict of Estimate
+        Numbers by name.
     """
     measured, checks = {}, numbers(coarse)
     for name, value in numbers(fine).items():

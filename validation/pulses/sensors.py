@@ -157,14 +157,16 @@ def record(
     ----------
     scene : Scene
         The scene.
-    method, progress
-        Options of `validation.simulate`.
+    method : str
+        Integrator, as of `validation.simulate`.
     rtol : float
         Relative tolerance, from 1e-13 to 1e-5.
     every : bool
         True for all pulses at each sensor instead of the first.
     velocities : container of str
         Names of bead sensors, such as "bead 15", whose velocity is measured, not the force.
+    progress : callable
+        Progress of the runs, as of `validation.simulate`.
 
     Raises
     ------
@@ -327,7 +329,18 @@ def first_numbers(fine: Signal, coarse: Signal, rtol: float) -> dict[str, Estima
 
     The first pulse is the first one above half the maximum. The less accurate signal is also
     searched a little below and above half, and the largest difference is the error.
-    rtol : least relative error. Raises `MeasureError`.
+
+    Parameters
+    ----------
+    fine, coarse : Signal
+        A signal, and the same signal of a less accurate run.
+    rtol : float
+        Least relative error.
+
+    Raises
+    ------
+    MeasureError
+        If one of the signals has no pulse.
     """
     first = first_pulse(fine)
     shares = [(1 + part) / 2 for part in (-_UNSURE, 0.0, _UNSURE)]

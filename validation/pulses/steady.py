@@ -1,17 +1,18 @@
 """The steady pulse of a struck dimer chain: its width, speed and decay at one k and one ω.
 
-Bead 0 of a chain of masses 1, ω, 1, … at rest is struck (A = D = 1), and the leading pulse is
-recorded at `PLACES` cells at equal distances (the places). F = A δ^k has no scale of its own. So a
-pulse that leaves energy behind in every cell comes to lose the same fraction of its peak force F in
-each cell, F ~ e^{-d n} after n sites; the speed then scales as F^{(k-1)/(2k)}, and the width, in
-sites, stays constant. All numbers are means over the two contacts of a cell, from the stretch (two
-neighbouring places) where their errors are least. Each number is compared with the stretch before,
-with a less accurate run, and with a stretch that is `FARTHER` times as far as the last place.
+Bead 0 of a chain of masses 1, ω, 1, … at rest is struck (with ``A = D = 1``), and the leading pulse
+is recorded at `PLACES` cells at equal distances (the places). The law ``F = A δ^k`` has no scale of
+its own. So a pulse that leaves energy behind in every cell comes to lose the same fraction of its
+peak force F in each cell, ``F ~ e^{-d n}`` after n sites; the speed then scales as
+``F^{(k-1)/(2k)}``, and the width, in sites, stays constant. All numbers are means over the two
+contacts of a cell, from the stretch (two neighbouring places) where their errors are least. Each
+number is compared with the stretch before, with a less accurate run, and with a stretch that is
+`FARTHER` times as far as the last place.
 
 A pulse that decays is overtaken in the end by a higher one from behind, as higher pulses are
 faster. So at the far stretch the highest pulse must have the force predicted from the decay, within
-`STEADY`. Otherwise the pulse is not steady and the point has no numbers (k = 3/2: ω from 0.49 to
-0.7).
+`STEADY`. Otherwise the pulse is not steady and the point has no numbers (for spheres, ω from 0.49
+to 0.7).
 """
 
 from __future__ import annotations
@@ -81,8 +82,14 @@ def point(
 ) -> Point:
     """Strike the chain and return the measured point; after a failure its ``missing`` says why.
 
-    stretch : see `cells_apart`. farther : distance over which the pulse must lead, 1.2 or more, in
-    units of the last place's distance.
+    Parameters
+    ----------
+    k, omega : Rational
+        Exponent of the contact law, and mass ratio.
+    stretch : int
+        Number of cells between two places for k of 3/2 or more, as of `cells_apart`.
+    farther : float
+        Distance over which the pulse must lead, 1.2 or more, over the last place's distance.
     """
     try:
         return _measured(k, omega, stretch, farther)
@@ -196,7 +203,7 @@ class StruckDimer:
 
         Over N sites and the time T the peak force falls from F_1 to F_2. The decay is
         ``d = ln(F_1/F_2)/N`` and the speed at contact force 1 is ``c = N (e^z - 1)/(z T F_1^q)``,
-        with ``q = (k-1)/(2k)`` and ``z = q d N``, as the integral of dn/(c F^q) over
+        with ``q = (k-1)/(2k)`` and ``z = q d N``, as the integral of ``dn/(c F^q)`` over
         ``F = F_1 e^{-d n}`` is T.
         """
         elapsed = np.diff(passages["arrival"], axis=0)

@@ -97,7 +97,9 @@ class Report(Pictured):
         if not count:
             return ""
         failed = [finding for finding in self.findings if not finding.ok]
-        outcome = f"{len(failed)} of {count} fail" if failed else "all hold"
+        outcome = "all hold"
+        if failed:
+            outcome = f"{len(failed)} of {count} fail"
         return f"{count} check{'s' * (count > 1)}: {outcome}"
 
     def text(self, width: int = WIDTH) -> str:
@@ -111,6 +113,7 @@ class Report(Pictured):
         parts = [wrap(self.title, width)]
         parts += [table.text(width) for table in self.tables]
         printed = [finding for finding in self.findings if not finding.ok]
+        # A report of findings alone shows them all.
         if not any(parts[1:]):
             printed = list(self.findings)
         parts.append(findings_table(printed).text(width))
@@ -157,7 +160,7 @@ class Report(Pictured):
         for table in self.tables:
             if table.rows:
                 return table.csv()
-        return self.tables[0].csv()
+        return self.tables[0].csv()  # its header
 
     def pictured(self) -> tuple[Panel, ...]:
         """The panels, curves and maps, of which a picture of the result is made."""
@@ -168,6 +171,7 @@ class Report(Pictured):
         # In memory first: Matplotlib prints a traceback for a file that cannot be closed.
         drawn = io.BytesIO()
         self.figure().savefig(drawn, dpi=150, format=file.suffix[1:].lower())
+        # 150 dots an inch: 900 for the width of a panel, enough for print in a column.
         with replacing(file) as new:
             new.write_bytes(drawn.getvalue())
 
@@ -205,6 +209,7 @@ class Study(Generic[P]):
 
         def run(style: str, plot: Path | None, **values: Any) -> int:
             report = self._report(values)
+            # Before the picture: a form that the result lacks leaves no file behind.
             printed = printed_as(style, report)
             if plot is not None:
                 report.save(plot)
@@ -214,6 +219,7 @@ class Study(Generic[P]):
         # Click shows the last decoration first.
         for decorate in (*_OUTPUT, *reversed(self.options)):
             run = decorate(run)
+        # Further paragraphs of the docstring are for Python: parameters, names in JSON.
         summary, _, _ = (inspect.getdoc(self.function) or "").partition("\n\n")
         make = click.command(
             self.function.__name__,
@@ -227,6 +233,7 @@ class Study(Generic[P]):
         """Call the function with the values of its options and the displays that it wants."""
         function: Callable[..., Report] = self.function
         parameters = inspect.signature(function).parameters
+        # Called from Python, a study shows no progress unless asked.
         if "progress" in parameters:
             values["progress"] = progress
         if "run_progress" in parameters:
@@ -270,6 +277,7 @@ def study(
 def printed_as(style: str, report: Report) -> str:
     """Return a report as "text" for the terminal, "json" or "csv"."""
     if style == "json":
+        # NaN and ∞ are no JSON: `plain` has made them null.
         return json.dumps(report.document(), indent=2, allow_nan=False)
     if style == "csv":
         return report.csv().rstrip("\n")
@@ -332,6 +340,7 @@ def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
         elif file.exists() and not file.is_file():
             fault = "a regular file is wanted"
         else:
+            # Permissions alone do not tell: a disk may be read-only, or full.
             with tempfile.TemporaryFile(dir=file.resolve().parent):
                 return file
     except (OSError, ValueError, RuntimeError) as error:  # a null byte, a loop of links
@@ -347,6 +356,8 @@ def replacing(file: Path) -> Iterator[Path]:
     """
     target = file.resolve()
     try:
+        # In the same folder: a file is moved at once only within one disk. The folder lets the new
+        # file have a short name where the old one's is as long as a disk allows.
         with tempfile.TemporaryDirectory(prefix=".", dir=target.parent) as folder:
             new = Path(folder, "new")
             yield new

@@ -58,12 +58,14 @@ class Column:
             return "-"
         if callable(self.format):
             return self.format(cell)
+        # A failure is loud: it is looked for among many rows.
         if isinstance(cell, bool):
             return "ok" if cell else "FAILS"
         if size != 1:
             cell = cell * (1 / size)
         if isinstance(cell, Estimate):
             return cell.text(int(self.format or TABLE_DIGITS))
+        # Six digits are more than any other number of a report has; JSON has all of them.
         digits = ".6g" if isinstance(cell, float) else ""
         return format(cell, self.format or digits)
 
@@ -75,6 +77,7 @@ class Column:
         """
         if not self.error:
             return {name: plain(cell)}
+        # The endings belong to the name of the mapping, not to its entries.
         head, dot, entry = name.partition(".")
         return {
             f"{head}_value{dot}{entry}": plain(getattr(cell, "value", None)),
@@ -135,6 +138,7 @@ class Table:
         ((2, 8),)
         """
         names = [column.key or column.label for column in columns]
+        # A row lacks a cell where the number does not exist, such as a speed to the first sensor.
         rows = [tuple(map(record.get, names)) for record in records]
         return cls(tuple(columns), tuple(rows), key, **texts)
 
@@ -145,7 +149,7 @@ class Table:
             names = [column.label for column in self.columns]
         record: dict[str, Any] = {}
         for name, column, cell in zip(names, self.columns, row, strict=True):
-            if name:
+            if name:  # a column without a key, beside others with one, is only printed
                 record |= column.values(name, cell)
         return record
 
@@ -160,7 +164,7 @@ class Table:
             document: dict[str, Any] = {}
             for name, value in self._record(row).items():
                 *path, last = name.split(".")
-                place = document
+                place = document  # the mapping that holds the value
                 for part in path:
                     place = place.setdefault(part, {})
                 place[last] = value
@@ -176,10 +180,12 @@ class Table:
         """
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
+        # Names do not depend on the cells: an empty row gives the header.
         writer.writerow(self._record([None] * len(self.columns)))
         for row in self.rows:
             cells = []
             for value in self._record(row).values():
+                # A spreadsheet's cell holds no list: its JSON stands there.
                 is_nested = isinstance(value, list | dict)
                 cells.append(json.dumps(value) if is_nested else value)
             writer.writerow(cells)
@@ -195,6 +201,7 @@ class Table:
         """
         if not (self.rows and any(column.label for column in self.columns)):
             return ""
+        # One prefix for all parts of a column, so that its numbers can be compared.
         units = [self._unit(place) for place in range(len(self.columns))]
         labels = [unit.name for unit in units if unit.name]
         parts: dict[str, list[list[str]]] = {}
@@ -223,6 +230,7 @@ class Table:
         largest = 0.0
         for row in self.rows:
             number = without_error(row[place])
+            # Counts and exact numbers have no unit that a prefix would suit.
             if isinstance(number, float) and math.isfinite(number):
                 largest = max(largest, abs(number))
         return labelled(self.columns[place].label, largest)
@@ -261,6 +269,7 @@ class Finding:
     @property
     def ok(self) -> bool:
         """True if the value lies within its bounds; False for NaN."""
+        # The whole interval of the error lies between the bounds; comparisons with NaN fail.
         error = self.error or 0.0
         return bool(self.low <= self.value - error and self.value + error <= self.high)
 
@@ -309,6 +318,7 @@ def plain(value: Any) -> Any:
     """Convert a value for JSON: exact numbers to texts that SymPy reads, NaN and ∞ to None."""
     if isinstance(value, sp.Basic):
         return str(value)
+    # NumPy's numbers of one entry too: its bool_ is no bool for JSON.
     if isinstance(value, np.ndarray | np.generic):
         return plain(value.tolist())
     if isinstance(value, float):
@@ -334,6 +344,7 @@ def aligned(lines: Lines, width: int = WIDTH) -> str:
     blocks: list[list[int]] = []
     used = width
     for place in range(1, len(widths)):
+        # Two spaces before each column.
         if not blocks or used + 2 + widths[place] > width:
             blocks.append([])
             used = widths[0]
@@ -345,7 +356,7 @@ def aligned(lines: Lines, width: int = WIDTH) -> str:
             cells = [line[0].ljust(widths[0])]
             cells += [line[place].rjust(widths[place]) for place in block]
             texts.append("  ".join(cells).rstrip())
-        texts.append("")
+        texts.append("")  # a line between blocks, and one too many at the end
     return "\n".join(texts[:-1])
 
 

@@ -1,4 +1,4 @@
-"""Scenes of chains that are struck or carry a wave, with A = 1, and the paper's chain in SI.
+"""Scenes of chains that are struck or carry a wave, of unit stiffness, and the paper's beads in SI.
 
 The beads of Porter et al. (2008) are `STEEL_BEAD`, also their striker, and `PTFE_BEAD`.
 """
@@ -23,10 +23,21 @@ PTFE_BEAD = Sphere("0.123e-3", DIAMETER / 2, PTFE)
 
 
 def struck(masses: Sequence[float], beads: int, k: float = 1.5, **rest: Any) -> Scene:
-    """Return a chain of beads with repeating masses and A = 1; by default bead 0 has velocity 1.
+    """Return a chain of repeating masses whose first bead, by default, has velocity 1.
 
-    rest : further fields of the scene.
+    Parameters
+    ----------
+    masses : sequence of float
+        Masses of a cell.
+    beads : int
+        Number of beads.
+    k : float
+        Exponent of the contacts, of stiffness 1.
+    **rest
+        Further fields of the scene.
 
+    Examples
+    --------
     >>> struck((1, 0.5), 3, duration=1).masses
     (1.0, 0.5, 1.0)
     """
@@ -49,7 +60,16 @@ def carrying(
 ) -> Scene:
     """Return a chain with given initial compressions of the contacts and velocities of the beads.
 
-    rest : further fields of the scene, ``k`` or ``law`` among them.
+    Parameters
+    ----------
+    masses : sequence of float
+        Masses of the n beads.
+    compression : array_like
+        Compressions of the n-1 contacts, of stiffness 1.
+    velocity : array_like
+        Velocities of the beads.
+    **rest
+        Further fields of the scene, ``k`` or ``law`` among them.
     """
     strain = np.asarray(compression, float)
     return Scene(

@@ -45,10 +45,15 @@ _NAME = re.compile(
 class Stated(TypedDict, total=False):
     """Statements of the user about measured files, as keywords.
 
-    columns : headers, with or without their units, or numbers of columns, by the names "time",
+    Attributes
+    ----------
+    columns : mapping of str
+        Headers, with or without their units, or numbers of columns, by the names "time",
         "bead 8 force", "bead 8 velocity", "contact 8 force", "force", "speed", ….
-    units : statements (`validation.scenes.units`) by name, header or number of a column.
-    step : time from each sample to the next, as a statement, in place of a column.
+    units : mapping of str
+        Statements (`validation.scenes.units`) by name, header or number of a column.
+    step : str
+        Time from each sample to the next, as a statement, in place of a column.
     """
 
     columns: Mapping[str, str]
@@ -60,9 +65,18 @@ class Stated(TypedDict, total=False):
 class Record:
     """Samples of a signal at a sensor.
 
-    kind : "bead" or "contact". number : of the bead or contact, from 1; None if the file has no
-    other sensor and does not say it. quantity : "force" or "velocity". time, values : (S,).
-    inverted : option of the command line that changes the signal's sign.
+    Parameters
+    ----------
+    kind : {"bead", "contact"}
+        Kind of the sensor.
+    number : int or None
+        Number of the bead or contact, from 1; None if the file does not say it.
+    quantity : {"force", "velocity"}
+        The signal.
+    time, values : array
+        Times and values of the samples, (S,).
+    inverted : str
+        Option of the command line that changes the signal's sign.
     """
 
     kind: str
@@ -207,10 +221,15 @@ class MeasuredFile:
         One column "time" is that of all sensors; of several columns the first is that of the first
         sensor, and so on. The velocity of a bead whose force is there is left out.
 
-        of : kind of the sensors whose names do not say it.
+        Parameters
+        ----------
+        of : {"contact", "bead"}
+            Kind of the sensors whose names do not say it.
 
-        Raises `SceneError` as `rows` does, and for columns of time that are not as many as the
-        sensors.
+        Raises
+        ------
+        SceneError
+            As `rows` does, and for columns of time that are not as many as the sensors.
         """
         times = self._named("time")
         sensors = []

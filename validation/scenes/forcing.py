@@ -30,12 +30,13 @@ class Damping:
     Parameters
     ----------
     kind : {"contact", "kuwabara_kono", "restitution"}
-        "contact" adds γ dδ/dt to the force of a closed contact. "kuwabara_kono" adds
-        γ δ^{k-1} dδ/dt (Kuwabara and Kono 1987). "restitution" adds c δ^{(k-1)/2} dδ/dt: two beads
-        that collide part with the same share of their speed, whatever the speed (`restitution`).
+        "contact" adds ``γ dδ/dt`` to the force of a closed contact. "kuwabara_kono" adds ``γ
+        δ^{k-1} dδ/dt`` (Kuwabara and Kono 1987). "restitution" adds ``c δ^{(k-1)/2} dδ/dt``: two
+        beads that collide part with the same share of their speed, whatever the speed
+        (`restitution`).
     value : float or sequence of float
         γ, or the share, the coefficient of restitution; one for all contacts, or one for each,
-        the wall's last. In a sequence γ = 0 and the share 1 stand for a contact without damping.
+        the wall's last. In a sequence a γ of 0 and a share of 1 stand for no damping.
     """
 
     kind: str
@@ -64,7 +65,7 @@ class Damping:
         return k - 1 if self.kind == "kuwabara_kono" else (k - 1) / 2
 
     def coefficients(self, k: Any, stiffnesses: Array, masses: Array) -> Array:
-        """Return the factors of δ^power dδ/dt, (contacts,).
+        """Return the factors of ``δ^power dδ/dt``, (contacts,).
 
         Parameters
         ----------
@@ -85,10 +86,10 @@ class Damping:
 def restitution(ratio: float) -> float:
     """Return the coefficient of restitution at a damping ratio ζ.
 
-    With s = δ^{(k+1)/2} a collision under F = A δ^k + c δ^{(k-1)/2} dδ/dt is a damped linear
-    oscillator, ζ = c/√(2(k+1) m A) with the reduced mass m (Antypov and Elliott 2011, EPL 94,
-    50004, for k = 3/2). As contacts do not pull, it ends where the force is zero (Schwager and
-    Pöschel 2007, Granular Matter 9, 465).
+    In the variable ``s = δ^{(k+1)/2}`` a collision under ``F = A δ^k + c δ^{(k-1)/2} dδ/dt`` is a
+    damped linear oscillator, ``ζ = c/√(2(k+1) m A)`` with the reduced mass m (Antypov and Elliott
+    2011, EPL 94, 50004, for spheres). As contacts do not pull, it ends where the force is zero
+    (Schwager and Pöschel 2007, Granular Matter 9, 465).
     """
     # s = e^{-ζτ} sin(√(1-ζ²) τ)/√(1-ζ²) in units of time of the undamped oscillator; its second
     # derivative, proportional to the force, vanishes at the phase below.
@@ -113,9 +114,10 @@ def damping_ratio(share: float) -> float:
 def oscillation(
     t: Any, amplitude: float, w: float, ramp: float
 ) -> tuple[Any, Any, Any]:
-    """Return amplitude r(t) sin(wt) and its first and second derivative at times t of any shape.
+    """Return ``amplitude r(t) sin(wt)`` and its first and second derivative at times of any shape.
 
-    r grows from 0 to 1 within ``ramp``; r = 1 for a ramp of 0. The engine compiles this function.
+    The factor r grows from 0 to 1 within ``ramp``; it is 1 for a ramp of 0. The engine compiles
+    this function.
     """
     s, pace = 1.0, 0.0
     if ramp > 0.0:
@@ -134,9 +136,16 @@ def oscillation(
 class Drive:
     """Prescribed motion of the first bead, of exactly one of three kinds.
 
-    velocity : constant velocity of a piston. amplitude, frequency : y = amplitude sin(2π frequency
-    t), growing smoothly to its full size within the time ``ramp``. time, displacement : rows of
-    equal length from time 0 to the duration or beyond, joined by a cubic spline.
+    Parameters
+    ----------
+    velocity : float, optional
+        Constant velocity of a piston.
+    amplitude, frequency : float, optional
+        Those of the oscillation ``amplitude sin(2π frequency t)``.
+    ramp : float, optional
+        Time within which the oscillation grows smoothly to its full size.
+    time, displacement : sequence of float, optional
+        Rows of equal length from time 0 to the duration or beyond, joined by a cubic spline.
     """
 
     velocity: float | None = None

@@ -1,11 +1,11 @@
 """Scenes: chains of beads, their contacts, initial state and sensors.
 
 Beads 0 … n-1 lie in a row. Contact i joins bead i to bead i+1; with a wall, the last contact joins
-bead n-1 to it. A contact pushes with F = A_i δ^k while its compression δ is positive and is open
-otherwise. Displacements count from the equilibrium and are positive towards the wall. By default a
-scene has no wall, no gravity, no precompression and no sensors.
+bead n-1 to it. A contact pushes with ``F = A_i δ^k`` while its compression δ is positive and is
+open otherwise. Displacements count from the equilibrium and are positive towards the wall. By
+default a scene has no wall, no gravity, no precompression and no sensors.
 
-Any consistent units will do (m1 = A = D = 1, say); scenes of real beads are in SI.
+Any consistent units will do (``m1 = A = D = 1``, say); scenes of real beads are in SI.
 """
 
 from __future__ import annotations
@@ -67,8 +67,8 @@ class Scene:
         for each contact, the wall's last.
     law : ContactLaw or sequence of ContactLaw, optional
         Any contact law of `lwa.law` without symbols, in place of ``k``, for all contacts or for
-        each; the contact force is A F(δ). A contact with F′(0) > 0 (Toda's, say) also pulls, any
-        other opens. The k of a contact whose law is no power is 1.
+        each; the contact force is ``A F(δ)``. A contact of positive stiffness at ``δ = 0`` (Toda's,
+        say) also pulls, any other opens. The k of a contact whose law is no power is 1.
     duration : float
         Time to simulate.
     wall : float, optional

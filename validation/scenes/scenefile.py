@@ -70,9 +70,17 @@ def read_scene(
 ) -> Scene:
     """Read a scene from a file, TOML or JSON; "-" is standard input.
 
-    samples : number of samples of a scene whose file gives none; by default that of `Scene`.
+    Parameters
+    ----------
+    path : str or Path
+        Name of the file.
+    samples : callable, optional
+        Number of samples of a scene whose file gives none; by default that of `Scene`.
 
-    Raises `SceneError`, in one line, for a file that cannot be read or is not a scene.
+    Raises
+    ------
+    SceneError
+        In one line, for a file that cannot be read or is not a scene.
     """
 
     def read(content: Any) -> Scene:
@@ -87,7 +95,12 @@ def read_scene(
 def scene(content: Any, folder: Path = Path()) -> Scene:
     """Return the scene of a parsed file; `SceneError` for unknown keys and invalid values.
 
-    folder : folder of the measured files that the content names.
+    Parameters
+    ----------
+    content : object
+        The parsed file.
+    folder : Path
+        Folder of the measured files that the content names.
     """
     file = Table(content, "", FILE)
     tables = {

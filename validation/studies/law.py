@@ -1,12 +1,12 @@
 """The contact law of a chain of equal beads from peak contact forces F and speeds V of its pulses.
 
-**One power.** For F = A δ^k, mass m and spacing D the lattice's wave has
+**One power.** For ``F = A δ^k``, mass m and spacing D the lattice's wave has ::
 
     V²/D² = R(k) 2/((k+1) m) A^{1/k} F^{(k-1)/k},
 
 where R is the squared speed of the lattice's wave divided by that of the long-wave theory. So ln V
-is linear in ln F; least squares give k and A, and with k = 3/2 (Hertz) the unknown Young's modulus
-E of one material.
+is linear in ln F; least squares give k and A, and with the exponent 3/2 of Hertz the unknown
+Young's modulus E of one material.
 
 Errors are 95 % intervals. The size of the noise is estimated from the residuals. Standard
 deviations of the data, if known, weight the data, and the noise is at least theirs: the residuals
@@ -222,7 +222,7 @@ def _series() -> np.polynomial.Chebyshev:
 
 
 def speed_ratio(k: Any) -> Array:
-    """Return R(k), squared speed of the lattice's pulse over the theory's, 1 ≤ k ≤ 4."""
+    """Return R(k), squared speed of the lattice's pulse over the theory's, for k from 1 to 4."""
     return np.asarray(_series()(np.clip(k, 1, 4)))
 
 
@@ -246,7 +246,7 @@ class Medium:
         return cls(float(cell.masses[0]), float(cell.spacing))
 
     def log_stiffness(self, slope: Any, constant: Any) -> Array:
-        """Return ln A of the power law with ln V = slope · ln F + constant, F of contacts."""
+        """Return ln A of the power law with ``ln V = slope · ln F + constant``, F of contacts."""
         k = _exponent(slope)
         unit = np.log(2 * self.ratio(k) / ((k + 1) * self.mass)) / 2
         return np.asarray(2 * k * (constant - math.log(self.spacing) - unit))
@@ -259,7 +259,7 @@ def _exponent(slope: Any) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class PowerFit:
-    """Fit of F = A δ^k, with 95 % errors."""
+    """Fit of ``F = A δ^k``, with 95 % errors."""
 
     k: Estimate
     A: Estimate
@@ -281,8 +281,9 @@ def weights(
 ) -> Array:
     """Return the weights (N,) of pulses, from the standard deviations of their forces and speeds.
 
-    A residual of ln V = slope · ln F + constant has the variance (σ_V/V)² + (slope σ_F/F)², with
-    the slope of a first fit without weights. The weights are the inverse standard deviations.
+    A residual of ``ln V = slope · ln F + constant`` has the variance
+    ``(σ_V/V)² + (slope σ_F/F)²``, with the slope of a first fit without weights. The weights are
+    the inverse standard deviations.
     """
     slope = np.polyfit(np.log(force), np.log(speed), 1)[0]
     return np.asarray(1 / np.hypot(speed_error / speed, slope * force_error / force))
@@ -291,9 +292,16 @@ def weights(
 def fit_power(
     medium: Medium, force: Array, speed: Array, weight: Array | None = None
 ) -> PowerFit:
-    """Fit one power F = A δ^k to peak forces and speeds (N,), N ≥ 4, by least squares of ln V.
+    """Fit one power ``F = A δ^k`` to pulses by least squares of ln V.
 
-    weight : (N,), see `weights`; by default all pulses weigh the same.
+    Parameters
+    ----------
+    medium : Medium
+        The chain.
+    force, speed : array
+        Peak contact forces and speeds (N,) of four or more pulses.
+    weight : array, optional
+        Weights (N,), see `weights`; by default all pulses weigh the same.
     """
     x, y = np.log(force), np.log(speed)
     (slope, constant), middle = _fit(x, y, 1, weight)

@@ -18,6 +18,7 @@ from validation.lattice.kernel.pair import (
     begin_step,
     correct_contact,
     end_step,
+    evaluate_end,
     evaluate_stages,
     mark_kinks,
     next_mark,
@@ -53,13 +54,12 @@ def advance(
     Returns the time that is reached. The integration also stops at a time to which no step can
     be added, and where the response is greater than ``plan.most``.
     """
-    until, hi, stages = now.tries + tries, plan.size, len(plan.scheme.nodes)
+    until, hi = now.tries + tries, plan.size
     made = corrected = now.tries == 0
-    first = min(1, stages)  # no literal, for which numba compiles once more
     while True:
         if made:
             if corrected:
-                evaluate_stages(chain, beads, plan, now.t, 0.0, hi, stages)
+                evaluate_end(chain, beads, plan, hi)
             begin_step(beads, hi)
             advance_front(beads, plan, now)
             store_knot(chain, beads, knots, now)
@@ -74,7 +74,7 @@ def advance(
             return float(now.t)
         hi = moving(now)
         now.tries += 1
-        evaluate_stages(chain, beads, plan, now.t, h, hi, first)
+        evaluate_stages(chain, beads, plan, now.t, h, hi)
         beads.books[:] = 0.0
         marks, i = mark_kinks(chain, beads, plan, h, hi), -1
         if chain.drive.driven:

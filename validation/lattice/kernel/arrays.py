@@ -18,7 +18,7 @@ BLOCK = 8  # doubles in the widest vector register; the number of moved beads is
 # Beads whose memory stays in the processor's cache throughout a step. Measured for 20,000 beads:
 # 128 and 256 take the same time, 512 a tenth more, 1,024 a fifth more.
 TILE = 256
-ROOM = 18  # most stages of a pair: `pair._move` adds nine in a pass
+ROOM = 13  # most stages of a pair; `pair` adds up so many
 
 
 class Drive(NamedTuple):

@@ -19,7 +19,7 @@ from typing import Any
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel import kinks
-from validation.lattice.kernel.arrays import TILE, Beads, Chain, Plan
+from validation.lattice.kernel.arrays import ROOM, TILE, Beads, Chain, Plan
 from validation.lattice.kernel.compiled import (
     ONE,
     ZERO,
@@ -61,6 +61,34 @@ _HOPELESS = 1e9
 _THIRD = 0.01
 
 
+def _mover(most: int) -> Any:
+    """Compile a weighted sum over ``most`` stages, written out for loops that vectorise."""
+    stages = index(most)
+
+    @part
+    def move(
+        target: Array,
+        base: Array,
+        rate: Array,
+        time: float,
+        scale: float,
+        weights: Array,
+        push: Array,
+        lo: int,
+        hi: int,
+    ) -> None:
+        for i in range(index(lo), index(hi)):
+            total = 0.0
+            for s in range(stages):
+                total += weights[s] * push[s, i]
+            target[i] = base[i] + time * rate[i] + scale * total
+
+    return move
+
+
+_move_few, _move_some, _move_all = _mover(4), _mover(8), _mover(ROOM)
+
+
 @part
 def _move(
     target: Array,
@@ -76,31 +104,14 @@ def _move(
 ) -> None:
     """Compute target = base + time rate + scale Σ_s weights[s] push[s] over ``count`` stages.
 
-    One pass adds four stages, or nine of them: each pass reads and writes all beads. The weights of
-    stages that are still to come are 0.
+    The weights of stages that are still to come are 0.
     """
     if count <= 4:
-        a, b = scale * weights[0], scale * weights[1]
-        c, d = scale * weights[2], scale * weights[3]
-        for i in range(index(lo), index(hi)):
-            first = a * push[ZERO, i] + b * push[ONE, i]
-            second = c * push[index(2), i] + d * push[index(3), i]
-            target[i] = base[i] + time * rate[i] + (first + second)
-        return
-    for s in range(0, count, 9):
-        a, b, c = scale * weights[s], scale * weights[s + 1], scale * weights[s + 2]
-        d, e, f = scale * weights[s + 3], scale * weights[s + 4], scale * weights[s + 5]
-        g, m, n = scale * weights[s + 6], scale * weights[s + 7], scale * weights[s + 8]
-        rows = push[s : s + 9]
-        for i in range(index(lo), index(hi)):
-            first = a * rows[ZERO, i] + b * rows[ONE, i] + c * rows[index(2), i]
-            second = d * rows[index(3), i] + e * rows[index(4), i]
-            second += f * rows[index(5), i]
-            third = (
-                g * rows[index(6), i] + m * rows[index(7), i] + n * rows[index(8), i]
-            )
-            target[i] = base[i] + time * rate[i] + (first + second + third)
-        base, time = target, 0.0
+        _move_few(target, base, rate, time, scale, weights, push, lo, hi)
+    elif count <= 8:
+        _move_some(target, base, rate, time, scale, weights, push, lo, hi)
+    else:
+        _move_all(target, base, rate, time, scale, weights, push, lo, hi)
 
 
 @summed
@@ -285,39 +296,43 @@ def next_mark(marks: Array, i: int) -> int:
     return i
 
 
-@alone
+@inlined
 def evaluate_stages(
-    chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int, first: int
+    chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int
 ) -> None:
-    """Compute the accelerations at the stages of a step h of the beads 0 … hi-1 at time t.
-
-    first : first stage, 1; or the number of stages, for the forces at the step's end alone, whose
-    motion is known.
-    """
+    """Compute the accelerations at the stages of a step h of the beads 0 … hi-1 at time t."""
     pair, stages = plan.scheme, len(plan.scheme.nodes)
     y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
     force, push, inverse = beads.force[1], beads.push, chain.inverse
     for tile in range(0, hi + stages, TILE):
-        for s in range(first, max(stages, first + 1)):
-            lo, up, begin, behind = tile_bounds(tile, s, hi)
+        for s in range(1, stages):
+            lo, up, first, behind = tile_bounds(tile, s, hi)
             if lo >= up:
                 continue
-            row = min(s, stages - 1)
-            if s < stages:
-                ch = pair.nodes[s] * h
-                _move(next_y, y, v, ch, h * h, pair.moments[s], s, push, lo, up)
-                if chain.damped or row == stages - 1:
-                    _move(next_v, v, v, 0.0, h, pair.impulses[s], s, push, lo, up)
-                if chain.drive.driven and lo == 0:
-                    given = drive_motion(chain.drive, t + h / 2, t + ch)
-                    next_y[0], next_v[0], beads.given[1] = given
-            contact_forces(chain, beads, plan, next_y, next_v, row, begin, behind)
+            ch = pair.nodes[s] * h
+            _move(next_y, y, v, ch, h * h, pair.moments[s], s, push, lo, up)
+            if chain.damped or s == stages - 1:
+                _move(next_v, v, v, 0.0, h, pair.impulses[s], s, push, lo, up)
+            if chain.drive.driven and lo == 0:
+                given = drive_motion(chain.drive, t + h / 2, t + ch)
+                next_y[0], next_v[0], beads.given[1] = given
+            contact_forces(chain, beads, plan, next_y, next_v, s, first, behind)
             # The stages share a row of forces: the last one of a tile is kept for the next tile.
-            if begin > 0:
-                force[begin] = beads.border[row]
-            beads.border[row] = force[behind]
-            for i in range(index(begin), index(behind)):
-                push[row, i] = (force[i] - force[i + ONE]) * inverse[i]
+            if first > 0:
+                force[first] = beads.border[s]
+            beads.border[s] = force[behind]
+            for i in range(index(first), index(behind)):
+                push[s, i] = (force[i] - force[i + ONE]) * inverse[i]
+
+
+@inlined
+def evaluate_end(chain: Chain, beads: Beads, plan: Plan, hi: int) -> None:
+    """Compute the accelerations at a step's end, after its motion was corrected."""
+    last, force = len(plan.scheme.nodes) - 1, beads.force[1]
+    contact_forces(chain, beads, plan, beads.next_y, beads.next_v, last, 0, hi)
+    for i in range(index(hi)):
+        net = force[i] - force[i + ONE]
+        beads.push[index(last), i] = net * chain.inverse[i]
 
 
 @summed
