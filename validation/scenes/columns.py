@@ -125,13 +125,14 @@ class MeasuredFile:
         self._head = [["", *row] for row in self._cells.head]
         self.names = {0: "time"} if step else {}
         self._stated = {0: step} if step else {}
+        self._keys: dict[int, str] = {}  # names or headers by which units are stated
         self._name_columns(columns or {})
         for key, statement in (units or {}).items():
             numbers = self._named(_name(key)) or self._numbers(key)
             if not numbers:
-                wrong = f"unit is of {shorten(key)}, which is no column"
-                raise self._fault(wrong, *(units or {}))
+                raise self._fault(f"unit is of {shorten(key)}, which is no column")
             self._stated |= dict.fromkeys(numbers, str(statement))
+            self._keys |= dict.fromkeys(numbers, key)
 
     def _name_columns(self, stated: Mapping[str, str]) -> None:
         """Name the columns that the user states, and those whose headers are such names."""
@@ -143,7 +144,8 @@ class MeasuredFile:
                 )
             numbers = self._numbers(str(column))
             if len(numbers) != 1:
-                raise self._fault(f"{len(numbers)} columns are {shorten(column)}", name)
+                count = len(numbers) or "no"
+                raise self._fault(f"{count} columns are {shorten(column)}", name)
             self.names[numbers[0]] = _name(name)
         for row in reversed(self._head):  # the lowest header counts
             taken = {*self.names.values()}
@@ -172,13 +174,16 @@ class MeasuredFile:
 
     def _fault(self, words: str, *names: str) -> SceneError:
         """Return an error that lists the columns, and ends in options that name some of them."""
-        paste = " ".join(f"--column '{name}={i}'" for i, name in enumerate(names, 1))
+        # A record's time mostly stands in front of its signals.
+        start = 2 if len(names) == 1 and names[0] != "time" else 1
+        paste = [f"--column '{name}={i}'" for i, name in enumerate(names, start)]
         found = []
         for number, entry in enumerate(self._cells.first, start=1):
             above = [row[number] for row in self._head[-2:] if number < len(row)]
             found.append(f"{number} {' '.join(above)[:20]!r} {entry[:12]}")
         listed = ", ".join(found) or "no numbers"
-        return SceneError(f"{self.path}: {words}: found {listed}: {paste}")
+        said = (f"{self.path}: {words}", f"found {listed}", " ".join(paste))
+        return SceneError(": ".join(filter(None, said)))
 
     @cached_property
     def si(self) -> bool:
@@ -211,7 +216,7 @@ class MeasuredFile:
         for name in names:
             own = self._named(name)
             if len(own) != 1:
-                raise self._fault(f"{len(own)} columns are {name}", *names)
+                raise self._fault(f"{len(own) or 'no'} columns are {name}", *names)
             numbers += own
         return self._record(numbers)
 
@@ -238,7 +243,8 @@ class MeasuredFile:
             if name.endswith("force") or (name != force and not self._named(force)):
                 sensors.append(number)
         if not sensors or len(times) not in (1, len(sensors)):
-            there = f"{len(times)} columns are time and {len(sensors)} of sensors"
+            there = f"{len(times) or 'no'} columns are time"
+            there += f" and {len(sensors) or 'none'} of sensors"
             wanted = "one time for all, or one for each, is wanted"
             raise self._fault(f"{there}: {wanted}", "time", "force")
         pairs = zip(cycle(times), sensors, strict=False)
@@ -260,7 +266,7 @@ class MeasuredFile:
             quantity,
             t,
             values,
-            f"--unit '{name}={turned}'",
+            f"--unit '{self._keys.get(signal, name)}={turned}'",
         )
 
     def _record(self, numbers: list[int]) -> Array:

@@ -164,7 +164,7 @@ def law(
         rows.append((name + units.get(name, ""), number))
         values |= {f"{name}_value": number.value, f"{name}_error_value": number.error}
     return Report(
-        f"{len(force)} pulses, forces {force[0]:.4g} … {force[-1]:.4g}",
+        f"{len(force)} pulses, forces {force[0]:.4g} … {force[-1]:.4g}{' N' * file.si}",
         (Table(_POWER, tuple(rows)),),
         panels=(Panel(*axes, curves, "xy"),),
         notes=(*file.notes, *notes, _NOTE),
