@@ -337,7 +337,7 @@ def _by_ratio(
     omega: sp.Expr,
     known: Mapping[sp.Symbol, sp.Expr],
 ) -> tuple[sp.Symbol, sp.Expr]:
-    """The mass that a ratio ω = m2/m1 replaces, where others have known values, and its value."""
+    """Return the mass symbol that a given m2/m1 determines, and its value; others are ``known``."""
     masses = tuple(dict.fromkeys(cell.masses))
     if len(masses) != 2:
         raise InputError(

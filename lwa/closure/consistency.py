@@ -104,7 +104,7 @@ class Closure(Value):
         algebra = self.solution.algebra
         found = {}
         for n, b in enumerate(self.solution.ansatz[1:], start=1):
-            # Numbers: polynomials without jets
+            # b_n is a number: the term of a polynomial without jets
             terms = algebra.terms(b, self.model.base)
             number = terms.get(Jet(()), [])
             found[n] = self.model.ring.expression(number)

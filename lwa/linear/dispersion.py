@@ -259,13 +259,12 @@ class LoadedChain(Value):
     @cached_property
     def spring_constants(self) -> tuple[sp.Expr, ...]:
         """The spring constants ``A_i F′(δ_i)``."""
-        constants = {}
-        # Each stiffness once: the search for δ takes a while.
-        for A in set(self.cell.stiffnesses):
+        constants = []
+        for A in self.cell.stiffnesses:
             delta = self.law.inverse(self.precompression / A)
             slope = self.law.at(delta, 1)
-            constants[A] = sp.powsimp(A * slope)
-        return tuple(constants[A] for A in self.cell.stiffnesses)
+            constants.append(sp.powsimp(A * slope))
+        return tuple(constants)
 
     @cached_property
     def springs(self) -> Dispersion:

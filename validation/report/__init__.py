@@ -1,8 +1,16 @@
 """Reports of studies: text, JSON, CSV, pictures, and the command that prints them.
 
-To add a study, write one file in `validation.studies`, its test, and a line in `validation.cli`::
+To add a study, write one file in `validation.studies`, its test, a line in ``STUDIES`` of
+`validation.cli`, and its command in the list of ``book/reference.md``::
 
-    @study(option("--k", default=1.5, says="Exponent."), examples=["lwa-validate cubes --k 2"])
+    from validation.report.study import Report, option, study
+    from validation.report.table import Column, Table
+
+    @study(
+        option("--k", default=1.5, says="Exponent."),
+        page="reference",
+        examples=["lwa-validate cubes --k 2"],
+    )
     def cubes(k: float) -> Report:
         '''First line: what the study computes. The first paragraph is the help.'''
         rows = [{"n": n, "power_value": n**k} for n in (1, 2, 3)]

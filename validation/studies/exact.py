@@ -26,8 +26,6 @@ Strain and force of a contact, velocity of a bead m1. Strains scale with the pea
 F^(1/k), velocities as F^((k+1)/2k), c as F^((k-1)/2k); widths do not depend on F."""
 
 _ERRORS = "residual, tail and rounding"
-_READ: dict[str, Number] = {"amplitude": "peak", "fwhm": "fwhm"}
-"""Columns, and the numbers of a wave that stand there."""
 
 
 @study(
@@ -62,14 +60,18 @@ def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
         "residual_value": wave.residual,
         "solitary": wave.solitary,
     }
+    # Numbers of the wave as a whole; the others are those of a quantity.
     numbers: tuple[Number, ...] = ("c2", "c", "tail")
     for name in numbers:
         number = wave.estimate(name)
         data |= {f"{name}_value": number.value, f"{name}_error_value": number.error}
-    rows: list[dict[str, Any]] = [{"of": quantity} for quantity in QUANTITIES]
-    for key, name in _READ.items():
-        for row in rows:
-            row[key] = wave.estimate(name, row["of"])
+    rows: list[dict[str, Any]] = []
+    for quantity in QUANTITIES:
+        amplitude = wave.estimate("peak", quantity)
+        fwhm = wave.estimate("fwhm", quantity)
+        rows.append({"of": quantity, "amplitude": amplitude, "fwhm": fwhm})
+    # The same numbers by quantity, besides the rows of the printed table.
+    for key in ("amplitude", "fwhm"):
         data[f"{key}_value"] = {row["of"]: row[key].value for row in rows}
         data[f"{key}_error_value"] = {row["of"]: row[key].error for row in rows}
     table = Table.of(_COLUMNS, rows, "rows", note=_NOTE, errors=_ERRORS)
@@ -85,6 +87,7 @@ def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
 
 _RATIOS = (
     Column("mass_ratio_value", "m2/m1", format=".6g"),
+    # Tail and residual tell how exact a row is; six digits are far from rounding.
     Column("c2_value", "c² at peak force 1", format=".6g"),
     Column("tail_value", "tail", format=".0e"),
     Column("residual_value", "residual", format=".0e"),
@@ -104,6 +107,7 @@ def resonances(k: float, count: int) -> Report:
     ``residual_value``; ``rows``, the printed table.
     """
     waves = special_ratios(k, count)
+    # A pulse of a dimer at peak force 1 is three sites wide, and rests on no tail.
     xi = np.linspace(-5, 5, 1001)
     rows = []
     curves = []

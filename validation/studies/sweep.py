@@ -42,7 +42,7 @@ RANGES = {
 CLOSURES = {"linear": "paper's closure", "canonical": "full closure, canonical field"}
 """Theories beside the lattice, with their labels."""
 
-_MOST = 1000  # values of an axis
+_MOST = 1000  # values of an axis; a grid of 10⁶ points takes days
 AHEAD = 1000  # points that wait for a worker, whatever the size of the grid
 Axis = Sequence[Rational]
 Grids = Mapping[str, Array]  # quantity → (len(ks), len(omegas)); NaN where missing
@@ -101,6 +101,7 @@ def report(
             for quantity, grid in wave.items():
                 value = grid[place]
                 row[f"theory.{closure}.{quantity}_value"] = value
+                # Some points have no steady pulse, or one whose width is not measured.
                 if quantity in measured.numbers:
                     error = value / measured.numbers[quantity].value - 1
                     row[f"error.{closure}.{quantity}_value"] = error
@@ -136,10 +137,12 @@ def _panels(
             numbers = [found.numbers.get(quantity, _NONE) for found in group]
             values = np.array([number.value for number in numbers])
             errors = np.array([number.error for number in numbers])
-            if quantity == "decay":  # a decay below its error is drawn as its error
+            # On a logarithmic axis a decay below its error, or below 0, is drawn as its error.
+            if quantity == "decay":
                 values = np.fmax(values, errors)
             axis = [found.k if over_k else found.omega for found in group]
             curves.append(Curve(name, axis, values, error=errors))
+        # Beside several curves the theories' would hide them; theories have no decay.
         if len(groups) == 1 and quantity != "decay":
             for closure, wave in waves.items():
                 line = wave[quantity].ravel()
@@ -154,6 +157,7 @@ def theory(ks: Axis, omegas: Axis) -> dict[str, Grids]:
     """Return widths and speed of the compact waves at contact force 1, by closure and quantity."""
     k, omega = np.meshgrid(np.array(ks, float), np.array(omegas, float), indexing="ij")
     scale = np.sqrt(2 * k / (1 + omega))  # τ/t, for A = D = m1 = 1
+    # One derivation in symbols serves all points.
     cell = Dimer("m1", "m2", spacing=1)
     waves = {
         "linear": homogenize(cell).pde.traveling_wave(),
@@ -161,6 +165,7 @@ def theory(ks: Axis, omegas: Axis) -> dict[str, Grids]:
     }
     grids: dict[str, Grids] = {}
     for closure, exact in waves.items():
+        # The paper's closure has no wave at some k and ω: nothing is drawn there.
         wave = exact.numeric(missing="nan")
         grids[closure] = {
             "width": wave.fwhm(k, omega, "force"),
@@ -188,7 +193,7 @@ def _axis(text: str, name: str) -> Iterator[sp.Expr]:
 def _values(given: str | Iterable[Any], name: str) -> tuple[Rational, ...]:
     """Read the exact values of an axis, in rising order."""
     least, most = RANGES[name]
-    values = set()
+    values = set()  # a value in two overlapping ranges is one
     for part in _axis(given, name) if isinstance(given, str) else items(given, name):
         value = read_exact(part, name)
         if not (value.is_Rational and least <= value <= most):
@@ -210,17 +215,21 @@ def measured(
 ) -> list[Point]:
     """Measure the points of a grid that are not yet in the file, by the executor of ``workers``."""
     with workers as executor, file.opened() if file else _memory() as (points, keep):
+        # Points of an earlier sweep with this file are not computed again.
         missing = [key for key in product(ks, omegas) if key not in points]
         waiting = iter(missing)
         ahead: set[Future[Point]] = set()
         done = SimpleQueue[Future[Point]]()
         try:
             for _ in progress(missing):
+                # As many new points as are done: an executor keeps all that it is given.
                 for key in islice(waiting, AHEAD - len(ahead)):
                     future = executor.submit(point, *key, stretch)
                     ahead.add(future)
                     future.add_done_callback(done.put)
-                future = done.get()
+                future = (
+                    done.get()
+                )  # the first that is done, whatever its place in the grid
                 ahead.remove(future)
                 new = future.result()
                 points[new.k, new.omega] = new
@@ -232,6 +241,7 @@ def measured(
             kept = f"the same line goes on from {file.path}" if file else _LOST
             raise KeyboardInterrupt(kept) from None
         finally:
+            # After a failure the points that no worker has begun would still be computed.
             for future in ahead:
                 future.cancel()
     return [points[key] for key in product(ks, omegas)]
@@ -318,6 +328,7 @@ def sweep(
     """
     grid = _values(ks, "k"), _values(omegas, "omega")
     stretch = integer(stretch, "stretch", 2, 100)
+    # Before the file: a refusal leaves none behind.
     if address is not None and jobs is not None:
         raise InputError(f"jobs is {jobs}: a cluster has its own workers", jobs=None)
     points = None

@@ -42,6 +42,7 @@ def terms(A, n, count):
     ]
 
 
+@pytest.mark.slow
 def test_the_late_coefficients_are_predicted_from_earlier_ones():
     A = action()
     assert abs(A.real) == pytest.approx(7.188366, abs=2e-4)

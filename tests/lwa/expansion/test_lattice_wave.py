@@ -86,12 +86,16 @@ def test_light_beads_that_weigh_nothing():
         assert values[1] == pytest.approx(values[0], rel=1e-12)
 
 
-STEADY = [("5/4", "1/10"), ("5/4", "1/4"), ("3/2", "1/50"), ("3/2", "1/10"), ("3/2", "41/150"),
-          ("2", "1/50"), ("2", "1/10"), ("5/2", "1/20"), ("27/20", "1/5"), ("8/5", "3/10"),
-          ("6/5", "9/10"), ("3/2", "4/5"), ("5/2", "17/20")]  # fmt: skip
+STEADY = [("5/4", "1/10"), ("3/2", "1/10"), ("3/2", "41/150"), ("2", "1/50"), ("5/2", "1/20"),
+          ("3/2", "4/5")]  # fmt: skip
+MORE = [("5/4", "1/4"), ("3/2", "1/50"), ("2", "1/10"), ("27/20", "1/5"), ("8/5", "3/10"),
+        ("6/5", "9/10"), ("5/2", "17/20")]  # fmt: skip
 
 
-@pytest.mark.parametrize(("k", "omega"), STEADY)
+@pytest.mark.parametrize(
+    ("k", "omega"),
+    [*STEADY, *(pytest.param(*case, marks=pytest.mark.slow) for case in MORE)],
+)
 def test_the_error_of_a_dimers_wave(engine, k, omega):
     """± covers the steady pulse of a struck chain, and two numbers of three are not too large."""
     k, omega = sp.Rational(k), sp.Rational(omega)
@@ -183,7 +187,7 @@ def test_a_program_computes_the_wave():
     program = {}
     exec(wave.code("numpy"), program)
     assert "tgamma" not in wave.code("c")
-    for k in ("1.05", "3/2", 20):
+    for k in ("1.05", 20):
         at = wave.at(k=k, m=1, A=1, D=1, F=1)
         speed = program["speed"](1, float(at.k), 1, 1, 1)
         assert float(speed) == pytest.approx(float(at.speed), rel=1e-8)

@@ -5,12 +5,26 @@ import sympy as sp
 
 from lwa import Cell, Dimer, InputError, expand
 from tests.identity import same
+from tests.lwa.expansion.test_exact_waves import series
 
 
-def test_a_series_of_a_number_k_is_summed_there_only():
-    """c² of one bead and one contact A scales as A^{1/k}."""
-    stiff, unit = (expand(Cell([1], [A]), 12, k="6/5").c2.at() for A in (8, 1))
-    assert stiff.value == pytest.approx(8 ** (5 / 6) * unit.value, rel=1e-14)
+def test_sums_scale_as_dimensions_demand():
+    """Peak force 1, δ = A^{-1/k}: c² ~ 1/(m δ), momentum ~ √(m δ), energy ~ δ; widths in sites."""
+    unit, other = (
+        series(expand(Cell([m], [A]), 8, k="6/5")) for m, A in ((1, 1), (4, 8))
+    )
+    delta = 8 ** (-5 / 6)
+    scales = {
+        "c2": 1 / (4 * delta),
+        "momentum": (4 * delta) ** 0.5,
+        "energy": delta,
+        "effective_mass": 4,
+    }
+    for name, row in unit.items():
+        scaled = row.at() * scales.get(name, 1)
+        found = other[name].at()
+        assert found.value == pytest.approx(scaled.value, rel=1e-14)
+        assert found.error == pytest.approx(scaled.error, rel=1e-9)
 
 
 @pytest.mark.slow
@@ -58,11 +72,11 @@ def test_a_series_shows_in_a_notebook():
 def test_at_gives_symbols_their_values():
     wave = expand(Dimer("m1", "m2"), 2)
     assert wave.at(m1=2, omega="1/2", k="3/2") == expand(Cell([2, 1]), 2, k="3/2")
-    for name, series in (("c2", wave.c2), ("force", wave.fwhm("force"))):
+    for name, row in (("c2", wave.c2), ("force", wave.fwhm("force"))):
         numbers = dict(zip(wave.cell.symbols[1:], (2, 1), strict=True))
         at = wave.at(m1=2, m2=1)
         own = at.c2 if name == "c2" else at.fwhm(name)
-        for a, b in zip(series.coefficients, own.coefficients, strict=True):
+        for a, b in zip(row.coefficients, own.coefficients, strict=True):
             assert same(a.subs(numbers), b)
     with pytest.raises(InputError, match="m3"):
         wave.at(m3=1)

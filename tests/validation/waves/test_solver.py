@@ -86,6 +86,17 @@ def test_the_equations_of_motion_hold_at_any_point(k, p0):
     assert more.background == pytest.approx(2.5 * p0, rel=1e-15)
 
 
+def test_the_residual_under_load_is_a_share_of_the_waves_own_peak():
+    """Small waves are alike but for their size, and so are their errors on a coarse grid."""
+    residuals = []
+    for load in (0.9, 0.99):
+        wave = exact_wave([1], 1.5, background=load)
+        points = int(0.35 * len(wave.even))
+        coarse = Problem((1.0, 1.0), 1.5, wave.half_period, points, load)
+        residuals.append(solve(coarse, wave).residual)
+    assert residuals[0] == pytest.approx(residuals[1], rel=0.5)
+
+
 def came_back(wave, sites=100):
     """The largest change of strain and velocity when a chain's wave is ``sites`` on; the run."""
     recorded = {"contact_sensors": (60,), "samples": 4001}

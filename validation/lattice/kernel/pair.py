@@ -62,7 +62,7 @@ _THIRD = 0.01
 
 
 def _mover(most: int) -> Any:
-    """Compile a weighted sum over ``most`` stages, unrolled for the loop over beads to vectorise."""
+    """Compile a weighted sum over ``most`` stages, written out for loops that vectorise."""
     stages = index(most)
 
     @part
