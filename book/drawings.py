@@ -365,7 +365,7 @@ def forms(
     axes.text(0.52, 3e-12, "spheres", fontsize=10, color="0.3")
     axes.set_xlabel(r"$\varepsilon = k - 1$")
     axes.set(ylabel="relative error of the FWHM", ylim=(1e-13, 2))
-    axes.legend(loc="lower right")
+    axes.legend(loc="lower center", bbox_to_anchor=(0.62, 0))  # beside the curves
 
 
 def laws(panels: Sequence[Axes], waves: dict[str, LoadedWave]) -> None:

@@ -42,8 +42,9 @@ class Run(Pictured):
     bead_force, bead_displacement, bead_velocity : (beads, S), at the bead sensors; the force is the
         mean of the bead's two contacts, the displacement counts from the equilibrium.
     displacements, velocities : (n,), of all beads at the end.
-    energy_drift : change of the energy above equilibrium divided by its initial value (0 if this is
-        0).
+    energy_drift : change of the energy above equilibrium, plus the dissipated energy, less the
+        drive's work, divided by the scene's scale of the energy: the initial energy, or the energy
+        of the response to a drive (0 if this is 0).
     momentum_drift : change of the momentum divided by Σ m|v| at the end; None with a wall or drive.
     step : mean step.
     path : motion of the beads near sensors throughout the run, for `signal`.
@@ -69,7 +70,9 @@ class Run(Pictured):
     def __repr__(self) -> str:
         sensors = len(self.scene.bead_sensors) + len(self.scene.contact_sensors)
         recorded = f"{sensors} sensor{'s' * (sensors != 1)}, {len(self.time)} samples"
-        return f"{type(self).__name__}({self.scene}; {recorded})"
+        steps = round(self.scene.duration / self.step)
+        made = f"{steps} steps, energy drift {self.energy_drift:.1g}"
+        return f"{type(self).__name__}({self.scene}; {made}; {recorded})"
 
     def label(self, quantity: str) -> str:
         """Return the name of a quantity, such as "bead 1 velocity", with its unit in a SI scene."""
