@@ -253,10 +253,14 @@ def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
     >>> power(sp.Rational(9, 4), sp.Rational(3, 2)), power(sp.Rational(9, 4), sp.Rational(1, 9999))
     (27/8, (9/4)**(1/9999))
     """
-    number, rest = base.as_coeff_Mul()
-    if number not in (0, 1) and number.is_Rational and exponent.is_Rational:
+    number, rest = base.as_independent(sp.Symbol, as_Add=False)
+    if number not in (0, 1) and exponent.is_Rational:
+        factor = number.as_coeff_Mul()[0]
         # SymPy multiplies out by the larger part of the exponent: x^{p/q} has x^p in a root.
-        bits = int(number.p).bit_length() + int(number.q).bit_length()
+        bits = int(factor.p).bit_length() + int(factor.q).bit_length()
+        # The root of a surd joins a long exponent.
+        if not number.is_Rational:
+            bits += _POWER_BITS // _FINEST_ROOT
         if bits * max(abs(int(exponent.p)), int(exponent.q)) > _POWER_BITS:
             base = Unmultiplied(number) * rest
     return base**exponent

@@ -225,7 +225,7 @@ class Row:
             number = self.measured.latex()
             unit = not isinstance(self.value, Estimate) and scale.unit_of(self.value)
             if unit:
-                number = rf"\left({number}\right) {unit}"
+                number = rf"\left({number}\right){unit}"
             return f"{self.symbol} = {number}"
         return f"{self.symbol} = {', '.join(map(latex.expression, self._each))}"
 

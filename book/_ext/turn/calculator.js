@@ -152,7 +152,7 @@ function calculator(home) {
   }
   const canvas = element("canvas", {role: "img", "aria-label": "Force at contact 80 over time, with its peak, its width at half height and its arrival"});
   const body = element("tbody");
-  const head = ["", "by the simulation", ...["canonical wave", "paper's closure", FORM]];
+  const head = ["quantity", "by the simulation", ...["canonical wave", "paper's closure", FORM]];
   const titles = element("tr", {}, ...head.map(text => element("th", {scope: "col"}, text)));
   const caption = element("caption", {}, "The pulse at contact 80");
   const scrolls = element("div", {class: "lwa-scrolls", tabindex: "0", role: "region", "aria-label": "numbers of the pulse"},

@@ -96,7 +96,7 @@ ANSWERS = {
         "fwhm_value.force": pytest.approx(1.411928, abs=2e-5),
     },
     # Widths of both contacts on the lattice.
-    "expansion --k 11/10 --masses 1,1 --stiffnesses 1,6/25": {
+    "expansion --k 11/10 --masses 1,1 --stiffnesses 1,6/25 --order 6": {
         "fwhm_value.force": pytest.approx(5.035, rel=0.004),
         "fwhm_contact_2_value.force": pytest.approx(4.549, rel=0.004),
     },
@@ -203,6 +203,9 @@ TEXTS = {
     "wave --k 2 --masses 1 --force 1234567890121/123456789017": ("F = 9.9999999996031\n",),
     "expansion --k 3 --masses 1,2,3 --order 6": ("velocity: no sum at k = 3", "c²: no sum"),
     "expansion --k 3/2 --masses 1": ("c², closed form = 0.8199", "FWHM of the force = 1.4119"),
+    "wave --k 3/2 --masses 1 --format latex": (
+        r"V_{s}\big|_{\mathrm{lattice}} &= 0.739354 \pm", r"\right) D",
+    ),
     "wave --k 3/2 --masses 1,3/5": ("Note: m2/m1 is 3/5 at k = 3/2: the light beads resonate",),
     "dispersion --format latex": (r"\kappa^{4}",),
     "dispersion": ("κ^4: -(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)",),

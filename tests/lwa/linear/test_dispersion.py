@@ -140,6 +140,11 @@ def test_long_decimals():
     speed = np.sqrt(2 * spring / sum(masses))
     assert float(chain.sound_speed) == pytest.approx(speed, rel=1e-14)
     assert chain.bands.branches(1e-6)[0] == pytest.approx(speed * 1e-6, rel=1e-9)
+    # of a surd
+    k = 2.3206499799
+    scale = Cell([9], spacing=sp.sqrt(6) * 16 / 7).time_scale(k)
+    expected = np.sqrt(k * (np.sqrt(6) * 16 / 7) ** (k + 1) / 9)
+    assert float(scale) == pytest.approx(expected, rel=1e-14)
 
 
 def test_a_singular_system_is_nan_beside_the_others():

@@ -120,6 +120,10 @@ def test_plane_waves_of_hexagonal_packings():
     chain = canonical_wave(Cell([1], [str(2 * a**2.5)], str(a)), "3/2").at_force(1)
     assert float(across.speed) == pytest.approx(float(chain.speed), rel=1e-14)
     assert float(across.fwhm()) == pytest.approx(float(chain.fwhm()), rel=1e-12)
+    load = {"force": 2, "precompression": 1}
+    sound = loaded_wave(hexagonal(HERTZ, "across"), **load).sound_speed
+    wave = loaded_wave(Cell([1], [str(2 * a**2.5)], str(a)), k="3/2", **load)
+    assert float(sound) == pytest.approx(float(wave.sound_speed), rel=1e-14)
     along = loaded_wave(hexagonal(HERTZ, "along"), force=1)
     near, far = Link(0, 1, HERTZ, str(2 * 0.5**2.5)), Link(0, 2, HERTZ)
     same = loaded_wave(Lattice([1], [near, far], spacing="1/2"), force=1)
