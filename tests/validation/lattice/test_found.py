@@ -1,0 +1,130 @@
+"""Scenes that earlier versions of the engine got wrong, each for a kind of mistake."""
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from lwa.law import Law, named
+from validation.lattice.simulate import simulate
+from validation.scenes.forcing import Damping, Drive
+from validation.scenes.scene import Scene
+
+X = sp.Symbol("x", positive=True)
+PAIR = dict(masses=(1, 1), stiffnesses=(1,))
+
+
+@pytest.mark.parametrize("phase", [0, 3])
+def test_steps_into_the_knots_of_a_file_come_to_an_end(phase):
+    """A last step of less than 1e-7 of the time was made again and again."""
+    t = np.arange(0, 2000.5, 0.5)
+    drive = Drive(
+        time=t, displacement=0.1 * np.sin(0.9 * t + phase) - 0.1 * np.sin(phase)
+    )
+    run = simulate(
+        Scene(
+            masses=(1,) * 5,
+            stiffnesses=(1,) * 4,
+            wall=1,
+            k=1.5,
+            precompression=1,
+            duration=2000,
+            drive=drive,
+        )
+    )
+    assert abs(run.energy_drift) < 1e-8
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9, 1e-11])
+def test_a_contact_near_an_inflection_of_its_drive_is_seen(rtol):
+    """The rate of the compression changes its sign three times within a step."""
+    gap = 0.998 * np.pi + 0.8 * (2 / 3) * 0.002 * np.sqrt(0.004)
+    scene = Scene(
+        masses=(1, 1), stiffnesses=(1e7,), k=1.5, displacements=(0, gap),
+        velocities=(0, -0.998), duration=3.3, drive=Drive(amplitude=1, frequency=1 / (2 * np.pi)),
+    )  # fmt: skip
+    velocity = simulate(scene, rtol=rtol).velocities[1]
+    assert velocity == pytest.approx(-0.9960454316, abs=max(10 * rtol, 1e-9))
+
+
+@pytest.mark.parametrize("size", [1e-6, 1e-8])
+def test_a_small_motion_on_a_load_is_that_of_springs(size):
+    """Masses on springs of stiffness k = 3/2, by their eigenvectors; no energy cancels."""
+    n, y = 20, np.zeros(20)
+    y[7] = size
+    scene = Scene(
+        masses=(1,) * n, stiffnesses=(1,) * (n - 1), wall=1, k=1.5, precompression=1,
+        displacements=y, duration=20,
+    )  # fmt: skip
+    run = simulate(scene)
+    K = 1.5 * (2 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1))
+    K[0, 0] = 1.5
+    w2, modes = np.linalg.eigh(K)
+    exact = modes @ (np.cos(np.sqrt(w2) * 20) * (modes.T @ y))
+    # The next term of the force is smaller by the size, and the load rounds the motion.
+    assert np.abs(run.displacements - exact).max() < (30 * size + 1e-6) * size
+    assert abs(run.energy_drift) < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("damping", "parting"), [(1e-12, 0.3), (0.1, 0.0205), (0.5, 0)]
+)
+def test_damping_does_not_take_a_laws_attraction(damping, parting):
+    """Beads that attract each other where they part; without damping they part as they met."""
+    law = Law(X ** sp.Rational(3, 2) - sp.Rational(1, 10), X)
+    scene = Scene(
+        **PAIR, law=law, displacements=(-1,), velocities=(0.3,), duration=40,
+        damping=Damping("contact", damping),
+    )  # fmt: skip
+    run = simulate(scene)
+    assert run.velocities[1] - run.velocities[0] == pytest.approx(parting, abs=3e-5)
+    assert abs(run.energy_drift) < 1e-7
+
+
+@pytest.mark.parametrize(
+    "law", [named("exponential", 1), Law(X**2 * sp.log(1 + 1 / X), X)]
+)
+def test_no_contact_beyond_a_free_end_makes_a_number_of_none(law):
+    scene = Scene(
+        masses=(1, 1, 1), stiffnesses=(1, 1), law=law, velocities=(1,), duration=100,
+        damping=Damping("contact", 0.1),
+    )  # fmt: skip
+    run = simulate(scene)
+    assert run.velocities.sum() == pytest.approx(1, abs=1e-9)
+    assert abs(run.energy_drift) < 1e-7
+
+
+def test_a_jump_of_one_contact_ends_no_step_of_the_chain():
+    """Each of a thousand contacts closes with a jump of its force: 35,007 steps once."""
+    velocities = np.random.default_rng(0).normal(size=1000)
+    scene = Scene(
+        masses=(1,) * 1000, stiffnesses=(1,) * 999, k=1.5, velocities=velocities, duration=10,
+        damping=Damping("contact", 0.05),
+    )  # fmt: skip
+    run = simulate(scene)
+    assert run.scene.duration / run.step < 3000
+    assert abs(run.energy_drift) < 1e-7
+
+
+def test_a_piston_that_does_more_work_than_was_guessed():
+    scene = Scene(
+        masses=(1,) * 10, stiffnesses=(1,) * 9, k=7, duration=50, drive=Drive(velocity=1.4),
+        damping=Damping("restitution", 0.55),
+    )  # fmt: skip
+    assert abs(simulate(scene).energy_drift) < 1e-8
+
+
+def test_contacts_of_their_own_move_as_parts_of_a_chain_do():
+    """Two pairs far apart in one chain, with laws and dampings of their own, as each by itself."""
+    kinds = [(1.5, 0.2), (2, 0)]
+    alone = []
+    for k, c in kinds:
+        damping = Damping("contact", c) if c else None
+        alone.append(
+            simulate(Scene(**PAIR, k=k, velocities=(1,), duration=9, damping=damping))
+        )
+    both = Scene(
+        masses=(1,) * 4, stiffnesses=(1,) * 3, k=(1.5, 3, 2), velocities=(1, 0, 1, 0), duration=9,
+        displacements=(0, 0, 100, 100), damping=Damping("contact", (0.2, 0, 0)),
+    )  # fmt: skip
+    expected = np.concatenate([run.velocities for run in alone])
+    assert simulate(both).velocities == pytest.approx(expected, abs=1e-8)
