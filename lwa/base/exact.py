@@ -256,6 +256,8 @@ def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
     number, rest = base.as_independent(sp.Symbol, as_Add=False)
     if number not in (0, 1) and exponent.is_Rational:
         factor = number.as_coeff_Mul()[0]
+        if not factor.is_Rational:  # a float has no root that is written out
+            return base**exponent
         # SymPy multiplies out by the larger part of the exponent: x^{p/q} has x^p in a root.
         bits = int(factor.p).bit_length() + int(factor.q).bit_length()
         # The root of a surd joins a long exponent.
