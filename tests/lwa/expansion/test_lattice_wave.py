@@ -78,6 +78,33 @@ def test_light_beads_that_follow_are_exact_to_first_order(name):
         assert float(e) == pytest.approx(slope, abs=bound)
 
 
+@pytest.mark.parametrize(
+    ("k", "omega", "bound"), [("3/2", "1/20", 5e-4), ("5/4", "1/10", 3e-3)]
+)
+def test_momentum_and_energy_of_a_dimer(k, omega, bound):
+    """The reduced chain has heavy beads of mass 1, at the distance 1, and contacts A = 1."""
+    k, omega = sp.Rational(k), sp.Rational(omega)
+    exact = lattice(float(k), float(omega))[0]
+    wave = lattice_wave(Cell([1, omega], [2**k, 2**k], sp.S.Half), k=k)
+    # second order in ω is left out
+    assert float(wave.momentum) == pytest.approx(exact["momentum"], rel=bound)
+    assert float(wave.energy) == pytest.approx(exact["energy"], rel=bound)
+
+
+def test_relative_errors_of_composed_results_add_up():
+    wave = lattice_wave(EQUAL, k="5/2")
+    errors = {
+        name: wave.estimate(*call).relative_error for name, call in RESULTS.items()
+    }
+    for composed, parts in {
+        ("effective_mass",): ("momentum", "momentum", "energy"),
+        ("fwhm", "force", "time"): ("force", "c"),
+        ("fwhm", "strain", "time"): ("strain", "c"),
+    }.items():
+        total = sum(errors[part] for part in parts)
+        assert wave.estimate(*composed).relative_error == pytest.approx(total, rel=1e-2)
+
+
 def test_light_beads_that_weigh_nothing():
     heavy = lattice_wave(Cell([3], [sp.Rational(1, 4)], 2), k=2, force=5)
     light = lattice_wave(Dimer(3, "1e-30", spacing=1), k=2, force=5)
