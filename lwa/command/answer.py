@@ -33,7 +33,7 @@ LONG = 160
 """Most characters of another exact number in text, two lines; a longer one has its digits alone."""
 
 Form = Literal["both", "formula", "number"]
-"""What a row shows of an expression: the formula and its digits, or one of them."""
+"""Parts of an expression in a row: the formula and its digits, or one of them."""
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ LARGEST = 1e150
 """Largest mass ratio: V² holds the square of its reciprocal, the least that a double has."""
 
 Missing = Literal["raise", "nan"]
-"""What is done where there is no wave: raise `lwa.NoSolitaryWave`, or return NaN there."""
+"""Answers where no wave exists: raise `lwa.NoSolitaryWave`, or return NaN."""
 
 MISSING: tuple[Missing, ...] = get_args(Missing)
 

@@ -239,7 +239,7 @@ def theory_numbers(wave: PhysicalWave) -> dict[str, float]:
     V = float(wave.speed)
 
     def train(peak: float, fwhm: float) -> Train:
-        """The same pulse at every bead, or contact, with its width as a length."""
+        """Pulse at every bead or contact, with its width as a length."""
         half = fwhm / V / 2
         pulses = {}
         for i in range(1, BEADS + 1):
