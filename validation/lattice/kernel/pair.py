@@ -86,7 +86,8 @@ def _mover(most: int) -> Any:
     return move
 
 
-_move_few, _move_some, _move_all = _mover(4), _mover(8), _mover(ROOM)
+# RKN86 has nine stages.
+_move_few, _move_some, _move_all = _mover(4), _mover(9), _mover(ROOM)
 
 
 @part
@@ -108,7 +109,7 @@ def _move(
     """
     if count <= 4:
         _move_few(target, base, rate, time, scale, weights, push, lo, hi)
-    elif count <= 8:
+    elif count <= 9:
         _move_some(target, base, rate, time, scale, weights, push, lo, hi)
     else:
         _move_all(target, base, rate, time, scale, weights, push, lo, hi)
@@ -267,6 +268,9 @@ def watch_drive(chain: Chain, beads: Beads, plan: Plan, t: float, h: float) -> i
     if not chain.opens[0] > 0.0:
         return 0
     start, end = _ends(chain, beads, h, 0)
+    reach = abs(start[1]) + abs(end[1]) + abs(start[2]) + abs(end[2])
+    if not chain.damped and min(start[0], end[0]) > reach:
+        return 0
     p = kinks.fitted_curve(start, end, (1.0, 0.0))
     count, top = kinks.find_edges(law, r, p, h, beads.edges)
     given, _, _ = drive_motion(chain.drive, t + h / 2, t + h / 2)
