@@ -20,7 +20,7 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Pair
-from validation.lattice.kernel.compiled import alone, call, index, part
+from validation.lattice.kernel.compiled import FIRST, alone, call, index, part
 from validation.lattice.kernel.force import drag, elastic, push
 
 Curve = tuple[float, float, float, float, float, float, float, float]
@@ -180,7 +180,7 @@ def find_edges(
 
     The places between the intervals, 0 and 1 among them, go to ``edges``.
     """
-    n, low, before, top = 1, 0.0, _state(law, r, c, h, 0.0), c[0]
+    n, low, before, top = FIRST + 1, 0.0, _state(law, r, c, h, 0.0), c[0]
     edges[0] = 0.0
     for m in range(1, _PLACES + 1):
         high = m / _PLACES

@@ -21,6 +21,7 @@ from lwa.base.arrays import Array
 from validation.lattice.kernel import kinks
 from validation.lattice.kernel.arrays import ROOM, TILE, Beads, Chain, Plan
 from validation.lattice.kernel.compiled import (
+    FIRST,
     ONE,
     ZERO,
     alone,
@@ -217,7 +218,7 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
 
     Returns the number of marks, which are in ``beads.marks``.
     """
-    stages, still, push = len(plan.scheme.nodes), beads.still, beads.push
+    still, push = beads.still, beads.push
     y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
     rest, load, opens, marks = chain.rest, chain.load, chain.opens, beads.marks
     start, end = beads.force[0], beads.force[1]
@@ -232,7 +233,7 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
         for q in range(len(beads.errors)):
             scale = h * h / plan.y if q % 2 == 0 else h / plan.v
             weights, errors = plan.scheme.errors[q], beads.errors[q]
-            _move(errors, still, still, 0.0, scale, weights, stages, push, lo, up)
+            _move_all(errors, still, still, 0.0, scale, weights, push, lo, up)
         for i in range(index(lo), index(up)):
             before = rest[i] + y[i] - y[i + ONE]
             after = rest[i] + next_y[i] - next_y[i + ONE]
@@ -267,7 +268,7 @@ def watch_drive(chain: Chain, beads: Beads, plan: Plan, t: float, h: float) -> i
     law, A, r = chain.laws[chain.law[0]], chain.A[0], chain.r[0]
     if not chain.opens[0] > 0.0:
         return 0
-    start, end = _ends(chain, beads, h, 0)
+    start, end = _ends(chain, beads, h, FIRST)
     reach = abs(start[1]) + abs(end[1]) + abs(start[2]) + abs(end[2])
     if not chain.damped and min(start[0], end[0]) > reach:
         return 0
@@ -314,9 +315,10 @@ def evaluate_stages(
             if lo >= up:
                 continue
             ch = pair.nodes[s] * h
-            _move(next_y, y, v, ch, h * h, pair.moments[s], s, push, lo, up)
-            if chain.damped or s == stages - 1:
-                _move(next_v, v, v, 0.0, h, pair.impulses[s], s, push, lo, up)
+            target, base, weights, time, scale = next_y, y, pair.moments[s], ch, h * h
+            for _ in range(2 if chain.damped or s == stages - 1 else 1):
+                _move(target, base, v, time, scale, weights, s, push, lo, up)
+                target, base, weights, time, scale = next_v, v, pair.impulses[s], 0.0, h
             if chain.drive.driven and lo == 0:
                 given = drive_motion(chain.drive, t + h / 2, t + ch)
                 next_y[0], next_v[0], beads.given[1] = given
@@ -333,7 +335,7 @@ def evaluate_stages(
 def evaluate_end(chain: Chain, beads: Beads, plan: Plan, hi: int) -> None:
     """Compute the accelerations at a step's end, after its motion was corrected."""
     last, force = len(plan.scheme.nodes) - 1, beads.force[1]
-    contact_forces(chain, beads, plan, beads.next_y, beads.next_v, last, 0, hi)
+    contact_forces(chain, beads, plan, beads.next_y, beads.next_v, last, FIRST, hi)
     for i in range(index(hi)):
         net = force[i] - force[i + ONE]
         beads.push[index(last), i] = net * chain.inverse[i]

@@ -16,7 +16,7 @@ from typing import Any
 from lwa.base.arrays import Array
 from validation.lattice.kernel import kinks
 from validation.lattice.kernel.arrays import Beads, Chain, Knots, Numbers
-from validation.lattice.kernel.compiled import cached, part
+from validation.lattice.kernel.compiled import FIRST, cached, part
 from validation.lattice.kernel.force import drag, elastic, push, stiffness
 from validation.lattice.kernel.kinks import Curve, value_and_slope
 
@@ -161,7 +161,7 @@ def interpolate(
     time : (S,), increasing. step : (S,), number of the step that holds each time. ends : (2, R, 4),
     working memory. points, edges : as in `Beads`.
     """
-    last = 0
+    last = FIRST
     while last < len(time):
         first, n = last, step[last]
         while last < len(time) and step[last] == n:
