@@ -8,10 +8,6 @@ from __future__ import annotations
 
 import json
 import math
-import re
-import shutil
-import sys
-import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import repeat
@@ -262,12 +258,6 @@ def attempt(read: Callable[..., Any], *arguments: Any) -> Any:
         return fault
 
 
-WIDTH = 100
-"""Columns of text at most, and in a file or a pipe; a narrower terminal has its own."""
-
-# Breaks of a line: spaces, and within a longer word after an operator but **
-_BREAK = re.compile(r"(\s+|(?<=[^*/][*/])(?![*/\s]))")
-
 Values = dict[str, Any]
 Lines = list["Row | str | Answer"]
 """Rows, lines of text, and parts of an answer."""
@@ -341,26 +331,20 @@ class Answer:
         return result
 
     def text(self) -> str:
-        """The lines that ``--format text`` prints."""
-        lines = []
-        for line in self._lines():
-            lines += _wrapped(line, text_width())
-        return "\n".join(lines)
-
-    def _lines(self) -> list[str]:
+        """The lines that ``--format text`` prints; a formula is one line, which can be copied."""
         lines = []
         for row in self.rows:
             if isinstance(row, Answer):
-                lines += row._lines()
+                lines.append(row.text())
             elif isinstance(row, str):
-                lines += row.split("\n")
+                lines.append(row)
             elif row.label:
                 lines.append(f"  {row.text(self.scale)}")
         if self.errors and "±" in "".join(lines):
             lines.append(f"±: {self.errors}")
         for note in self.notes:
             lines += ["", f"Note: {note}"]
-        return lines
+        return "\n".join(lines)
 
     def latex(self) -> str:
         """The display that ``--format latex`` prints, units and notes as comments behind it."""
@@ -388,18 +372,3 @@ def _put(result: Values, key: str, ending: str, value: Any) -> None:
         result.setdefault(group + ending, {})[entry] = value
     else:
         result[group + ending] = value
-
-
-def text_width() -> int:
-    """Columns of the terminal, `WIDTH` at most; `WIDTH` in a file or a pipe."""
-    if not sys.stdout.isatty():
-        return WIDTH
-    return min(shutil.get_terminal_size().columns, WIDTH)
-
-
-def _wrapped(line: str, width: int) -> list[str]:
-    """Break a line of text; further lines are indented by eight columns more."""
-    indent = line[: len(line) - len(line.lstrip())]
-    wrapper = textwrap.TextWrapper(width, "", f"{indent}        ")
-    wrapper.wordsep_re = _BREAK
-    return wrapper.wrap(line) or [""]
