@@ -182,7 +182,7 @@ def finished(
         If a number is not finite.
     """
     n = motion.size
-    records = records | {
+    arrays: dict[str, Any] = records | {
         "displacements": end[:n].copy(),
         "velocities": end[n : 2 * n].copy(),
     }
@@ -190,12 +190,12 @@ def finished(
     drift = motion.energy_change(end) + dissipated - work
     step = motion.scene.duration / steps
     # A sum is finite if all its terms are, and takes no memory.
-    total = drift + sum(float(row.sum()) for row in records.values())
+    total = drift + sum(float(row.sum()) for row in arrays.values())
     if not math.isfinite(total):
         raise IntegrationError(
             f"the motion overflows: choose other units, or a step of {step:g} is too long"
         )
-    for array in records.values():
+    for array in arrays.values():
         array.setflags(write=False)
     return Run(
         scene=motion.scene,
@@ -204,6 +204,6 @@ def finished(
         step=step,
         dissipated=dissipated,
         work=work,
-        **records,
+        **arrays,
         **fields,
     )
