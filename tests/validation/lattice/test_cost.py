@@ -19,6 +19,7 @@ fields = st.sampled_from(("masses", "stiffnesses", "velocities", "displacements"
 values = st.sampled_from(("k", "duration", "wall", "gravity", "precompression"))
 
 
+@pytest.mark.filterwarnings("ignore:lsoda")
 @given(
     st.integers(0, 10**6),
     st.dictionaries(fields, sizes, max_size=2),
