@@ -176,7 +176,9 @@ class Table:
             return reader(self.entries[key], self.path(key))
         # No reader returns None, which therefore stands for "no default".
         if default is None:
-            raise InputError(f"{self.path(key)} is missing")
+            raise InputError(
+                f"{self.path(key)} is missing: lwa-validate run --keys shows every key"
+            )
         return default
 
     def one(self, *keys: str) -> str:

@@ -75,6 +75,11 @@ def strike(
             f"precompression is {chain.precompression} in {spheres}: the pulse of a strike is that "
             "of a chain without load; leave the key out"
         )
+    if not cell.uniform:
+        raise InputError(
+            f"{spheres} has unlike beads or contacts: the pulse is that of equal ones; "
+            f"lwa-validate run {spheres} simulates any chain"
+        )
     # Options stand above the file.
     if velocity is None and drop is None:
         velocity, drop = striker.velocity, striker.drop
