@@ -70,12 +70,6 @@ class Network(NamedTuple):
         return pairs == neighbours
 
     @property
-    def order(self) -> list[int]:
-        """Numbers of the links by their first particles."""
-        numbers = range(len(self.links))
-        return sorted(numbers, key=lambda n: self.links[n].i)
-
-    @property
     def spans(self) -> Array:
         """Compression of each link per mean compression of a spacing: cosine · (j - i)."""
         spans = []
