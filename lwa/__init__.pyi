@@ -39,8 +39,8 @@ from lwa.spheres.hertz import Sphere as Sphere
 from lwa.theory import Theory as Theory
 from lwa.theory import homogenize as homogenize
 from lwa.wave.compact import CompactWave as CompactWave
-from lwa.wave.compact import PhysicalWave as PhysicalWave
 from lwa.wave.compact import canonical_wave as canonical_wave
+from lwa.wave.physical import PhysicalWave as PhysicalWave
 
 __all__: list[str]
 __version__: str
