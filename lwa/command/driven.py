@@ -19,7 +19,8 @@ from lwa.command.options import (
     value,
 )
 from lwa.expansion.strike import pulse_of_strike
-from lwa.shocks import riemann
+from lwa.shocks import front as fronts
+from lwa.shocks.riemann import RULES, RuleName
 
 _STRIKE_FILE = "lwa-validate run --example striker > chain.toml"
 
@@ -154,11 +155,11 @@ def shock(
     if ahead is None:
         ahead = law.compression(cell, static) / cell.spacing if static else sp.S.Zero
     if behind is None:
-        front = riemann.piston(cell, piston, ahead, law=law)
+        front = fronts.piston(cell, piston, ahead, law=law)
     else:
-        front = riemann.shock(cell, behind, ahead, law=law)
+        front = fronts.shock(cell, behind, ahead, law=law)
 
-    def row(name: str, label: str, unit: str = "", *rule: riemann.RuleName) -> Row:
+    def row(name: str, label: str, unit: str = "", *rule: RuleName) -> Row:
         """The row of an attribute, or of the leading edge by a rule."""
         result = attempt(getattr, front, name)
         if rule:
@@ -178,7 +179,7 @@ def shock(
         row("plateau", "velocity of the wall", "m/s"),
         row("trailing_speed", "trailing edge", "m/s"),
     ]
-    for rule in riemann.RULES:
+    for rule in RULES:
         rows.append(row("leading_speed", f"leading edge, {rule}", "m/s", rule))
     if kind != "rarefaction":  # which has no leading pulse
         rows.append(row("peak", "peak strain, doubling"))

@@ -37,7 +37,7 @@ from lwa.base.files import items
 from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.law import ContactLaw, Power, for_cell
-from lwa.linear.network import Bond, Network
+from lwa.linear.springs import Bond, Network
 from lwa.loaded.statics import Statics
 
 # Stiffness of a lattice of springs 1 that carries no load, but for rounding

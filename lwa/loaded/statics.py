@@ -17,7 +17,7 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError
-from lwa.linear.network import Network, solved
+from lwa.linear.springs import Network, solved
 
 _MOST = 100  # steps of Newton's method; strongly unlike links take ten
 _ROUNDING = 1e-14  # last step of Newton's method, over the mean compression

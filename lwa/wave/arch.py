@@ -6,6 +6,19 @@ numbers of a chain determine all arches for an exponent k, here S and f::
     S = (G + H + I)/D²,    f = V²/B^{k-1},    m = 2/(k-1),    β = (k-1) / (2 D √S).
 
 There are such waves for ``k > 1``, ``S > 0`` and ``f > 0``.
+
+**The paper's reduction** (Porter et al. 2008) of the wave's equation (`lwa.wave.compact`) to an
+oscillator, ``z'' = μ z^η - σ z``. Let ``r_n = ∂^n z / z``. The substitution ``v = z^p``, p a root
+of::
+
+    (G + H + I) p² - (H + 3I) p + 2I = 0,
+
+removes r_1³ from the third-order equation of v. There remains::
+
+    V² z^p r_1 = z^{kp} (r_1 + I r_3 + I q r_1 r_2),    q = 3 (p - 1) + p H/I.
+
+Since ``∂(z^e r_2) = z^e (r_3 + (e - 1) r_1 r_2)``, the integrating factor ``z^a`` with
+``kp + a = q + 1`` makes the equation a total derivative, whose integral is the oscillator.
 """
 
 from __future__ import annotations
@@ -17,11 +30,11 @@ from typing import Any, Self
 
 import sympy as sp
 
-from lwa.base.exact import positive, power, signed
+from lwa.base import latex
+from lwa.base.exact import factored, positive, power, signed
 from lwa.base.frozen import RISE, SPEED, NoSolitaryWave, Value, strain_power
 from lwa.base.words import QuantityName
 from lwa.cell import Cell, exponent, substitution
-from lwa.wave.reduction import square_root
 
 
 @dataclass(frozen=True)
@@ -170,3 +183,83 @@ class Arch(Value):
             if field.name != "cell":
                 values[field.name] = getattr(self, field.name).xreplace(new)
         return replace(self, cell=self.cell.replaced(new), **values)
+
+
+@dataclass(frozen=True)
+class Reduction(Value):
+    """The oscillator ``z'' = μ z^η - σ z`` of the substitution ``v = z^p``.
+
+    With either root p the compact wave has ``β = √σ (1 - η) / 2`` and
+    ``B^{k-1} = μ / (β² s (s - 1))``.
+
+    Parameters
+    ----------
+    p : Expr
+        Power of the substitution.
+    a : Expr
+        Power of the integrating factor ``z^a``.
+    mu : Expr
+        Coefficient ``μ = V² / (I (p + a))``.
+    eta : Expr
+        Power ``η = 1 + p - kp``.
+    sigma : Expr
+        Coefficient ``σ = 1 / (I (kp + a))``.
+    s : Expr
+        Power 2 / (1 - η) of the cosine in z.
+    """
+
+    p: sp.Expr
+    a: sp.Expr
+    mu: sp.Expr
+    eta: sp.Expr
+    sigma: sp.Expr
+    s: sp.Expr
+
+    @classmethod
+    def of(
+        cls, p: sp.Expr, k: sp.Expr, I: sp.Expr, H_over_I: sp.Expr, V: sp.Expr
+    ) -> Self:
+        """Return the reduction of a wave of the speed ``V = dx/dτ`` by the root p."""
+        a = factored(3 + H_over_I - k) * p - 2  # 1 - kp + 3 (p - 1) + p H/I
+        eta = 1 + p - k * p
+        return cls(
+            p=p,
+            a=a,
+            mu=V**2 / (I * (p + a)),
+            eta=eta,
+            sigma=1 / (I * (k * p + a)),
+            s=2 / (1 - eta),
+        )
+
+    def latex_rows(self) -> list[str]:
+        equation = r"z'' = \mu z^{\eta} - \sigma z, \quad v = z^{p}"
+        values = {
+            "p": self.p,
+            "a": self.a,
+            r"\mu": self.mu,
+            r"\eta": self.eta,
+            r"\sigma": self.sigma,
+        }
+        return [equation, *latex.rows(values)]
+
+
+def roots(total: sp.Expr, H_over_I: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+    """The two roots p; ``total`` is (G + H + I)/I. The paper has the first root."""
+    # A p² - B p + 2 = 0
+    A = factored(total)
+    B = factored(H_over_I + 3)
+    root = square_root(factored(B**2 - 8 * A))
+    # Any sign of the root will do, as both are returned.
+    root = root.replace(sp.Abs, lambda x: x)
+    first = (B - root) / (2 * A)
+    second = (B + root) / (2 * A)
+    return sp.together(first), sp.together(second)
+
+
+def square_root(value: sp.Expr) -> sp.Expr:
+    """Square root of a rational expression in positive quantities, squares taken out."""
+    # SymPy takes squares of positive symbols out of a root.
+    plain, back = sp.posify(value)
+    numerator, denominator = sp.fraction(plain)
+    root = power(numerator, sp.S.Half) / power(denominator, sp.S.Half)
+    return root.xreplace(back)

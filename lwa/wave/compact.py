@@ -5,7 +5,7 @@ The equation, at ``D^{k+3}``, is::
     u_ττ = u_x^{k-1} u_xx + G u_x^{k-3} u_xx³ + H u_x^{k-2} u_xx u_xxx + I u_x^{k-1} u_4x.
 
 With ``ξ = x - V τ`` the strain ``v = u_ξ`` obeys a third-order equation, whose compact wave is the
-arch ``v = B cos^m(βξ)`` (Porter et al. 2008; `lwa.wave.arch`, `lwa.wave.reduction`), with::
+arch ``v = B cos^m(βξ)`` (Porter et al. 2008; `lwa.wave.arch`), with::
 
     β = (k-1) / (2 √(G+H+I)),    V² = B^{k-1} (1 - β² [(H + 3I) m - 2I]).
 """
@@ -33,9 +33,8 @@ from lwa.cell import Cell, exponent, read_cell
 from lwa.cell import k as symbol_k
 from lwa.law import ContactLaw, for_cell
 from lwa.linear.dispersion import Dispersion
-from lwa.wave.arch import Arch
+from lwa.wave.arch import Arch, Reduction, roots
 from lwa.wave.physical import BEARERS, BearerName, PhysicalWave
-from lwa.wave.reduction import Reduction, roots
 
 if TYPE_CHECKING:
     from lwa.loaded.wave import LoadedWave
