@@ -9,11 +9,11 @@ from book.studies.accuracy import FINEST, TASKS, struck_chain
 from tests.validation.lattice.forced import follow
 from validation.lattice.equations import Motion
 from validation.lattice.kernel.arrays import TILE
+from validation.lattice.signal import RECORDS
 from validation.lattice.simulate import COMPILED, simulate, simulate_many
 from validation.scenes.chains import struck
 from validation.scenes.forcing import Damping
 from validation.scenes.scene import Scene
-from validation.studies.run import RECORDS
 
 
 def loaded(k, duration=8.0, **rest):
@@ -56,7 +56,7 @@ def test_every_law_and_every_sensor_agree_with_dop853(k):
     reference = simulate(scene, method="DOP853", rtol=1e-12)
     for method in COMPILED:
         run = simulate(scene, method=method, step=0.02)
-        for name in (*RECORDS, "velocities"):
+        for name in (*RECORDS.values(), "velocities"):
             np.testing.assert_allclose(
                 getattr(run, name), getattr(reference, name), atol=1e-6
             )
