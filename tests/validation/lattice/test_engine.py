@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from book.studies.accuracy import FINEST, TASKS, struck_chain
-from tests.validation.lattice.forced import follow
+from tests.validation.lattice.reference import follow
 from validation.lattice.equations import Motion
 from validation.lattice.kernel.arrays import TILE
 from validation.lattice.signal import RECORDS
