@@ -19,7 +19,8 @@ from lwa.command.options import (
     value,
 )
 from lwa.expansion.strike import pulse_of_strike
-from lwa.shocks import riemann
+from lwa.shocks import front as fronts
+from lwa.shocks.riemann import RULES
 
 _STRIKE_FILE = "lwa-validate run --example striker > chain.toml"
 
@@ -159,9 +160,9 @@ def shock(
     if ahead is None:
         ahead = law.compression(cell, static) / cell.spacing if static else sp.S.Zero
     if behind is None:
-        front = riemann.piston(cell, piston, ahead, law=law)
+        front = fronts.piston(cell, piston, ahead, law=law)
     else:
-        front = riemann.shock(cell, behind, ahead, law=law)
+        front = fronts.shock(cell, behind, ahead, law=law)
 
     # With symbols nobody knows whether the front is a shock.
     kind = attempt(getattr, front, "kind")
@@ -175,7 +176,7 @@ def shock(
         Row.of(front, "plateau", "velocity of the wall", "m/s"),
         Row.of(front, "trailing_speed", "trailing edge", "m/s"),
     ]
-    for rule in riemann.RULES:
+    for rule in RULES:
         label = f"leading edge, {rule}"
         key = f"leading_speed.{rule}"
         rows.append(Row.of(front, "leading_speed", label, "m/s", rule, key=key))

@@ -28,8 +28,8 @@ from lwa.command.options import (
 )
 from lwa.expansion.lattice_wave import LatticeWave, lattice_wave
 from lwa.theory import Theory, homogenize
+from lwa.wave.arch import Reduction
 from lwa.wave.compact import CompactWave, canonical_wave
-from lwa.wave.reduction import Reduction
 
 if TYPE_CHECKING:
     from lwa.cell import Cell
