@@ -76,7 +76,7 @@ def _septic(a: Array, b: Array) -> tuple[Curve, float, float]:
     c5 = -84 * r0 + 39 * r1 - 7 * r2 + r3 / 2
     c6 = 70 * r0 - 34 * r1 + 6.5 * r2 - r3 / 2
     c7 = -20 * r0 + 10 * r1 - 2 * r2 + r3 / 6
-    return (a[0], a[1], c2, c3, c4, c5, 1.0, 0.0), c6, c7
+    return (a[0], a[1], c2, c3, c4, c5, kinks.STRAIGHT), c6, c7
 
 
 @part
@@ -106,7 +106,13 @@ def _take_kink_away(
     d, u, a = _compression(knots, n, q, chain.rest[i])
     end, end_u, end_a = _compression(knots, n + 1, q, chain.rest[i])
     begin, over = (d, h * u, h * h * a), (end, h * end_u, h * h * end_a)
-    p, count, _, _ = kinks.resolved(law, ratio, begin, over, h, -near - far, edges)
+    p, count, _, _ = kinks.resolved(
+        law, ratio, begin, over, h, -near - far, kinks.STRAIGHT, edges
+    )
+    if p[6][1] != 0.0:
+        p, count, _, _ = kinks.resolved(
+            law, ratio, begin, over, h, -near - far, p[6], edges
+        )
     for s in range(first, last + 1):
         x = (time[s] - knots.time[n]) / h if s < last else 1.0
         once, twice, _, _ = kinks.integrals(law, ratio, p, h, x, points, edges, count)
