@@ -343,13 +343,15 @@ def integrals(
     points: Array,
     edges: Array,
     count: int,
-) -> tuple[float, float, float, float]:
-    """Return ∫ F, ∫ (1 - x) F, ∫ (1 - x)²/2 F and ∫ F p' over a step up to x = until.
+    driven: bool,
+    bead: Curve,
+) -> tuple[float, float, float, float, float]:
+    """Return ∫ F, ∫ (1 - x) F, ∫ (1 - x)²/2 F, ∫ F p' and ∫ F bead' over a step up to x = until.
 
     edges, count : the ``count`` intervals of `find_edges`.
     """
     x, w = points[0], points[1]
-    once = twice = third = work = 0.0
+    once = twice = third = work = given = 0.0
     for n in range(count):
         a, b = edges[n], edges[n + 1]
         p, slope = value_and_slope(c, 0.5 * (a + b))
@@ -375,4 +377,6 @@ def integrals(
                 twice += left * force
                 third += 0.5 * left * left * force
                 work += slope * force
-    return once, twice, third, work
+                if driven:
+                    given += value_and_slope(bead, x[m])[1] * force
+    return once, twice, third, work, given

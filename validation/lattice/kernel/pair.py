@@ -50,6 +50,8 @@ _ROUNDS, _SETTLED = 4, 0.1
 # time for equal beads, _VERY_NEAR for all a quarter more for dimers at small tolerances.
 # The singularity of damping, δ^{1/4} say, is felt farther away.
 _NEAR, _VERY_NEAR, _NEAR_DAMPED, _STRONG = 0.3, 0.03, 0.6, 1e3
+# Share of a neighbour's correction that counts as error.
+_SECOND = 0.5
 # Step-size control of Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.4.
 # An error scales as h^order. The next step is _SAFETY times the step with an error equal to the
 # tolerance, as a rejected step costs as much as an accepted one. _GROWTH bounds the effect of an
@@ -146,6 +148,15 @@ def _ends(
     )
 
 
+@part
+def _motion(beads: Beads, h: float, i: int) -> kinks.Curve:
+    """Return the motion of bead i over a step, from where it is, as far as it is given."""
+    start = 0.0, h * beads.v[i], h * h * beads.given[0]
+    moved = beads.next_y[i] - beads.y[i]
+    end = moved, h * beads.next_v[i], h * h * beads.given[1]
+    return kinks.fitted_curve(start, end, kinks.STRAIGHT)
+
+
 @inlined
 def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -> None:
     """Correct a step for the pair's error at contact i, which opens or closes."""
@@ -156,6 +167,8 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
     force, bend = points[2], -A * h * h * both
     impulse = moment = 0.0
     found = kinks.STRAIGHT
+    driven = i == 0 and chain.drive.driven
+    drive = _motion(beads, h, i)
     # The force also depends on the corrected end, all the more the later it jumps.
     for _ in range(_ROUNDS):
         d, rise = end[0] - both * moment, end[1] - both * h * impulse
@@ -165,8 +178,8 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
             law, r, start, corrected, h, bend, found, edges
         )
         found = p[6]
-        once, twice, third, work = kinks.integrals(
-            law, r, p, h, 1.0, points, edges, count
+        once, twice, third, work, given = kinks.integrals(
+            law, r, p, h, 1.0, points, edges, count, driven, drive
         )
         kinks.stage_forces(law, r, p, h, pair, bend, jump, points)
         before = impulse
@@ -191,11 +204,12 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
     beads.next_v[i + 1] += impulse * inverse[i + 1]
     beads.next_y[i] -= moment * inverse[i]
     beads.next_y[i + 1] += moment * inverse[i + 1]
-    if i == 0 and chain.drive.driven:
-        # ∫ ΔF v dt with v = next_v - (1 - x) h a + (1 - x)²/2 h² da/dt, a at the step's end.
-        change = third * (beads.given[1] - beads.given[0]) / h
-        beads.books[2] = impulse * beads.next_v[0] - moment * beads.given[1] + change
-        beads.books[3] = h * A * _integral(pair.errors[1], force) * beads.next_v[0]
+    if driven:
+        beads.books[2] = A * given
+        for s in range(last + 1):
+            power = A * force[s] * kinks.value_and_slope(drive, pair.nodes[s])[1]
+            beads.books[2] -= pair.impulses[last, s] * power
+            beads.books[3] += pair.errors[1, s] * power
     for n in range(max(0, i - 1), i + 2):
         share = both if n == i else -inverse[max(i, n)]
         d = chain.rest[n] + beads.next_y[n] - beads.next_y[n + 1]
@@ -219,7 +233,7 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
         elif jump != 0.0:
             feedback = bend * (r * drag(law, d) / h + stiffness(law, d))
             more = abs(impulse - before) + abs(more * feedback)
-        missed = more / plan.v
+        missed = _SECOND * more / plan.v
         beads.books[4] += missed * missed * (inverse[n] ** 2 + inverse[n + 1] ** 2)
 
 
