@@ -210,6 +210,8 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
             power = A * force[s] * kinks.value_and_slope(drive, pair.nodes[s])[1]
             beads.books[2] -= pair.impulses[last, s] * power
             beads.books[3] += pair.errors[1, s] * power
+    unsettled = (impulse - before) / plan.v
+    beads.books[4] += unsettled * unsettled * (inverse[i] ** 2 + inverse[i + 1] ** 2)
     for n in range(max(0, i - 1), i + 2):
         share = both if n == i else -inverse[max(i, n)]
         d = chain.rest[n] + beads.next_y[n] - beads.next_y[n + 1]
@@ -231,8 +233,7 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
             beads.next_v[n] -= more * inverse[n]
             beads.next_v[n + 1] += more * inverse[n + 1]
         elif jump != 0.0:
-            feedback = bend * (r * drag(law, d) / h + stiffness(law, d))
-            more = abs(impulse - before) + abs(more * feedback)
+            more *= bend * (r * drag(law, d) / h + stiffness(law, d))
         missed = _SECOND * more / plan.v
         beads.books[4] += missed * missed * (inverse[n] ** 2 + inverse[n + 1] ** 2)
 
