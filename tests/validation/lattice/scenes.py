@@ -29,10 +29,10 @@ LAWS = (
 )
 
 
-def law_of(random, kind):
-    """A law of a contact, with a damping that the law allows."""
+def law_of(random, kind, loaded):
+    """A law of a contact that allows a damping, and carries any load."""
     if kind in ("none", "contact") and random.random() < 0.3:
-        return LAWS[random.integers(len(LAWS))]
+        return LAWS[random.integers(len(LAWS) - loaded)]
     k = random.choice([*POWERS, random.uniform(1, 3)])
     return Power(sp.nsimplify(round(float(k), 3)))
 
@@ -65,7 +65,8 @@ def drawn(seed, most=40):
     contacts = n - 1 + ("wall" in fields)
     kind = random.choice(["none", "none", *DAMPINGS])
     count = contacts if random.random() < 0.3 else 1
-    laws = [law_of(random, kind) for _ in range(count)]
+    loaded = bool({"gravity", "precompression"} & {*fields})
+    laws = [law_of(random, kind, loaded) for _ in range(count)]
     fields["law"] = laws if contacts else laws[0]
     if kind != "none":
         values = 10 ** random.uniform(-3, 0, count)
