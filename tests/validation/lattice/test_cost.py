@@ -8,7 +8,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from tests.validation.lattice.test_random_scenes import drawn
+from tests.validation.lattice.scenes import drawn
 from validation.lattice import cost
 from validation.lattice.signal import RECORDS
 from validation.pulses.sensors import record
