@@ -72,8 +72,9 @@ class Link(Value):
     i: int
     j: int
     law: ContactLaw
-    factor: sp.Expr = sp.S.One
-    cosine: sp.Expr = sp.S.One
+    # Given as numbers or names, expressions once they are read.
+    factor: Any = sp.S.One
+    cosine: Any = sp.S.One
 
     def __post_init__(self) -> None:
         i = integer(self.i, "a link's particle", 0)
@@ -114,8 +115,8 @@ class Resonator(Value):
     """
 
     bead: int
-    mass: sp.Expr
-    stiffness: sp.Expr
+    mass: Any
+    stiffness: Any
 
     def __post_init__(self) -> None:
         integer(self.bead, "a resonator's bead", 0)
