@@ -148,10 +148,12 @@ class Row:
             The result, such as a wave.
         name : str
             Name of the attribute or method, and of the row in JSON unless there is a key.
-        label, unit, key, symbol : str
-            Of the row.
+        label, unit : str
+            Those of the row.
         *arguments
             Arguments of a method.
+        key, symbol : str
+            Those of the row.
         """
         value = attempt(getattr, result, name)
         if callable(value):

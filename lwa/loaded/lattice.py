@@ -72,7 +72,6 @@ class Link(Value):
     i: int
     j: int
     law: ContactLaw
-    # Given as numbers or names, expressions once they are read.
     factor: Any = sp.S.One
     cosine: Any = sp.S.One
 
@@ -115,8 +114,8 @@ class Resonator(Value):
     """
 
     bead: int
-    mass: Any
-    stiffness: Any
+    mass: sp.Expr
+    stiffness: sp.Expr
 
     def __post_init__(self) -> None:
         integer(self.bead, "a resonator's bead", 0)

@@ -42,7 +42,6 @@ class Material(Value):
         For other values.
     """
 
-    # Given as numbers or names, expressions once they are read.
     E: Any
     nu: Any
     density: Any = None
