@@ -60,7 +60,7 @@ summed: Callable[[Function], Function] = njit(
 index = np.uint64
 ZERO, ONE = index(0), index(1)
 # A plain 0 is a type of its own, for which numba compiles a function once more.
-FIRST = np.int64(0)
+FIRST: Any = np.int64(0)
 
 
 def _call(typing: Any, address: Any, x: Any) -> Any:

@@ -1,12 +1,12 @@
 """Integrals of a contact's force over a step in which the contact opens or closes.
 
 F has no derivative of order k + 1 where a contact opens or closes, and jumps there with some
-dampings and laws. A quadrature that does not know the place errs by O(h^{k+1}), or O(h). Over the
-step, x = 0 … 1, the compression is close to the quintic p(x) with the values of δ, δ' and δ'' at
-both ends. `integrals` integrates F(p, p') between the places at which the contact opens, closes,
-or begins or ceases to be damped (`find_edges`), for unit stiffness, by Gauss's rule in u,
-x = z + (e - z) u^q, z the root of p at one end of an interval and e the other end, so that F is
-smooth in u.
+dampings and laws. A quadrature that does not know the place errs by ``O(h^{k+1})``, or ``O(h)``.
+Over the step, x from 0 to 1, the compression is close to the quintic ``p(x)`` with the values of δ,
+δ' and δ'' at both ends. `integrals` integrates ``F(p, p')`` between the places at which the contact
+opens, closes, or begins or ceases to be damped (`find_edges`), for unit stiffness, by Gauss's rule
+in u, ``x = z + (e - z) u^q``, z the root of p at one end of an interval and e the other end, so
+that F is smooth in u.
 
 A damped contact that is pulled open can stop pushing before it parts: the force tells, not δ.
 """
@@ -44,7 +44,7 @@ _OPENS = 1e-100  # a compression at which a contact is about to open, in any uni
 
 @part
 def stored(law: Any, d: float) -> float:
-    """Return the elastic energy; 0 for d ≤ 0."""
+    """Return the elastic energy; 0 for an open contact."""
     if not d > 0.0:
         return 0.0
     if law.generated:
@@ -66,7 +66,7 @@ def bent(bend: Bend, x: float) -> tuple[float, float, float]:
 
 @part
 def value_and_slope(c: Curve, x: float) -> tuple[float, float]:
-    """Return p(x) and p'(x)."""
+    """Return ``p(x)`` and ``p'(x)``."""
     p = c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))))
     slope = c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5])))
     more, steeper, _ = bent(c[6], x)
@@ -191,7 +191,7 @@ def _add_edges(
 def find_edges(
     law: Any, r: float, c: Curve, h: float, edges: Array
 ) -> tuple[int, float]:
-    """Return the number of intervals of a step in which F(p, p'/h) is smooth, and the greatest p.
+    """Return the number of intervals of a step in which the force is smooth, and the greatest p.
 
     The places between the intervals, 0 and 1 among them, go to ``edges``.
     """
@@ -248,9 +248,25 @@ def resolved(
 ) -> tuple[Curve, int, float, float]:
     """Return a contact's curve over a step, the results of `find_edges`, and a jump of the force.
 
-    start, end : p, p' and p'' at both ends. bend : of p'' by a force of 1. guess : the curve's bend,
-    as far as it is known. A jump bends the curve where it is, and where it is depends on the curve:
-    a second call with the bend of the first leaves no more than the quintic's own error.
+    A jump bends the curve where it is, and where it is depends on the curve: a second call with the
+    bend that the first one found leaves no more than the quintic's own error.
+
+    Parameters
+    ----------
+    law : record
+        The law, a record of `LAW`.
+    r : float
+        Damping coefficient over stiffness.
+    start, end : tuple of float
+        p, p' and p'' at both ends.
+    h : float
+        The step.
+    bend : float
+        Change of p'' by a force of 1.
+    guess : Bend
+        The curve's bend, as far as it is known; `STRAIGHT` at first.
+    edges : array
+        Room for the places of `find_edges`.
     """
     c = fitted_curve(start, end, guess)
     count, top = find_edges(law, r, c, h, edges)
@@ -296,8 +312,8 @@ def stage_forces(
 ) -> None:
     """Compute compressions, slopes and forces at the stages of a pair; they go to ``points``.
 
-    A stage's motion has the pair's own error for a force that jumps at c's bend. bend : of p'' by a
-    force of 1.
+    A stage's motion has the pair's own error for a force that jumps at the bend of c; ``bend`` is
+    the change of p'' by a force of 1.
     """
     place, _, b = c[6]
     unit = place, 1.0, b
@@ -346,9 +362,10 @@ def integrals(
     driven: bool,
     bead: Curve,
 ) -> tuple[float, float, float, float, float]:
-    """Return ∫ F, ∫ (1 - x) F, ∫ (1 - x)²/2 F, ∫ F p' and ∫ F bead' over a step up to x = until.
+    """Return five integrals over a step up to ``x = until``.
 
-    edges, count : the ``count`` intervals of `find_edges`.
+    Those of ``F``, ``(1 - x) F``, ``(1 - x)²/2 F`` and ``F p'``, in the ``count`` intervals between
+    the places ``edges``, and that of ``F b'`` for the motion b of a driven bead, else 0.
     """
     x, w = points[0], points[1]
     once = twice = third = work = given = 0.0
