@@ -1,4 +1,4 @@
-"""Simulation of a scene: `simulate`, `simulate_many` on threads, `twice` at two tolerances.
+"""Simulation of a scene: `simulate`, `simulate_many` on threads, `repeated` at several tolerances.
 
 The compiled engine (`validation.lattice.engine`) has an embedded Runge–Kutta–Nyström (RKN) pair for
 ``y'' = f(t, y)``, a pair for damped contacts, ``y'' = f(t, y, y')``, both with adaptive steps, and
@@ -93,6 +93,7 @@ def simulate(
         )
     rtol = between(rtol, "rtol", 1e-13, 1e-2)
     longest = math.inf if step is None else positive(step, "step")
+    # Values beyond floats are refused by name: no warnings of NumPy besides.
     with np.errstate(over="ignore", invalid="ignore"):
         motion = Motion(scene)
         if method in METHODS:
@@ -135,6 +136,7 @@ def simulate_many(
     waiting, count = iter(scenes), cores() if workers is None else workers
     with threads(count) as pool:
         while True:
+            # As many scenes wait as run, so that no thread is idle while a run is looked at.
             more = islice(waiting, 2 * count + 1 - len(ahead))
             ahead.extend(pool.submit(simulate, scene, **options) for scene in more)
             if not ahead:
@@ -142,19 +144,20 @@ def simulate_many(
             yield ahead.popleft().result()
 
 
-def twice(scene: Scene, fine: float, coarse: float, **options: Any) -> tuple[Run, Run]:
-    """Simulate a scene at two tolerances; return the fine and the coarse run.
+def repeated(
+    scene: Scene, tolerances: Iterable[float], **options: Any
+) -> tuple[Run, ...]:
+    """Simulate a scene at several tolerances; return the runs in their order.
 
-    `validation.pulses.pulse.compared` turns their difference into errors.
+    `validation.pulses.pulse.compared` turns differences of runs into errors.
 
     Parameters
     ----------
     scene : Scene
         The scene.
-    fine, coarse : float
+    tolerances : iterable of float
         Tolerances.
     **options
         Those of `simulate`.
     """
-    run, check = (simulate(scene, rtol=rtol, **options) for rtol in (fine, coarse))
-    return run, check
+    return tuple(simulate(scene, rtol=rtol, **options) for rtol in tolerances)
