@@ -2,9 +2,9 @@
 
 Two bases are fitted to samples before the pulse: a straight line, for drift and hum, and a line
 with two exponentials that grow towards the pulse, for what may rise slowly before the pulse
-arrives. They are averaged with Akaike's weights exp(-(χ² + 2p)/2), p the number of terms, χ² by the noise
-and its correlations. Each drawn record takes one of the bases, by their weights: so errors hold the
-doubt between them.
+arrives. They are averaged with Akaike's weights exp(-(χ² + 2p)/2), p the number of terms, χ² by the
+noise and its correlations. Each drawn record takes one of the bases, by their weights: so errors
+hold the doubt between them.
 """
 
 from __future__ import annotations
