@@ -26,13 +26,14 @@ from __future__ import annotations
 import math
 from functools import lru_cache
 
+import mpmath
 import numpy as np
 import sympy as sp
 from flint import fmpq_mpoly
 
 from lwa.cell import Cell, k
-from lwa.expansion.joined import EPSILON, pade, polynomial, taylor
-from lwa.expansion.observables import Observables, shares_model
+from lwa.expansion.joined import EPSILON, decimals, pade, power_series, taylor
+from lwa.expansion.observables import Observables, equal_beads, shares_model
 from lwa.expansion.recursion import Recursion
 
 ORDER = 4
@@ -41,10 +42,11 @@ ORDER = 4
 ALIKE = 0.75
 """Least m2/m1 from which on unlike beads have the pulse of equal beads of the mean mass."""
 
-_OMEGA = sp.Symbol("omega", positive=True)
+LIGHT = sp.Rational(1, 10**14)
+"""A mass ratio near 0, at which e is a quotient of differences with an error as small."""
 
 # At k = 1, c² goes as 1/(1 + ω), and I as (1 + ω)^{-3}.
-_LEADING = {"c": sp.S.Half, "momentum": sp.S.One}
+_LEADING = {"c": 0.5, "momentum": 1.0}
 """e in the limit of k to 1; a quantity that is not named goes as ``√I``."""
 
 
@@ -68,21 +70,26 @@ class FollowingRecursion(Recursion):
 
 
 @lru_cache(maxsize=1)
-def following(order: int) -> Observables:
-    """The quantities of the reduced chain of masses 1 and ω, to this order in ε."""
+def _light() -> Observables:
+    """The quantities of the reduced chain of masses 1 and `LIGHT`."""
     # k does not matter to the shares of equal contacts.
-    model = shares_model(Cell((1, _OMEGA)), sp.S.One)
-    return Observables(FollowingRecursion(model, order))
+    model = shares_model(Cell((1, LIGHT)), sp.S.One)
+    return Observables(FollowingRecursion(model, ORDER))
 
 
 @lru_cache(maxsize=16)
 def exponent_of_light_beads(quantity: str) -> sp.Expr:
     """The exponent e of a quantity as a function of the symbol k."""
-    series = polynomial(following(ORDER).coefficients(quantity))
-    # d ln Q/dω of the series, behind that of its leading term
-    log_change = series.diff(_OMEGA) / series
-    e = _LEADING.get(quantity, sp.Rational(3, 2)) - log_change.subs(_OMEGA, 0)
-    return pade(taylor(e, ORDER), 2).subs(EPSILON, k - 1)
+    heavy = decimals(equal_beads(quantity, ORDER))
+    light = decimals(_light().coefficients(quantity))
+    leading = _LEADING.get(quantity, 1.5)
+
+    def exponent(epsilon: mpmath.mpf) -> mpmath.mpf:
+        """e, the leading term's, less d ln Q/dω of the series behind that term."""
+        change = power_series(light, epsilon) / power_series(heavy, epsilon) - 1
+        return leading - change / LIGHT
+
+    return pade(taylor(exponent, ORDER), 2).subs(EPSILON, k - 1)
 
 
 # --- errors -------------------------------------------------------------------------------------

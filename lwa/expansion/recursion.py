@@ -21,13 +21,13 @@ their log-KdV equation: Carles & Pelinovsky, Nonlinearity 27, 3185 (2014); under
 arXiv:1405.3385.
 
 The algebra is in powers of t, ``(ε/I)^{1/2} = I t``, so that no denominators appear. The equations
-at ``t^{n+2}`` give q_n: the fields are first computed with zero in its place.
+at ``t^{n+2}`` give q_n: the fields are first computed with zero in its place, and at ``t^n`` the
+solution is added to each of them.
 """
 
 from __future__ import annotations
 
 from math import factorial
-from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from sympy import bernoulli
@@ -93,6 +93,8 @@ class Recursion:
         self.c = model.ring.contacts.elements(self.context)
         self.P = model.cell.size
         self.I = self._dispersion()
+        # -I times the logarithmic slope of the Gaussian
+        self._fall = self.I * self.Z / 2
         # (ε/I)^{1/2} = I t
         self.epsilon = self.I**3
         self.gamma: Series = [self.context.constant(1)]
@@ -116,7 +118,7 @@ class Recursion:
         """The polynomial R of the derivative ``∂ (e^{-Z²/4} S t^n) = e^{-Z²/4} R t^{n+1}``."""
         if not S:
             return S
-        return self.I * (S.derivative(0) - self.Z * S / 2)
+        return self.I * S.derivative(0) - self._fall * S
 
     # --- the order of the equations ---
 
@@ -129,17 +131,18 @@ class Recursion:
             residual = self._residual(n)
             q, gamma = self._invert(residual)
             self.gamma.append(gamma)
-            self._truncate(n)
-            self._append(n, q)
+            # Equal beads have no odd q_n, and their later terms stand.
+            if q:
+                self._put(n, q)
+        self._truncate(order + 1)
 
     def _residual(self, n: int) -> fmpq_mpoly:
         """The residual at t^{n+2} of the balance of momentum over P, with 0 for q_n and later ones.
 
         The coefficient γ_{n+2}, which is not known yet, is left out of the residual.
         """
-        self._truncate(n)
-        for m in range(n, n + 3):
-            self._append(m, self.zero)
+        for m in range(len(self.means), n + 3):
+            self._append(m)
         residual = self.zero
         for mu, slope in zip(self.mu, self.slope, strict=True):
             residual = residual + mu * self._accelerated(slope, n + 2)
@@ -167,18 +170,32 @@ class Recursion:
 
     # --- the fields ---
 
+    def _put(self, n: int, q: fmpq_mpoly) -> None:
+        """Put q in the place of zero for q_n, and delete the terms of the fields beyond t^n."""
+        self._truncate(n + 1)
+        # To this order all forces and strains are alike, and so are their logarithms and slopes.
+        for row in self._rows():
+            row[n] = row[n] + q
+        for rows in (self.means, self.pushes):
+            rows[n][0] = rows[n][0] + q
+
     def _truncate(self, n: int) -> None:
         """Delete the terms of the fields from t^n on."""
-        rows: list[list[Any]] = [*self.slope, self.means, self.pushes]
+        for row in self._rows():
+            del row[n:]
+        del self.means[n:], self.pushes[n:]
+
+    def _rows(self) -> list[Series]:
+        """The series of slopes, forces and strains, and the logarithms of forces and strains."""
+        rows = [*self.slope]
         for pulse in (*self.force, *self.strain):
             rows += [pulse.series, pulse.log]
-        for row in rows:
-            del row[n:]
+        return rows
 
-    def _append(self, n: int, q: fmpq_mpoly) -> None:
-        """Append the terms at t^n to the fields, with q for q_n."""
+    def _append(self, n: int) -> None:
+        """Append the terms at t^n to the fields, with zero for q_n."""
         # Forces from contact to contact, then strains, then slopes: each needs those before.
-        self.force[0].append_log(q)
+        self.force[0].append_log(self.zero)
         for i in range(1, self.P):
             self.force[i].append(self._next_force(i, n))
         mean = self.zero
