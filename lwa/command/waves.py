@@ -336,6 +336,13 @@ def _lattice(scale: Scale, wave: LatticeWave, force: sp.Expr | None) -> Answer:
     else:
         rows = [_speed_row(wave.speed, force, estimated(measured, "speed"))]
         extents = EXTENTS
+        for name, unit, symbol in (
+            ("momentum", "N s", r"\sum m v"),
+            ("energy", "J", "E"),
+        ):
+            value = getattr(wave, name)
+            error = estimated(measured, name)
+            rows.append(Row(name, name, value, unit, symbol, estimate=error))
     for extent in extents:
         for q in QUANTITIES:
             error = estimated(measured, "fwhm", q, extent)

@@ -75,9 +75,8 @@ class Observables:
     @cached_property
     def momentum(self) -> Series:
         """Momentum, mean mass · c · displacement behind the wave, divided by its leading term."""
-        means = [terms[0] for terms in self.wave.means]
         # e^{-Z²/4} is a normal distribution of variance 2.
-        return product(self.c, moments(means, 2))
+        return product(self.c, moments(self.wave.mean, 2))
 
     @cached_property
     def energy(self) -> Series:
