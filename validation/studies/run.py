@@ -21,10 +21,10 @@ import numpy as np
 
 from lwa.spheres.hertz import MATERIALS
 from validation.lattice.cost import RunProgress
+from validation.lattice.signal import RECORDS
 from validation.lattice.simulate import COMPILED
 from validation.lattice.steppers import METHODS
 from validation.pulses.sensors import (
-    LESS,
     TOLERANCE,
     Reading,
     Recording,
@@ -41,7 +41,7 @@ from validation.scenes.units import BASES
 EXAMPLES = ("paper", "vertical", "precompressed", "defect", "trimer", "striker")
 """Names of the examples of scene files."""
 
-_NOTE = "{} at each sensor, in {} units. ±: difference to a less accurate run."
+_NOTE = "{} at each sensor, in {} units. ±: differences to less accurate runs."
 _FIRST = "First pulse above half of the record's maximum"
 _DYNAMIC = "\nDynamic force: force less the static force at the sensor."
 
@@ -250,15 +250,10 @@ def _print(context: click.Context, given: click.Parameter, name: Any) -> None:
 
 _PRINTED: dict[str, Any] = {"is_eager": True, "expose_value": False, "callback": _print}
 SUFFIXES = (".json", ".csv")
-RECORDS = (
-    *("time", "contact_force", "compression"),
-    *("bead_force", "bead_displacement", "bead_velocity"),
-)
-
 
 _METHODS = click.Choice((*COMPILED, *METHODS))
 _INTEGRATOR = f"Integrator: {' and '.join(COMPILED)} are compiled, the others SciPy's."
-_RTOL = f"Relative tolerance. Errors are differences to a run with {LESS:g} times this tolerance."
+_RTOL = "Relative tolerance. Errors are differences to less accurate runs."
 
 
 @study(
@@ -331,7 +326,8 @@ def run(
             rows = np.column_stack(list(columns.values()))
             np.savetxt(stream, rows, "%s", ",", header=",".join(columns), comments="")
         else:
-            records = {f"{name}_value": plain(getattr(done, name)) for name in RECORDS}
+            names = "time", *RECORDS.values()
+            records = {f"{name}_value": plain(getattr(done, name)) for name in names}
             stream.write(json.dumps({**result.document(), "records": records}).encode())
     return result
 

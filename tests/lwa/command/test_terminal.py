@@ -32,14 +32,10 @@ def test_output_and_refusals_are_in_utf_8_whatever_the_locale(encoding):
 
 
 def test_a_file_name_that_is_not_utf_8_is_one_line():
-    status, out, err = encoded(
-        cli.main, "wave", "--spheres", "\udcff.json", encoding="utf-8"
-    )
-    assert (status, out, err) == (
-        2,
-        b"",
-        b"lwa: \\udcff.json: No such file or directory\n",
-    )
+    name = "\udcff.json"
+    status, out, err = encoded(cli.main, "wave", "--spheres", name, encoding="utf-8")
+    assert (status, out, err.count(b"\n")) == (2, b"", 1)
+    assert err.startswith(b"lwa: \\udcff.json: No such file or directory")
 
 
 @pytest.mark.parametrize(
@@ -105,18 +101,3 @@ def test_the_examples_of_a_help_run_and_its_page_is_in_the_book(capsys, folder, 
             Path(file).write_text(out)
     (page,) = re.findall(r"In the book: (\w+)\.html", text)
     assert (ROOT / "book" / f"{page}.md").exists()
-
-
-def test_text_is_as_wide_as_the_terminal_and_a_pipe_gets_100(capsys, monkeypatch):
-    line = ("wave", "--masses", "m1,m2")
-    texts = [said(capsys, *line)]
-    monkeypatch.setattr(
-        "lwa.command.answer.sys.stdout.isatty", lambda: True, raising=False
-    )
-    for width in (80, 60, 200):
-        monkeypatch.setenv("COLUMNS", str(width))
-        texts.append(said(capsys, *line))
-    widths = [max(map(len, text.splitlines())) for text in texts]
-    assert [80 < widths[0] <= 100, 60 < widths[1] <= 80, widths[2] <= 60] == [True] * 3
-    assert texts[0] == texts[3]
-    assert {"".join(text.split()) for text in texts} == {"".join(texts[0].split())}
