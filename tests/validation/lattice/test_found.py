@@ -121,8 +121,7 @@ def test_a_jump_of_one_contact_ends_no_step_of_the_chain():
 
 
 def test_a_record_within_steps_of_1e_8_is_that_of_an_earlier_time():
-    """A collision that lasts a microsecond, at the times 0 and 1; the distance 1 is rounded to 3e-10
-    of its compression."""
+    """A collision that lasts a microsecond, at the times 0 and 1, within 20 times the tolerance."""
     forces = []
     for start in (0, 1):
         scene = Scene(
@@ -131,7 +130,7 @@ def test_a_record_within_steps_of_1e_8_is_that_of_an_earlier_time():
         )  # fmt: skip
         signal = simulate(scene).signal("contact", 0)
         forces.append(signal(start + np.linspace(0, 2e-6, 21)))
-    assert np.abs(forces[1] - forces[0]).max() < 5e-9 * forces[0].max()
+    assert np.abs(forces[1] - forces[0]).max() < 2e-8 * forces[0].max()
 
 
 def test_a_piston_that_does_more_work_than_was_guessed():
