@@ -23,10 +23,11 @@ from lwa.law import ContactLaw
 from validation.scenes.checks import SceneError
 
 # The energy of a smaller change, in units of the rest compression, is integrated: its digits cancel
-# in the difference of two energies. Eight points integrate any power to 1e-16 up to here.
+# in the difference of two energies. Eight points integrate powers up to 20 to 1e-16 up to here.
 _SMALL = 0.05
 _OPENS = 1e-100  # a compression at which a contact is about to open, in any units
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
+_NODES, _WEIGHTS = (1 + _NODES) / 2, _WEIGHTS / 2  # of an integral from 0 to 1
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,7 @@ class Contact:
     @cached_property
     def pulls(self) -> bool:
         """True if the contact holds, and pulls, where δ < 0."""
-        return self.law is not None and bool(self.law.at(sp.S.Zero, 1).is_positive)
+        return self.law is not None and self.law.pulls
 
     @cached_property
     def sticks(self) -> bool:
@@ -95,10 +96,9 @@ class Contact:
             x = change[small]
             r = rest[small]
             # ∫ (x - s) F′(r + s) ds, s = 0 … x
-            total = np.zeros(x.shape)
-            for node, weight in zip((1 + _NODES) / 2, _WEIGHTS / 2, strict=True):
-                total += weight * (1 - node) * self.stiffness(r + node * x)
-            energy[small] = x * x * total
+            stiffness = self.stiffness(r + np.multiply.outer(_NODES, x))
+            weights = _WEIGHTS * (1 - _NODES)
+            energy[small] = x * x * np.einsum("i,i...", weights, stiffness)
         return energy
 
     def damped(
@@ -125,16 +125,17 @@ class Contact:
 
     def _evaluated(self, name: str, compression: Array) -> Array:
         """Evaluate a function of the law: its "force", "slope" or "energy"."""
-        function = _functions(self.law)[name]
-        with np.errstate(all="ignore"):  # beyond a singular law's reach: inf or NaN
+        assert self.law is not None
+        with _refused(self.law):  # beyond a singular law's reach: inf or NaN
+            function = _functions(self.law, "numpy")[name]
             if self.pulls:
-                return np.array(
-                    np.broadcast_to(function(compression), compression.shape)
-                )
+                values = function(compression)
+                # A constant is a number, whatever the array.
+                return np.array(np.broadcast_to(values, compression.shape))
             values = np.zeros(compression.shape)
             closed = compression > 0.0
             values[closed] = function(compression[closed])
-        return values
+            return values
 
     def compressed_by(self, forces: Array) -> Array:
         """Return static compressions at given forces; `lwa.InputError` for unattainable forces."""
@@ -174,28 +175,17 @@ class Contact:
 _NAMES = ("force", "slope", "energy")
 
 
-def _expressions(law: ContactLaw) -> dict[str, sp.Expr]:
-    """Return F, F′ and the energy by name, with float coefficients and e^x - 1 as expm1(x)."""
-    energy = law.energy
-    at_rest = sp.limit(energy, law.delta, 0, "+")
-    rows = zip(_NAMES, (law.F, law.slope(), energy - at_rest), strict=True)
-    return {
-        name: optimize(sp.N(sp.sympify(row), 20), [expm1_opt]) for name, row in rows
-    }
-
-
 @lru_cache
-def _functions(law: ContactLaw | None) -> dict[str, Callable[[Array], Any]]:
-    """Return F, F′ and the energy of a law as functions of arrays, by name."""
-    assert law is not None
-    with _evaluated(law):
-        functions = {
-            name: sp.lambdify(law.delta, row, "numpy")
-            for name, row in _expressions(law).items()
-        }
-        for function in functions.values():
-            function(np.ones(2))
-        return functions
+def _functions(law: ContactLaw, module: str) -> dict[str, Callable[..., Any]]:
+    """Return F, F′ and the energy of a law by name, as functions that call "numpy" or "math"."""
+    at_rest = sp.limit(law.energy, law.delta, 0, "+")
+    expressions = law.F, law.slope(), law.energy - at_rest
+    functions = {}
+    for name, expression in zip(_NAMES, expressions, strict=True):
+        # Exact coefficients become floats. Small compressions keep their digits in e^δ - 1.
+        prepared = optimize(sp.N(sp.sympify(expression), 20), [expm1_opt])
+        functions[name] = sp.lambdify(law.delta, prepared, module)
+    return functions
 
 
 @lru_cache
@@ -204,15 +194,13 @@ def _machine_code(law: ContactLaw) -> dict[str, Any]:
     from numba import cfunc  # start-up
 
     compiled = cfunc("f8(f8)", error_model="numpy")
-    with _evaluated(law):
-        return {
-            name: compiled(sp.lambdify(law.delta, row, "math"))
-            for name, row in _expressions(law).items()
-        }
+    with _refused(law):
+        functions = _functions(law, "math")
+        return {name: compiled(function) for name, function in functions.items()}
 
 
 @contextmanager
-def _evaluated(law: ContactLaw) -> Iterator[None]:
+def _refused(law: ContactLaw) -> Iterator[None]:
     """Raise `SceneError` in place of the many errors of SymPy and Numba."""
     try:
         with np.errstate(all="ignore"):
