@@ -155,7 +155,8 @@ def module(
     calls = {f.name: f.name for f in functions}
     known = words.settings.get("user_functions", {})
     printer = words.printer({**words.settings, "user_functions": {**known, **calls}})
-    names = _names(functions, {*calls, *words.reserved, *printer.reserved_words})
+    taken = {*calls, *words.reserved, *printer.reserved_words}
+    names = _names(functions, taken)
 
     def text(value: sp.Basic) -> str:
         new: dict[sp.Basic, sp.Basic] = {**names}
