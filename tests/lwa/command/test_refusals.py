@@ -76,7 +76,7 @@ LINES = [
     ("envelope", "neither --background nor --precompression"),
     ("envelope --background 1 --wavenumber 4", "0 … pi"),
     ("envelope --background 1 --wavenumber pi*2", "wavenumber is 'pi*2'"),
-    ("envelope --background 1 --branch up", "branch is 'up'"),
+    ("envelope --background 1 --branch optcal", "--branch optical"),
     ("envelope --law general --precompression 1", "law is general"),
     ("envelope --law polynomial:1/2,-1/4 --masses 1 --background 3", "F′ is -2.75"),
     ("shock", "neither --behind nor --piston"),
