@@ -141,6 +141,17 @@ def test_a_piston_that_does_more_work_than_was_guessed():
     assert abs(simulate(scene).energy_drift) < 1e-8
 
 
+def test_a_response_that_is_stronger_than_guessed_is_recorded():
+    """A piston leaves two beads, which gravity moves: all within a few steps."""
+    scene = Scene(
+        masses=(0.6, 0.3), stiffnesses=(1,), wall=1, k=2, gravity=0.077, duration=11.5, samples=13,
+        damping=Damping("kuwabara_kono", 0.063), drive=Drive(velocity=-0.055), bead_sensors=(1,),
+    )  # fmt: skip
+    run = simulate(scene, rtol=1e-6)
+    exact = simulate(scene, rtol=1e-11, step=0.01)
+    np.testing.assert_allclose(run.bead_velocity, exact.bead_velocity, atol=1e-6)
+
+
 def test_contacts_of_their_own_move_as_parts_of_a_chain_do():
     """Two pairs far apart in one chain, with laws and dampings of their own, as each by itself."""
     kinds = [(1.5, 0.2), (2, 0)]
