@@ -190,12 +190,15 @@ def _example(
     if subject is None:
         return {}
     found: dict[str, object] = {}
+    near = re.search(r"did you mean ([\w-]+)", reason)
     for name, option in options.items():
         text = str(option.default)
         if f"--{name}" in line[:-1]:
             text = line[line.index(f"--{name}") + 1]
         # Options of `lwa` have an example; the default of others is a valid text.
         example = getattr(option.type, "example", option.default)
+        if near:
+            example = near[1]
         meant = name == subject[1] or subject[2] in re.split(r"\W", text)
         # A refusal of the example itself is about something else.
         if meant and isinstance(example, str) and example != text:
