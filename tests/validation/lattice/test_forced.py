@@ -26,6 +26,15 @@ def test_beads_part_with_a_share_of_their_speed(k, v, share):
     assert abs(run.momentum_drift) < 1e-12
 
 
+def test_a_bead_leaves_a_wall_with_a_share_of_its_speed():
+    """A wall has infinite mass."""
+    scene = Scene(
+        masses=(3,), stiffnesses=(), wall=2, k=1.5, velocities=(1,), duration=30,
+        damping=Damping("restitution", 0.4),
+    )  # fmt: skip
+    assert simulate(scene).velocities == pytest.approx([-0.4], abs=1e-8)
+
+
 def test_the_damping_ratio_of_a_share():
     """The share is 1 - πζ + O(ζ²) of a nearly elastic contact, and e^{-2} at ζ = 1."""
     assert damping_ratio(1 - 1e-7) == pytest.approx(1e-7 / math.pi, rel=2e-7)
