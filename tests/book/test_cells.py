@@ -31,7 +31,7 @@ def _run(page, names):
         # A cell of the shell only prints.
         if code.lstrip().startswith("%%bash"):
             continue
-        exec(re.sub(r"^[%!].*$|^plt\.style.*$", "", code, flags=re.M), names)
+        exec(re.sub(r"^[%!].*$", "", code, flags=re.M), names)
 
 
 @pytest.fixture(scope="module")
