@@ -4,87 +4,22 @@ MyST-NB executes a page when Sphinx reads the page, one after another. It first 
 in the cache of Jupyter Cache. This extension empties the cache, so that every build executes every
 page, and fills it. A page that fails is not in the cache: MyST-NB executes the page once more, and
 reports the error.
-
-The pages' kernels are forked from one process that has loaded their packages (`loaded.py`): a
-kernel of its own would load them again, which takes more CPU than most pages.
 """
 
 from __future__ import annotations
 
-import asyncio
 import logging
 import os
-import sys
 from concurrent.futures import ThreadPoolExecutor
-from importlib.metadata import EntryPoint
-from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
 
 from jupyter_cache import get_cache
 from jupyter_cache.executors.basic import ExecutionWorkerLocalSerial, ProcessData
-from jupyter_client.provisioning import KernelProvisionerFactory, LocalProvisioner
+from kernels import prepare
 from sphinx.application import Sphinx
-
-FORKS = get_context("forkserver")
 
 # Pages that take longest are executed first, so that no processor is idle at the end.
 LONGEST = ("recipes", "links", "open", "experiment", "expansion", "pressed")
-
-
-def run_kernel(connection: str, folder: str, environment: dict[str, str]) -> None:
-    """Serve as the kernel of a connection file, in a session and a folder of its own."""
-    from ipykernel.kernelapp import IPKernelApp
-
-    os.setsid()  # signals to the kernel's group reach the page's shell commands
-    os.chdir(folder)
-    os.environ.update(environment)
-    # The kernel ends with the process that it is forked from, and that one with Sphinx.
-    parent = f"--IPKernelApp.parent_handle={os.getppid()}"
-    pictures = "--InlineBackend.figure_formats={'svg'}"
-    options = ["-f", connection, "--log-level=ERROR", parent, pictures]
-    IPKernelApp.launch_instance(argv=options)
-
-
-class Forked(LocalProvisioner):
-    """A kernel as a process that is forked from the one with the loaded packages."""
-
-    async def launch_kernel(self, cmd: list[str], **options: Any) -> Any:
-        connection = self.parent.connection_file
-        values = connection, str(options["cwd"]), options["env"]
-        self.process = FORKS.Process(target=run_kernel, args=values, daemon=True)
-        self.process.start()
-        return self.connection_info
-
-    async def send_signal(self, signum: int) -> None:
-        if self.process is not None:
-            os.killpg(self.process.pid, signum)
-
-    async def poll(self) -> int | None:
-        return 0 if self.process is None else self.process.exitcode
-
-    async def wait(self) -> int | None:
-        while await self.poll() is None:
-            await asyncio.sleep(0.1)
-        self.process = None
-        return 0
-
-
-def prepare() -> None:
-    """Make forked kernels the default of Jupyter in this process."""
-    # Read by Matplotlib when it is loaded, and set by kernels only where it is missing.
-    os.environ["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"
-    # The pages' matrices are small, and threads that wait for each other burn time.
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    # Pages show commands of the environment in which this program runs.
-    programs = str(Path(sys.executable).parent)
-    os.environ["PATH"] = programs + os.pathsep + os.environ["PATH"]
-    # "__main__": else each fork would load this program's command again.
-    FORKS.set_forkserver_preload(["__main__", "loaded"])
-    group = KernelProvisionerFactory.GROUP_NAME
-    entry = EntryPoint("forked", f"{__name__}:Forked", group)
-    KernelProvisionerFactory.provisioners["forked"] = entry
-    os.environ["JUPYTER_DEFAULT_PROVISIONER_NAME"] = "forked"
 
 
 def execute(app: Sphinx) -> None:

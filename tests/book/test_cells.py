@@ -28,10 +28,8 @@ def cells_of(page):
 
 def _run(page, names):
     for _, code in CELL.findall((BOOK / f"{page}.md").read_text(encoding="utf-8")):
-        # A cell of the shell only prints.
-        if code.lstrip().startswith("%%bash"):
-            continue
-        exec(re.sub(r"^[%!].*$", "", code, flags=re.M), names)
+        # A line of the shell, which a backslash continues, only prints.
+        exec(re.sub(r"^[%!](.*\\\n)*.*$", "", code, flags=re.M), names)
 
 
 @pytest.fixture(scope="module")
