@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from inspect import signature
 from itertools import zip_longest
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import mpmath
 import sympy as sp
@@ -52,6 +52,9 @@ from lwa.cell import (
     substitution,
 )
 from lwa.cell import k as symbol_k
+
+if TYPE_CHECKING:
+    from lwa.base.arrays import Array
 
 DELTA = sp.Symbol("delta", positive=True)
 """δ, the compression of a contact, unless the caller names another symbol."""
@@ -156,7 +159,9 @@ class ContactLaw(Value):
         n = integer(n, "n", 0)
         # A number of NumPy is an array without axes.
         if isinstance(delta, list | tuple) or getattr(delta, "ndim", 0) > 0:
-            return self._at_array(delta, n)
+            from lwa.base.arrays import finite  # here: it loads NumPy
+
+            return self.function(n)(finite(delta, "delta"))
         delta = real(delta, "delta")
         if delta.is_negative and not self.pulls:
             return sp.S.Zero
@@ -181,24 +186,30 @@ class ContactLaw(Value):
             return value.subs(self.delta, delta)
         return replaced(value, {self.delta: delta})
 
-    def _at_array(
-        self,
-        delta: Any,
-        n: int,
-    ) -> Any:
-        """The n-th derivative of F at an array of compressions, 0 at open contacts."""
+    def function(self, n: int = 0) -> Callable[[Array], Array]:
+        """Compile the n-th derivative of F to a function of arrays, 0 at open contacts.
+
+        Raises
+        ------
+        InputError
+            For a law with symbols, or without an expression.
+        """
         import numpy as np  # here: the command starts before NumPy does
 
-        from lwa.base.arrays import finite, function_of
+        from lwa.base.arrays import function_of
 
         demand_numbers(self.symbols, "an array of forces needs numbers for the law")
-        compressions = finite(delta, "delta")
         slope = function_of(self.delta, self.slope(n))
-        carries = (compressions >= 0) | self.pulls
-        # Derivatives of powers are infinite at 0.
-        with np.errstate(divide="ignore"):
-            forces = slope(np.where(carries, compressions, 0.0))
-        return np.where(carries, forces, 0.0)
+        if self.pulls:
+            return slope
+
+        def values(delta: Array) -> Array:
+            # `where` evaluates both sides: powers of negative numbers would be NaN with a warning,
+            # and derivatives of powers are infinite at 0.
+            with np.errstate(divide="ignore"):
+                return np.where(delta < 0, 0.0, slope(np.maximum(delta, 0.0)))
+
+        return values
 
     @property
     def formless(self) -> bool:

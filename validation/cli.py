@@ -22,7 +22,7 @@ STUDIES = {
     "law": ("law", "Contact law from measured forces and speeds of pulses."),
     "limits": (
         "limits",
-        "The theory's limits: equal masses, m1 ≫ m2, k → 1 (a few seconds).",
+        "The theory's limit k → 1, against the lattice's own waves.",
     ),
     "materials": ("run", "Names and constants of the materials of beads."),
     "paper": (

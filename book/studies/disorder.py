@@ -26,6 +26,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from lwa import Cell, canonical_wave
 from lwa.base.arrays import Array
 from lwa.base.frozen import Estimate
 from lwa.base.progress import Progress
@@ -38,7 +39,6 @@ from validation.report.table import Column, Finding, Table
 from validation.scenes.chains import struck
 from validation.scenes.checks import between, integer
 from validation.scenes.scene import Scene
-from validation.studies.limits import theory_at
 from validation.studies.paper import of_momentum
 
 PLACES = 10  # contacts at which the pulse is measured, equally far from each other
@@ -143,7 +143,11 @@ def single_losses(
 
 def _struck(masses: Sequence[float], k: float, sensors: Sequence[int]) -> Scene:
     """Scene of a struck chain, for twice the flight of a pulse with all of the blow's momentum."""
-    duration = 2 * len(masses) / float(of_momentum(theory_at(str(k), 1), 1.0).speed)
+    duration = (
+        2
+        * len(masses)
+        / float(of_momentum(canonical_wave(Cell([1], spacing=1), str(k)), 1.0).speed)
+    )
     samples = math.ceil(30 * duration * max(1.0, k / 1.5))
     return struck(
         masses,

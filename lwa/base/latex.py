@@ -6,7 +6,7 @@ Rows wider than a page are broken at the signs between their terms.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 
 import sympy as sp
 
@@ -14,10 +14,8 @@ from lwa.base.exact import evaluated
 
 NUMBER = 24  # symbols of an exact number beyond which its digits stand in its place
 DIGITS = 6  # digits of an irrational number behind its formula
-# Parts of a numerator for one of its denominator, beyond which it stands beside the fraction.
-_LONG_FRACTION = 2
 WIDTH = 64
-"""Symbols in a line of a display, of a fraction in both parts; a page holds about 70 in a row."""
+"""Symbols in a line of a display; a page holds about 70 in a row."""
 
 
 def display(rows: list[str]) -> str:
@@ -37,49 +35,24 @@ def _aligned(rows: list[str], unnumbered: str = "") -> str:
 
 
 def _broken(row: str) -> list[str]:
-    """The lines of a row: terms are put on a line as long as they fit."""
+    """The lines of a row: terms are put on a line as long as they fit.
+
+    A line is broken before a sign between terms. A bracket that grows must close on its own line,
+    so that a bracket wider than a page stays in one piece.
+    """
     lines = [""]
-    for term in _terms(row, _OUTSIDE):
-        parts = [term]
-        if width(term) > WIDTH:
-            # Brackets that grow must close on their line: those around the new breaks do not grow.
-            fixed = _outside_of_braces(term, r"\left(", r"\bigl(")
-            fixed = _outside_of_braces(fixed, r"\right)", r"\bigr)")
-            parts = list(_terms(fixed, _IN_BRACKETS))
-        for part in parts:
-            if lines[-1] and width(lines[-1] + part) > WIDTH:
-                lines.append("")
-            lines[-1] += f" {part}" if lines[-1] else part
+    term = ""
+    for part in re.split(r"(?<=\S) (?=[+-] )", row):
+        term = f"{term} {part}".lstrip()
+        opened = re.findall(r"\\left|{", term)
+        closed = re.findall(r"\\right|}", term)
+        if len(opened) > len(closed):
+            continue
+        if lines[-1] and width(lines[-1] + term) > WIDTH:
+            lines.append("")
+        lines[-1] = f"{lines[-1]} {term}".lstrip()
+        term = ""
     return lines
-
-
-_OUTSIDE = re.compile(r"\\left|\\right|[{}]|(?<=\S) (?=[+-] )")
-"""Signs between terms, and what a term must not be broken in: braces and brackets that grow."""
-
-_IN_BRACKETS = re.compile(r"[{}]|(?<=\S) (?=[+-] )")
-
-
-def _terms(row: str, tokens: re.Pattern[str]) -> Iterator[str]:
-    """The parts of a row from one sign to the next, outside of braces (and \\left … \\right)."""
-    depth = 0
-    start = 0
-    for token in tokens.finditer(row):
-        if token[0] != " ":
-            depth += 1 if token[0] in ("\\left", "{") else -1
-        elif depth == 0:
-            yield row[start : token.start()]
-            start = token.end()
-    yield row[start:]
-
-
-def _outside_of_braces(text: str, old: str, new: str) -> str:
-    """Replace a part of a text where it is not inside of braces."""
-    depth = 0
-    parts = []
-    for part in re.split(rf"([{{}}]|{re.escape(old)})", text):
-        depth += {"{": 1, "}": -1}.get(part, 0)
-        parts.append(new if part == old and depth == 0 else part)
-    return "".join(parts)
 
 
 def width(text: str) -> int:
@@ -125,12 +98,7 @@ def _formula(value: sp.Expr) -> str:
     for p in value.atoms(sp.Pow):
         if p.exp.free_symbols and (p.base.is_Symbol or p.base.is_number):
             powers[p] = sp.Symbol(sp.latex(p))
-    plain = value.xreplace(powers)
-    formula = str(sp.latex(plain))
-    if width(formula) > WIDTH:
-        # A wide numerator stands beside one over its denominator: a fraction has no breaks.
-        formula = str(sp.latex(plain, long_frac_ratio=_LONG_FRACTION))
-    return formula
+    return str(sp.latex(value.xreplace(powers)))
 
 
 SPEED = r"\frac{dx}{dt}"

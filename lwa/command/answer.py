@@ -8,22 +8,18 @@ from __future__ import annotations
 
 import json
 import math
-import re
-import shutil
-import sys
-import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from itertools import repeat
+from typing import Any, Self
 
 import click
 import sympy as sp
-from sympy.core.function import AppliedUndef
 
 from lwa.base import latex
 from lwa.base.exact import InputError, evaluated
 from lwa.base.frozen import EXACT_DIGITS, TABLE_DIGITS, Estimate, Shown
-from lwa.spheres.units import fitting
+from lwa.spheres.units import Unit, fitting
 
 FRACTION = 24
 """Most characters of a fraction in text, about a quarter of a line; a longer one has its digits
@@ -32,8 +28,8 @@ alone."""
 LONG = 160
 """Most characters of another exact number in text, two lines; a longer one has its digits alone."""
 
-Form = Literal["both", "formula", "number"]
-"""Parts of an expression in a row: the formula and its digits, or one of them."""
+_SIZES = ("V_s", "B", "F")
+"""Symbols of a wave's size, which results hold where no number is given."""
 
 
 @dataclass(frozen=True)
@@ -51,51 +47,54 @@ class Scale:
     si: bool = False
     spacing: sp.Expr = sp.S.One
 
-    def plain(self, value: sp.Expr) -> sp.Expr:
-        """The value at ``V_s = 1``, ``|B| = 1``, and at ``D = 1`` where the spacing is a symbol."""
+    def number(self, value: sp.Expr) -> Estimate | None:
+        """The number of an exact value at ``V_s = F = |B| = 1``, and at ``D = 1`` for a symbol D.
+
+        None with other symbols, and for complex numbers and numbers beyond a double.
+        """
         ones: dict[sp.Expr, int] = {}
-        if self.spacing.is_Symbol:
-            ones[self.spacing] = 1
         for symbol in value.free_symbols:
-            if symbol.name in ("V_s", "B"):
+            if symbol.name in _SIZES or symbol == self.spacing:
                 # B is negative in chains that soften.
                 ones[symbol] = -1 if symbol.is_negative else 1
-        if value.free_symbols <= ones.keys():
-            return value.subs(ones)
         # Substitution in an expression with other symbols would take long, for no number.
-        return value
+        if not value.free_symbols <= ones.keys():
+            return None
+        # Thirty digits, so that the float is the nearest one.
+        number = evaluated(value.subs(ones), 30)
+        if not number.is_real or not (number == 0 or 1e-300 < abs(number) < 1e300):
+            return None
+        return Estimate(float(number), 0.0)
 
-    def unit_of(self, value: sp.Expr) -> str | None:
-        """The unit of a number times powers of symbols, such as ``" D^2"``; None for others."""
-        unit = sp.S.One
+    def symbols(self, value: sp.Expr) -> sp.Expr | None:
+        """The powers of symbols behind a value's number, such as D²; None for other functions."""
+        powers = sp.S.One
         # A sum such as a D + b D becomes a product.
         for base, n in sp.factor_terms(value).as_powers_dict().items():
             if base.is_Symbol and n.is_number:
-                unit *= base**n
+                powers *= base**n
             elif base.free_symbols or n.free_symbols:
                 return None
-        return "" if unit == 1 else f" {unit}".replace("**", "^")
+        return powers
 
-    def measured(self, number: Estimate, unit: str) -> str:
-        """A number with its error as text; in SI with the prefix that suits its size."""
-        if not self.si:
-            return number.text()
-        fitted = fitting(unit, abs(number.value))
+    def digits(self, number: Estimate, unit: str, most: int = EXACT_DIGITS) -> str:
+        """A number with its error and its unit; in SI with the prefix that suits its size.
+
+        Parameters
+        ----------
+        number : Estimate
+            The number.
+        unit : str
+            Its unit in SI, or powers of symbols.
+        most : int
+            Digits of a number without an error.
+        """
+        fitted = fitting(unit, abs(number.value)) if self.si else Unit(unit)
+        number *= 1 / fitted.size
+        text = number.text() if number.error else f"{number.value:.{most}g}"
         # The unit stands before the words on an unknown error.
-        text, comma, unknown = (number * (1 / fitted.size)).text().partition(",")
+        text, comma, unknown = text.partition(",")
         return f"{text} {fitted.name}".rstrip() + comma + unknown
-
-    def written(self, value: sp.Expr, unit: str) -> str:
-        """An expression as text; in SI six digits, and the unit with a prefix."""
-        if not self.si:
-            return str(value)
-        number = as_float(value)
-        if number is None:  # symbols, behind a factor in digits
-            factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
-            digits = sp.sstr(evaluated(factor, TABLE_DIGITS), full_prec=False)
-            return f"{digits}·{rest} {unit}".removeprefix("1·").rstrip()
-        fitted = fitting(unit, abs(number))
-        return f"{number / fitted.size:.{TABLE_DIGITS}g} {fitted.name}".rstrip()
 
 
 UNITLESS = Scale()
@@ -104,7 +103,7 @@ UNITLESS = Scale()
 
 @dataclass(frozen=True)
 class Row:
-    """One value of an answer, with its names.
+    """One value of an answer, with its names: text, JSON and LaTeX are made from it.
 
     Parameters
     ----------
@@ -118,8 +117,6 @@ class Row:
         Unit of the value for a chain in SI.
     symbol : str
         Name in LaTeX; not in LaTeX where empty.
-    form : {"both", "formula", "number"}
-        What is shown of an expression.
     estimate : Estimate, optional
         The number of an expression with its error.
     """
@@ -129,116 +126,128 @@ class Row:
     value: Any
     unit: str = ""
     symbol: str = ""
-    form: Form = "both"
     estimate: Estimate | None = None
 
+    @classmethod
+    def of(
+        cls,
+        result: Any,
+        name: str,
+        label: str,
+        unit: str = "",
+        *arguments: Any,
+        key: str = "",
+        symbol: str = "",
+    ) -> Self:
+        """Make the row of a result's attribute or method, with its error where the error is known.
+
+        Parameters
+        ----------
+        result : object
+            The result, such as a wave.
+        name : str
+            Name of the attribute or method, and of the row in JSON unless there is a key.
+        label, unit, key, symbol : str
+            Of the row.
+        *arguments
+            Arguments of a method.
+        """
+        value = attempt(getattr, result, name)
+        if callable(value):
+            value = attempt(value, *arguments)
+        estimate = None
+        if hasattr(result, "estimate"):
+            estimate = attempt(result.estimate, name, *arguments)
+            # Numbers with symbols have no estimate, and some names have none.
+            if isinstance(estimate, InputError):
+                estimate = None
+        return cls(key or name, label, value, unit, symbol, estimate)
+
     @property
-    def measured(self) -> Estimate | None:
-        """The number with its error; None for an expression whose error nobody knows."""
-        if isinstance(self.value, Estimate):
-            return self.value
-        if self.estimate is None or math.isnan(self.estimate.error):
-            return None
-        return self.estimate
+    def values(self) -> Sequence[Any]:
+        """The values, those of contacts or beads one by one."""
+        return self.value if isinstance(self.value, tuple) else (self.value,)
+
+    def numbers(self, scale: Scale) -> list[Estimate]:
+        """The number of each value; [] if any value has none."""
+        found = []
+        for value in self.values:
+            number = self.estimate
+            if isinstance(value, Estimate):
+                number = value
+            elif number is None:
+                number = scale.number(value)
+            if number is None:
+                return []
+            found.append(number)
+        return found
 
     def entries(self, scale: Scale) -> dict[str, Any]:
         """The values in JSON, by the ending of their names: "", "_value", "_error_value"."""
         if isinstance(self.value, InputError):
             return {"_value": None, "_error_value": None}
         found: dict[str, Any] = {}
-        if isinstance(self.value, Estimate):
-            found["_value"] = float(self.value)
-        else:
-            floats = self._floats(scale)
-            # A float is a result of numerics; closed forms of the lattice hold floats as factors.
-            closed = not any(x.is_Float for x in self._each)
-            if closed and self.form != "number":
-                found[""] = self.value
-            if self.form != "formula" and floats is not None:
-                found["_value"] = floats
-        if self.measured is not None:
-            error = float(self.measured.error)
-            found["_error_value"] = error
-            if math.isnan(error):  # JSON has no NaN
-                found["_error_value"] = None
+        # A float is a result of numerics; closed forms of the lattice hold floats as factors.
+        if not any(isinstance(x, Estimate | sp.Float) for x in self.values):
+            found[""] = self.value
+        numbers = self.numbers(scale)
+        if isinstance(self.value, tuple) and numbers:
+            found["_value"] = [number.value for number in numbers]
+        elif numbers:
+            found["_value"] = numbers[0].value
+            error = numbers[0].error
+            if error:
+                # JSON has no NaN.
+                found["_error_value"] = None if math.isnan(error) else error
         return found
 
-    def _floats(self, scale: Scale) -> Any:
-        """The float of an expression, or a list of floats; None if any value has no float."""
-        if not isinstance(self.value, tuple):
-            return as_float(scale.plain(self.value))
-        floats = [as_float(scale.plain(x)) for x in self.value]
-        if None in floats:
-            return None
-        return floats
-
-    @property
-    def _each(self) -> Sequence[sp.Expr]:
-        """The expressions, those of contacts that are alike once."""
-        values = self.value if isinstance(self.value, tuple) else (self.value,)
-        return list(dict.fromkeys(values))
-
     def text(self, scale: Scale) -> str:
-        """The row as a line of text."""
+        """The row as a line of text; values that are all alike stand once."""
         if isinstance(self.value, InputError):
             return f"{self.label}: {self.value.reason}"
-        if self.measured is None:
-            texts = [self._expression(x, scale) for x in self._each]
-            return f"{self.label} = {', '.join(texts)}"
-        number = scale.measured(self.measured, self.unit)
-        if not scale.si and not isinstance(self.value, Estimate):
-            number += scale.unit_of(self.value) or ""
-            number = self._beside(self.value, number, scale)
-        return f"{self.label} = {number}"
+        numbers = self.numbers(scale) or repeat(None)
+        texts = []
+        for value, number in zip(self.values, numbers, strict=False):
+            texts.append(self._text(value, number, scale))
+        if len(set(texts)) == 1:  # as of contacts that are alike
+            texts = texts[:1]
+        return f"{self.label} = {', '.join(texts)}"
 
-    def _expression(self, value: sp.Expr, scale: Scale) -> str:
-        """An expression as text: the formula, its digits, or both."""
-        unit = scale.unit_of(value)
-        # The functions φ_n of a general law have no value, though no free symbol.
-        symbolic = value.free_symbols - {scale.spacing} or value.has(AppliedUndef)
-        if scale.si or self.form == "formula" or symbolic or unit is None:
-            return scale.written(value, self.unit)
-        places = TABLE_DIGITS if self.form == "number" else EXACT_DIGITS
-        digits = evaluated(scale.plain(value), places)
-        number = f"{sp.sstr(digits, full_prec=False)}{unit}"
-        return self._beside(value, number, scale)
-
-    def _beside(self, value: sp.Expr, number: str, scale: Scale) -> str:
-        """A number behind its formula, or one of them where the other says no more."""
-        if self.form == "number" or value.has(sp.Float):
-            return number
+    def _text(
+        self, value: sp.Expr | Estimate, number: Estimate | None, scale: Scale
+    ) -> str:
+        """A value as text: its formula, its digits, or both."""
+        if isinstance(value, Estimate):
+            return scale.digits(value, self.unit)
         formula = str(value)
-        if scale.plain(value).is_Rational:
+        symbols = scale.symbols(value)
+        unit = "" if symbols == 1 else str(symbols).replace("**", "^")
+        if scale.si:
+            unit = f"{unit} {self.unit}".strip()
+        if number is None or symbols is None or value.is_Symbol:
+            return f"{formula} {self.unit if scale.si else ''}".rstrip()
+        # Constants of materials have few digits, and results of numerics no more than these.
+        if scale.si or value.has(sp.Float):
+            return scale.digits(number, unit, TABLE_DIGITS)
+        digits = scale.digits(number, unit)
+        factor = value / symbols
+        if factor.is_Rational:
             # A fraction says all that its digits say, but for an error.
-            if self.measured is None and len(formula) <= FRACTION:
-                return formula
-            return number
+            short = len(str(factor)) <= FRACTION and not number.error
+            return formula if short else digits
         if len(formula) > LONG:
-            return number
-        return f"{formula} ≈ {number}"
+            return digits
+        return f"{formula} ≈ {digits}"
 
     def latex(self, scale: Scale) -> str:
-        """The row as ``symbol = value``; "" without a symbol or a value."""
-        if not self.symbol or isinstance(self.value, InputError):
-            return ""
-        if self.measured is not None:
-            number = self.measured.latex()
-            unit = not isinstance(self.value, Estimate) and scale.unit_of(self.value)
-            if unit:
-                number = rf"\left({number}\right){unit}"
-            return f"{self.symbol} = {number}"
-        return f"{self.symbol} = {', '.join(map(latex.expression, self._each))}"
-
-
-def as_float(value: sp.Expr) -> float | None:
-    """The nearest float of an exact number; None if symbolic, complex or out of range."""
-    if value.free_symbols:
-        return None
-    # Thirty digits, so that the float is the nearest one.
-    number = evaluated(value, 30)
-    if not number.is_real or not (number == 0 or 1e-300 < abs(number) < 1e300):
-        return None
-    return float(number)
+        """The row as ``symbol = value``."""
+        if self.estimate is None or math.isnan(self.estimate.error):
+            return latex.row(self.symbol, self.value)
+        number = self.estimate.latex()
+        symbols = scale.symbols(self.value)
+        if symbols not in (1, None):
+            number = rf"\left({number}\right) {sp.latex(symbols)}"
+        return f"{self.symbol} = {number}"
 
 
 def attempt(read: Callable[..., Any], *arguments: Any) -> Any:
@@ -248,22 +257,6 @@ def attempt(read: Callable[..., Any], *arguments: Any) -> Any:
     except InputError as fault:
         return fault
 
-
-def estimated(result: Any, name: str, *arguments: Any) -> Estimate | None:
-    """The estimate of a result's number; None with symbols, and for results that have none."""
-    if not hasattr(result, "estimate"):
-        return None
-    found: Estimate | InputError = attempt(result.estimate, name, *arguments)
-    if isinstance(found, InputError):
-        return None
-    return found
-
-
-WIDTH = 100
-"""Columns of text at most, and in a file or a pipe; a narrower terminal has its own."""
-
-# Breaks of a line: spaces, and within a longer word after an operator but **
-_BREAK = re.compile(r"(\s+|(?<=[^*/][*/])(?![*/\s]))")
 
 Values = dict[str, Any]
 Lines = list["Row | str | Answer"]
@@ -309,63 +302,49 @@ class Answer:
         else:
             click.echo(self.text())
 
-    def _values(self) -> Iterator[Row]:
-        """The rows that are values."""
-        for row in self.rows:
-            if isinstance(row, Row):
-                yield row
-
     def json(self) -> Values:
         """The object that ``--format json`` prints.
 
         Names ending in ``_value`` are floats, in the unit of length where the spacing is a symbol,
-        at ``V_s = 1`` and ``B = 1``, or ``B = -1`` if B is negative. Symbols, complex numbers and
-        numbers beyond a double have none. The notes include the reasons of missing values.
+        at ``V_s = 1``, ``F = 1`` and ``B = 1``, or ``B = -1`` if B is negative. Symbols, complex
+        numbers and numbers beyond a double have none. The notes include the reasons of missing
+        values.
         """
         result = dict(self.head)
         units: Values = {}
-        faults = []
-        for row in self._values():
-            if not row.key:
-                continue
-            if row.unit:
-                _put(units, row.key, "", row.unit)
-            if isinstance(row.value, InputError):
-                faults.append(str(row.value))
-            for ending, value in row.entries(self.scale).items():
-                _put(result, row.key, ending, value)
+        notes = [*self.notes]
+        for row in self.rows:
+            if isinstance(row, Answer):
+                result[row.key] = row.json()
+            elif isinstance(row, Row) and row.key:
+                if row.unit:
+                    _put(units, row.key, "", row.unit)
+                if isinstance(row.value, InputError):
+                    notes.append(str(row.value))
+                for ending, value in row.entries(self.scale).items():
+                    _put(result, row.key, ending, value)
         if self.scale.si:
             result["units"] = units
-        for part in self.rows:
-            if isinstance(part, Answer):
-                result[part.key] = part.json()
-        # Several values may be missing for one reason.
-        notes = list(dict.fromkeys((*self.notes, *faults)))
         if notes:
-            result["notes"] = notes
+            # Several values may be missing for one reason.
+            result["notes"] = list(dict.fromkeys(notes))
         return result
 
     def text(self) -> str:
-        """The lines that ``--format text`` prints."""
+        """The lines that ``--format text`` prints; a formula is one line, which can be copied."""
         lines = []
-        for line in self._lines():
-            lines += _wrapped(line, text_width())
-        return "\n".join(lines)
-
-    def _lines(self) -> Iterator[str]:
         for row in self.rows:
             if isinstance(row, Answer):
-                yield from row._lines()
+                lines.append(row.text())
             elif isinstance(row, str):
-                yield from row.split("\n")
+                lines.append(row)
             elif row.label:
-                yield f"  {row.text(self.scale)}"
-        measured = [row.measured for row in self._values() if row.measured is not None]
-        if self.errors and any(number.error > 0 for number in measured):
-            yield f"±: {self.errors}"
+                lines.append(f"  {row.text(self.scale)}")
+        if self.errors and "±" in "".join(lines):
+            lines.append(f"±: {self.errors}")
         for note in self.notes:
-            yield ""
-            yield f"Note: {note}"
+            lines += ["", f"Note: {note}"]
+        return "\n".join(lines)
 
     def latex(self) -> str:
         """The display that ``--format latex`` prints, units and notes as comments behind it."""
@@ -382,7 +361,7 @@ class Answer:
         for row in self.rows:
             if isinstance(row, Answer):
                 yield from row._equations()
-            elif isinstance(row, Row) and row.latex(self.scale):
+            elif isinstance(row, Row) and row.symbol:
                 yield row.latex(self.scale)
 
 
@@ -393,18 +372,3 @@ def _put(result: Values, key: str, ending: str, value: Any) -> None:
         result.setdefault(group + ending, {})[entry] = value
     else:
         result[group + ending] = value
-
-
-def text_width() -> int:
-    """Columns of the terminal, `WIDTH` at most; `WIDTH` in a file or a pipe."""
-    if not sys.stdout.isatty():
-        return WIDTH
-    return min(shutil.get_terminal_size().columns, WIDTH)
-
-
-def _wrapped(line: str, width: int) -> list[str]:
-    """Break a line of text; further lines are indented by eight columns more."""
-    indent = line[: len(line) - len(line.lstrip())]
-    wrapper = textwrap.TextWrapper(width, "", f"{indent}        ")
-    wrapper.wordsep_re = _BREAK
-    return wrapper.wrap(line) or [""]

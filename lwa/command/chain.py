@@ -15,17 +15,17 @@ import sympy as sp
 from lwa.base.exact import InputError
 from lwa.base.files import Reader, Table, among, finite, load, positive, table
 from lwa.cell import Cell, D
-from lwa.command.answer import Scale
+from lwa.command.answer import Row, Scale
 from lwa.law import ContactLaw, Power, for_cell, read_law
 from lwa.spheres.beads import (
     FILE,
     STRIKER,
-    Row,
     period,
     read_beads,
     read_materials,
     read_row,
 )
+from lwa.spheres.beads import Row as Beads
 from lwa.spheres.hertz import EXPONENT
 
 HERTZIAN = 0.01
@@ -82,16 +82,11 @@ class ChainInput:
         force = f"A F, F = {self.law.F}"
         if self.law.homogeneous:
             force = f"A δ^k, k = {k}"
-        contacts = self.cell.stiffnesses
-        if len(set(contacts)) == 1:  # as most chains have them
-            contacts = contacts[:1]
-        write = self.scale.written
-        masses = ", ".join(write(m, "kg") for m in self.cell.masses)
-        stiffnesses = ", ".join(write(A, f"N/m^({k})") for A in contacts)
-        return (
-            f"masses {masses}; contact force {force}, A = {stiffnesses}; "
-            f"spacing D = {write(self.cell.spacing, 'm')}"
-        )
+        scale = self.scale
+        masses = Row("", "masses", self.cell.masses, "kg").text(scale)
+        stiffnesses = Row("", "A", self.cell.stiffnesses, f"N/m^({k})").text(scale)
+        spacing = Row("", "spacing D", self.cell.spacing, "m").text(scale)
+        return f"{masses}; contact force {force}, {stiffnesses}; {spacing}"
 
     def load(self, given: sp.Expr | None) -> sp.Expr | None:
         """The static force: that of the file, or the given one; None for none.
@@ -177,7 +172,7 @@ def _number(entries: Table, key: str, reader: Reader) -> sp.Rational | None:
     return sp.Rational(str(entries.read(key, reader)))
 
 
-def _cell_of_masses(row: Row) -> Cell:
+def _cell_of_masses(row: Beads) -> Cell:
     """The smallest periodic cell of a chain of masses."""
     # Two cells show a period that is longer than one half of a cell.
     masses = row.masses * min(row.repeat, 2)

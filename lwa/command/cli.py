@@ -14,7 +14,7 @@ from typing import Any
 
 import click
 
-from lwa.base import INTERRUPTED, Refusal, cut
+from lwa.base import INTERRUPTED, LONGEST_MESSAGE, Refusal, cut
 from lwa.base.progress import alive
 
 HELP = {"help_option_names": ["-h", "--help"]}
@@ -165,13 +165,19 @@ def next_step(
     # A change of Python's arguments that are no options is said as Python writes it.
     if not change or not examples.keys() >= change.keys():
         return str(refusal)
+    changes = []
     for changed, value in change.items():
         if f"--{changed}" in line:  # an option and its value
             at = line.index(f"--{changed}")
             del line[at : at + 2]
         if value is not None:
-            line += [f"--{changed}", str(value)]
-    return f"{refusal.reason}; try: {shlex.join([name, *line])}"
+            changes += [f"--{changed}", str(value)]
+    proposed = shlex.join([name, *line, *changes])
+    # A message is cut in its middle: the whole line to paste stands at its end, or is not there.
+    if changes and len(proposed) > LONGEST_MESSAGE // 2:
+        proposed = shlex.join(changes)
+    room = LONGEST_MESSAGE - len(f"{name}: ; try: {proposed}")
+    return f"{cut(refusal.reason, room)}; try: {proposed}"
 
 
 _SUBJECT = re.compile(r"(\w+) is |'(\w+)' has no value")

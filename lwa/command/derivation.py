@@ -78,7 +78,7 @@ def derive(style: str, **options: Any) -> None:
     pde = theory.pde
     head: Values = settings_json(theory)
     head["lambda"] = theory.amplitude_ratio
-    head["ansatz"] = {}  # the rows' keys follow
+    head["ansatz"] = theory.ansatz
     head |= dict.fromkeys("GHI") | pde.third_order
     head["terms"] = _terms_json(pde.coefficients)
     head["defect"] = _terms_json(theory.defect)
@@ -89,7 +89,7 @@ def derive(style: str, **options: Any) -> None:
         f"{theory.closure.model.branch} branch, to D^{theory.order}; τ = t·{pde.time_scale}",
         *_law_lines(theory),
         "",
-        *_ansatz_rows(theory),
+        *_ansatz_lines(theory),
         *_field_lines(theory),
         str(pde),
         "",
@@ -98,7 +98,7 @@ def derive(style: str, **options: Any) -> None:
     # G, H and I are the coefficients at D^{k+3}, which an ansatz to D^4 has.
     if depends_on_first(theory) and theory.order >= 4:
         canonical = canonical_wave(theory.cell, theory.k)
-        letters = [Row(x, x, getattr(canonical, x), form="formula") for x in "GHI"]
+        letters = [Row.of(canonical, x, x) for x in "GHI"]
         rows.append(Answer({}, ["", FIRST, *letters], key="canonical"))
     shown: list[Shown | str] = [theory]
     if theory.defect:
@@ -119,17 +119,16 @@ def _law_lines(theory: Theory) -> list[str]:
     return lines + [f"  phi{n} = {value}" for n, value in theory.phi.items()]
 
 
-def _ansatz_rows(theory: Theory) -> Lines:
-    """Rows of λ and the b_n; [] for a cell of one particle."""
+def _ansatz_lines(theory: Theory) -> list[str]:
+    """Lines of text with λ and the b_n; [] for a cell of one particle."""
     if not theory.ansatz:
         return []
-    rows: Lines = [
+    return [
         "w = λ (u + Σ b_n D^n ∂_x^n u), the linear part of the second particle's field",
         f"  λ = {theory.amplitude_ratio}",
+        *(f"  b{n} = {b}" for n, b in theory.ansatz.items()),
+        "",
     ]
-    for n, b in theory.ansatz.items():
-        rows.append(Row(f"ansatz.{n}", f"b{n}", b, form="formula"))
-    return [*rows, ""]
 
 
 def _field_lines(theory: Theory) -> list[str]:

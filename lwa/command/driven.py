@@ -8,7 +8,7 @@ import sympy as sp
 
 from lwa.base import InputError
 from lwa.base.exact import positive
-from lwa.command.answer import Answer, Lines, Row, attempt, estimated
+from lwa.command.answer import Answer, Lines, Row, attempt
 from lwa.command.chain import take_chain
 from lwa.command.options import (
     SPHERES,
@@ -19,7 +19,8 @@ from lwa.command.options import (
     value,
 )
 from lwa.expansion.strike import pulse_of_strike
-from lwa.shocks import riemann
+from lwa.shocks import front as fronts
+from lwa.shocks.riemann import RULES
 
 _STRIKE_FILE = "lwa-validate run --example striker > chain.toml"
 
@@ -86,14 +87,12 @@ def strike(
     rows: Lines = [
         f"chain of equal beads; F = A δ^k, k = {chain.law.exponent}",
         Row("", "mass of the beads", cell.masses[0], "kg"),
-        Row("mass", "mass of the striker", pulse.mass, "kg", form="number"),
-        Row(
-            "velocity", "velocity of the striker", pulse.velocity, "m/s", form="number"
-        ),
+        Row.of(pulse, "mass", "mass of the striker", "kg"),
+        Row.of(pulse, "velocity", "velocity of the striker", "m/s"),
         "",
         "leading pulse:",
-        Row("force", "peak contact force", pulse.force, "N"),
-        Row("speed", "speed dx/dt", pulse.speed, "m/s"),
+        Row.of(pulse, "force", "peak contact force", "N"),
+        Row.of(pulse, "speed", "speed dx/dt", "m/s"),
         Row("fwhm.length", "FWHM of the force", pulse.fwhm("force", "length"), "m"),
         Row("fwhm.time", "FWHM of the force in time", pulse.fwhm(), "s"),
     ]
@@ -154,35 +153,29 @@ def shock(
     if ahead is None:
         ahead = law.compression(cell, static) / cell.spacing if static else sp.S.Zero
     if behind is None:
-        front = riemann.piston(cell, piston, ahead, law=law)
+        front = fronts.piston(cell, piston, ahead, law=law)
     else:
-        front = riemann.shock(cell, behind, ahead, law=law)
-
-    def row(name: str, label: str, unit: str = "", *rule: riemann.RuleName) -> Row:
-        """The row of an attribute, or of the leading edge by a rule."""
-        result = attempt(getattr, front, name)
-        if rule:
-            result = attempt(front.leading_speed, *rule)
-        error = estimated(front, name, *rule)
-        return Row(".".join((name, *rule)), label, result, unit, estimate=error)
+        front = fronts.shock(cell, behind, ahead, law=law)
 
     # With symbols nobody knows whether the front is a shock.
     kind = attempt(getattr, front, "kind")
     named = None if isinstance(kind, InputError) else kind
     rows: Lines = [
         chain.text,
-        row("behind", "strain behind"),
-        Row("ahead", "strain ahead", front.ahead),
+        Row.of(front, "behind", "strain behind"),
+        Row.of(front, "ahead", "strain ahead"),
         "",
         f"{named or 'front'}, speeds dx/dt:",
-        row("plateau", "velocity of the wall", "m/s"),
-        row("trailing_speed", "trailing edge", "m/s"),
+        Row.of(front, "plateau", "velocity of the wall", "m/s"),
+        Row.of(front, "trailing_speed", "trailing edge", "m/s"),
     ]
-    for rule in riemann.RULES:
-        rows.append(row("leading_speed", f"leading edge, {rule}", "m/s", rule))
+    for rule in RULES:
+        label = f"leading edge, {rule}"
+        key = f"leading_speed.{rule}"
+        rows.append(Row.of(front, "leading_speed", label, "m/s", rule, key=key))
     if kind != "rarefaction":  # which has no leading pulse
-        rows.append(row("peak", "peak strain, doubling"))
-        rows.append(row("peak_force", "peak force, doubling", "N"))
+        rows.append(Row.of(front, "peak", "peak strain, doubling"))
+        rows.append(Row.of(front, "peak_force", "peak force, doubling", "N"))
     notes = []
     if front.oscillates:
         notes.append(

@@ -75,12 +75,12 @@ def dispersion(
     if precompression is not None:
         loaded = LoadedChain(chain.cell, chain.law, precompression)
         shown.append(loaded)
+        head["precompression"] = precompression
         rows += [
             "",
             f"about the load {precompression}:",
-            Row("precompression", "", precompression, form="formula"),
-            Row("spring_constants", "spring constants", loaded.spring_constants, "N/m"),
-            Row("sound_speed", "sound speed dx/dt", loaded.sound_speed, "m/s"),
+            Row.of(loaded, "spring_constants", "spring constants", "N/m"),
+            Row.of(loaded, "sound_speed", "sound speed dx/dt", "m/s"),
         ]
         numbers = (*chain.cell.masses, *loaded.spring_constants)
         if not any(x.free_symbols for x in numbers):
@@ -93,7 +93,7 @@ def dispersion(
             unit = "" if chain.si else ", in rad per unit of time"
             for i, band in enumerate(shown_edges, start=1):
                 ends = tuple(sp.Float(float(x)) for x in band)
-                rows.append(Row("", f"band {i}{unit}", ends, "Hz", form="number"))
+                rows.append(Row("", f"band {i}{unit}", ends, "Hz"))
     Answer(head, rows, chain.scale, shown).print(style)
 
 
@@ -192,11 +192,11 @@ def envelope(
         "u = Ψ(X, T) U e^{i(κ n - ω t)} + c.c., Σ m |U|² = 1, n and κ per cell",
         "i Ψ_T + ½ ω'' Ψ_XX = χ |Ψ|² Ψ",
         "",
-        Row("wavenumber", "κ", equation.wavenumber, form="formula"),
+        Row.of(equation, "wavenumber", "κ"),
         Row("frequency", f"frequency {name}", equation.frequency / turn, "Hz"),
-        Row("group_velocity", "dω/dκ", equation.group_velocity, "cells/s"),
-        Row("dispersion", "ω''", equation.dispersion, "cells²/s"),
-        Row("nonlinearity", "χ", equation.nonlinearity, "1/(s kg m²)"),
+        Row.of(equation, "group_velocity", "dω/dκ", "cells/s"),
+        Row.of(equation, "dispersion", "ω''", "cells²/s"),
+        Row.of(equation, "nonlinearity", "χ", "1/(s kg m²)"),
         described,
     ]
     shown: list[Shown | str] = [equation]
@@ -210,8 +210,8 @@ def envelope(
             "",
             f"{breather.kind} breather, |Ψ| = a {shape}(b n):",
             Row("breather_frequency", f"frequency {name}", own, "Hz"),
-            Row("detuning", "detuning Δ = 1 - f/f0", breather.detuning),
-            Row("amplitude", "largest displacement by bead", breather.amplitude, "m"),
-            Row("width", "width 1/b in cells", breather.width),
+            Row.of(breather, "detuning", "detuning Δ = 1 - f/f0"),
+            Row.of(breather, "amplitude", "largest displacement by bead", "m"),
+            Row.of(breather, "width", "width 1/b in cells"),
         ]
     Answer(head, rows, chain.scale, shown).print(style)

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from lwa.base import InputError, NoSolitaryWave
-from lwa.base.frozen import Estimate
 from lwa.base.words import QUANTITIES
 from lwa.cell import k
 from lwa.command.answer import Answer, Lines, Row, Values, attempt
 from lwa.command.chain import take_chain
 from lwa.command.options import command, series_options
 from lwa.expansion.expand import Expansion, expand
-from lwa.expansion.lattice_wave import lattice_wave
 from lwa.expansion.series import EpsilonSeries
 
 _ORDER = 8
@@ -23,10 +19,7 @@ _ORDER = 8
 _SYMBOLIC_ORDER = 4
 """Order of a series with symbols, whose terms grow with the order."""
 
-_ERRORS = (
-    "estimate of a sum's error, by its last terms and by radiation; bound of the error of a "
-    "closed form, as measured"
-)
+_ERRORS = "estimate of a sum's error, by its last terms and by radiation"
 
 
 @command(
@@ -41,8 +34,8 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
     """Expand the lattice's own wave in ``ε = k - 1``, and sum the series.
 
     Each sum comes with an estimate of its absolute error, at the peak force 1 on the first contact
-    and with lengths in D; k and the cell must be numbers. The closed form of the lattice's wave
-    stands in place of a sum with a larger error.
+    and with lengths in D; k and the cell must be numbers. `lwa wave` has the closed form of the
+    lattice's wave, where there is one, for every k.
 
     In JSON c² is the sum of ``c2[n] ε^n``. `fwhm` is that of the first contact, `fwhm_contact_2`
     that of the second where contacts are unlike, and so on.
@@ -78,7 +71,7 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
     ]
     if expanded.numeric:
         sums += _sum_rows(expanded, series)
-    rows = [*sums, *_series_rows(series)]
+    rows = [*sums, *_series_lines(series)]
     Answer(head, rows, shown=[expanded], errors=_ERRORS).print(style)
 
 
@@ -87,44 +80,19 @@ def _sum_rows(
 ) -> Iterator[Row | str]:
     """Rows of the sums at the expansion's k."""
     yield f"at k = {expanded.k}, order {expanded.order}:"
-    closed = _closed_forms(expanded)
-    sums = {key: (label, attempt(part.at)) for key, (label, part) in series.items()}
+    for key, (label, part) in series.items():
+        yield Row(key, label, attempt(part.at))
     mass = attempt(expanded.effective_mass.at)
-    sums["effective_mass"] = ("effective mass P²/2E", mass)
-    for key, (label, found) in sums.items():
-        error = math.inf  # there is no sum
-        if isinstance(found, Estimate):
-            error = found.error
-        # A closed form of unknown error, NaN, is below no error.
-        if key in closed and closed[key].error < error:
-            yield Row(key, f"{label}, closed form", closed[key])
-        else:
-            yield Row(key, label, found)
+    yield Row("effective_mass", "effective mass P²/2E", mass)
     if expanded.cell.size == 2 and len(set(expanded.cell.stiffnesses)) == 1:
         yield "  (of the mean of a dimer's two contacts, which differ behind a striker)"
     yield ""
 
 
-def _closed_forms(expanded: Expansion) -> dict[str, Estimate]:
-    """The quantities by their keys, in the closed form of the wave; {} for other cells."""
-    cell = expanded.cell
-    try:
-        wave = lattice_wave(cell.at(**{cell.spacing.name: 1}), k=expanded.k)
-    except (InputError, NoSolitaryWave):
-        return {}
-    speed = wave.estimate("speed")
-    found = {"c2": (speed * speed.value).widened(speed.relative_error)}
-    for q in QUANTITIES:
-        found[f"fwhm.{q}"] = wave.estimate("fwhm", q)
-    for name in ("momentum", "energy", "effective_mass"):
-        found[name] = wave.estimate(name)
-    return found
-
-
-def _series_rows(
+def _series_lines(
     series: Mapping[str, tuple[str, EpsilonSeries]],
-) -> Iterator[Row | str]:
-    """Rows of the coefficients of each series."""
+) -> Iterator[str]:
+    """Lines of text with the coefficients of each series."""
     for label, part in series.values():
         factors = []  # of the whole series
         if part.prefactor != 1:
@@ -133,4 +101,4 @@ def _series_rows(
             factors.append(f"ε^({part.power})")
         yield f"{label} = {' '.join([*factors, 'Σ a_n ε^n'])}"
         for n, a in enumerate(part.coefficients):
-            yield Row("", f"a{n}", a, form="formula")
+            yield f"  a{n} = {a}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -11,20 +11,10 @@ import click
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, read_exact
+from lwa.base.exact import InputError, number, read_exact
 from lwa.base.frozen import Estimate, NoSolitaryWave, Shown
-from lwa.base.words import EXTENTS, LANGUAGES, QUANTITIES, ExtentName, QuantityName
-from lwa.command.answer import (
-    LONG,
-    Answer,
-    Form,
-    Lines,
-    Row,
-    Scale,
-    as_float,
-    attempt,
-    estimated,
-)
+from lwa.base.words import EXTENTS, LANGUAGES, QUANTITIES, ExtentName
+from lwa.command.answer import LONG, Answer, Lines, Row, Scale
 from lwa.command.chain import ChainInput, take_chain
 from lwa.command.derivation import closure_lines, depends_on_first, settings_json
 from lwa.command.options import (
@@ -38,14 +28,17 @@ from lwa.command.options import (
 )
 from lwa.expansion.lattice_wave import LatticeWave, lattice_wave
 from lwa.theory import Theory, homogenize
+from lwa.wave.arch import Reduction
 from lwa.wave.compact import CompactWave, canonical_wave
-from lwa.wave.reduction import Reduction
 
 if TYPE_CHECKING:
     from lwa.cell import Cell
     from lwa.loaded.background import Background, KdV
 
 CANONICAL = "the canonical field, whichever bead is the first"
+
+SPEED = "speed dx/dt"
+"""Label of a speed in space and time, beside V_s in the time τ of the wave equation."""
 
 
 @command(
@@ -79,8 +72,8 @@ def wave(
     load.
 
     Without --force the floats in JSON are those at ``B = 1`` (speed) and at ``V_s = 1`` (B, mu),
-    with D as the unit of length if D is a symbol. `speed` is ``V_s = dx/dτ``, and dx/dt with
-    --force.
+    with --spheres at ``F = 1``, and D is the unit of length if D is a symbol. `speed` is ``V_s =
+    dx/dτ``, and dx/dt with --force.
     """
     spheres = options["spheres"] is not None
     chain = take_chain(options)
@@ -99,16 +92,15 @@ def wave(
     if style in LANGUAGES:
         click.echo(_compact(theory).code(style))
         return
-    # Numbers in SI are those of a force; without one results hold the symbol F.
-    peak = read_exact("F", "force") if force is None else force
+    if force is None and (spheres or loaded):
+        # Numbers in SI are those of a force, and so are those under a load.
+        force = read_exact("F", "force")
     if loaded and background is not None:
         answer = on_background(chain, theory, background)
     elif loaded:
-        answer = under_load(chain, theory, peak, static or sp.S.Zero)
-    elif spheres or force is not None:
-        answer = of_force(chain, theory, peak)
+        answer = under_load(chain, theory, force, static or sp.S.Zero)
     else:
-        answer = any_amplitude(chain, theory)
+        answer = compact(chain, theory, force)
     answer.print(style)
 
 
@@ -152,14 +144,16 @@ def _compact(theory: Theory) -> CompactWave:
         # Below order 4 there is no dispersion, and no wave in any field.
         if not depends_on_first(theory) or theory.order < 4:
             raise
-        canonical = canonical_wave(theory.cell, theory.k)
-        width = as_float(canonical.fwhm("force") / canonical.D)
-        speed = as_float(canonical.speed(sp.S.One))
-        if width is None or speed is None:  # symbols
+        wave = canonical_wave(theory.cell, theory.k)
+        scale = Scale(spacing=wave.D)
+        speed = scale.number(wave.speed(1))
+        width = scale.number(wave.fwhm("force"))
+        if speed is None or width is None:  # symbols
             raise
+        # Short enough to stand in one message with the line to paste.
         raise NoSolitaryWave(
-            f"{refusal.reason}; this is the field of the first bead. In {CANONICAL}, V_s = "
-            f"{speed:.6g} at B = 1 and the FWHM of the force is {width:.6g} D",
+            f"{refusal.reason}; in the canonical field V_s = {speed.value:.6g} at B = 1, and the "
+            f"FWHM of the force is {width.value:.6g} D",
             closure="full",
             field="center",
         ) from None
@@ -167,23 +161,31 @@ def _compact(theory: Theory) -> CompactWave:
 
 # --- rows of all waves ---
 
-_WIDTHS = {"length": ("fwhm", "", "m"), "time": ("fwhm_time", " in time", "s")}
-"""Key in JSON, end of the label and unit of a width, by its extent."""
+
+def width_rows(wave: Any, extents: Sequence[ExtentName] = ("length",)) -> Iterator[Row]:
+    """Rows of the widths of a wave; none under a load with symbols, where widths are numbers."""
+    for extent in extents:
+        for q in QUANTITIES:
+            label = f"FWHM of the {q}"
+            symbol = latex.fwhm(q)
+            row = Row.of(wave, "fwhm", label, "m", q, key=f"fwhm.{q}", symbol=symbol)
+            if extent == "time":
+                row = Row.of(
+                    wave,
+                    "fwhm",
+                    f"{label} in time",
+                    "s",
+                    q,
+                    extent,
+                    key=f"fwhm_time.{q}",
+                    symbol=f"{symbol}^{{(t)}}",
+                )
+            if isinstance(row.value, InputError):
+                return
+            yield row
 
 
-def width_row(
-    quantity: QuantityName, width: Any, extent: ExtentName = "length", **settings: Any
-) -> Row:
-    """The row of a width; ``settings`` are further fields of the row."""
-    key, end, unit = _WIDTHS[extent]
-    symbol = rf"\mathrm{{FWHM}}_{{\mathrm{{{quantity}}}}}"
-    if extent == "time":
-        symbol += "^{(t)}"
-    label = f"FWHM of the {quantity}{end}"
-    return Row(f"{key}.{quantity}", label, width, unit, symbol, **settings)
-
-
-def pulse_rows(wave: Any, rise: str, form: Form) -> Iterator[Row]:
+def pulse_rows(wave: Any, rise: str) -> Iterator[Row]:
     """Rows of the size, the speed and the widths of a wave.
 
     Parameters
@@ -192,106 +194,69 @@ def pulse_rows(wave: Any, rise: str, form: Form) -> Iterator[Row]:
         The wave of a peak force.
     rise : str
         What its strain is called: "peak", or "rise of the" static strain.
-    form : {"both", "formula", "number"}
-        What is shown of the widths.
     """
-    speed = estimated(wave, "speed")
-    yield Row("force", "peak contact force F", wave.force, "N")
-    yield Row("B", f"{rise} strain B", wave.strain)
-    yield Row("compression", f"{rise} compression", wave.compression, "m")
-    yield Row("speed", "speed dx/dt", wave.speed, "m/s", estimate=speed)
-    yield Row("bead_velocity", "peak velocity of the beads", wave.bead_velocity, "m/s")
-    for extent in EXTENTS:
-        for q in QUANTITIES:
-            width = attempt(wave.fwhm, q, extent)
-            if isinstance(width, InputError):  # under a load widths are numbers
-                return
-            error = estimated(wave, "fwhm", q, extent)
-            yield width_row(q, width, extent, form=form, estimate=error)
+    yield Row.of(wave, "force", "peak contact force F", "N")
+    yield Row.of(wave, "strain", f"{rise} strain B", key="B")
+    yield Row.of(wave, "compression", f"{rise} compression", "m")
+    yield Row.of(wave, "speed", SPEED, "m/s")
+    yield Row.of(wave, "bead_velocity", "peak velocity of the beads", "m/s")
+    yield from width_rows(wave, EXTENTS)
 
 
 # --- without load -------------------------------------------------------------------------------
 
 
-def any_amplitude(chain: ChainInput, theory: Theory) -> Answer:
-    """The compact wave of any amplitude: the speed V_s by the peak strain B, and B by V_s."""
+def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
+    """The compact wave of a peak contact force, or of any amplitude: V_s by B, and B by V_s."""
     wave = _compact(theory)
-    reduction = wave.reduction()
-    rows: Lines = [
-        chain.text,
-        *closure_lines(theory),
-        "v = u_x = B cos^(2/(k-1))(β ξ), ξ = x - V_s τ, on |ξ| ≤ π/(2β)",
-        "",
-        Row("beta", "β", wave.beta),
-        Row("width", "width π/β", wave.width, symbol=r"\frac{\pi}{\beta}"),
-    ]
-    for q in QUANTITIES:
-        rows.append(width_row(q, wave.fwhm(q)))
-    rows += [
-        Row("B", "B", wave.amplitude()),
-        Row("speed", "V_s", wave.speed()),
-        f"  F_m ∝ V_s^({wave.force_exponent});  dx/dt = V_s · {wave.time_scale}",
-        "",
-        *_reduction_rows(reduction),
-        *_canonical(chain, theory, None),
-    ]
-    notes = _put_lattice(rows, chain, None)
-    shown: list[Shown | str] = [theory.pde, wave]
-    if _is_short(reduction):
-        shown.append(reduction)
-    else:
-        shown += RELATIONS
-    return Answer(settings_json(theory), rows, chain.scale, shown, notes=notes)
-
-
-RELATIONS = (
-    r"(G + H + I) p^{2} - (H + 3 I) p + 2 I = 0",
-    r"a = 1 - k p + 3 (p - 1) + p \frac{H}{I}",
-    r"\mu = \frac{V_{s}^{2}}{I (p + a)}",
-    r"\eta = 1 + p - k p",
-    r"\sigma = \frac{1}{I (k p + a)}",
-)
-"""The oscillator's constants by G, H, I and p, the smaller root, in LaTeX."""
-
-
-def _reduction_rows(reduction: Reduction) -> Lines:
-    """Rows of the oscillator z'' = μ z^η - σ z; where p is long, of its relations to G, H, I."""
-    names = ("p", "a", "mu", "eta", "sigma", "s")
-    lines: Lines = ["v = z^p, integrating factor z^a: z'' = μ z^η - σ z"]
-    short = _is_short(reduction)
-    if not short:
-        lines += [
-            "  (G + H + I) p² - (H + 3 I) p + 2 I = 0, the smaller root;",
-            "  a = 1 - k p + 3 (p - 1) + p H/I;  μ = V_s²/(I (p + a));  η = 1 + p - k p;",
-            "  σ = 1/(I (k p + a));  s = 2/(1 - η)",
-        ]
-    for name in names:
-        # JSON has the values, however long.
-        label = name if short else ""
-        lines.append(Row(name, label, getattr(reduction, name)))
-    return lines
-
-
-def _is_short(reduction: Reduction) -> bool:
-    return len(str(reduction.p)) <= LONG
-
-
-def of_force(chain: ChainInput, theory: Theory, force: sp.Expr) -> Answer:
-    """The compact wave of a peak contact force, in space and time."""
-    wave = _compact(theory).at_force(force)
     rows: Lines = [
         chain.text,
         "the compact wave in a chain without load:",
         *closure_lines(theory),
+        "v = u_x = B cos^(2/(k-1))(β ξ), ξ = x - V_s τ, on |ξ| ≤ π/(2β)",
         "",
-        *pulse_rows(wave, "peak", "both"),
-        Row("beta", "", wave.wave.beta, "1/m"),
-        Row("width", "", wave.wave.width, "m", r"\frac{\pi}{\beta}"),
-        *_canonical(chain, theory, wave.force),
+        Row.of(wave, "beta", "β", "1/m"),
+        Row.of(wave, "width", "width π/β", "m", symbol=r"\frac{\pi}{\beta}"),
     ]
-    notes = _put_lattice(rows, chain, wave.force) + chain.hertz_notes(wave.force)
-    shown: list[Shown | str] = [wave.wave, wave]
+    shown: list[Shown | str] = [theory.pde, wave]
+    notes = []
+    if force is not None:
+        physical = wave.at_force(force)
+        rows += pulse_rows(physical, "peak")
+        shown = [wave, physical]
+        notes = chain.hertz_notes(force)
+    else:
+        reduction = wave.reduction()
+        rows += [
+            *width_rows(wave),
+            Row.of(wave, "amplitude", "B", key="B"),
+            Row.of(wave, "speed", "V_s"),
+            f"  F_m ∝ V_s^({wave.force_exponent});  dx/dt = V_s · {wave.time_scale}",
+            "",
+            *_oscillator(reduction),
+        ]
+        if _is_short(reduction):
+            shown.append(reduction)
+    if depends_on_first(theory):
+        canonical = canonical_wave(theory.cell, theory.k)
+        part = _beside("canonical", CANONICAL, canonical, "speed", force, chain.scale)
+        rows.append(part)
+    notes += _put_lattice(rows, chain, force)
     return Answer(settings_json(theory), rows, chain.scale, shown, notes=notes)
+
+
+def _oscillator(reduction: Reduction) -> Iterator[Row | str]:
+    """Rows of the oscillator z'' = μ z^η - σ z; JSON alone has long ones."""
+    short = _is_short(reduction)
+    yield "v = z^p, integrating factor z^a: z'' = μ z^η - σ z, s = 2/(1 - η)"
+    if not short:
+        yield "  p, a, μ, η, σ and s are long: --format json has them"
+    for name in ("p", "a", "mu", "eta", "sigma", "s"):
+        yield Row.of(reduction, name, name if short else "")
+
+
+def _is_short(reduction: Reduction) -> bool:
+    return len(str(reduction.p)) <= LONG
 
 
 _BEST = 0.25
@@ -308,80 +273,59 @@ def _put_lattice(rows: Lines, chain: ChainInput, force: sp.Expr | None) -> list[
     cell = chain.cell
     if not cell.uniform and any(m.free_symbols for m in cell.masses):
         return []  # nobody knows which bead is light, if any
-    peak = sp.S.One if force is None else force
     try:
-        wave = lattice_wave(cell, law=chain.law, force=peak)
+        wave = lattice_wave(cell, law=chain.law)
     except InputError:  # a cell without a closed form
         return []
     except NoSolitaryWave as reason:
         return [reason.reason]
-    part = _lattice(chain.scale, wave, force)
-    measured = [row.measured for row in part.rows if isinstance(row, Row)]
-    if all(found and found.relative_error < _BEST for found in measured):
+    title = f"the lattice's own wave ({wave.theory})"
+    part = _beside("lattice", title, wave, "scaled_speed", force, chain.scale)
+    estimates = [row.estimate for row in part.rows if isinstance(row, Row)]
+    if all(found and found.relative_error < _BEST for found in estimates):
         rows[1:1] = [part, ""]
     else:
         rows.append(part)
     return []
 
 
-def _lattice(scale: Scale, wave: LatticeWave, force: sp.Expr | None) -> Answer:
-    """Speed and widths of the lattice's own wave; without a force those at B = 1."""
-    measured = wave
-    if scale.spacing.is_Symbol:  # the unit of length
-        measured = wave.at(**{scale.spacing.name: 1})
+def _beside(
+    name: str,
+    title: str,
+    wave: CompactWave | LatticeWave,
+    speed: str,
+    force: sp.Expr | None,
+    scale: Scale,
+) -> Answer:
+    """Speed and widths of another wave; without a force those at B = 1.
+
+    Parameters
+    ----------
+    name, title : str
+        What the wave is called in JSON and LaTeX, and in text.
+    wave : CompactWave or LatticeWave
+        The wave.
+    speed : str
+        Its method that gives V_s by B.
+    force : Expr, optional
+        The peak contact force.
+    scale : Scale
+        Units of the numbers.
+    """
     if force is None:
-        error = estimated(measured, "scaled_speed", 1)
-        rows = [_speed_row(wave.scaled_speed(1), force, error)]
-        extents = EXTENTS[:1]  # a time of passage is that of a force
+        symbol = "V_{s}"
+        first = Row.of(wave, speed, "V_s at B = 1", "", 1, key="speed", symbol=symbol)
+        rows = [first, *width_rows(wave)]
     else:
-        rows = [_speed_row(wave.speed, force, estimated(measured, "speed"))]
-        extents = EXTENTS
-    for extent in extents:
-        for q in QUANTITIES:
-            error = estimated(measured, "fwhm", q, extent)
-            rows.append(width_row(q, wave.fwhm(q, extent), extent, estimate=error))
-    lines: Lines = ["", f"the lattice's own wave ({wave.theory}):"]
+        moving = wave.at_force(force)
+        first = Row.of(moving, "speed", SPEED, "m/s", symbol=latex.SPEED)
+        rows = [first, *width_rows(moving, EXTENTS)]
+    lines: Lines = ["", f"{title}:"]
     for row in rows:
         # LaTeX has the compact wave's quantities of the same names, too.
-        symbol = rf"{row.symbol}\big|_{{\mathrm{{lattice}}}}"
+        symbol = rf"{row.symbol}\big|_{{\mathrm{{{name}}}}}"
         lines.append(replace(row, symbol=symbol))
-    return Answer({"theory": wave.theory}, lines, scale, errors=_ERRORS, key="lattice")
-
-
-def _speed_row(
-    speed: sp.Expr, force: sp.Expr | None, error: Estimate | None = None
-) -> Row:
-    """The row of a speed dx/dt, or without a force of V_s at B = 1."""
-    if force is None:
-        return Row("speed", "V_s at B = 1", speed, "", "V_{s}", estimate=error)
-    return Row("speed", "speed dx/dt", speed, "m/s", latex.SPEED, estimate=error)
-
-
-def _canonical(
-    chain: ChainInput, theory: Theory, force: sp.Expr | None
-) -> list[Answer]:
-    """Speed and widths of the canonical wave, beside those of the first bead's field.
-
-    Without a force they are at B = 1, and the speed is V_s. Nothing for other fields, and for a
-    chain or a force with symbols.
-    """
-    cell = chain.cell
-    k = chain.law.exponent
-    numbers = [k, *cell.masses, *cell.stiffnesses]
-    if force is not None:
-        numbers.append(force)
-    if not depends_on_first(theory) or any(x.free_symbols for x in numbers):
-        return []
-    wave = canonical_wave(cell, k=k)
-    speed = wave.speed(sp.S.One)
-    if force is not None:
-        speed = wave.at_force(force).speed
-    rows = [_speed_row(speed, force)]
-    rows += [width_row(q, wave.fwhm(q)) for q in QUANTITIES]
-    # A comparison needs no formula, and no LaTeX beside that of the field asked for.
-    numeric = [replace(row, form="number", symbol="") for row in rows]
-    lines: Lines = ["", f"{CANONICAL}:", *numeric]
-    return [Answer({}, lines, chain.scale, key="canonical")]
+    return Answer({"theory": title}, lines, scale, errors=_ERRORS, key=name)
 
 
 # --- under load ---
@@ -401,11 +345,11 @@ def under_load(
         f"the wave in a chain under the load {static}:",
         *closure_lines(theory),
         "",
-        *pulse_rows(wave, "rise of the", "number"),
-        Row("precompression", "static force F0", wave.precompression, "N"),
-        Row("background", "static strain p0", wave.background),
-        Row("static_compression", "static compression", wave.static_compression, "m"),
-        Row("sound_speed", "speed of sound dx/dt", wave.sound_speed, "m/s"),
+        *pulse_rows(wave, "rise of the"),
+        Row.of(wave, "precompression", "static force F0", "N"),
+        Row.of(wave, "background", "static strain p0"),
+        Row.of(wave, "static_compression", "static compression", "m"),
+        Row.of(wave, "sound_speed", "speed of sound dx/dt", "m/s"),
     ]
     notes = chain.hertz_notes(wave.force)
     return Answer(settings_json(theory), rows, chain.scale, [wave], _ERRORS, notes)
@@ -416,14 +360,14 @@ def on_background(chain: ChainInput, theory: Theory, p0: sp.Expr) -> Answer:
     from lwa.loaded.background import Background  # here: it loads NumPy
 
     field = Background(chain.cell, chain.law, p0)
-    head = settings_json(theory)
+    speed = field.speed(field.rise)
+    head = settings_json(theory) | {"background": field.p0, "speed": speed}
     rows: Lines = [
         chain.text,
         *closure_lines(theory),
         f"u_x = p0 + v(ξ), ξ = x - V_s τ, p0 = {field.p0}; v rises by B",
         "",
-        Row("background", "", field.p0, form="formula"),
-        Row("speed", "V_s", field.speed(field.rise), form="formula"),
+        f"  V_s = {speed}",
         f"  dx/dt = V_s · {field.time_scale}",
         *_unit_rise(field),
     ]
@@ -446,20 +390,18 @@ def _unit_rise(field: Background) -> Iterator[Row]:
 
     cell: Cell = field.cell
     place = "B = 1"
-    # D is the unit of length where it is a symbol; beside a law that is no power it is 1.
-    if cell.spacing.is_Symbol and not field.law.homogeneous:
+    # Errors are those of numbers: a spacing that is a symbol is the unit of length.
+    if cell.spacing.is_Symbol:
+        place += f", {cell.spacing} = 1"
         cell = cell.at(**{cell.spacing.name: 1})
-        place += f", {field.cell.spacing} = 1"
     with suppress(NoSolitaryWave, InputError):
         wave = loaded_wave(cell, rise=1, background=field.p0, law=field.law)
-        speed = wave.field.speed(wave.strain)
-        if speed.free_symbols - {cell.spacing}:
-            return
-        yield Row("speed", f"V_s at {place}", speed, form="number")
-        for q in QUANTITIES:
-            width = wave.fwhm(q)
-            row = width_row(q, width, form="number")
-            yield replace(row, label=f"{row.label} at {place}", unit="", symbol="")
+        speed = Estimate(number(wave.field.speed(wave.strain)), 0.0)
+        # V_s is dx/dt over an exact factor: the relative errors are the same.
+        speed = speed.widened(wave.estimate("speed").relative_error)
+        yield Row("speed", f"V_s at {place}", speed)
+        for row in width_rows(wave):
+            yield replace(row, label=f"{row.label} at {place}", symbol="")
 
 
 def _small_waves(kdv: KdV) -> Lines:
@@ -470,9 +412,9 @@ def _small_waves(kdv: KdV) -> Lines:
     return [
         "",
         equation,
-        Row("kdv.sound_speed", "c0", kdv.sound_speed),
-        Row("kdv.nonlinearity", "α", kdv.nonlinearity),
-        Row("kdv.dispersion", "γ", kdv.dispersion),
-        Row("kdv.speed", "V_s of a small wave", kdv.speed(), symbol="V_{s}"),
-        Row("kdv.width", "L", kdv.width(), symbol="L"),
+        Row.of(kdv, "sound_speed", "c0", key="kdv.sound_speed"),
+        Row.of(kdv, "nonlinearity", "α", key="kdv.nonlinearity"),
+        Row.of(kdv, "dispersion", "γ", key="kdv.dispersion"),
+        Row.of(kdv, "speed", "V_s of a small wave", key="kdv.speed", symbol="V_{s}"),
+        Row.of(kdv, "width", "L", key="kdv.width", symbol="L"),
     ]

@@ -212,7 +212,8 @@ class LatticeWave(Value):
         Returns
         -------
         Estimate
-            Its error is NaN where the theory was not measured.
+            Its error is NaN where the theory was not measured. A spacing that is a symbol is the
+            unit of length.
 
         Raises
         ------
@@ -220,6 +221,9 @@ class LatticeWave(Value):
             For another name, and if the wave holds symbols.
         """
         one_of(name, (*_PARTS, "fwhm"), "name")
+        spacing = self.cell.spacing
+        if spacing.is_Symbol and not self.force.has(spacing):
+            return self.at(**{spacing.name: 1}).estimate(name, *arguments)
         value = getattr(self, name)
         # A method is read with its arguments, an attribute has none.
         if callable(value):

@@ -14,9 +14,7 @@ follow one from another. A dimer's two roots have the sum 1/Π, ``Π = m̂_0 m̂
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import factorial
-from typing import Any
 
 from flint import (
     Ordering,
@@ -119,37 +117,3 @@ class Bloch:
                 following = following + trace[m] * product / P**2
             omega2.append(following)
         return omega2
-
-
-def dispersion_of_chain(
-    masses: Sequence[Any],
-    shares: Sequence[Any],
-) -> Any:
-    """Coefficient ``I/D²`` in ``Ω² = κ² (1 - (I/D²) κ² + …)`` of a chain.
-
-    Parameters
-    ----------
-    masses, shares : sequences of numbers, expressions or arrays
-        Mass fractions ``m̂_i`` of the particles, strain shares ``C_i`` of the contacts.
-
-    Returns
-    -------
-    number, expression or array
-
-    Notes
-    -----
-    The terms in ``Ω²`` and ``Ω⁴`` of the dispersion relation give::
-
-        I/D² = P²/12 - Σ_{i<j} m̂_i m̂_j S (P - S),    S = C_i + … + C_{j-1},
-
-    where S is the strain from particle i to particle j.
-    """
-    P = len(masses)
-    pairs: Any = 0
-    for i in range(P):
-        strain: Any = 0
-        for j in range(i + 1, P):
-            strain = strain + shares[j - 1]
-            product = strain * (P - strain)
-            pairs = pairs + masses[i] * masses[j] * product
-    return (P**2 - 12 * pairs) / 12

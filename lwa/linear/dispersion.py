@@ -7,7 +7,7 @@ of springs of compliances ``C_i`` (`Cell.shares`). In the theory's units (time �
     Ω² = κ² (1 - (I/D²) κ² + …),
 
 where I is the coefficient of ``u_x^{k-1} u_xxxx`` in the wave equation. `lwa.linear.bloch` derives
-relation and series, `lwa.linear.bands` computes frequencies.
+relation and series, `lwa.linear.springs` computes frequencies.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ from lwa.law import (
 from lwa.linear.bloch import Bloch
 
 if TYPE_CHECKING:
-    from lwa.linear.bands import Bands
+    from lwa.linear.springs import Bands
 
 _KAPPA = sp.Symbol("kappa")
 
@@ -200,7 +200,7 @@ class Dispersion(Value):
         # Here: `import lwa` does not load NumPy.
         import numpy as np
 
-        from lwa.linear.bands import Bands
+        from lwa.linear.springs import Bands
 
         weights = sp.Tuple(*self.cell.fractions, *self.cell.shares(self.k))
         demand_numbers(weights.free_symbols, "bands want numbers")

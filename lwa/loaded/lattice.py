@@ -22,7 +22,6 @@ from typing import Any, Literal, NamedTuple, Self, get_args
 import numpy as np
 import sympy as sp
 
-from lwa.base.arrays import Array, function_of
 from lwa.base.exact import (
     InputError,
     Quantity,
@@ -38,8 +37,8 @@ from lwa.base.files import items
 from lwa.base.frozen import Value
 from lwa.cell import Cell
 from lwa.law import ContactLaw, Power, for_cell
-from lwa.linear.network import Bond, Network
-from lwa.loaded.statics import Function, LinkForces, Statics
+from lwa.linear.springs import Bond, Network
+from lwa.loaded.statics import Statics
 
 # Stiffness of a lattice of springs 1 that carries no load, but for rounding
 _NO_LOAD = 1e-9
@@ -312,21 +311,16 @@ class Lattice(Value):
     def statics(self) -> Statics:
         """Static states in floats; raises `lwa.InputError` for symbols."""
         demand_numbers(self.symbols, "numbers are wanted")
-        x = sp.Symbol("delta", positive=True)
-        forces = []
+        laws = []
+        factors = []
         bonds = []
         for link in self.links:
-            functions = []
-            for n in range(3):
-                function = function_of(x, link.factor * link.law.at(x, n))
-                # The expression of a law that only pushes has no meaning at δ < 0.
-                if not link.law.pulls:
-                    function = _pushing(function)
-                functions.append(function)
-            forces.append(LinkForces(*functions))
+            laws.append(tuple(link.law.function(n) for n in range(3)))
+            factors.append(float(link.factor))
             bonds.append(Bond(link.i, link.j, float(link.cosine)))
+        network = Network(self.size, tuple(bonds))
         masses = np.array([float(m) for m in self.masses])
-        return Statics(Network(self.size, tuple(bonds)), masses, tuple(forces))
+        return Statics(network, masses, tuple(laws), np.array(factors))
 
     @cached_property
     def _network(self) -> Network:
@@ -353,16 +347,6 @@ def _parts(values: Iterable[Any], kind: type, name: str) -> tuple[Any, ...]:
                 f"{name} hold {shorten(part)}: a {kind.__name__} is wanted"
             )
     return row
-
-
-def _pushing(function: Function) -> Function:
-    """The function of a law's compression that is 0 where the contact is open, δ < 0."""
-
-    def value(delta: Array) -> Array:
-        # `where` evaluates both sides: powers of negative numbers would be NaN with a warning.
-        return np.where(delta < 0, 0.0, function(np.maximum(delta, 0.0)))
-
-    return value
 
 
 def hexagonal(

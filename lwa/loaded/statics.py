@@ -17,16 +17,15 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError
-from lwa.linear.bloch import dispersion_of_chain
-from lwa.linear.network import Network, solved
+from lwa.linear.springs import Network, solved
 
 _MOST = 100  # steps of Newton's method; strongly unlike links take ten
 _ROUNDING = 1e-14  # last step of Newton's method, over the mean compression
 _HALVINGS = 60  # of a step of Newton's method; the last one is lost in rounding
 # Spring constant of an open link in Newton's method, over the largest one, for a regular matrix
 _OPEN = 1e-9
-# Ratio of spring constants: a link that is so much stiffer is rigid for I, whose solution loses as
-# many digits. An open link is as much softer, so that it holds a particle that no other link holds.
+# Largest ratio of spring constants. The solution for I loses as many digits, and the result of a
+# stiffer link, rigid in effect, differs by one part in this number: half of a double's digits each.
 _RIGID = 1e8
 # Relative rounding of forces that are differences, such as exp(δ) - 1
 _NOISE = 1e-9
@@ -41,14 +40,6 @@ _SMALL = 0.1  # rise over e from which on a difference of compressions has 15 di
 _NODES = 10  # of Gauss's rule: laws with a singularity at δ = 0 err by 1e-20 over such a rise
 
 Function = Callable[[Array], Array]
-
-
-class LinkForces(NamedTuple):
-    """The force of a link and its first two derivatives, as functions of the compression."""
-
-    force: Function
-    slope: Function
-    bend: Function
 
 
 class Samples(NamedTuple):
@@ -77,13 +68,16 @@ class Statics:
         The links.
     masses : Array
         Masses of the particles.
-    forces : tuple of LinkForces
-        Force of each link, its factor included.
+    laws : tuple of tuples of callables
+        For each link its law F(δ) and the first two derivatives.
+    factors : Array
+        Factor of each link's force.
     """
 
     network: Network
     masses: Array
-    forces: tuple[LinkForces, ...]
+    laws: tuple[tuple[Function, ...], ...]
+    factors: Array
 
     def compressions(self, e: Array) -> Array:
         """Compressions of the links at mean compressions; NaN where there is no static state."""
@@ -168,10 +162,9 @@ class Statics:
         """The n-th derivative of each link's force at compressions of shape (…, links)."""
         columns = []
         with np.errstate(all="ignore"):
-            for i, link in enumerate(self.forces):
-                function = link[n]
-                columns.append(function(delta[..., i]))
-        return np.stack(columns, axis=-1)
+            for i, law in enumerate(self.laws):
+                columns.append(law[n](delta[..., i]))
+            return np.stack(columns, axis=-1) * self.factors
 
     def force(self, e: Array) -> Array:
         """The mean force at mean compressions."""
@@ -188,25 +181,13 @@ class Statics:
         delta = self.compressions(e)
         springs = self.values(delta, 1)
         with np.errstate(all="ignore"):
-            if self.network.in_series:
-                # Springs along the lattice, one behind the other
-                spans = self.network.spans
-                compliances = 1 / (springs * spans**2)
-                stiffness = size / compliances.sum(axis=-1)
-                shares = stiffness[..., None] / (springs * spans)
-                row = []
-                for n in self.network.order:
-                    row.append(compliances[..., n] * stiffness)
-                weights = self.masses / self.masses.sum()
-                dispersion = dispersion_of_chain(weights, row)
-            else:
-                closed = np.where(springs == 0, np.inf, np.abs(springs))
-                softest = closed.min(axis=-1, keepdims=True)
-                springs = np.where(springs == 0, softest / _RIGID, springs)
-                springs = np.minimum(springs, softest * _RIGID)
-                stiffness, dispersion, shares = self.network.acoustic(
-                    springs, self.masses
-                )
+            is_open = springs == 0
+            of_closed = np.where(is_open, np.inf, np.abs(springs))
+            softest = of_closed.min(axis=-1, keepdims=True)
+            # An open link still holds a particle that no other link holds.
+            springs = np.where(is_open, softest / _RIGID, springs)
+            springs = np.minimum(springs, softest * _RIGID)
+            stiffness, dispersion, shares = self.network.acoustic(springs, self.masses)
         bend = (self.values(delta, 2) * shares**3).sum(axis=-1) / size
         # I of a chain of alike links is one number for all e.
         return Samples(stiffness, bend, dispersion + 0 * e)

@@ -39,7 +39,7 @@ import sympy as sp
 from numpy.typing import ArrayLike
 
 from lwa.base import latex
-from lwa.base.arrays import Array, finite, function_of
+from lwa.base.arrays import Array, finite
 from lwa.base.exact import (
     InputError,
     Quantity,
@@ -243,7 +243,7 @@ class LoadedWave(States):
         if self.law is None:
             force: Function = self.lattice.statics.force
         else:
-            force = function_of(self.law.delta, self.law.F)
+            force = self.law.function()
         # A law may have no value at 0: the foot of a wave without load stands a little above.
         low = max(wave.p0, _FOOT * abs(wave.B))
         at_rest = force(np.array(low))
@@ -327,9 +327,8 @@ class LoadedWave(States):
         """The function of mean compressions that gives F′, F″ and I."""
         if self.law is None:
             return self.lattice.statics.samples
-        x = sp.Symbol("delta", positive=True)
-        slope = function_of(x, self.law.at(x, 1))
-        bend = function_of(x, self.law.at(x, 2))
+        slope = self.law.function(1)
+        bend = self.law.function(2)
         # All contacts of a cell share one law up to a factor, so that I is one number.
         I = number(self.field.I / self.chain.spacing**2)
 

@@ -33,8 +33,7 @@ from lwa.base.exact import InputError
 from lwa.base.frozen import Value
 from lwa.loaded.background import Background
 from lwa.loaded.errors import steepness
-from lwa.shocks.digits import WORKING
-from lwa.shocks.simple import rising_root
+from lwa.shocks.simple import WORKING, rising_root
 
 
 @dataclass(frozen=True)

@@ -36,16 +36,12 @@ from lwa.base.exact import (
     demand_numbers,
     number,
     one_of,
-    positive,
     read_exact,
-    shorten,
 )
 from lwa.base.frozen import Estimate, Value
 from lwa.cell import Cell
-from lwa.cell import k as symbol_k
-from lwa.law import ContactLaw, for_cell
+from lwa.law import ContactLaw
 from lwa.loaded.background import Background
-from lwa.shocks.digits import WORKING, evaluated, floats, tidy
 from lwa.shocks.pulse import (
     Pulse,
     leading_error,
@@ -53,7 +49,7 @@ from lwa.shocks.pulse import (
     speed_error,
     trailing_error,
 )
-from lwa.shocks.simple import demand_one_sign, strain, velocity
+from lwa.shocks.simple import DIGITS, WORKING, demand_one_sign, velocity
 
 RuleName = Literal["dispersion", "doubling"]
 """A rule for the leading edge: El's, or the solitary wave with beads at 2 v_p."""
@@ -72,9 +68,6 @@ RESTING = 2
 
 A theorem for Toda's law (Venakides, Deift & Oba, Comm. Pure Appl. Math. 44, 1171 (1991)).
 """
-
-SMALLEST = sp.Rational(1, 10**15)
-"""Smallest jump of the strain, relative; 30 digits of the floats are left there."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -128,7 +121,7 @@ class Shock(Value):
 
     def sound(self, p: Any) -> sp.Expr:
         """Speed of sound ``dx/dt`` on the strain p; 0 without load under a power law."""
-        return tidy(self._sound(p if isinstance(p, sp.Expr) else read_exact(p, "p")))
+        return _tidy(self._sound(p if isinstance(p, sp.Expr) else read_exact(p, "p")))
 
     def _sound(self, p: sp.Expr) -> sp.Expr:
         """Speed of sound on the strain p, with all digits."""
@@ -136,7 +129,7 @@ class Shock(Value):
         # At k < 1 the speed is infinite there, and fronts are refused.
         if self.law.homogeneous and p.is_zero:
             return sp.S.Zero
-        return evaluated(field.sound_speed * field.time_scale)
+        return _evaluated(field.sound_speed * field.time_scale)
 
     @cached_property
     def ratio(self) -> sp.Expr:
@@ -146,7 +139,7 @@ class Shock(Value):
         ahead = self._sound(self.ahead) / self._field.time_scale
         if ahead.is_zero:
             return sp.oo
-        return sp.powsimp(evaluated(behind / ahead))
+        return sp.powsimp(_evaluated(behind / ahead))
 
     @cached_property
     def plateau(self) -> sp.Expr:
@@ -159,7 +152,7 @@ class Shock(Value):
         >>> shock(Cell([1], spacing=1), "p", k="3/2").plateau
         2*sqrt(6)*p**(5/4)/5
         """
-        return tidy(self._gained * self._field.time_scale)
+        return _tidy(self._gained * self._field.time_scale)
 
     @cached_property
     def trailing_speed(self) -> sp.Expr:
@@ -187,7 +180,7 @@ class Shock(Value):
             )
         # f′ = cos κ/2 at -2 ln cos κ/4 = ln r
         speed = self._sound(self.behind) * (2 / r - 1)
-        return tidy(sp.expand(speed))
+        return _tidy(sp.expand(speed))
 
     def leading_speed(self, rule: RuleName = "doubling") -> sp.Expr:
         """Speed of the leading pulse or edge; for a rarefaction the speed c₊.
@@ -212,11 +205,11 @@ class Shock(Value):
         if self._gain.is_negative:
             return self.sound(self.ahead)
         if rule == "doubling":
-            return tidy(evaluated(self._pulse.speed * self._field.time_scale))
+            return _tidy(_evaluated(self._pulse.speed * self._field.time_scale))
         # f̃(q)/q = sinh(q/2)/(q/2) at 2 ln cosh q/4 = ln r
         r = self._edge_ratio()
         edge = sp.sqrt(r * (r - 1)) / sp.acosh(sp.sqrt(r))
-        return tidy(evaluated(self._sound(self.ahead) * edge))
+        return _tidy(_evaluated(self._sound(self.ahead) * edge))
 
     def _edge_ratio(self) -> sp.Expr:
         """The ratio r for El's edges, of equal beads in a chain with sound ahead."""
@@ -328,18 +321,18 @@ class Shock(Value):
     @property
     def rise(self) -> sp.Expr:
         """Rise of the slope ``u_x`` in the leading pulse, by the doubling rule."""
-        return tidy(self._pulse.rise)
+        return _tidy(self._pulse.rise)
 
     @property
     def peak(self) -> sp.Expr:
         """Strain of a contact at the peak of the leading pulse, by the doubling rule."""
-        return tidy(self.ahead + self._pulse.contact_rise)
+        return _tidy(self.ahead + self._pulse.contact_rise)
 
     @property
     def peak_force(self) -> sp.Expr:
         """Contact force at the peak of the leading pulse, in the units of the cell."""
         stiffness = self.cell.stiffness(self.law.exponent)
-        return tidy(stiffness * self.law.at(self.cell.spacing * self.peak))
+        return _tidy(stiffness * self.law.at(self.cell.spacing * self.peak))
 
     @cached_property
     def _field(self) -> Background:
@@ -357,7 +350,7 @@ class Shock(Value):
     @cached_property
     def _gained(self) -> sp.Expr:
         """Velocity v_p as ``du/dτ``, in the units of the wave equation."""
-        return evaluated(velocity(self._field, self.behind))
+        return _evaluated(velocity(self._field, self.behind))
 
     @cached_property
     def _gain(self) -> sp.Expr:
@@ -370,139 +363,28 @@ class Shock(Value):
         return sp.simplify(gain)  # only then is its sign known beside symbols
 
 
-def _read(law: Any, cell: Cell, k: Any) -> ContactLaw:
-    """Read a law with an expression."""
-    contact = for_cell(law, cell, k)
-    if contact.formless:
-        raise InputError(
-            f"law is {contact.text}: a front between two strains needs an expression"
-        )
-    return contact
+def _evaluated(value: sp.Expr) -> sp.Expr:
+    """The value; a number that holds floats as one float.
+
+    SymPy may multiply floats of many digits with roots for ever.
+    """
+    if value.has(sp.Float) and not value.free_symbols:
+        return sp.N(value, WORKING)
+    return value
 
 
-def shock(
-    cell: Cell,
-    behind: Any,
-    ahead: Any = 0,
-    *,
-    law: ContactLaw | None = None,
-    k: Any = symbol_k,
-) -> Shock:
-    """The front of a chain between two strains.
-
-    Results are exact for symbols and short fractions where they have a closed form, else floats of
-    30 digits.
-
-    Parameters
-    ----------
-    cell : Cell
-        The chain.
-    behind, ahead : number or str
-        The strains on the left and on the right, not negative under a power law.
-    law : ContactLaw, optional
-        The law of the contacts, by default a power.
-    k : number or str
-        Exponent of the power.
+def _tidy(value: sp.Expr) -> sp.Expr:
+    """Combine powers; a result with floats has `DIGITS` digits.
 
     Raises
     ------
     InputError
-        For other strains, for a jump below 1e-15 of the strains, where sound is equally fast on
-        both, and unless ``F′`` is positive and ``F″`` keeps its sign between the strains.
-
-    Examples
-    --------
-    >>> from lwa import Cell
-    >>> front = shock(Cell([1], spacing=1), 1, 0, k="3/2")
-    >>> front
-    Shock(behind=1, ahead=0, wall at 0.979796, law=Power(k=3/2))
-    >>> round(front.leading_speed() / front.sound(1), 4), round(front.peak.n(), 4)
-    (0.8543, 1.7480)
+        For a result that floats do not hold.
     """
-    contact = _read(law, cell, k)
-    return _front(
-        cell, contact, read_exact(behind, "behind"), read_exact(ahead, "ahead")
-    )
-
-
-def piston(
-    cell: Cell,
-    velocity: Any,
-    ahead: Any = 0,
-    *,
-    law: ContactLaw | None = None,
-    k: Any = symbol_k,
-) -> Shock:
-    """The front that a moving wall drives into a chain.
-
-    Parameters
-    ----------
-    cell : Cell
-        The chain.
-    velocity : number or str
-        Velocity ``dx/dt`` of the wall, positive, in the units of the cell: m/s for
-        `lwa.Cell.of_spheres`.
-    ahead : number or str
-        The strain ahead.
-    law : ContactLaw, optional
-        The law of the contacts, by default a power.
-    k : number or str
-        Exponent of the power.
-
-    Raises
-    ------
-    InputError
-        As `shock`, and for a velocity that the law does not reach.
-
-    Examples
-    --------
-    >>> from lwa import Cell
-    >>> piston(Cell([1], spacing=1), "v", k=3).behind
-    sqrt(2)*3**(3/4)*sqrt(v)/3
-    """
-    contact = _read(law, cell, k)
-    speed = positive(velocity, "velocity")
-    if speed.is_number and not speed.is_Rational:
-        speed = sp.N(speed, WORKING)  # powers of roots take long
-    speed, p0 = floats(contact, speed, read_exact(ahead, "ahead"))
-    field = Background(cell, contact, p0)
-    return _front(cell, contact, strain(field, speed / field.time_scale), p0)
-
-
-def _front(cell: Cell, law: ContactLaw, behind: sp.Expr, ahead: sp.Expr) -> Shock:
-    """Return the front between two strains, or refuse the strains."""
-    for name, p in (("behind", behind), ("ahead", ahead)):
-        # Also where the sign of p or of k - 1 is unknown: symbols are taken to be in range.
-        if law.homogeneous and p.is_negative:
-            raise InputError(
-                f"{name} is {shorten(p)}: contacts of a power law only push"
-            )
-        if law.homogeneous and p.is_zero and (law.exponent - 1).is_nonpositive:
-            raise InputError(
-                f"{name} is 0 and k {law.exponent}: a front without load wants k > 1"
-            )
-    jump = behind - ahead
-    # Equal strains are refused below, with the words for equal speeds of sound.
-    if behind.is_number and ahead.is_number and not jump.is_zero:
-        least = SMALLEST * max(abs(behind), abs(ahead))
-        if abs(jump) < least:
-            raise InputError(
-                f"the jump of the strain is {sp.N(jump, 3)}: 1e-15 of it at least is wanted"
-            )
-    strains = floats(law, behind, ahead)
-    # The sign of a sum of floats and powers of a symbol is not known.
-    hold_floats = any(p.has(sp.Float) for p in strains)
-    scaled = law.homogeneous and not any(p.free_symbols for p in strains)
-    if hold_floats and not scaled and cell.spacing.is_Symbol:
-        raise InputError(
-            f"spacing is {cell.spacing}: beside long decimals a number is wanted",
-            spacing=1,
-        )
-    front = Shock(cell, law, *strains)
-    gain = front._gain
-    demand_one_sign(front._field, front.behind, front.ahead)
-    if gain.is_zero:
-        raise InputError(
-            "sound is as fast behind as ahead: there is no shock and no rarefaction"
-        )
-    return front
+    if value.has(sp.zoo, sp.nan, sp.oo):
+        raise InputError("the strains are too near, or too far apart, for a number")
+    if not value.has(sp.Float):
+        return sp.powsimp(value)
+    # The factors without symbols are one float.
+    factor, rest = value.as_independent(*value.free_symbols, as_Add=False)
+    return factor.n(DIGITS) * rest

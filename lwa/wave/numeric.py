@@ -1,28 +1,27 @@
 """The compact wave's closed forms in float64: NumPy functions of arrays of k and m2/m1, or ω.
 
-Letters as in `lwa.wave.compact`; lengths are in units of D. The rational functions
-``(G+H+I)/D²`` and ``(V²/B^{k-1} - 1)/(k-1)`` of k and the masses are compiled as polynomials in the
-masses, with coefficients that are factored in k, so that a coefficient vanishes where it should.
-Logarithms and powers near ``k = 1`` come by log1p and expm1. Relative errors are below 1e-11; next
-to the edge of the domain of waves, where G + H + I or V² vanishes, the last digit of k or ω changes
-the results by more.
+The functions are those that `lwa.wave.source` writes, compiled; lengths are in units of D. Relative
+errors are below 1e-11; next to the edge of the domain of waves, where G + H + I or V² vanishes, the
+last digit of k or ω changes the results by more.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal, NamedTuple, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array, finite
-from lwa.base.exact import InputError, factored
-from lwa.base.frozen import NoSolitaryWave, Value, strain_power
+from lwa.base.exact import InputError
+from lwa.base.frozen import NoSolitaryWave, Value, known_quantity
 from lwa.base.words import QuantityName, one_of
+from lwa.wave.arch import Arch
+from lwa.wave.source import Functions, wave_functions
 
 LARGEST = 1e150
 """Largest mass ratio: V² holds the square of its reciprocal, the least that a double has."""
@@ -31,30 +30,6 @@ Missing = Literal["raise", "nan"]
 """Answers where no wave exists: raise `lwa.NoSolitaryWave`, or return NaN."""
 
 MISSING: tuple[Missing, ...] = get_args(Missing)
-
-# |V²/B^{k-1} - 1| up to which log1p of this difference has more digits than the logarithm
-_NEAR_ONE = 0.5
-
-
-class Domain(NamedTuple):
-    """Values of the closed forms at points (k, ω), NaN where there is no wave.
-
-    Parameters
-    ----------
-    k : Array
-        The exponents.
-    coefficient_sum : Array
-        ``(G + H + I)/D²``.
-    speed_factor : Array
-        ``V²/B^{k-1}``.
-    excess : Array
-        ``(V²/B^{k-1} - 1)/(k - 1)``.
-    """
-
-    k: Array
-    coefficient_sum: Array
-    speed_factor: Array
-    excess: Array
 
 
 @dataclass(frozen=True)
@@ -65,12 +40,8 @@ class NumericWave(Value):
 
     Parameters
     ----------
-    k : Symbol
-        The exponent.
-    masses : tuple of Symbol
-        Masses of the cell, two different symbols.
-    coefficient_sum, speed_factor : Expr
-        ``(G + H + I)/D²`` and ``V²/B^{k-1}``, rational functions of k and the masses.
+    wave : Arch
+        Closed forms of the wave; k and the two different masses of its cell are symbols.
     missing : {"raise", "nan"}
         Raise `lwa.NoSolitaryWave` with the first point without a wave (``k ≤ 1``,
         ``G + H + I ≤ 0``, ``V² ≤ 0``), or return NaN at these points.
@@ -87,16 +58,13 @@ class NumericWave(Value):
     array([4.96729413, 7.59281573])
     """
 
-    k: sp.Expr
-    masses: tuple[sp.Expr, ...]
-    coefficient_sum: sp.Expr
-    speed_factor: sp.Expr
+    wave: Arch
     missing: Missing = "raise"
 
     def __post_init__(self) -> None:
         one_of(self.missing, MISSING, "missing")
-        symbols = {self.k, *self.masses}
-        held = self.coefficient_sum.free_symbols | self.speed_factor.free_symbols
+        symbols = {self.wave.k, *self.wave.cell.masses}
+        held = sp.Tuple(self.wave.coefficient_sum, self.wave.speed_factor).free_symbols
         named = all(x.is_Symbol for x in symbols)
         if len(symbols) != 3 or not named or not held <= symbols:
             raise InputError(
@@ -105,95 +73,85 @@ class NumericWave(Value):
             )
 
     @cached_property
-    def _compiled(self) -> Callable[..., Any]:
-        """The last three fields of `Domain` as functions of k and the masses."""
-        masses = tuple(dict.fromkeys(self.masses))
+    def _functions(self) -> Functions:
+        return wave_functions(self.wave)
 
-        def by_masses(polynomial: sp.Expr) -> sp.Expr:
-            """The polynomial in the masses, with coefficients factored in k."""
-            total = sp.S.Zero
-            for powers, coefficient in sp.Poly(polynomial, *masses).terms():
-                monomial = sp.prod(map(sp.Pow, masses, powers))
-                total += sp.factor(coefficient) * monomial
-            return total
-
-        forms = []
-        # V²/B^{k-1} is 1 at k = 1, where this ratio is finite.
-        excess = factored((self.speed_factor - 1) / (self.k - 1))
-        for value in (self.coefficient_sum, self.speed_factor, excess):
-            numerator, denominator = sp.fraction(value)
-            forms.append(by_masses(numerator) / by_masses(denominator))
-        compiled: Callable[..., Any] = sp.lambdify(
-            (self.k, *masses), forms, "numpy", cse=True
-        )
+    @cached_property
+    def _compiled(self) -> Mapping[str, Callable[..., Any]]:
+        """The functions of the wave by their names."""
+        compiled: dict[str, Callable[..., Any]] = {}
+        # Each function may call those before it.
+        for f in self._functions.values():
+            value = f.value
+            for symbol, part in reversed(f.local):
+                value = value.xreplace({symbol: part})
+            modules = [dict(compiled), "numpy"]
+            compiled[f.name] = sp.lambdify(f.arguments, value, modules, cse=True)
         return compiled
 
     def beta(self, k: ArrayLike, omega: ArrayLike) -> Array:
         """The wavenumber ``β D = (k-1) / (2 √((G+H+I)/D²))``."""
-        at = self._domain(k, omega)
-        return np.asarray((at.k - 1) / (2 * np.sqrt(at.coefficient_sum)))
+        return self._values("beta", k, omega)
 
     def width(self, k: ArrayLike, omega: ArrayLike) -> Array:
         """The number π/(βD) of sites under the wave."""
-        return np.pi / self.beta(k, omega)
+        return self._values("width", k, omega)
 
     def fwhm(
         self, k: ArrayLike, omega: ArrayLike, quantity: QuantityName = "strain"
     ) -> Array:
         """FWHM of strain, contact force or velocity in units of D (`lwa.CompactWave.fwhm`)."""
-        beta = self.beta(k, omega)
-        k = np.asarray(k, np.float64)
-        # arccos(2^-x) = arctan √(4^x - 1), which keeps its digits as x → 0
-        x = (k - 1) / (2 * strain_power(quantity, k))
-        half_phase = np.arctan(np.sqrt(np.expm1(x * np.log(4.0))))
-        return np.asarray(2 * half_phase / beta)
+        name = f"fwhm_{known_quantity(quantity)}"
+        return self._values(name, k, omega)
 
     def speed(self, k: ArrayLike, omega: ArrayLike, B: ArrayLike = 1.0) -> Array:
         """Speed ``V = dx/dτ`` of the wave whose strain peaks at B."""
-        at = self._domain(k, omega)
-        growth = _positive(B, "B") ** ((at.k - 1) / 2)
-        return np.asarray(np.sqrt(at.speed_factor) * growth)
+        return self._values("speed", k, omega, _positive(B, "B"))
 
     def log_amplitude(
         self, k: ArrayLike, omega: ArrayLike, V: ArrayLike = 1.0
     ) -> Array:
         """Logarithm of the peak strain B of the wave of speed V, finite where B is out of range."""
-        at = self._domain(k, omega)
-        less_one = (at.k - 1) * at.excess
-        near = np.abs(less_one) < _NEAR_ONE
-        # `where` evaluates both sides: far from 1 the logarithm's argument may be negative.
-        log_near = np.log1p(np.where(near, less_one, 0.0))
-        log_factor = np.where(near, log_near, np.log(at.speed_factor))
         log_square = 2 * np.log(_positive(V, "V"))
-        return np.asarray((log_square - log_factor) / (at.k - 1))
+        log_factor = self._values("log_speed_factor", k, omega)
+        return (log_square - log_factor) / (np.asarray(k, np.float64) - 1)
 
-    def _domain(self, k: ArrayLike, omega: ArrayLike) -> Domain:
-        """Evaluate the closed forms; treat points without a wave as ``missing`` says."""
+    def _values(
+        self, name: str, k: ArrayLike, omega: ArrayLike, *first: Array
+    ) -> Array:
+        """Values of a function of the wave; ``first`` are its arguments B or V."""
+        return self._called(name, *self._points(k, omega), *first)
+
+    def _called(self, name: str, k: Array, omega: Array, *first: Array) -> Array:
+        """Values of a function, or floats without a meaning where there is no wave."""
+        m1, m2 = dict.fromkeys(self.wave.cell.masses)
+        numbers = {self.wave.k: k, m1: 1.0, m2: omega, self.wave.D: 1.0}
+        arguments = self._functions[name].arguments[len(first) :]
+        with np.errstate(all="ignore"):  # outside of the domain of waves
+            found = self._compiled[name](*first, *map(numbers.get, arguments))
+        return np.asarray(found)
+
+    def _points(self, k: ArrayLike, omega: ArrayLike) -> tuple[Array, Array]:
+        """Read points (k, ω); treat points without a wave as ``missing`` says, by a k of NaN."""
         k, omega = np.broadcast_arrays(finite(k, "k"), _positive(omega, "ω = m2/m1"))
         if not np.all((omega >= 1 / LARGEST) & (omega <= LARGEST)):
             raise InputError(
                 f"ω = m2/m1 is not between {1 / LARGEST:g} and {LARGEST:g}"
             )
-        with np.errstate(all="ignore"):  # outside the domain of waves
-            coefficient_sum, factor, excess = np.broadcast_arrays(
-                *self._compiled(k, 1.0, omega), k
-            )[:3]
         conditions = {
             "k > 1": k > 1,
-            "G+H+I > 0": coefficient_sum > 0,
-            "V² > 0": factor > 0,
+            "G+H+I > 0": self._called("coefficient_sum", k, omega) > 0,
+            "V² > 0": self._called("speed_factor", k, omega) > 0,
         }
-        exists = np.ones(k.shape, bool)
         for name, holds in conditions.items():
             if self.missing == "raise" and not np.all(holds):
-                first = np.argmin(holds)
+                first = np.argmin(np.broadcast_to(holds, k.shape))
                 raise NoSolitaryWave(
                     f"k = {float(k.flat[first])}, ω = {float(omega.flat[first])}: "
                     f"a compact wave needs {name}"
                 )
-            exists &= holds
-        nan = np.where(exists, 0.0, np.nan)  # added, it leaves a value or makes it NaN
-        return Domain(k + nan, coefficient_sum + nan, factor + nan, excess + nan)
+            k = np.where(holds, k, np.nan)
+        return k, omega
 
 
 def _positive(value: ArrayLike, name: str) -> Array:

@@ -22,8 +22,8 @@ from sympy.printing.numpy import NumPyPrinter
 from lwa.base.exact import InputError, shorten
 from lwa.base.frozen import QUANTITIES, strain_power
 from lwa.base.words import LanguageName, one_of
-from lwa.cell import Cell
 from lwa.law import Power
+from lwa.wave.arch import Arch
 
 Local = tuple[tuple[sp.Symbol, sp.Expr], ...]
 """Variables and their values."""
@@ -223,7 +223,6 @@ _V = sp.Dummy("V_s", positive=True)
 _F = sp.Dummy("F", positive=True)
 _ARGUMENTS = (_XI, _B, _V, _F)  # arguments that are no symbols of the chain
 
-_SHIFT = sp.Dummy("k_2", real=True)  # k - 2
 # Distance of the phase βξ from the end of the support
 _INSIDE = sp.Dummy("h", real=True)
 
@@ -267,9 +266,7 @@ class Functions(dict[str, Function]):
         return sp.Function(name)(*arguments)
 
 
-def wave_functions(
-    k: sp.Expr, cell: Cell, coefficient_sum: sp.Expr, speed_factor: sp.Expr
-) -> Functions:
+def wave_functions(wave: Arch) -> Functions:
     """Functions for β, width, FWHM, speed, amplitude and profile of a compact wave.
 
     The arguments of the functions are ξ, B, V_s, F and the symbols of k, of the masses, of the
@@ -277,27 +274,27 @@ def wave_functions(
 
     Parameters
     ----------
-    k : Expr
-        Exponent of the contact law.
-    cell : Cell
-        The chain.
-    coefficient_sum, speed_factor : Expr
-        ``(G + H + I)/D²`` and ``V²/B^{k-1}``, rational functions of k and the masses.
+    wave : Arch
+        The wave, with rational functions of k and the masses for the sum of its coefficients and
+        its speed factor.
     """
+    k = wave.k
+    cell = wave.cell
     D = cell.spacing
-    functions = Functions(k, *cell.masses, *cell.stiffnesses, D, coefficient_sum)
+    functions = Functions(k, *cell.masses, *cell.stiffnesses, D, wave.coefficient_sum)
     define = functions.define
-    variables = {k - 2: _SHIFT}  # value → variable
-    total = _stable(coefficient_sum, k, variables)
-    excess = _stable(sp.factor(sp.cancel(speed_factor - 1)), k, variables)
-    factor = _stable(speed_factor, k, variables)
+    variables: dict[sp.Expr, sp.Symbol] = {}  # value → variable
+    total = _stable(wave.coefficient_sum, k, variables)
+    factor = _stable(wave.speed_factor, k, variables)
+    excess = _stable(sp.factor(sp.cancel(wave.speed_factor - 1)), k, variables)
     local = tuple((symbol, value) for value, symbol in variables.items())
 
+    total = define("coefficient_sum", "(G + H + I)/D^2", total, local)
+    factor = define("speed_factor", "V_s^2/B^(k - 1)", factor, local)
     beta = define(
         "beta",
         "beta = (k - 1)/(2 sqrt(G + H + I))",
         (k - 1) / (2 * D * sp.sqrt(total)),
-        local,
     )
     define("width", "Length of the support, pi/beta", sp.pi / beta)
     for quantity in QUANTITIES:
@@ -310,15 +307,18 @@ def wave_functions(
         "speed",
         "V_s = dx/dtau of the wave whose strain peaks at B",
         sp.sqrt(factor) * _B ** ((k - 1) / 2),
-        local,
     )
     # ln f = 2 arsinh((f-1)/(2√f)) keeps its digits as f → 1, that is as k → 1
-    log_factor = 2 * sp.asinh(excess / (2 * sp.sqrt(factor)))
+    log_factor = define(
+        "log_speed_factor",
+        "ln(V_s^2/B^(k - 1))",
+        2 * sp.asinh(excess / (2 * sp.sqrt(factor))),
+        local,
+    )
     define(
         "amplitude",
         "B, the peak strain of the wave of speed V_s",
         _V ** (2 / (k - 1)) * sp.exp(-log_factor / (k - 1)),
-        local,
     )
     # cos(βξ) on the support and 0 outside of it is sin((h + |h|)/2), h = π/2 - |βξ|
     define(
@@ -342,9 +342,10 @@ def wave_functions(
 
 
 def _stable(ratio: sp.Expr, k: sp.Expr, variables: dict[sp.Expr, sp.Symbol]) -> sp.Expr:
-    """Rewrite the sums of a rational expression in powers of k - 2, in which less cancels.
+    """Rewrite the sums of a rational expression as polynomials in the masses and the ``A^{1/k}``.
 
-    Powers A^{1/k} become new entries of ``variables``.
+    Their coefficients are factored in k: a coefficient that vanishes at a k does so in floats, too.
+    Powers ``A^{1/k}`` become new entries of ``variables``.
     """
     if not k.is_Symbol:  # a number has no digits to lose
         return ratio
@@ -355,11 +356,14 @@ def _stable(ratio: sp.Expr, k: sp.Expr, variables: dict[sp.Expr, sp.Symbol]) -> 
         symbol = sp.Dummy(f"r_{len(variables)}", positive=True)
         return variables.setdefault(power.base ** (power.exp / n), symbol) ** n
 
-    def about_two(total: sp.Expr) -> sp.Expr:
-        shifted = sp.Poly(total.subs(k, _SHIFT + 2), _SHIFT)
+    def factored_in_k(total: sp.Expr) -> sp.Expr:
+        others = sorted(total.free_symbols - {k}, key=str)
+        if not others:
+            return sp.factor(total)
         rewritten = sp.S.Zero
-        for (n,), coefficient in shifted.terms():
-            rewritten += sp.factor(coefficient) * _SHIFT**n
+        for powers, coefficient in sp.Poly(total, *others).terms():
+            monomial = sp.prod(map(sp.Pow, others, powers))
+            rewritten += sp.factor(coefficient) * monomial
         return rewritten
 
     def is_sum(part: sp.Expr) -> bool:
@@ -367,4 +371,4 @@ def _stable(ratio: sp.Expr, k: sp.Expr, variables: dict[sp.Expr, sp.Symbol]) -> 
         return bool(part.is_Add and part.has(k) and not (part - k).is_number)
 
     ratio = ratio.replace(lambda e: e.is_Pow and e.exp.has(k), root)
-    return ratio.replace(is_sum, about_two)
+    return ratio.replace(is_sum, factored_in_k)

@@ -199,7 +199,7 @@ def test_without_arguments_the_commands_are_listed(capsys):
     assert (status, out, "Commands:" in err) == (2, "", True)
 
 
-LONG_ONES = ("figures", "limits", "sweep")  # a few seconds each
+LONG_ONES = ("figures", "sweep")  # a few seconds each
 COMMANDS = [
     pytest.param(name, marks=[pytest.mark.slow] * (name in LONG_ONES))
     for name in ["", *sorted(cli.STUDIES)]

@@ -21,7 +21,7 @@ TEXTS = (
 FILES = (
     "pulses.csv", "flat.csv", "nan.csv", "wild.csv", "run.csv", "paper.toml", "none.csv", ".",
 )  # fmt: skip
-LONG = {"figures", "limits"}  # whatever their options are
+LONG = {"figures"}  # whatever their options are
 NEEDED = {"sweep": {"--k", "--omega"}, "resonances": {"--count"}}
 """Options without which a command takes longer than a second."""
 NEVER = {"--cluster", "--help"}  # a call to an address takes five seconds

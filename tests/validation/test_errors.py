@@ -2,7 +2,8 @@
 
 The deviation is that from the same computation at a hundred times the cost; the ± of fits is held
 to the scatter of drawn noise. Studies of the book are held to their ± only. The ± of measured
-records, of `limits` and `figures`: `tests/validation/pulses`, `tests/validation/studies`.
+records and of `figures`: `tests/validation/pulses`, `tests/validation/studies`. The ± of `limits`
+is that of `exact`.
 """
 
 import math

@@ -13,6 +13,10 @@ MOST_BYTES = 4e9
 # Most steps of an adaptive method in the scene's shortest time √(m/spring). RKN86 takes about
 # rtol^(-1/7)/4, which is 18 at the smallest tolerance; RK23, of the lowest order, 200 at 1e-9.
 _DENSEST = 1000
+_DOUBLE = 8  # bytes of a number
+# Numbers of a bead, a bound: the engine's 26 rows of state and stages and 8 of the chain, those of
+# the equations, and NumPy's copies. Numbers of a sample without sensors: times, steps and copies.
+_PER_BEAD, _PER_SAMPLE = 80, 20
 
 
 class IntegrationError(Failure):
@@ -31,9 +35,20 @@ def silent() -> AbstractContextManager[Callable[[float], object]]:
 def step_limit(scene: Scene, method: str, steps: float) -> int:
     """Return the number of steps at which a run is stopped.
 
-    steps : number of steps of a splitting; for an adaptive method the duration divided by the
-    scene's shortest time, or by the greatest step if this is shorter. Raises `SceneError` for more
-    than `MOST_STEPS`.
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    method : str
+        Name of the method, for the message.
+    steps : float
+        Number of steps of a splitting; for an adaptive method the duration divided by the scene's
+        shortest time, or by the greatest step if this is shorter.
+
+    Raises
+    ------
+    SceneError
+        For more than `MOST_STEPS`.
     """
     if steps > MOST_STEPS:
         raise SceneError(
@@ -46,10 +61,20 @@ def step_limit(scene: Scene, method: str, steps: float) -> int:
 def check_memory(scene: Scene, method: str, rows: int, more: float = 0) -> None:
     """Raise `SceneError` for a run that needs more than `MOST_BYTES` bytes.
 
-    rows : numbers stored for each sensor and sample. more : further bytes.
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    method : str
+        Name of the method, for the message.
+    rows : int
+        Numbers stored for each sensor and sample.
+    more : float
+        Further bytes.
     """
     sensors = len(scene.contact_sensors) + len(scene.bead_sensors)
-    memory = more + 8 * (80 * scene.size + scene.samples * (rows * sensors + 20))
+    samples = scene.samples * (rows * sensors + _PER_SAMPLE)
+    memory = more + _DOUBLE * (_PER_BEAD * scene.size + samples)
     if memory > MOST_BYTES:
         raise SceneError(
             f"samples is {scene.samples:g}: with {sensors} sensors and {scene.size} beads {method} "

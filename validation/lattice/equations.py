@@ -1,11 +1,11 @@
-"""The equations of motion of a scene, and its characteristic scales.
+"""The equations of motion of a scene, and its characteristic scales::
 
     m_i y_i'' = F_{i-1} - F_i + m_i g,    F_i = A_i [δ_i⁰ + y_i - y_{i+1}]_+^k,
 
-where F_{-1} is the precompression F0, y counts from the equilibrium, δ_i⁰ is the compression of
-contact i there (0 without gravity and F0) and the wall stands at y_n = 0 (Porter et al. 2008,
-eq. 1, for k = 3/2). A contact that opens carries no tension. Damping makes forces depend on
-velocities, and a drive makes the motion of bead 0 depend on time.
+where ``F_{-1}`` is the precompression F0, y counts from the equilibrium, ``δ_i⁰`` is the
+compression of contact i there (0 without gravity and F0) and the wall stands at ``y_n = 0`` (Porter
+et al. 2008, eq. 1, for ``k = 3/2``). A contact that opens carries no tension. Damping makes forces
+depend on velocities, and a drive makes the motion of bead 0 depend on time.
 """
 
 from __future__ import annotations
@@ -29,12 +29,20 @@ from validation.scenes.scene import Scene
 class Scales:
     """Characteristic scales of a scene.
 
-    energy : initial energy above equilibrium. compression : greatest compression by the energy or
-    the static forces. displacement, velocity : displacement and velocity of a bead with this
-    energy; in equilibrium the static compression, and this compression divided by ``time``; 1
-    without compression. time : shortest √(m/spring) of a bead between its contacts at the greatest
-    compression; infinite without compression. rounding : rounding error of the static compressions
-    divided by the displacement.
+    Parameters
+    ----------
+    energy : float
+        Initial energy above equilibrium.
+    compression : float
+        Greatest compression by the energy or the static forces.
+    displacement, velocity : float
+        Displacement and velocity of a bead with this energy; in equilibrium the static compression,
+        and this compression divided by ``time``; 1 without compression.
+    time : float
+        Shortest ``√(m/spring)`` of a bead between its contacts at the greatest compression;
+        infinite without compression.
+    rounding : float
+        Rounding error of the static compressions divided by the displacement.
     """
 
     energy: float
@@ -48,7 +56,7 @@ class Scales:
 class Motion:
     """The time derivative of a scene's state, and its invariants.
 
-    The state is (y_0 … y_{n-1}, v_0 … v_{n-1}, dissipated energy, work of the drive).
+    The state is ``(y_0 … y_{n-1}, v_0 … v_{n-1}, dissipated energy, work of the drive)``.
 
     Parameters
     ----------
@@ -70,29 +78,20 @@ class Motion:
         The different laws of the contacts, for unit stiffness.
     law_of : array of int, (contacts,)
         Number of each contact's law.
-    k : array, (contacts,)
-        Exponents of the powers; 1 for other laws.
     damping : array, (contacts,)
         Damping coefficients.
     """
 
     def __init__(self, scene: Scene, response: float | None = None) -> None:
-        n = scene.size
-        self.scene, self.size, self.response = scene, n, response
-        wall = () if scene.wall is None else (scene.wall,)
-        rows = (
-            scene.masses,
-            scene.stiffnesses + wall,
-            scene.displacements,
-            scene.velocities,
-        )
-        # np.array takes 1.7 times as long, which counts in chains of 200,000 beads.
-        self.masses, self.stiffnesses, y, v = (
-            np.fromiter(row, float, len(row)) for row in rows
-        )
-        contacts = len(self.stiffnesses)
-        self.rest = self.load = np.zeros(contacts)
+        self.scene = scene
+        self.response = response
+        self.size = n = scene.size
+        self.masses = _array(scene.masses)
+        self.stiffnesses = _array(scene.stiffnesses)
+        if scene.wall is not None:
+            self.stiffnesses = np.append(self.stiffnesses, scene.wall)
         self._read_laws()
+        self.rest = self.load = np.zeros(len(self.stiffnesses))
         self.loaded = bool(scene.gravity or scene.precompression)
         if self.loaded:
             forces = np.array(scene.load) / self.stiffnesses
@@ -103,29 +102,30 @@ class Motion:
             for name, values in (("compression", self.rest), ("force", self.load)):
                 _check_range(f"static {name}", values.min(), values.max())
         self.start = np.zeros(2 * n + 2)
-        self.start[: len(y)], self.start[n : n + len(v)] = y, v
+        self.start[: len(scene.displacements)] = _array(scene.displacements)
+        self.start[n : n + len(scene.velocities)] = _array(scene.velocities)
         if scene.drive is not None:
             self.start[0], self.start[n], _ = scene.drive.at(0.0)
 
     def _read_laws(self) -> None:
         """Read the laws of the contacts and their damping."""
-        scene, contacts = self.scene, len(self.stiffnesses)
-        damping = scene.damping
-        self.damping = np.zeros(contacts)
+        scene, damping = self.scene, self.scene.damping
+        contacts = len(self.stiffnesses)
+        # Contacts that are all alike are one entry, which fills all rows.
+        laws: tuple[Any, ...] = ((scene.k, scene.law),)
         if isinstance(scene.k, tuple) or isinstance(scene.law, tuple):
             laws = scene.contact_laws
-        else:
-            laws = ((scene.k, scene.law),)
         numbers = {law: n for n, law in enumerate(dict.fromkeys(laws))}
         self.law_of = np.zeros(contacts, int)
         self.law_of[:] = [numbers[law] for law in laws]
-        self.k = np.zeros(contacts)
-        self.k[:] = [exponent for exponent, _ in laws]
-        # A wall has infinite mass.
+        self.damping = np.zeros(contacts)
         if damping is not None:
-            ahead = np.append(self.masses[1:], math.inf)[:contacts]
-            reduced = 1 / (1 / self.masses[:contacts] + 1 / ahead)
-            self.damping = damping.coefficients(self.k, self.stiffnesses, reduced)
+            k = np.zeros(contacts)
+            k[:] = [exponent for exponent, _ in laws]
+            # A wall has infinite mass.
+            inverse = np.append(1 / self.masses, 0.0)[: contacts + 1]
+            reduced = 1 / (inverse[:-1] + inverse[1:])
+            self.damping = damping.coefficients(k, self.stiffnesses, reduced)
         kinds = []
         for exponent, law in numbers:
             power = None if damping is None else float(damping.power(exponent))
@@ -154,8 +154,7 @@ class Motion:
 
     def compression(self, y: Array) -> Array:
         """Return the compressions δ_i at displacements of shape (n,) or (n, S)."""
-        dynamic = self.rate(y)
-        return np.asarray((self.rest + dynamic.T).T) if self.loaded else dynamic
+        return np.asarray((self.rest + self.rate(y).T).T)
 
     def force(self, compression: Array, contacts: Any = ...) -> Array:
         """Return the elastic forces A_i F(δ_i) of all contacts, or of some."""
@@ -173,7 +172,8 @@ class Motion:
 
     def __call__(self, time: float, state: Array) -> Array:
         """Return the time derivative of a state, which ``scipy.integrate`` takes as it is."""
-        n, drive, given, work = self.size, self.scene.drive, 0.0, 0.0
+        n, drive = self.size, self.scene.drive
+        given = work = 0.0
         y, v = state[: 2 * n].reshape(2, n).copy()
         if drive is not None:
             y[0], v[0], given = drive.at(time)
@@ -202,65 +202,74 @@ class Motion:
             stored = self._each(..., Contact.energy, change)
         return self.masses * v * v / 2, self.stiffnesses * stored
 
-    def energy(self, state: Array) -> float:
-        """Return kinetic and elastic energy less the static forces' work; 0 in equilibrium."""
-        kinetic, stored = self.energies(state)
-        return float(kinetic.sum() + stored.sum())
-
     @cached_property
     def initial_energies(self) -> tuple[Array, Array]:
         """The `energies` of the initial state."""
         return self.energies(self.start)
 
     @property
-    def initial_energy(self) -> float:
-        """Energy of the initial state."""
-        return float(sum(energies.sum() for energies in self.initial_energies))
-
-    @property
     def free_energy(self) -> float:
         """Initial energy of the contacts and of the beads that are not driven."""
-        driven = self.scene.drive is not None
-        given = self.masses[0] * self.start[self.size] ** 2 / 2 if driven else 0.0
-        return float(self.initial_energy - given)
+        kinetic, stored = self.initial_energies
+        free = kinetic[self.scene.drive is not None :]
+        return float(free.sum() + stored.sum())
+
+    def energy_change(self, end: Array) -> float:
+        """Return the change of the energy up to the state ``end``."""
+        changes = 0.0
+        for after, before in zip(
+            self.energies(end), self.initial_energies, strict=True
+        ):
+            changes += float(after.sum() - before.sum())
+        return changes
 
     def momentum_drift(self, end: Array) -> float | None:
-        """Return the momentum's change up to ``end`` divided by Σ m|v|; None with wall or drive."""
+        """Return the momentum's change up to ``end`` over ``Σ m|v|``; None with wall or drive."""
         if self.scene.wall is not None or self.scene.drive is not None:
             return None
         moving = slice(self.size, 2 * self.size)
         before, after = self.start[moving], end[moving]
         # No scalar product: BLAS starts threads, which cost more than they gain.
         total = np.sum(self.masses * np.abs(after))
-        return float(np.sum(self.masses * (after - before)) / total) if total else 0.0
+        change = np.sum(self.masses * (after - before))
+        return float(change / (total or math.inf))
 
     @property
     def _moves(self) -> bool:
         """True if a bead has a velocity, or a contact is pressed more than in equilibrium."""
-        n, at_rest = self.size, self.rest.max(initial=0.0)
-        pressed = self.compression(self.start[:n]).max(initial=0.0)
-        return bool(self.start[n : 2 * n].any() or pressed > at_rest)
+        n = self.size
+        pressed = self.compression(self.start[:n]) > self.rest.max(initial=0.0)
+        return bool(self.start[n : 2 * n].any() or pressed.any())
+
+    def _energy_scale(self) -> float:
+        """Return the greatest energy of the motion, known or estimated; 0 in equilibrium."""
+        if self.response is not None:
+            return self.response
+        kinetic, stored = self.initial_energies
+        # Where contacts attract each other, their energy may be negative.
+        energy = kinetic.sum() + np.abs(stored).sum()
+        if self.scene.drive is not None:
+            # A bead that a drive hits moves about as fast.
+            fastest = self.scene.drive.fastest
+            energy += self.masses.mean() * fastest * fastest
+        return float(energy)
 
     @cached_property
     @np.errstate(all="ignore")
     def scales(self) -> Scales:
         """Characteristic scales; raises `SceneError` if a scale over- or underflows."""
-        energy, n, A = self.response, self.size, self.stiffnesses
-        if energy is None:
-            fastest = 0.0 if self.scene.drive is None else self.scene.drive.fastest
-            kinetic, stored = self.initial_energies
-            # Where contacts attract each other, their energy may be negative.
-            energy = float(kinetic.sum() + np.abs(stored).sum())
-            energy += float(self.masses.mean() * fastest * fastest)
-        at_rest = self.rest.max(initial=0.0)
-        if not 0 < energy < math.inf and (energy != 0 or self._moves):
+        n = self.size
+        energy = self._energy_scale()
+        if energy != 0 or self._moves:
             _check_range("energy", energy)
         deepest = stiffest = 0.0
         # F′ of the two contacts of each bead; the last one's is a wall's.
         springs = np.zeros(n + 1)
-        for number, law in enumerate(self.laws if len(A) else ()):
+        for number, law in enumerate(self.laws):
             own = np.flatnonzero(self.law_of == number)
-            static, largest = float(self.rest[own].max()), float(A[own].max())
+            if not own.size:  # a single bead without a wall
+                continue
+            static, largest = self.rest[own].max(), self.stiffnesses[own].max()
             depth = static
             if energy > 0:
                 depth = max(depth, law.reached_by(energy / largest, static))
@@ -271,7 +280,7 @@ class Motion:
             slope = law.steepest(static, depth)
             _check_range("stiffest spring", largest * slope)
             stiffest = max(stiffest, largest * slope)
-            stiff = law.k * slope * A[own]
+            stiff = law.k * slope * self.stiffnesses[own]
             springs[own] += stiff
             springs[own + 1] += stiff
         if not deepest:
@@ -282,13 +291,18 @@ class Motion:
         if energy > 0:
             # energy = F′ y² and m v², up to factors of order 1, with the mean mass
             y = np.sqrt(energy / stiffest)
-            v = np.sqrt(energy / (self.masses.sum() / n))
+            v = np.sqrt(energy / self.masses.mean())
             _check_range("displacement", y)
             _check_range("velocity", v)
-            rounding = np.finfo(float).eps * at_rest / y
+            rounding = np.finfo(float).eps * self.rest.max() / y
         return Scales(
             energy, float(deepest), float(y), float(v), float(time), float(rounding)
         )
+
+
+def _array(row: tuple[float, ...]) -> Array:
+    """Return a row of floats as an array; np.array takes 1.7 times as long for 200,000 beads."""
+    return np.fromiter(row, float, len(row))
 
 
 def _check_range(name: str, *values: float) -> None:

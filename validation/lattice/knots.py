@@ -19,8 +19,11 @@ from validation.lattice.kernel.kinks import EDGES
 from validation.lattice.kernel.samples import interpolate
 from validation.lattice.signal import Beads
 
-BUFFER = 2**18  # numbers that the engine stores between two calls of `take`
-_MOST_BYTES = 2**28  # bytes of the motion that a run keeps
+# Numbers that the engine stores between two calls of `take`: 2 MB, which a cache holds.
+BUFFER = 2**18
+_MOST_BYTES = (
+    2**28
+)  # of the motion that a run keeps: a small part of a machine's memory
 
 
 def _with_neighbours(beads: Beads) -> NDArray[np.int_]:
@@ -40,7 +43,17 @@ def set_addresses(laws: Any, motion: Motion) -> None:
 
 @dataclass(frozen=True, eq=False)
 class KnotPath:
-    """A `validation.lattice.signal.Path` through knots (`validation.lattice.kernel.samples`)."""
+    """A `validation.lattice.signal.Path` through knots (`validation.lattice.kernel.samples`).
+
+    Parameters
+    ----------
+    motion : Motion
+        The equations of motion.
+    chain : Chain
+        The chain of the compiled loops.
+    knots : Knots
+        Motion of the beads at the ends of the steps.
+    """
 
     motion: Motion
     chain: Chain
@@ -63,6 +76,7 @@ class KnotPath:
         rows = np.searchsorted(self.knots.watched, near)
         step = np.searchsorted(self.time[1:-1], time, side="right")
         y, v = np.empty((2, len(rows), len(time)))
+        # Working memory: the compiled loops allocate nothing.
         working = np.empty((2, len(rows), 4)), np.empty((3, ROOM)), np.empty(EDGES)
         interpolate(self.chain, self.knots, rows, time, step, y, v, *working)
         own = np.searchsorted(near, beads)
@@ -75,21 +89,42 @@ class KnotPath:
 class Recorder:
     """Collector of a run's knots, which computes the samples and keeps the motion for signals.
 
-    needed : numbers of the B beads that the sensors need. time : (S,), sample times. knots : arrays
-    that the engine fills. y, v : (B, S), samples of displacements and velocities.
+    Parameters
+    ----------
+    motion : Motion
+        The equations of motion.
+    chain : Chain
+        The chain of the compiled loops.
+    needed : array of int, (B,)
+        Numbers of the beads that the sensors need.
+    time : array, (S,)
+        Sample times.
+
+    Attributes
+    ----------
+    knots : Knots
+        Arrays that the engine fills.
+    y, v : array, (B, S)
+        Samples of displacements and velocities.
     """
 
     def __init__(
         self, motion: Motion, chain: Chain, needed: NDArray[np.int_], time: Array
     ) -> None:
-        self.motion, self.chain, self.needed, self.time = motion, chain, needed, time
+        self.motion = motion
+        self.chain = chain
+        self.needed = needed
+        self.time = time
         watched = _with_neighbours(needed)
-        # A knot: four numbers a bead, and its time.
-        most = 2 + (BUFFER // (4 * len(watched) + 1) if len(watched) else 0)
+        most = 2  # the ends of a step
+        if len(watched):
+            # A knot: four numbers a bead, and its time.
+            most += BUFFER // (4 * len(watched) + 1)
         self.knots = Knots(np.empty(most), np.empty((most, len(watched), 4)), watched)
         self.y, self.v = np.empty((2, len(needed), len(time)))
-        self.parts: list[tuple[Array, Array]] = []
-        self.done = self.size = 0
+        self._parts: list[tuple[Array, Array]] = []  # times and states of knots
+        self._bytes = 0
+        self._sampled = 0
 
     def take(self, count: int) -> int:
         """Compute the samples up to knot ``count`` - 1, and keep the knots.
@@ -99,29 +134,25 @@ class Recorder:
         times, states, watched = self.knots
         if not len(watched):
             return 0
-        part = times[:count].copy(), states[:count].copy()
-        path = KnotPath(self.motion, self.chain, Knots(*part, watched))
-        due = int(np.searchsorted(self.time, path.time[-1], side="right"))
-        now = slice(self.done, due)
+        time, state = times[:count].copy(), states[:count].copy()
+        path = KnotPath(self.motion, self.chain, Knots(time, state, watched))
+        due = int(np.searchsorted(self.time, time[-1], side="right"))
+        now = slice(self._sampled, due)
         self.y[:, now], self.v[:, now] = path(self.needed, self.time[now])
-        self.done, self.size = due, self.size + part[1].nbytes
-        if self.size <= _MOST_BYTES:
-            self.parts.append(part)
+        self._sampled = due
+        self._bytes += state.nbytes
+        if self._bytes > _MOST_BYTES:
+            self._parts.clear()
         else:
-            self.parts.clear()
-        times[0], states[0] = times[count - 1], states[count - 1]
+            # The first knot is the last one of the part before.
+            new = slice(len(self._parts) > 0, None)
+            self._parts.append((time[new], state[new]))
+        times[0], states[0] = time[-1], state[-1]
         return 1
 
     def path(self) -> KnotPath | None:
         """Return the motion of the whole run; None if it takes more than `_MOST_BYTES` bytes."""
-        if not self.parts:
+        if not self._parts:
             return None
-        times = np.concatenate(
-            [self.parts[0][0], *(time[1:] for time, _ in self.parts[1:])]
-        )
-        states = np.concatenate(
-            [self.parts[0][1], *(state[1:] for _, state in self.parts[1:])]
-        )
-        return KnotPath(
-            self.motion, self.chain, Knots(times, states, self.knots.watched)
-        )
+        time, state = (np.concatenate(rows) for rows in zip(*self._parts, strict=True))
+        return KnotPath(self.motion, self.chain, Knots(time, state, self.knots.watched))

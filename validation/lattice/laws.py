@@ -1,7 +1,7 @@
 """Contact laws in numbers: force, stiffness and energy of a contact of unit stiffness.
 
-A law with F′(0) > 0 also pulls: Toda's, Fermi, Pasta, Ulam and Tsingou's, magnets. Any other law
-opens where δ < 0, as a power does.
+A law with ``F′(0) > 0`` also pulls: Toda's, Fermi, Pasta, Ulam and Tsingou's, magnets. Any other
+law opens where ``δ < 0``, as a power does.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from lwa.base.exact import shorten
 from lwa.law import ContactLaw
 from validation.scenes.checks import SceneError
 
-# Of the rest compression: the energy of a smaller change is integrated, as in the difference of two
-# energies its digits cancel. Eight points integrate any power to 1e-16 up to this change.
+# The energy of a smaller change, in units of the rest compression, is integrated: its digits cancel
+# in the difference of two energies. Eight points integrate any power to 1e-16 up to here.
 _SMALL = 0.05
 _OPENS = 1e-100  # a compression at which a contact is about to open, in any units
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
@@ -36,11 +36,11 @@ class Contact:
     Parameters
     ----------
     k : float
-        Exponent of the power law F = [δ]_+^k.
+        Exponent of the power law ``F = [δ]_+^k``.
     law : ContactLaw, optional
         Any other law, without symbols, in place of the power.
     damping_power : float, optional
-        Exponent p of the damping force ~ δ^p dδ/dt; None without damping.
+        Exponent p of the damping force, proportional to ``δ^p dδ/dt``; None without damping.
     """
 
     k: float
@@ -60,7 +60,7 @@ class Contact:
         return self.pulls or float(self.force(np.array([_OPENS]))[0]) < 0
 
     def force(self, compression: Array) -> Array:
-        """Return the force F at a compression δ, of any shape; [δ]_+^k for a power law."""
+        """Return the force F at a compression δ, of any shape; ``[δ]_+^k`` for a power law."""
         if self.law is not None:
             return self._evaluated("force", compression)
         pressed = np.maximum(compression, 0.0)
@@ -69,13 +69,13 @@ class Contact:
         return np.asarray(pressed**self.k)
 
     def stiffness(self, compression: Array) -> Array:
-        """Return the stiffness F′ = dF/dδ at a compression δ, of any shape."""
+        """Return the stiffness ``dF/dδ`` at a compression δ, of any shape."""
         if self.law is not None:
             return self._evaluated("slope", compression)
         return np.asarray(self.k * np.maximum(compression, 0.0) ** (self.k - 1))
 
     def energy(self, compression: Array) -> Array:
-        """Return the elastic energy ∫ F dδ, from 0 to the compression."""
+        """Return the elastic energy ``∫ F dδ``, from 0 to the compression."""
         if self.law is not None:
             return self._evaluated("energy", compression)
         return np.asarray(self.force(compression) * compression / (self.k + 1))
@@ -92,7 +92,8 @@ class Contact:
         energy -= self.force(rest) * change
         small = np.abs(change) <= _SMALL * rest
         if small.any():
-            x, r = change[small], rest[small]
+            x = change[small]
+            r = rest[small]
             # ∫ (x - s) F′(r + s) ds, s = 0 … x
             total = np.zeros(x.shape)
             for node, weight in zip((1 + _NODES) / 2, _WEIGHTS / 2, strict=True):
@@ -107,10 +108,12 @@ class Contact:
 
         Parameters
         ----------
-        elastic, compression, rate : array
-            Elastic forces, compressions δ and rates dδ/dt.
+        elastic : array
+            Elastic forces.
         damping : array, (contacts,)
-            Factors of δ^p dδ/dt.
+            Factors of ``δ^p dδ/dt``.
+        compression, rate : array
+            Compressions δ and rates dδ/dt.
         """
         if self.damping_power is None:
             return elastic
@@ -146,14 +149,16 @@ class Contact:
         """Return a scale of the compression that an energy reaches from ``start``."""
         if self.law is None:
             return float(energy ** (1 / (self.k + 1)))  # of δ^{k+1}/(k+1) = energy
-        # The first of many places at which the energy is reached, or a pole; else a barrier.
+        # The first of many places, 1 % apart, at which the energy is reached, or a pole.
         change = np.geomspace(1e-15, 1e15, 7000)
         work = self.energy_above(np.full(change.shape, start), change)
-        reached = np.flatnonzero(~(work < energy))
-        return float(start + change[reached[0] if len(reached) else np.argmax(work)])
+        reached = ~(work < energy)
+        if not reached.any():
+            reached = work == work.max()  # a barrier
+        return float(start + change[np.argmax(reached)])
 
     def steepest(self, start: float, depth: float) -> float:
-        """Return the greater stiffness at two compressions, over k."""
+        """Return the greater stiffness at two compressions, divided by k."""
         if self.law is None:
             return float(np.float64(depth) ** (self.k - 1))
         return float(self.stiffness(np.array([start, depth])).max())

@@ -11,7 +11,7 @@ import numpy as np
 from lwa.base.arrays import Array
 from validation.lattice.cost import IntegrationError
 from validation.lattice.equations import Motion
-from validation.lattice.signal import Path, SensorSignal, signal
+from validation.lattice.signal import RECORDS, Path, SensorSignal, sensors_of, signal
 from validation.pictures import Curve, Map, Panel, Pictured
 from validation.scenes.checks import SceneError
 from validation.scenes.scene import Scene
@@ -26,7 +26,7 @@ _SI = {
     "velocity": "m/s",
 }
 _MOST = 10  # sensors of one kind that are drawn as curves; more are drawn as a map
-_FINEST = 1000  # places, and times, of a map
+_FINEST = 1000  # places, and times, of a map: a picture has some thousand pixels a side
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -36,19 +36,35 @@ class Run(Pictured):
     Forces are total: the static force of gravity and precompression is included. S is the number of
     samples; all arrays are read-only.
 
-    time : (S,), sample times.
-    contact_force, compression : (contacts, S), at the scene's contact sensors; the compression of a
-        gap is negative.
-    bead_force, bead_displacement, bead_velocity : (beads, S), at the bead sensors; the force is the
-        mean of the bead's two contacts, the displacement counts from the equilibrium.
-    displacements, velocities : (n,), of all beads at the end.
-    energy_drift : change of the energy above equilibrium, plus the dissipated energy, less the
-        drive's work, divided by the scene's scale of the energy: the initial energy, or the energy
-        of the response to a drive (0 if this is 0).
-    momentum_drift : change of the momentum divided by Σ m|v| at the end; None with a wall or drive.
-    step : mean step.
-    path : motion of the beads near sensors throughout the run, for `signal`.
-    dissipated, work : energy that damped contacts have turned into heat, and work of the drive.
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    time : array, shape (S,)
+        Sample times.
+    contact_force, compression : array, shape (contacts, S)
+        Forces and compressions at the scene's contact sensors; the compression of a gap is
+        negative.
+    bead_force, bead_displacement, bead_velocity : array, shape (beads, S)
+        Motion at the bead sensors. The force is the mean of the bead's two contacts, the
+        displacement counts from the equilibrium.
+    displacements, velocities : array, shape (n,)
+        Those of all beads at the end.
+    energy_drift : float
+        Error of the energy at the end: change of the energy above equilibrium, plus ``dissipated``,
+        less ``work``. The unit is the initial energy, or that of the response to a drive; without
+        energy the drift is 0.
+    momentum_drift : float, optional
+        Change of the momentum divided by ``Σ m|v|`` at the end; None with a wall or a drive.
+    step : float
+        Mean step.
+    path : Path, optional
+        Motion of the beads near sensors throughout the run, for `signal`; None if it takes too much
+        memory.
+    dissipated : float
+        Energy that damped contacts have turned into heat.
+    work : float
+        Work of the drive.
     """
 
     scene: Scene
@@ -76,60 +92,64 @@ class Run(Pictured):
 
     def label(self, quantity: str) -> str:
         """Return the name of a quantity, such as "bead 1 velocity", with its unit in a SI scene."""
-        return (
-            f"{quantity} ({_SI[quantity.split()[-1]]})"
-            if self.scene.units
-            else quantity
-        )
+        if not self.scene.units:
+            return quantity
+        return f"{quantity} ({_SI[quantity.split()[-1]]})"
 
     def columns(self) -> dict[str, Array]:
         """Return time and all records, each (S,), by names such as "bead 15 force (N)"."""
-        scene = self.scene
-        values = {"time": self.time}
-        for row, i in enumerate(scene.bead_sensors):
-            for quantity in ("force", "displacement", "velocity"):
-                values[f"bead {i + 1} {quantity}"] = getattr(self, f"bead_{quantity}")[
-                    row
-                ]
-        for row, i in enumerate(scene.contact_sensors):
-            values[f"contact {i + 1} force"] = self.contact_force[row]
-            values[f"contact {i + 1} compression"] = self.compression[row]
-        return {self.label(name): row for name, row in values.items()}
+        columns = {self.label("time"): self.time}
+        for kind, sensors in sensors_of(self.scene).items():
+            for row, i in enumerate(sensors):
+                for (own, quantity), name in RECORDS.items():
+                    if own == kind:
+                        label = self.label(f"{kind} {i + 1} {quantity}")
+                        columns[label] = getattr(self, name)[row]
+        return columns
 
     def pictured(self) -> list[Panel]:
         """Panels of force against time at all sensors; an x–t map for more than ten of a kind."""
-        time, force = self.label("time"), self.label("force")
-        curves, maps = [], []
-        for kind in ("bead", "contact"):
-            sensors, forces = (
-                getattr(self.scene, f"{kind}_sensors"),
-                getattr(self, f"{kind}_force"),
-            )
+        time = self.label("time")
+        force = self.label("force")
+        curves = []
+        maps = []
+        for kind, sensors in sensors_of(self.scene).items():
+            forces = getattr(self, RECORDS[kind, "force"])
             if len(sensors) <= _MOST:
-                rows = zip(sensors, forces, strict=True)
-                curves += [Curve(f"{kind} {i + 1}", self.time, row) for i, row in rows]
-            else:
-                x = np.argsort(sensors)[:: -(-len(sensors) // _FINEST)]
-                t = slice(None, None, -(-len(self.time) // _FINEST))
-                places = np.array(sensors, float)[x] + 1
-                forces_map = Map(force, places, self.time[t], forces[x, t].T)
-                maps.append(Panel(kind, time, map=forces_map))
-        return (
-            [Panel(time, force, tuple(curves), legend_above=True), *maps]
-            if curves
-            else maps
-        )
+                for i, row in zip(sensors, forces, strict=True):
+                    curves.append(Curve(f"{kind} {i + 1}", self.time, row))
+                continue
+            # Rows in the order of the chain; of too many rows, or times, every second, third, …
+            rows = np.argsort(sensors)[:: math.ceil(len(sensors) / _FINEST)]
+            thinned = slice(None, None, math.ceil(len(self.time) / _FINEST))
+            places = np.array(sensors, float)[rows] + 1
+            values = forces[rows, thinned].T
+            drawn = Map(force, places, self.time[thinned], values)
+            maps.append(Panel(kind, time, map=drawn))
+        if not curves:
+            return maps
+        return [Panel(time, force, tuple(curves), legend_above=True), *maps]
 
     def signal(self, kind: str, number: int, quantity: str = "force") -> SensorSignal:
         """Return a quantity at a sensor as a function of time; the records are its samples.
 
         Parameters
         ----------
-        kind : "contact" or "bead".
-        number : number of the contact or bead, from 0, as in the scene's sensors.
-        quantity : "force"; "compression" of a contact; "displacement" or "velocity" of a bead.
+        kind : {"contact", "bead"}
+            Kind of the sensor.
+        number : int
+            Number of the contact or bead, from 0, as in the scene's sensors.
+        quantity : {"force", "compression", "displacement", "velocity"}
+            Compression of a contact; displacement or velocity of a bead; force of either.
 
-        Raises `SceneError` without such a sensor, and if the motion takes too much memory to store.
+        Returns
+        -------
+        SensorSignal
+
+        Raises
+        ------
+        SceneError
+            Without such a sensor, and if the motion takes too much memory to store.
         """
         if self.path is None:
             raise SceneError(
@@ -141,18 +161,37 @@ class Run(Pictured):
 def finished(
     motion: Motion, end: Array, records: dict[str, Array], *, steps: int, **fields: Any
 ) -> Run:
-    """Return the `Run` of a motion with the final state ``end``.
+    """Return the result of an integration.
 
-    fields : further fields of the `Run`. Raises `IntegrationError` if a number is not finite.
+    Parameters
+    ----------
+    motion : Motion
+        The equations of motion.
+    end : array
+        Final state, in the order of `Motion.start`.
+    records : dict of array
+        Sample times and records, by their names in `Run`.
+    steps : int
+        Number of steps.
+    **fields
+        Further fields of the `Run`.
+
+    Raises
+    ------
+    IntegrationError
+        If a number is not finite.
     """
-    n, scale = motion.size, motion.scales.energy
-    final = {"displacements": end[:n].copy(), "velocities": end[n : 2 * n].copy()}
-    arrays: dict[str, Any] = records | final
+    n = motion.size
+    arrays: dict[str, Any] = records | {
+        "displacements": end[:n].copy(),
+        "velocities": end[n : 2 * n].copy(),
+    }
     dissipated, work = map(float, end[2 * n :])
-    drift = motion.energy(end) - motion.initial_energy + dissipated - work
+    drift = motion.energy_change(end) + dissipated - work
     step = motion.scene.duration / steps
-    sums = [float(row.sum()) for row in arrays.values() if row.size]
-    if not math.isfinite(drift + sum(sums)):
+    # A sum is finite if all its terms are, and takes no memory.
+    total = drift + sum(float(row.sum()) for row in arrays.values())
+    if not math.isfinite(total):
         raise IntegrationError(
             f"the motion overflows: choose other units, or a step of {step:g} is too long"
         )
@@ -160,7 +199,7 @@ def finished(
         array.setflags(write=False)
     return Run(
         scene=motion.scene,
-        energy_drift=drift / scale if scale else 0.0,
+        energy_drift=drift / (motion.scales.energy or math.inf),
         momentum_drift=motion.momentum_drift(end),
         step=step,
         dissipated=dissipated,

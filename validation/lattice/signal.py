@@ -9,8 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,21 +17,20 @@ from numpy.typing import ArrayLike, NDArray
 from lwa.base.arrays import Array
 from validation.lattice.equations import Motion
 from validation.scenes.checks import SceneError, one_of
+from validation.scenes.scene import Scene
 
-_REGULA_FALSI = 9  # iterations, which leave less than 1e-12 of a step of the integrator
+# Iterations that leave less than 1e-12 of a step of the integrator.
+_REGULA_FALSI = 9
 
-_QUANTITIES = {
-    "contact": ("force", "compression"),
-    "bead": ("force", "displacement", "velocity"),
+RECORDS = {
+    ("bead", "force"): "bead_force",
+    ("bead", "displacement"): "bead_displacement",
+    ("bead", "velocity"): "bead_velocity",
+    ("contact", "force"): "contact_force",
+    ("contact", "compression"): "compression",
 }
+"""Name of a record, an attribute of `Run`, by kind of sensor and quantity."""
 
-_RECORDS = (
-    "contact_force",
-    "compression",
-    "bead_force",
-    "bead_displacement",
-    "bead_velocity",
-)
 Beads = Sequence[int] | NDArray[np.int_]
 """Numbers of beads."""
 
@@ -57,13 +55,21 @@ class Path(Protocol):
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]: ...
 
 
+def sensors_of(scene: Scene) -> dict[str, tuple[int, ...]]:
+    """Return the numbers of a scene's sensors, by their kind."""
+    return {"bead": scene.bead_sensors, "contact": scene.contact_sensors}
+
+
 def beads_at(
     motion: Motion, contacts: Sequence[int], beads: Sequence[int]
 ) -> NDArray[np.int_]:
     """Return increasing numbers of the beads on which sensors depend; bead n is the wall."""
-    around = {*contacts, *beads, *(j - 1 for j in beads)}
-    between = {i for i in around if 0 <= i < len(motion.rest)}
-    return np.array(sorted({*beads, *between, *(i + 1 for i in between)}), int)
+    needed = {*beads}
+    for i in (*contacts, *beads, *(j - 1 for j in beads)):
+        # An end bead has one contact.
+        if 0 <= i < len(motion.rest):
+            needed |= {i, i + 1}
+    return np.array(sorted(needed), int)
 
 
 def _compressions(motion: Motion, beads: NDArray[np.int_], y: Array) -> Array:
@@ -76,21 +82,28 @@ def _compressions(motion: Motion, beads: NDArray[np.int_], y: Array) -> Array:
     return compressions
 
 
-def _forces(
-    motion: Motion, beads: NDArray[np.int_], compressions: Array, v: Array
-) -> tuple[Array, Array]:
-    """Return forces of contacts, (B - 1, S), and of beads, (B, S), from velocities v, (B, S).
+def _quantities(
+    motion: Motion, beads: NDArray[np.int_], y: Array, v: Array
+) -> dict[str, Array]:
+    """Return all records by name, at ``beads``, (B, S), and between them, (B - 1, S).
 
     The force of a bead is the mean of its two contacts; an end without a contact counts as 0.
     """
-    contacts, rate = beads[:-1], v[:-1] - v[1:]
+    contacts = beads[:-1]
+    compressions = _compressions(motion, beads, y)
     elastic = motion.force(compressions, contacts)
-    forces = motion.damped_force(elastic, compressions, rate, contacts)
+    forces = motion.damped_force(elastic, compressions, v[:-1] - v[1:], contacts)
     means = np.zeros(v.shape)
     means[1:] = forces
     means[:-1] += forces
     means /= 2
-    return forces, means
+    return {
+        "bead_force": means,
+        "bead_displacement": y,
+        "bead_velocity": v,
+        "contact_force": forces,
+        "compression": compressions,
+    }
 
 
 def recorded(
@@ -102,24 +115,18 @@ def recorded(
     ten times as long as the integration.
     """
     if not len(beads):
-        return dict.fromkeys(_RECORDS, y)
-    compressions = _compressions(motion, beads, y)
-    forces, means = _forces(motion, beads, compressions, v)
-    at_contacts = np.searchsorted(beads, motion.scene.contact_sensors)
-    at_beads = np.searchsorted(beads, motion.scene.bead_sensors)
-    return {
-        "contact_force": _rows(forces, at_contacts),
-        "compression": _rows(compressions, at_contacts),
-        "bead_force": _rows(means, at_beads),
-        "bead_displacement": _rows(y, at_beads),
-        "bead_velocity": _rows(v, at_beads),
-    }
-
-
-def _rows(values: Array, numbers: NDArray[np.int_]) -> Array:
-    """Return rows of an array, without a copy, of which large records gain an eighth."""
-    neighbours = len(numbers) > 1 and bool((np.diff(numbers) == 1).all())
-    return values[numbers[0] : numbers[-1] + 1] if neighbours else values[numbers]
+        return dict.fromkeys(RECORDS.values(), y)
+    found = _quantities(motion, beads, y, v)
+    records = {}
+    for kind, numbers in sensors_of(motion.scene).items():
+        rows: Any = np.searchsorted(beads, numbers)
+        # Neighbours are a slice, without a copy, of which large records gain an eighth.
+        if len(numbers) > 1 and (np.diff(rows) == 1).all():
+            rows = slice(int(rows[0]), int(rows[-1]) + 1)
+        for (own, _), name in RECORDS.items():
+            if own == kind:
+                records[name] = found[name][rows]
+    return records
 
 
 def sampled(motion: Motion) -> tuple[Array, NDArray[np.int_]]:
@@ -132,77 +139,85 @@ def sampled(motion: Motion) -> tuple[Array, NDArray[np.int_]]:
 
 @dataclass(frozen=True, eq=False)
 class SensorSignal:
-    """A quantity at a sensor of a run, as a function of times of any shape.
+    """A quantity at a sensor of a run, as a function of times of any shape; NaN outside the run.
 
-    times : increasing times from 0 to the duration, the ends of steps and the openings and closings
-        of the sensor's contacts. The signal is smooth between neighbouring times.
-    kind, number : the sensor, at a "contact" or "bead" whose number counts from 0.
-
-    Values are NaN outside the run.
+    Parameters
+    ----------
+    times : array, shape (T,)
+        Increasing times from 0 to the duration: the ends of steps, and the openings and closings of
+        the sensor's contacts. The signal is smooth between neighbouring times.
+    path : Path
+        Motion of the beads near the sensor.
+    beads : array of int
+        Numbers of the beads on which the quantity depends.
+    record : str
+        Name of the record whose samples are values of the signal, one of `RECORDS`.
+    number : int
+        Number of the bead or contact, counted from 0.
     """
 
     times: Array
-    motion: Motion
     path: Path
-    kind: str
+    beads: NDArray[np.int_]
+    record: str
     number: int
-    quantity: str
-
-    @cached_property
-    def _beads(self) -> NDArray[np.int_]:
-        at_contact, number = self.kind == "contact", (self.number,)
-        return beads_at(self.motion, *((number, ()) if at_contact else ((), number)))
 
     def __call__(self, time: ArrayLike) -> Array:
         t = np.asarray(time, float)
         inside = (t >= 0) & (t <= self.times[-1])
         values = np.full(t.shape, np.nan)
-        y, v = self.path(self._beads, t[inside])
-        compressions = _compressions(self.motion, self._beads, y)
-        rows = {"compression": compressions, "displacement": y, "velocity": v}
-        if self.quantity == "force":
-            forces, means = _forces(self.motion, self._beads, compressions, v)
-            rows["force"] = means if self.kind == "bead" else forces
-        values[inside] = rows[self.quantity][self.number - self._beads[0]]
+        y, v = self.path(self.beads, t[inside])
+        rows = _quantities(self.path.motion, self.beads, y, v)[self.record]
+        values[inside] = rows[self.number - self.beads[0]]
         return values
 
 
 def signal(path: Path, kind: str, number: int, quantity: str) -> SensorSignal:
-    """Return the signal of a quantity at a sensor of a run.
-
-    Raises `SceneError` where the scene has no such sensor, or the sensor no such quantity.
-    """
-    motion, scene = path.motion, path.motion.scene
-    one_of(kind, tuple(_QUANTITIES), "kind")
-    one_of(quantity, _QUANTITIES[kind], "quantity")
-    if number not in (
-        scene.contact_sensors if kind == "contact" else scene.bead_sensors
-    ):
+    """Return the signal of a quantity at a sensor of a run, as `Run.signal` describes it."""
+    motion = path.motion
+    sensors = sensors_of(motion.scene)
+    one_of(kind, tuple(sensors), "kind")
+    one_of(quantity, tuple(q for own, q in RECORDS if own == kind), "quantity")
+    if number not in sensors[kind]:
         raise SceneError(
             f"number is {number!r}: the scene has no sensor at this {kind}"
         )
-    contacts = [number] if kind == "contact" else [number - 1, number]
-    kinks = [_kinks(motion, path, i) for i in contacts if 0 <= i < scene.contact_count]
-    times = np.unique(np.concatenate((path.time, *kinks)))
-    return SensorSignal(times, motion, path, kind, number, quantity)
+    if kind == "contact":
+        beads = beads_at(motion, [number], [])
+    else:
+        beads = beads_at(motion, [], [number])
+    changes = [_changes(path, int(contact)) for contact in beads[:-1]]
+    times = np.unique(np.concatenate((path.time, *changes)))
+    return SensorSignal(times, path, beads, RECORDS[kind, quantity], number)
 
 
-def _kinks(motion: Motion, path: Path, contact: int) -> Array:
-    """Return the times within steps at which a contact opens or closes."""
-    time, beads = path.time, np.array([contact, contact + 1])
+def _changes(path: Path, contact: int) -> Array:
+    """Return the times within steps at which a contact opens or closes.
+
+    A contact that does both within a step changes twice, unseen: the signal is less smooth there.
+    """
+    time = path.time
+    beads = np.array([contact, contact + 1])
 
     def compression(t: Array) -> Array:
-        return np.asarray(_compressions(motion, beads, path(beads, t)[0])[0])
+        y, _ = path(beads, t)
+        return np.asarray(_compressions(path.motion, beads, y)[0])
 
     d = compression(time)
-    step = np.flatnonzero(
-        np.sign(d[1:]) * np.sign(d[:-1]) < 0
-    )  # d itself over- or underflows
-    a, b, f, g = time[step], time[step + 1], d[step], d[step + 1]
-    for _ in range(_REGULA_FALSI if len(step) else 0):  # the Illinois variant
-        c = b - g * (b - a) / np.where(g == f, 1.0, g - f)
-        h = compression(c)
-        beyond = np.sign(h) * np.sign(g) < 0
-        a, f = np.where(beyond, b, a), np.where(beyond, g, f / 2)
-        b, g = c, h
+    # By signs, as products of compressions over- or underflow.
+    step = np.flatnonzero(np.sign(d[1:]) * np.sign(d[:-1]) < 0)
+    if not len(step):
+        return time[:0]
+    # The Illinois variant of regula falsi: the root lies between a and b, whose compressions are
+    # at_a and at_b.
+    a, b = time[step], time[step + 1]
+    at_a, at_b = d[step], d[step + 1]
+    for _ in range(_REGULA_FALSI):
+        c = b - at_b * (b - a) / np.where(at_b == at_a, 1.0, at_b - at_a)
+        at_c = compression(c)
+        beyond = np.sign(at_c) * np.sign(at_b) < 0
+        a = np.where(beyond, b, a)
+        at_a = np.where(beyond, at_b, at_a / 2)
+        b = c
+        at_b = at_c
     return np.asarray(b[(b > time[step]) & (b < time[step + 1])])

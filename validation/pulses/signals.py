@@ -17,8 +17,6 @@ from numpy.typing import ArrayLike
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError
 
-_NODES = 10  # of the Gauss quadrature in each smooth interval
-
 
 class MeasureError(InputError):
     """A record without the wanted pulse; the message says what is missing."""
@@ -70,12 +68,3 @@ def spline(time: ArrayLike, values: ArrayLike) -> Piecewise:
     """Return the cubic spline through samples; `MeasureError` for others than `checked` takes."""
     t, f = checked(time, values)
     return Piecewise(t, scipy.interpolate.CubicSpline(t, f))
-
-
-def integral(signal: Signal, low: float, high: float) -> float:
-    """Return the integral of a signal from time low to high, by Gauss quadrature."""
-    inside = signal.times[(signal.times > low) & (signal.times < high)]
-    edges = np.concatenate(([low], inside, [high]))
-    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
-    half = np.diff(edges) / 2
-    return float(half @ (weights @ signal(edges[:-1] + half * (nodes[:, None] + 1))))

@@ -1,7 +1,7 @@
 """Tables of cells: the texts of recorders and programs, whatever stands around their numbers.
 
 Cells are separated by tabs, semicolons, commas or blanks, by those that make most numbers; where
-commas do not separate they are decimal commas.
+commas do not separate, as in quotes, they are decimal commas.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import codecs
 import csv
 import re
 from collections.abc import Iterator, Sequence
-from itertools import chain, islice, repeat
+from itertools import chain, islice, pairwise, repeat
 from pathlib import Path
 
 import numpy as np
@@ -19,21 +19,26 @@ from numpy.typing import ArrayLike
 from lwa.base import files
 from lwa.base.arrays import Array
 from validation.scenes.checks import SceneError
+from validation.scenes.units import name_of
 
 _LINE = re.compile(r"[^\r\n]*\S[^\r\n]*")  # a line that is not blank
 # Signs with several codes, and the sign of recorders for a value beyond their range
 _SIGNS = {"μ": "µ", "−": "-", "∞": "inf"}
 _HEAD = 1000  # lines in which the separator and the first numbers are looked for
 _MARKS = "\t;, "
-# What NumPy's reader does not take, by the separator: some loggers write + 1.5.
-_SIGNED = {"+ ": "+", "- ": "-"}
+_COMMA = re.compile(r'"([-+]?\d+),(\d+(?:[eE][-+]?\d+)?)"')  # a number in quotes
+# What NumPy's reader does not take, by the separator: some loggers write + 1.5, Fortran 1.5D-3.
+_FORTRAN = {"D": "e"}
+_SIGNED = {"+ ": "+", "- ": "-", **_FORTRAN}
 _PLAIN = {
     "\t": _SIGNED | {",": "."},
     ";": _SIGNED | {",": "."},
     ",": _SIGNED,
-    " ": {",": "."},
+    " ": _FORTRAN | {",": "."},
 }
-_FEW = 0.1  # rows of numbers in a preamble, at most, over the rows of the record
+_FEW = 0.1  # rows of numbers outside of the record, at most, over those of the record
+_SETTINGS = 20  # lines in whose first columns recorders write settings
+_LISTED = 4  # columns in a message
 _BLOCK = 10_000  # rows of numbers that are read at once
 
 
@@ -44,8 +49,8 @@ class Cells:
     ----------
     head : list of rows
         Cells of the lines above the numbers.
-    first : row
-        Cells of the first line of numbers; empty in a text without any.
+    entries : row
+        Cells of a line of numbers, "" for those that are none; empty in a text without numbers.
     """
 
     def __init__(self, text: str) -> None:
@@ -53,16 +58,27 @@ class Cells:
         lines = [line[0] for line in islice(_LINE.finditer(text), _HEAD)]
         tables = {mark: [_split(line, mark) for line in lines] for mark in _MARKS}
 
+        def record(mark: str) -> tuple[int, int]:
+            # A row of numbers may hold as many texts: states, dates.
+            return longest([_share(row, mark) >= 1 / 2 for row in tables[mark]])
+
         def weight(mark: str) -> float:
             """Count the cells; texts beside the numbers of a row take some of its weight."""
-            return sum(len(row) * _share(row, mark) ** 2 for row in tables[mark])
+            rows = tables[mark][slice(*record(mark))]
+            return sum(len(row) * _share(row, mark) ** 2 for row in rows)
 
-        self._mark = max(_MARKS, key=weight)
-        rows = tables[self._mark]
-        # A row of numbers may hold as many texts: states, dates.
-        start, end = longest([_share(row, self._mark) >= 1 / 2 for row in rows])
-        self.head = rows[:start] if end else rows
-        self.first = rows[start] if end else []
+        self._mark = mark = max(_MARKS, key=weight)
+        start, end = record(mark)
+        self.head = tables[mark][:start] if end else tables[mark]
+        self.entries = []
+        for cell in tables[mark][min(start + _SETTINGS, end - 1)] if end else ():
+            self.entries.append(cell if re.fullmatch(_number(mark), cell) else "")
+        if mark == " ":
+            # Headers of several words stand apart by several blanks.
+            for i, line in enumerate(lines[: len(self.head)]):
+                apart = _split(re.sub(r"[ \t]{2,}", "\t", line.strip("#% \t")), "\t")
+                if len(apart) == len(self.entries):
+                    self.head[i] = apart
 
     @classmethod
     def read(cls, path: str | Path) -> Cells:
@@ -76,14 +92,54 @@ class Cells:
         # A translation would take as much memory again.
         for sign, plain in _SIGNS.items():
             text = text.replace(sign, plain)
-        return cls(text)
+        return cls(_COMMA.sub(r"\1.\2", text))
+
+    @property
+    def headers(self) -> set[str]:
+        """All cells above the numbers."""
+        return {*chain(*self.head)}
+
+    def above(self, number: int) -> list[str]:
+        """Return the cells above a column, counted from 1."""
+        return [row[number - 1] for row in self.head if 0 < number <= len(row)]
+
+    def headed(self, header: str) -> list[int]:
+        """Return the numbers of the columns of a header, or the number that is given instead.
+
+        The lowest row with such a header counts, and a cell that is all of it before one with a
+        unit behind it.
+        """
+        if re.fullmatch(r"[1-9]\d{0,5}", header):
+            return [int(header)]
+        for row in reversed(self.head):
+            for form in (str.lower, name_of):
+                cells = enumerate(map(form, row), start=1)
+                numbers = [number for number, cell in cells if cell == header.lower()]
+                if numbers:
+                    return numbers
+        return []
+
+    def hint(self, names: Sequence[str]) -> str:
+        """Return words on the columns of numbers, and options that give names to some of them."""
+        found = {}
+        for number, entry in enumerate(self.entries, start=1):
+            if entry:
+                header = " ".join(self.above(number)[-2:])[-20:].strip()
+                found[number] = f"{number} {header!r} {entry[:12]}"
+        listed = ", ".join(islice(found.values(), _LISTED)) or "no numbers"
+        # A record's time mostly stands in front of its signals.
+        places = [*found][int("time" not in names) :]
+        words = f"found {listed}"
+        for name, place in zip(names, places, strict=False):
+            words += f" --column '{name}={place}'"
+        return words
 
     def numbers(self, places: Sequence[int]) -> Array:
         """Return columns, (lines, columns), at increasing places; NaN for a cell without a number.
 
         Blank lines are left out.
         """
-        if not self.first:
+        if not self.entries:
             return np.empty((0, len(places)))
         # NumPy's reader parses 2 million rows in a second, Python's in twelve.
         return np.loadtxt(
@@ -134,12 +190,13 @@ class Cells:
         start, end = longest(complete)
         if not end:
             raise SceneError("no row has numbers in all of these columns")
-        for first, last in runs(complete):
-            # A preamble may hold rows of numbers, few, with lines without any behind them.
-            gap = slice(last, start) if last <= start else slice(end, first)
-            large = last - first > _FEW * (end - start)
-            if first != start and (large or numbers[gap].any()):
-                raise SceneError(f"line {self._line(gap.start)} is a gap in the record")
+        found = runs(complete)
+        place = found.index((start, end))
+        # A preamble may hold rows of numbers, few, and lines without any behind them.
+        many = complete.sum() > (1 + _FEW) * (end - start)
+        for before, behind in pairwise(found[max(place - 1, 0) : place + 2]):
+            if many or numbers[before[1] : behind[0]].any():
+                raise SceneError(f"line {self._line(before[1])} is a gap in the record")
         beyond = np.flatnonzero(np.isinf(table[start:end]).any(axis=1))
         if len(beyond):
             raise SceneError(
@@ -174,7 +231,7 @@ def runs(flags: ArrayLike) -> list[tuple[int, int]]:
 def _number(mark: str) -> str:
     """Return the pattern of a number beside a separator."""
     point = "." if mark == "," else ".,"
-    digits = rf"(?:\d+[{point}]?\d*|[{point}]\d+)(?:[eE][-+]?\d+)?"
+    digits = rf"(?:\d+[{point}]?\d*|[{point}]\d+)(?:[eED][-+]?\d+)?"
     blank = "" if mark == " " else " ?"  # some loggers write + 1.5
     return f"(?:[-+]?{blank}(?:{digits}|inf))"
 

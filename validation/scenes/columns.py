@@ -14,24 +14,25 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import cycle
 from pathlib import Path
-from typing import TypedDict
+from typing import TypedDict, Unpack
 
 import numpy as np
 
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
 from lwa.base.files import reason
+from lwa.base.words import similar
 from validation.scenes.cells import Cells
 from validation.scenes.checks import SceneError
 from validation.scenes.units import (
-    HEADER,
     found_unit,
     known,
+    name_of,
     read_statement,
     size_of,
 )
@@ -109,48 +110,41 @@ class MeasuredFile:
         columns that the file does not have.
     """
 
-    def __init__(
-        self,
-        path: str | Path,
-        columns: Mapping[str, str] | None = None,
-        units: Mapping[str, str] | None = None,
-        step: str | None = None,
-    ) -> None:
+    def __init__(self, path: str | Path, **stated: Unpack[Stated]) -> None:
         self.path = "standard input" if str(path) == "-" else path
         try:
             self._cells = Cells.read(path)
         except (OSError, SceneError, csv.Error) as error:
             raise SceneError(f"{self.path}: {reason(error)}") from None
-        # The cell in front is that of column 0.
-        self._head = [["", *row] for row in self._cells.head]
+        step = stated.get("step")
         self.names = {0: "time"} if step else {}
         self._stated = {0: step} if step else {}
         self._keys: dict[int, str] = {}  # names or headers by which units are stated
-        self._name_columns(columns or {})
-        for key, statement in (units or {}).items():
-            numbers = self._named(_name(key)) or self._numbers(key)
+        self._name_columns(stated.get("columns") or {})
+        for key, statement in (stated.get("units") or {}).items():
+            numbers = self._named(name_of(key)) or self._cells.headed(key)
             if not numbers:
-                raise self._fault(f"unit is of {shorten(key)}, which is no column")
+                raise self._fault(key, numbers)
             self._stated |= dict.fromkeys(numbers, str(statement))
             self._keys |= dict.fromkeys(numbers, key)
 
     def _name_columns(self, stated: Mapping[str, str]) -> None:
         """Name the columns that the user states, and those whose headers are such names."""
-        for name, column in stated.items():
-            if not _NAME.fullmatch(_name(name)):
+        for given, column in stated.items():
+            name = name_of(given)
+            if not _NAME.fullmatch(name):
                 known = "time, bead 8 force, bead 8 velocity, contact 8 force, speed"
                 raise SceneError(
-                    f"column is {shorten(name)}: such as {known} is wanted"
+                    f"column is {shorten(given)}: such as {known} is wanted"
                 )
-            numbers = self._numbers(str(column))
+            numbers = self._cells.headed(str(column))
             if len(numbers) != 1:
-                count = len(numbers) or "no"
-                raise self._fault(f"{count} columns are {shorten(column)}", name)
-            self.names[numbers[0]] = _name(name)
-        for row in reversed(self._head):  # the lowest header counts
+                raise self._fault(str(column), numbers, [name])
+            self.names[numbers[0]] = name
+        for row in reversed(self._cells.head):  # the lowest header counts
             taken = {*self.names.values()}
-            for number, cell in enumerate(row):
-                name = _name(cell)
+            for number, cell in enumerate(row, start=1):
+                name = name_of(cell)
                 if _NAME.fullmatch(name) and name not in taken:
                     self.names.setdefault(number, name)
         self.names = dict(sorted(self.names.items()))
@@ -159,31 +153,27 @@ class MeasuredFile:
         """Return the numbers of the columns of a name."""
         return [number for number, known in self.names.items() if known == name]
 
-    def _numbers(self, column: str) -> list[int]:
-        """Return the numbers of the columns of a header, or the number that is given."""
-        if re.fullmatch(r"[1-9]\d{0,5}", column):
-            return [int(column)]
-        for row in reversed(self._head):
-            numbers = []
-            for number, cell in enumerate(row):
-                if column.lower() in (_name(cell), cell.lower()):
-                    numbers.append(number)
-            if numbers:
-                return numbers
-        return []
+    def _fault(
+        self, column: str, numbers: Sequence[int], names: Sequence[str] = ()
+    ) -> SceneError:
+        """Return an error that lists the columns, and ends in options to paste.
 
-    def _fault(self, words: str, *names: str) -> SceneError:
-        """Return an error that lists the columns, and ends in options that name some of them."""
-        # A record's time mostly stands in front of its signals.
-        start = 2 if len(names) == 1 and names[0] != "time" else 1
-        paste = [f"--column '{name}={i}'" for i, name in enumerate(names, start)]
-        found = []
-        for number, entry in enumerate(self._cells.first, start=1):
-            above = [row[number] for row in self._head[-2:] if number < len(row)]
-            found.append(f"{number} {' '.join(above)[:20]!r} {entry[:12]}")
-        listed = ", ".join(found) or "no numbers"
-        said = (f"{self.path}: {words}", f"found {listed}", " ".join(paste))
-        return SceneError(": ".join(filter(None, said)))
+        Parameters
+        ----------
+        column : str
+            Header or name of which there should be one column.
+        numbers : sequence of int
+            Columns that have it.
+        names : sequence of str
+            Names that the options give to columns.
+        """
+        if numbers:
+            words = f"{len(numbers)} columns are {shorten(column)}"
+        else:
+            near = similar(column, self._cells.headers)
+            like = f", near: {', '.join(near)}" if near else ""
+            words = f"no column is {shorten(column)}{like}"
+        return SceneError(f"{self.path}: {words}: {self._cells.hint(names)}")
 
     @cached_property
     def si(self) -> bool:
@@ -212,13 +202,11 @@ class MeasuredFile:
         Raises `SceneError`, in one line, for two columns of one name, for a gap in the record, for
         a value beyond the recorder's range, and for a unit of another quantity.
         """
-        numbers = []
-        for name in names:
-            own = self._named(name)
+        numbers = [self._named(name) for name in names]
+        for name, own in zip(names, numbers, strict=True):
             if len(own) != 1:
-                raise self._fault(f"{len(own) or 'no'} columns are {name}", *names)
-            numbers += own
-        return self._record(numbers)
+                raise self._fault(name, own, names)
+        return self._record([number for (number,) in numbers])
 
     def records(self, of: str = "contact") -> list[Record]:
         """Return the records of all sensors, those of beads first.
@@ -243,10 +231,8 @@ class MeasuredFile:
             if name.endswith("force") or (name != force and not self._named(force)):
                 sensors.append(number)
         if not sensors or len(times) not in (1, len(sensors)):
-            there = f"{len(times) or 'no'} columns are time"
-            there += f" and {len(sensors) or 'none'} of sensors"
-            wanted = "one time for all, or one for each, is wanted"
-            raise self._fault(f"{there}: {wanted}", "time", "force")
+            missing = ["time"] * (len(times) != 1) + ["force"] * (not sensors)
+            raise self._fault(missing[0], self._named(missing[0]), missing)
         pairs = zip(cycle(times), sensors, strict=False)
         records = [self._signal(time, signal, of) for time, signal in pairs]
         return sorted(records, key=lambda record: record.kind)
@@ -272,18 +258,18 @@ class MeasuredFile:
     def _record(self, numbers: list[int]) -> Array:
         """Return columns, (rows, columns), in the rows where all of them are numbers."""
         columns = self._columns
+        names = " and ".join(self.names[number] for number in numbers)
         try:
             start, end = self._cells.rows(
                 np.column_stack([columns[number] for number in numbers if number])
             )
-            sizes = [self._size(number) for number in numbers]
         except SceneError as error:
-            names = " and ".join(self.names[number] for number in numbers)
             raise SceneError(f"{self.path}: {names}: {error}") from None
         # The time that a step states starts with the record.
         columns = columns | {0: np.arange(-start, end - start, dtype=float)}
         table = np.column_stack([columns[number][start:end] for number in numbers])
-        table *= sizes  # in place: long records are large
+        # In place: long records are large.
+        table *= [self._size(number) for number in numbers]
         return table
 
     @cached_property
@@ -298,7 +284,7 @@ class MeasuredFile:
 
     def _unit(self, number: int) -> str:
         """Return the unit that the file states for a column, "" for none."""
-        return found_unit([row[number] for row in self._head if number < len(row)])
+        return found_unit(self._cells.above(number))
 
     def _size(self, number: int) -> float:
         """Return the value in SI of an entry 1 of a column, 1 in a file without units."""
@@ -306,8 +292,3 @@ class MeasuredFile:
         if number in self._stated:
             return read_statement(self._stated[number], name)[0]
         return size_of(self._unit(number), name) if self.si else 1.0
-
-
-def _name(header: str) -> str:
-    """Return a header without its unit as it is compared."""
-    return HEADER.sub(r"\1", header).lower().replace("dynamic ", "").strip("#% ")

@@ -25,7 +25,7 @@ BASES = {
 """Units of the quantities that are read."""
 
 # Name and unit of a column: "Force (N)", "Force [N]", "Force in N"
-HEADER = re.compile(r"^(.*?) ?(?:(?:[([] ?|\bin )([^][()\s]+) ?[])]?)?$")
+_HEADER = re.compile(r"^(.*?) ?(?:(?:[([] ?|\bin )([^][()\s]+) ?[])]?)?$")
 
 # Other spellings; upper and lower case are alike.
 _SPELLINGS = {
@@ -69,10 +69,19 @@ def known(unit: str) -> tuple[str, float] | None:
     return None
 
 
+def name_of(header: str) -> str:
+    """Return a header without its unit, as it is compared.
+
+    >>> name_of("# Time [ms]"), name_of("bead 8 Dynamic force (N)")
+    ('time', 'bead 8 force')
+    """
+    return _HEADER.sub(r"\1", header).lower().replace("dynamic ", "").strip("#% ")
+
+
 def found_unit(cells: Sequence[str]) -> str:
     """Return the unit that the cells above a column state, "" for none; the lowest one counts."""
     for cell in reversed(cells):
-        header = HEADER.fullmatch(cell)
+        header = _HEADER.fullmatch(cell)
         if header and header[2]:
             return header[2]
     return next(filter(known, reversed(cells)), "")

@@ -21,6 +21,7 @@ import numpy as np
 
 from lwa.spheres.hertz import MATERIALS
 from validation.lattice.cost import RunProgress
+from validation.lattice.signal import RECORDS
 from validation.lattice.simulate import COMPILED
 from validation.lattice.steppers import METHODS
 from validation.pulses.sensors import (
@@ -250,11 +251,6 @@ def _print(context: click.Context, given: click.Parameter, name: Any) -> None:
 
 _PRINTED: dict[str, Any] = {"is_eager": True, "expose_value": False, "callback": _print}
 SUFFIXES = (".json", ".csv")
-RECORDS = (
-    *("time", "contact_force", "compression"),
-    *("bead_force", "bead_displacement", "bead_velocity"),
-)
-
 
 _METHODS = click.Choice((*COMPILED, *METHODS))
 _INTEGRATOR = f"Integrator: {' and '.join(COMPILED)} are compiled, the others SciPy's."
@@ -331,7 +327,8 @@ def run(
             rows = np.column_stack(list(columns.values()))
             np.savetxt(stream, rows, "%s", ",", header=",".join(columns), comments="")
         else:
-            records = {f"{name}_value": plain(getattr(done, name)) for name in RECORDS}
+            names = "time", *RECORDS.values()
+            records = {f"{name}_value": plain(getattr(done, name)) for name in names}
             stream.write(json.dumps({**result.document(), "records": records}).encode())
     return result
 

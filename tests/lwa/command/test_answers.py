@@ -103,13 +103,11 @@ ANSWERS = {
     "expansion --k 3 --masses 1,2,3 --order 6": {
         "c2_value": None, "fwhm_value": dict.fromkeys(QUANTITIES),
     },
-    # Two beads collide at a time; what the sum gives is as wrong as it is large.
-    "expansion --k 40 --masses 1": {
-        "c2_value": (two_bodies := 4 * sp.gamma(sp.Rational(43, 82))**2
-                     / (41 * sp.pi * sp.gamma(sp.Rational(42, 41))**2)),
-        "effective_mass_value": pytest.approx(1, rel=1e-9),
+    # Two beads collide at a time.
+    "wave --k 40 --masses 1": {
+        "lattice.speed_value": 2 * sp.gamma(sp.Rational(43, 82))
+        / (sp.sqrt(1640 * sp.pi) * sp.gamma(sp.Rational(42, 41))),
     },
-    "wave --k 40 --masses 1": {"lattice.speed_value": sp.sqrt(two_bodies / 40)},
     "wave --k 3/2 --masses 1": {
         "lattice.speed_value": pytest.approx(math.sqrt(0.819967 / 1.5), rel=1e-5),
         "lattice.fwhm_value.force": pytest.approx(1.411928, rel=1e-3),
@@ -192,7 +190,7 @@ TEXTS = {
     "derive --law exponential --format latex": (r"F' u_{xx} + G F' u_{x}^{-2} u_{xx}^{3}",),
     "wave --k 3/2 --masses m --force f": ("peak contact force F = f\n",),
     "wave --k 3/2 --masses 1,3 --background 1/10": (
-        "FWHM of the strain at B = 1 = 2.67193 D\n",
+        "FWHM of the strain at B = 1, D = 1 = 2.672, error unknown\n",
     ),
     "wave --masses 1 --background p0 --format latex": (
         r"V_{s} &= ", r"c_{0} &= ", "p_{0} &= p_{0}",
@@ -202,7 +200,6 @@ TEXTS = {
     "wave --k 2 --masses 1 --force 123456789012/1234567891": ("F = 123456789012/1234567891\n",),
     "wave --k 2 --masses 1 --force 1234567890121/123456789017": ("F = 9.9999999996031\n",),
     "expansion --k 3 --masses 1,2,3 --order 6": ("velocity: no sum at k = 3", "c²: no sum"),
-    "expansion --k 3/2 --masses 1": ("c², closed form = 0.8199", "FWHM of the force = 1.4119"),
     "wave --k 3/2 --masses 1 --format latex": (
         r"V_{s}\big|_{\mathrm{lattice}} &= 0.739354 \pm", r"\right) D",
     ),
@@ -210,7 +207,8 @@ TEXTS = {
     "dispersion --format latex": (r"\kappa^{4}",),
     "dispersion": ("κ^4: -(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)",),
     "dispersion --masses 1 --precompression 2": ("band 1",),
-    "wave --k 3/2 --masses 0.123,0.45 --force 1 --spacing 1": ("= 1.67102\n", "= 2.09636\n"),
+    "wave --k 3/2 --masses 0.123,0.45 --force 1 --spacing 1": ("≈ 1.671023972577", "≈ 2.096362"),
+    "wave --k 3/2 --masses 1,1": ("V_s = 2*sqrt(30)*B**(1/4)/15 ≈ 0.730296743340221 B^(1/4)\n",),
     "envelope --masses 1,1/2 --k 3/2 --spacing 1 --background 2 --detuning 1/1000": (
         "bright breather, |Ψ| = a sech(b n):",
     ),

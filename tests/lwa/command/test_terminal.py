@@ -105,18 +105,3 @@ def test_the_examples_of_a_help_run_and_its_page_is_in_the_book(capsys, folder, 
             Path(file).write_text(out)
     (page,) = re.findall(r"In the book: (\w+)\.html", text)
     assert (ROOT / "book" / f"{page}.md").exists()
-
-
-def test_text_is_as_wide_as_the_terminal_and_a_pipe_gets_100(capsys, monkeypatch):
-    line = ("wave", "--masses", "m1,m2")
-    texts = [said(capsys, *line)]
-    monkeypatch.setattr(
-        "lwa.command.answer.sys.stdout.isatty", lambda: True, raising=False
-    )
-    for width in (80, 60, 200):
-        monkeypatch.setenv("COLUMNS", str(width))
-        texts.append(said(capsys, *line))
-    widths = [max(map(len, text.splitlines())) for text in texts]
-    assert [80 < widths[0] <= 100, 60 < widths[1] <= 80, widths[2] <= 60] == [True] * 3
-    assert texts[0] == texts[3]
-    assert {"".join(text.split()) for text in texts} == {"".join(texts[0].split())}

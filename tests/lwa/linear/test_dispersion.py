@@ -21,7 +21,7 @@ from lwa import (
     homogenize,
 )
 from lwa.law import named
-from lwa.linear.network import solved
+from lwa.linear.springs import solved
 
 ROUNDING = 1e-13
 

@@ -36,7 +36,7 @@ console.log(JSON.stringify(calls.map(([name, ...values]) => eval(name)(...values
 
 def functions_of(wave):
     """The functions that `CompactWave.code` writes."""
-    return wave_functions(wave.k, wave.cell, wave.coefficient_sum, wave.speed_factor)
+    return wave_functions(wave)
 
 
 def answers(language, source, calls, folder):

@@ -14,6 +14,7 @@ from validation.lattice.kernel.compiled import SOURCES
 from validation.lattice.kernel.samples import interpolate
 from validation.lattice.kernel.symplectic import advance_split
 
+pytestmark = pytest.mark.slow
 PACKAGES = Path(validation.__file__).parents[1]
 RUN = """
 import os
@@ -44,7 +45,6 @@ def output(folder, program, **environment):
     return done.stdout
 
 
-@pytest.mark.slow
 def test_an_edit_of_any_source_of_the_kernel_compiles_again(tmp_path):
     """The hash of the sources is the stamp of each cached function of the engine."""
     for function in (advance, advance_split, interpolate):
@@ -58,13 +58,11 @@ def test_an_edit_of_any_source_of_the_kernel_compiles_again(tmp_path):
     assert "data saved" in output(tmp_path, SMALL, **cached)
 
 
-@pytest.mark.slow
 def test_the_process_that_compiles_gives_the_same_digits_as_later_ones(tmp_path):
     options = dict(NUMBA_CACHE_DIR=str(tmp_path / "cache"), BEADS="40")
     assert output(tmp_path, RUN, **options) == output(tmp_path, RUN, **options)
 
 
-@pytest.mark.slow
 def test_a_damaged_cache_is_written_again(tmp_path):
     cache = {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
     output(tmp_path, SMALL, **cache)
@@ -75,7 +73,6 @@ def test_a_damaged_cache_is_written_again(tmp_path):
     assert len(file.read_bytes()) == len(whole)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("head", "places"),
     [

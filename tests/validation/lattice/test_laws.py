@@ -1,15 +1,11 @@
-"""Contact laws other than powers: Toda's exact soliton, SciPy, and bad laws."""
+"""Contact laws other than powers: Toda's exact soliton, and a wall that recedes."""
 
 import numpy as np
-import pytest
-import sympy as sp
 
-from lwa.law import Law, named
+from lwa.law import named
 from validation.lattice.simulate import simulate
 from validation.scenes.forcing import Drive
 from validation.scenes.scene import Scene
-
-NAMES = ("contact_force", "compression", "bead_velocity", "displacements", "velocities")
 
 
 def test_todas_soliton_runs_through_200_beads_at_its_own_speed():
@@ -31,35 +27,6 @@ def test_todas_soliton_runs_through_200_beads_at_its_own_speed():
     for i, row in zip(scene.contact_sensors, run.compression, strict=True):
         assert np.abs(row - compression(i, run.time)).max() < 1e-9
     assert abs(run.energy_drift) < 1e-10
-
-
-@pytest.mark.parametrize(
-    ("law", "loaded"),
-    [
-        (named("hertz2", 1, "1/2"), False),
-        (named("magnetic", 4, 2), False),
-        (named("exponential", 1), False),
-        (Law(sp.tanh(sp.Symbol("x")), sp.Symbol("x")), True),
-    ],
-)
-def test_random_chains_agree_with_scipy(law, loaded):
-    random = np.random.default_rng((24, len(str(law)), loaded))
-    n = 8
-    scene = Scene(
-        masses=random.uniform(0.5, 2, n), stiffnesses=random.uniform(0.5, 2, n - 1), wall=1.0,
-        law=law, velocities=random.uniform(-0.3, 0.3, n), duration=5, samples=201,
-        contact_sensors=(0, 3, 7), bead_sensors=(0, 4, 7), precompression=0.2 * loaded,
-    )  # fmt: skip
-    exact = simulate(scene, method="DOP853", rtol=1e-12)
-    run = simulate(scene)
-    for record in NAMES:
-        difference = np.abs(getattr(run, record) - getattr(exact, record)).max()
-        assert difference < 1e-7, (
-            record
-        )  # chaotic rattling amplifies 1e-9 where contacts open
-    assert abs(run.energy_drift) < 1e-7
-    # contacts of a law with F'(0) > 0 pull
-    assert loaded or (exact.contact_force.min() < 0) == (law.name != "hertz2")
 
 
 def test_a_wall_recedes_from_a_chain_that_softens():

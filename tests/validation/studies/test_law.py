@@ -176,7 +176,7 @@ ROWS = "".join(f"{n},{n}\n" for n in range(1, 9))
 @pytest.mark.parametrize(
     ("text", "options", "named"),
     [
-        ("force,time\n1,2\n", {}, "no columns are speed"),
+        ("force,time\n1,2\n", {}, "no column is .speed."),
         ("force,speed\n1,2\n", {}, "at least 6 pulses"),
         ("force,speed\n" + "-1,2\n" * 9, {}, "positive force and speed"),
         ("force,speed\n" + "1,2\n" * 9, {}, "1 different forces"),

@@ -1,0 +1,265 @@
+"""The arch: a wave whose strain is a power of a cosine, in closed form.
+
+On ``|ξ| ≤ π/(2β)``, with ``ξ = x - V τ``, the strain is ``v = B cos^m(βξ)``, and 0 outside. Two
+numbers of a chain determine all arches for an exponent k, here S and f::
+
+    S = (G + H + I)/D²,    f = V²/B^{k-1},    m = 2/(k-1),    β = (k-1) / (2 D √S).
+
+There are such waves for ``k > 1``, ``S > 0`` and ``f > 0``.
+
+**The paper's reduction** (Porter et al. 2008) of the wave's equation (`lwa.wave.compact`) to an
+oscillator, ``z'' = μ z^η - σ z``. Let ``r_n = ∂^n z / z``. The substitution ``v = z^p``, p a root
+of::
+
+    (G + H + I) p² - (H + 3I) p + 2I = 0,
+
+removes r_1³ from the third-order equation of v. There remains::
+
+    V² z^p r_1 = z^{kp} (r_1 + I r_3 + I q r_1 r_2),    q = 3 (p - 1) + p H/I.
+
+Since ``∂(z^e r_2) = z^e (r_3 + (e - 1) r_1 r_2)``, the integrating factor ``z^a`` with
+``kp + a = q + 1`` makes the equation a total derivative, whose integral is the oscillator.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import Any, Self
+
+import sympy as sp
+
+from lwa.base import latex
+from lwa.base.exact import factored, positive, power, signed
+from lwa.base.frozen import RISE, SPEED, NoSolitaryWave, Value, strain_power
+from lwa.base.words import QuantityName
+from lwa.cell import Cell, exponent, substitution
+
+
+@dataclass(frozen=True)
+class Arch(Value):
+    """Closed forms of the arch of a chain; a subclass has the two numbers.
+
+    Results are exact SymPy expressions; the speed ``V = dx/dτ`` becomes dx/dt by `time_scale`.
+
+    Parameters
+    ----------
+    cell : Cell
+        The chain.
+    k : Expr
+        Exponent of its contact law.
+
+    Raises
+    ------
+    NoSolitaryWave
+        For numbers without a wave.
+    """
+
+    cell: Cell
+    k: sp.Expr
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "k", exponent(self.k))
+        # With symbols every condition is taken to hold.
+        if self.k.is_number and not self.k > 1:
+            raise NoSolitaryWave(f"k is {self.k}: a compact wave needs k > 1")
+        if self.coefficient_sum.is_number and not self.coefficient_sum > 0:
+            raise NoSolitaryWave(
+                f"(G+H+I)/D² is {self.coefficient_sum}: a compact wave needs G+H+I > 0"
+            )
+        if self.speed_factor.is_number and not self.speed_factor > 0:
+            raise NoSolitaryWave(
+                f"V²/B^(k-1) is {self.speed_factor}: a compact wave needs V² > 0"
+            )
+
+    @property
+    def coefficient_sum(self) -> sp.Expr:
+        """The sum (G + H + I) / D²."""
+        raise NotImplementedError
+
+    @property
+    def speed_factor(self) -> sp.Expr:
+        """The ratio ``V²/B^{k-1}``."""
+        raise NotImplementedError
+
+    @property
+    def D(self) -> sp.Expr:
+        """The spacing D of neighbouring particles."""
+        return self.cell.spacing
+
+    @property
+    def m(self) -> sp.Expr:
+        """The power ``m = 2/(k-1)`` of the cosine in the strain."""
+        return 2 / (self.k - 1)
+
+    @cached_property
+    def beta(self) -> sp.Expr:
+        """The wavenumber ``β = (k-1) / (2 √(G+H+I))`` of the cosine."""
+        return (self.k - 1) / (2 * self.D * square_root(self.coefficient_sum))
+
+    @cached_property
+    def width(self) -> sp.Expr:
+        """The length π/β of the wave's support."""
+        return sp.pi / self.beta
+
+    @property
+    def sites(self) -> sp.Expr:
+        """The number π/(βD) of particles under the wave."""
+        return self.width / self.D
+
+    def fwhm(self, quantity: QuantityName = "strain") -> sp.Expr:
+        """Full width at half maximum, a length in x.
+
+        Parameters
+        ----------
+        quantity : {"strain", "force", "velocity"}
+            The strain u_x, the force ``A (D u_x)^k`` of a contact, or the velocity
+            ``u_τ = -V u_x``.
+
+        Raises
+        ------
+        InputError
+            For another quantity.
+        """
+        # The quantity scales as strain^q: cos^{mq}(βξ) = 1/2.
+        exponent = strain_power(quantity, self.k) * self.m
+        return 2 * sp.acos(2 ** (-1 / exponent)) / self.beta
+
+    def speed(self, B: Any = RISE) -> sp.Expr:
+        """Speed ``V = dx/dτ`` of the wave whose strain peaks at B."""
+        factor = square_root(self.speed_factor)
+        growth = power(positive(B, "B"), (self.k - 1) / 2)
+        return factor * growth
+
+    def amplitude(self, V: Any = SPEED) -> sp.Expr:
+        """Peak strain ``B = (V² / speed_factor)^{1/(k-1)}`` of the wave of speed ``V = dx/dτ``."""
+        scaled = positive(V, "V") ** 2 / self.speed_factor  # B^{k-1}
+        return power(scaled, 1 / (self.k - 1))
+
+    @property
+    def force_exponent(self) -> sp.Expr:
+        """The power 2k/(k-1) of V to which the peak force F_m is proportional."""
+        return 2 * self.k / (self.k - 1)
+
+    @property
+    def time_scale(self) -> sp.Expr:
+        """The ratio τ/t, by which ``dx/dt = V τ/t``."""
+        return self.cell.time_scale(self.k)
+
+    def profile(self, xi: Any, B: Any = RISE) -> sp.Expr:
+        """Strain ``v(ξ) = B cos^m(βξ)`` on ``|ξ| ≤ π/(2β)`` and 0 outside, as a SymPy Piecewise.
+
+        >>> from lwa import canonical_wave
+        >>> canonical_wave(Cell([1]), 3).profile("xi", B=1)
+        Piecewise((cos(sqrt(2)*xi/D), Abs(xi) <= sqrt(2)*pi*D/4), (0, True))
+        """
+        xi = signed(xi, "xi")
+        arch = positive(B, "B") * sp.cos(self.beta * xi) ** self.m
+        return sp.Piecewise((arch, sp.Abs(xi) <= self.width / 2), (0, True))
+
+    def at(self, **values: Any) -> Self:
+        """Substitute numbers (or other symbols) for the named symbols, and for ``ω = m2/m1``.
+
+        Raises
+        ------
+        InputError
+            For a name that the wave does not contain, and a value that is not positive.
+        NoSolitaryWave
+            For values without a wave.
+
+        Examples
+        --------
+        >>> from lwa import canonical_wave
+        >>> canonical_wave(Cell(["m1", "m2"]), "k").at(k="3/2", omega=1).beta
+        sqrt(10)/(5*D)
+        """
+        return self.replaced(substitution(values, self.cell, self.k))
+
+    def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Self:
+        """The wave with other values of symbols."""
+        values = {}
+        for field in fields(self):
+            if field.name != "cell":
+                values[field.name] = getattr(self, field.name).xreplace(new)
+        return replace(self, cell=self.cell.replaced(new), **values)
+
+
+@dataclass(frozen=True)
+class Reduction(Value):
+    """The oscillator ``z'' = μ z^η - σ z`` of the substitution ``v = z^p``.
+
+    With either root p the compact wave has ``β = √σ (1 - η) / 2`` and
+    ``B^{k-1} = μ / (β² s (s - 1))``.
+
+    Parameters
+    ----------
+    p : Expr
+        Power of the substitution.
+    a : Expr
+        Power of the integrating factor ``z^a``.
+    mu : Expr
+        Coefficient ``μ = V² / (I (p + a))``.
+    eta : Expr
+        Power ``η = 1 + p - kp``.
+    sigma : Expr
+        Coefficient ``σ = 1 / (I (kp + a))``.
+    s : Expr
+        Power 2 / (1 - η) of the cosine in z.
+    """
+
+    p: sp.Expr
+    a: sp.Expr
+    mu: sp.Expr
+    eta: sp.Expr
+    sigma: sp.Expr
+    s: sp.Expr
+
+    @classmethod
+    def of(
+        cls, p: sp.Expr, k: sp.Expr, I: sp.Expr, H_over_I: sp.Expr, V: sp.Expr
+    ) -> Self:
+        """Return the reduction of a wave of the speed ``V = dx/dτ`` by the root p."""
+        a = factored(3 + H_over_I - k) * p - 2  # 1 - kp + 3 (p - 1) + p H/I
+        eta = 1 + p - k * p
+        return cls(
+            p=p,
+            a=a,
+            mu=V**2 / (I * (p + a)),
+            eta=eta,
+            sigma=1 / (I * (k * p + a)),
+            s=2 / (1 - eta),
+        )
+
+    def latex_rows(self) -> list[str]:
+        equation = r"z'' = \mu z^{\eta} - \sigma z, \quad v = z^{p}"
+        values = {
+            "p": self.p,
+            "a": self.a,
+            r"\mu": self.mu,
+            r"\eta": self.eta,
+            r"\sigma": self.sigma,
+        }
+        return [equation, *latex.rows(values)]
+
+
+def roots(total: sp.Expr, H_over_I: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+    """The two roots p; ``total`` is (G + H + I)/I. The paper has the first root."""
+    # A p² - B p + 2 = 0
+    A = factored(total)
+    B = factored(H_over_I + 3)
+    root = square_root(factored(B**2 - 8 * A))
+    # Any sign of the root will do, as both are returned.
+    root = root.replace(sp.Abs, lambda x: x)
+    first = (B - root) / (2 * A)
+    second = (B + root) / (2 * A)
+    return sp.together(first), sp.together(second)
+
+
+def square_root(value: sp.Expr) -> sp.Expr:
+    """Square root of a rational expression in positive quantities, squares taken out."""
+    # SymPy takes squares of positive symbols out of a root.
+    plain, back = sp.posify(value)
+    numerator, denominator = sp.fraction(plain)
+    root = power(numerator, sp.S.Half) / power(denominator, sp.S.Half)
+    return root.xreplace(back)
