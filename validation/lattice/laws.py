@@ -125,7 +125,8 @@ class Contact:
 
     def _evaluated(self, name: str, compression: Array) -> Array:
         """Evaluate a function of the law: its "force", "slope" or "energy"."""
-        function = _functions(self.law)[name]
+        assert self.law is not None
+        function = _function(self.law, name)
         with np.errstate(all="ignore"):  # beyond a singular law's reach: inf or NaN
             if self.pulls:
                 return np.array(
@@ -171,31 +172,27 @@ class Contact:
         return {name: f.address for name, f in _machine_code(self.law).items()}
 
 
+# The first two are derivatives of F, in their order.
 _NAMES = ("force", "slope", "energy")
 
 
-def _expressions(law: ContactLaw) -> dict[str, sp.Expr]:
-    """Return F, F′ and the energy by name, with float coefficients and e^x - 1 as expm1(x)."""
-    energy = law.energy
-    at_rest = sp.limit(energy, law.delta, 0, "+")
-    rows = zip(_NAMES, (law.F, law.slope(), energy - at_rest), strict=True)
-    return {
-        name: optimize(sp.N(sp.sympify(row), 20), [expm1_opt]) for name, row in rows
-    }
+def _expression(law: ContactLaw, name: str) -> sp.Expr:
+    """Return F, F′ or the energy, with float coefficients and e^x - 1 as expm1(x)."""
+    if name == "energy":
+        value = law.energy - sp.limit(law.energy, law.delta, 0, "+")
+    else:
+        value = law.slope(_NAMES.index(name))
+    return optimize(sp.N(sp.sympify(value), 20), [expm1_opt])
 
 
 @lru_cache
-def _functions(law: ContactLaw | None) -> dict[str, Callable[[Array], Any]]:
-    """Return F, F′ and the energy of a law as functions of arrays, by name."""
-    assert law is not None
+def _function(law: ContactLaw, name: str) -> Callable[[Array], Any]:
+    """Return F, F′ or the energy of a law as a function of arrays; an energy may take seconds."""
     with _evaluated(law):
-        functions = {
-            name: sp.lambdify(law.delta, row, "numpy")
-            for name, row in _expressions(law).items()
-        }
-        for function in functions.values():
-            function(np.ones(2))
-        return functions
+        row = _expression(law, name)
+        function: Callable[[Array], Any] = sp.lambdify(law.delta, row, "numpy")
+        function(np.ones(2))
+        return function
 
 
 @lru_cache
@@ -204,11 +201,12 @@ def _machine_code(law: ContactLaw) -> dict[str, Any]:
     from numba import cfunc  # start-up
 
     compiled = cfunc("f8(f8)", error_model="numpy")
+    functions = {}
     with _evaluated(law):
-        return {
-            name: compiled(sp.lambdify(law.delta, row, "math"))
-            for name, row in _expressions(law).items()
-        }
+        for name in _NAMES:
+            function = sp.lambdify(law.delta, _expression(law, name), "math")
+            functions[name] = compiled(function)
+    return functions
 
 
 @contextmanager
