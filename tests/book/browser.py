@@ -39,6 +39,7 @@ POLICY = "default-src 'self' 'unsafe-inline' 'unsafe-eval' data: blob:"
 EVENTS = """
 [window.faults, window.foreign] = [[], []];
 addEventListener("error", e => faults.push(e.message));
+for (const kind of ["warn", "error"]) console[kind] = (...words) => faults.push(words.join(" "));
 addEventListener("securitypolicyviolation", e => foreign.push(e.blockedURI));
 """
 
@@ -165,9 +166,10 @@ class _Handler(SimpleHTTPRequestHandler):
             frame = f'<iframe src="/{page}" width="{width}" height="900"></iframe>'
             self._send(f'<link rel="icon" href="data:,">{frame}')
         elif path.suffix == ".html" and path.is_file():
-            modes = "".join(
-                f'localStorage.{n} = "{self.server.mode}";' for n in ("mode", "theme")
-            )
+            # A page in light mode is a first visit: nothing is stored.
+            modes = ""
+            if self.server.mode == "dark":
+                modes = "localStorage.mode = localStorage.theme = 'dark';"
             head = f"<head><script>{EVENTS}{modes}</script>"
             text = path.read_text().replace("<head>", head, 1)
             self._send(text.replace("</body>", PROBE + "</body>"))
