@@ -44,7 +44,7 @@ from lwa.base.progress import Progress
 from lwa.command.options import quantities
 from lwa.loaded.background import Background
 from validation.lattice.result import Run
-from validation.lattice.simulate import simulate, twice
+from validation.lattice.simulate import repeated, simulate
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import highest_pulse, leading_pulses
 from validation.pulses.sensors import tracks
@@ -160,7 +160,7 @@ class Upright:
             return np.asarray((np.reshape(times, x.shape) * self.sound(x)).mean(axis=1))
 
         scene = self.blown(self.weak, bead_sensors=beads.ravel().tolist())
-        fine, coarse = map(widths, twice(scene, *self.tolerances))
+        fine, coarse = map(widths, repeated(scene, self.tolerances))
         return x.mean(axis=1), fine, coarse
 
     def fit(self, x: Array, width: Array, power: float) -> Array:

@@ -34,7 +34,7 @@ from lwa.command.options import law_option, quantities
 from lwa.law import ContactLaw
 from lwa.loaded.background import Background
 from validation.lattice.result import Run
-from validation.lattice.simulate import twice
+from validation.lattice.simulate import repeated
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import (
     MeasureError,
@@ -259,7 +259,7 @@ class Wave:
 
     def row(self) -> dict[str, Any]:
         """Table row: measured numbers, and the theory's at the measured force."""
-        fine, rough = twice(self.scene, *self.tolerances)
+        fine, rough = repeated(self.scene, self.tolerances)
         try:
             measured, coarse, before = (
                 self.read(fine, 1),

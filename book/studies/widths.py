@@ -17,9 +17,9 @@ from typing import Any
 from lwa import CompactWave, canonical_wave, homogenize
 from lwa.base.frozen import Estimate
 from validation.lattice.result import Run
-from validation.lattice.simulate import twice
+from validation.lattice.simulate import repeated
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import compared
+from validation.pulses.pulse import compared, tolerances
 from validation.pulses.sensors import Train
 from validation.report.study import Report, study
 from validation.report.table import Column, Table, percent
@@ -28,9 +28,9 @@ from validation.studies.paper import (
     BEADS,
     FIRST_BEAD,
     HERTZ,
+    RTOL,
     SENSORS,
     STATED,
-    TOLERANCES,
     bead_fwhm,
     cells_of_lines,
     recorded_chain,
@@ -104,8 +104,9 @@ def widths() -> Report:
     ``average_error_value``, ``error_value`` {closure: {line: …}}, ``reproduced``.
     """
     beads = tuple(range(4, BEADS - 2))  # of PTFE and of steel in turn
-    runs, waves = twice(recorded_chain(beads), *TOLERANCES), _waves()
-    numbers = compared(_numbers, *runs, rtol=TOLERANCES[0])
+    runs = repeated(recorded_chain(beads), tolerances(RTOL))
+    waves = _waves()
+    numbers = compared(_numbers, runs)
 
     def theory(quantity: str, force: Estimate, in_time: bool) -> Lines:
         return {

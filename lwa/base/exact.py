@@ -213,12 +213,15 @@ def demand_distinct(**parts: Collection[sp.Symbol]) -> None:
 def number(value: sp.Expr) -> float:
     """The float of an exact number; see `evaluated`.
 
-    Raises `lwa.InputError` for an expression with symbols.
+    Raises `lwa.InputError` for an expression with symbols, and for other than real numbers.
     """
     demand_numbers(
         value.free_symbols, "a curve needs numbers for all symbols; give them by at(…)"
     )
-    return float(evaluated(value, 20))
+    result = evaluated(value, 20)
+    if not result.is_Float and not result.is_Rational:
+        raise InputError(f"{shorten(value)} is no real number")
+    return float(result)
 
 
 def evaluated(value: sp.Expr, digits: int) -> sp.Expr:

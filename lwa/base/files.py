@@ -71,6 +71,8 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
         return reader(parse(text.decode("utf-8-sig")))
     except (InputError, OSError) as error:
         fault = reason(error)
+        if isinstance(error, FileNotFoundError):
+            fault += "; to write one: lwa-validate run --example > scene.toml"
     except UnicodeDecodeError:
         fault = "not a text in UTF-8"
     except RecursionError:
@@ -176,7 +178,9 @@ class Table:
             return reader(self.entries[key], self.path(key))
         # No reader returns None, which therefore stands for "no default".
         if default is None:
-            raise InputError(f"{self.path(key)} is missing")
+            raise InputError(
+                f"{self.path(key)} is missing: lwa-validate run --keys shows every key"
+            )
         return default
 
     def one(self, *keys: str) -> str:

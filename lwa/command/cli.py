@@ -151,23 +151,21 @@ def next_step(
     refusal: Refusal, command: click.Command, name: str, arguments: Sequence[str]
 ) -> str:
     """The reason of a refusal and, where an option is to be changed, the line to paste."""
-    context = click.Context(command)
+    line: list[str] = []
+    for word in arguments:  # --k=2 is --k 2
+        line += word.split("=", 1) if word.startswith("--") else [word]
     chosen: click.Command | None = command
-    line = list(arguments)
     if isinstance(command, click.Group):
         # Options of the group itself end it, so that the first word is a command.
-        chosen = command.get_command(context, line[0])
-    examples = {}
-    for option in chosen.params if chosen else ():
-        # Options of `lwa` have an example; the default of others is a valid text.
-        examples[called(option)] = getattr(option.type, "example", option.default)
-    change = refusal.change or _example(refusal.reason, examples, line)
+        chosen = command.get_command(click.Context(command), line[0])
+    options = {called(option): option for option in chosen.params} if chosen else {}
+    change = refusal.change or _example(refusal.reason, options, line)
     # A change of Python's arguments that are no options is said as Python writes it.
-    if not change or not examples.keys() >= change.keys():
+    if not change or not options.keys() >= change.keys():
         return str(refusal)
     changes = []
     for changed, value in change.items():
-        if f"--{changed}" in line:  # an option and its value
+        while f"--{changed}" in line:  # an option and its value
             at = line.index(f"--{changed}")
             del line[at : at + 2]
         if value is not None:
@@ -183,23 +181,28 @@ def next_step(
 _SUBJECT = re.compile(r"(\w+) is |'(\w+)' has no value")
 """The option at the start of a reason, or the symbol for which a number is wanted."""
 
-_HOLDER = {"k": "k", "D": "spacing"}
-"""Option of a symbol; any other one is taken for a mass."""
-
 
 def _example(
-    reason: str, examples: Mapping[str, object], line: Sequence[str]
+    reason: str, options: Mapping[str, click.Parameter], line: Sequence[str]
 ) -> dict[str, object]:
     """The example of the option that a reason is about; {} for none, and if it is given."""
     subject = _SUBJECT.match(reason)
     if subject is None:
         return {}
-    name = subject[1] or _HOLDER.get(subject[2], "masses")
-    example = examples.get(name)
-    # A refusal of the example itself is about something else.
-    if not isinstance(example, str) or example in line:
-        return {}
-    return {name: example}
+    found: dict[str, object] = {}
+    for name, option in options.items():
+        text = str(option.default)
+        if f"--{name}" in line[:-1]:
+            text = line[line.index(f"--{name}") + 1]
+        # Options of `lwa` have an example; the default of others is a valid text.
+        example = getattr(option.type, "example", option.default)
+        meant = name == subject[1] or subject[2] in re.split(r"\W", text)
+        # A refusal of the example itself is about something else.
+        if meant and isinstance(example, str) and example != text:
+            found[name] = example
+    if subject[2] == "F" and not found:  # the symbol of a force that is not given
+        found["force"] = "10"
+    return found
 
 
 COMMANDS = {

@@ -76,6 +76,13 @@ def strike(
             f"precompression is {chain.precompression} in {spheres}: the pulse of a strike is that "
             "of a chain without load; leave the key out"
         )
+    if not cell.uniform:
+        raise InputError(
+            f"{spheres} has unlike beads or contacts: the pulse is that of equal ones; "
+            f"lwa-validate run {spheres} simulates any chain"
+        )
+    if cell.spacing.is_Symbol:
+        raise InputError(f"{spheres} has no spacing: add spacings = 1.0 to [chain]")
     # Options stand above the file.
     if velocity is None and drop is None:
         velocity, drop = striker.velocity, striker.drop

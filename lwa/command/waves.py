@@ -213,7 +213,7 @@ def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
         chain.text,
         "the compact wave in a chain without load:",
         *closure_lines(theory),
-        "v = u_x = B cos^(2/(k-1))(β ξ), ξ = x - V_s τ, on |ξ| ≤ π/(2β)",
+        f"v = u_x = B cos^({wave.m})(β ξ), ξ = x - V_s τ, on |ξ| ≤ π/(2β)",
         "",
         Row.of(wave, "beta", "β", "1/m"),
         Row.of(wave, "width", "width π/β", "m", symbol=r"\frac{\pi}{\beta}"),

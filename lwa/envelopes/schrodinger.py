@@ -23,6 +23,7 @@ Contacts begin to open at about ``2a|d| = δ0``, that is at a detuning Δ_o, as 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal, NoReturn, get_args
@@ -86,7 +87,12 @@ class Envelope(Value):
     floats: bool = False
 
     def __repr__(self) -> str:
-        return f"Envelope({self.cell!r}, κ={self.wavenumber}, branch={self.branch})"
+        shown = f"{self.cell!r}, κ={self.wavenumber}, branch={self.branch}"
+        # Symbols that only floats could solve for have no answer.
+        with suppress(InputError):
+            shown += f": ω={brief(self.frequency)}, ω″={brief(self.dispersion)}"
+            shown += f", χ={brief(self.nonlinearity)}"
+        return f"Envelope({shown})"
 
     def latex_rows(self) -> list[str]:
         equation = (

@@ -104,10 +104,15 @@ class PDE(OfClosure):
         return values
 
     def _at_third_order(self, letter: str) -> sp.Expr:
+        if not self.acoustic:
+            raise InputError(
+                "branch is 'optical': G, H and I are those of the acoustic branch",
+                branch="acoustic",
+            )
         if not self.third_order:
             raise InputError(
-                f"order is {self.closure.model.order}: G, H and I stand at D^(k+3), from order 4 "
-                "on, on the acoustic branch"
+                f"order is {self.closure.model.order}: G, H and I stand at D^(k+3), from 4 on",
+                order=4,
             )
         return self.third_order[letter]
 

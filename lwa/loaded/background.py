@@ -25,7 +25,7 @@ from typing import Any, Self
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, power, read_exact, real, shorten
+from lwa.base.exact import InputError, brief, power, read_exact, real, shorten
 from lwa.base.frozen import FALL, RISE, NoSolitaryWave, Value
 from lwa.cell import Cell
 from lwa.law import ContactLaw, for_cell
@@ -168,7 +168,7 @@ class Background(Value):
         return replace(self, p0=p0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class KdV(Value):
     """The limit of small waves, ``v_t + c0 v_x + α v v_x + γ v_xxx = 0``, and its sech² wave.
 
@@ -188,6 +188,12 @@ class KdV(Value):
     sound_speed: sp.Expr
     nonlinearity: sp.Expr
     dispersion: sp.Expr
+
+    def __repr__(self) -> str:
+        return (
+            f"KdV(c0={brief(self.sound_speed)}, α={brief(self.nonlinearity)}, "
+            f"γ={brief(self.dispersion)})"
+        )
 
     @classmethod
     def of_slopes(cls, c0: sp.Expr, F1: sp.Expr, F2: sp.Expr, I: sp.Expr) -> Self:

@@ -68,8 +68,9 @@ class CompactWave(Arch):
         return f"CompactWave({self.cell!r}, k={self.k}, β={shorten(self.beta)})"
 
     def latex_rows(self) -> list[str]:
+        arch = rf"\cos^{{{latex.expression(self.m)}}}(\beta \xi)"
         return [
-            r"v = u_{x} = B \cos^{2/(k-1)}(\beta \xi), \quad |\xi| \leq \frac{\pi}{2\beta}",
+            rf"v = u_{{x}} = B {arch}, \quad |\xi| \leq \frac{{\pi}}{{2\beta}}",
             latex.row(r"\beta", self.beta),
             latex.row(r"\frac{\pi}{\beta}", self.width),
             latex.row(latex.fwhm("strain"), self.fwhm("strain")),

@@ -82,11 +82,8 @@ class NumericWave(Value):
         compiled: dict[str, Callable[..., Any]] = {}
         # Each function may call those before it.
         for f in self._functions.values():
-            value = f.value
-            for symbol, part in reversed(f.local):
-                value = value.xreplace({symbol: part})
             modules = [dict(compiled), "numpy"]
-            compiled[f.name] = sp.lambdify(f.arguments, value, modules, cse=True)
+            compiled[f.name] = sp.lambdify(f.arguments, f.value, modules, cse=True)
         return compiled
 
     def beta(self, k: ArrayLike, omega: ArrayLike) -> Array:

@@ -25,9 +25,6 @@ from lwa.base.words import LanguageName, one_of
 from lwa.law import Power
 from lwa.wave.arch import Arch
 
-Local = tuple[tuple[sp.Symbol, sp.Expr], ...]
-"""Variables and their values."""
-
 
 @dataclass(frozen=True)
 class Function:
@@ -40,16 +37,13 @@ class Function:
     arguments : tuple of Symbol
         Arguments in their order.
     value : Basic
-        The value, an expression in the arguments and in local variables.
-    local : tuple of (Symbol, Expr)
-        Local variables, each an expression in the arguments and in variables before it.
+        The value, an expression in the arguments, which may call functions before this one.
     """
 
     name: str
     doc: str
     arguments: tuple[sp.Symbol, ...]
     value: sp.Basic
-    local: Local = ()
 
 
 @dataclass(frozen=True)
@@ -72,8 +66,8 @@ class Language:
         Line after the opening of a function that has arguments.
     argument : str
         An argument in the opening.
-    statement, result : str
-        Lines of a variable and of the value that is returned.
+    result : str
+        Line of the value that is returned.
     reserved : frozenset of str
         Names that a symbol may not have, besides those that the printer knows.
     settings : mapping
@@ -87,7 +81,6 @@ class Language:
     entry: str
     closing: tuple[str, ...]
     argument: str
-    statement: str
     result: str
     reserved: frozenset[str] = frozenset()
     settings: Mapping[str, Any] = field(default_factory=dict)
@@ -102,7 +95,6 @@ LANGUAGES: Mapping[LanguageName, Language] = {
         "    {arguments}, = map(np.float64, ({arguments},))",  # powers of integers overflow
         (),
         "{}",
-        "    {} = {}",
         "    return {}",
         reserved=frozenset({"np"}),
     ),
@@ -114,7 +106,6 @@ LANGUAGES: Mapping[LanguageName, Language] = {
         "",
         ("}}",),
         "double {}",
-        "    const double {} = {};",
         "    return {};",
         settings={"math_macros": {}},  # M_LN2 and its like are no part of C99
     ),
@@ -126,7 +117,6 @@ LANGUAGES: Mapping[LanguageName, Language] = {
         "",
         ("}}",),
         "{}",
-        "    const {} = {};",
         "    return {};",
         reserved=frozenset({"Math"}),
         settings={
@@ -187,8 +177,6 @@ def module(
             opening += (words.entry,)
         for line in opening:
             lines.append(line.format(name=f.name, doc=f.doc, arguments=listed))
-        for symbol, value in f.local:
-            lines.append(words.statement.format(names[symbol], text(value)))
         lines.append(words.result.format(text(f.value)))
         lines += [line.format() for line in words.closing]
     return "\n".join(lines)
@@ -199,14 +187,12 @@ def _names(
 ) -> dict[sp.Symbol, sp.Symbol]:
     """Different names for the symbols of functions; a name in ``taken`` gets underscores."""
     arguments: dict[sp.Symbol, None] = {}
-    variables: dict[sp.Symbol, None] = {}
     for f in functions:
         arguments |= dict.fromkeys(f.arguments)
-        variables |= dict.fromkeys(symbol for symbol, _ in f.local)
     # ξ, B, V_s and F keep their names: a symbol of the chain that has one of these yields.
     ordered = sorted(arguments, key=lambda symbol: symbol not in _ARGUMENTS)
     names = {}
-    for symbol in [*ordered, *variables]:
+    for symbol in ordered:
         name = symbol.name
         if not name.isidentifier():
             raise InputError(f"{shorten(name)} is no name of a variable in a program")
@@ -223,8 +209,6 @@ _V = sp.Dummy("V_s", positive=True)
 _F = sp.Dummy("F", positive=True)
 _ARGUMENTS = (_XI, _B, _V, _F)  # arguments that are no symbols of the chain
 
-# Distance of the phase βξ from the end of the support
-_INSIDE = sp.Dummy("h", real=True)
 
 TITLE = (
     "The compact traveling wave v = u_x = B cos^m(beta xi), m = 2/(k - 1),",
@@ -251,18 +235,11 @@ class Functions(dict[str, Function]):
             ordered |= dict.fromkeys(sorted(part.free_symbols, key=str))
         self.symbols = tuple(ordered)
 
-    def define(
-        self, name: str, doc: str, value: sp.Basic, local: Local = ()
-    ) -> sp.Expr:
-        """Add a function and return a call of it; ``local`` has variables that it may use."""
+    def define(self, name: str, doc: str, value: sp.Basic) -> sp.Expr:
+        """Add a function and return a call of it."""
         used = value.free_symbols
-        needed: Local = ()
-        for symbol, part in reversed(local):  # each uses variables before it
-            if symbol in used:
-                used |= part.free_symbols
-                needed = ((symbol, part), *needed)
         arguments = tuple(s for s in (*_ARGUMENTS, *self.symbols) if s in used)
-        self[name] = Function(name, doc, arguments, value, needed)
+        self[name] = Function(name, doc, arguments, value)
         return sp.Function(name)(*arguments)
 
 
@@ -283,14 +260,11 @@ def wave_functions(wave: Arch) -> Functions:
     D = cell.spacing
     functions = Functions(k, *cell.masses, *cell.stiffnesses, D, wave.coefficient_sum)
     define = functions.define
-    variables: dict[sp.Expr, sp.Symbol] = {}  # value → variable
-    total = _stable(wave.coefficient_sum, k, variables)
-    factor = _stable(wave.speed_factor, k, variables)
-    excess = _stable(sp.factor(sp.cancel(wave.speed_factor - 1)), k, variables)
-    local = tuple((symbol, value) for value, symbol in variables.items())
-
-    total = define("coefficient_sum", "(G + H + I)/D^2", total, local)
-    factor = define("speed_factor", "V_s^2/B^(k - 1)", factor, local)
+    total = _stable(wave.coefficient_sum, k)
+    factor = _stable(wave.speed_factor, k)
+    excess = _stable(sp.factor(sp.cancel(wave.speed_factor - 1)), k)
+    total = define("coefficient_sum", "(G + H + I)/D^2", total)
+    factor = define("speed_factor", "V_s^2/B^(k - 1)", factor)
     beta = define(
         "beta",
         "beta = (k - 1)/(2 sqrt(G + H + I))",
@@ -313,19 +287,22 @@ def wave_functions(wave: Arch) -> Functions:
         "log_speed_factor",
         "ln(V_s^2/B^(k - 1))",
         2 * sp.asinh(excess / (2 * sp.sqrt(factor))),
-        local,
     )
     define(
         "amplitude",
         "B, the peak strain of the wave of speed V_s",
         _V ** (2 / (k - 1)) * sp.exp(-log_factor / (k - 1)),
     )
-    # cos(βξ) on the support and 0 outside of it is sin((h + |h|)/2), h = π/2 - |βξ|
+    # cos(βξ) on the support and 0 outside of it is sin((h + |h|)/2)
+    inside = define(
+        "inside",
+        "h = pi/2 - |beta xi|, positive on the support",
+        sp.pi / 2 - sp.Abs(beta * _XI),
+    )
     define(
         "profile",
         "v at xi, 0 outside of the support",
-        _B * sp.sin((_INSIDE + sp.Abs(_INSIDE)) / 2) ** (2 / (k - 1)),
-        ((_INSIDE, sp.pi / 2 - sp.Abs(beta * _XI)),),
+        _B * sp.sin((inside + sp.Abs(inside)) / 2) ** (2 / (k - 1)),
     )
     scale = define("time_scale", "tau/t: dx/dt = V_s tau/t", cell.time_scale(k))
     strain = define(
@@ -341,20 +318,24 @@ def wave_functions(wave: Arch) -> Functions:
     return functions
 
 
-def _stable(ratio: sp.Expr, k: sp.Expr, variables: dict[sp.Expr, sp.Symbol]) -> sp.Expr:
+def _stable(ratio: sp.Expr, k: sp.Expr) -> sp.Expr:
     """Rewrite the sums of a rational expression as polynomials in the masses and the ``A^{1/k}``.
 
     Their coefficients are factored in k: a coefficient that vanishes at a k does so in floats, too.
-    Powers ``A^{1/k}`` become new entries of ``variables``.
     """
     if not k.is_Symbol:  # a number has no digits to lose
         return ratio
+    roots: dict[sp.Expr, sp.Symbol] = {}  # a symbol for each A^{1/k}
 
     def root(power: sp.Pow) -> sp.Expr:
-        # A^{n/k} is the power n of the variable A^{1/k}.
+        # A^{n/k} is the power n of A^{1/k}.
         n, _ = (power.exp * k).as_coeff_Mul()
-        symbol = sp.Dummy(f"r_{len(variables)}", positive=True)
-        return variables.setdefault(power.base ** (power.exp / n), symbol) ** n
+        symbol = sp.Dummy(positive=True)
+        return roots.setdefault(power.base ** (power.exp / n), symbol) ** n
+
+    def is_sum(part: sp.Expr) -> bool:
+        # k - 1 and its like lose no digits.
+        return bool(part.is_Add and part.has(k) and not (part - k).is_number)
 
     def factored_in_k(total: sp.Expr) -> sp.Expr:
         others = sorted(total.free_symbols - {k}, key=str)
@@ -366,9 +347,6 @@ def _stable(ratio: sp.Expr, k: sp.Expr, variables: dict[sp.Expr, sp.Symbol]) -> 
             rewritten += sp.factor(coefficient) * monomial
         return rewritten
 
-    def is_sum(part: sp.Expr) -> bool:
-        # k - 1 and its like lose no digits.
-        return bool(part.is_Add and part.has(k) and not (part - k).is_number)
-
     ratio = ratio.replace(lambda e: e.is_Pow and e.exp.has(k), root)
-    return ratio.replace(is_sum, factored_in_k)
+    ratio = ratio.replace(is_sum, factored_in_k)
+    return ratio.xreplace({symbol: power for power, symbol in roots.items()})

@@ -1,4 +1,4 @@
-"""Simulation of a scene: `simulate`, `simulate_many` on threads, `twice` at two tolerances.
+"""Simulation of a scene: `simulate`, `simulate_many` on threads, `repeated` at several tolerances.
 
 The compiled engine (`validation.lattice.engine`) has an embedded Runge–Kutta–Nyström (RKN) pair for
 ``y'' = f(t, y)``, a pair for damped contacts, ``y'' = f(t, y, y')``, both with adaptive steps, and
@@ -142,19 +142,20 @@ def simulate_many(
             yield ahead.popleft().result()
 
 
-def twice(scene: Scene, fine: float, coarse: float, **options: Any) -> tuple[Run, Run]:
-    """Simulate a scene at two tolerances; return the fine and the coarse run.
+def repeated(
+    scene: Scene, tolerances: Iterable[float], **options: Any
+) -> tuple[Run, ...]:
+    """Simulate a scene at several tolerances; return the runs in their order.
 
-    `validation.pulses.pulse.compared` turns their difference into errors.
+    `validation.pulses.pulse.compared` turns differences of runs into errors.
 
     Parameters
     ----------
     scene : Scene
         The scene.
-    fine, coarse : float
+    tolerances : iterable of float
         Tolerances.
     **options
         Those of `simulate`.
     """
-    run, check = (simulate(scene, rtol=rtol, **options) for rtol in (fine, coarse))
-    return run, check
+    return tuple(simulate(scene, rtol=rtol, **options) for rtol in tolerances)

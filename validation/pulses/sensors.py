@@ -1,10 +1,10 @@
 """Pulses at the sensors of a scene: arrival, peak force, FWHM, and the speed between sensors.
 
 Forces are dynamic: the static force of gravity and precompression is subtracted. Every number of a
-recording is measured in two runs, the second with a tolerance `LESS` times as large; the error is
-the difference, and at least the tolerance of the first run. Where a hump of about half the record's
-maximum precedes the first pulse, or is it, another run may take the other one: the error is then
-the distance between them (`first_numbers`).
+recording is measured in a run and in less accurate runs, whose differences are its error
+(`validation.pulses.pulse.compared`). Where a hump of about half the record's maximum precedes the
+first pulse, or is it, another run may take the other one: the error is then at least the distance
+between them (`first_numbers`).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from lwa.base.frozen import Estimate
 from validation.lattice.cost import RunProgress, silent
 from validation.lattice.equations import Motion
 from validation.lattice.result import Run
-from validation.lattice.simulate import COMPILED, twice
+from validation.lattice.simulate import COMPILED, repeated
 from validation.pulses.pulse import (
     MeasureError,
     Pulse,
@@ -32,13 +32,13 @@ from validation.pulses.pulse import (
     first_pulses,
     highest_pulse,
     speed,
+    tolerances,
 )
 from validation.pulses.signals import Piecewise, Signal, spline
 from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
 
 TOLERANCE = 1e-10  # default tolerance of the accurate run
-LESS = 10.0  # tolerance of the less accurate run over that of the accurate one
 _ROUNDING = 10  # rounding of the static compression over rtol; with more, steps follow the noise
 _UNSURE = 1e-4  # of half the maximum; two of 9,936 arrivals under load depend on its sixth digit
 _QUICK = 0.9  # of the time of a small wave, of light beads: a pulse takes more
@@ -180,14 +180,16 @@ def record(
             f"rtol is {rtol:g}: rounding of the static compression, {motion.rest.max():.1g}, takes "
             f"{lost:.1g} of the motion; {lost / _ROUNDING:.1g} or more is wanted"
         )
-    run, check = twice(scene, rtol, LESS * rtol, method=method, progress=progress)
+    runs = repeated(scene, tolerances(rtol), method=method, progress=progress)
+    run, *checks = runs
     fine = tracks(run, velocities)
+    less_accurate = [tracks(check, velocities, 2) for check in checks]
     firsts: list[Reading] = []
     found: list[Reading] = []
-    for track, coarse in zip(fine, tracks(check, velocities, 2), strict=True):
-        firsts += _readings(track, coarse, False, rtol)
+    for track, *others in zip(fine, *less_accurate, strict=True):
+        firsts += _readings(track, others, every=False)
         if every:
-            found += _readings(track, coarse, True, rtol)
+            found += _readings(track, others, every=True)
 
     def doubt(first: Reading, second: Reading, sites: float) -> str:
         """Return why one pulse does not pass two sensors at a speed; "" if it may."""
@@ -207,7 +209,7 @@ def record(
     places = [track.place for track in fine]
     speeds = speeds_between(firsts, places, operator.add, doubt)
     end = {
-        i + 1: compared(partial(_state_at_end, bead=i), run, check, rtol)
+        i + 1: compared(partial(_state_at_end, bead=i), runs)
         for i in scene.bead_sensors
     }
     return Recording(run, fine, tuple(found or firsts), speeds, end)
@@ -300,18 +302,19 @@ def static_forces(scene: Scene) -> dict[str, float]:
     return forces
 
 
-def _readings(fine: Track, coarse: Track, every: bool, rtol: float) -> list[Reading]:
-    """Measure the first pulse at a sensor, or every pulse, with errors from a second run."""
+def _readings(fine: Track, others: Sequence[Track], every: bool) -> list[Reading]:
+    """Measure the first pulse at a sensor, or every pulse, with errors from less accurate runs."""
     blank = Reading(fine.kind, (fine.number,), {}, fine.static, quantity=fine.quantity)
     try:
         if every:
-            others = all_pulses(coarse.force)
+            known = [all_pulses(other.force) for other in others]
             found = []
             for pulse in all_pulses(fine.force):
-                same = min(others, key=lambda other: abs(other.arrival - pulse.arrival))
-                found.append(compared(readings, pulse, same, rtol))
+                # Another run may see a pulse less, or one more.
+                same = [min(row, key=partial(_delay, pulse)) for row in known]
+                found.append(compared(readings, [pulse, *same]))
         else:
-            found = [first_numbers(fine.force, coarse.force, rtol)]
+            found = [first_numbers(fine.force, [other.force for other in others])]
     except MeasureError as error:
         return [replace(blank, missing=str(error))]
     found = [numbers for numbers in found if numbers["peak"].relative_error < _HIDDEN]
@@ -324,32 +327,40 @@ def _readings(fine: Track, coarse: Track, every: bool, rtol: float) -> list[Read
     ]
 
 
-def first_numbers(fine: Signal, coarse: Signal, rtol: float) -> dict[str, Estimate]:
-    """Return `READINGS` of the first pulse, with errors from a less accurate signal.
+def _delay(pulse: Pulse, other: Pulse) -> float:
+    """Return the time between the arrivals of two pulses."""
+    return abs(other.arrival - pulse.arrival)
 
-    The first pulse is the first one above half the maximum. The less accurate signal is also
-    searched a little below and above half, and the largest difference is the error.
+
+def first_numbers(fine: Signal, others: Sequence[Signal]) -> dict[str, Estimate]:
+    """Return `READINGS` of the first pulse, with errors from less accurate signals.
+
+    The first pulse is the first one above half the maximum. The less accurate signals are also
+    searched a little below and above half, and the largest error counts.
 
     Parameters
     ----------
-    fine, coarse : Signal
-        A signal, and the same signal of a less accurate run.
-    rtol : float
-        Least relative error.
+    fine : Signal
+        A signal.
+    others : sequence of Signal
+        The same signal of less accurate runs, see `validation.pulses.pulse.compared`.
 
     Raises
     ------
     MeasureError
         If one of the signals has no pulse.
     """
-    first = first_pulse(fine)
+    first = readings(first_pulse(fine))
     shares = [(1 + part) / 2 for part in (-_UNSURE, 0.0, _UNSURE)]
-    found = [
-        compared(readings, first, check, rtol) for check in first_pulses(coarse, shares)
-    ]
-    return {
-        name: max((f[name] for f in found), key=lambda n: n.error) for name in READINGS
-    }
+    runs = [first]
+    for other in others:
+        seen = [readings(pulse) for pulse in first_pulses(other, shares)]
+        farthest = {}
+        for name, value in first.items():
+            values = [numbers[name] for numbers in seen]
+            farthest[name] = max(values, key=lambda x: abs(x - value))
+        runs.append(farthest)
+    return compared(dict, runs)
 
 
 def readings(pulse: Pulse) -> dict[str, float]:

@@ -42,9 +42,9 @@ from lwa.base.progress import Progress
 from lwa.spheres.beads import GRAVITY
 from validation.lattice.cost import RunProgress, silent
 from validation.lattice.result import Run
-from validation.lattice.simulate import simulate, simulate_many, twice
+from validation.lattice.simulate import repeated, simulate, simulate_many
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Pulse, compared, exponent
+from validation.pulses.pulse import Pulse, compared, exponent, tolerances
 from validation.pulses.sensors import Train
 from validation.report.study import Report, option, study
 from validation.report.table import Column, Table, percent
@@ -57,12 +57,7 @@ BEADS = 38
 SENSORS = (15, 34)  # beads, counted from the striker, 1
 LIKE = ((15, 33), (16, 34))  # beads of one kind, both steel and both PTFE
 VELOCITY = 1.37  # of the striker, in m/s
-# rtol of the run that counts and of the run that gives its errors; ten times the former would
-# make errors four times as large
-TOLERANCES = (1e-10, 4e-10)
-# Least relative error over rtol, as two runs may agree by chance. Measured: 38 beads lose 0.002 to
-# 0.008 of rtol, from 1e-7 to 1e-10. So 129 of 138 errors are 1 to 30 times the deviation.
-_LEAST = 0.01
+RTOL = 1e-10  # 38 beads lose 0.002 to 0.008 of it
 SOURCES = ("F_m", "striker")
 """Names of the quantities that set the theory's amplitude."""
 
@@ -74,7 +69,7 @@ STATED = {"m1 ≫ m2": 0.092, "m2/m1 = 0.27": 0.025, "m1 = m2": 0.228}
 
 # From here on the width no longer changes on its way: the average starts here.
 FIRST_BEAD = 10
-_LESS_ACCURATE = "difference to a less accurate run"
+_LESS_ACCURATE = "differences to less accurate runs"
 
 
 def chain_cell(N: int = 1, ptfe: Sphere = PTFE_BEAD) -> Cell:
@@ -169,7 +164,7 @@ Between steel and PTFE, V_s compares peaks of different shape, and is not the pu
 )
 def paper(
     velocity: float = VELOCITY,
-    tolerances: tuple[float, float] = TOLERANCES,
+    rtol: float = RTOL,
     run_progress: RunProgress = silent,
 ) -> Report:
     """The experiment of Porter et al. (2008): a chain of steel and PTFE beads in turn is struck at
@@ -179,8 +174,8 @@ def paper(
     ----------
     velocity : float
         Velocity of the striker, in m/s.
-    tolerances : (float, float)
-        Tolerance of the run, and of the less accurate run that gives its errors.
+    rtol : float
+        Tolerance of the run, see `validation.pulses.pulse.tolerances`.
     run_progress : RunProgress
         Display of the run's progress.
 
@@ -197,8 +192,8 @@ def paper(
     """
     velocity = between(velocity, "velocity", 1e-6, 1000)
     scene = recorded_chain(sorted({*SENSORS, *LIKE[0], *LIKE[1]}), velocity)
-    run, check = twice(scene, *tolerances, progress=run_progress)
-    lattice = compared(lattice_numbers, run, check, _LEAST * tolerances[0])
+    runs = repeated(scene, tolerances(rtol), progress=run_progress)
+    lattice = compared(lattice_numbers, runs)
     wave = homogenize(chain_cell(), k=HERTZ).pde.traveling_wave()
     peak = lattice["peak bead force F_m"].value
     waves = {
@@ -217,7 +212,7 @@ def paper(
         f"{BEADS} beads, steel (the striker, {velocity:g} m/s) and PTFE in turn, steel wall; "
         f"sensors in beads {SENSORS[0]} and {SENSORS[1]}",
         (Table.of(_COLUMNS, rows, "rows", note=_NOTE, errors=_LESS_ACCURATE),),
-        panels=(_panel(run, waves["F_m"]),),
+        panels=(_panel(runs[0], waves["F_m"]),),
         data={"velocity_value": velocity, "beads": BEADS, "sensors": SENSORS},
     )
 
@@ -359,7 +354,7 @@ def figures(progress: Progress[Any] = iter) -> Report:
 
 def forces(N: int) -> Run:
     """Simulate the N:1 chain of figure 2; return the run, with sensors at beads `RECORDED`."""
-    return simulate(recorded_chain(RECORDED[N], N=N), rtol=TOLERANCES[0])
+    return simulate(recorded_chain(RECORDED[N], N=N), rtol=RTOL)
 
 
 def cells_of_lines() -> tuple[Cell, ...]:
@@ -380,7 +375,7 @@ def stated_errors() -> list[dict[str, Any]]:
     The FWHM is a time, of the contacts' force from bead `FIRST_BEAD` on, at an equal peak force.
     """
     places = range(FIRST_BEAD, BEADS - 2)
-    run = simulate(recorded_chain(places), rtol=TOLERANCES[0])
+    run = simulate(recorded_chain(places), rtol=RTOL)
     contacts = Train.of(run, "contact").only(places)
     rows = []
     for (line, stated), cell in zip(STATED.items(), cells_of_lines(), strict=True):
@@ -390,21 +385,19 @@ def stated_errors() -> list[dict[str, Any]]:
     return rows
 
 
-def scaling(
-    E: float, tolerances: tuple[float, float] = TOLERANCES
-) -> list[dict[str, Any]]:
+def scaling(E: float, rtol: float = RTOL) -> list[dict[str, Any]]:
     """Return the rows of figure 3a, by the keys of `_DROPS`, for a Young's modulus of PTFE."""
     ptfe = replace(PTFE_BEAD, material=replace(PTFE, E=E))
     scenes = []
     for height in HEIGHTS:
         velocity = math.sqrt(2 * float(GRAVITY) * height)  # after the drop
         scenes.append(recorded_chain(SENSORS, velocity, ptfe=ptfe))
-    fine, coarse = (simulate_many(scenes, rtol=rtol) for rtol in tolerances)
+    runs = [simulate_many(scenes, rtol=tolerance) for tolerance in tolerances(rtol)]
     wave = canonical_wave(chain_cell(ptfe=ptfe), HERTZ)
     rows = []
-    for height, run, check in zip(HEIGHTS, fine, coarse, strict=True):
+    for height, *of_scene in zip(HEIGHTS, *runs, strict=True):
         row: dict[str, Any] = {"modulus_value": E, "height_value": height}
-        row |= compared(_speed_and_force, run, check, _LEAST * tolerances[0])
+        row |= compared(_speed_and_force, of_scene)
         theory = wave.at_force(row["force"].value, of="bead")
         row["theory_value"] = float(theory.speed)
         rows.append(row)

@@ -25,7 +25,6 @@ from validation.lattice.signal import RECORDS
 from validation.lattice.simulate import COMPILED
 from validation.lattice.steppers import METHODS
 from validation.pulses.sensors import (
-    LESS,
     TOLERANCE,
     Reading,
     Recording,
@@ -42,7 +41,7 @@ from validation.scenes.units import BASES
 EXAMPLES = ("paper", "vertical", "precompressed", "defect", "trimer", "striker")
 """Names of the examples of scene files."""
 
-_NOTE = "{} at each sensor, in {} units. ±: difference to a less accurate run."
+_NOTE = "{} at each sensor, in {} units. ±: differences to less accurate runs."
 _FIRST = "First pulse above half of the record's maximum"
 _DYNAMIC = "\nDynamic force: force less the static force at the sensor."
 
@@ -254,7 +253,7 @@ SUFFIXES = (".json", ".csv")
 
 _METHODS = click.Choice((*COMPILED, *METHODS))
 _INTEGRATOR = f"Integrator: {' and '.join(COMPILED)} are compiled, the others SciPy's."
-_RTOL = f"Relative tolerance. Errors are differences to a run with {LESS:g} times this tolerance."
+_RTOL = "Relative tolerance. Errors are differences to less accurate runs."
 
 
 @study(

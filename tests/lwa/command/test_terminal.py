@@ -32,14 +32,10 @@ def test_output_and_refusals_are_in_utf_8_whatever_the_locale(encoding):
 
 
 def test_a_file_name_that_is_not_utf_8_is_one_line():
-    status, out, err = encoded(
-        cli.main, "wave", "--spheres", "\udcff.json", encoding="utf-8"
-    )
-    assert (status, out, err) == (
-        2,
-        b"",
-        b"lwa: \\udcff.json: No such file or directory\n",
-    )
+    name = "\udcff.json"
+    status, out, err = encoded(cli.main, "wave", "--spheres", name, encoding="utf-8")
+    assert (status, out, err.count(b"\n")) == (2, b"", 1)
+    assert err.startswith(b"lwa: \\udcff.json: No such file or directory")
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 import scipy
 import sympy as sp
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
 
 from lwa import (
     Cell,
@@ -17,25 +15,12 @@ from lwa import (
     Power,
     envelope,
     general,
-    loaded_wave,
 )
 from tests.identity import same
 
 K2, K3, K4 = sp.symbols("K2 K3 K4", positive=True)
 k, m1, m2, q, p0 = sp.symbols("k m1 m2 q p0", positive=True)
 HERTZ = Power("3/2")
-
-
-def test_equal_beads_at_any_wavenumber():
-    found = envelope(Cell([1]), law=general(), background=0, wavenumber=q)
-    s, cot = sp.sin(q / 2), sp.cot(q / 2)
-    chi = (
-        sp.sqrt(K2) * (2 * s) ** 3 * (3 * K4 / (2 * K2) - (K3 / K2) ** 2 * (2 + cot**2))
-    )
-    assert same(found.frequency, 2 * sp.sqrt(K2) * s)
-    assert same(found.group_velocity, found.frequency.diff(q))
-    assert same(found.dispersion, found.frequency.diff(q, 2))
-    assert same(found.nonlinearity.rewrite(sp.sin), chi.rewrite(sp.sin))
 
 
 def test_the_optical_band_of_a_dimer_begins_with_the_light_bead():
@@ -47,25 +32,6 @@ def test_the_optical_band_of_a_dimer_begins_with_the_light_bead():
     assert same(found.nonlinearity, (3 * K2 * K4 - 4 * K3**2) / (K2 * m2**2 * omega))
     assert found.mode[0] == 0
     assert same(found.mode[1], 1 / sp.sqrt(m2))
-
-
-@pytest.mark.parametrize(
-    "cell", [Cell([2], [3], 1), Dimer(1, "1/3", spacing=1)], ids=["equal", "dimer"]
-)
-def test_long_waves_have_the_envelope_of_kdv(cell):
-    """KdV's own: v a plane wave of wavenumber κ, v2 = α v²/(6γκ²), v0 = -α|v|²/(3γκ²), so that its
-    frequency falls by α²|v|²/(6γκ). A cell is P long, and |v| = κ|A|/√M; the error falls as κ²."""
-    field = loaded_wave(cell, background="1/2", law=HERTZ).field
-    kdv, scale = field.kdv, field.time_scale
-    errors = []
-    for long in (0.1, 0.05):
-        found = envelope(cell, law=HERTZ, background="1/2", wavenumber=long, branch=0)
-        chi = found.numeric().nonlinearity
-        kappa = long / cell.size
-        ours = -scale * kdv.nonlinearity**2 * kappa / (6 * kdv.dispersion * cell.mass)
-        errors.append(float(chi / ours - 1))
-    assert abs(errors[1]) < 2e-3
-    assert errors[1] == pytest.approx(errors[0] / 4, rel=0.02)
 
 
 def lattice_shift(springs, kappa, frequency, phi, flow, A, harmonics=5):
@@ -206,34 +172,23 @@ def test_a_harmonic_that_no_force_drives_is_left_out():
     assert float(found.numeric().nonlinearity) == pytest.approx(-0.0625, rel=1e-12)
 
 
-@settings(max_examples=4)
-@given(
-    st.lists(st.integers(1, 9), min_size=2, max_size=5),
-    st.lists(st.integers(1, 9), min_size=5, max_size=5),
-    st.floats(0.3, 2.8),
-    st.integers(0, 4),
-)
-def test_frequencies_and_their_derivatives_are_those_of_the_bands(
-    masses, stiffnesses, kappa, n
-):
+@pytest.mark.parametrize("P", [2, 3, 5])
+def test_frequencies_and_their_derivatives_are_those_of_the_bands(P):
     """ω of `LoadedChain`, of κ per cell; c_g < c_0 and ω″ by its differences."""
-    P = len(masses)
-    cell, branch = Cell(masses, stiffnesses[:P], 1), n % P
-    bands = LoadedChain(cell, HERTZ, 2).bands
-    omega = bands.branches(kappa / P)
-    assume(np.min(np.abs(np.delete(omega, branch) - omega[branch])) > 0.1)
+    draw = np.random.default_rng(P)
+    masses, stiffnesses = draw.integers(1, 10, (2, P))
+    cell, kappa, branch, h = (
+        Cell(masses, stiffnesses, 1),
+        1.3,
+        int(draw.integers(P)),
+        1e-3,
+    )
+    chain = LoadedChain(cell, HERTZ, 2)
     options = {"precompression": 2, "wavenumber": kappa, "branch": branch}
-    try:
-        ours = envelope(cell, law=HERTZ, **options).numeric()
-        assert float(ours.frequency) == pytest.approx(omega[branch], rel=1e-10)
-    except InputError:  # the second harmonic is a mode
-        assume(False)
-    h = 1e-3
-    left, middle, right = (bands.branches((kappa + x) / P)[branch] for x in (-h, 0, h))
-    slope = (right - left) / (2 * h)
-    assert float(ours.group_velocity) == pytest.approx(slope, abs=1e-4 * omega[-1])
-    assert (
-        abs(slope) * P < LoadedChain(cell, HERTZ, 2).sound_speed
-    )  # in spacings per time
-    bend = (right - 2 * middle + left) / h**2
-    assert float(ours.dispersion) == pytest.approx(bend, abs=1e-4 * omega[-1])
+    ours = envelope(cell, law=HERTZ, **options).numeric()
+    at = chain.bands.branches(np.array([kappa - h, kappa, kappa + h]) / P)[:, branch]
+    assert float(ours.frequency) == pytest.approx(at[1], rel=1e-10)
+    slope, bend = (at[2] - at[0]) / (2 * h), (at[2] - 2 * at[1] + at[0]) / h**2
+    assert float(ours.group_velocity) == pytest.approx(slope, abs=1e-4)
+    assert abs(slope) * P < chain.sound_speed  # in spacings per time
+    assert float(ours.dispersion) == pytest.approx(bend, abs=1e-4)

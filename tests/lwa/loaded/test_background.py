@@ -1,13 +1,8 @@
 """Waves on a static strain: limits, the canonical equation, the definitions at 120 digits."""
 
-import mpmath
-import numpy as np
 import pytest
 import sympy as sp
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
-from book.studies.hard import true_wave
 from lwa import Cell, Dimer, KdV, Material, Power, Sphere, canonical_wave, loaded_wave
 from lwa.law import named
 from lwa.loaded.background import Background
@@ -51,63 +46,6 @@ def test_kdv_in_closed_form():
     assert abs(left.subs({x: 1, t: sp.Rational(1, 3)}).n(30)) < 1e-25
 
 
-@pytest.mark.parametrize(
-    ("law", "load", "rise"),
-    [
-        (HERTZ, 1, "1/2"),
-        (Power("1/2"), 1, "-1/2"),
-        (named("lennard-jones", 1), 0, "1/10"),
-    ],
-    ids=str,
-)
-def test_the_profile_obeys_the_canonical_equation(law, load, rise):
-    """V² v = F(p0+v) - F(p0) + I (F′ v″ + ½ F″ v′²), by a polynomial through 80 places."""
-    wave, B = wave_of(law, load, rise), float(sp.Rational(rise))
-    v = np.polynomial.Chebyshev.interpolate(
-        lambda x: wave.along(x, "strain"), 79, domain=[-2, 2]
-    )
-    x = np.linspace(-1, 1, 5)
-    p, field = sp.Symbol("p", positive=True), wave.field
-    F, F1, F2 = (sp.lambdify(p, field.force(p, n))(load + v(x)) for n in range(3))
-    left = (
-        float(field.speed(wave.strain)) ** 2 * v(x) - F + float(field.force(sp.S(load)))
-    )
-    right = float(field.I) * (F1 * v.deriv(2)(x) + F2 * v.deriv()(x) ** 2 / 2)
-    assert left == pytest.approx(right, rel=1e-7)  # v″ loses 80² of the digits of v
-    assert wave.along(float(wave.fwhm("strain")) / 2, "strain") == pytest.approx(
-        B / 2, rel=1e-12
-    )
-
-
-@settings(max_examples=5)
-@given(
-    st.floats(-12, 12),
-    st.floats(0.1, 10),
-    st.sampled_from(["11/10", "3/2", "2", "5"]),
-    st.sampled_from(["strain", "force"]),
-)
-def test_float64_over_all_loads(exponent, rise, k, quantity):
-    """V by the quadrature, and FWHM, to 1e-12 of their definitions at 120 digits."""
-    load = 10.0**exponent * rise
-    wave = wave_of(Power(k), load, rise)
-    with mpmath.workdps(120):
-        speed, place, height = true_wave(Power(k), load, rise)
-        assert float(wave.field.speed(wave.strain)) == pytest.approx(
-            float(speed), rel=1e-15
-        )
-        unit = mpmath.mpf(load) + mpmath.mpf(rise)
-        square = float(
-            speed**2 / unit ** (mpmath.mpf(sp.Rational(k).p) / sp.Rational(k).q - 1)
-        )
-        assert wave._quadrature.square * float(
-            sp.S(1) / sp.Rational(k)
-        ) == pytest.approx(square, rel=1e-14)
-        expected = 2 * float(
-            place(height if quantity == "force" else mpmath.mpf(rise) / 2)
-        )
-    assert float(wave.fwhm(quantity)) == pytest.approx(expected, rel=1e-12)
-
-
 def test_nesterenkos_relation_for_equal_spheres():
     """As Daraio, Nesterenko, Herbold and Jin print it, Phys. Rev. E 73, 026610 (2006), eqs. 3–5."""
     E, rho, a, F0, F = sp.symbols("E rho a F0 F", positive=True)
@@ -143,18 +81,6 @@ def test_a_law_that_is_no_power_has_waves_without_a_load(cell):
     light = loaded_wave(cell, force="1e-30", law=law)
     width = canonical_wave(cell, "3/2").fwhm()
     assert float(light.fwhm("strain") / width) == pytest.approx(1, rel=1e-12)
-
-
-@pytest.mark.parametrize("k", [1, "3/2", 2])
-def test_unlike_contacts_are_compressed_by_their_mean(k):
-    cell, root = Dimer(1, 2, stiffnesses=[3, 5]), 1 / float(sp.Rational(k))
-    peak, static = (sum((F / A) ** root for A in (3, 5)) / 2 for F in (7, 2))
-    assert float(Power(k).compression(cell, sp.Integer(7))) == pytest.approx(
-        peak, rel=1e-14
-    )
-    if k != 1:
-        wave = loaded_wave(cell, force=7, precompression=2, k=k)
-        assert float(wave.compression) == pytest.approx(peak - static, rel=1e-14)
 
 
 def test_symbols_take_their_numbers():

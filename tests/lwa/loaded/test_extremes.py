@@ -22,6 +22,8 @@ CASES = [
     (Power("1/2"), 1, -0.999),
     (Power("11/10"), 0, 1.0),
     (HERTZ, 1, 1e-12),
+    (HERTZ, 1e-9, 3.0),
+    (Power(5), 7, 2.0),
     (named("magnetic", 4, 1), 0, 0.99),
     (LIMITED, 0, 0.6666),
 ]

@@ -97,33 +97,31 @@ def test_hertz_and_linear_contacts_in_turn():
 
 @pytest.mark.parametrize("force", ["1/1000", "1", "40"])
 def test_static_states_balance(force):
-    """The links of a cell that are not in series: forces in equilibrium, mean force as asked."""
+    """The links of a cell that are not in series: equilibrium, mean force and its slopes."""
     law = named("hertz2", 1, "1/2")
-    ends = [(0, 1, HERTZ), (1, 2, law), (2, 3, SQUARED), (0, 2, law), (1, 4, HERTZ)]
-    lattice = Lattice([1, 2, 3], [Link(i, j, law, 2) for i, j, law in ends])
+    links = []
+    for i, j, kind in [
+        (0, 1, HERTZ),
+        (1, 2, law),
+        (2, 3, SQUARED),
+        (0, 2, law),
+        (1, 4, HERTZ),
+    ]:
+        links.append(Link(i, j, kind, 2))
+    lattice, F = Lattice([1, 2, 3], links), float(sp.Rational(force))
     state = lattice.equilibrium(force)
-    forces = [
-        2 * law.at(x, 0)
-        for (_, _, law), x in zip(ends, state.compressions, strict=True)
-    ]
-    net = np.zeros(3)
-    for (i, j, _), f in zip(ends, forces, strict=True):
-        net[i] -= f
-        net[j % 3] += f
-    F = float(sp.Rational(force))
+    net, mean = np.zeros(3), 0.0
+    for link, delta in zip(links, state.compressions, strict=True):
+        pushed = 2 * float(link.law.at(delta))
+        net[link.i] -= pushed
+        net[link.j % 3] += pushed
+        mean += (link.j - link.i) * pushed / 3
     assert np.abs(net).max() < 1e-13 * F
-    assert sum(
-        (j - i) * f for (i, j, _), f in zip(ends, forces, strict=True)
-    ) / 3 == pytest.approx(F, rel=1e-13)
-
-
-def test_slopes_are_those_of_the_force():
-    """F′ and F″ of a lattice that is not in series, against differences of F."""
-    lattice = Lattice(
-        [1, 2], [Link(0, 1, HERTZ), Link(1, 2, SQUARED, 3), Link(0, 2, HERTZ, "1/2")]
-    )
-    statics, e, h = lattice.statics, 0.7, 1e-4
+    assert mean == pytest.approx(F, rel=1e-13)
+    statics, e = lattice.statics, float(state.strain)
+    h = 1e-4 * e
     below, here, above = statics.force(np.array([e - h, e, e + h]))
-    F1, F2, *_ = statics.samples(np.array(e))
-    assert (above - below) / (2 * h) == pytest.approx(F1, rel=1e-7)  # h² and rounding/h
+    F1, F2, _ = statics.samples(np.array(e))
+    # h² and rounding over h
+    assert (above - below) / (2 * h) == pytest.approx(F1, rel=1e-7)
     assert (above - 2 * here + below) / h**2 == pytest.approx(F2, rel=1e-6)

@@ -5,6 +5,7 @@ import pytest
 import sympy as sp
 
 from lwa import Cell, Dimer, InputError, Material, Sphere, canonical_wave, homogenize
+from lwa.base.frozen import QUANTITIES
 from tests.identity import same
 
 STEEL = Material.named("steel 316")
@@ -24,19 +25,22 @@ THEORIES = (
 @pytest.mark.parametrize("wave", THEORIES)
 def test_a_curve_is_the_profile_as_it_passes(wave):
     answer = wave.at_force(12)
-    half = float(answer.fwhm("strain", "time"))
-    times = np.linspace(-1.5, 1.5, 7) * half
+    times = np.linspace(-1.5, 1.5, 7) * float(answer.fwhm("strain", "time"))
     strain = answer.curve(times, "strain")
-    for t, found in zip(times, strain, strict=True):
-        xi = sp.Float(-float(answer.speed) * t, 30)
-        exact = wave.profile(xi, answer.strain)
-        assert found == pytest.approx(float(exact), rel=1e-10, abs=1e-20)
-    force = answer.curve(times)
+    speed = float(answer.speed)
+    profile = sp.lambdify("xi", wave.profile("xi", answer.strain))
+    known = [float(profile(xi)) for xi in speed * times]
+    assert strain == pytest.approx(known, rel=1e-10, abs=1e-20)
     A, k, D = (float(x) for x in (wave.cell.stiffness(wave.k), wave.k, wave.D))
-    assert np.allclose(force, A * (D * strain) ** k, rtol=1e-12, atol=0)  # F = A δ^k
-    assert np.allclose(
-        answer.curve(times, "velocity"), float(answer.speed) * strain, rtol=1e-13
-    )
+    # F = A δ^k
+    assert answer.curve(times) == pytest.approx(A * (D * strain) ** k, rel=1e-12)
+    velocity = answer.curve(times, "velocity")
+    assert velocity == pytest.approx(speed * strain, rel=1e-13)
+    for quantity in QUANTITIES:
+        half = float(answer.fwhm(quantity, "time")) / 2
+        peak, fallen = answer.curve([0, half], quantity)
+        assert fallen == pytest.approx(peak / 2, rel=1e-12)
+        assert answer.along(half * speed, quantity) == pytest.approx(fallen, rel=1e-12)
 
 
 @pytest.mark.parametrize("wave", THEORIES)

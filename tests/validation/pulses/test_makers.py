@@ -3,12 +3,17 @@
 Two contacts of a chain, in N or in volts of 12.5 N, each microsecond, with noise of half a percent.
 """
 
+import json
+import math
 import re
+import shlex
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
-from validation import Scene, simulate
+from tests.commands import ended
+from validation import Scene, cli, simulate
 from validation.pulses.pulse import first_pulse
 from validation.scenes.checks import SceneError
 from validation.studies.records import pulses
@@ -16,7 +21,7 @@ from validation.studies.records import pulses
 CONTACTS = (8, 14)
 SPACING = 19.05e-3
 TRIGGER = 1.9e-4  # time at which the clock of the recorder is 0
-VOLTS = "12.5 N/V"
+CONSTANT = 1e-3  # of a sensor that loses its charge
 
 
 @pytest.fixture(scope="module")
@@ -38,18 +43,80 @@ def chain():
     return t - TRIGGER, forces + noise, [first_pulse(signal) for signal in signals]
 
 
-# Head of a file, form of its rows (i the number, t the time in s, us the time in µs, a and b volts,
-# F and G forces), and statements; columns by header or number.
-TIME_A = {"time": "1", "8 force": "2"}
-TIME_AB = {"time": "1", "8 force": "2", "14 force": "3"}
-A = {"8 force": VOLTS}
-AB = A | {"14 force": VOLTS}
+# Head of a file; forms of its rows, of which the last is that of all further rows (i the number, t
+# the time in s, us the time in µs, a and b volts, F and G forces, Q the force behind a sensor that
+# loses its charge); and what is stated on the command line.
+V_AB = " --unit '8 force=12.5 N/V' --unit '14 force=12.5 N/V'"
+AB_23 = "--column '8 force=2' --column '14 force=3'"
 LAYOUTS = {
-    "Tektronix MDO3000": (
-        "Model,MDO3024\nFirmware Version,1.30\n\nHorizontal Units,s\nSample Interval,1e-06\n"
-        "Vertical Units,V,V\nVertical Scale,0.5,0.5\n\nLabel,,\nTIME,CH1,CH2\n",
-        "{t:.6e},{a:.5f},{b:.5f}\n",
-        {"columns": {"8 force": "CH1", "14 force": "CH2"}, "units": AB | {"time": "s"}},
+    "a unit in words": (
+        "Time (Microseconds),Force (N)\n",
+        "{us:.3f},{F:.5f}\n",
+        "--column '8 force=2'",
+    ),
+    "a second header in words": (
+        "time,force\ntime - seconds (computed after test),N\n",
+        "{t:.7f},{F:.5f}\n",
+        "--column '8 force=2' --unit time=s --unit 2=N",
+    ),
+    "an acceleration": (
+        "Time (s),a (m/s^2)\n",
+        "{t:.7f},{a:.5f}\n",
+        "--column '8 force=2' --unit '8 force=12.5 N/m/s^2'",
+    ),
+    "no header": (
+        "",
+        "{t:.7f},{F:.5f}\n",
+        "--column time=1 --column '8 force=2' --unit time=s --unit '8 force=N'",
+    ),
+    "blanks": ("# time(us) force(N)\n", "{us:.9e} {F:.9e}\n", "--column '8 force=2'"),
+    "a footer": (
+        "time (s),F1 (N),F2 (N)\n",
+        "{t:.7f},{F:.5f},{G:.5f}\n",
+        AB_23,
+    ),
+    "a sensor that loses its charge": (
+        "time (s),F1 (N)\n",
+        "{t:.7f},{Q:.5f}\n",
+        "--column '8 force=F1' --time-constant 1ms",
+    ),
+    "a data frame": (
+        ",time (s),8 force (N),14 force (N)\n",
+        "{i},{t:.9g},{F:.9g},{G:.9g}\n",
+        "",
+    ),
+    "a time for each channel": (
+        "Time (s)\tDev1/ai0 (V)\tTime (s)\tDev1/ai1 (V)\n",
+        "{t:.7f}\t{a:.6f}\t{t:.7f}\t{b:.6f}\n",
+        "--column '8 force=Dev1/ai0' --column '14 force=Dev1/ai1'" + V_AB,
+    ),
+    "a logger in German": (
+        "Zeit [µs];Kraft A [N];Kraft B [kN]\r\n",
+        "{us:.6f};{F:.6f};{G:.6f}e-3\r\n",
+        "--column time=1 " + AB_23,
+    ),
+    "decimal commas in quotes": (
+        '"Zeit (s)","Kraft (N)"\n',
+        '"{t:.7f}","{F:.4f}"\n',
+        "--column time=Zeit --column '8 force=Kraft'",
+    ),
+    # Equal names, a unit for a header
+    "Siglent SDS1000X-E": (
+        "Record Length,Analog:701\nVertical Units,CH1:V,CH2:V,,\nSource,CH1,CH2\n"
+        "Second,Volt,Volt\n",
+        "{t:.11f},{a:.5f},{b:.5f}\n",
+        "--column time=1 --unit time=s " + AB_23 + V_AB,
+    ),
+    # Numbers of samples; start and step stand in the header.
+    "Rigol DS1000Z": (
+        "X,CH1,CH2,Start,Increment,\nSequence,Volt,Volt,-1.900000e-04,1.000000e-06,\n",
+        "{i},{a:.4e},{b:.4e},\n",
+        "--step '1 us' " + AB_23 + V_AB,
+    ),
+    "PicoScope": (
+        "Time,Channel A,Channel B\n(us),(mV),(mV)\n\n",
+        "{us:.6f},{a:.7f}e3,{b:.7f}e3\n",
+        AB_23 + V_AB.replace("12.5 N/V", "0.0125 N/mV"),
     ),
     # Settings stand in the first columns (mamclain.com, Tektronix TPS2024).
     "Tektronix TDS2000": (
@@ -57,132 +124,109 @@ LAYOUTS = {
         "Record Length,7.01e+02,, {t:.9f}, {a:.5f},\n",
         "Source,CH1,, {t:.9f}, {a:.5f},\n",
         ",,,{t:013.9f}, {a:.5f},\n",
-        {"columns": {"time": "4", "8 force": "5"}, "units": A | {"time": "s"}},
+        "--column time=4 --column '8 force=5' --unit time=s --unit 5='12.5 N/V'",
     ),
-    # Each value is followed by a comma (TDS3000 programmer manual).
-    "Tektronix TDS3000": ("", "{t:.7e},{F:.5e},\r\n", {"columns": TIME_A}),
     "LeCroy": (
         "LECROYHDO6104,1234,Waveform\nSegments,1,SegmentSize,701\nSegment,TrigTime,Time\n"
         "#1,23-Nov-2026 10:11:12,0\nTime,Ampl\n",
         "{t:.7f},{a:.5f}\n",
-        {"columns": {"8 force": "ampl"}, "units": {"Ampl": VOLTS, "time": "s"}},
-    ),
-    "Keysight": (
-        "x-axis,1,2\r\nsecond,Volt,Volt\r\n",
-        "{t:+.6E},{a:+.5E},{b:+.5E}\r\n",
-        {"columns": TIME_AB, "units": {"2": "12.5 N/Volt", "3": "12.5 N/Volt"}},
-    ),
-    "LabVIEW": (
-        "LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\t\n\t\nSamples\t701\t701\t\n"
-        "***End_of_Header***\t\t\nX_Value\tVoltage\tVoltage_0\tComment\n",
-        "{t:.7f}\t{a:.6f}\t{b:.6f}\n",
-        {"columns": TIME_AB, "units": AB | {"time": "s"}},
+        "--column '8 force=ampl' --unit Ampl='12.5 N/V' --unit time=s",
     ),
     # X_Columns No: the step is that of the header (ni.com, specification of .lvm).
     "LabVIEW without X": (
-        "Separator\tTab\n***End_of_Header***\t\n\t\nSamples\t701\t701\t\nX0\t0\t0\t\n"
-        "Delta_X\t1E-6\t1E-6\t\n***End_of_Header***\t\t\nX_Value\tVoltage\tVoltage_0\tComment\n",
+        "LabVIEW Measurement\t\nWriter_Version\t2\n***End_of_Header***\t\n\t\n"
+        "Samples\t701\t701\t\nDate\t2026/11/27\t2026/11/27\t\nX0\t0\t0\t\nDelta_X\t1E-6\t1E-6\t\n"
+        "***End_of_Header***\t\t\nX_Value\tVoltage\tVoltage (Filtered)\tComment\n",
+        "\t{a:.6f}\t{b:.6f}\tblow 1, hit\n",
         "\t{a:.6f}\t{b:.6f}\n",
-        {"columns": dict(list(TIME_AB.items())[1:]), "units": AB, "step": "1 us"},
+        "--column '8 force=Voltage' --column '14 force=3' --step 1us" + V_AB,
     ),
-    "PicoScope": (
-        "Time,Channel A,Channel B\n(us),(mV),(mV)\n\n",
-        "{us:.6f},{a:.7f}e3,{b:.7f}e3\n",
-        {"columns": TIME_AB, "units": dict.fromkeys(AB, "0.0125 N/mV")},
+    # Numbers with other numbers, and lines without any, between them and the record (DL series)
+    "Yokogawa": (
+        '//YOKOGAWA ASCII FILE FORMAT\n"Header Size",9\n"TraceName","CH1  ","CH2  "\n'
+        '"BlockSize",701,701\n"VUnit","V  ","V  "\n"HResolution",1.0e-06,1.0e-06\n'
+        '"Date","2026/11/27","2026/11/27"\n\n',
+        ",{a:.6E},{b:.6E},\n",
+        "--column '8 force=CH1' --column '14 force=CH2' --step 1us" + V_AB,
     ),
     "Rohde & Schwarz": (
         "in s,C1 in V,C2 in V\n",
         "{t:.7f},{a:.5f},{b:.5f}\n",
-        {"columns": {"time": "in s", "8 force": "C1", "14 force": "C2"}, "units": AB},
-    ),
-    # MR8880 manual, appendix 4: ratios and offsets above the channels
-    "Hioki": (
-        '"File name","WAVE0001.CSV","V1.00"\n"CH","CH1","CH2","LA1"\n"Range","5V","5V","-"\n'
-        '"Ratio"," 1.00000E+00"," 1.00000E+00","-"\n"Time","CH1[V]","CH2[V]","LA1"\n',
-        "{t:.9E},{a: .5E},{b: .5E},1,\n",
-        {
-            "columns": {"8 force": "CH1[V]", "14 force": "3"},
-            "units": AB | {"time": "s"},
-        },
-    ),
-    # HDS242 (github.com/h-elsner/OwonOszi): numbers of samples, units by an underscore
-    "Owon": (
-        "Channel\t:,CH1\nFrequency\t:,F=1.498kHz\nProbe attenuation\t:,1X\n"
-        "Time interval\t:,1.00uS\n\nindex,CH1_Voltage(mV)\n",
-        "{i},{a:.7f}e3\n",
-        {"columns": {"8 force": "2"}, "units": {"2": "0.0125 N/mV"}, "step": "1.00uS"},
-    ),
-    # DSO5202P (github.com, Scope-Analyser): no header
-    "Hantek": (
-        "#timebase=100000000(ps)\n,#voltbase=1000000(uV)\n#size=701\n",
-        "{t:.6E},{a:.5f}\n",
-        {"columns": TIME_A, "units": A | {"time": "s"}},
-    ),
-    "Digilent": (
-        "#Digilent WaveForms Oscilloscope Acquisition\n#Sample rate: 1000000Hz\n#Samples: 701\n\n"
-        "Time (s),Channel 1 (V),Channel 2 (V)\n",
-        "{t:.9f},{a:.5f},{b:.5f}\n",
-        {"columns": {"8 force": "Channel 1", "14 force": "3"}, "units": AB},
+        "--column time=1 --column '8 force=C1' --column '14 force=C2'" + V_AB,
     ),
     # GL980: dates, and a blank behind a sign
     "Graphtec": (
         'Vendor,"GRAPHTEC Corporation"\nMaxChannel,8\nSampling interval,1us\nCH,Signal name,Unit\n'
         "CH3,U,V\nData\nNumber,Date,Time,us,CH3,CH4\nNO.,Time,,us,V,V\n",
         "{i},2026/11/27,10:11:12,0,{a:+.5f},{b:+.5f}\n",
-        {"columns": {"8 force": "5", "14 force": "CH4"}, "units": AB, "step": "1us"},
+        "--column '8 force=5' --column '14 force=CH4' --step 1us" + V_AB,
     ),
-    "a logger in German": (
-        "Zeit [µs];Kraft A [N];Kraft B [kN]\r\n",
-        "{us:.6f};{F:.6f};{G:.6f}e-3\r\n",
-        {"columns": TIME_AB},
+    # By blanks the header has more numbers than the record has.
+    "catman": (
+        "catman\tV5\nTime  1 - default sample rate 1 MHz [s]\tForce A [N]\tForce B [N]\n",
+        "{t:.7f}\t{F:.4f}\t{G:.4f}\n",
+        "--column time=1 --column '8 force=Force A' --column '14 force=Force B'",
     ),
-    "a time for each channel": (
-        "Time (s)\tDev1/ai0 (V)\tTime (s)\tDev1/ai1 (V)\n",
-        "{t:.7f}\t{a:.6f}\t{t:.7f}\t{b:.6f}\n",
-        {"columns": {"8 force": "Dev1/ai0", "14 force": "Dev1/ai1"}, "units": AB},
+    # A clock that began at 58 s
+    "DEWESoft": (
+        "Data info\nFile name: x.dxd\nSample rate: 1E6\n\n\nData1\n\nTime (s),AI 1 (N),AI 2 (N)\n",
+        "{late:.7f},{F:.6f},{G:.6f}\n",
+        "--column time=Time " + AB_23,
     ),
-    "a data frame": (
-        ",time (s),8 force (N),14 force (N)\n",
-        "{i},{t:.9g},{F:.9g},{G:.9g}\n",
-        {},
+    # Headers of several words stand apart by several blanks.
+    "COMSOL": (
+        "% Model:              chain.mph\n% Table:              Table 1 - Global Evaluation 1\n"
+        "% Time (s)               Contact force 8 (N)      Contact force 14 (N)\n",
+        "{t:<24.16g} {F:<24.16g} {G:<24.16g}\n",
+        "--column '8 force=Contact force 8' --column '14 force=3'",
     ),
-    "numpy.savetxt": (
-        "# time (us) force (N)\n",
-        "{us:.18e} {F:.18e}\n",
-        {"columns": {"8 force": "force"}},
+    "Fortran": (
+        "",
+        "  {t:.9E}  {F:.9E}\n",
+        "--column time=1 --column '8 force=2' --unit time=s --unit 2=N",
     ),
 }
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
-def test_pulses_are_read_within_three_errors(chain, tmp_path, layout):
+def test_pulses_are_read_within_three_errors(capsys, chain, tmp_path, layout):
     """A column without a kind is of the kind that is given; by a step the clock starts at 0."""
     time, forces, true = chain
     head, *forms, stated = LAYOUTS[layout]
-    rows = zip(time, *forces / 12.5, *forces, strict=True)
+    kept = math.exp(-1e-6 / CONSTANT)
+    lost = lfilter(math.sqrt(kept) * np.array([1, -1]), [1, -kept], forces[0])
     text = head
-    for i, (t, a, b, F, G) in enumerate(rows):
+    for i, row in enumerate(zip(time, *forces / 12.5, *forces, lost, strict=True)):
+        numbers = dict(zip("tabFGQ", row, strict=True))
         form = forms[min(i, len(forms) - 1)]
-        text += form.format(i=i, t=t, us=1e6 * t, a=a, b=b, F=F, G=G)
-    if "German" in layout:
+        numbers |= {"i": i, "us": 1e6 * row[0], "late": 58 + row[0]}
+        text += form.format(**numbers)
+    if layout == "a footer":
+        text += "End of data,,\n"
+    if layout in ("a logger in German", "decimal commas in quotes"):
         text = text.replace(".", ",")
     if layout == "Graphtec":
         text = re.sub(r"([-+])(\d)", r"\1 \2", text)
+    if layout == "Fortran":
+        text = text.replace("E", "D")
     file = tmp_path / "record.txt"
     file.write_bytes(text.encode("latin-1"))
-    found = pulses(file, distance=SPACING, of="bead", **stated).document()
+    options = ["--of", "bead", "--distance", str(SPACING), "--format", "json"]
+    options += shlex.split(stated)
+    status, out, err = ended(capsys, cli.main, "pulses", str(file), *options)
+    assert status == 0, err
+    found = json.loads(out)
     assert [row["kind"] for row in found["sensors"]] == ["bead"] * len(found["sensors"])
-    assert len(found["sensors"]) == 1 + any(
-        "{b" in form or "{G" in form for form in forms
-    )
-    start = time[0] + TRIGGER if "step" in stated else TRIGGER
+    assert len(found["sensors"]) == 1 + ("14 force" in stated + head)
+    start = TRIGGER - 58 * (layout == "DEWESoft")
+    if "--step" in stated:
+        start = 0.0
     for row in found["sensors"]:
         pulse = true[CONTACTS.index(row["number"])]
         wanted = (pulse.arrival - start, pulse.peak, pulse.fwhm)
         sizes = (pulse.fwhm, pulse.peak, pulse.fwhm)
-        for name, value, size in zip(
-            ("arrival", "peak", "fwhm"), wanted, sizes, strict=True
-        ):
+        names = ("arrival", "peak", "fwhm")
+        for name, value, size in zip(names, wanted, sizes, strict=True):
             off = row[f"{name}_value"] - value
             assert abs(off) < 3 * row[f"{name}_error_value"] < 0.03 * size, name
     for row in found["speeds"]:

@@ -11,6 +11,7 @@ from lwa import InputError
 from lwa.base.frozen import Estimate
 from validation.pulses.pulse import (
     FEWEST,
+    ROUNDING,
     MeasureError,
     Pulse,
     compared,
@@ -102,9 +103,10 @@ def test_a_measured_number_carries_its_error():
 
 
 @pytest.mark.parametrize(
-    ("check", "error"), [(1.0, 0.1), (1.02, 0.1), (1.5, 0.5), (math.nan, math.nan)]
+    ("checks", "error"),
+    [((1, 1), ROUNDING), ((1, 1.5), 0.1), ((1.5, 1), 0.75), ((1, math.nan), math.nan)],
 )
-def test_the_error_of_a_less_accurate_run_is_at_least_the_tolerance(check, error):
-    """A number that the less accurate run does not have leaves the error unknown."""
-    found = compared(lambda value: {"x": value}, 1.0, check, 0.1)["x"]
+def test_the_error_is_the_difference_to_less_accurate_runs(checks, error):
+    """At least rounding; a number that one of the runs does not have has an unknown error."""
+    found = compared(lambda value: {"x": value}, [1.0, *checks])["x"]
     assert found.error == pytest.approx(error, nan_ok=True)

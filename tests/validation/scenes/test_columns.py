@@ -166,6 +166,7 @@ HEAD = "time (s),force (N)\n"
             "no column is 'force': found 1 'TIME .s.' 0.1, 2 'CH1' 2 --column 'force=2'",
         ),
         ("time,V,V\n1,2,3\n", {"columns": {"force": "V"}}, "2 columns are 'V'"),
+        (f"{HEAD}1,2\n", {"columns": {"force": "fource"}}, "near: force .N.: found"),
         ("time,force\n1,2\n", {"columns": {"bead x": "1"}}, "column is 'bead x'"),
         ("\x00\xff\n", {"encoding": "latin-1"}, "found no numbers"),
         ("time,force\n1,2\n1.5,∞\n2,3\n", {}, "line 3 holds ∞, the signal is clipped"),

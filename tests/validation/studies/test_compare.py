@@ -52,8 +52,10 @@ def test_a_shift_and_a_scale_come_back(capsys, files):
     assert list(rows) == [
         (i, name) for i in (12, 18) for name in ("arrival", "peak", "fwhm")
     ]
-    for (number, name), row in rows.items():
-        scale = STRONGER if (number, name) == (18, "peak") else 1.0
+    for (number, quantity), row in rows.items():
+        scale = STRONGER if (number, quantity) == (18, "peak") else 1.0
+        errors = [row[f"{name}_error_value"] for name in ("simulated", "measured")]
+        assert row["difference_error_value"] == pytest.approx(sum(errors), rel=1e-12)
         # Behind the dip after the pulse the fit's residuals hide a part of its error.
         bound = 10 * row["difference_error_value"] + 1e-9
         assert (

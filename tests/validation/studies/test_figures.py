@@ -47,7 +47,7 @@ def test_the_fitted_exponent_is_the_published_one(document):
 def test_the_errors_of_the_scaling_cover_a_finer_run(document):
     """Of speeds, forces and the exponent at a looser tolerance; a thirtieth would not cover."""
     fine = document["rows"][: len(HEIGHTS)]
-    rough = scaling(MODULI[0], (1e-7, 1e-6))
+    rough = scaling(MODULI[0], rtol=1e-7)
     shares = []
     for name in ("speed", "force"):
         for row, finer in zip(rough, fine, strict=True):
