@@ -8,6 +8,7 @@ import json
 import os
 import signal
 import sys
+from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 
@@ -50,9 +51,14 @@ def serve(connection: str, folder: str, environment: dict[str, str]) -> None:
     IPKernelApp.launch_instance(argv=options)
 
 
-signal.signal(
-    signal.SIGCHLD, signal.SIG_IGN
-)  # kernels that ended leave nothing to wait for
+def reap(*_: object) -> None:
+    """Wait for the kernels that have ended, so that their numbers are free and their CPU counts."""
+    with suppress(ChildProcessError):
+        while os.waitpid(-1, os.WNOHANG)[0]:
+            pass
+
+
+signal.signal(signal.SIGCHLD, reap)
 for line in sys.stdin:
     number = os.fork()
     if not number:
