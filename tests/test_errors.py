@@ -6,7 +6,6 @@ tests/lwa/loaded of lattices of any links.
 """
 
 import math
-import random
 from itertools import product
 
 import numpy as np
@@ -231,35 +230,3 @@ def test_the_error_of_the_trailing_edge(k, behind):
     slope, offset = np.polyfit(*envelope[(height > 0.15) & (height < 0.5)].T, 1)
     speed = front.estimate("trailing_speed")
     assert holds(speed.error, abs(speed.value + offset / slope))
-
-
-RANDOM = [  # a law, the ranges of its parameters and of the strains behind and ahead
-    ("power", (1.05, 9), (0.3, 10), (0, 0)),
-    ("power", (1.05, 9), (0.3, 10), (1, 1)),
-    ("hertz2", (1, 1), (0.05, 10), (0.5, 30), (0, 0)),
-    ("hertz2", (1, 1), (0.05, 10), (0.5, 30), (1, 1)),
-    ("exponential", (0.2, 2), (0, 2), (0, 1)),
-    ("magnetic", (1, 9), (1, 1), (0, 0.6), (0, 0.4)),
-    ("lennard-jones", (1, 1), (0, 0.5), (0, 0.3)),
-    ("polynomial", (-1, 2), (-1, 2), (-1, 2), (0, 1)),
-]
-
-
-@pytest.mark.slow
-def test_fifteen_random_shocks():
-    """Each number is right within its error, or refused; 300 of them once, by hand."""
-    rng, tested = random.Random(33), 0
-    while tested < 15:
-        name, *ranges = rng.choice(RANDOM)
-        *numbers, behind, ahead = (
-            sp.Rational(f"{rng.uniform(*span):.3g}") for span in ranges
-        )
-        try:
-            front = shock(EQUAL, behind, ahead, law=named(name, *numbers))
-            front.estimate("peak")  # a rarefaction has none
-        except InputError:
-            continue
-        # the train of a smaller jump takes too long to form
-        if front.ratio >= 1.03:
-            tested += 1
-            deviations(front)

@@ -89,6 +89,7 @@ class Scale:
         most : int
             Digits of a number without an error.
         """
+        # A prefix belongs to a unit of measurement, not to powers of symbols.
         fitted = fitting(unit, abs(number.value)) if self.si else Unit(unit)
         number *= 1 / fitted.size
         text = number.text() if number.error else f"{number.value:.{most}g}"
@@ -147,14 +148,17 @@ class Row:
             The result, such as a wave.
         name : str
             Name of the attribute or method, and of the row in JSON unless there is a key.
-        label, unit, key, symbol : str
-            Of the row.
+        label, unit : str
+            Those of the row.
         *arguments
             Arguments of a method.
+        key, symbol : str
+            Those of the row.
         """
         value = attempt(getattr, result, name)
         if callable(value):
             value = attempt(value, *arguments)
+        # One form of errors: a result that knows them has this method.
         estimate = None
         if hasattr(result, "estimate"):
             estimate = attempt(result.estimate, name, *arguments)
@@ -170,6 +174,7 @@ class Row:
 
     def numbers(self, scale: Scale) -> list[Estimate]:
         """The number of each value; [] if any value has none."""
+        # A list with gaps would be read as if it were complete.
         found = []
         for value in self.values:
             number = self.estimate
@@ -224,6 +229,7 @@ class Row:
         unit = "" if symbols == 1 else str(symbols).replace("**", "^")
         if scale.si:
             unit = f"{unit} {self.unit}".strip()
+        # A number stands beside powers of symbols alone: D², not 1 + D.
         if number is None or symbols is None or value.is_Symbol:
             return f"{formula} {self.unit if scale.si else ''}".rstrip()
         # Constants of materials have few digits, and results of numerics no more than these.
@@ -296,6 +302,7 @@ class Answer:
     def print(self, style: str) -> None:
         """Print the answer as "text", "json" or "latex"."""
         if style == "json":
+            # Expressions are printed so that SymPy reads them again.
             click.echo(json.dumps(self.json(), indent=2, default=str))
         elif style == "latex":
             click.echo(self.latex())
@@ -340,6 +347,7 @@ class Answer:
                 lines.append(row)
             elif row.label:
                 lines.append(f"  {row.text(self.scale)}")
+        # What ± means is said once, below the rows, and only where one is.
         if self.errors and "±" in "".join(lines):
             lines.append(f"±: {self.errors}")
         for note in self.notes:

@@ -115,6 +115,7 @@ class ChainInput:
 
 def take_chain(options: dict[str, Any]) -> ChainInput:
     """Remove the options that describe a chain from a command's options and return the chain."""
+    # What is left in the options belongs to the theory of the chain.
     names = ("masses", "stiffnesses", "spacing", "k", "law")
     chosen = {name: options.pop(name) for name in names if name in options}
     file = options.pop("spheres", None)
@@ -142,6 +143,7 @@ def _chain(content: Any) -> ChainInput:
     beads = read_beads(file, read_materials(file))
     row = read_row(file, beads)
     force = _number(file, "precompression", finite) or sp.S.Zero
+    # Hertz contacts only push.
     if force < 0:
         raise InputError(f"precompression is {force}: it must not be negative")
     # A striker of zero velocity is none; it may be given by an option then.
@@ -157,10 +159,12 @@ def _chain(content: Any) -> ChainInput:
         cell = Cell.of_spheres(row.spheres)
         return ChainInput(cell, Power(EXPONENT), force, True, striker, gravity)
     law: ContactLaw
+    # Masses have no material: their contacts need an exponent or a law.
     if row.given.one("k", "law") == "law":
         law = row.given.read("law", read_law)
     else:
         law = Power(row.given.read("k", finite))
+    # Numbers of masses have the units of the file, and SI only where the file says so.
     si = file.read("units", among({"SI": True}), False)
     return ChainInput(_cell_of_masses(row), law, force, si, striker, gravity)
 

@@ -25,6 +25,7 @@ FIRST = "from field to field G and H differ; in the canonical field, whichever b
 
 def settings_json(theory: Theory) -> Values:
     """JSON of the chain, its law and the settings; the φ_n are functions of the compression."""
+    # Expressions stay expressions: JSON has them as text when it is printed.
     settings: Values = {
         "k": theory.k,
         "masses": theory.cell.masses,
@@ -44,6 +45,7 @@ def closure_lines(theory: Theory) -> list[str]:
     """Lines of text with the closure and the unknown, and why a closure was chosen."""
     closure = theory.closure
     lines = [f"closure {closure.name}; {UNKNOWNS[closure.field]}"]
+    # Who names a closure knows it; a choice of the program is said.
     if theory.cell.size > 2 and not given("closure"):
         lines.append(
             f"{theory.cell.size} beads in a cell: the paper's closure is that of one or two, the "
@@ -54,6 +56,7 @@ def closure_lines(theory: Theory) -> list[str]:
 
 def depends_on_first(theory: Theory) -> bool:
     """True for the first field of unlike beads, whose wave depends on which bead is the first."""
+    # Under a law that is no power there is no compact wave to compare.
     first = theory.closure.field == "first" and theory.pde.acoustic
     return first and not theory.cell.uniform and theory.law.homogeneous
 
@@ -77,8 +80,10 @@ def derive(style: str, **options: Any) -> None:
     theory = homogenize(chain.cell, law=chain.law, **options)
     pde = theory.pde
     head: Values = settings_json(theory)
+    # Names of the paper; λ is 1 on the acoustic branch.
     head["lambda"] = theory.amplitude_ratio
     head["ansatz"] = theory.ansatz
+    # null where the order or the branch has none: readers find the same keys.
     head |= dict.fromkeys("GHI") | pde.third_order
     head["terms"] = _terms_json(pde.coefficients)
     head["defect"] = _terms_json(theory.defect)
@@ -114,6 +119,7 @@ def _law_lines(theory: Theory) -> list[str]:
     law = theory.law
     if law.homogeneous:
         return []
+    # The coefficients hold the φ_n, whose values by δ stand here once.
     delta = law.delta
     lines = [f"phi_n = {delta}^(n-1) F^(n)/F', at {delta} = D u_x; F' is taken there"]
     return lines + [f"  phi{n} = {value}" for n, value in theory.phi.items()]
@@ -133,6 +139,7 @@ def _ansatz_lines(theory: Theory) -> list[str]:
 
 def _field_lines(theory: Theory) -> list[str]:
     """Lines of text with what the full closure adds to the fields of the particles."""
+    # The canonical field is no particle's: every particle has a field of its own then.
     lines = []
     for i, orders in theory.slaved.items():
         title = f"field of particle {i + 1}, less u"
@@ -154,6 +161,7 @@ def _defect_lines(theory: Theory) -> list[str]:
             "defect: u_ττ by the first equation of motion minus u_ττ by the second",
             *by_order(theory.defect, pde.heading),
         ]
+    # Each way out has its own words: another closure, or another field.
     if pde.acoustic and not pde.conservative:
         if theory.closure.name == "linear":
             lines.append(
@@ -167,6 +175,7 @@ def _defect_lines(theory: Theory) -> list[str]:
 
 def _terms_json(coefficients: Mapping[int, Terms]) -> list[Values]:
     """JSON of the terms by their orders."""
+    # Jets are lists of [derivative, power]: JSON has no tuples as keys.
     rows: list[Values] = []
     for n, terms in coefficients.items():
         for jet, coefficient in terms.items():

@@ -71,16 +71,19 @@ def strike(
         )
     chain = take_chain({"spheres": spheres})
     cell, striker = chain.cell, chain.striker
+    # The relation of a strike rests on the wave without load, which scales with the force.
     if chain.precompression:
         raise InputError(
             f"precompression is {chain.precompression} in {spheres}: the pulse of a strike is that "
             "of a chain without load; leave the key out"
         )
+    # A closed form of unlike beads knows no striker.
     if not cell.uniform:
         raise InputError(
             f"{spheres} has unlike beads or contacts: the pulse is that of equal ones; "
             f"lwa-validate run {spheres} simulates any chain"
         )
+    # Speed and width are lengths, which a file of masses may lack.
     if cell.spacing.is_Symbol:
         raise InputError(f"{spheres} has no spacing: add spacings = 1.0 to [chain]")
     # Options stand above the file.
@@ -88,9 +91,11 @@ def strike(
         velocity, drop = striker.velocity, striker.drop
     if velocity is None and drop is None:
         raise InputError(f"{spheres} has no striker that moves", velocity="1")
+    # A striker is one of the beads unless it is described.
     if mass is None:
         mass = striker.mass or cell.masses[0]
     pulse = pulse_of_strike(cell, mass, velocity, drop=drop, k=chain.law.exponent)
+    # A mass in front of the wave's numbers: the striker decides how good they are.
     rows: Lines = [
         f"chain of equal beads; F = A δ^k, k = {chain.law.exponent}",
         Row("", "mass of the beads", cell.masses[0], "kg"),
@@ -103,6 +108,7 @@ def strike(
         Row("fwhm.length", "FWHM of the force", pulse.fwhm("force", "length"), "m"),
         Row("fwhm.time", "FWHM of the force in time", pulse.fwhm(), "s"),
     ]
+    # Limits of the model, each said where it is reached.
     notes = chain.hertz_notes(pulse.wave.force)
     if chain.gravity:
         notes.append(
@@ -154,6 +160,7 @@ def shock(
     """
     if behind is None and piston is None:
         raise InputError("neither --behind nor --piston is given", behind=1)
+    # The load of a file is a force, and the state ahead a strain.
     chain = take_chain(options)
     cell, law, static = chain.cell, chain.law, chain.precompression
     # A load of the file is the state ahead of the front, as a strain.
@@ -183,6 +190,7 @@ def shock(
     if kind != "rarefaction":  # which has no leading pulse
         rows.append(Row.of(front, "peak", "peak strain, doubling"))
         rows.append(Row.of(front, "peak_force", "peak force, doubling", "N"))
+    # The closed form takes the strain behind for constant.
     notes = []
     if front.oscillates:
         notes.append(

@@ -52,6 +52,7 @@ def dispersion(
     the frequencies (from, to) of each band, and `band_edges_frequency_value` these over 2π (Hz in
     SI).
     """
+    # Options of the chain are taken out first: a file stands in their place.
     spheres = options["spheres"] is not None
     chain = take_chain(options)
     precompression = chain.load(precompression)
@@ -59,6 +60,7 @@ def dispersion(
     if precompression is not None and not (spheres or given("k")):
         chain = replace(chain, law=Power(EXPONENT))
     linear = Dispersion(chain.cell, chain.law.exponent)
+    # null for a branch that has no series: readers find the same keys.
     head: Values = {"acoustic": None, "optical": None}
     rows: Lines = [
         chain.text,
@@ -67,6 +69,7 @@ def dispersion(
     ]
     for name, series in linear.series(order).items():
         head[name] = series
+        # Coefficients are exact, one a line as those of the wave equation.
         rows.append(f"{name}:")
         for n, c in series.items():
             power = f"κ^{n}" if n else "1"
@@ -82,6 +85,7 @@ def dispersion(
             Row.of(loaded, "spring_constants", "spring constants", "N/m"),
             Row.of(loaded, "sound_speed", "sound speed dx/dt", "m/s"),
         ]
+        # Edges are roots, which have no closed form beyond two masses.
         numbers = (*chain.cell.masses, *loaded.spring_constants)
         if not any(x.free_symbols for x in numbers):
             edges = loaded.bands.edges()
@@ -99,6 +103,7 @@ def dispersion(
 
 def _branch(text: str, name: str) -> BranchName | int:
     """Read a branch by its name or its number."""
+    # Cells of many beads have more branches than names.
     if text.isdecimal():
         return int(text)
     return one_of(text, BRANCHES, name)
@@ -162,6 +167,7 @@ def envelope(
 
     chain = take_chain(options)
     load = chain.load(precompression)
+    # Without a load nothing is linear, and no mode exists.
     if background is None and load is None:
         raise InputError(
             "neither --background nor --precompression is given: a mode is that of a loaded chain",
@@ -175,6 +181,7 @@ def envelope(
         wavenumber=wavenumber,
         branch=branch,
     )
+    # Theory has radians; sensors and the literature have Hz where there is a second.
     turn = sp.S.One
     name = "ω"
     if chain.si:  # Hz
@@ -200,10 +207,12 @@ def envelope(
         described,
     ]
     shown: list[Shown | str] = [equation]
+    # A breather is one solution of the equation: that of a frequency.
     if frequency is not None or detuning is not None:
         angular = frequency and frequency * turn
         breather = equation.breather(angular, detuning=detuning)
         shown.append(breather)
+        # Bright and dark envelopes of the cubic equation have these shapes.
         shape = {"bright": "sech", "dark": "tanh"}[breather.kind]
         own = breather.frequency / turn
         rows += [

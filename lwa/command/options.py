@@ -46,6 +46,7 @@ class Read(click.ParamType[Any]):
         self.read = read
         self.example = example
 
+    # Click calls this for defaults, too, so that a default is a text that the reader takes.
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> Any:
@@ -72,6 +73,7 @@ class Words(click.Choice[str]):
 
 def quantity(context: click.Context, option: click.Parameter, text: str | None) -> Any:
     """Read an integer, a decimal, a fraction or a plain name, as a callback of Click."""
+    # An option without a default may be absent.
     if text is None:
         return None
     return read_exact(text, called(option))
@@ -81,6 +83,7 @@ def quantities(
     context: click.Context, option: click.Parameter, text: str | None
 ) -> tuple[sp.Expr, ...]:
     """Read quantities separated by commas, as a callback of Click; () when absent."""
+    # No brackets and no blanks: a shell passes such a list without quotes.
     parts = text.split(",") if text else []
     return tuple(read_exact(part, called(option)) for part in parts)
 
@@ -96,6 +99,7 @@ def _exponent(text: str, name: str) -> sp.Expr:
 
 def not_negative(text: str, name: str) -> sp.Expr:
     """Read a positive quantity or zero."""
+    # A load of zero is no load, and as valid as a missing one.
     number = read_exact(text, name)
     if number.is_zero:
         return number
@@ -108,6 +112,7 @@ def angle(text: str, name: str) -> sp.Expr:
     part = re.fullmatch(r"([0-9]*)\*?pi(?:/([1-9][0-9]*))?", text.strip())
     if part is None:
         return read_exact(text, name)
+    # Exact, so that the edges of a band are told from wavenumbers beside them.
     return sp.Rational(int(part[1] or 1), int(part[2] or 1)) * sp.pi
 
 
@@ -156,6 +161,7 @@ def command(*examples: str, page: str) -> Callable[[Function], click.Command]:
         # Literals of reStructuredText have no marks on a terminal.
         says = inspect.cleandoc(function.__doc__ or "").replace("``", "")
 
+        # Click has no options that exclude each other; a refusal names the one to leave out.
         @wraps(function)
         def checked(**options: Any) -> None:
             for one, other in ALTERNATIVES:
@@ -211,6 +217,7 @@ def value(
 
 def together(*options: Option) -> Option:
     """Combine several options into one decorator, in their order in the help."""
+    # Decorators apply from the last to the first; Click lists options in the order of application.
     return lambda function: reduce(
         lambda made, option: option(made), reversed(options), function
     )
@@ -218,6 +225,7 @@ def together(*options: Option) -> Option:
 
 def exponent_option(default: str) -> Option:
     """Make the option ``--k``."""
+    # 3/2 is the exponent of spheres, and the example of every refusal.
     says = "Exponent k of the force A δ^k of a contact."
     return value("--k", says, "3/2", _exponent, default)
 
@@ -234,6 +242,7 @@ def law_option(says: str) -> Option:
 
 def style_option(languages: Sequence[str] = ()) -> Option:
     """Make the option ``--format``, the argument ``style`` of a command."""
+    # Languages are those of `wave` alone.
     return click.option(
         "--format",
         "style",
@@ -244,6 +253,7 @@ def style_option(languages: Sequence[str] = ()) -> Option:
     )
 
 
+# The file is read by the command, whose refusals have the line to paste.
 SPHERES = click.option(
     "--spheres",
     metavar="FILE",
@@ -251,6 +261,7 @@ SPHERES = click.option(
     help="TOML or JSON file of the chain, in place of options on masses, contacts and spacing: "
     "spheres in SI, or any scene of lwa-validate run.",
 )
+# The example is the dimer of the paper, steel and PTFE, in grams.
 MASSES = value(
     "--masses",
     "Masses of the beads in one period of the chain.",
@@ -267,6 +278,7 @@ STIFFNESSES = value(
     positive_row,
     metavar="A1,A2,…",
 )
+# A symbol by default: results are then in units of D.
 SPACING = value(
     "--spacing",
     "Distance D between neighbouring beads at rest.",
@@ -274,6 +286,7 @@ SPACING = value(
     positive,
     D.name,
 )
+# Forces are those of contacts, which sensors between beads measure.
 FORCE = value(
     "--force",
     "Peak contact force of the wave, any static load included; in N if the chain is in SI.",
@@ -296,6 +309,7 @@ PRECOMPRESSION = value(
 
 def cell_options(languages: Sequence[str] = ()) -> Option:
     """Make the options that describe a chain and its contact law."""
+    # Names alone: what their parameters mean stands in the book.
     law = "Contact force A F(δ) by the name and the parameters of F, in place of --k: "
     return together(
         exponent_option(k.name),
@@ -329,6 +343,7 @@ def theory_options(languages: Sequence[str] = ()) -> Option:
         click.option(
             "--branch",
             type=Words(BRANCHES),
+            # The branch of compact waves; the optical one is an oscillation in place.
             default=BRANCHES[0],
             show_default=True,
             help="Neighbours move together (acoustic) or against each other.",
@@ -338,6 +353,7 @@ def theory_options(languages: Sequence[str] = ()) -> Option:
 
 def series_options(exponent: str, order: str, default: str | None = "4") -> Option:
     """Make the options of a command on a series, with the defaults of ``--k`` and ``--order``."""
+    # Series need no spacing: lengths are in D.
     highest = order_option(order, default)
     return together(
         exponent_option(exponent), MASSES, STIFFNESSES, highest, style_option()

@@ -46,6 +46,7 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
     # Whether an expansion is one in numbers is known when it is made; four orders take no time.
     if order is None and expanded.numeric:
         expanded = expand(cell, _ORDER, law=chain.law)
+    # The coefficients of c² alone are in JSON: the other series are computed from its parts.
     head: Values = {
         "k": expanded.k,
         "masses": cell.masses,
@@ -53,6 +54,7 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
         "order": expanded.order,
         "c2": [expanded.c2.prefactor * a for a in expanded.c2.coefficients],
     }
+    # Each series under its name in JSON, with its name in text.
     series = {"c2": ("c²", expanded.c2)}
     for q in QUANTITIES:
         series[f"fwhm.{q}"] = (f"FWHM of the {q}", expanded.fwhm(q))
@@ -82,6 +84,7 @@ def _sum_rows(
     yield f"at k = {expanded.k}, order {expanded.order}:"
     for key, (label, part) in series.items():
         yield Row(key, label, attempt(part.at))
+    # A mass of the pulse as a particle: what a striker meets.
     mass = attempt(expanded.effective_mass.at)
     yield Row("effective_mass", "effective mass P²/2E", mass)
     if expanded.cell.size == 2 and len(set(expanded.cell.stiffnesses)) == 1:

@@ -80,6 +80,7 @@ def wave(
     static = chain.load(precompression)
     # Options of which one says the other are not given together.
     load = static if background is None else background
+    # The wave under a load is of another class: that of any law, in numbers.
     loaded = _is_loaded(chain, load, force)
     if loaded:
         _take_canonical(options)
@@ -88,6 +89,7 @@ def wave(
             f"--format {style} is that of a chain without load, whose functions take any force",
             format="text",
         )
+    # The equation is derived for every answer: closure and settings stand in its head.
     theory = homogenize(chain.cell, law=chain.law, **options)
     if style in LANGUAGES:
         click.echo(_compact(theory).code(style))
@@ -196,6 +198,7 @@ def pulse_rows(wave: Any, rise: str) -> Iterator[Row]:
         What its strain is called: "peak", or "rise of the" static strain.
     """
     yield Row.of(wave, "force", "peak contact force F", "N")
+    # B is the paper's letter of the peak strain.
     yield Row.of(wave, "strain", f"{rise} strain B", key="B")
     yield Row.of(wave, "compression", f"{rise} compression", "m")
     yield Row.of(wave, "speed", SPEED, "m/s")
@@ -220,6 +223,7 @@ def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
     ]
     shown: list[Shown | str] = [theory.pde, wave]
     notes = []
+    # A number of the size turns V_s and B into speed and strain in space and time.
     if force is not None:
         physical = wave.at_force(force)
         rows += pulse_rows(physical, "peak")
@@ -247,6 +251,7 @@ def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
 
 def _oscillator(reduction: Reduction) -> Iterator[Row | str]:
     """Rows of the oscillator z'' = μ z^η - σ z; JSON alone has long ones."""
+    # The root p of a symbolic dimer takes a page, and everything else is made of p.
     short = _is_short(reduction)
     yield "v = z^p, integrating factor z^a: z'' = μ z^η - σ z, s = 2/(1 - η)"
     if not short:
@@ -312,6 +317,7 @@ def _beside(
     scale : Scale
         Units of the numbers.
     """
+    # A time of passage is that of a force.
     if force is None:
         symbol = "V_{s}"
         first = Row.of(wave, speed, "V_s at B = 1", "", 1, key="speed", symbol=symbol)
@@ -406,6 +412,7 @@ def _unit_rise(field: Background) -> Iterator[Row]:
 
 def _small_waves(kdv: KdV) -> Lines:
     """Rows of the Korteweg-de Vries equation and its solitary wave."""
+    # The limit is exact: its coefficients carry no error.
     equation = "small waves: v_τ + c0 v_x + α v v_x + γ v_xxx = 0, v = B sech²(ξ/L)"
     if kdv.rise.is_negative:
         equation += ", B < 0"

@@ -79,7 +79,7 @@ class Background(Value):
 
     cell: Cell
     law: ContactLaw
-    p0: sp.Expr
+    p0: Any
 
     def __post_init__(self) -> None:
         for_cell(self.law, self.cell)

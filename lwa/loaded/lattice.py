@@ -72,8 +72,8 @@ class Link(Value):
     i: int
     j: int
     law: ContactLaw
-    factor: sp.Expr = sp.S.One
-    cosine: sp.Expr = sp.S.One
+    factor: Any = sp.S.One
+    cosine: Any = sp.S.One
 
     def __post_init__(self) -> None:
         i = integer(self.i, "a link's particle", 0)

@@ -148,7 +148,7 @@ class Shock(Value):
         Where c₋ is above 2 c₊ they go on oscillating (`oscillates`), and the mean strain is below
         p₋.
 
-        >>> from lwa import Cell
+        >>> from lwa import Cell, shock
         >>> shock(Cell([1], spacing=1), "p", k="3/2").plateau
         2*sqrt(6)*p**(5/4)/5
         """
@@ -165,7 +165,7 @@ class Shock(Value):
 
         Examples
         --------
-        >>> from lwa import Cell
+        >>> from lwa import Cell, shock
         >>> shock(Cell([1], spacing=1), 2, "9/5", k=3).trailing_speed
         8*sqrt(3)/5
         """
@@ -247,7 +247,7 @@ class Shock(Value):
 
         Examples
         --------
-        >>> from lwa import Cell
+        >>> from lwa import Cell, shock
         >>> front = shock(Cell([1], spacing=1), 1, k="3/2")
         >>> speed = front.estimate("leading_speed")
         >>> lattice = 1.0395  # of a driven chain

@@ -42,9 +42,9 @@ class Material(Value):
         For other values.
     """
 
-    E: sp.Expr
-    nu: sp.Expr
-    density: sp.Expr | None = None
+    E: Any
+    nu: Any
+    density: Any = None
 
     def __post_init__(self) -> None:
         given = self.nu
@@ -121,8 +121,8 @@ class Sphere(Value):
         For other values.
     """
 
-    mass: sp.Expr
-    radius: sp.Expr
+    mass: Any
+    radius: Any
     material: Material
 
     def __post_init__(self) -> None:

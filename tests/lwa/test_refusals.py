@@ -16,7 +16,6 @@ from lwa import (
     homogenize,
 )
 from lwa.law import DELTA, named
-from lwa.spheres.hertz import stiffness
 
 y = sp.Symbol("y", positive=True)
 STEEL = lwa.Material(1, 0)
@@ -43,7 +42,6 @@ CALLS = [
     (lambda: Cell([sp.sqrt(2) - 2]), r"mass 1 is -2 \+ sqrt\(2\): it must be positive"),
     (lambda: Cell(["m1"]).at(omega=1), "a cell with two masses"),
     (lambda: DIMER.at(m1=1, m2=2, omega=2), "omega is m2/m1: one of the masses"),
-    (lambda: DIMER.at(m3=1), "'m3' is not among the symbols: D, m1, m2"),
     (lambda: TWO_A.at(a=1), "'a' names two symbols"),
     (lambda: canonical_wave(CHAIN, k="3/2", law=3), "one of them"),
     (
@@ -51,20 +49,12 @@ CALLS = [
         "shares of the strain",
     ),
     (lambda: homogenize(Dimer(3, 1)).pde.energy, "closure='full'"),
-    (lambda: homogenize(DIMER, branch="optical").pde.traveling_wave(), "acoustic"),
     (
         lambda: homogenize(DIMER, law=lwa.general(), branch="optical"),
         "its contacts also pull",
     ),
     (lambda: homogenize(CHAIN, law=lwa.general()).pde.traveling_wave(), "power law"),
-    (lambda: named("hertz2").at([1.0]), "an array of forces needs numbers"),
-    (lambda: Law("x**2", y), "a SymPy expression"),
-    (lambda: Law(y, "y"), "the symbol of δ"),
     (lambda: named("general", 1), "none are wanted"),
-    (
-        lambda: homogenize(CHAIN, law=Law(y * sp.Symbol("a"), y)).at(a="y"),
-        "a .y.: the name means",
-    ),
     (
         lambda: lwa.Dispersion(Cell(["a", "b"], ["d", "e"])).acoustic(10000),
         "is 10000: .* lower",
@@ -83,17 +73,11 @@ CALLS = [
     (lambda: expand(Cell([1], [8]), 6, k="3/2").c2.at("6/5"), "that of k = 3/2"),
     (lambda: expand(CHAIN, 6).c2.at(1), "k is 1"),
     (lambda: expand(CHAIN, 5).c2.at("3/2"), "from order 6 on"),
-    (lambda: expand(TWO, 8).c2.at("3/2"), "more than 10% of it"),
-    (lambda: expand(Cell(["a", "b"]), 100), "some .* terms"),
     (lambda: expand(Cell(["ε", 1]), 1), "ε is k - 1"),
     (
         lambda: expand(CHAIN, 2, law=Law(sp.exp(DELTA) - 1, DELTA)),
         "only a power law has a k",
     ),
-    (lambda: lwa.lattice_wave(Cell([1, 2, 3])), "equal beads"),
-    (lambda: lwa.Sphere.solid(1, STEEL), "a Material with a density"),
-    (lambda: stiffness(BALL, 1), "other is 1: a Sphere"),
-    (lambda: Cell.of_spheres(BALL), "spheres is .*: a sequence"),
     (lambda: loaded(HERTZ, -1, 1), "must not be negative"),
     (lambda: loaded(lwa.general(), 1, 1).fwhm(), "no expression"),
     (lambda: lwa.loaded_wave(EQUAL, force=2, rise=1), "not by both"),
@@ -103,20 +87,12 @@ CALLS = [
         "canonical",
     ),
     (lambda: Link(1, 1, HERTZ), "second particle"),
-    (lambda: Link(0, 1, "3/2"), "no contact law"),
     (lambda: Lattice([1], [Link(1, 2, HERTZ)]), "particles 0 to 0"),
     (lambda: Lattice([1, 1], [Link(0, 2, HERTZ)]), "free"),
     (lambda: Lattice([1, 1], [LINK]), "carry no load"),
-    (
-        lambda: Lattice([1], [Link(0, 1, SOFT), Link(0, 2, SOFT)]).equilibrium(9),
-        "reach",
-    ),
     (lambda: front(2, 1, law=Power(1)), "sound is as fast behind as ahead"),
     (lambda: front(1, -1), "ahead is -1: contacts of a power law only push"),
     (lambda: front(4, 1).trailing_speed, "the trailing edge holds up to 1.3"),
-    (lambda: front(1, 0).leading_speed("dispersion"), "ahead is 0: no sound"),
-    (lambda: front(2, 1, cell=TWO).peak, "known for equal beads only"),
-    (lambda: front(2, 1, cell=TWO).trailing_speed, "known for equal beads"),
     (lambda: front(1, 2).peak, "a rarefaction has no pulse"),
     (lambda: front("p", 1, law=Power("k")).kind, "kind depends on symbols"),
     (lambda: front(1, 0, law=Power(1)), "a front without load wants k > 1"),
@@ -151,7 +127,6 @@ NO_WAVES = [
         (lambda n=n, B=B: loaded(named("magnetic", n, 1), 0, B), "pole")
         for n, B in ((3, 1), (4, "1.1"))  # the pole and beyond
     ),
-    (lambda: loaded(HERTZ, 0, 1).kdv, "no sound"),
     (lambda: loaded(named("polynomial", 0, 1), 0, 1).kdv, "F″ is 0"),
     (lambda: lwa.loaded_wave(BEADS, force=1, precompression=1), "no wave"),
     (lambda: lwa.loaded_wave(BEADS, force="1/2", precompression=1), "stiffen"),
@@ -164,7 +139,6 @@ NO_WAVES = [
         (lambda at=at: homogenize(DIMER).pde.traveling_wave().at(**at), words)
         for at, words in (
             ({"k": 1, "m1": 1, "m2": 1}, "k > 1$"),
-            ({"k": 3, "m1": 1, "m2": 100}, "G[+]H[+]I > 0$"),
             ({"k": "8/5", "m1": 1, "m2": 1000}, "V² > 0$"),  # where G + H + I > 0
         )
     ),

@@ -2,15 +2,15 @@
 
 Numba compiles the loops once and keeps them on disk. A run is the same to the last bit every time.
 
-Pair: two solutions of y'' = f(y), or of y'' = f(y, y') for damped contacts, with adaptive steps h
-(`validation.lattice.schemes`). The error of a step is the root of the sum over all beads of the
-squared errors, in the scene's scales of displacement and velocity; ``rtol`` bounds this error.
-F = A δ^k with k = 3/2 has no second derivative at a kink, the time at which a contact opens or
-closes, and a step across a kink would err by O(h^{k+1}). So the force of such a contact is
+Pair: two solutions of ``y'' = f(y)``, or of ``y'' = f(y, y')`` for damped contacts, with adaptive
+steps h (`validation.lattice.schemes`). The error of a step is the root of the sum over all beads of
+the squared errors, in the scene's scales of displacement and velocity; ``rtol`` bounds this error.
+``F = A δ^k`` with ``k = 3/2`` has no second derivative at a kink, the time at which a contact opens
+or closes, and a step across a kink would err by ``O(h^{k+1})``. So the force of such a contact is
 integrated by a quadrature that knows the kink (`validation.lattice.kernel.kinks`).
 
-Splitting: symplectic, with a fixed step. Every kink leaves an error of O(h^{k+1}), which sets the
-step.
+Splitting: symplectic, with a fixed step. Every kink leaves an error of ``O(h^{k+1})``, which sets
+the step.
 
 Drive: a first bead of infinite mass with a given motion. Steps end at the end of a ramp and at the
 knots of a file.

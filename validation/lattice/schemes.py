@@ -1,23 +1,24 @@
 """Coefficients of the compiled integrators.
 
-`RKN86`, an embedded Runge–Kutta–Nyström pair for y'' = f(y), is the default where forces depend on
-displacements alone. `RK853` takes damped contacts, y'' = f(y, y'). It is an explicit Runge–Kutta
-pair in Nyström form: stage s evaluates f at y + c_s h v + h² Σ (A²)_sj f_j and v + h Σ A_sj f_j, A
-the pair's matrix. The last stage of both pairs is at the step's end, and is the first stage of the
-next step.
+`RKN86`, an embedded Runge–Kutta–Nyström pair for ``y'' = f(y)``, is the default where forces depend
+on displacements alone. `RK853` takes damped contacts, ``y'' = f(y, y')``. It is an explicit
+Runge–Kutta pair in Nyström form: stage s evaluates f at ``y + c_s h v + h² Σ (A²)_sj f_j`` and
+``v + h Σ A_sj f_j``, A the pair's matrix. The last stage of both pairs is at the step's end, and is
+the first stage of the next step.
 
-`BLANES_MOAN` is a symmetric splitting of y'' = F(y)/m, for long runs in which all beads move. A
-step of h applies kick 0, drift 0, kick 1, drift 1, …, and a last kick: a kick adds b h F(y)/m to v,
-a drift adds a h v to y. It is symplectic and time-reversible, and keeps the momentum to rounding.
+`BLANES_MOAN` is a symmetric splitting of ``y'' = F(y)/m``, for long runs in which all beads move. A
+step of h applies kick 0, drift 0, kick 1, drift 1, …, and a last kick: a kick adds ``b h F(y)/m``
+to v, a drift adds ``a h v`` to y. It is symplectic and time-reversible, and keeps the momentum to
+rounding.
 
 To add a pair, write its table, with a source, as a text of fractions or decimals, a row a line, and
 read it:
 
-1. for y'' = f(y), `_nystrom`: the rows of a, of which the last are the weights of the displacement
-   and whose stage is at the step's end; the weights of the velocity; both weights of the less
-   accurate solution;
-2. for y'' = f(y, y'), `_explicit`: the rows of a Runge–Kutta matrix, the last of them its weights;
-   then the differences to the weights of one or two less accurate solutions;
+1. for ``y'' = f(y)``, `_nystrom`: the rows of a, of which the last are the weights of the
+   displacement and whose stage is at the step's end; the weights of the velocity; both weights of
+   the less accurate solution;
+2. for ``y'' = f(y, y')``, `_explicit`: the rows of a Runge–Kutta matrix, the last of them its
+   weights; then the differences to the weights of one or two less accurate solutions;
 3. name the power of h to which the estimated error is proportional, 1 + the less accurate order.
 
 The number of stages is the table's, at most `validation.lattice.kernel.arrays.ROOM`.
@@ -26,7 +27,7 @@ The number of stages is the table's, at most `validation.lattice.kernel.arrays.R
 Sources: Dormand, El-Mikkawy and Prince 1987, IMA J. Numer. Anal. 7, 423: RKN8(6)9FM. Hairer,
 Nørsett and Wanner, Solving Ordinary Differential Equations I, II.10: the pair of order 8 by Dormand
 and Prince with errors of orders 5 and 3, with the digits of SciPy's DOP853. Blanes and Moan 2002,
-J. Comput. Appl. Math. 142, 313: SRKN_6^b, of order 4, as printed, to all digits.
+J. Comput. Appl. Math. 142, 313: ``SRKN_6^b``, of order 4, as printed, to all digits.
 """
 
 from __future__ import annotations

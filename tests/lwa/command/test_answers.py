@@ -9,7 +9,7 @@ import pytest
 import sympy as sp
 from sympy.printing.str import StrPrinter
 
-from lwa import Cell, Dimer, canonical_wave, envelope, homogenize, loaded_wave, shock
+from lwa import Cell, Dimer, canonical_wave, homogenize, loaded_wave, shock
 from lwa.base import latex
 from lwa.law import named
 from tests.identity import same
@@ -18,19 +18,11 @@ from tests.lwa.command.answers import result, said
 HERTZ, EQUAL = sp.Rational(3, 2), Cell([1], spacing=1)
 QUANTITIES = ("strain", "force", "velocity")
 theory = homogenize(Dimer("m1", "m2"))
-canonical = canonical_wave(Dimer(1, "0.2733", spacing=1), HERTZ)
 pressed = loaded_wave(Dimer(1, 3), rise=1, background="1/10", k=HERTZ)
 symbolic = loaded_wave(Dimer("m1", "m2"), background="p0").field
 forces = canonical_wave(Cell([2], [5], "1/100"), HERTZ).at_force(10, precompression=3)
-smooth, pressed_smooth = (
-    loaded_wave(EQUAL, law=named("hertz2", 1, 2), force=3, precompression=F0)
-    for F0 in (0, 1)
-)
+smooth = loaded_wave(EQUAL, law=named("hertz2", 1, 2), force=3, precompression=1)
 front = shock(EQUAL, 2, 1, k=HERTZ)
-peak = float(front.peak)
-mode = envelope(
-    Cell([1, 2, 3]), k=HERTZ, precompression=1, wavenumber=2 * sp.pi / 3, branch=0
-)
 w = 0.2733
 
 ANSWERS = {
@@ -50,7 +42,6 @@ ANSWERS = {
     },
     "wave --closure full --field center --k 3/2 --masses 1,0.2733": {
         "beta_value": (1 + w) / math.sqrt(10 * (1 - w + w * w)), "p": "4/5",
-        **{f"fwhm_value.{q}": canonical.fwhm(q) for q in QUANTITIES},
     },
     "wave --closure full --field center": {"speed": "sqrt(2)*B**(k/2 - 1/2)/(sqrt(k)*sqrt(k + 1))"},
     "wave --k 3/2 --masses 1,1 --force 8": {
@@ -79,11 +70,9 @@ ANSWERS = {
         **{f"fwhm_value.{q}": forces.fwhm(q) for q in QUANTITIES},
         **{f"fwhm_time_value.{q}": forces.fwhm(q, "time") for q in QUANTITIES},
     },
-    **{
-        f"wave --law hertz2:1,2 --masses 1 --spacing 1 {load} --force 3": {
-            "speed_value": wave.speed, **{f"fwhm_value.{q}": wave.fwhm(q) for q in QUANTITIES},
-        }
-        for load, wave in (("", smooth), ("--precompression 1", pressed_smooth))
+    "wave --law hertz2:1,2 --masses 1 --spacing 1 --precompression 1 --force 3": {
+        "speed_value": smooth.speed, "speed_error_value": smooth.estimate("speed").error,
+        **{f"fwhm_value.{q}": smooth.fwhm(q) for q in QUANTITIES},
     },
     "dispersion --masses 3,1 --order 6": {
         "acoustic": {"2": "1", "4": "-7/48", "6": "-59/5760"}, "optical.0": "16/3",
@@ -119,16 +108,10 @@ ANSWERS = {
         "kind": "bright", "branch": "1", "group_velocity_value": 0, "amplitude_value.0": 0,
         "amplitude_value.1": 2 * math.sqrt(0.032 / 0.75),  # p0 √(32 Δ/(k (k - 1)))
     },
-    "envelope --masses 1,2,3 --k 3/2 --precompression 1 --wavenumber 2pi/3 --branch acoustic": {
-        f"{name}_value": getattr(mode, name)
-        for name in ("frequency", "group_velocity", "dispersion", "nonlinearity")
-    },
     "shock --masses 1 --spacing 1 --k 3/2 --behind 2 --ahead 1": {
         "kind": "shock", "plateau_value": front.plateau, "peak": None,
         "leading_speed.doubling": None,
         **{f"leading_speed_value.{rule}": front.leading_speed(rule)
-           for rule in ("doubling", "dispersion")},
-        **{f"leading_speed_error_value.{rule}": front.estimate("leading_speed", rule).error
            for rule in ("doubling", "dispersion")},
         **{f"{name}_value": getattr(front, name)
            for name in ("trailing_speed", "peak", "peak_force")},
@@ -198,7 +181,6 @@ TEXTS = {
     "wave --k 1/2 --masses 1 --background 1": ("B < 0",),
     "expansion --k 2 --masses 1 --order 6": ("±", "c² = Σ a_n ε^n"),
     "wave --k 2 --masses 1 --force 123456789012/1234567891": ("F = 123456789012/1234567891\n",),
-    "wave --k 2 --masses 1 --force 1234567890121/123456789017": ("F = 9.9999999996031\n",),
     "expansion --k 3 --masses 1,2,3 --order 6": ("velocity: no sum at k = 3", "c²: no sum"),
     "wave --k 3/2 --masses 1 --format latex": (
         r"V_{s}\big|_{\mathrm{lattice}} &= 0.739354 \pm", r"\right) D",

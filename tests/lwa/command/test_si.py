@@ -79,21 +79,13 @@ def test_a_wave_of_spheres_has_the_values_of_python(capsys, file):
     for name in ("compression", "speed", "bead_velocity", "force"):
         assert found[f"{name}_value"] == float(getattr(wave, name))
     out = said(capsys, *options, "--force", "10")
-    speed = f"speed dx/dt = {found['speed_value']:.6g} m/s"
-    for words in (
-        "masses = 450 mg, 123 mg",
-        f"A = {float(A):.6g} N/m^(3/2)",
-        "D = 4.76 mm",
-        speed,
-    ):
+    for words in ("450 mg, 123 mg", f"A = {float(A):.6g} N/m^(3/2)", "D = 4.76 mm"):
         assert words in out
+    assert f"speed dx/dt = {found['speed_value']:.6g} m/s" in out
     lattice = lwa.lattice_wave(cell, k="3/2", force=10)
     speed = lattice.estimate("speed")
     assert found["lattice"]["speed_value"] == speed.value
     assert found["lattice"]["speed_error_value"] == speed.error
-    for extent, key in (("length", "fwhm_value"), ("time", "fwhm_time_value")):
-        width = lattice.estimate("fwhm", "force", extent)
-        assert found["lattice"][key]["force"] == width.value
     symbolic = result(capsys, *options)
     assert (symbolic["force"], symbolic["fwhm_value"]) == ("F", found["fwhm_value"])
     speed = sp.sympify(symbolic["speed"])
@@ -168,13 +160,6 @@ def test_bands_and_breathers_have_hertz_and_metres(capsys, file):
     found = result(capsys, *envelope, "--wavenumber", "0", "--branch", "1")
     assert found["frequency_value"] == pytest.approx(edges[3] / turn, rel=1e-12)
     assert found["units"]["frequency"] == "Hz"
-    place = {"wavenumber": sp.pi / 2, "branch": 1}
-    mode = lwa.envelope(read_chain(spheres).cell, k="3/2", precompression=20, **place)
-    found = result(capsys, *envelope, "--wavenumber", "pi/2", "--branch", "1")
-    for name in ("group_velocity", "dispersion", "nonlinearity"):
-        assert found[f"{name}_value"] == pytest.approx(
-            float(getattr(mode, name)), rel=1e-13
-        )
     found = result(capsys, *envelope, "--frequency", f"{0.995 * edges[2] / turn:.17g}")
     assert found["detuning_value"] == pytest.approx(0.005, rel=1e-9)
     amplitude = static * math.sqrt(32 * 0.005 / 0.75)  # U = δ0 √(32 ν/(k (k - 1)))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from lwa.law import Law, named
+from lwa.law import Law, Power, named
 from validation.lattice.simulate import simulate
 from validation.scenes.forcing import Damping, Drive
 from validation.scenes.scene import Scene
@@ -44,6 +44,21 @@ def test_a_contact_near_an_inflection_of_its_drive_is_seen(rtol):
     )  # fmt: skip
     velocity = simulate(scene, rtol=rtol).velocities[1]
     assert velocity == pytest.approx(-0.9960454316, abs=max(10 * rtol, 1e-9))
+
+
+@pytest.mark.parametrize("short", [1e-4, 1e-5])
+def test_a_contact_that_touches_between_two_steps_is_seen(short):
+    """A bead on a two-sided spring goes ``short`` beyond a hard bead, which is at rest."""
+    scene = Scene(
+        masses=(1e4, 1, 1), stiffnesses=(1, 1e6), law=(named("polynomial", 0, 0), Power("3/2")),
+        displacements=(0, 0, 1 - short), velocities=(0, 1), duration=3,
+    )  # fmt: skip
+    exact = simulate(scene, rtol=1e-13, step=1e-3).velocities[2]
+    assert exact > 3 * short
+    for rtol in (1e-11, 1e-9, 1e-7, 1e-5):
+        assert simulate(scene, rtol=rtol).velocities[2] == pytest.approx(
+            exact, abs=rtol
+        )
 
 
 @pytest.mark.parametrize("size", [1e-6, 1e-8])

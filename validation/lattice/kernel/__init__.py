@@ -1,7 +1,7 @@
 """The compiled loops that integrate a chain; `validation.lattice.engine` explains the method.
 
 Letters and words. y, v: displacements and velocities of the beads. δ: compression of a contact.
-p(x), x = 0 … 1: polynomial close to δ over one step; p_+ = max(p, 0). Kink: time at which a contact
+``p(x)``, x from 0 to 1: polynomial close to δ over one step. Kink: time at which a contact
 opens or closes. Knot: end of a step, at which the motion of the watched beads is stored. Embedded
 pair: the Runge–Kutta–Nyström pair of `validation.lattice.schemes`.
 

@@ -22,11 +22,20 @@ ROOM = 13  # most stages of a pair; `pair` adds up so many
 
 
 class Drive(NamedTuple):
-    """Motion of the first bead: y(t) = c0 + c1 s + c2 s² + c3 s³ + amplitude r(t) sin(wt).
+    """Motion of the first bead, ``y(t) = c0 + c1 s + c2 s² + c3 s³ + amplitude r(t) sin(wt)``.
 
-    times : beginnings of intervals; s is the time since the last of them. cubics : (intervals, 4),
-    coefficients c. amplitude, w : of the oscillation. ramp : time within which r grows from 0 to 1;
-    0 for r = 1. driven : False if the first bead is as free as the others.
+    Parameters
+    ----------
+    times : array
+        Beginnings of intervals; s is the time since the last of them.
+    cubics : array, (intervals, 4)
+        Coefficients c.
+    amplitude, w : float
+        Amplitude and angular frequency of the oscillation.
+    ramp : float
+        Time within which r grows from 0 to 1; 0 if r is 1.
+    driven : bool
+        False if the first bead is as free as the others.
     """
 
     times: Array
@@ -50,23 +59,41 @@ LAW = np.dtype(
         ("energy", np.int64),
     ]
 )
-"""A contact law for unit stiffness, F(δ) + r [δ]_+^p dδ/dt.
+"""A contact law for unit stiffness, ``F(δ) + r [δ]_+^p dδ/dt``, by its fields:
 
-k : exponent of a power law F = [δ]_+^k. p : exponent of the damping. q : the force is smooth in u
-if δ = u^q. generated : True for any other law. pulls : True if contacts hold where δ < 0. sticks :
-True if damping may pull, as the law pulls, or attracts where the contact opens. force, slope,
-energy : addresses of the machine code of F, F′ and ∫ F dδ of another law.
+- k, the exponent of a power law ``F = [δ]_+^k``;
+- p, the exponent of the damping;
+- q, such that the force is smooth in u if ``δ = u^q``;
+- generated, True for a law that is no power;
+- pulls, True if contacts hold where ``δ < 0``;
+- sticks, True if damping may pull, as the law pulls, or attracts where the contact opens;
+- force, slope, energy: addresses of the machine code of F, its derivative and its integral, of a
+  law that is no power.
 """
 
 
 class Chain(NamedTuple):
     """A chain, padded by beads of infinite mass, of which the first is the wall.
 
-    inverse : inverse masses. A, r, rest, load : stiffnesses, damping coefficients over stiffnesses,
-    static compressions and static forces of the contacts. opens : 1 for contacts that open, 0 for
-    those that pull and for the padding. damped : True with damping. laws : (L,), records of `LAW`.
-    law : number of each contact's law. alike : for each contact the number of the next contact with
-    another law. drive : motion of a first bead that is driven; its inverse mass is 0.
+    Parameters
+    ----------
+    inverse : array
+        Inverse masses.
+    A, r, rest, load : array
+        Stiffnesses, damping coefficients over stiffnesses, static compressions and static forces of
+        the contacts.
+    opens : array
+        1 for contacts that open, 0 for those that pull and for the padding.
+    damped : bool
+        True with damping.
+    laws : record array, (L,)
+        Records of `LAW`.
+    law : array of int
+        Number of each contact's law.
+    alike : array of int
+        For each contact the number of the next contact with another law.
+    drive : Drive
+        Motion of a first bead that is driven; its inverse mass is 0.
     """
 
     inverse: Array
@@ -85,21 +112,37 @@ class Chain(NamedTuple):
 class Beads(NamedTuple):
     """The state of the beads, and the working memory of a step.
 
-    y, v : displacements and velocities. next_y, next_v : those after the step that is tried.
-    still : zeros.
-    force : (2, padded + 1), force on each bead from behind, less the static force, at the start of
-        the step and at the stage that was computed last.
-    border : (stages,), force on the bead at which a tile begins, by stage.
-    push : (stages, padded + 1), acceleration of each bead by the two contacts, by stage.
-    errors : (2 or 4, padded + 1), the pair's estimates of each bead's error in displacement and
-        velocity, in units of the tolerance.
-    marks : 1 for each contact with a kink.
-    power : (2, stages), power that all contacts dissipate, and power of the drive.
-    given : (2,), accelerations of a driven bead at the step's ends.
-    books : (5,), corrections at kinks: heat and its error, work of the drive and its error, and the
-        sum of the squared errors of the corrections themselves, in units of the tolerance.
-    points : (3, `ROOM`), places in a step, their weights, and the forces there.
-    edges : (`kinks.EDGES`,), places between which the force of a contact is smooth.
+    Parameters
+    ----------
+    y, v : array, (padded + 1,)
+        Displacements and velocities.
+    next_y, next_v : array, (padded + 1,)
+        Those after the step that is tried.
+    still : array, (padded + 1,)
+        Zeros.
+    force : array, (2, padded + 1)
+        Force on each bead from behind, less the static force, at the start of the step and at the
+        stage that was computed last.
+    border : array, (stages,)
+        Force on the bead at which a tile begins, by stage.
+    push : array, (stages, padded + 1)
+        Acceleration of each bead by its two contacts, by stage.
+    errors : array, (2 or 4, padded + 1)
+        The pair's estimates of each bead's error in displacement and velocity, in units of the
+        tolerance.
+    marks : array, (padded + 1,)
+        1 for each contact with a kink.
+    power : array, (2, stages)
+        Power that all contacts dissipate, and power of the drive.
+    given : array, (2,)
+        Accelerations of a driven bead at the step's ends.
+    books : array, (5,)
+        Corrections at kinks: heat and its error, work of the drive and its error, and the sum of
+        the squared errors of the corrections themselves, in units of the tolerance.
+    points : array, (3, `ROOM`)
+        Places in a step, their weights, and the forces there.
+    edges : array, (`kinks.EDGES`,)
+        Places between which the force of a contact is smooth.
     """
 
     y: Array
@@ -122,9 +165,15 @@ class Beads(NamedTuple):
 class Knots(NamedTuple):
     """The motion of W watched beads at up to C knots, the ends of steps.
 
-    time : (C,), times of the knots. state : (C, W, 4), displacement, velocity, acceleration, and 1
-    if the step to the knot was corrected for a kink of the contact ahead of the bead; otherwise 0.
-    watched : (W,), increasing numbers of the beads.
+    Parameters
+    ----------
+    time : array, (C,)
+        Times of the knots.
+    state : array, (C, W, 4)
+        Displacement, velocity, acceleration, and 1 if the step to the knot was corrected for a kink
+        of the contact ahead of the bead; otherwise 0.
+    watched : array of int, (W,)
+        Increasing numbers of the beads.
     """
 
     time: Array
@@ -135,14 +184,22 @@ class Knots(NamedTuple):
 class Pair(NamedTuple):
     """Coefficients of an embedded pair in Nyström form; the last stage is the step's end.
 
-    Stage s moves a bead by h c_s v + h² Σ_j moments[s, j] f_j, and changes its velocity by
-    h Σ_j impulses[s, j] f_j.
+    Stage s moves a bead by ``h c_s v + h² Σ_j moments[s, j] f_j``, and changes its velocity by
+    ``h Σ_j impulses[s, j] f_j``.
 
-    nodes : (stages,), c. moments, impulses : (stages, stages); of `impulses` only the last row
-    counts if forces do not depend on velocities. errors : (2 or 4, stages), differences of the two
-    solutions, in displacement and velocity; two more rows for a third solution of lower order.
-    thirds : (stages,), weights of ∫ (1 - x)²/2 f(x) dx. order : the error of a step is estimated in
-    proportion to h^order.
+    Parameters
+    ----------
+    nodes : array, (stages,)
+        The places ``c_s`` of the stages in the step.
+    moments, impulses : array, (stages, stages)
+        Weights; of the impulses only the last row counts if forces do not depend on velocities.
+    errors : array, (2 or 4, stages)
+        Differences of the two solutions, in displacement and velocity; two more rows for a third
+        solution of lower order.
+    thirds : array, (stages,)
+        Weights of ``∫ (1 - x)²/2 f(x) dx``.
+    order : int
+        The error of a step is estimated in proportion to ``h^order``.
     """
 
     nodes: Array
@@ -163,11 +220,29 @@ class Splitting(NamedTuple):
 class Plan(NamedTuple):
     """Plan of an integration: the scheme, its tolerances and steps, and the number of beads.
 
-    y, v, energy : tolerances, the errors of displacement, velocity and work allowed in a step.
-    h : first step of an embedded pair, fixed step of a splitting. longest : greatest step of an
-    embedded pair. end : duration. deepest : greatest compression. lightest : least mass. size :
-    number of beads. stops : times at which steps end, the duration the last of them. most :
-    energy of the response at which the run ends, as its tolerances were those of a smaller one.
+    Parameters
+    ----------
+    scheme : Pair or Splitting
+        The coefficients.
+    y, v, energy : float
+        Tolerances: the errors of displacement, velocity and work allowed in a step.
+    h : float
+        First step of an embedded pair, fixed step of a splitting.
+    longest : float
+        Greatest step of an embedded pair.
+    end : float
+        Duration.
+    deepest : float
+        Greatest compression.
+    lightest : float
+        Least mass.
+    size : int
+        Number of beads.
+    stops : array
+        Times at which steps end, the duration the last of them.
+    most : float
+        Energy of the response at which the loop returns, as the tolerances are those of a smaller
+        one.
     """
 
     scheme: Any
@@ -200,12 +275,23 @@ def records(rows: Any) -> Any:
 def initial_progress(plan: Plan, front: int, energy: float) -> Any:
     """Return the record of an integration at time 0, which `advance` updates.
 
-    front : number of the first bead that is still. energy : initial energy of the contacts and of
-    the free beads. Fields: t, late : time, and its rounding error. h : next step. steps, tries :
-    numbers of steps made and tried. front : first bead ahead of the motion. stored : number of
-    stored knots. stop : number of the next of ``plan.stops``. work, lost : ∫ v (F - static force)
-    dt of a driven bead, and dissipated energy. response : greatest of the values of ``energy`` on
-    the way.
+    Parameters
+    ----------
+    plan : Plan
+        The plan.
+    front : int
+        Number of the first bead that is still.
+    energy : float
+        Initial energy of the contacts and of the free beads.
+
+    Returns
+    -------
+    record
+        Its fields: the time t and its rounding error, late; the next step h; the numbers of steps
+        that were made and tried; the first bead ahead of the motion, front; the number of stored
+        knots; the number of the next of ``plan.stops``, stop; the integral of
+        ``v (F - static force)`` of a driven bead, work; the dissipated energy, lost; and the
+        greatest energy on the way, response.
     """
     now = records(np.zeros(1, _PROGRESS))[0]
     now["front"], now["h"], now["energy"] = front, plan.h, energy

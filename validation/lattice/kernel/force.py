@@ -1,8 +1,8 @@
-"""Forces of contacts, A (F(δ) + r [δ]_+^p dδ/dt), and the motion of a driven bead.
+"""Forces of contacts, ``A (F(δ) + r [δ]_+^p dδ/dt)``, and the motion of a driven bead.
 
-A contact is open, without a force, where δ ≤ 0, unless its law pulls there. Damping may not pull,
-unless the law attracts where the contact opens: the force is at least the elastic force, or 0 if
-that is less.
+A contact is open, without a force, where ``δ ≤ 0``, unless its law pulls there. Damping may not
+pull, unless the law attracts where the contact opens: the force is at least the elastic force, or 0
+if that is less.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ def is_quarters(x: float) -> bool:
 
 @part
 def quarters(x: float, d: float) -> float:
-    """Return d^x for a multiple x of 1/4, 0 ≤ x < 5, as a product that vectorises.
+    """Return ``d^x`` for a multiple x of 1/4 below 5, as a product that vectorises.
 
-    The binary digits of x are the exponents of d^{1/4}, d^{1/2}, d, d² and d⁴; the factor of a
-    digit 0 is 1.
+    The binary digits of 4x are the exponents of ``d^{1/4}``, ``d^{1/2}``, d, d² and d⁴; the factor
+    of a digit 0 is 1.
     """
     n, root = int(4.0 * x), np.sqrt(d)
     a, b, c = float(n & 1), float(n >> 1 & 1), float(n >> 2 & 1)
@@ -46,7 +46,7 @@ def quarters(x: float, d: float) -> float:
 
 @part
 def power(x: float, d: float) -> float:
-    """Return d^x; products and roots take a tenth of the time."""
+    """Return ``d^x``; products and roots take a tenth of the time."""
     if x == 1.5:
         return float(d * np.sqrt(d))
     if x == 0.0:
@@ -64,13 +64,13 @@ def elastic(law: Any, d: float) -> float:
 
 @part
 def drag(law: Any, d: float) -> float:
-    """Return the factor d^p of r dδ/dt in the damping force."""
+    """Return the factor ``d^p`` of ``r dδ/dt`` in the damping force."""
     return power(law.p, d)
 
 
 @part
 def stiffness(law: Any, d: float) -> float:
-    """Return F′(d) for unit stiffness, k d^{k-1} for a power law; 0 for an open contact."""
+    """Return ``dF/dd`` for unit stiffness, ``k d^{k-1}`` of a power; 0 for an open contact."""
     if not (d > 0.0 or law.pulls):
         return 0.0
     return float(call(law.slope, d) if law.generated else law.k * power(law.k - 1.0, d))
@@ -172,9 +172,19 @@ def contact_forces(
 ) -> None:
     """Compute the forces of the contacts ahead of beads lo … hi-1, less the static forces.
 
-    y, v : displacements and velocities. s : the stage. The forces go to row 1 of ``beads.force``,
-    in column i + 1 for the contact ahead of bead i; the dissipated power and the power of the drive
-    go to ``beads.power``.
+    The forces go to row 1 of ``beads.force``, in column i + 1 for the contact ahead of bead i; the
+    dissipated power and the power of the drive go to ``beads.power``.
+
+    Parameters
+    ----------
+    chain, beads, plan : Chain, Beads, Plan
+        The integration.
+    y, v : array
+        Displacements and velocities.
+    s : int
+        Stage of the step.
+    lo, hi : int
+        Range of the contacts.
     """
     f, lost, start = beads.force[1], beads.power[0, s] if lo > 0 else 0.0, lo
     while lo < hi:
@@ -205,7 +215,14 @@ def contact_forces(
 def drive_motion(drive: Drive, middle: float, t: float) -> tuple[float, float, float]:
     """Return displacement, velocity and acceleration of the driven bead at t.
 
-    middle : a time inside of the interval of the drive's file that holds t, by bisection.
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    middle : float
+        A time inside the interval of the drive's file that holds t; bisection finds the interval.
+    t : float
+        The time.
     """
     low, high = 0, len(drive.times)
     while high - low > 1:

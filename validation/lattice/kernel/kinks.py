@@ -1,12 +1,12 @@
 """Integrals of a contact's force over a step in which the contact opens or closes.
 
 F has no derivative of order k + 1 where a contact opens or closes, and jumps there with some
-dampings and laws. A quadrature that does not know the place errs by O(h^{k+1}), or O(h). Over the
-step, x = 0 … 1, the compression is close to the quintic p(x) with the values of δ, δ' and δ'' at
-both ends. `integrals` integrates F(p, p') between the places at which the contact opens, closes,
-or begins or ceases to be damped (`find_edges`), for unit stiffness, by Gauss's rule in u,
-x = z + (e - z) u^q, z the root of p at one end of an interval and e the other end, so that F is
-smooth in u.
+dampings and laws. A quadrature that does not know the place errs by ``O(h^{k+1})``, or ``O(h)``.
+Over the step, x from 0 to 1, the compression is close to the quintic ``p(x)`` with the values of δ,
+δ' and δ'' at both ends. `integrals` integrates ``F(p, p')`` between the places at which the contact
+opens, closes, or begins or ceases to be damped (`find_edges`), for unit stiffness, by Gauss's rule
+in u, ``x = z + (e - z) u^q``, z the root of p at one end of an interval and e the other end, so
+that F is smooth in u.
 
 A damped contact that is pulled open can stop pushing before it parts: the force tells, not δ.
 """
@@ -24,7 +24,7 @@ from validation.lattice.kernel.compiled import alone, call, index, part
 from validation.lattice.kernel.force import drag, elastic, push
 
 Curve = tuple[float, float, float, float, float, float, float, float]
-"""Coefficients c0 … c5 of p, and e and s of a bend, s [x - e]_+^2/2, that p has besides."""
+"""Coefficients c0 … c5 of p, and e and s of a bend, ``s [x - e]_+^2/2``, that p has besides."""
 
 POINTS = 12  # of the rule: three of the machine's vectors
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(POINTS)
@@ -41,7 +41,7 @@ _OPENS = 1e-100  # a compression at which a contact is about to open, in any uni
 
 @part
 def stored(law: Any, d: float) -> float:
-    """Return the elastic energy; 0 for d ≤ 0."""
+    """Return the elastic energy; 0 for an open contact."""
     if not d > 0.0:
         return 0.0
     if law.generated:
@@ -51,7 +51,7 @@ def stored(law: Any, d: float) -> float:
 
 @part
 def value_and_slope(c: Curve, x: float) -> tuple[float, float]:
-    """Return p(x) and p'(x)."""
+    """Return ``p(x)`` and ``p'(x)``."""
     p = c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))))
     slope = c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5])))
     late = max(x - c[6], 0.0)
@@ -176,7 +176,7 @@ def _add_edges(
 def find_edges(
     law: Any, r: float, c: Curve, h: float, edges: Array
 ) -> tuple[int, float]:
-    """Return the number of intervals of a step in which F(p, p'/h) is smooth, and the greatest p.
+    """Return the number of intervals of a step in which the force is smooth, and the greatest p.
 
     The places between the intervals, 0 and 1 among them, go to ``edges``.
     """
@@ -226,9 +226,23 @@ def resolved(
 ) -> tuple[Curve, int, float, float]:
     """Return a contact's curve over a step, the results of `find_edges`, and a jump of the force.
 
-    start, end : p, p' and p'' at both ends. bend : of p'' by a force of 1. A jump bends the curve
-    where it is, and where it is depends on the curve: two refinements leave no more than the
-    quintic's own error.
+    A jump bends the curve where it is, and where it is depends on the curve: two refinements leave
+    no more than the quintic's own error.
+
+    Parameters
+    ----------
+    law : record
+        The law, a record of `LAW`.
+    r : float
+        Damping coefficient over stiffness.
+    start, end : tuple of float
+        p, p' and p'' at both ends.
+    h : float
+        The step.
+    bend : float
+        Change of p'' by a force of 1.
+    edges : array
+        Room for the places of `find_edges`.
     """
     c = fitted_curve(start, end, (1.0, 0.0))
     count, top = find_edges(law, r, c, h, edges)
@@ -276,8 +290,8 @@ def stage_forces(
 ) -> None:
     """Compute compressions, slopes and forces at the stages of a pair; they go to ``points``.
 
-    A stage's motion has the pair's own error for a force that jumps at c's bend. bend : of p'' by a
-    force of 1.
+    A stage's motion has the pair's own error for a force that jumps at the bend of c; ``bend`` is
+    the change of p'' by a force of 1.
     """
     closes = value_and_slope(c, c[6])[1] > 0.0
     for s in range(len(pair.nodes)):
@@ -322,9 +336,10 @@ def integrals(
     edges: Array,
     count: int,
 ) -> tuple[float, float, float, float]:
-    """Return ∫ F, ∫ (1 - x) F, ∫ (1 - x)²/2 F and ∫ F p' over a step up to x = until.
+    """Return four integrals over a step up to ``x = until``.
 
-    edges, count : the ``count`` intervals of `find_edges`.
+    Those of ``F``, ``(1 - x) F``, ``(1 - x)²/2 F`` and ``F p'``, in the ``count`` intervals between
+    the places ``edges``.
     """
     x, w = points[0], points[1]
     once = twice = third = work = 0.0

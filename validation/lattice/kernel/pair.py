@@ -1,14 +1,14 @@
 """A step of an embedded Runge–Kutta–Nyström pair, corrected for kinks.
 
-h is the step, and x = 0 … 1 the time within the step. The impulse of a contact in a step is
-h ∫ F dx, its moment h² ∫ (1 - x) F dx: they change the velocities and the displacements of its two
-beads. At a contact that opens or closes, the pair's quadratures of F(p, p'/h), with a quintic p
-close to the contact's compression, are replaced by accurate integrals
+h is the step, and x, from 0 to 1, the time within the step. The impulse of a contact in a step is
+``h ∫ F dx``, its moment ``h² ∫ (1 - x) F dx``: they change the velocities and the displacements of
+its two beads. At a contact that opens or closes, the pair's quadratures of ``F(p, p'/h)``, with a
+quintic p close to the contact's compression, are replaced by accurate integrals
 (`validation.lattice.kernel.kinks`).
 
 The stages lack these corrections: the forces of the contact and its neighbours are computed at
 displacements that err by the moment so far, and at velocities that err by the impulse. Over a step
-this changes their impulses by stiffness × h³ ∫ (1 - x)²/2 F dx, and by damping × moment. The
+this changes their impulses by stiffness × ``h³ ∫ (1 - x)²/2 F dx``, and by damping × moment. The
 neighbours are corrected for it once more, and this second correction counts as error.
 """
 
@@ -366,8 +366,8 @@ def end_step(
 ) -> bool:
     """Add up a step with an error of at most 1, and plan the next step, a shorter one above 1.
 
-    stopping : True for a step that was cut to end at the next stop. Returns True for a step that
-    is made.
+    Returns True for a step that is made. The flag ``stopping`` is True for a step that was cut to
+    end at the next stop.
     """
     pair, factor, wanted = plan.scheme, 0.0, now.h
     if error < _HOPELESS:

@@ -2,11 +2,11 @@
 
 Within a step a displacement is the polynomial with y, y', y'' and y''' at both ends (Hermite).
 If the step was corrected for a kink of the bead's contact, the effect of the contact's force
-F(p, p'/h) (`validation.lattice.kernel.kinks`) is subtracted before the interpolation and added
+``F(p, p'/h)`` (`validation.lattice.kernel.kinks`) is subtracted before the interpolation and added
 afterwards.
 
 Letters: n numbers the steps, step n leading from knot n to knot n + 1; row q of the arrays belongs
-to bead ``watched[q]``, row q + 1 to the next bead; h is the step, x = 0 … 1 the time within it.
+to bead ``watched[q]``, row q + 1 to the next bead; h is the step, x, from 0 to 1, the time in it.
 """
 
 from __future__ import annotations
@@ -157,9 +157,24 @@ def interpolate(
 ) -> None:
     """Compute displacements and velocities of watched beads; they go to y and v, both (R, S).
 
-    rows : (R,), rows q of the beads; only beads between two others of them come out right.
-    time : (S,), increasing. step : (S,), number of the step that holds each time. ends : (2, R, 4),
-    working memory. points, edges : as in `Beads`.
+    Parameters
+    ----------
+    chain : Chain
+        The chain.
+    knots : Knots
+        Motion at the ends of the steps.
+    rows : array of int, (R,)
+        Rows q of the beads; only beads between two others of them come out right.
+    time : array, (S,)
+        Increasing times.
+    step : array of int, (S,)
+        Number of the step that holds each time.
+    y, v : array, (R, S)
+        Room for the results.
+    ends : array, (2, R, 4)
+        Working memory.
+    points, edges : array
+        Working memory, as in `Beads`.
     """
     last = 0
     while last < len(time):
