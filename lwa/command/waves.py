@@ -302,7 +302,7 @@ def _beside(
     force: sp.Expr | None,
     scale: Scale,
 ) -> Answer:
-    """Speed and widths of another wave; without a force those at B = 1.
+    """Speed and widths of another wave, at B = 1 without a force; momentum and energy with one.
 
     Parameters
     ----------
@@ -326,6 +326,10 @@ def _beside(
         moving = wave.at_force(force)
         first = Row.of(moving, "speed", SPEED, "m/s", symbol=latex.SPEED)
         rows = [first, *width_rows(moving, EXTENTS)]
+        # The compact wave has no energy that its equation conserves in every field.
+        if isinstance(moving, LatticeWave):
+            momentum = Row.of(moving, "momentum", "momentum", "N s", symbol=r"\sum m v")
+            rows += [momentum, Row.of(moving, "energy", "energy", "J", symbol="E")]
     lines: Lines = ["", f"{title}:"]
     for row in rows:
         # LaTeX has the compact wave's quantities of the same names, too.

@@ -131,6 +131,8 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
 
     def _factors(self, jet: Jet) -> list[tuple[str, sp.Expr]]:
         """Names, in LaTeX, and exponents of the factors: F′, the base, the derivatives."""
+        # A jet is a quotient by powers of the base. Printed with bare derivatives it leaves them to
+        # the base, whose power here is base^{a + bk}.
         a, b = map(sp.Rational, self.power.beside(jet))
         # u_x on the acoustic branch
         base = latex.derivative(1) if self.model.base else "u"

@@ -28,7 +28,7 @@ so that the closed forms hold nothing that was fitted.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import lru_cache, partial
 
 import mpmath
@@ -113,27 +113,41 @@ def phi_series(quantity: str, order: int) -> list[mpmath.mpf]:
     >>> [round(float(term), 6) for term in phi_series("momentum", 1)]
     [1.259859, -0.0647]
     """
-    limit = TWO_BODIES[quantity].subs(k, 1 + EPSILON)
-    # the quantity over its leading term, √(q/ε) or 1
-    whole = polynomial(equal_beads(quantity, order + 1))
+    limit = TWO_BODIES[quantity]
+    # The quantity over its leading term, √(q/ε) or 1
+    whole = sp.Symbol("whole")
     if quantity == "c":
-        rest = (whole / limit - 1) / (1 / limit.subs(EPSILON, 0) - 1)
+        rest = (whole / limit - 1) / (1 / limit.subs(k, 1) - 1)
     else:
-        rest = whole**2 - EPSILON * limit**2 / _SQUARED[quantity]
-    # εφ = -ln(rest) has no constant, as the rest is 1 at k = 1.
-    return taylor(-sp.log(rest), order + 1)[1:]
+        rest = whole**2 - (k - 1) * limit**2 / _SQUARED[quantity]
+    numeric = sp.lambdify((k, whole), rest, [_REGULARIZED, "mpmath"])
+    series = decimals(equal_beads(quantity, order + 1))
+
+    def exponent(epsilon: mpmath.mpf) -> mpmath.mpf:
+        """The exponent εφ."""
+        return -mpmath.log(numeric(1 + epsilon, power_series(series, epsilon)))
+
+    # εφ has no constant, as the rest is 1 at k = 1.
+    return taylor(exponent, order + 1)[1:]
 
 
-def polynomial(coefficients: Iterable[sp.Expr]) -> sp.Expr:
-    """The polynomial in `EPSILON` with these coefficients."""
-    return sp.Add(*(a * EPSILON**n for n, a in enumerate(coefficients)))
+def decimals(values: Iterable[sp.Expr]) -> list[mpmath.mpf]:
+    """Exact numbers to `DIGITS` digits."""
+    return [mpmath.mpmathify(sp.N(value, DIGITS)) for value in values]
 
 
-def taylor(function: sp.Expr, order: int) -> list[mpmath.mpf]:
-    """Taylor coefficients of a function of `EPSILON` at 0, to `DIGITS` digits."""
+def power_series(coefficients: list[mpmath.mpf], x: mpmath.mpf) -> mpmath.mpf:
+    """The polynomial in x with these coefficients, that of ``x⁰`` first."""
+    return mpmath.polyval(coefficients[::-1], x)
+
+
+def taylor(
+    function: Callable[[mpmath.mpf], mpmath.mpf], order: int
+) -> list[mpmath.mpf]:
+    """Taylor coefficients of a function at 0, to `DIGITS` digits."""
+    # SymPy's derivatives of these functions take a hundred times as long.
     with mpmath.workdps(DIGITS):
-        numeric = sp.lambdify(EPSILON, function, [_REGULARIZED, "mpmath"])
-        return list(mpmath.taylor(numeric, 0, order))
+        return list(mpmath.taylor(function, 0, order))
 
 
 def pade(terms: Sequence[mpmath.mpf], n: int) -> sp.Expr:
@@ -142,8 +156,10 @@ def pade(terms: Sequence[mpmath.mpf], n: int) -> sp.Expr:
         # numerator and denominator
         parts = []
         for coefficients in mpmath.pade(terms, len(terms) - 1 - n, n):
-            decimals = [mpmath.nstr(value, SHOWN) for value in coefficients]
-            parts.append(polynomial(map(sp.Float, decimals)))
+            part = sp.S.Zero
+            for n, value in enumerate(coefficients):
+                part += sp.Float(mpmath.nstr(value, SHOWN)) * EPSILON**n
+            parts.append(part)
     return parts[0] / parts[1]
 
 

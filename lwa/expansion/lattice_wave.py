@@ -1,13 +1,11 @@
 """The lattice's own solitary wave in closed form, in the units of the cell.
 
-One class for each theory, of which `lattice_wave` takes the one that is nearest to the lattice:
+Of equal beads in closed form (`lwa.expansion.joined`) for every k > 1, and of dimers
+(`lwa.expansion.dimers`): for m2/m1 < 0.75 the light beads follow, from there on the pulse is that
+of equal beads of the mean mass.
 
-- `LatticeWave`: equal beads, in closed form (`lwa.expansion.joined`) for every k > 1;
-- `FollowingWave`: m2/m1 < 0.75, light beads that follow (`lwa.expansion.dimers`);
-- `AlikeWave`: from m2/m1 of 0.75 on, equal beads of the mean mass.
-
-Errors of the force's width: below 1e-3; for spheres 0.2 % at m2/m1 of 0.1 and 4 % at 0.27; 0.9 % at
-0.8. From 0.5 to 0.75 and above k of 1.2 the light beads resonate, and the pulse of a struck chain
+Errors are bounds of measured deviations (`LatticeWave.estimate`). Where the light beads resonate,
+above k of 1.2 from m2/m1 of 0.5 to 0.75 and at some smaller ratios, the pulse of a struck chain
 decays. The force of a light bead's contacts has several humps from k of 7/4 on (at 7/4 for m2/m1 >
 0.3, at 2 for > 0.1): the width of the highest means little there, as its error says. The series of
 `lwa.expand` is nearer for equal beads at k < 3, and for any cell near k of 1.
@@ -39,10 +37,9 @@ from lwa.cell import Cell, exponent, read_cell, substitution
 from lwa.cell import k as symbol_k
 from lwa.expansion.dimers import (
     ALIKE,
-    alike_error,
+    dimer_error,
     exponent_of_light_beads,
-    following_error,
-    resonates,
+    steadiness,
 )
 from lwa.expansion.joined import TWO_BODIES, elementary, joined, joined_error
 from lwa.law import ContactLaw, Power, for_cell
@@ -76,7 +73,7 @@ _MEANINGS = {
 
 @dataclass(frozen=True, repr=False)
 class LatticeWave(Value):
-    """The solitary wave of equal beads in closed form, for every k > 1; see `lattice_wave`.
+    """The solitary wave of equal beads or of a dimer in closed form; see `lattice_wave`.
 
     Attributes
     ----------
@@ -89,8 +86,6 @@ class LatticeWave(Value):
     cell: Cell
     k: sp.Expr
     force: sp.Expr
-
-    theory = "equal beads, closed form"
 
     def __post_init__(self) -> None:
         # A frozen dataclass takes a value that was read in this way only.
@@ -106,15 +101,51 @@ class LatticeWave(Value):
             shown = f"speed {self.estimate('speed')}, width {self.estimate('fwhm')}"
         return f"{type(self).__name__}({self.cell!r}, k={self.k}, {shown})"
 
+    @property
+    def mass_ratio(self) -> sp.Expr:
+        """The lesser of two beads' masses over the other; of symbols, the second over the first."""
+        first = self.cell.masses[0]
+        # One bead, for a cell of equal beads
+        second = self.cell.masses[-1]
+        # Which of two symbols is less is not known.
+        if first.is_number and second.is_number and second > first:
+            return first / second
+        return second / first
+
+    @property
+    def follows(self) -> bool:
+        """True if a light bead follows its neighbours, false for beads that are nearly alike."""
+        return not (self.mass_ratio.is_number and self.mass_ratio >= ALIKE)
+
+    @property
+    def theory(self) -> str:
+        """The theory in words."""
+        if self.mass_ratio == 1:
+            return "equal beads, closed form"
+        if self.follows:
+            return "light beads that follow, closed form"
+        return "beads that are nearly alike, closed form of their mean mass"
+
     # --- quantities in the units of the module, and their errors ------------------------------
 
     def _value(self, quantity: str) -> sp.Expr:
         """A quantity in the units of the module."""
-        return joined(quantity).subs(symbol_k, self.k)
+        value = joined(quantity)
+        if self.follows:
+            # From the units of heavy beads to the module's: m1 = 2m/(1 + ω), D and δ are doubled.
+            shift = {"c": sp.S.Half, "momentum": -sp.S.Half}.get(quantity, 0)
+            exponent = shift - exponent_of_light_beads(quantity)
+            value = value * (1 + self.mass_ratio) ** exponent
+            if quantity != "c":
+                value = 2 * value
+        return value.subs(symbol_k, self.k)
 
     def _error(self, quantity: str) -> float:
         """The relative error of a quantity; NaN if unknown."""
-        return joined_error(quantity, self.k)
+        error = joined_error(quantity, self.k)
+        if self.mass_ratio != 1:
+            error += dimer_error(quantity, self.k, self.mass_ratio)
+        return error
 
     def _scale(self, quantity: str) -> sp.Expr:
         """The unit of a quantity, as in the module, in the units of the cell."""
@@ -291,46 +322,6 @@ class LatticeWave(Value):
         return module([*functions.values()], language, _TITLE)
 
 
-@dataclass(frozen=True, repr=False)
-class AlikeWave(LatticeWave):
-    """The wave of two beads that are nearly alike: of equal beads of their mean mass."""
-
-    theory = "beads that are nearly alike, closed form of their mean mass"
-
-    def _error(self, quantity: str) -> float:
-        ratio = mass_ratio(self.cell)
-        return super()._error(quantity) + alike_error(quantity, self.k, ratio)
-
-
-@dataclass(frozen=True, repr=False)
-class FollowingWave(LatticeWave):
-    """The wave of heavy beads between which light beads follow."""
-
-    theory = "light beads that follow, closed form"
-
-    def _value(self, quantity: str) -> sp.Expr:
-        # From the units of heavy beads to the module's: m1 = 2m/(1 + ω), D and δ are doubled.
-        shift = {"c": sp.S.Half, "momentum": -sp.S.Half}
-        own = exponent_of_light_beads(quantity).subs(symbol_k, self.k)
-        factor = (1 + mass_ratio(self.cell)) ** (shift.get(quantity, 0) - own)
-        if quantity != "c":
-            factor *= 2
-        return super()._value(quantity) * factor
-
-    def _error(self, quantity: str) -> float:
-        ratio = mass_ratio(self.cell)
-        return super()._error(quantity) + following_error(quantity, self.k, ratio)
-
-
-def mass_ratio(cell: Cell) -> sp.Expr:
-    """The lesser of two beads' masses over the other; of symbols, the second over the first."""
-    first, second = cell.masses
-    # Which of two symbols is less is not known.
-    if first.is_number and second.is_number and second > first:
-        return first / second
-    return second / first
-
-
 def lattice_wave(
     cell: Cell,
     *,
@@ -394,12 +385,11 @@ def lattice_wave(
             f"cell is {shorten(cell)}: closed forms are those of equal beads and of two beads with "
             "equal contacts; expand(cell, 8, k=…) takes any cell"
         )
-    ratio = mass_ratio(cell)
-    if ratio.is_number and k.is_number and resonates(k, ratio):
+    wave = LatticeWave(cell, k, force)
+    ratio = wave.mass_ratio
+    if ratio.is_number and k.is_number and not steadiness(k, ratio):
         raise NoSolitaryWave(
             f"m2/m1 is {shorten(ratio)} at k = {k}: the light beads resonate with the pulse of a "
             "struck chain, which decays"
         )
-    if ratio.is_number and ratio >= ALIKE:
-        return AlikeWave(cell, k, force)
-    return FollowingWave(cell, k, force)
+    return wave

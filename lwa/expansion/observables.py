@@ -17,6 +17,7 @@ from lwa.algebra.ring import to_sympy
 from lwa.cell import Cell
 from lwa.expansion.pulse import (
     Series,
+    at_power,
     by_degree,
     half_width,
     logarithm,
@@ -44,6 +45,7 @@ class Observables:
     def __init__(self, wave: Recursion) -> None:
         self.wave = wave
         self.order = wave.order
+        self._forces: dict[int, Series] = {}
 
     @cached_property
     def c2(self) -> Series:
@@ -57,11 +59,14 @@ class Observables:
 
     def force(self, contact: int = 0) -> Series:
         """Full width at half maximum of a contact's force."""
-        return half_width(self.wave.force[contact].log)
+        # The strain's width needs this, too.
+        if contact not in self._forces:
+            self._forces[contact] = half_width(self.wave.force[contact].log)
+        return self._forces[contact]
 
     def strain(self, contact: int = 0) -> Series:
-        """Full width at half maximum of a contact's strain."""
-        return half_width(self.wave.strain[contact].log)
+        """Full width at half maximum of a contact's strain: the force's at ``2^{-(1+ε)}``."""
+        return at_power(self.force(contact), self.wave.epsilon)
 
     def velocity(self, contact: int = 0) -> Series:
         """Full width at half maximum of the velocity of the bead before a contact."""
@@ -70,9 +75,8 @@ class Observables:
     @cached_property
     def momentum(self) -> Series:
         """Momentum, mean mass · c · displacement behind the wave, divided by its leading term."""
-        means = [terms[0] for terms in self.wave.means]
         # e^{-Z²/4} is a normal distribution of variance 2.
-        return product(self.c, moments(means, 2))
+        return product(self.c, moments(self.wave.mean, 2))
 
     @cached_property
     def energy(self) -> Series:

@@ -21,19 +21,18 @@ their log-KdV equation: Carles & Pelinovsky, Nonlinearity 27, 3185 (2014); under
 arXiv:1405.3385.
 
 The algebra is in powers of t, ``(ε/I)^{1/2} = I t``, so that no denominators appear. The equations
-at ``t^{n+2}`` give q_n: the fields are first computed with zero in its place.
+at ``t^{n+2}`` give q_n: the fields are first computed with zero in its place, and at ``t^n`` the
+solution is added to each of them.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import factorial
-from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
-from sympy import bernoulli
 
 from lwa.algebra.model import Model
-from lwa.algebra.ring import to_flint
 from lwa.expansion.pulse import Series, by_degree, exp_term, log_term
 from lwa.linear.bloch import Bloch
 
@@ -76,9 +75,8 @@ class Recursion:
         Forces and strains of the contacts.
     slope : list of Series
         The S_n of the slope of each bead's displacement.
-    means, pushes : list of Series
-        By n, the coefficients of ``t^n`` in the mean strain, or in the force with which the last
-        contact pushes the next cell, and in the first n derivatives of these.
+    mean, push : Series
+        The mean strain, and the force with which the last contact pushes the next cell.
     gamma : Series
         The square of the speed, divided by its leading term.
     """
@@ -93,14 +91,16 @@ class Recursion:
         self.c = model.ring.contacts.elements(self.context)
         self.P = model.cell.size
         self.I = self._dispersion()
+        # -I times the logarithmic slope of the Gaussian
+        self._fall = self.I * self.Z / 2
         # (ε/I)^{1/2} = I t
         self.epsilon = self.I**3
         self.gamma: Series = [self.context.constant(1)]
         self.force = [Pulse() for _ in range(self.P)]
         self.strain = [Pulse() for _ in range(self.P)]
         self.slope: list[Series] = [[] for _ in range(self.P)]
-        self.means: list[Series] = []
-        self.pushes: list[Series] = []
+        self.mean: Series = []
+        self.push: Series = []
         self._solve(2 * order)
 
     def _dispersion(self) -> fmpq_mpoly:
@@ -116,7 +116,7 @@ class Recursion:
         """The polynomial R of the derivative ``∂ (e^{-Z²/4} S t^n) = e^{-Z²/4} R t^{n+1}``."""
         if not S:
             return S
-        return self.I * (S.derivative(0) - self.Z * S / 2)
+        return self.I * S.derivative(0) - self._fall * S
 
     # --- the order of the equations ---
 
@@ -129,25 +129,22 @@ class Recursion:
             residual = self._residual(n)
             q, gamma = self._invert(residual)
             self.gamma.append(gamma)
-            self._truncate(n)
-            self._append(n, q)
+            # Equal beads have no odd q_n, and their later terms stand.
+            if q:
+                self._put(n, q)
+        self._truncate(order + 1)
 
     def _residual(self, n: int) -> fmpq_mpoly:
         """The residual at t^{n+2} of the balance of momentum over P, with 0 for q_n and later ones.
 
         The coefficient γ_{n+2}, which is not known yet, is left out of the residual.
         """
-        self._truncate(n)
-        for m in range(n, n + 3):
-            self._append(m, self.zero)
+        for m in range(len(self.mean), n + 3):
+            self._append(m)
         residual = self.zero
         for mu, slope in zip(self.mu, self.slope, strict=True):
             residual = residual + mu * self._accelerated(slope, n + 2)
-        # The mean over a cell is (1 - e^{-P∂})/(P∂), a series in the derivative.
-        for m, term in enumerate(self.pushes[n + 2]):
-            weight = fmpq((-self.P) ** m, factorial(m + 1))
-            residual = residual - weight * term
-        return residual
+        return residual - self._operated(self._mean_over_cell, self.push, n + 2)
 
     def _invert(self, residual: fmpq_mpoly) -> tuple[fmpq_mpoly, fmpq_mpoly]:
         """Solve I³ (q'' - Z q' + q) = residual + γ, q(0) = q'(0) = 0, for q and γ."""
@@ -167,18 +164,29 @@ class Recursion:
 
     # --- the fields ---
 
+    def _put(self, n: int, q: fmpq_mpoly) -> None:
+        """Put q in the place of zero for q_n, and delete the terms of the fields beyond t^n."""
+        self._truncate(n + 1)
+        # To this order all forces and strains are alike, and so are their logarithms and slopes.
+        for row in self._rows():
+            row[n] = row[n] + q
+
     def _truncate(self, n: int) -> None:
         """Delete the terms of the fields from t^n on."""
-        rows: list[list[Any]] = [*self.slope, self.means, self.pushes]
-        for pulse in (*self.force, *self.strain):
-            rows += [pulse.series, pulse.log]
-        for row in rows:
+        for row in self._rows():
             del row[n:]
 
-    def _append(self, n: int, q: fmpq_mpoly) -> None:
-        """Append the terms at t^n to the fields, with q for q_n."""
+    def _rows(self) -> list[Series]:
+        """The series of all fields, and the logarithms of forces and strains."""
+        rows = [*self.slope, self.mean, self.push]
+        for pulse in (*self.force, *self.strain):
+            rows += [pulse.series, pulse.log]
+        return rows
+
+    def _append(self, n: int) -> None:
+        """Append the terms at t^n to the fields, with zero for q_n."""
         # Forces from contact to contact, then strains, then slopes: each needs those before.
-        self.force[0].append_log(q)
+        self.force[0].append_log(self.zero)
         for i in range(1, self.P):
             self.force[i].append(self._next_force(i, n))
         mean = self.zero
@@ -186,8 +194,8 @@ class Recursion:
             strain = self.strain[i]
             strain.append_log(self._log_strain(self.force[i], n))
             mean = mean + self.c[i] * strain.series[n]
-        self.means.append(self._derivatives(mean / self.P, self.means))
-        self.pushes.append(self._derivatives(self._last_force(n), self.pushes))
+        self.mean.append(mean / self.P)
+        self.push.append(self._last_force(n))
         self._append_slopes(n)
 
     def _next_force(self, i: int, n: int) -> fmpq_mpoly:
@@ -219,15 +227,7 @@ class Recursion:
 
     def _append_slopes(self, n: int) -> None:
         """Append the terms at t^n to the slopes: s_0 is P∂/(e^{P∂} - 1) of the mean strain."""
-        slope = self.zero
-        for m, term in enumerate(self.means[n]):
-            number = to_flint(bernoulli(m))
-            if m == 1:
-                number = fmpq(-1, 2)  # the series has the other sign than SymPy's B_1
-            # All odd ones but B_1 are zero.
-            if number:
-                weight = fmpq(self.P**m, factorial(m)) * number
-                slope = slope + weight * term
+        slope = self._operated(self._not_averaged, self.mean, n)
         for i in range(self.P):
             self.slope[i].append(slope)
             # s_{i+1} = s_i + C_i ∂r_i, and ∂ raises the power of t by one
@@ -244,8 +244,19 @@ class Recursion:
                 total = total + factor * slope[n - a]
         return total
 
-    def _derivatives(self, term: fmpq_mpoly, rows: list[Series]) -> Series:
-        """Coefficients of t^n in a field and its n first derivatives, from those of t^{n-1}."""
-        if not rows:
-            return [term]
-        return [term, *map(self.derivative, rows[-1])]
+    def _operated(
+        self, weight: Callable[[int], fmpq], field: Series, n: int
+    ) -> fmpq_mpoly:
+        """Coefficient of t^n in ``Σ_m weight(m) ∂^m`` of a field, by Horner's rule."""
+        total = self.zero
+        for m in range(n, -1, -1):
+            total = self.derivative(total) + weight(m) * field[n - m]
+        return total
+
+    def _mean_over_cell(self, m: int) -> fmpq:
+        """Coefficient of ∂^m in ``(1 - e^{-P∂})/(P∂)``, the mean over a cell behind a place."""
+        return fmpq((-self.P) ** m, factorial(m + 1))
+
+    def _not_averaged(self, m: int) -> fmpq:
+        """Coefficient of ∂^m in ``P∂/(e^{P∂} - 1)``, the inverse of the mean over a cell ahead."""
+        return fmpq(self.P**m, factorial(m)) * fmpq.bernoulli(m)

@@ -92,8 +92,10 @@ class Grid:
 
     @staticmethod
     def from_peak(values: Array) -> Array:
-        """Values at the rows, the first at the peak; the last rows have no window for `to_peak`."""
-        return values[: _WINDOW // 2 - 1 : -1]
+        """Values at the rows in the order from the peak to the foot, where `to_peak` holds."""
+        # Next to the foot the rows have less than half a window behind them.
+        first = _WINDOW // 2
+        return values[first:][::-1]
 
 
 @cache

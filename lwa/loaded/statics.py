@@ -32,8 +32,10 @@ _NOISE = 1e-9
 # Powers of 2 between which the mean compression under a force is sought
 _REACH = (-100, 40)
 _PARTS = 65  # places between two bounds, of which the next bounds are neighbours
-_BOLDEST = 3.0  # largest step of ln δ
-# Compression of a link in series over the least that it may have at first
+# Largest step of ln δ: 1 to 5 find the states of the same random cells in as many steps, 10 fails
+_BOLDEST = 3.0
+# Compression of a link in series over the least that it may have at first: 10 to 1e15 do as well,
+# since steps back towards the least one are halved in the logarithm
 _LARGEST = 1e6
 _LEAST = 1e-14  # least mean compression over the largest of a wave
 _SMALL = 0.1  # rise over e from which on a difference of compressions has 15 digits

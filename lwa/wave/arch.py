@@ -128,6 +128,7 @@ class Arch(Value):
 
     def speed(self, B: Any = RISE) -> sp.Expr:
         """Speed ``V = dx/dτ`` of the wave whose strain peaks at B."""
+        # Two roots: SymPy would not take B out of one root of a product.
         factor = square_root(self.speed_factor)
         growth = power(positive(B, "B"), (self.k - 1) / 2)
         return factor * growth
@@ -178,6 +179,7 @@ class Arch(Value):
 
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Self:
         """The wave with other values of symbols."""
+        # All fields but the cell are expressions.
         values = {}
         for field in fields(self):
             if field.name != "cell":

@@ -81,6 +81,7 @@ class CompactWave(Arch):
     @cached_property
     def _ratios(self) -> tuple[sp.Expr, sp.Expr]:
         """The ratios G/I and H/I, which in the canonical field depend on k alone."""
+        # Expressions in these two stay short where G, H and I have long factors in common.
         return factored(self.G / self.I), factored(self.H / self.I)
 
     @cached_property
@@ -102,7 +103,8 @@ class CompactWave(Arch):
     @cached_property
     def roots(self) -> tuple[sp.Expr, sp.Expr]:
         """The two p for which ``v = z^p`` removes ``z_ξ³``; the paper's is the first."""
-        total = self.coefficient_sum * self.D**2 / self.I  # 1 + G/I + H/I
+        # 1 + G/I + H/I
+        total = self.coefficient_sum * self.D**2 / self.I
         return roots(total, self._ratios[1])
 
     def reduction(self, root: int = 0, V: Any = SPEED) -> Reduction:
@@ -173,7 +175,7 @@ class CompactWave(Arch):
         from lwa.loaded.wave import loaded_wave  # start-up: it loads NumPy
 
         canonical = canonical_wave(self.cell, self.k)
-        # Equal coefficients may be written in different ways.
+        # Equal coefficients may be written in different ways: the difference decides.
         for name in ("G", "H", "I"):
             difference = getattr(self, name) - getattr(canonical, name)
             if sp.cancel(difference) != 0:

@@ -121,6 +121,7 @@ class NumericWave(Value):
 
     def _called(self, name: str, k: Array, omega: Array, *first: Array) -> Array:
         """Values of a function, or floats without a meaning where there is no wave."""
+        # The closed forms are homogeneous in the masses, and lengths are in units of D.
         m1, m2 = dict.fromkeys(self.wave.cell.masses)
         numbers = {self.wave.k: k, m1: 1.0, m2: omega, self.wave.D: 1.0}
         arguments = self._functions[name].arguments[len(first) :]
@@ -135,6 +136,7 @@ class NumericWave(Value):
             raise InputError(
                 f"ω = m2/m1 is not between {1 / LARGEST:g} and {LARGEST:g}"
             )
+        # The conditions for a wave, in the words of the refusal
         conditions = {
             "k > 1": k > 1,
             "G+H+I > 0": self._called("coefficient_sum", k, omega) > 0,

@@ -155,6 +155,7 @@ class PhysicalWave(Value):
         """The momentum ``Σ m u_t = M/(P D) · B dx/dt · ∫ cos^m(βξ) dξ`` of the chain."""
         cell = self.wave.cell
         m = self.wave.m
+        # P beads of the mass M fill the length P D.
         density = cell.mass / (cell.size * cell.spacing)
         # ∫ cos^m y dy over |y| < π/2 = √π Γ((m+1)/2) / Γ(m/2 + 1)
         arch = sp.sqrt(sp.pi) * sp.gamma((m + 1) / 2) / sp.gamma(m / 2 + 1)
@@ -177,6 +178,7 @@ class PhysicalWave(Value):
         InputError
             For other words.
         """
+        # A wave of constant shape passes a place in the time that it needs for its own length.
         length = self.wave.fwhm(quantity)
         if known_extent(extent) == "length":
             return length
@@ -213,6 +215,7 @@ class PhysicalWave(Value):
         """
         from lwa.base.arrays import finite  # start-up: it loads NumPy
 
+        # At the time t the peak has come to x = t dx/dt: seen from there x = 0 lies at -t dx/dt.
         return self.along(-number(self.speed) * finite(t, "t"), quantity, of)
 
     def along(

@@ -151,7 +151,7 @@ def module(
         For other languages, and for symbols that are no names.
     """
     words = LANGUAGES[one_of(language, LANGUAGES, "language")]
-    # The functions call each other by their own names.
+    # The functions call each other by their own names, which the printer must not translate.
     calls = {f.name: f.name for f in functions}
     known = words.settings.get("user_functions", {})
     printer = words.printer({**words.settings, "user_functions": {**known, **calls}})
@@ -160,7 +160,7 @@ def module(
     def text(value: sp.Basic) -> str:
         new: dict[sp.Basic, sp.Basic] = {**names}
         for number in value.atoms(sp.Rational, sp.NumberSymbol):
-            # Printers write π, and quotients of long integers, in ways that C does not know.
+            # Printers write π, and long integers, in ways that C does not know.
             if number.is_NumberSymbol or max(abs(number.p), number.q) > _EXACT:
                 new[number] = sp.Float(number, 17)
         written = str(printer.doprint(value.xreplace(new)))
@@ -186,6 +186,7 @@ def _names(
     functions: Sequence[Function], taken: set[str]
 ) -> dict[sp.Symbol, sp.Symbol]:
     """Different names for the symbols of functions; a name in ``taken`` gets underscores."""
+    # A dict keeps the order of the arguments and drops repetitions.
     arguments: dict[sp.Symbol, None] = {}
     for f in functions:
         arguments |= dict.fromkeys(f.arguments)
@@ -304,6 +305,7 @@ def wave_functions(wave: Arch) -> Functions:
         "v at xi, 0 outside of the support",
         _B * sp.sin((inside + sp.Abs(inside)) / 2) ** (2 / (k - 1)),
     )
+    # Without load there is no strain ahead, so that B follows from F alone.
     scale = define("time_scale", "tau/t: dx/dt = V_s tau/t", cell.time_scale(k))
     strain = define(
         "strain",

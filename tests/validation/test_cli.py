@@ -174,10 +174,16 @@ BAD = [
         "format is 'jsn': did you mean json?; try: lwa-validate paper",
     ),
     ("exact --masses 1,0.2733", "no solitary wave"),
+    ("resonances --count x", "count is x: a number is wanted; try: lwa-validate res"),
+    ("resonances --count 5/2", "count is 5/2: an integer"),
+    ("run s.toml --method DOP8", "method is 'DOP8': did you mean DOP853?; try: "),
     ("sweep --k 1", "k is 1:"),
     ("sweep --k 1:2", "k is '1:2':"),
     ("sweep --k 1:2:1001", "the count of k is 1001:"),
-    ("sweep --jobs 0 --file s.sqlite", "jobs is 0:"),
+    (
+        "sweep --jobs 0 --file s.sqlite",
+        "jobs is 0: an integer from 1 to 1024 is wanted; try: lwa-validate sweep --file",
+    ),
     ("sweep --jobs 2 --cluster tcp://a:1", "jobs is 2:"),
 ]
 

@@ -91,20 +91,14 @@ def integrate(
     """Integrate a scene by a method of `SCHEMES`, in steps of at most ``longest``.
 
     A splitting's steps have this length, unless it is infinite. A run whose tolerance is set by a
-    drive, and whose response turns out far weaker or stronger, is made again.
+    drive, and whose response turns out far weaker, is made again.
     """
-    end = motion.scene.duration
     for _ in range(_GUESSES):
         run = _Integration(motion, method, rtol, longest)
         run.advance(progress)
-        energy, response = motion.scales.energy, float(run.now["response"])
-        if run.now["t"] < end:
-            # The work of a piston grows in proportion to the time.
-            response *= end / run.now["t"]
-        elif (
-            motion.scene.drive is None
-            or not 8 * _NOISE * energy < response < _WEAK * energy
-        ):
+        energy, response = run.motion.scales.energy, float(run.now["response"])
+        weak = 8 * _NOISE * energy < response < _WEAK * energy
+        if motion.scene.drive is None or not weak:
             return run.finished()
         motion = Motion(motion.scene, response)
     raise IntegrationError(
@@ -121,18 +115,22 @@ class _Integration:
     ) -> None:
         self.motion, self.method = motion, method
         check_memory(motion.scene, method, _NUMBERS)
-        if method == "symplectic":
-            self.plan, self.most = _splitting_plan(motion, rtol, longest)
-        else:
-            self.plan, self.most = _pair_plan(motion, rtol, longest)
+        self.steps = rtol, longest
+        self._make_plan(motion)
         self.chain = _chain(motion)
         self.beads = _start(motion, len(self.chain.A), self.plan.scheme)
         self.time, self.needed = sampled(motion)
         self.recorder = Recorder(motion, self.chain, self.needed, self.time)
         self.now = initial_progress(self.plan, _front(motion), motion.free_energy)
 
+    def _make_plan(self, motion: Motion) -> None:
+        """Plan the steps by the scales of a motion."""
+        self.motion = motion
+        made = _splitting_plan if self.method == "symplectic" else _pair_plan
+        self.plan, self.most = made(motion, *self.steps)
+
     def advance(self, progress: RunProgress) -> None:
-        """Integrate to the end, or until the response is too strong for its tolerance."""
+        """Integrate to the end; a stronger response than was guessed loosens the tolerance."""
         now, end, knots = self.now, self.plan.end, self.recorder.knots
         # A step has some ten stages.
         glance = 1 + int(_BETWEEN_REPORTS / (10 * max(self.plan.size, SHORTEST)))
@@ -143,7 +141,7 @@ class _Integration:
                 display(t / end)
                 t = go(self.chain, self.beads, self.plan, knots, now, glance)
                 if now["response"] > self.plan.most:
-                    return
+                    self._make_plan(Motion(self.motion.scene, float(now["response"])))
                 if t == end or now["stored"] == len(knots.time):
                     now["stored"] = self.recorder.take(int(now["stored"]))
                 if t < end and (now["tries"] > self.most or t + now["h"] == t):

@@ -180,12 +180,15 @@ class Motion:
         compression, rate = self.compression(y), self.rate(v)
         elastic = self.force(compression)
         force = self.damped_force(elastic, compression, rate)
+        # A contact pushes the bead behind it back, and the bead ahead, or the wall, on. The static
+        # forces balance gravity and the precompression.
         push = np.zeros(n)
         push[: len(force)] = self.load - force
         push[1:] += (force - self.load)[: n - 1]
         acceleration = push / self.masses
         if drive is not None:
             acceleration[0] = given
+            # The drive accelerates its bead and withstands the contact.
             work = v[0] * (self.masses[0] * given - push[0])
         lost = ((force - elastic) * rate).sum()
         return np.concatenate((v, acceleration, (lost, work)))
@@ -269,6 +272,7 @@ class Motion:
             own = np.flatnonzero(self.law_of == number)
             if not own.size:  # a single bead without a wall
                 continue
+            # Scale of the compression: all the energy in the stiffest contact of this law.
             static, largest = self.rest[own].max(), self.stiffnesses[own].max()
             depth = static
             if energy > 0:
@@ -283,7 +287,7 @@ class Motion:
             stiff = law.k * slope * self.stiffnesses[own]
             springs[own] += stiff
             springs[own + 1] += stiff
-        if not deepest:
+        if not deepest:  # nothing presses: any scale does
             return Scales(energy, 0.0, 1.0, 1.0, math.inf)
         time = 1 / np.sqrt((springs[:n] / self.masses).max())
         _check_range("shortest time", time)

@@ -23,10 +23,11 @@ from lwa.law import ContactLaw
 from validation.scenes.checks import SceneError
 
 # The energy of a smaller change, in units of the rest compression, is integrated: its digits cancel
-# in the difference of two energies. Eight points integrate any power to 1e-16 up to here.
+# in the difference of two energies. Eight points integrate powers up to 20 to 1e-16 up to here.
 _SMALL = 0.05
 _OPENS = 1e-100  # a compression at which a contact is about to open, in any units
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
+_NODES, _WEIGHTS = (1 + _NODES) / 2, _WEIGHTS / 2  # of an integral from 0 to 1
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,7 @@ class Contact:
     @cached_property
     def pulls(self) -> bool:
         """True if the contact holds, and pulls, where δ < 0."""
-        return self.law is not None and bool(self.law.at(sp.S.Zero, 1).is_positive)
+        return self.law is not None and self.law.pulls
 
     @cached_property
     def sticks(self) -> bool:
@@ -95,10 +96,9 @@ class Contact:
             x = change[small]
             r = rest[small]
             # ∫ (x - s) F′(r + s) ds, s = 0 … x
-            total = np.zeros(x.shape)
-            for node, weight in zip((1 + _NODES) / 2, _WEIGHTS / 2, strict=True):
-                total += weight * (1 - node) * self.stiffness(r + node * x)
-            energy[small] = x * x * total
+            stiffness = self.stiffness(r + np.multiply.outer(_NODES, x))
+            weights = _WEIGHTS * (1 - _NODES)
+            energy[small] = x * x * np.einsum("i,i...", weights, stiffness)
         return energy
 
     def damped(
@@ -126,16 +126,16 @@ class Contact:
     def _evaluated(self, name: str, compression: Array) -> Array:
         """Evaluate a function of the law: its "force", "slope" or "energy"."""
         assert self.law is not None
-        function = _function(self.law, name)
-        with np.errstate(all="ignore"):  # beyond a singular law's reach: inf or NaN
+        with _refused(self.law):  # beyond a singular law's reach: inf or NaN
+            function = _functions(self.law, "numpy")[name]
             if self.pulls:
-                return np.array(
-                    np.broadcast_to(function(compression), compression.shape)
-                )
+                values = function(compression)
+                # A constant is a number, whatever the array.
+                return np.array(np.broadcast_to(values, compression.shape))
             values = np.zeros(compression.shape)
             closed = compression > 0.0
             values[closed] = function(compression[closed])
-        return values
+            return values
 
     def compressed_by(self, forces: Array) -> Array:
         """Return static compressions at given forces; `lwa.InputError` for unattainable forces."""
@@ -172,27 +172,20 @@ class Contact:
         return {name: f.address for name, f in _machine_code(self.law).items()}
 
 
-# The first two are derivatives of F, in their order.
 _NAMES = ("force", "slope", "energy")
 
 
-def _expression(law: ContactLaw, name: str) -> sp.Expr:
-    """Return F, F′ or the energy, with float coefficients and e^x - 1 as expm1(x)."""
-    if name == "energy":
-        value = law.energy - sp.limit(law.energy, law.delta, 0, "+")
-    else:
-        value = law.slope(_NAMES.index(name))
-    return optimize(sp.N(sp.sympify(value), 20), [expm1_opt])
-
-
 @lru_cache
-def _function(law: ContactLaw, name: str) -> Callable[[Array], Any]:
-    """Return F, F′ or the energy of a law as a function of arrays; an energy may take seconds."""
-    with _evaluated(law):
-        row = _expression(law, name)
-        function: Callable[[Array], Any] = sp.lambdify(law.delta, row, "numpy")
-        function(np.ones(2))
-        return function
+def _functions(law: ContactLaw, module: str) -> dict[str, Callable[..., Any]]:
+    """Return F, F′ and the energy of a law by name, as functions that call "numpy" or "math"."""
+    at_rest = sp.limit(law.energy, law.delta, 0, "+")
+    expressions = law.F, law.slope(), law.energy - at_rest
+    functions = {}
+    for name, expression in zip(_NAMES, expressions, strict=True):
+        # Exact coefficients become floats. Small compressions keep their digits in e^δ - 1.
+        prepared = optimize(sp.N(sp.sympify(expression), 20), [expm1_opt])
+        functions[name] = sp.lambdify(law.delta, prepared, module)
+    return functions
 
 
 @lru_cache
@@ -201,16 +194,13 @@ def _machine_code(law: ContactLaw) -> dict[str, Any]:
     from numba import cfunc  # start-up
 
     compiled = cfunc("f8(f8)", error_model="numpy")
-    functions = {}
-    with _evaluated(law):
-        for name in _NAMES:
-            function = sp.lambdify(law.delta, _expression(law, name), "math")
-            functions[name] = compiled(function)
-    return functions
+    with _refused(law):
+        functions = _functions(law, "math")
+        return {name: compiled(function) for name, function in functions.items()}
 
 
 @contextmanager
-def _evaluated(law: ContactLaw) -> Iterator[None]:
+def _refused(law: ContactLaw) -> Iterator[None]:
     """Raise `SceneError` in place of the many errors of SymPy and Numba."""
     try:
         with np.errstate(all="ignore"):

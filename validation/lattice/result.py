@@ -25,7 +25,9 @@ _SI = {
     "displacement": "m",
     "velocity": "m/s",
 }
-_MOST = 10  # sensors of one kind that are drawn as curves; more are drawn as a map
+_MOST = (
+    10  # sensors of one kind that are drawn as curves, in ten colours; more make a map
+)
 _FINEST = 1000  # places, and times, of a map: a picture has some thousand pixels a side
 
 
@@ -181,6 +183,7 @@ def finished(
     IntegrationError
         If a number is not finite.
     """
+    # Copies: a view would keep the whole state, and with SciPy's methods all states, in memory.
     n = motion.size
     arrays: dict[str, Any] = records | {
         "displacements": end[:n].copy(),
@@ -189,7 +192,7 @@ def finished(
     dissipated, work = map(float, end[2 * n :])
     drift = motion.energy_change(end) + dissipated - work
     step = motion.scene.duration / steps
-    # A sum is finite if all its terms are, and takes no memory.
+    # A sum is finite only if all its terms are, and takes no memory.
     total = drift + sum(float(row.sum()) for row in arrays.values())
     if not math.isfinite(total):
         raise IntegrationError(

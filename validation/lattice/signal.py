@@ -93,6 +93,7 @@ def _quantities(
     compressions = _compressions(motion, beads, y)
     elastic = motion.force(compressions, contacts)
     forces = motion.damped_force(elastic, compressions, v[:-1] - v[1:], contacts)
+    # Half of the contact behind, and half of the contact ahead of each bead.
     means = np.zeros(v.shape)
     means[1:] = forces
     means[:-1] += forces

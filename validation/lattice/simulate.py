@@ -93,6 +93,7 @@ def simulate(
         )
     rtol = between(rtol, "rtol", 1e-13, 1e-2)
     longest = math.inf if step is None else positive(step, "step")
+    # Values beyond floats are refused by name: no warnings of NumPy besides.
     with np.errstate(over="ignore", invalid="ignore"):
         motion = Motion(scene)
         if method in METHODS:
@@ -135,6 +136,7 @@ def simulate_many(
     waiting, count = iter(scenes), cores() if workers is None else workers
     with threads(count) as pool:
         while True:
+            # As many scenes wait as run, so that no thread is idle while a run is looked at.
             more = islice(waiting, 2 * count + 1 - len(ahead))
             ahead.extend(pool.submit(simulate, scene, **options) for scene in more)
             if not ahead:

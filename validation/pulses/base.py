@@ -1,10 +1,10 @@
 """The base of a record before a pulse, and the noise about it.
 
-Two bases are fitted to samples before the pulse: a straight line, for drift and hum, and a level
-under three exponentials that grow towards the pulse, for what may rise slowly before the pulse
-arrives; a third one has all these terms. They are averaged with Akaike's weights exp(-(χ² + 2p)/2),
-p the number of terms, χ² by the noise and its correlations. Each drawn record takes one of the
-bases, by their weights: so errors hold the doubt between them.
+Two bases are fitted to samples before the pulse: a straight line, for drift and hum, and a line
+with two exponentials that grow towards the pulse, for what may rise slowly before the pulse
+arrives. They are averaged with Akaike's weights exp(-(χ² + 2p)/2), p the number of terms, χ² by the
+noise and its correlations. Each drawn record takes one of the bases, by their weights: so errors
+hold the doubt between them.
 """
 
 from __future__ import annotations
@@ -23,10 +23,9 @@ _BEFORE = 2.0  # widths between the samples of the base and the rise
 _CLOSE = 1.0  # likewise in a record that begins less than 2.5 widths before them
 _LONG = 10.0  # widths of the base: drift and hum are straight over such a time
 FEWEST = 16  # samples of the base
-_GROWTHS = (0.5, 1.0, 2.0)  # widths in which what rises before the pulse grows e-fold
-# Terms of the bases, 0 the level, 1 the slope, 2 to 4 the exponentials, and what they add to χ²:
-# twice the terms beyond two; more for the third, to which noise alone would often give a weight.
-_BASES = {(0, 1): 0.0, (0, 2, 3, 4): 4.0, (0, 1, 2, 3, 4): 16.0}
+_GROWTHS = (1.0, 2.0)  # widths in which what rises before the pulse grows e-fold
+_LINE = 2  # terms of a straight line
+_BASES = (_LINE, _LINE + len(_GROWTHS))  # terms of the bases
 _SLOW = 5.0  # widths of a base, at least, that tells a slow rise from a level
 _GUESSED = 5  # samples at the start of a record that begins too late
 DRAWS = 200  # records that are drawn for an error
@@ -34,28 +33,27 @@ DRAWS = 200  # records that are drawn for an error
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """A fitted base: numbers of its terms, their sizes, and the noise that is left, (B,)."""
+    """A fitted base: the sizes of its terms, and the noise that is left, (B,)."""
 
-    terms: Sequence[int]
     sizes: Array
     noise: Array
 
     @classmethod
-    def of(cls, x: Array, f: Array, terms: Sequence[int]) -> Fit:
-        """Fit terms to samples f, (B,) or (B, draws), at times x in widths from the rise."""
-        columns = _columns(x, terms)
-        sizes = np.asarray(np.linalg.lstsq(columns, f)[0], float)
-        return cls(terms, sizes, f - columns @ sizes)
+    def of(cls, x: Array, f: Array, count: int) -> Fit:
+        """Fit the first terms to samples f, (B,) or (B, draws), at times x in widths."""
+        terms = _terms(x, count)
+        sizes = np.asarray(np.linalg.lstsq(terms, f)[0], float)
+        return cls(sizes, f - terms @ sizes)
 
     def at(self, x: Array) -> Array:
         """Return the base at times of the pulse, without what rises before it."""
-        straight = np.array(self.terms) < 2
-        return _columns(x, self.terms) * straight @ self.sizes
+        line = self.sizes[:_LINE]
+        return np.asarray(_terms(x, len(line)) @ line)
 
     @property
     def variance(self) -> float:
         """Variance of the noise."""
-        return float(np.sum(self.noise**2)) / (len(self.noise) - len(self.terms))
+        return float(np.sum(self.noise**2)) / (len(self.noise) - len(self.sizes))
 
     @cached_property
     def length(self) -> float:
@@ -106,11 +104,11 @@ class Base:
         x = (t[calm] - rise) / width
         if len(x) < FEWEST or np.ptp(x) < 0.9:
             return None
-        bases = _BASES if np.ptp(x) > _SLOW else {(0, 1): 0.0}
-        fits = [Fit.of(x, f[calm], terms) for terms in bases]
+        counts = _BASES if np.ptp(x) > _SLOW else _BASES[:1]
+        fits = [Fit.of(x, f[calm], count) for count in counts]
         scale = fits[-1].variance * fits[-1].length or 1.0  # of the base with all terms
-        chi = [np.sum(fit.noise**2) / scale for fit in fits]
-        weights = scipy.special.softmax(-np.add(chi, [*bases.values()]) / 2)
+        criteria = [np.sum(fit.noise**2) / scale + 2 * len(fit.sizes) for fit in fits]
+        weights = scipy.special.softmax(-np.array(criteria) / 2)
         return cls(rise, width, x, fits, weights, fits[int(np.argmax(weights))])
 
     @classmethod
@@ -126,7 +124,7 @@ class Base:
         """
         levels = (f[:_GUESSED].mean(), np.quantile(f, 0.1))
         samples = np.array([noise, 0.0])  # of this variance, and white
-        fits = [Fit([0], np.array([level]), samples) for level in levels]
+        fits = [Fit(np.array([level]), samples) for level in levels]
         return cls(0.0, 1.0, np.zeros(0), fits, np.full(2, 0.5), fits[0])
 
     def at(self, t: Array) -> Array:
@@ -167,7 +165,7 @@ class Base:
         chosen = rng.choice(len(self.fits), DRAWS, p=self.weights)
         for i, fit in enumerate(self.fits):
             draws = chosen == i
-            added[:, draws] -= Fit.of(self.x, calm[:, draws], fit.terms).at(x)
+            added[:, draws] -= Fit.of(self.x, calm[:, draws], len(fit.sizes)).at(x)
             added[:, draws] += (self.at(t) - fit.at(x))[:, np.newaxis]
         return added
 
@@ -184,7 +182,7 @@ class Base:
         return np.asarray(shaped[:count])
 
 
-def _columns(x: Array, terms: Sequence[int]) -> Array:
-    """Return terms of a base, (len(x), terms), at times x in widths from the rise."""
+def _terms(x: Array, count: int) -> Array:
+    """Return the first terms of a base, (len(x), count): level, slope, exponentials."""
     growths = [np.exp(np.minimum(x, 0) / growth) for growth in _GROWTHS]
-    return np.column_stack([np.ones_like(x), x, *growths])[:, terms]
+    return np.column_stack([np.ones_like(x), x, *growths])[:, :count]

@@ -6,6 +6,7 @@ To add a study, write one file in `validation.studies`, its test, a line in ``ST
     from validation.report.study import Report, option, study
     from validation.report.table import Column, Table
 
+
     @study(
         option("--k", default=1.5, says="Exponent."),
         page="reference",

@@ -297,20 +297,19 @@ def option(*names: str, default: Any = None, says: str = "", **settings: Any) ->
     *names : str
         Its flags, and the parameter's name where it differs from them.
     default : object
-        Default value, shown in the help; an option whose default is a float reads a `number`.
+        Default value, shown in the help; an option whose default is a float reads a `number`, and
+        an `integer` where the default is one.
     says : str
         Help text.
     **settings : object
         Further settings of `click.option`.
     """
     settings.setdefault("show_default", default is not None and default is not False)
-    if isinstance(default, float):
-        settings.setdefault("callback", number)
-    settings.setdefault("metavar", _METAVARS.get(settings.get("callback")))
-    if type(default) in (int, float):
+    if type(default) in _READERS:  # a flag's False is no integer here
+        settings.setdefault("callback", _READERS[type(default)])
         # As a text, which the callback reads, and which a refusal proposes.
-        settings.setdefault("type", str if "callback" in settings else int)
         default = str(default)
+    settings.setdefault("metavar", _METAVARS.get(settings.get("callback")))
     return click.option(*names, default=default, help=says, **settings)
 
 
@@ -391,8 +390,22 @@ def number(
     return float(exact)
 
 
+def integer(
+    context: click.Context, given: click.Parameter, value: str | None
+) -> int | None:
+    """Read an option that is an integer."""
+    found = number(context, given, value)
+    if found is None:
+        return None
+    if not found.is_integer():
+        raise SceneError(f"{called(given)} is {value}: an integer is wanted")
+    return int(found)
+
+
+_READERS = {float: number, int: integer}
 _METAVARS: dict[Any, str] = {
     number: "NUMBER",
+    integer: "INTEGER",
     quantity: "NUMBER",
     quantities: "NUMBERS",
 }

@@ -13,6 +13,7 @@ import click
 from lwa.base.exact import shorten
 from lwa.base.frozen import Estimate
 from lwa.command.cli import called
+from lwa.command.options import Words
 from validation.lattice.cost import RunProgress, silent
 from validation.pictures import Curve, Panel
 from validation.pulses.discharge import corrected, suggested
@@ -161,7 +162,7 @@ class Measured:
     option(
         "--of",
         default="contact",
-        type=click.Choice(_KINDS),
+        type=Words(_KINDS),
         says="Where sensors sit whose columns do not say it.",
     ),
     record_options,

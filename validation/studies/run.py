@@ -19,6 +19,7 @@ from typing import Any
 import click
 import numpy as np
 
+from lwa.command.options import Words
 from lwa.spheres.hertz import MATERIALS
 from validation.lattice.cost import RunProgress
 from validation.lattice.signal import RECORDS
@@ -251,7 +252,7 @@ def _print(context: click.Context, given: click.Parameter, name: Any) -> None:
 _PRINTED: dict[str, Any] = {"is_eager": True, "expose_value": False, "callback": _print}
 SUFFIXES = (".json", ".csv")
 
-_METHODS = click.Choice((*COMPILED, *METHODS))
+_METHODS = Words((*COMPILED, *METHODS))
 _INTEGRATOR = f"Integrator: {' and '.join(COMPILED)} are compiled, the others SciPy's."
 _RTOL = "Relative tolerance. Errors are differences to less accurate runs."
 
@@ -260,7 +261,7 @@ _RTOL = "Relative tolerance. Errors are differences to less accurate runs."
     click.argument("scene", type=click.Path()),
     option(
         "--example",
-        type=click.Choice(EXAMPLES),
+        type=Words(EXAMPLES),
         is_flag=False,
         flag_value=EXAMPLES[0],
         **_PRINTED,

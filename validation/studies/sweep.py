@@ -30,6 +30,7 @@ from validation.lattice.threads import cluster, threads
 from validation.pictures import Curve, Panel
 from validation.pulses.steady import LABELS, STRETCH, Key, Point, PointFile, point
 from validation.report.study import Report, option, output_file, study
+from validation.report.study import integer as whole
 from validation.report.table import Column, Table, percent
 from validation.scenes.checks import Failure, SceneError, integer, items
 
@@ -276,7 +277,11 @@ _RANGES = "values and ranges start:stop:count, separated by commas."
         type=click.Path(),
         says="File of finished points (.sqlite), to be continued.",
     ),
-    option("--jobs", type=int, says="Number of threads; by default one a processor."),
+    option(
+        "--jobs",
+        callback=whole,
+        says="Number of threads; by default one a processor.",
+    ),
     option(
         "--cluster",
         "address",

@@ -83,9 +83,10 @@ def test_a_wave_of_spheres_has_the_values_of_python(capsys, file):
         assert words in out
     assert f"speed dx/dt = {found['speed_value']:.6g} m/s" in out
     lattice = lwa.lattice_wave(cell, k="3/2", force=10)
-    speed = lattice.estimate("speed")
-    assert found["lattice"]["speed_value"] == speed.value
-    assert found["lattice"]["speed_error_value"] == speed.error
+    for name in ("speed", "momentum", "energy"):
+        estimate = lattice.estimate(name)
+        assert found["lattice"][f"{name}_value"] == estimate.value
+        assert found["lattice"][f"{name}_error_value"] == estimate.error
     symbolic = result(capsys, *options)
     assert (symbolic["force"], symbolic["fwhm_value"]) == ("F", found["fwhm_value"])
     speed = sp.sympify(symbolic["speed"])

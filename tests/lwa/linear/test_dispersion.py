@@ -136,14 +136,13 @@ def test_long_decimals():
     """Written out, the root of the speed would hold numbers beyond a double."""
     masses, k, F0 = (0.239655726292, 1.563930410198), 1.97, 1.2
     chain = LoadedChain(Cell(masses, spacing=1), Power(k), F0)
-    spring = k * F0 ** (1 - 1 / k)
-    speed = np.sqrt(2 * spring / sum(masses))
+    speed = np.sqrt(2 * k * F0 ** (1 - 1 / k) / sum(masses))
     assert float(chain.sound_speed) == pytest.approx(speed, rel=1e-14)
     assert chain.bands.branches(1e-6)[0] == pytest.approx(speed * 1e-6, rel=1e-9)
     # of a surd
-    k = 2.3206499799
-    scale = Cell([9], spacing=sp.sqrt(6) * 16 / 7).time_scale(k)
-    expected = np.sqrt(k * (np.sqrt(6) * 16 / 7) ** (k + 1) / 9)
+    k, D = 2.3206499799, sp.sqrt(6) * 16 / 7
+    expected = np.sqrt(k * float(D) ** (k + 1) / 9)
+    scale = Cell([9], spacing=D).time_scale(k)
     assert float(scale) == pytest.approx(expected, rel=1e-14)
 
 

@@ -88,6 +88,8 @@ WAVES = {
     "canonical": (canonical_wave(Dimer("m1", "m2")), GRID),
     "k near 1": (canonical_wave(Cell([1], spacing=1)), NEAR_1),
     "three": (canonical_wave(Cell(["m1", 2, "m3"], ["A1", 1, 8])), STIFF),
+    # an integer of more than 64 bits, which C does not have
+    "long": (canonical_wave(Dimer("m1", 10**20, spacing=1), "3/2"), {"m1": (3e19,)}),
     "numbers": (homogenize(Dimer(1, 1, spacing=1), k="3/2").pde.traveling_wave(), {}),
     # a word of a language, names of the module's own, a Greek letter
     "names": (

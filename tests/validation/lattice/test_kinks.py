@@ -10,14 +10,15 @@ from scipy.integrate import quad
 
 from validation.lattice.kernel.arrays import LAW, ROOM
 from validation.lattice.kernel.compiled import cached
-from validation.lattice.kernel.kinks import EDGES, find_edges, integrals
+from validation.lattice.kernel.kinks import EDGES, STRAIGHT, find_edges, integrals
 
 
 @cached
 def compiled(laws, r, quintic, h, points, edges):
     law = laws[0]
     count, _ = find_edges(law, r, quintic, h, edges)
-    return integrals(law, r, quintic, h, 1.0, points, edges, count)
+    # The work of a bead that moves as the contact's compression does is the fourth integral.
+    return integrals(law, r, quintic, h, 1.0, points, edges, count, True, quintic)
 
 
 def force(contact, quintic, h, x):
@@ -80,7 +81,6 @@ def contact(k, r, p):
     return laws, r
 
 
-STRAIGHT = 1.0, 0.0  # a curve without a bend
 # Exponents and damping (k, r, p), and the error over the greatest impulse: δ^{1/4} wants u^4, of
 # which ten points resolve less.
 LAWS = {
@@ -108,7 +108,7 @@ def test_a_contact_that_closes_or_opens(law, ends, rises, opening):
         rise + end_rise - 2 * jump,
         0.0,
         0.0,
-        *STRAIGHT,
+        STRAIGHT,
     )
     check(law, curve, LAWS[law])
 
@@ -120,7 +120,7 @@ def test_a_contact_that_closes_and_opens(law, depth, place, bend):
     """Parabolas of a greatest compression ``depth``, at a place of the step."""
     check(
         law,
-        (depth - bend * place**2, 2 * bend * place, -bend, 0.0, 0.0, 0.0, *STRAIGHT),
+        (depth - bend * place**2, 2 * bend * place, -bend, 0.0, 0.0, 0.0, STRAIGHT),
         LAWS[law],
     )
 
@@ -130,3 +130,4 @@ def check(law, curve, bound):
     found = compiled(*touching, curve, 1.0, np.empty((3, ROOM)), np.empty(EDGES))
     wanted = expected(touching, curve, 1.0)
     assert np.abs(found[:3] - wanted).max() <= bound * wanted[0] + 1e-16
+    assert found[4] == found[3]

@@ -59,6 +59,8 @@ summed: Callable[[Function], Function] = njit(
 # Unsigned indices: a signed one may count from the end, which keeps a loop from vectorising.
 index = np.uint64
 ZERO, ONE = index(0), index(1)
+# A plain 0 is a type of its own, for which numba compiles a function once more.
+FIRST: Any = np.int64(0)
 
 
 def _call(typing: Any, address: Any, x: Any) -> Any:

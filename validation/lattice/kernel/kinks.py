@@ -20,15 +20,18 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import Pair
-from validation.lattice.kernel.compiled import alone, call, index, part
-from validation.lattice.kernel.force import drag, elastic, push
+from validation.lattice.kernel.compiled import FIRST, alone, call, index, part
+from validation.lattice.kernel.force import drag, elastic, power, push
 
-Curve = tuple[float, float, float, float, float, float, float, float]
-"""Coefficients c0 … c5 of p, and e and s of a bend, ``s [x - e]_+^2/2``, that p has besides."""
+Bend = tuple[float, float, float]
+"""Numbers e, s and b of a part of p whose second derivative is ``s [x - e]_+^b``, 0 ≤ b < 1."""
+Curve = tuple[float, float, float, float, float, float, Bend]
+"""Coefficients c0 … c5 of p, and a bend that p has besides."""
 
 POINTS = 12  # of the rule: three of the machine's vectors
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(POINTS)
 _U, _W = (1 + _NODES) / 2, _WEIGHTS / 2
+STRAIGHT = (1.0, 0.0, 0.0)  # no bend
 _PLACES = 8  # parts of a step at whose ends a contact is looked at
 # Each part has at most one turning point of p, and on both sides of it a contact that closes or
 # opens and begins or ceases to be damped; beside these the step's ends.
@@ -50,31 +53,43 @@ def stored(law: Any, d: float) -> float:
 
 
 @part
+def bent(bend: Bend, x: float) -> tuple[float, float, float]:
+    """Return a bend at x, its slope and its second derivative."""
+    e, s, b = bend
+    if s == 0.0 or not x > e:
+        return 0.0, 0.0, 0.0
+    late = x - e
+    second = s * power(b, late)
+    slope = second * late / (1.0 + b)
+    return slope * late / (2.0 + b), slope, second
+
+
+@part
 def value_and_slope(c: Curve, x: float) -> tuple[float, float]:
     """Return ``p(x)`` and ``p'(x)``."""
     p = c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))))
     slope = c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5])))
-    late = max(x - c[6], 0.0)
-    return p + 0.5 * c[7] * late * late, slope + c[7] * late
+    more, steeper, _ = bent(c[6], x)
+    return p + more, slope + steeper
 
 
 @part
 def fitted_curve(
     start: tuple[float, float, float],
     end: tuple[float, float, float],
-    bent: tuple[float, float],
+    bend: Bend,
 ) -> Curve:
-    """Return the quintic with p, p' and p'' at both ends of the step, with a bend (e, s)."""
+    """Return the quintic with p, p' and p'' at both ends of the step, with a bend."""
     d, v, c2 = start[0], start[1], start[2] / 2
-    late = 1.0 - bent[0]
+    b0, b1, b2 = bent(bend, 1.0)
     # c3, c4 and c5 solve the conditions at x = 1, of which the bend, d, v and c2 leave r0, r1, r2.
-    r0 = end[0] - 0.5 * bent[1] * late * late - d - v - c2
-    r1 = end[1] - bent[1] * late - v - 2 * c2
-    r2 = end[2] - bent[1] - 2 * c2
+    r0 = end[0] - b0 - d - v - c2
+    r1 = end[1] - b1 - v - 2 * c2
+    r2 = end[2] - b2 - 2 * c2
     c3 = 10 * r0 - 4 * r1 + r2 / 2
     c4 = -15 * r0 + 7 * r1 - r2
     c5 = 6 * r0 - 3 * r1 + r2 / 2
-    return d, v, c2, c3, c4, c5, bent[0], bent[1]
+    return d, v, c2, c3, c4, c5, bend
 
 
 @part
@@ -180,7 +195,7 @@ def find_edges(
 
     The places between the intervals, 0 and 1 among them, go to ``edges``.
     """
-    n, low, before, top = 1, 0.0, _state(law, r, c, h, 0.0), c[0]
+    n, low, before, top = FIRST + 1, 0.0, _state(law, r, c, h, 0.0), c[0]
     edges[0] = 0.0
     for m in range(1, _PLACES + 1):
         high = m / _PLACES
@@ -203,15 +218,21 @@ def find_edges(
 @part
 def _find_jump(
     law: Any, r: float, c: Curve, h: float, edges: Array, count: int
-) -> tuple[float, float]:
-    """Return the last place at which the force jumps, and by how much; (1, 0) for none."""
-    place, jump = 1.0, 0.0
+) -> Bend:
+    """Return the last place at which the force jumps, or nearly, as the bend by ``bend = 1``.
+
+    A force that begins as ``r δ^b dδ/dt`` with a small b almost jumps.
+    """
+    found = 1.0, 0.0, 0.0
     for n in range(1, count):
         p, slope = value_and_slope(c, edges[n])
         if abs(p) < 1e-9 * abs(slope):
             force = push(law, r, _OPENS, slope / h)
-            place, jump = edges[n], force if slope > 0.0 else -force
-    return place, jump
+            if slope > 0.0 and r > 0.0 and law.p > 0.0 and law.p < 1.0:
+                found = edges[n], r * slope / h * drag(law, slope), law.p
+            else:
+                found = edges[n], force if slope > 0.0 else -force, 0.0
+    return found
 
 
 @alone
@@ -222,12 +243,13 @@ def resolved(
     end: tuple[float, float, float],
     h: float,
     bend: float,
+    guess: Bend,
     edges: Array,
 ) -> tuple[Curve, int, float, float]:
     """Return a contact's curve over a step, the results of `find_edges`, and a jump of the force.
 
-    A jump bends the curve where it is, and where it is depends on the curve: two refinements leave
-    no more than the quintic's own error.
+    A jump bends the curve where it is, and where it is depends on the curve: a second call with the
+    bend that the first one found leaves no more than the quintic's own error.
 
     Parameters
     ----------
@@ -241,18 +263,18 @@ def resolved(
         The step.
     bend : float
         Change of p'' by a force of 1.
+    guess : Bend
+        The curve's bend, as far as it is known; `STRAIGHT` at first.
     edges : array
         Room for the places of `find_edges`.
     """
-    c = fitted_curve(start, end, (1.0, 0.0))
+    c = fitted_curve(start, end, guess)
     count, top = find_edges(law, r, c, h, edges)
-    place, jump = _find_jump(law, r, c, h, edges, count)
+    place, jump, b = _find_jump(law, r, c, h, edges, count)
     if abs(bend * jump) < 1e-12 * abs(start[1]):
         return c, count, top, 0.0
-    for _ in range(2):
-        c = fitted_curve(start, end, (place, bend * jump))
-        count, top = find_edges(law, r, c, h, edges)
-        place, jump = _find_jump(law, r, c, h, edges, count)
+    c = fitted_curve(start, end, (place, bend * jump, b))
+    count, top = find_edges(law, r, c, h, edges)
     return c, count, top, jump
 
 
@@ -293,16 +315,18 @@ def stage_forces(
     A stage's motion has the pair's own error for a force that jumps at the bend of c; ``bend`` is
     the change of p'' by a force of 1.
     """
-    closes = value_and_slope(c, c[6])[1] > 0.0
+    place, _, b = c[6]
+    unit = place, 1.0, b
+    pace = value_and_slope(c, place)[1]
     for s in range(len(pair.nodes)):
         p, slope = value_and_slope(c, pair.nodes[s])
         if jump != 0.0:
-            late = max(pair.nodes[s] - c[6], 0.0)
-            moment, impulse = 0.5 * late * late, late
+            moment, impulse, _ = bent(unit, pair.nodes[s])
             for j in range(s):
-                if (points[0, j] > 0.0) == closes:
-                    moment -= pair.moments[s, j]
-                    impulse -= pair.impulses[s, j]
+                if (points[0, j] > 0.0) == (pace > 0.0):
+                    seen = power(b, points[0, j] / pace) if b > 0.0 else 1.0
+                    moment -= pair.moments[s, j] * seen
+                    impulse -= pair.impulses[s, j] * seen
             p -= bend * jump * moment
             slope -= bend * jump * impulse
         points[0, s], points[1, s] = p, slope
@@ -335,14 +359,16 @@ def integrals(
     points: Array,
     edges: Array,
     count: int,
-) -> tuple[float, float, float, float]:
-    """Return four integrals over a step up to ``x = until``.
+    driven: bool,
+    bead: Curve,
+) -> tuple[float, float, float, float, float]:
+    """Return five integrals over a step up to ``x = until``.
 
     Those of ``F``, ``(1 - x) F``, ``(1 - x)²/2 F`` and ``F p'``, in the ``count`` intervals between
-    the places ``edges``.
+    the places ``edges``, and that of ``F b'`` for the motion b of a driven bead, else 0.
     """
     x, w = points[0], points[1]
-    once = twice = third = work = 0.0
+    once = twice = third = work = given = 0.0
     for n in range(count):
         a, b = edges[n], edges[n + 1]
         p, slope = value_and_slope(c, 0.5 * (a + b))
@@ -368,4 +394,6 @@ def integrals(
                 twice += left * force
                 third += 0.5 * left * left * force
                 work += slope * force
-    return once, twice, third, work
+                if driven:
+                    given += value_and_slope(bead, x[m])[1] * force
+    return once, twice, third, work, given

@@ -16,7 +16,7 @@ from typing import Any
 from lwa.base.arrays import Array
 from validation.lattice.kernel import kinks
 from validation.lattice.kernel.arrays import Beads, Chain, Knots, Numbers
-from validation.lattice.kernel.compiled import cached, part
+from validation.lattice.kernel.compiled import FIRST, cached, part
 from validation.lattice.kernel.force import drag, elastic, push, stiffness
 from validation.lattice.kernel.kinks import Curve, value_and_slope
 
@@ -76,7 +76,7 @@ def _septic(a: Array, b: Array) -> tuple[Curve, float, float]:
     c5 = -84 * r0 + 39 * r1 - 7 * r2 + r3 / 2
     c6 = 70 * r0 - 34 * r1 + 6.5 * r2 - r3 / 2
     c7 = -20 * r0 + 10 * r1 - 2 * r2 + r3 / 6
-    return (a[0], a[1], c2, c3, c4, c5, 1.0, 0.0), c6, c7
+    return (a[0], a[1], c2, c3, c4, c5, kinks.STRAIGHT), c6, c7
 
 
 @part
@@ -106,10 +106,18 @@ def _take_kink_away(
     d, u, a = _compression(knots, n, q, chain.rest[i])
     end, end_u, end_a = _compression(knots, n + 1, q, chain.rest[i])
     begin, over = (d, h * u, h * h * a), (end, h * end_u, h * h * end_a)
-    p, count, _, _ = kinks.resolved(law, ratio, begin, over, h, -near - far, edges)
+    p, count, _, _ = kinks.resolved(
+        law, ratio, begin, over, h, -near - far, kinks.STRAIGHT, edges
+    )
+    if p[6][1] != 0.0:
+        p, count, _, _ = kinks.resolved(
+            law, ratio, begin, over, h, -near - far, p[6], edges
+        )
     for s in range(first, last + 1):
         x = (time[s] - knots.time[n]) / h if s < last else 1.0
-        once, twice, _, _ = kinks.integrals(law, ratio, p, h, x, points, edges, count)
+        once, twice, _, _, _ = kinks.integrals(
+            law, ratio, p, h, x, points, edges, count, False, p
+        )
         moment = twice - (1.0 - x) * once  # ∫ (x - s) F(s) ds
         if s < last:
             y[r, s] -= near * moment
@@ -176,7 +184,7 @@ def interpolate(
     points, edges : array
         Working memory, as in `Beads`.
     """
-    last = 0
+    last = FIRST
     while last < len(time):
         first, n = last, step[last]
         while last < len(time) and step[last] == n:

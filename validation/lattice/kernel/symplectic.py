@@ -10,7 +10,7 @@ from typing import Any
 
 from validation.lattice.kernel.advance import advance_front, moving
 from validation.lattice.kernel.arrays import TILE, Beads, Chain, Knots, Plan
-from validation.lattice.kernel.compiled import ONE, ZERO, cached, index
+from validation.lattice.kernel.compiled import FIRST, ONE, cached, index
 from validation.lattice.kernel.force import contact_forces, tile_bounds
 from validation.lattice.kernel.samples import store_knot
 
@@ -27,7 +27,7 @@ def advance_split(
     until, last = now.tries + tries, len(drifts)
     y, v, force, inverse = beads.y, beads.v, beads.force[1], chain.inverse
     push = beads.push[0]
-    contact_forces(chain, beads, plan, y, v, ZERO, 0, plan.size)
+    contact_forces(chain, beads, plan, y, v, FIRST, FIRST, plan.size)
     if now.tries == 0:
         for i in range(index(plan.size)):
             push[i] = (force[i] - force[i + ONE]) * inverse[i]
@@ -44,7 +44,7 @@ def advance_split(
                     u = v[i] + b * (force[i] - force[i + ONE]) * inverse[i]
                     v[i] = u
                     y[i] = y[i] + a * u
-                contact_forces(chain, beads, plan, y, v, ZERO, first, behind)
+                contact_forces(chain, beads, plan, y, v, FIRST, first, behind)
         b = h * kicks[last]
         for i in range(index(hi)):
             push[i] = (force[i] - force[i + ONE]) * inverse[i]
