@@ -30,8 +30,15 @@ function name() {
   for (const button of document.querySelectorAll(".search-button-field, .cell summary")) {
     button.removeAttribute("aria-label");
   }
-  for (const part of document.querySelectorAll("dt.sig > dl, dt.sig > dl > dd")) {
-    part.setAttribute("role", "none"); // Sphinx breaks long signatures by a list without terms
+  // Sphinx breaks long signatures by a list without terms: these are lines.
+  for (const list of document.querySelectorAll("dt.sig > dl")) {
+    const lines = [...list.children].map(part => {
+      const line = document.createElement("div");
+      line.className = "lwa-line";
+      line.append(...part.childNodes);
+      return line;
+    });
+    list.replaceWith(...lines);
   }
   for (const source of document.querySelectorAll("div.citation")) {
     source.setAttribute("role", "listitem");

@@ -61,14 +61,16 @@ window.addEventListener("load", async () => {
   if (typeset) await typeset.catch(error => errors.push(String(error)));
   await new Promise(done => setTimeout(done, 50)); // for events on their way
   for (const image of document.images) image.loading = "eager";
-  for (const details of document.querySelectorAll("details")) details.open = true;
   await Promise.all([...document.images].map(image => image.decode().catch(() => 0)));
+  // What axe finds, in a window of full width.
+  const rules = async () => !window.axe ? [] : (await axe.run(document, {preload: false}))
+    .violations
+    .flatMap(({id, nodes}) => nodes.slice(0, 3).map(({html}) => `${id}: ${html.slice(0, 120)}`));
   const asked = document.querySelectorAll(".lwa-answers");
   const early = [...document.querySelectorAll(".lwa-below")].filter(e => e.clientWidth).length;
   asked.forEach(row => row.firstChild.click());
-  // What axe finds, in a window of full width.
-  const rules = async () => !window.axe ? [] : (await axe.run(document)).violations
-    .flatMap(({id, nodes}) => nodes.slice(0, 3).map(({html}) => `${id}: ${html.slice(0, 120)}`));
+  const axeFound = await rules(); // before the many entries of the packages unfold
+  for (const details of document.querySelectorAll("details")) details.open = true;
   const math = [...document.querySelectorAll(".math")];
   const body = document.querySelector("article") || document.body;
   const text = body.cloneNode(true);
@@ -100,7 +102,7 @@ window.addEventListener("load", async () => {
     crumbled: [...body.querySelectorAll("td span.pre")]
       .filter(e => e.getClientRects().length > 2).map(e => e.textContent),
     wider: document.scrollingElement.scrollWidth > innerWidth + 1,
-    axe: await rules(),
+    axe: axeFound,
     sliders: body.querySelectorAll("input[type=range]").length,
     asked: asked.length,
     early,

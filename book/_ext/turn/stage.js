@@ -167,7 +167,7 @@ function stage(home, thing) {
     canvas.addEventListener("pointermove", touched);
   }
   // Drawn anew at each width, that of a page whose sidebars come late too: circles stay round.
-  new ResizeObserver(show).observe(canvas);
+  new ResizeObserver(() => requestAnimationFrame(show)).observe(canvas);
 
   const below = element("div", {class: "lwa-below"}, panel, output);
   if (!plain) {
