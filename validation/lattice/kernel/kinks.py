@@ -24,7 +24,7 @@ from validation.lattice.kernel.compiled import FIRST, alone, call, index, part
 from validation.lattice.kernel.force import drag, elastic, power, push
 
 Bend = tuple[float, float, float]
-"""Numbers e, s and b of a part of p whose second derivative is ``s [x - e]_+^b``, 0 ≤ b < 1."""
+"""Numbers e, s and b of a part of p whose second derivative is ``s [x - e]_+^b``, ``0 ≤ b < 1``."""
 Curve = tuple[float, float, float, float, float, float, Bend]
 """Coefficients c0 … c5 of p, and a bend that p has besides."""
 
