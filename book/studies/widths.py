@@ -137,13 +137,13 @@ def widths() -> Report:
     lines = theory("force", numbers["F_m"], True)
     stated = ", ".join(f"{100 * e:.1f} % ({line})" for line, e in STATED.items())
     title = (
-        f"theory over the average from bead {FIRST_BEAD} on, less 1, for equal contacts and "
+        f"Theory over the average from bead {FIRST_BEAD} on, less 1, for equal contacts and "
         f"equal force;\nthe paper states {stated}"
     )
     rows = tuple(definition.cells for definition in definitions)
     return Report(
-        "",
-        (Table(_COLUMNS, rows, "definitions", title=title),),
+        title,
+        (Table(_COLUMNS, rows, "definitions"),),
         panels=(_panel(beads, times, lines),),
         notes=(_verdict(definitions),),
         data={

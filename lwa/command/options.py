@@ -13,7 +13,7 @@ import sympy as sp
 from click.core import ParameterSource
 
 from lwa.base.exact import InputError, integer, positive, read_exact
-from lwa.base.words import BRANCHES, CLOSURES, FIELDS, one_of, similar
+from lwa.base.words import BRANCHES, CLOSURES, FIELDS, one_of
 from lwa.cell import D, exponent, k
 from lwa.command.cli import called, help_end
 from lwa.law import NAMES, read_law
@@ -61,14 +61,12 @@ class Words(click.Choice[str]):
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> str:
         """Return a word that is among the choices; see `lwa.base.words.one_of`."""
-        words = list(self.choices)
-        name = called(param) if param else self.name
-        try:
-            return one_of(value, words, name)
-        except InputError as refusal:
-            # The line to paste has the nearest word, or the first.
-            near = similar(value, words) or words
-            raise InputError(refusal.reason, **{name: near[0]}) from None
+        return one_of(value, self.choices, called(param) if param else self.name)
+
+    @property
+    def example(self) -> str:
+        """A valid word, for the refusal of a word that is like none."""
+        return self.choices[0]
 
 
 def quantity(context: click.Context, option: click.Parameter, text: str | None) -> Any:

@@ -146,13 +146,16 @@ class Contacts:
         driven = (c * K3 * size).sum() / c.sum()
         force = 2 * driven * speed / (speed - 1)
         mean = c * (force - 2 * K3 * size)
-        harmonic = np.real(d.conj() ** 2 * self._harmonic(z * z, 4 * x, K3 * d * d))
+        second = self._harmonic(z * z, 4 * x, K3 * d**2)  # e2
+        harmonic = np.real(d.conj() ** 2 * second)
+        cubic = 3 * self.K4 * size**2
+        cubic += 2 * K3 * (harmonic + size * mean)
         bead = np.argmax(np.abs(phi))  # the one whose φ becomes positive
         return Mode(
             square=x,
             slope=slope,
             curvature=bend / 2 - slope**2 / (4 * x),
-            cubic=(3 * self.K4 * size**2 + 2 * K3 * (harmonic + size * mean)).sum(),
+            cubic=cubic.sum(),
             mean=mean,
             size=size,
             shape=phi * abs(phi[bead]) / phi[bead],
@@ -255,23 +258,27 @@ def pair_at_edge(contacts: Contacts, edge: sp.Integer, branch: int) -> Mode:
         phi = np.array([1, -1 if contact == 0 else 1]) / sp.sqrt(2 * m1)
     else:
         raise InputError(TOUCHING)
-    size = np.array([phi[0] - phi[1], phi[1] - edge * phi[0]]) ** 2
+    inside = phi[0] - phi[1]
+    across = phi[1] - edge * phi[0]  # the contact to the next cell
+    size = np.array([inside**2, across**2])
     K3 = contacts.K3
     drive = K3[1] * size[1] - K3[0] * size[0]
     y = sp.S.Zero
     if drive != 0:  # else a resonance does not matter
-        rate = k1 + k2 - 4 * x * reduced
-        if rate.is_zero:
+        stiffness = k1 + k2 - 4 * x * reduced
+        if stiffness.is_zero:
             raise InputError(DRIVEN)
-        y = drive / rate
+        y = drive / stiffness
     # c_g is 0 at the edge, and so is the lasting force.
     mean = -2 * K3 * size / contacts.K2
+    # m_1 m_2 x² - (K2_1 + K2_2)(m_1 + m_2) x + 2 K2_1 K2_2 (1 - cos κ) = 0, differentiated twice
+    rate = (k1 + k2) * total - 2 * m1 * m2 * x
+    of_contacts = 3 * contacts.K4 * size**2 + 2 * K3 * size * mean
     return Mode(
         square=x,
         slope=sp.S.Zero,
-        # m_1 m_2 x² - (K2_1 + K2_2)(m_1 + m_2) x + 2 K2_1 K2_2 (1 - cos κ) = 0 twice by κ
-        curvature=edge * k1 * k2 / ((k1 + k2) * total - 2 * m1 * m2 * x),
-        cubic=(3 * contacts.K4 * size**2 + 2 * K3 * size * mean).sum() - 2 * drive * y,
+        curvature=edge * k1 * k2 / rate,
+        cubic=of_contacts.sum() - 2 * drive * y,
         mean=mean,
         size=size,
         shape=phi,
@@ -335,7 +342,8 @@ def cell_mode(
     # Unlike contacts have a power law, under which δ0, K2, K3 and K4 are powers of c.
     compliances = cell.compliances(law.exponent)
     c = np.array([sp.powsimp(part / compliances[0]) for part in compliances])
-    contacts = Contacts(np.array(cell.masses), K2=1 / c, K3=s / c**2, K4=t / c**3)
+    masses = np.array(cell.masses)
+    contacts = Contacts(masses, K2=1 / c, K3=s / c**2, K4=t / c**3)
     mode = _mode(contacts, wavenumber, branch, floats)
     rate = sp.powsimp(cell.stiffnesses[0] * slope)
     return replace(

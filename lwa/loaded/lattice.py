@@ -220,7 +220,8 @@ class Lattice(Value):
     @cached_property
     def mass(self) -> sp.Expr:
         """The mean mass per particle, with the resonators'."""
-        return sp.Add(*self.masses, *(x.mass for x in self.resonators)) / self.size
+        masses = [*self.masses, *(x.mass for x in self.resonators)]
+        return sp.Add(*masses) / self.size
 
     @property
     def symbols(self) -> tuple[sp.Symbol, ...]:
@@ -230,7 +231,8 @@ class Lattice(Value):
             values += [link.factor, link.cosine, *link.law.symbols]
         for resonator in self.resonators:
             values += [resonator.mass, resonator.stiffness]
-        return tuple(sorted(set().union(*(x.free_symbols for x in values)), key=str))
+        free = sp.Tuple(*values).free_symbols
+        return tuple(sorted(free, key=str))
 
     @cached_property
     def in_series(self) -> bool:
@@ -300,7 +302,8 @@ class Lattice(Value):
     @property
     def resonance_sum(self) -> sp.Expr:
         """The sum R of m_r²/k_r over the resonators, per particle."""
-        return sp.Add(*(x.mass**2 / x.stiffness for x in self.resonators)) / self.size
+        parts = [x.mass**2 / x.stiffness for x in self.resonators]
+        return sp.Add(*parts) / self.size
 
     def resonance(self, resonator: Resonator) -> float:
         """The frequency ω0 of a resonator against its bead."""
@@ -333,7 +336,8 @@ class Lattice(Value):
         if np.linalg.matrix_rank(self._network.incidence) < self.size - 1:
             raise InputError("the links leave a particle of the cell free")
         # Springs and masses of 1: whether links carry a load does not depend on their strength.
-        branch = self._network.acoustic(np.ones(len(self.links)), np.ones(self.size))
+        springs = np.ones(len(self.links))
+        branch = self._network.acoustic(springs, np.ones(self.size))
         if not branch.stiffness > _NO_LOAD:
             raise InputError("the links carry no load from cell to cell")
 
@@ -381,7 +385,8 @@ def hexagonal(
     a = positive(diameter, "diameter")
     if direction == "along":
         # A row's own contact spans two layers: the layers of its neighbours lie between.
-        links = [Link(0, 1, law, factor=2, cosine=sp.S.Half), Link(0, 2, law)]
-        return Lattice([mass], links, spacing=a / 2)
+        near = Link(0, 1, law, factor=2, cosine=sp.S.Half)
+        far = Link(0, 2, law)
+        return Lattice([mass], [near, far], spacing=a / 2)
     cosine = sp.sqrt(3) / 2  # of 30°
     return Lattice([mass], [Link(0, 1, law, 2, cosine)], spacing=a * cosine)

@@ -180,7 +180,9 @@ def _interpolated(x: Array, y: Array, at: Array) -> Array:
     for n in range(1, _PLACES):
         left = x[:-n]
         right = x[n:]
-        y = ((at - left) * y[1:] - (at - right) * y[:-1]) / (right - left)
+        rising = (at - left) * y[1:]
+        falling = (at - right) * y[:-1]
+        y = (rising - falling) / (right - left)
     return np.asarray(y[0])
 
 
@@ -354,7 +356,7 @@ class Nodes:
         last = xi[-1]
         inside = _interpolated(xi, logs, np.minimum(places, last))
         # v decays exponentially behind the last node under a load, and ends there without.
-        fall = g.from_peak((g.ds / g.s)[g.rows])[-1]  # of ln v, from node to node
-        decay = fall / g.from_peak(self.distances)[-1]
+        falls = g.from_peak((g.ds / g.s)[g.rows])  # of ln v, from node to node
+        decay = falls[-1] / g.from_peak(self.distances)[-1]
         beyond = np.maximum(places - last, 0)
         return np.asarray(np.exp(inside - decay * beyond))

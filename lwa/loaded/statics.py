@@ -140,7 +140,8 @@ class Statics:
                 change = -solved(matrix, unbalanced) @ incidence.T
                 step = self._part(delta, change) * change
                 delta = delta + step
-                if not np.any(np.abs(step).max(axis=-1) > _ROUNDING * e):
+                largest = np.abs(step).max(axis=-1)
+                if not np.any(largest > _ROUNDING * e):
                     break
         return np.asarray(delta)
 
@@ -190,7 +191,8 @@ class Statics:
             springs = np.where(is_open, softest / _RIGID, springs)
             springs = np.minimum(springs, softest * _RIGID)
             stiffness, dispersion, shares = self.network.acoustic(springs, self.masses)
-        bend = (self.values(delta, 2) * shares**3).sum(axis=-1) / size
+        bends = self.values(delta, 2) * shares**3
+        bend = bends.sum(axis=-1) / size
         # I of a chain of alike links is one number for all e.
         return Samples(stiffness, bend, dispersion + 0 * e)
 

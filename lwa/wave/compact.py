@@ -82,7 +82,9 @@ class CompactWave(Arch):
     def _ratios(self) -> tuple[sp.Expr, sp.Expr]:
         """The ratios G/I and H/I, which in the canonical field depend on k alone."""
         # Expressions in these two stay short where G, H and I have long factors in common.
-        return factored(self.G / self.I), factored(self.H / self.I)
+        g = factored(self.G / self.I)
+        h = factored(self.H / self.I)
+        return g, h
 
     @cached_property
     def coefficient_sum(self) -> sp.Expr:
@@ -98,7 +100,8 @@ class CompactWave(Arch):
         # With β² = (k-1)²/(4 I (1+g+h)) and m = 2/(k-1) written out k - 1 cancels.
         k = self.k
         g, h = self._ratios
-        return factored(1 - (k - 1) * (h + 4 - k) / (2 * (1 + g + h)))
+        less = (k - 1) * (h + 4 - k) / (2 * (1 + g + h))
+        return factored(1 - less)
 
     @cached_property
     def roots(self) -> tuple[sp.Expr, sp.Expr]:

@@ -140,7 +140,8 @@ class PhysicalWave(Value):
         # V² = f B^{k-1} times (τ/t)² = P k A_eff D^{k+1} / M, powers of each quantity collected
         cell = self.wave.cell
         k = self.wave.k
-        rate = power(self.wave.speed_factor * cell.size * k / cell.mass, sp.S.Half)
+        square = self.wave.speed_factor * cell.size * k / cell.mass
+        rate = power(square, sp.S.Half)
         hardness = power(cell.stiffness(k), 1 / (2 * k))
         growth = power(self.contact_force, (k - 1) / (2 * k))
         return cell.spacing * rate * hardness * growth
@@ -158,7 +159,8 @@ class PhysicalWave(Value):
         # P beads of the mass M fill the length P D.
         density = cell.mass / (cell.size * cell.spacing)
         # ∫ cos^m y dy over |y| < π/2 = √π Γ((m+1)/2) / Γ(m/2 + 1)
-        arch = sp.sqrt(sp.pi) * sp.gamma((m + 1) / 2) / sp.gamma(m / 2 + 1)
+        ratio = sp.gamma((m + 1) / 2) / sp.gamma(m / 2 + 1)
+        arch = sp.sqrt(sp.pi) * ratio
         return density * arch / self.wave.beta * self.bead_velocity
 
     def fwhm(
@@ -252,7 +254,8 @@ class PhysicalWave(Value):
         # Strain and force are those of contacts; a bead has a velocity of its own.
         if bearer == "bead" and quantity != "velocity":
             half = number(self.wave.D) / 2
-            return np.asarray(peak * (arch(xi - half) + arch(xi + half)) / 2)
+            both = arch(xi - half) + arch(xi + half)
+            return np.asarray(peak * both / 2)
         return np.asarray(peak * arch(xi))
 
     def at(self, **values: Any) -> PhysicalWave:

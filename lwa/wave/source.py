@@ -60,14 +60,12 @@ class Language:
         Beginning of a comment.
     head : tuple of str
         First lines of a module.
-    opening, closing : tuple of str
-        Lines around a function's body, with the fields ``name``, ``doc`` and ``arguments``.
-    entry : str
-        Line after the opening of a function that has arguments.
+    function : str
+        A function, with the fields ``name``, ``doc``, ``arguments``, ``entry`` and ``value``.
     argument : str
-        An argument in the opening.
-    result : str
-        Line of the value that is returned.
+        An argument in the function's head.
+    entry : str
+        First line of the body of a function that has ``arguments``.
     reserved : frozenset of str
         Names that a symbol may not have, besides those that the printer knows.
     settings : mapping
@@ -77,11 +75,9 @@ class Language:
     printer: Any
     comment: str
     head: tuple[str, ...]
-    opening: tuple[str, ...]
-    entry: str
-    closing: tuple[str, ...]
-    argument: str
-    result: str
+    function: str
+    argument: str = "{}"
+    entry: str = ""
     reserved: frozenset[str] = frozenset()
     settings: Mapping[str, Any] = field(default_factory=dict)
 
@@ -91,33 +87,37 @@ LANGUAGES: Mapping[LanguageName, Language] = {
         NumPyPrinter,
         "#",
         ("import numpy as np",),
-        ("", "", "def {name}({arguments}):", '    """{doc}"""'),
-        "    {arguments}, = map(np.float64, ({arguments},))",  # powers of integers overflow
-        (),
-        "{}",
-        "    return {}",
+        '''
+
+def {name}({arguments}):
+    """{doc}"""
+{entry}    return {value}''',
+        # powers of integers overflow
+        entry="    {arguments}, = map(np.float64, ({arguments},))\n",
         reserved=frozenset({"np"}),
     ),
     "c": Language(
         C99CodePrinter,
         "//",
         ("#include <math.h>",),
-        ("", "// {doc}", "double {name}({arguments})", "{{"),
-        "",
-        ("}}",),
-        "double {}",
-        "    return {};",
+        """
+// {doc}
+double {name}({arguments})
+{{
+    return {value};
+}}""",
+        argument="double {}",
         settings={"math_macros": {}},  # M_LN2 and its like are no part of C99
     ),
     "javascript": Language(
         JavascriptCodePrinter,
         "//",
         (),
-        ("", "// {doc}", "function {name}({arguments}) {{"),
-        "",
-        ("}}",),
-        "{}",
-        "    return {};",
+        """
+// {doc}
+function {name}({arguments}) {{
+    return {value};
+}}""",
         reserved=frozenset({"Math"}),
         settings={
             "user_functions": {name: f"Math.{name}" for name in ("sinh", "asinh")}
@@ -155,7 +155,8 @@ def module(
     calls = {f.name: f.name for f in functions}
     known = words.settings.get("user_functions", {})
     printer = words.printer({**words.settings, "user_functions": {**known, **calls}})
-    names = _names(functions, {*calls, *words.reserved, *printer.reserved_words})
+    taken = {*calls, *words.reserved, *printer.reserved_words}
+    names = _names(functions, taken)
 
     def text(value: sp.Basic) -> str:
         new: dict[sp.Basic, sp.Basic] = {**names}
@@ -172,13 +173,12 @@ def module(
         lines += ["", *words.head]
     for f in functions:
         listed = ", ".join(words.argument.format(names[s]) for s in f.arguments)
-        opening = words.opening
-        if listed and words.entry:
-            opening += (words.entry,)
-        for line in opening:
-            lines.append(line.format(name=f.name, doc=f.doc, arguments=listed))
-        lines.append(words.result.format(text(f.value)))
-        lines += [line.format() for line in words.closing]
+        # The line would name no argument.
+        entry = words.entry.format(arguments=listed) if listed else ""
+        written = words.function.format(
+            name=f.name, doc=f.doc, arguments=listed, entry=entry, value=text(f.value)
+        )
+        lines.append(written)
     return "\n".join(lines)
 
 

@@ -97,8 +97,8 @@ class Table:
         Cells, one for each column.
     key : str
         JSON name of the table.
-    title, note : str
-        Text above and below the printed table.
+    note : str
+        Text below the printed table.
     errors : str
         Meaning of ±, printed below the table.
     by : str
@@ -108,7 +108,6 @@ class Table:
     columns: tuple[Column, ...]
     rows: tuple[Row, ...]
     key: str = ""
-    title: str = ""
     note: str = ""
     errors: str = ""
     by: str = ""
@@ -201,6 +200,21 @@ class Table:
         """
         if not (self.rows and any(column.label for column in self.columns)):
             return ""
+        blocks = []
+        for heading, lines in self._parts().items():
+            blocks.append(f"{heading}\n{aligned(lines, width)}".strip("\n"))
+        text = "\n\n".join(blocks)
+        if self.note:
+            # A note is one paragraph, however its lines are broken in the source.
+            note = " ".join(self.note.split())
+            text += f"\n{wrap(note, width)}"
+        if self.errors:
+            meaning = f"±: {self.errors}; at least one in the last digit shown."
+            text += f"\n{wrap(meaning, width)}"
+        return text
+
+    def _parts(self) -> dict[str, list[list[str]]]:
+        """The printed lines of each part, the labels first, by its heading, "" for a whole."""
         # One prefix for all parts of a column, so that its numbers can be compared.
         units = [self._unit(place) for place in range(len(self.columns))]
         labels = [unit.name for unit in units if unit.name]
@@ -215,15 +229,7 @@ class Table:
                     cells.append(column.text(cell, unit.size))
             # The labels stand above each part.
             parts.setdefault(heading, [labels]).append(cells)
-        blocks = []
-        for heading, lines in parts.items():
-            blocks.append(f"{heading}\n{aligned(lines, width)}".strip("\n"))
-        # A note is one paragraph, however its lines are broken in the source.
-        notes = " ".join(self.note.split())
-        if self.errors:
-            notes += f"\n±: {self.errors}; at least one in the last digit shown."
-        texts = wrap(self.title, width), "\n\n".join(blocks), wrap(notes.strip(), width)
-        return "\n".join(filter(None, texts))
+        return parts
 
     def _unit(self, place: int) -> Unit:
         """The label of a column in text, with its unit fitted to the largest cell."""

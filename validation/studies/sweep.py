@@ -90,26 +90,11 @@ def report(
     waves = theory(ks, omegas)
     rows = []
     missing = []
-    for place, measured in zip(np.ndindex(len(ks), len(omegas)), points, strict=True):
-        row: dict[str, Any] = {
-            "k": measured.k,
-            "omega": measured.omega,
-            "sites": measured.sites,
-            "missing": measured.missing,
-        }
-        row |= measured.numbers
-        for closure, wave in waves.items():
-            for quantity, grid in wave.items():
-                value = grid[place]
-                row[f"theory.{closure}.{quantity}_value"] = value
-                # Some points have no steady pulse, or one whose width is not measured.
-                if quantity in measured.numbers:
-                    error = value / measured.numbers[quantity].value - 1
-                    row[f"error.{closure}.{quantity}_value"] = error
-        rows.append(row)
-        if measured.missing is not None:
-            name = f"k = {measured.k}, ω = {measured.omega}"
-            missing.append(f"{name}: {measured.missing}")
+    grid = np.ndindex(len(ks), len(omegas))
+    for place, found in zip(grid, points, strict=True):
+        rows.append(_row(found, waves, place))
+        if found.missing is not None:
+            missing.append(f"k = {found.k}, ω = {found.omega}: {found.missing}")
     return Report(
         "The steady pulse of a struck dimer chain",
         (Table.of(_COLUMNS, rows, "points", by="k", note=_NOTE, errors=_ERRORS),),
@@ -117,6 +102,28 @@ def report(
         notes=("\n".join(missing),),
         data={"stretch": stretch, "missing": len(missing)},
     )
+
+
+def _row(
+    found: Point, waves: Mapping[str, Grids], place: tuple[int, ...]
+) -> dict[str, Any]:
+    """Return the cells of a point by the keys of columns; ``place`` is that in the grids."""
+    row: dict[str, Any] = {
+        "k": found.k,
+        "omega": found.omega,
+        "sites": found.sites,
+        "missing": found.missing,
+    }
+    row |= found.numbers
+    for closure, grids in waves.items():
+        for quantity, grid in grids.items():
+            value = grid[place]
+            row[f"theory.{closure}.{quantity}_value"] = value
+            # Some points have no steady pulse, or one whose width is not measured.
+            if quantity in found.numbers:
+                error = value / found.numbers[quantity].value - 1
+                row[f"error.{closure}.{quantity}_value"] = error
+    return row
 
 
 def _panels(
@@ -228,9 +235,8 @@ def measured(
                     future = executor.submit(point, *key, stretch)
                     ahead.add(future)
                     future.add_done_callback(done.put)
-                future = (
-                    done.get()
-                )  # the first that is done, whatever its place in the grid
+                # The first that is done, whatever its place in the grid.
+                future = done.get()
                 ahead.remove(future)
                 new = future.result()
                 points[new.k, new.omega] = new

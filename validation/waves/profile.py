@@ -242,19 +242,33 @@ def at_unit_force(problem: newton.Problem, found: newton.Found) -> ExactWave:
         found.masses, problem.k, found.c2, problem.L, even, odd, 0.0, 0.0, problem.p0
     )
     wave = wave.times(1 / (problem.p0 + wave.peak("strain")))
-    tail = 0.0
-    if not problem.uniform:
+    # Of equal masses the odd part is rounding.
+    tail = 0.0 if problem.uniform else _tail(wave)
+    return replace(wave, tail=tail, residual=_residual(wave))
 
-        def odd_part(x: Any) -> Array:
-            return np.abs(wave.strain(x) - wave.strain(-x)) / 2
 
-        outside = np.linspace(OUTSIDE * problem.L, problem.L, 2 * len(wave.even))
-        _, tail = summit(odd_part, outside)
-    xi = newton.periodic_grid(wave.half_period, 2 * problem.n)
+def _tail(wave: ExactWave) -> float:
+    """The largest odd part of the strain outside the pulse, see `ExactWave.tail`."""
+
+    def odd_part(x: Any) -> Array:
+        return np.abs(wave.strain(x) - wave.strain(-x)) / 2
+
+    L = wave.half_period
+    # Two points for each of the solution's: between two of them the odd part has one maximum.
+    outside = np.linspace(OUTSIDE * L, L, 2 * len(wave.even))
+    _, largest = summit(odd_part, outside)
+    return largest
+
+
+def _residual(wave: ExactWave) -> float:
+    """The error in the equations of motion, see `ExactWave.residual`."""
+    # Strains that follow from the forces of the strains: of a solution the same ones.
+    n = len(wave.even) - 1
+    xi = newton.periodic_grid(wave.half_period, 2 * n)
     even, odd = newton.coefficients(wave.force(xi))
-    again = replace(wave, even=even, odd=odd)
-    off = float(np.abs(again.strain(xi) - wave.strain(xi)).max())
-    return replace(wave, tail=tail, residual=off / (1 - wave.background))
+    response = replace(wave, even=even, odd=odd)
+    off = float(np.abs(response.strain(xi) - wave.strain(xi)).max())
+    return off / (1 - wave.background)
 
 
 def summit(f: Callable[[Any], Array], xi: Array) -> tuple[float, float]:

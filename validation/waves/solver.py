@@ -132,7 +132,9 @@ def _background(value: Any) -> float:
     """Read a background strain over the peak strain."""
     wanted = f"0 or {LIGHTEST:g} … 1 - {SHALLOWEST:g} of the peak compression is wanted"
     p0 = between(value, "background", 0, 1 - SHALLOWEST, wanted)
-    return between(value, "background", LIGHTEST, 1, wanted) if p0 else 0.0
+    if 0 < p0 < LIGHTEST:
+        raise SceneError(f"background is {p0:g}: {wanted}")
+    return p0
 
 
 def _uniform(k: float) -> ExactWave:

@@ -71,18 +71,18 @@ LINES = [
     ("shock --k=0 --behind 2 --masses 1", "k is 0"),
     (
         "wave --law hertz2:1,2 --masses 1 --spacing 1 --precompression 1",
-        "'F' has no value",
+        "--force 10",
     ),
     ("envelope", "neither --background nor --precompression"),
     ("envelope --background 1 --wavenumber 4", "0 … pi"),
     ("envelope --background 1 --wavenumber pi*2", "wavenumber is 'pi*2'"),
-    ("envelope --background 1 --branch up", "branch is 'up'"),
+    ("envelope --background 1 --branch optcal", "--branch optical"),
     ("envelope --law general --precompression 1", "law is general"),
     ("envelope --law polynomial:1/2,-1/4 --masses 1 --background 3", "F′ is -2.75"),
     ("shock", "neither --behind nor --piston"),
     ("shock --law magnetic:4,1 --behind 0.123", "spacing is D"),
     # of minutes, if powers of a decimal were factored
-    ("shock --k 3.1085 --masses 3,1 --piston D", "'D' has no value"),
+    ("shock --k 3.1085 --masses 3,1 --piston D", "--spacing 1 --piston 1"),
 ]
 
 

@@ -120,12 +120,36 @@ def test_a_jump_of_one_contact_ends_no_step_of_the_chain():
     assert abs(run.energy_drift) < 1e-7
 
 
+def test_a_record_within_steps_of_1e_8_is_that_of_an_earlier_time():
+    """A collision that lasts a microsecond, at the times 0 and 1, within 20 times the tolerance."""
+    forces = []
+    for start in (0, 1):
+        scene = Scene(
+            **PAIR | {"stiffnesses": (1e16,)}, k=1.5, velocities=(1,), displacements=(-start,),
+            duration=start + 2e-6, contact_sensors=(0,),
+        )  # fmt: skip
+        signal = simulate(scene).signal("contact", 0)
+        forces.append(signal(start + np.linspace(0, 2e-6, 21)))
+    assert np.abs(forces[1] - forces[0]).max() < 2e-8 * forces[0].max()
+
+
 def test_a_piston_that_does_more_work_than_was_guessed():
     scene = Scene(
         masses=(1,) * 10, stiffnesses=(1,) * 9, k=7, duration=50, drive=Drive(velocity=1.4),
         damping=Damping("restitution", 0.55),
     )  # fmt: skip
     assert abs(simulate(scene).energy_drift) < 1e-8
+
+
+def test_a_response_that_is_stronger_than_guessed_is_recorded():
+    """A piston leaves two beads, which gravity moves: all within a few steps."""
+    scene = Scene(
+        masses=(0.6, 0.3), stiffnesses=(1,), wall=1, k=2, gravity=0.077, duration=11.5, samples=13,
+        damping=Damping("kuwabara_kono", 0.063), drive=Drive(velocity=-0.055), bead_sensors=(1,),
+    )  # fmt: skip
+    run = simulate(scene, rtol=1e-6)
+    exact = simulate(scene, rtol=1e-11, step=0.01)
+    np.testing.assert_allclose(run.bead_velocity, exact.bead_velocity, atol=1e-6)
 
 
 def test_contacts_of_their_own_move_as_parts_of_a_chain_do():

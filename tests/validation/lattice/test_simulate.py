@@ -221,3 +221,13 @@ def test_the_tolerance_is_an_error_of_the_peak(method, k, most):
         for i in chain.contact_sensors:
             peaks = [highest_pulse(r.signal("contact", i)).peak for r in (run, exact)]
             assert abs(peaks[0] / peaks[1] - 1) < most * rtol
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9])
+def test_the_force_at_a_wall_1e5_times_as_stiff_as_the_chain(rtol):
+    chain = struck((1,), 6, wall=1e5, duration=25, contact_sensors=(5,))
+    peaks = []
+    for tolerance in (rtol, 1e-12):
+        run = simulate(chain, rtol=tolerance)
+        peaks.append(highest_pulse(run.signal("contact", 5)).peak)
+    assert abs(peaks[0] / peaks[1] - 1) < 10 * rtol

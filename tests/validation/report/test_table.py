@@ -62,7 +62,7 @@ def test_text_falls_into_parts_and_has_one_prefix_a_column():
 
 
 def test_a_table_without_labels_is_for_programs():
-    silent = Table((Column("k"),), ((1,),), "rows", title="k", note="alone")
+    silent = Table((Column("k"),), ((1,),), "rows", note="alone")
     assert (silent.text(), silent.csv()) == ("", "k\n1\n")
 
 
