@@ -109,7 +109,8 @@ class Motion:
 
     def _read_laws(self) -> None:
         """Read the laws of the contacts and their damping."""
-        scene, damping = self.scene, self.scene.damping
+        scene = self.scene
+        damping = scene.damping
         contacts = len(self.stiffnesses)
         # Contacts that are all alike are one entry, which fills all rows.
         laws: tuple[Any, ...] = ((scene.k, scene.law),)
@@ -172,12 +173,14 @@ class Motion:
 
     def __call__(self, time: float, state: Array) -> Array:
         """Return the time derivative of a state, which ``scipy.integrate`` takes as it is."""
-        n, drive = self.size, self.scene.drive
+        n = self.size
+        drive = self.scene.drive
         given = work = 0.0
         y, v = state[: 2 * n].reshape(2, n).copy()
         if drive is not None:
             y[0], v[0], given = drive.at(time)
-        compression, rate = self.compression(y), self.rate(v)
+        compression = self.compression(y)
+        rate = self.rate(v)
         elastic = self.force(compression)
         force = self.damped_force(elastic, compression, rate)
         # A contact pushes the bead behind it back, and the bead ahead, or the wall, on. The static
@@ -198,7 +201,8 @@ class Motion:
 
         All are 0 in equilibrium. Small ones have all digits.
         """
-        change, v = self.rate(state[: self.size]), state[self.size : 2 * self.size]
+        change = self.rate(state[: self.size])
+        v = state[self.size : 2 * self.size]
         if self.loaded:
             stored = self._each(..., Contact.energy_above, self.rest, change)
         else:
@@ -273,7 +277,8 @@ class Motion:
             if not own.size:  # a single bead without a wall
                 continue
             # Scale of the compression: all the energy in the stiffest contact of this law.
-            static, largest = self.rest[own].max(), self.stiffnesses[own].max()
+            static = self.rest[own].max()
+            largest = self.stiffnesses[own].max()
             depth = static
             if energy > 0:
                 depth = max(depth, law.reached_by(energy / largest, static))
@@ -291,7 +296,9 @@ class Motion:
             return Scales(energy, 0.0, 1.0, 1.0, math.inf)
         time = 1 / np.sqrt((springs[:n] / self.masses).max())
         _check_range("shortest time", time)
-        y, v, rounding = deepest, deepest / time, 0.0
+        y = deepest
+        v = deepest / time
+        rounding = 0.0
         if energy > 0:
             # energy = F′ y² and m v², up to factors of order 1, with the mean mass
             y = np.sqrt(energy / stiffest)

@@ -16,7 +16,6 @@ import numpy as np
 import sympy as sp
 from sympy.codegen.rewriting import expm1_opt, optimize
 
-from lwa import Cell
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
 from lwa.law import ContactLaw
@@ -142,8 +141,10 @@ class Contact:
         if self.law is None:
             return np.asarray(forces ** (1 / self.k))
         different, place = np.unique(forces, return_inverse=True)
-        law, cell = self.law, Cell((1,))
-        found = [float(law.compression(cell, sp.Float(F, 40))) for F in different]
+        found = []
+        for force in different:
+            # In 40 digits, so that the compression is right to the last digit of a float.
+            found.append(float(self.law.inverse(sp.Float(force, 40))))
         return np.array(found)[place]
 
     def reached_by(self, energy: float, start: float) -> float:

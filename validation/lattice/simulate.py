@@ -134,7 +134,8 @@ def simulate_many(
     if not isinstance(scenes, Iterable):
         raise SceneError(f"scenes is {shorten(scenes)}: several scenes are wanted")
     ahead: deque[Future[Run]] = deque()
-    waiting, count = iter(scenes), cores() if workers is None else workers
+    waiting = iter(scenes)
+    count = cores() if workers is None else workers
     with threads(count) as pool:
         while True:
             # As many scenes wait as run, so that no thread is idle while a run is looked at.

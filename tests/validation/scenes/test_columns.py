@@ -48,10 +48,11 @@ def test_rows_of_numbers_above_a_record_belong_to_the_preamble(tmp_path):
     stated = {"columns": {"force": "2"}, "step": "1"}
     file = read(tmp_path, f"Range,5\nOffset,0\nt,CH1\n{record}", **stated)
     assert file.rows("force").ravel().tolist() == list(range(0, 80, 2))
-    for gap in ("7,\n", "x,y\n"):
-        file = read(tmp_path, f"t,CH1\n{record}{gap}{record}", **stated)
+    columns = {"time": "1", "force": "2"}
+    for rest in (f"7,\n{record}", f"x,y\n{record}", "7,\n8,9\n"):
+        file = read(tmp_path, f"t,CH1\n{record}{rest}", columns=columns)
         with pytest.raises(InputError, match="line 42 is a gap"):
-            file.rows("force")
+            file.rows("time", "force")
 
 
 @pytest.mark.parametrize(
@@ -164,6 +165,12 @@ HEAD = "time (s),force (N)\n"
             "TIME (s),CH1\n0.1,2\n",
             {},
             "no column is 'force': found 1 'TIME .s.' 0.1, 2 'CH1' 2 --column 'force=2'",
+        ),
+        # Settings in the first column: the numbers are those of the others.
+        (
+            "Length,9,0,1\nSource,CH1,0,2\n" + ",,1,3\n" * 30,
+            {},
+            "found 3 '' 1, 4 '' 3 --column 'time=3' --column 'force=4'$",
         ),
         ("time,V,V\n1,2,3\n", {"columns": {"force": "V"}}, "2 columns are 'V'"),
         (f"{HEAD}1,2\n", {"columns": {"force": "fource"}}, "near: force .N.: found"),

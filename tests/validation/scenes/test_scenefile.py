@@ -4,7 +4,6 @@ import copy
 import dataclasses
 import io
 import json
-import os
 import re
 import tomllib
 
@@ -163,24 +162,18 @@ def test_a_bad_scene_is_refused_by_the_key(change, named):
 DEEP = b"[" * 100_000
 FILES = [
     ("s.toml", b"", "duration is missing|chain is missing"),
-    ("s.toml", b"duration = ", "not TOML"),
     ("s.toml", b"x = " + DEEP, "nested too deeply"),
     ("s.toml", "# Länge\nduration = 1".encode("latin-1"), "not a text in UTF-8"),
     ("s.toml", b"#" * (files.MOST_BYTES[".toml"] + 1), "more than [0-9]+ bytes"),
     ("s.json", b"[1, 2]", r"the file is \[1, 2\]"),
     ("s.json", b'{"duration": 1' + b"0" * 10**6 + b"}", "not JSON"),
-    ("s.txt", b"duration = 1", "a scene is a file ending in .toml or .json"),
-    ("pipe.json", None, "only regular files"),
-    ("missing.toml", None, "No such file"),
 ]
 
 
 @pytest.mark.parametrize(("name", "content", "named"), FILES, ids=range(len(FILES)))
 def test_a_bad_file_is_refused_by_its_name(tmp_path, name, content, named):
     file = tmp_path / name
-    os.mkfifo(tmp_path / "pipe.json")  # which nobody writes to
-    if content is not None:
-        file.write_bytes(content)
+    file.write_bytes(content)
     with pytest.raises(SceneError) as caught:
         read_scene(file)
     assert re.fullmatch(

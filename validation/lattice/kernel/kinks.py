@@ -24,7 +24,7 @@ from validation.lattice.kernel.compiled import FIRST, alone, call, index, part
 from validation.lattice.kernel.force import drag, elastic, power, push
 
 Bend = tuple[float, float, float]
-"""Numbers e, s and b of a part of p whose second derivative is ``s [x - e]_+^b``, 0 ≤ b < 1."""
+"""Numbers e, s and b of a part of p whose second derivative is ``s [x - e]_+^b``, ``0 ≤ b < 1``."""
 Curve = tuple[float, float, float, float, float, float, Bend]
 """Coefficients c0 … c5 of p, and a bend that p has besides."""
 
@@ -145,7 +145,8 @@ def _state(
     """Return p, p' and, for a damped contact that does not stick, the margin at a place."""
     p, slope = value_and_slope(c, x)
     margin = 1.0
-    if r > 0.0 and not law.sticks and p > 0.0:
+    # While δ rises the margin is positive.
+    if r > 0.0 and not law.sticks and p > 0.0 and slope < 0.0:
         margin = _margin(law, r, c, h, x)
     return p, slope, margin
 
