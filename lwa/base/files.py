@@ -185,6 +185,7 @@ class Table:
 
     def one(self, *keys: str) -> str:
         """Return the key that is present; exactly one of the keys must be."""
+        # Which of several keys is right is not guessed.
         present = [key for key in keys if key in self]
         if len(present) == 1:
             return present[0]
@@ -201,6 +202,7 @@ def table(known: Sequence[str]) -> Reader:
 
 def entries(value: Any, name: str) -> dict[str, Any]:
     """Read a table with any keys."""
+    # Keys are checked by `Table`, or by the reader of the entries.
     if not isinstance(value, dict):
         raise InputError(f"{name} is {shorten(value)}: a table of keys is wanted")
     return value
@@ -224,6 +226,7 @@ def items(values: Any, name: str) -> tuple[Any, ...]:
 
 def array(value: Any, name: str) -> list[Any]:
     """Read a list."""
+    # A tuple comes from no file: JSON and TOML have lists.
     if not isinstance(value, list):
         raise InputError(f"{name} is {shorten(value)}: a list is wanted")
     return value

@@ -40,6 +40,7 @@ def _broken(row: str) -> list[str]:
     A line is broken before a sign between terms. A bracket that grows must close on its own line,
     so that a bracket wider than a page stays in one piece.
     """
+    # A page is narrower than the equation of an unlike cell at order 5.
     lines = [""]
     term = ""
     for part in re.split(r"(?<=\S) (?=[+-] )", row):

@@ -47,6 +47,7 @@ def alive(name: str) -> Iterator[None]:
     if sys.stderr is None:
         yield
         return
+    # A thread: SymPy and compiled loops return to no loop that could show a line.
     ended = threading.Event()
     watch = threading.Thread(target=_show_time, args=(name, ended), daemon=True)
     watch.start()

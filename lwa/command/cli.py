@@ -66,28 +66,24 @@ class Commands(click.Group):
     def __init__(
         self, package: str, table: Mapping[str, tuple[str, str]], **settings: Any
     ) -> None:
-        # Click lists the names of these placeholders, and suggests one for a mistyped name.
-        commands = {name: click.Command(name) for name in table}
+        # Click lists these placeholders, and suggests their names for a mistyped one.
+        commands = {}
+        for name, (_, summary) in table.items():
+            commands[name] = click.Command(name, short_help=summary)
         super().__init__(commands=commands, **settings)
         self.package = package
         self.table = table
 
-    def get_command(self, context: click.Context, name: str) -> click.Command | None:
-        """Return the command with a given name, or None."""
-        if name not in self.table:
-            return None
-        module, _ = self.table[name]
-        loaded = getattr(import_module(f"{self.package}.{module}"), name)
-        command: click.Command = getattr(loaded, "command", loaded)
-        return command
-
-    def format_commands(
-        self, context: click.Context, formatter: click.HelpFormatter
-    ) -> None:
-        """Write the list of commands without loading them."""
-        rows = [(name, summary) for name, (_, summary) in self.table.items()]
-        with formatter.section("Commands"):
-            formatter.write_dl(rows)
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Load the command that the first word names; the rest of the line is returned."""
+        name, command, rest = super().resolve_command(ctx, args)
+        if name is not None:
+            module, _ = self.table[name]
+            loaded = getattr(import_module(f"{self.package}.{module}"), name)
+            command = getattr(loaded, "command", loaded)
+        return name, command, rest
 
 
 def run(
@@ -157,7 +153,7 @@ def next_step(
     chosen: click.Command | None = command
     if isinstance(command, click.Group):
         # Options of the group itself end it, so that the first word is a command.
-        chosen = command.get_command(click.Context(command), line[0])
+        _, chosen, _ = command.resolve_command(click.Context(command), line)
     options = {called(option): option for option in chosen.params} if chosen else {}
     change = refusal.change or _example(refusal.reason, options, line)
     # A change of Python's arguments that are no options is said as Python writes it.

@@ -31,7 +31,7 @@ def line(draw):
     """A random command line of the options that the commands have."""
     name = draw.choice(sorted(cli.STUDIES.keys() - LONG))
     words = [name]
-    for option in cli.validate.get_command(None, name).params:
+    for option in cli.validate.resolve_command(None, [name])[1].params:
         flag = option.opts[0]
         if isinstance(option, click.Argument):
             words += draw.choices(FILES, k=draw.choice((1, 1, 1, 2)))
