@@ -49,6 +49,8 @@ def power(x: float, d: float) -> float:
     """Return ``d^x``; products and roots take a tenth of the time."""
     if x == 1.5:
         return float(d * np.sqrt(d))
+    if x == 0.5:
+        return float(np.sqrt(d))
     if x == 0.0:
         return 1.0  # where a contact pulls, too, at d < 0
     return quarters(x, d) if is_quarters(x) else float(d**x)

@@ -145,7 +145,8 @@ def _state(
     """Return p, p' and, for a damped contact that does not stick, the margin at a place."""
     p, slope = value_and_slope(c, x)
     margin = 1.0
-    if r > 0.0 and not law.sticks and p > 0.0:
+    # While δ rises the margin is positive.
+    if r > 0.0 and not law.sticks and p > 0.0 and slope < 0.0:
         margin = _margin(law, r, c, h, x)
     return p, slope, margin
 

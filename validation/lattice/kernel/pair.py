@@ -165,7 +165,7 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
     points, edges, both = beads.points, beads.edges, inverse[i] + inverse[i + 1]
     start, end = _ends(chain, beads, h, i)
     force, bend = points[2], -A * h * h * both
-    impulse = moment = 0.0
+    impulse = moment = change = 0.0
     found = kinks.STRAIGHT
     driven = i == 0 and chain.drive.driven
     drive = _motion(beads, h, i)
@@ -185,7 +185,10 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
         before = impulse
         impulse = h * A * (once - _integral(pair.impulses[last], force))
         moment = h * h * A * (twice - _integral(pair.moments[last], force))
-        if abs(impulse - before) * both < _SETTLED * plan.v:
+        change = impulse - before
+        if jump == 0.0 and not r > 0.0:
+            change = 0.0  # an elastic force hardly depends on the correction
+        if abs(change) * both < _SETTLED * plan.v:
             break
     third = h * h * h * A * (third - _integral(pair.thirds, force))
     for q in range(len(pair.errors)):
@@ -210,7 +213,7 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
             power = A * force[s] * kinks.value_and_slope(drive, pair.nodes[s])[1]
             beads.books[2] -= pair.impulses[last, s] * power
             beads.books[3] += pair.errors[1, s] * power
-    unsettled = (impulse - before) / plan.v
+    unsettled = change / plan.v
     beads.books[4] += unsettled * unsettled * (inverse[i] ** 2 + inverse[i + 1] ** 2)
     for n in range(max(0, i - 1), i + 2):
         share = both if n == i else -inverse[max(i, n)]
