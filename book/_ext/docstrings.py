@@ -8,6 +8,7 @@ entries can be looked over.
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Iterator
 from importlib import import_module
 from pkgutil import walk_packages
@@ -23,6 +24,8 @@ from validation.cli import STUDIES
 def folded(title: str, summary: str, directive: str, *options: str) -> str:
     """A folded entry with a directive in it, in reStructuredText."""
     text = summary.replace("|", "\\|")  # a formula's bar begins no substitution
+    # A name in it is no link: the line itself is what is clicked.
+    text = re.sub(r"(?<!`)`([^`]+)`(?!`)", r"``\1``", text)
     lines = [f".. dropdown:: ``{title}`` {text}", "", f"   .. {directive}"]
     lines += [f"      :{option}:" for option in options]
     return "\n".join([*lines, ""])

@@ -23,17 +23,19 @@ WANTED = ("tex-chtml-full.js", "output/chtml/fonts/", "a11y/", "sre/")
 """Files of MathJax: TeX input, HTML output with its fonts, parts that the menu can load."""
 
 
-def fetched(folder: Path) -> Path:
-    """Return the wheel, downloaded into the folder unless it is there."""
-    wheel = folder / WHEEL
+def fetched(
+    folder: Path, package: str = PACKAGE, name: str = WHEEL, sum: str = SHA256
+) -> Path:
+    """Return a package's wheel, downloaded into the folder unless it is there."""
+    wheel = folder / name
     if not wheel.exists():
         pip = (sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check")
         options = ("--no-deps", "--only-binary=:all:", "--dest", str(folder))
-        subprocess.run([*pip, "download", *options, PACKAGE], check=True)
+        subprocess.run([*pip, "download", *options, package], check=True)
     found = hashlib.sha256(wheel.read_bytes()).hexdigest()
-    if found != SHA256:
+    if found != sum:
         wheel.unlink()
-        raise ExtensionError(f"{WHEEL} has the SHA-256 {found}, not {SHA256}")
+        raise ExtensionError(f"{name} has the SHA-256 {found}, not {sum}")
     return wheel
 
 

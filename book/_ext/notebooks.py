@@ -26,6 +26,19 @@ Python 3.11 or newer and* `lwa`: *in a clone of its repository*, `pip install . 
 *The next cells write the files that the book's pages share into the folder of the notebook.*"""
 
 _STYLE = "style.mplstyle"
+
+# What the book's own kernels have by `executed.py`: pictures, and the commands on the path.
+LOOK = f"""%config InlineBackend.figure_formats = ["svg"]
+import os
+import sys
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+
+plt.style.use("{_STYLE}")
+programs = str(Path(sys.executable).parent)
+os.environ["PATH"] = programs + os.pathsep + os.environ["PATH"]"""
+
 _IMPORT = re.compile(r"^\s*(?:from|import) +([\w.]+)", re.MULTILINE)
 _ROLE = re.compile(r"\{([\w:]+)\}`([^`]*)`")
 _LABELLED = re.compile(r"\$\$\n?(.*?)\n?\$\$ \(([\w-]+)\)", re.DOTALL)
@@ -83,6 +96,7 @@ def notebook(page: str, book: Book) -> nbformat.NotebookNode:
             )
             cells.append(nbformat.v4.new_code_cell(folder))
         cells.append(nbformat.v4.new_code_cell(shown))
+    cells.append(nbformat.v4.new_code_cell(LOOK))
     for cell in found.cells:
         cell.metadata.pop("_source_lines", None)
         figure = cell.metadata.get("mystnb", {}).get("figure", {})
@@ -101,7 +115,7 @@ def notebook(page: str, book: Book) -> nbformat.NotebookNode:
 
 def shared(code: str, folder: Path) -> Iterator[str]:
     """Files of the book's folder that code needs, each after those that it needs itself."""
-    seen: dict[str, None] = {}
+    seen: dict[str, None] = {_STYLE: None}
 
     def collect(text: str) -> None:
         for module in _IMPORT.findall(text):
@@ -110,8 +124,6 @@ def shared(code: str, folder: Path) -> Iterator[str]:
                 collect(file.read_text(encoding="utf-8"))
                 seen[name] = None
 
-    if _STYLE in code:
-        seen[_STYLE] = None
     collect(code)
     return iter(seen)
 

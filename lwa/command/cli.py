@@ -159,6 +159,10 @@ def next_step(
     # A change of Python's arguments that are no options is said as Python writes it.
     if not change or not options.keys() >= change.keys():
         return str(refusal)
+    added = {name for name, value in change.items() if value is not None}
+    # A file stands in place of the options of a chain: it is the file that is to be changed.
+    if "--spheres" in line and added & _CHAIN:
+        return f"{refusal.reason}; change it in the file"
     changes = []
     for changed, value in change.items():
         while f"--{changed}" in line:  # an option and its value
@@ -176,6 +180,10 @@ def next_step(
 
 _SUBJECT = re.compile(r"(\w+) is |'(\w+)' has no value")
 """The option at the start of a reason, or the symbol for which a number is wanted."""
+
+
+_CHAIN = {"k", "law", "masses", "stiffnesses", "spacing"}
+"""Options of a chain."""
 
 
 def _example(

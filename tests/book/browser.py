@@ -9,15 +9,20 @@ in a frame, as a window cannot be as narrow as a phone.
 import json
 import shutil
 import subprocess
+import sys
 import tempfile
 import threading
+import zipfile
 from dataclasses import dataclass, field
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from urllib.parse import urlsplit
 
-SECONDS_PER_PAGE = 60
+sys.path.append(str(Path(__file__).parents[2] / "book" / "_ext"))
+from local_mathjax import fetched
+
+SECONDS_PER_PAGE = 180  # axe reads the page of the packages, with all entries open
 
 FRAME = "/frame-of-width/"
 """Of the address WIDTH/PAGE that shows a page in a frame of that width."""
@@ -39,8 +44,15 @@ POLICY = "default-src 'self' 'unsafe-inline' 'unsafe-eval' data: blob:"
 EVENTS = """
 [window.faults, window.foreign] = [[], []];
 addEventListener("error", e => faults.push(e.message));
+for (const kind of ["warn", "error"]) console[kind] = (...words) => faults.push(words.join(" "));
 addEventListener("securitypolicyviolation", e => foreign.push(e.blockedURI));
 """
+
+AXE = '<script src="/axe.min.js"></script>'
+PACKAGE = "axe-playwright-python==0.1.8"
+WHEEL = "axe_playwright_python-0.1.8-py3-none-any.whl"
+SHA256 = "fdd263c998388f1a8e67cad02677e612d946248bd44d163be5e8650ea31f95f8"
+"""The package with axe 4.12, which finds what hinders readers without a mouse or without sight."""
 
 PROBE = r"""<script>
 window.addEventListener("load", async () => {
@@ -49,11 +61,16 @@ window.addEventListener("load", async () => {
   if (typeset) await typeset.catch(error => errors.push(String(error)));
   await new Promise(done => setTimeout(done, 50)); // for events on their way
   for (const image of document.images) image.loading = "eager";
-  for (const details of document.querySelectorAll("details")) details.open = true;
   await Promise.all([...document.images].map(image => image.decode().catch(() => 0)));
+  // What axe finds, in a window of full width.
+  const rules = async () => !window.axe ? [] : (await axe.run(document, {preload: false}))
+    .violations
+    .flatMap(({id, nodes}) => nodes.slice(0, 3).map(({html}) => `${id}: ${html.slice(0, 120)}`));
   const asked = document.querySelectorAll(".lwa-answers");
   const early = [...document.querySelectorAll(".lwa-below")].filter(e => e.clientWidth).length;
   asked.forEach(row => row.firstChild.click());
+  const axeFound = await rules(); // before the many entries of the packages unfold
+  for (const details of document.querySelectorAll("details")) details.open = true;
   const math = [...document.querySelectorAll(".math")];
   const body = document.querySelector("article") || document.body;
   const text = body.cloneNode(true);
@@ -68,26 +85,6 @@ window.addEventListener("load", async () => {
     a === body.parentElement || !a ? right(e) > innerWidth + 1
     : scrolls(a) ? false : hides(a) && right(e) > edge(a) + 1 || cut(e, a.parentElement);
   const clipped = e => e.tagName === "PRE" && hides(e) && e.scrollWidth > e.clientWidth + 1;
-  const numbers = color => (color.match(/[\d.]+/g) || [0, 0, 0, 0]).map(Number);
-  const light = color => {
-    const [r, g, b] = numbers(color).map(c => {
-      const s = c / 255;
-      return s <= 0.04045 ? s / 12.92 : ((s + 0.055) / 1.055) ** 2.4;
-    });
-    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
-  };
-  const solid = e => {
-    for (let a = e; a; a = a.parentElement) {
-      const color = getComputedStyle(a).backgroundColor;
-      const [, , , alpha = 1] = numbers(color);
-      if (alpha > 0.5) return color;
-    }
-    return "rgb(255, 255, 255)";
-  };
-  const contrast = e => {
-    const [a, b] = [light(getComputedStyle(e).color), light(solid(e))];
-    return (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
-  };
   const parts = [...body.querySelectorAll("pre, table, img, svg, input, mjx-math, dt, h1, h2, p")];
   const apart = "pre, code, script, style, mjx-container";
   for (const element of text.querySelectorAll(apart)) element.remove();
@@ -105,14 +102,7 @@ window.addEventListener("load", async () => {
     crumbled: [...body.querySelectorAll("td span.pre")]
       .filter(e => e.getClientRects().length > 2).map(e => e.textContent),
     wider: document.scrollingElement.scrollWidth > innerWidth + 1,
-    faint: [...body.querySelectorAll("p, td, th, pre, figcaption, output, label, .tag")]
-      .filter(e => e.textContent.trim() && e.getClientRects().length && contrast(e) < 3)
-      .map(e => e.textContent.trim().slice(0, 60)),
-    silent: [...body.querySelectorAll("img:not(.stacked), svg:not([aria-hidden])")]
-      .filter(i => !i.alt && !i.getAttribute("aria-label") && !i.closest("button"))
-      .map(i => i.src || i.outerHTML),
-    unnamed: [...body.querySelectorAll("canvas, input, select, [role=img]:not(svg)")]
-      .filter(e => !e.getAttribute("aria-label") && !e.closest("label")).map(e => e.outerHTML),
+    axe: axeFound,
     sliders: body.querySelectorAll("input[type=range]").length,
     asked: asked.length,
     early,
@@ -151,8 +141,8 @@ class Visit:
 class _Server(ThreadingHTTPServer):
     daemon_threads = True
 
-    def __init__(self, folder, left, visit, mode):
-        self.left, self.visit, self.mode = left, visit, mode
+    def __init__(self, folder, left, visit, mode, axe):
+        self.left, self.visit, self.mode, self.axe = left, visit, mode, axe
         self.progress = threading.Event()
         super().__init__(("127.0.0.1", 0), partial(_Handler, directory=str(folder)))
 
@@ -165,12 +155,16 @@ class _Handler(SimpleHTTPRequestHandler):
             frame = f'<iframe src="/{page}" width="{width}" height="900"></iframe>'
             self._send(f'<link rel="icon" href="data:,">{frame}')
         elif path.suffix == ".html" and path.is_file():
-            modes = "".join(
-                f'localStorage.{n} = "{self.server.mode}";' for n in ("mode", "theme")
-            )
+            # A page in light mode is a first visit: nothing is stored.
+            modes = ""
+            if self.server.mode == "dark":
+                modes = "localStorage.mode = localStorage.theme = 'dark';"
             head = f"<head><script>{EVENTS}{modes}</script>"
             text = path.read_text().replace("<head>", head, 1)
-            self._send(text.replace("</body>", PROBE + "</body>"))
+            probe = (AXE if self.server.axe else "") + PROBE
+            self._send(text.replace("</body>", probe + "</body>"))
+        elif self.path == "/axe.min.js":
+            self._send(self.server.axe)
         else:
             super().do_GET()
 
@@ -199,10 +193,17 @@ class _Handler(SimpleHTTPRequestHandler):
         pass
 
 
-def visited(folder, pages, width, mode="light"):
+def axe(folder):
+    """The source of axe, fetched once and kept in the folder."""
+    folder.mkdir(exist_ok=True)
+    with zipfile.ZipFile(fetched(folder, PACKAGE, WHEEL, SHA256)) as wheel:
+        return wheel.read("axe_playwright_python/axe.min.js").decode()
+
+
+def visited(folder, pages, width, mode="light", axe=""):
     """Reports of the pages, opened one after another in a frame of this width in CSS pixels.
 
-    mode : "light" or "dark".
+    mode : "light" or "dark". axe : its source, if each page is to be judged by it.
 
     Raises `FileNotFoundError` without Chromium and `TimeoutError` when a page does not report.
     """
@@ -213,7 +214,7 @@ def visited(folder, pages, width, mode="light"):
     first, *rest = ("/" + page for page in pages)
     with (
         tempfile.TemporaryDirectory() as home,
-        _Server(folder, rest, visit, mode) as server,
+        _Server(folder, rest, visit, mode, axe) as server,
     ):
         threading.Thread(target=server.serve_forever, daemon=True).start()
         address = f"http://127.0.0.1:{server.server_address[1]}{FRAME}{width}{first}"

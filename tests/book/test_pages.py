@@ -13,7 +13,7 @@ import pytest
 
 import lwa
 import validation
-from tests.book.browser import visited
+from tests.book.browser import axe, visited
 
 ROOT = Path(__file__).parents[2]
 HTML = ROOT / "book" / "_build" / "html"
@@ -23,8 +23,8 @@ PAGES = [f"{name}.html" for name in (*CHAPTERS, "genindex", "search")]
 PHONE, WINDOW = 390, 1280
 """Widths of a page, in CSS pixels."""
 FAULTS = (
-    "errors", "unrendered", "merrors", "raw", "broken", "unshown", "silent", "unnamed", "foreign",
-    "faint", "cut", "crumbled", "wider",
+    "errors", "unrendered", "merrors", "raw", "broken", "unshown", "foreign", "axe", "cut",
+    "crumbled", "wider",
 )  # fmt: skip
 
 
@@ -34,7 +34,8 @@ def opened(width, mode):
         assert (HTML / page).is_file(), (
             f"the book is not built: {page} is missing in {HTML}"
         )
-    return visited(HTML, PAGES, width, mode)
+    source = axe(HTML.parent / "axe-wheel") if width == WINDOW else ""
+    return visited(HTML, PAGES, width, mode, source)
 
 
 @pytest.fixture
@@ -112,9 +113,9 @@ def test_each_thing_to_turn_asks_first(visit):
         assert (report["asked"], report["early"]) == (things - plain, plain), page
 
 
-SMALLEST = """<html><head><script>
+SMALLEST = """<html lang="en"><head><title>x</title><script>
 window.MathJax = {startup: {promise: Promise.resolve()}};
-</script></head><body><article>%s</article></body></html>"""
+</script></head><body><main><h1>x</h1><article>%s</article></main></body></html>"""
 LINE = f'<pre style="%s">{"long " * 100}</pre>'
 CELL = '<td><span class="pre" style="overflow-wrap: %s">crumbs</span></td>'
 TABLE = f"<table style='width: 80px'><tr>{CELL}<td>{'long' * 20}</table>"
@@ -128,15 +129,12 @@ BAD = {
     "foreign": ["<script>fetch('https://example.org/x').catch(() => 0)</script>"],
     "unshown": ["<pre>&lt;Figure size 650x520 with 1 Axes&gt;</pre>"],
     "broken": ['<img alt="x" src="nowhere.png">'],
-    "silent": ['<svg width="9" height="9"></svg>'],
-    "unnamed": ['<div role="img">x</div>'],
-    "faint": ['<p style="color: #999">words</p>'],
     "crumbled": [ROW % "anywhere"],  # neither cut nor wider than the page
     "cut": [LINE % "", LINE % "overflow-x: hidden", PICTURE % 300],
 }
 GOOD = [
     LINE % "overflow-x: auto", LINE % "max-width: 100%; overflow-x: auto", PICTURE % 150,
-    '<p style="color: #222">words</p>', ROW % "normal",
+    ROW % "normal",
 ]  # fmt: skip
 """Bodies of pages at the width of a phone: each of the bad ones is found once, no good one."""
 
@@ -151,3 +149,11 @@ def test_each_fault_is_found(tmp_path):
     assert bad["wider"]
     assert not [fault for fault in FAULTS if good[fault]]
     assert "/nowhere.png" in visit.missing
+
+
+def test_axe_is_asked(tmp_path):
+    (tmp_path / "faint.html").write_text(SMALLEST % '<p style="color: #999">words</p>')
+    source = axe(HTML.parent / "axe-wheel")
+    visit = visited(tmp_path, ["faint.html"], WINDOW, axe=source)
+    (fault,) = visit.pages["faint.html"]["axe"]
+    assert fault.startswith("color-contrast: ")

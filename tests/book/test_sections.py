@@ -8,6 +8,7 @@ import pytest
 from lwa import hertz
 from tests.book.prose import BOOK, CELL
 
+SOURCES = [*BOOK.glob("*.md"), *BOOK.glob("paper/*.md")]
 TEXTS = {page.stem: page.read_text(encoding="utf-8") for page in BOOK.glob("*.md")}
 PROSE = {page: CELL.sub("", text) for page, text in TEXTS.items()}
 PARTS = (BOOK / "_toc.yml").read_text().split("caption:")[1:4]
@@ -68,9 +69,15 @@ def test_cells_and_exercises(page):
     for options, code in CELL.findall(TEXTS[page]):
         assert "assert " not in code
         fits = all(len(line) <= COLUMN for line in code.splitlines())
-        assert fits or "hide-input" in options
+        assert fits or re.search("(hide|remove)-input", options)
     exercises = re.split(r"^## Exercises?\n", TEXTS[page], flags=re.MULTILINE)[1:]
     assert all(re.search("hide-cell|} Solution", text) for text in exercises)
+
+
+def test_simulated_records_are_called_so():
+    captions = every(r"^    caption: \|\n +(.*)", {"": TEXTS["experiment"]})
+    assert sum("simulated" in caption for caption in captions) > 1
+    assert not [caption for caption in captions if "measured" in caption]
 
 
 def test_names_on_the_pages():
@@ -100,4 +107,5 @@ def test_paragraphs_and_the_book_are_short():
             assert len(words) <= 110 or part.startswith(("|", "- ", "---", ":::")), (
                 part[:80]
             )
-    assert sum(len(text.splitlines()) for text in TEXTS.values()) <= LINES
+    texts = (page.read_text(encoding="utf-8") for page in SOURCES)
+    assert sum(len(text.splitlines()) for text in texts) <= LINES

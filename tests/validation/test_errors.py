@@ -47,15 +47,17 @@ def held(numbers, finer):
     return max(off.values(), default=0)
 
 
+CHAIN = {"size": 20, "stiffness": 1.0, "duration": 40, "contact_sensors": (5, 15)}
+BALLS = {"size": 5, "stiffness": 1e3, "duration": 6, "contact_sensors": (1, 2)}
+HEIGHTS = (-4, -3, -2.3, -1, -0.5)  # of five balls above a floor
 KINDS = {
-    "struck": {"velocities": (1,), "wall": 1},
-    "damped": {"velocities": (1,), "damping": Damping("kuwabara_kono", 0.03)},
-    "driven": {"drive": Drive(amplitude=0.3, frequency=0.1)},
-    "loaded": {"velocities": (0.3,), "wall": 1, "precompression": 0.3},
-    # Five balls above a floor.
-    "colliding": {"wall": 1e3, "gravity": 1, "displacements": (-4, -3, -2.3, -1, -0.5)},
+    "struck": CHAIN | {"velocities": (1,), "wall": 1},
+    "damped": CHAIN | {"velocities": (1,), "damping": Damping("kuwabara_kono", 0.03)},
+    "driven": CHAIN | {"drive": Drive(amplitude=0.3, frequency=0.1)},
+    "loaded": CHAIN | {"velocities": (0.3,), "wall": 1, "precompression": 0.3},
+    "colliding": BALLS | {"wall": 1e3, "gravity": 1, "displacements": HEIGHTS},
 }
-"""Scenes of `run`: beads of random masses, 20 of them or five."""
+"""Scenes of `run`, of beads of random masses."""
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -63,16 +65,13 @@ def test_errors_of_runs_are_one_to_thirty_times_the_deviation(kind):
     """About nine of ten: the errors of steps are nearly random, and one may vanish by chance."""
     rng = np.random.default_rng(5)
     ratios = []
+    given = dict(KINDS[kind])
+    size = given.pop("size")
+    stiffnesses = [given.pop("stiffness")] * (size - 1)
     for _ in range(4):
-        size = 5 if kind == "colliding" else 20
-        scene = Scene(
-            masses=rng.uniform(0.3, 1.5, size),
-            stiffnesses=[1e3 if kind == "colliding" else 1.0] * (size - 1),
-            k=rng.choice((1.5, 2.5)),
-            duration=6 if kind == "colliding" else 40,
-            contact_sensors=[1, 2] if kind == "colliding" else [5, 15],
-            **KINDS[kind],
-        )
+        masses = rng.uniform(0.3, 1.5, size)
+        k = rng.choice((1.5, 2.5))
+        scene = Scene(masses=masses, stiffnesses=stiffnesses, k=k, **given)
         found, finer = (record(scene, rtol=r, every=True) for r in (1e-8, 1e-10))
         for reading, true in zip(found.sensors, finer.sensors, strict=True):
             for name, number in reading.numbers.items():

@@ -67,4 +67,8 @@ class Piecewise:
 def spline(time: ArrayLike, values: ArrayLike) -> Piecewise:
     """Return the cubic spline through samples; `MeasureError` for others than `checked` takes."""
     t, f = checked(time, values)
-    return Piecewise(t, scipy.interpolate.CubicSpline(t, f))
+    try:
+        with np.errstate(all="ignore"):
+            return Piecewise(t, scipy.interpolate.CubicSpline(t, f))
+    except ValueError:  # the slopes, value over time, are beyond the floats
+        raise MeasureError("the signal is too steep, or too long, for floats") from None

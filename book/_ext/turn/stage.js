@@ -166,7 +166,8 @@ function stage(home, thing) {
     canvas.addEventListener("pointerdown", touched);
     canvas.addEventListener("pointermove", touched);
   }
-  addEventListener("resize", show);
+  // Drawn anew at each width, that of a page whose sidebars come late too: circles stay round.
+  new ResizeObserver(() => requestAnimationFrame(show)).observe(canvas);
 
   const below = element("div", {class: "lwa-below"}, panel, output);
   if (!plain) {

@@ -122,12 +122,18 @@ def test_files_of_spheres_are_refused(capsys, tmp_path, old, new, words):
         (FREE, "strike", "no striker that moves"),
         (FREE, "strike --velocity v", "velocity is v: a number is wanted"),
         (FREE | {"cell": [1, 2]}, "strike --velocity 1", "lwa-validate run"),
+        (
+            {"law": "exponential:1", "k": None, "spacings": None},
+            "shock --piston 1",
+            "spacing is D",
+        ),
     ],
 )
 def test_scenes_are_refused(capsys, tmp_path, chain, more, words):
     file = tmp_path / "scene.json"
     load = {} if "k" in chain else {"precompression": 2.0}
-    file.write_text(json.dumps(load | {"chain": MASSES | chain}))
+    keys = {key: value for key, value in (MASSES | chain).items() if value is not None}
+    file.write_text(json.dumps(load | {"chain": keys}))
     command, *options = more.split()
     refused(capsys, words, command, "--spheres", str(file), *options)
 

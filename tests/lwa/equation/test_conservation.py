@@ -25,7 +25,7 @@ CANONICAL = {"closure": "full"}
     ("cell", "order", "kind", "conservative"),
     [
         (Dimer("m1", "m2"), 8, CANONICAL, True),
-        (Cell(["m1", "m1", "m2"]), 8, CANONICAL, True),
+        (Cell(["m1", "m1", "m2", "m2"]), 6, CANONICAL, True),
         # three different masses have no mirror symmetry and even orders from D^{k+4} on
         (Cell([1, 2, 3]), 8, CANONICAL, True),
         (Dimer("m1", "m2"), 4, FIRST, True),

@@ -52,8 +52,8 @@ def test_a_sum_whose_terms_grow_too_soon_is_refused():
         expand(Dimer(1, "13/20"), 12, k="23/20").fwhm("force").at()
 
 
-def test_what_memory_holds_is_not_refused():
-    """The sums of these take five seconds and 600 MB at most; order 500 would take over 100 GB."""
+def test_what_takes_seconds_is_not_refused():
+    """The sums of these take five seconds at most; order 500 would take hours."""
     for masses, order in (((1, 2, 3), 12), ((1, 2, 3, 4), 10)):
         assert expand(Cell(masses), order, k="3/2").order == order
     with pytest.raises(InputError, match="500"):

@@ -110,3 +110,8 @@ def test_the_error_is_the_difference_to_less_accurate_runs(checks, error):
     """At least rounding; a number that one of the runs does not have has an unknown error."""
     found = compared(lambda value: {"x": value}, [1.0, *checks])["x"]
     assert found.error == pytest.approx(error, nan_ok=True)
+
+
+def test_a_record_beyond_the_floats_is_refused():
+    with pytest.raises(MeasureError, match="for floats"):
+        measure(1e300 * np.arange(9), np.arange(9) % 4)

@@ -111,7 +111,7 @@ def test_a_column_is_named_by_its_lowest_header_or_by_its_number(tmp_path):
     assert read(tmp_path, text).rows("time", "force").tolist() == [[1, 2]]
     stated = {"columns": {"time": "1", "force": "force (n)"}, "units": {"1": "ms"}}
     assert read(tmp_path, text, **stated).rows("time", "force").tolist() == [[0, 2]]
-    stated = {"columns": {"force": "4"}, "units": {"4": "2 N/V"}, "step": "0.5 us"}
+    stated = {"columns": {"force": "volt"}, "units": {"4": "2 N/V"}, "step": "0.5 us"}
     assert read(tmp_path, text, **stated).rows("time", "force").tolist() == [[0, 6]]
 
 
