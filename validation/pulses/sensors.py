@@ -1,6 +1,7 @@
 """Pulses at the sensors of a scene: arrival, peak force, FWHM, and the speed between sensors.
 
-Forces are dynamic: the static force of gravity and precompression is subtracted. Every number of a
+Forces are dynamic: the static force of gravity and precompression is subtracted, or, where beads
+start displaced, the force at the start, from which a record counts, too. Every number of a
 recording is measured in a run and in less accurate runs, whose differences are its error
 (`validation.pulses.pulse.compared`). Where a hump of about half the record's maximum precedes the
 first pulse, or is it, another run may take the other one: the error is then at least the distance
@@ -65,7 +66,7 @@ class Reading:
     numbers : mapping of Estimate
         Those of `READINGS` or of `SPEEDS` that are known, by name.
     static : float
-        Static force at the (first) sensor.
+        Static force at the (first) sensor, or force at the start, as of `tracks`.
     missing : str, optional
         Reason why numbers are missing.
     pulse : int
@@ -124,12 +125,12 @@ class Track:
     number : int
         Number of the bead or contact, counted from 1.
     force : Signal
-        The force less the static force, or the velocity.
+        The force less ``static``, or the velocity.
     place : mapping of float
         Place along the chain in sites and in lengths, by the names `SPEEDS`; empty for a bead
         with one contact, whose force is that of a place half a site away.
     static : float
-        Static force.
+        Static force, or the force at the start where beads start displaced.
     quantity : {"force", "velocity"}
         The signal.
     """
@@ -246,6 +247,9 @@ def tracks(
 ) -> tuple[Track, ...]:
     """Return the dynamic forces at the sensors of a run; beads first.
 
+    They count from the static forces; in a scene whose beads start displaced, from the forces at
+    the start.
+
     Parameters
     ----------
     run : Run
@@ -258,6 +262,7 @@ def tracks(
     """
     scene = run.scene
     at_rest = static_forces(scene)
+    displaced = starts_displaced(scene)
     # A contact is midway between its beads, the wall's half a spacing behind the last bead.
     x = np.cumsum((0.0, *scene.spacings, *scene.spacings[-1:]))
     found = []
@@ -268,6 +273,9 @@ def tracks(
             if f"{kind} {i + 1}" in velocities:
                 quantity = "velocity"
                 static = 0.0
+            elif displaced:
+                # Beads that fall onto each other carry no load yet; a record's base is its start.
+                static = float(getattr(run, f"{kind}_force")[row, 0])
             if run.path is None:
                 samples = getattr(run, f"{kind}_{quantity}")[row]
                 signal: Signal = spline(run.time[::every], samples[::every])
@@ -287,6 +295,12 @@ def tracks(
 def _above(force: Signal, static: float) -> Piecewise:
     """Return the dynamic force."""
     return Piecewise(force.times, lambda t: force(t) - static)
+
+
+def starts_displaced(scene: Scene) -> bool:
+    """Whether a bead of a scene starts away from its equilibrium."""
+    driven = scene.drive is not None and bool(scene.drive.at(0.0)[0])
+    return driven or any(scene.displacements)
 
 
 def static_forces(scene: Scene) -> dict[str, float]:

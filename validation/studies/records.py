@@ -276,7 +276,8 @@ def compare(
     SCENE is a scene file, as of `lwa-validate run`. MEASURED, files as of `lwa-validate pulses`,
     have the columns time and, for each sensor, such as "bead 15 force" or "bead 15 velocity"; for a
     single sensor also "force". Without units they are in the scene's own numbers. Base and slope of
-    a record are those of its part before the pulse.
+    a record are those of its part before the pulse. Where beads of the scene start displaced,
+    simulated forces count from those at the start, too.
 
     ``rows``: ``kind``, ``number``, ``quantity`` ("arrival", "peak" or "fwhm"), ``simulated_value``,
     ``measured_value`` and ``difference_value``, measured less simulated, with errors;
