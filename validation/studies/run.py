@@ -32,7 +32,6 @@ from validation.pulses.sensors import (
     echoes,
     enough_samples,
     record,
-    starts_displaced,
 )
 from validation.report.study import Report, option, output_option, replacing, study
 from validation.report.table import Column, Table, plain
@@ -45,7 +44,7 @@ EXAMPLES = ("paper", "vertical", "precompressed", "defect", "trimer", "striker")
 
 _NOTE = "{} at each sensor, in {} units. ±: differences to less accurate runs."
 _FIRST = "First pulse above half of the record's maximum"
-_DYNAMIC = "\nDynamic force: force less the {} force at the sensor."
+_DYNAMIC = "\nDynamic force: force less the static force at the sensor."
 
 
 def example(name: str) -> str:
@@ -59,8 +58,7 @@ def report(recording: Recording, every: bool = False) -> Report:
 
     Keys of the JSON document:
     ``sensors``: ``kind``, ``number``, with ``every`` ``pulse``, counted from 1, ``arrival_value``,
-    ``peak_value`` (of the dynamic force), ``fwhm_value``, ``static_force_value`` (the force at the
-    start where beads start displaced), ``missing``;
+    ``peak_value`` (of the dynamic force), ``fwhm_value``, ``static_force_value``, ``missing``;
     ``echoes`` of later pulses: ``kind``, ``number``, ``pulse``, ``reflected``, ``delay_value``
     behind the first pulse and ``ratio_value`` of their peaks (`validation.pulses.sensors.echoes`);
     ``speeds``: ``kind``, ``from``, ``to``, ``speed_sites_value``, ``speed_value`` (null without
@@ -85,16 +83,13 @@ def report(recording: Recording, every: bool = False) -> Report:
         data["work_value"] = run.work
         title += f", work {run.work:.6g}"
     which = "All pulses" if every else _FIRST
-    note = _NOTE.format(which, scene.units or "the scene's own")
-    peak = "peak force"
-    # A sensor between beads that start apart carries nothing that could be subtracted.
-    if any(reading.static for reading in recording.sensors):
-        peak = "peak dynamic force"
-        note += _DYNAMIC.format("initial" if starts_displaced(scene) else "static")
+    note = _NOTE.format(which, scene.units or "the scene's own") + _DYNAMIC * any(
+        scene.load
+    )
     tables, missing = reading_tables(
         recording.sensors,
         recording.speeds,
-        peak,
+        "peak dynamic force" if any(scene.load) else "peak force",
         bool(scene.units),
         operator.add,
         every,
