@@ -19,9 +19,6 @@ from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from urllib.parse import urlsplit
 
-sys.path.append(str(Path(__file__).parents[2] / "book" / "_ext"))
-from local_mathjax import fetched
-
 SECONDS_PER_PAGE = 180  # axe reads the page of the packages, with all entries open
 
 FRAME = "/frame-of-width/"
@@ -195,6 +192,10 @@ class _Handler(SimpleHTTPRequestHandler):
 
 def axe(folder):
     """The source of axe, fetched once and kept in the folder."""
+    # The book's extension needs Sphinx, which the tests without the book have not.
+    sys.path.append(str(Path(__file__).parents[2] / "book" / "_ext"))
+    from local_mathjax import fetched
+
     folder.mkdir(exist_ok=True)
     with zipfile.ZipFile(fetched(folder, PACKAGE, WHEEL, SHA256)) as wheel:
         return wheel.read("axe_playwright_python/axe.min.js").decode()

