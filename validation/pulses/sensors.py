@@ -17,6 +17,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from lwa.base.frozen import Estimate
 from validation.lattice.cost import RunProgress, silent
@@ -65,7 +66,7 @@ class Reading:
     numbers : mapping of Estimate
         Those of `READINGS` or of `SPEEDS` that are known, by name.
     static : float
-        Static force at the (first) sensor.
+        Force at the (first) sensor from which dynamic forces count: the static one, or a given one.
     missing : str, optional
         Reason why numbers are missing.
     pulse : int
@@ -124,12 +125,12 @@ class Track:
     number : int
         Number of the bead or contact, counted from 1.
     force : Signal
-        The force less the static force, or the velocity.
+        The force less ``static``, or the velocity.
     place : mapping of float
         Place along the chain in sites and in lengths, by the names `SPEEDS`; empty for a bead
         with one contact, whose force is that of a place half a site away.
     static : float
-        Static force.
+        Force from which dynamic forces count, the static one by default.
     quantity : {"force", "velocity"}
         The signal.
     """
@@ -149,6 +150,7 @@ def record(
     rtol: Any = TOLERANCE,
     every: bool = False,
     velocities: Container[str] = (),
+    levels: Mapping[str, float] | None = None,
     progress: RunProgress = silent,
 ) -> Recording:
     """Simulate a scene and measure the pulses at its sensors.
@@ -165,6 +167,8 @@ def record(
         True for all pulses at each sensor instead of the first.
     velocities : container of str
         Names of bead sensors, such as "bead 15", whose velocity is measured, not the force.
+    levels : mapping of float, optional
+        Forces by sensor from which dynamic forces count; by default `static_forces`.
     progress : callable
         Progress of the runs, as of `validation.simulate`.
 
@@ -182,8 +186,8 @@ def record(
         )
     runs = repeated(scene, tolerances(rtol), method=method, progress=progress)
     run, *checks = runs
-    fine = tracks(run, velocities)
-    less_accurate = [tracks(check, velocities, 2) for check in checks]
+    fine = tracks(run, velocities, levels=levels)
+    less_accurate = [tracks(check, velocities, 2, levels) for check in checks]
     firsts: list[Reading] = []
     found: list[Reading] = []
     for track, *others in zip(fine, *less_accurate, strict=True):
@@ -242,7 +246,10 @@ def _time_of_a_site(motion: Motion, contacts: slice, force: float) -> float:
 
 
 def tracks(
-    run: Run, velocities: Container[str] = (), every: int = 1
+    run: Run,
+    velocities: Container[str] = (),
+    every: int = 1,
+    levels: Mapping[str, float] | None = None,
 ) -> tuple[Track, ...]:
     """Return the dynamic forces at the sensors of a run; beads first.
 
@@ -255,16 +262,19 @@ def tracks(
     every : int
         Samples that count, each one or each second one, where the motion takes too much memory
         to be kept and the signals are splines through the samples.
+    levels : mapping of float, optional
+        Forces by sensor from which dynamic forces count; by default `static_forces`.
     """
     scene = run.scene
-    at_rest = static_forces(scene)
+    if levels is None:
+        levels = static_forces(scene)
     # A contact is midway between its beads, the wall's half a spacing behind the last bead.
     x = np.cumsum((0.0, *scene.spacings, *scene.spacings[-1:]))
     found = []
     for kind in ("bead", "contact"):
         for row, i in enumerate(getattr(scene, f"{kind}_sensors")):
             quantity = "force"
-            static = at_rest[f"{kind} {i + 1}"]
+            static = levels[f"{kind} {i + 1}"]
             if f"{kind} {i + 1}" in velocities:
                 quantity = "velocity"
                 static = 0.0
@@ -291,14 +301,34 @@ def _above(force: Signal, static: float) -> Piecewise:
 
 def static_forces(scene: Scene) -> dict[str, float]:
     """Return the static forces at the sensors of a scene, by names such as "bead 15"."""
+    return _at_sensors(scene, scene.load)
+
+
+def forces_at_start(scene: Scene) -> dict[str, float]:
+    """Return the forces at the start at the sensors of a scene, by names such as "bead 15".
+
+    Where all beads start in equilibrium, whatever their velocities, they are the static forces: a
+    damped contact of a moving bead resists at once, but a sensor has been at rest before.
+    """
+    motion = Motion(scene)
+    y, v = motion.start[: 2 * scene.size].reshape(2, scene.size)
+    if not y.any():
+        return static_forces(scene)
+    compression = motion.compression(y)
+    elastic = motion.force(compression)
+    return _at_sensors(scene, motion.damped_force(elastic, compression, motion.rate(v)))
+
+
+def _at_sensors(scene: Scene, contact_forces: ArrayLike) -> dict[str, float]:
+    """Return the forces at the sensors of a scene, by names such as "bead 15"."""
     # Of the contacts on the left and right of the beads
-    load = np.zeros(scene.size + 1)
-    load[1 : scene.contact_count + 1] = scene.load
+    beside = np.zeros(scene.size + 1)
+    beside[1 : scene.contact_count + 1] = contact_forces
     forces = {}
     for i in scene.bead_sensors:
-        forces[f"bead {i + 1}"] = float(load[i] + load[i + 1]) / 2
+        forces[f"bead {i + 1}"] = float(beside[i] + beside[i + 1]) / 2
     for i in scene.contact_sensors:
-        forces[f"contact {i + 1}"] = float(load[i + 1])
+        forces[f"contact {i + 1}"] = float(beside[i + 1])
     return forces
 
 

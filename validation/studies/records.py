@@ -19,7 +19,7 @@ from validation.pictures import Curve, Panel
 from validation.pulses.discharge import corrected, suggested
 from validation.pulses.noisy import NoisyPulse, noisy_pulse, noisy_pulses
 from validation.pulses.pulse import MeasureError
-from validation.pulses.sensors import Reading, record, speeds_between, static_forces
+from validation.pulses.sensors import Reading, forces_at_start, record, speeds_between
 from validation.report.study import Report, number, option, study
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError, one_of, positive
@@ -276,7 +276,8 @@ def compare(
     SCENE is a scene file, as of `lwa-validate run`. MEASURED, files as of `lwa-validate pulses`,
     have the columns time and, for each sensor, such as "bead 15 force" or "bead 15 velocity"; for a
     single sensor also "force". Without units they are in the scene's own numbers. Base and slope of
-    a record are those of its part before the pulse.
+    a record are those of its part before the pulse. Where beads of the scene start displaced, as
+    those that fall, simulated forces also count from the start, not from the static forces.
 
     ``rows``: ``kind``, ``number``, ``quantity`` ("arrival", "peak" or "fwhm"), ``simulated_value``,
     ``measured_value`` and ``difference_value``, measured less simulated, with errors;
@@ -285,9 +286,13 @@ def compare(
     chain = read_scene(scene)
     read = Measured.read(measured, "contact", time_constant, stated)
     check_units(read.si, chain.units, "the measured file")
-    found = _first_pulses(read, [*static_forces(chain)])
+    # Beads that fall onto each other carry no load before: a record's base is its start.
+    levels = forces_at_start(chain)
+    found = _first_pulses(read, [*levels])
     velocities = [name for name, (s, _) in found.items() if s.quantity == "velocity"]
-    simulation = record(chain, velocities=velocities, progress=run_progress)
+    simulation = record(
+        chain, velocities=velocities, levels=levels, progress=run_progress
+    )
     run = simulation.run
     rows: list[dict[str, Any]] = []
     curves: list[Curve] = []

@@ -133,6 +133,16 @@ def test_a_record_within_steps_of_1e_8_is_that_of_an_earlier_time():
     assert np.abs(forces[1] - forces[0]).max() < 2e-8 * forces[0].max()
 
 
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10])
+def test_heat_of_a_contact_that_has_stopped_pushing_when_its_neighbour_closes(rtol):
+    """The wall's contact expands without a force; the drive hits the bead in front of it."""
+    scene = Scene(
+        **PAIR, wall=1, k=1.5, duration=20, damping=Damping("restitution", 0.5),
+        drive=Drive(amplitude=0.5, frequency=0.2),
+    )  # fmt: skip
+    assert abs(simulate(scene, rtol=rtol).energy_drift) < 10 * rtol
+
+
 def test_a_piston_that_does_more_work_than_was_guessed():
     scene = Scene(
         masses=(1,) * 10, stiffnesses=(1,) * 9, k=7, duration=50, drive=Drive(velocity=1.4),

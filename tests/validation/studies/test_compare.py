@@ -93,6 +93,40 @@ def test_the_error_of_a_later_arrival_holds_that_of_the_shift(files):
     assert second > 1.05 * alone
 
 
+FALL = """
+duration = 4
+samples = 4001
+gravity = 9.81
+wall = {stiffness = 1000}
+chain = {cell = [1], repeat = 5, k = 1, stiffnesses = 1000}
+start = {displacements = [-5.5, -4.5, -3.5, -2.5, -1.5]}
+sensors = {beads = [1, 2, 3, 4, 5]}
+"""
+
+
+def test_forces_of_a_fall_count_from_the_start(capsys, folder):
+    """Beads above a floor carry no weight before they meet: the record begins without any."""
+    Path("scene.toml").write_text(FALL)
+    _, pulses, compared = (
+        json.loads(ended(capsys, cli.main, *line.split(), "--format", "json")[1])
+        for line in (
+            "run scene.toml --out measured.csv",
+            "pulses measured.csv",
+            "compare scene.toml measured.csv",
+        )
+    )
+    peaks = {}
+    assert len(compared["rows"]) == 15
+    for row in compared["rows"]:
+        assert abs(row["difference_value"]) <= row["difference_error_value"]
+        if row["quantity"] == "peak":
+            peaks[row["number"]] = row["simulated_value"], row["simulated_error_value"]
+    for sensor in pulses["sensors"]:
+        peak, error = peaks[sensor["number"]]
+        assert sensor["static_force_value"] == 0
+        assert abs(sensor["peak_value"] - peak) <= error + sensor["peak_error_value"]
+
+
 UNITS = {"time": "s", "contact 12 force": "N", "contact 18 force": "N"}
 RECORD = "".join(f"{t},1\n" for t in range(9))
 

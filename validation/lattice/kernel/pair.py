@@ -221,9 +221,13 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
         if n == i:
             d = top
         closed = n == i or beads.force[1, n + 1] + chain.load[n] > 0.0
-        if not (d > 0.0 and closed):
-            continue
         other = chain.laws[chain.law[n]]
+        if not (d > 0.0 and closed):
+            if n != i and chain.r[n] > 0.0 and not other.sticks:
+                # The neighbour has stopped pushing: its elastic energy turns into heat.
+                idle = chain.A[n] * max(elastic(other, d), 0.0)
+                beads.books[0] += idle * moment * share
+            continue
         more = -chain.A[n] * stiffness(other, d) * third * share
         if chain.r[n] > 0.0:
             resisted = -chain.A[n] * chain.r[n] * drag(other, d) * moment * share
