@@ -108,7 +108,7 @@ def exponent_of_light_beads(quantity: str) -> sp.Expr:
 ALIKE = 0.75
 """Least m2/m1 from which on unlike beads have the pulse of equal beads of the mean mass."""
 
-MARGIN = 1.4
+MARGIN = 1.5
 """Ratio of an error to the deviation that is interpolated."""
 
 SPREAD = 3.0
@@ -116,7 +116,7 @@ SPREAD = 3.0
 
 Deviations swing with the light bead from one point of the grid to the next. With these two factors
 729 speeds and widths of struck chains between the points of the grid are all covered, half of them
-by errors up to 2.2 and nine of ten by errors up to 6.4 times the deviation.
+by errors up to 2.4 and nine of ten by errors up to 6.9 times the deviation.
 """
 
 

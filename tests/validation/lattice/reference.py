@@ -50,7 +50,8 @@ class Pieces(Motion):
         """Positive numbers for contacts that should be closed: δ or, where damping may not pull,
         also the force over δ^p, which has no power below 1."""
         d = self.compression(y)
-        push = self.force(d) / np.maximum(d, 1e-300) ** self.p
+        # A contact that only just touches has δ^p = 0: of no force, as of 1e-100.
+        push = self.force(d) / np.maximum(d, 1e-100) ** self.p
         push += self.damping * self.rate(v)
         margins = np.where(self.holds, d, np.minimum(d, push))
         return np.where(self.pulls, np.inf, margins)

@@ -129,10 +129,10 @@ def test_errors_are_one_standard_deviation(signals, kind):
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", [*NOISE, *SHAPES, *LEVELS])
 def test_errors_are_one_standard_deviation_of_every_kind_of_noise(signals, kind):
-    """Bias: half of the scatter; shares of 60 … 80 %, and one spread of 200 copies more."""
+    """Bias: half of the scatter; shares of 60 … 80 %, one spread of 200 copies less, two more."""
     bias, _, within = coverage(at_widths(signals[1, 24]), kind, 200)
     assert np.all(bias < 1 / 2), bias
-    assert np.all((within > 0.57) & (within < 0.83)), within
+    assert np.all((within > 0.57) & (within < 0.86)), within
 
 
 def test_too_few_samples_make_errors_larger(signals):
