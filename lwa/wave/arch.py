@@ -23,6 +23,7 @@ Since ``∂(z^e r_2) = z^e (r_3 + (e - 1) r_1 r_2)``, the integrating factor ``z
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
@@ -38,7 +39,7 @@ from lwa.cell import Cell, exponent, substitution
 
 
 @dataclass(frozen=True)
-class Arch(Value):
+class Arch(Value, ABC):
     """Closed forms of the arch of a chain; a subclass has the two numbers.
 
     Results are exact SymPy expressions; the speed ``V = dx/dτ`` becomes dx/dt by `time_scale`.
@@ -74,14 +75,14 @@ class Arch(Value):
             )
 
     @property
+    @abstractmethod
     def coefficient_sum(self) -> sp.Expr:
         """The sum (G + H + I) / D²."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def speed_factor(self) -> sp.Expr:
         """The ratio ``V²/B^{k-1}``."""
-        raise NotImplementedError
 
     @property
     def D(self) -> sp.Expr:
