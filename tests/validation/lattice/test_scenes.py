@@ -29,16 +29,16 @@ def test_the_reference_locates_closings_and_openings(k, rest, velocity):
     assert found.v[-1, 1] == pytest.approx(velocity, abs=1e-12)
 
 
-# Quick seeds: all dampings and drives, laws that pull, open and jump, contacts of their own.
-FEW = 0, 1, 5, 6, 7, 18
+# All dampings and drives, laws that pull, open and jump, contacts of their own.
+FEW = 0, pytest.param(1, marks=pytest.mark.slow), 5, 6, 7, 18
 
 
 @pytest.mark.parametrize("seed", FEW)
 def test_a_few_scenes(seed):
-    """Motion within 10, energy within 100 times the tolerance."""
+    """Motion within 10, energy within 20 times the tolerance."""
     motion, energy = errors(seed, (1e-6, 1e-9))
     assert motion.max() < 10
-    assert energy.max() < 100
+    assert energy.max() < 20
 
 
 @pytest.mark.slow
