@@ -82,7 +82,10 @@ CALLS = [
     (lambda: loaded(lwa.general(), 1, 1).fwhm(), "no expression"),
     (lambda: lwa.loaded_wave(EQUAL, force=2, rise=1), "not by both"),
     (lambda: lwa.loaded_wave(EQUAL, force=2, precompression=1, law=SOFT), "reach"),
-    (lambda: PRESSED.inverse(sp.Rational(1, 50)), "force is 1/50: the law does not reach it"),
+    (
+        lambda: PRESSED.inverse(sp.Rational(1, 50)),
+        "force is 1/50: the law does not reach it",
+    ),
     (
         lambda: homogenize(Dimer(1, 2)).pde.traveling_wave().on_background(1),
         "canonical",

@@ -109,7 +109,10 @@ def test_the_pole_of_a_magnet():
 
 
 def test_a_weak_link_in_series_next_to_its_pole():
-    """V² = 2W/B² by the energies of both links; Newton's method in δ itself finds no state."""
+    """V² = 2W/B² by the energies of both links.
+
+    Newton's method in δ itself finds no state; one that moves each link alone finds some.
+    """
     weak = sp.Rational(1, 10000)
     links = [Link(0, 1, HERTZ), Link(1, 2, named("magnetic", 2, 1), weak)]
     near = 1 - 1 / math.sqrt(1 + 1 / weak)  # weak ((1-δ)^-2 - 1) = 1
