@@ -98,7 +98,7 @@ CALLS = [
     (lambda: front(1, -1), "ahead is -1: contacts of a power law only push"),
     (lambda: front(4, 1).trailing_speed, "the trailing edge holds up to 1.3"),
     (lambda: front(1, 2).peak, "a rarefaction has no pulse"),
-    (lambda: front("p", 1, law=Power("k")).kind, "kind depends on symbols"),
+    (lambda: front("p", 1, law=Power("k")).kind, "the kind depends"),
     (lambda: front(1, 0, law=Power(1)), "a front without load wants k > 1"),
     (
         lambda: front(1, 0, law=BENT),
