@@ -74,6 +74,7 @@ CALLS = [
     (lambda: expand(Cell([1], [8]), 6, k="3/2").c2.at("6/5"), "that of k = 3/2"),
     (lambda: expand(CHAIN, 6).c2.at(1), "k is 1"),
     (lambda: expand(CHAIN, 5).c2.at("3/2"), "from order 6 on"),
+    (lambda: expand(Cell(["ε", 1])), "ε is the series' parameter"),
     (
         lambda: expand(CHAIN, 2, law=Law(sp.exp(DELTA) - 1, DELTA)),
         "only a power law has a k",
