@@ -211,8 +211,8 @@ def lone_bead(contacts: Contacts, branch: int) -> Mode:
 
     Every second bead, of the mass m, swings alone: on the optical branch the light one, on the
     acoustic one the heavy one. Both its contacts are always compressed by opposite amounts, so that
-    no force drives the second harmonic, and ``c_g = 0`` leaves no lasting force. With M for the mass of
-    the beads at rest the relation of the branches::
+    no force drives the second harmonic, and ``c_g = 0`` leaves no lasting force. With M for the
+    mass of the beads at rest the relation of the branches::
 
         m M x² - 2 K2 (m + M) x + 2 K2² (1 - cos κ) = 0
 
