@@ -124,8 +124,10 @@ window.addEventListener("load", async () => {
     axe: axeFound,
     ends,
     spoken: spoken.length > 4 ? spoken : [],
+    // What scrolls has to be reached by the keyboard.
     stops: [...document.querySelectorAll("mjx-container, mjx-container *")]
-      .filter(e => e.tabIndex >= 0 && !e.closest("a")).map(e => e.textContent),
+      .filter(e => e.tabIndex >= 0 && !e.closest("a") && e.scrollWidth <= e.clientWidth + 1)
+      .map(e => e.textContent),
     sliders: body.querySelectorAll("input[type=range]").length,
     asked: asked.length,
     early,
