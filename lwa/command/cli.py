@@ -155,7 +155,10 @@ def next_step(
         # Options of the group itself end it, so that the first word is a command.
         _, chosen, _ = command.resolve_command(click.Context(command), line)
     options = {called(option): option for option in chosen.params} if chosen else {}
+    flags = {option.name: name for name, option in options.items()}
     change = refusal.change or _example(refusal.reason, options, line)
+    # Python's name of an argument may differ from its option's.
+    change = {flags.get(name, name): value for name, value in change.items()}
     # A change of Python's arguments that are no options is said as Python writes it.
     if not change or not options.keys() >= change.keys():
         return str(refusal)
@@ -168,7 +171,10 @@ def next_step(
         while f"--{changed}" in line:  # an option and its value
             at = line.index(f"--{changed}")
             del line[at : at + 2]
-        if value is not None:
+        if isinstance(value, Mapping):
+            for key, one in value.items():
+                changes += [f"--{changed}", f"{key}={one}"]
+        elif value is not None:
             changes += [f"--{changed}", str(value)]
     proposed = shlex.join([name, *line, *changes])
     # A message is cut in its middle: the whole line to paste stands at its end, or is not there.
