@@ -340,10 +340,9 @@ def integrals(
 
     Those of ``F``, ``(1 - x) F``, ``(1 - x)²/2 F`` and ``F p'``, in the ``count`` intervals between
     the places ``edges``; that of ``F b'`` for the motion b of a driven bead, else 0; and, for a
-    damped contact, that of ``p''`` by the contact's force, less the bend of c, times Legendre's
-    polynomial of degree 4: 0 for a force that the quintic's second derivative, a cubic, follows.
-
-    bend : change of p'' by a force of 1.
+    damped contact, that of ``bend F``, less the bend of c, times Legendre's polynomial of degree 4:
+    0 for a force that the second derivative of a quintic follows. A force of 1 changes ``p''`` by
+    ``bend``.
     """
     x, w = points[0], points[1]
     once = twice = third = work = given = rough = 0.0
