@@ -168,6 +168,8 @@ def next_step(
         while f"--{changed}" in line:  # an option and its value
             at = line.index(f"--{changed}")
             del line[at : at + 2]
+        if isinstance(value, tuple):  # as options take several numbers
+            value = ",".join(map(str, value))
         if value is not None:
             changes += [f"--{changed}", str(value)]
     proposed = shlex.join([name, *line, *changes])
@@ -189,7 +191,10 @@ _CHAIN = {"k", "law", "masses", "stiffnesses", "spacing"}
 def _example(
     reason: str, options: Mapping[str, click.Parameter], line: Sequence[str]
 ) -> dict[str, object]:
-    """The example of the option that a reason is about; {} for none, and if it is given."""
+    """The example of the option that a reason is about; {} for none, and if it is given.
+
+    An option with neither example nor default is None: the command runs without it.
+    """
     subject = _SUBJECT.match(reason)
     if subject is None:
         return {}
@@ -205,7 +210,11 @@ def _example(
             example = near[1]
         meant = name == subject[1] or subject[2] in re.split(r"\W", text)
         # A refusal of the example itself is about something else.
-        if meant and isinstance(example, str) and example != text:
+        if not meant:
+            continue
+        if not isinstance(example, str) and f"--{name}" in line:
+            found[name] = None
+        elif isinstance(example, str) and example != text:
             found[name] = example
     if subject[2] == "F" and not found:  # the symbol of a force that is not given
         found["force"] = "10"

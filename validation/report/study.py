@@ -331,11 +331,11 @@ def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
         For another ending, and where no file can be written.
     """
     file = Path(path)
-    change = {}
+    suffix = file.suffix.lower()
     try:
-        if file.suffix.lower() not in suffixes:
+        if suffix not in suffixes:
+            suffix = suffixes[-1]
             fault = f"a file ending in {', '.join(suffixes)} is wanted"
-            change[name] = str(file.with_suffix(suffixes[-1]))
         elif file.exists() and not file.is_file():
             fault = "a regular file is wanted"
         else:
@@ -344,6 +344,9 @@ def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
                 return file
     except (OSError, ValueError, RuntimeError) as error:  # a null byte, a loop of links
         fault = f"it cannot be written, {reason(error)}"
+    here = f"{file.stem or name}{suffix}"
+    # A file of the current folder that cannot be written, either, is left out.
+    change = {name: None if here == path else here}
     raise InputError(f"{name} is {path[:_LONGEST]}: {fault}", **change)
 
 
