@@ -331,10 +331,11 @@ def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
         For another ending, and where no file can be written.
     """
     file = Path(path)
-    suffix = file.suffix.lower()
+    # In the current folder, which most likely takes files.
+    proposed = file.name
     try:
-        if suffix not in suffixes:
-            suffix = suffixes[-1]
+        if file.suffix.lower() not in suffixes:
+            proposed = str(file.parent / f"{file.stem or name}{suffixes[-1]}")
             fault = f"a file ending in {', '.join(suffixes)} is wanted"
         elif file.exists() and not file.is_file():
             fault = "a regular file is wanted"
@@ -344,9 +345,9 @@ def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
                 return file
     except (OSError, ValueError, RuntimeError) as error:  # a null byte, a loop of links
         fault = f"it cannot be written, {reason(error)}"
-    here = f"{file.stem or name}{suffix}"
-    # A file of the current folder that cannot be written, either, is left out.
-    change = {name: None if here == path else here}
+    # A name that cannot be written there, either, is left out.
+    usable = proposed != path and proposed.isprintable()
+    change = {name: proposed if usable else None}
     raise InputError(f"{name} is {path[:_LONGEST]}: {fault}", **change)
 
 
