@@ -89,7 +89,8 @@ class Cell(Value):
         if len(stiffnesses) != len(masses):
             raise InputError(
                 f"{len(stiffnesses)} stiffnesses for {len(masses)} masses: a periodic cell has as "
-                "many contacts as particles"
+                "many contacts as particles",
+                stiffnesses=(),
             )
         # A frozen dataclass sets its own fields in this way.
         object.__setattr__(self, "masses", masses)

@@ -592,7 +592,8 @@ def for_cell(
     if not (read_cell(cell).equal_contacts or law.homogeneous):
         raise InputError(
             "the contacts differ in stiffness, and their shares of the strain would then depend on "
-            "the strain: only a power law allows that"
+            "the strain: only a power law allows that",
+            stiffnesses=(),
         )
     return law
 

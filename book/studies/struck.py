@@ -1,7 +1,7 @@
 """Struck chains of unlike links or resonators, and struck packings, beside `lwa.loaded_wave`.
 
-SciPy's DOP853 integrates lattices of which the first bead (with its resonator), or the first layer,
-has a velocity. There is no load, and contacts only push. The cases:
+The first bead (with its resonator), or the first layer, has a velocity. There is no load, and
+contacts only push. SciPy's DOP853 integrates resonators and packings. The cases:
 
 - ``unlike``: δ^{3/2} with δ³, and with δ, in turn. Equal masses, four decades of the force.
 - ``resonators``: δ^{3/2}, and inside each bead a mass m_r on a spring k_r. A free bead and its
@@ -33,11 +33,13 @@ from lwa.base.progress import Progress
 from lwa.base.words import QuantityName
 from lwa.loaded.lattice import DirectionName
 from validation.lattice.laws import Contact
+from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Pulse, measure
 from validation.report.study import Report, option, study
 from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.checks import one_of
+from validation.scenes.scene import Scene
 
 HERTZ = Power("3/2")
 FORCES = 0.01, 0.1, 1.0, 10.0, 100.0  # wanted at the peak
@@ -232,37 +234,58 @@ def _force_at_one(lattice: Lattice) -> float:
 
 def chain(lattice: Lattice, velocity: float, pace: float) -> Seen:
     """Strike the first bead of a chain, with its resonator, and measure the pulse's force."""
-    size, laws = len(lattice.masses), [_law(link) for link in lattice.links]
-    mass = np.resize([float(m) for m in lattice.masses], BEADS)
-    starts = [np.arange(link.i, BEADS - 1, size) for link in lattice.links]
-    inner = [(float(r.mass), float(r.stiffness)) for r in lattice.resonators]
-
-    def rates(u: Array) -> Array:
-        gap = u[: BEADS - 1] - u[1:BEADS]
-        force = np.zeros(BEADS + 1)  # of the contact before each bead
-        for i, law in zip(starts, laws, strict=True):
-            force[i + 1] = law(gap[i])
-        total, parts = force[:-1] - force[1:], []
-        for m, k in inner:  # one in each bead
-            pull = k * (u[BEADS:] - u[:BEADS])
-            total, parts = total + pull, [-pull / m]
-        return np.concatenate([total / mass, *parts])
-
-    start = np.zeros((1 + len(inner)) * BEADS)
-    start[::BEADS] = velocity
-    time, u = integrated(rates, start, (SENSORS[1] + 16) / pace)
+    size = len(lattice.masses)
+    laws = [_law(link) for link in lattice.links]
+    duration = (SENSORS[1] + 16) / pace
+    if lattice.resonators:
+        (resonator,) = lattice.resonators
+        time, u = resonating(resonator, laws[0], velocity, duration)
+    else:
+        # The engine of scenes knows contacts of several laws, but no resonators.
+        contacts = np.arange(BEADS - 1) % size
+        scene = Scene(
+            masses=np.resize([float(m) for m in lattice.masses], BEADS),
+            stiffnesses=[float(lattice.links[i].factor) for i in contacts],
+            k=[float(lattice.links[i].law.exponent) for i in contacts],
+            velocities=(velocity,),
+            duration=duration,
+            samples=SAMPLES,
+            bead_sensors=range(BEADS),
+        )
+        run = simulate(scene, rtol=RTOL)
+        time, u = run.time, run.bead_displacement
     places = [[link.i + n - n % size for link in lattice.links] for n in SENSORS]
     pulses = [
         [measure(time, law(u[i] - u[i + 1])) for i, law in zip(at, laws, strict=True)]
         for at in places
     ]
     seen = Seen.between("force", pulses[0], pulses[1])
-    if not inner:
+    if not lattice.resonators:
         return seen
     relative = u[BEADS + SENSORS[0]] - u[SENSORS[0]]
     after = (time - pulses[0][0].arrival) * seen.speed
     late = relative[(after > BEHIND[0]) & (after < BEHIND[1])]
     return replace(seen, ringing=float(np.ptp(late) / 2 / np.abs(relative).max()))
+
+
+def resonating(
+    resonator: Resonator,
+    law: Callable[[Array], Array],
+    velocity: float,
+    duration: float,
+) -> tuple[Array, Array]:
+    """Motion of equal beads with a resonator in each: displacements of beads, then resonators."""
+    mass, stiffness = float(resonator.mass), float(resonator.stiffness)
+
+    def rates(u: Array) -> Array:
+        force = np.zeros(BEADS + 1)  # of the contact before each bead
+        force[1:-1] = law(u[: BEADS - 1] - u[1:BEADS])
+        pull = stiffness * (u[BEADS:] - u[:BEADS])
+        return np.concatenate([force[:-1] - force[1:] + pull, -pull / mass])
+
+    start = np.zeros(2 * BEADS)
+    start[::BEADS] = velocity
+    return integrated(rates, start, duration)
 
 
 def packing(direction: str, velocity: float, pace: float) -> Seen:

@@ -65,6 +65,8 @@ def growing_root(F: sp.Expr, x: sp.Symbol) -> Any:
     value = real_function(sp.lambdify(x, F, "mpmath"))
     slope = real_function(sp.lambdify(x, F.diff(x), "mpmath"))
     low = mpmath.mpf(0)
+    if value(low) > 0:  # the root is at a negative x
+        return None
     step = _FIRST_STEP
     while True:
         above = value(low + step)

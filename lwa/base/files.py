@@ -29,6 +29,9 @@ LEAST = sys.float_info.min
 MOST_BYTES = {".toml": 8_000_000, ".json": 64_000_000}
 """Size limits of a file; Python reads about 1 MB of TOML a second."""
 
+_WRITTEN = "try: lwa-validate run --example > scene.toml"
+"""The line that writes a file where there is none."""
+
 
 def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
     """Parse a TOML or JSON file and read its content.
@@ -58,7 +61,7 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
     suffix = Path(path).suffix.lower()
     if suffix not in MOST_BYTES and str(path) != "-":
         raise InputError(
-            f"{path}: {what} is a file ending in {' or '.join(MOST_BYTES)}"
+            f"{path}: {what} is a file ending in {' or '.join(MOST_BYTES)}; {_WRITTEN}"
         )
     try:
         # Standard input may be of either format, and has the smaller limit.
@@ -72,7 +75,7 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
     except (InputError, OSError) as error:
         fault = reason(error)
         if isinstance(error, FileNotFoundError):
-            fault += "; to write one: lwa-validate run --example > scene.toml"
+            raise InputError(f"{path}: {fault}; {_WRITTEN}") from None
     except UnicodeDecodeError:
         fault = "not a text in UTF-8"
     except RecursionError:
@@ -80,6 +83,9 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
     except ValueError as error:  # raised by the parsers
         # Python's advice on integers of too many digits stands behind a semicolon.
         fault = f"not {suffix[1:].upper()}: {str(error).partition(';')[0]}"
+    # A reader of the file may know a better line.
+    if "; try: " not in fault:
+        fault += "; try: lwa-validate run --keys"
     raise InputError(f"{path}: {fault}") from None
 
 
@@ -178,9 +184,7 @@ class Table:
             return reader(self.entries[key], self.path(key))
         # No reader returns None, which therefore stands for "no default".
         if default is None:
-            raise InputError(
-                f"{self.path(key)} is missing: lwa-validate run --keys shows every key"
-            )
+            raise InputError(f"{self.path(key)} is missing")
         return default
 
     def one(self, *keys: str) -> str:

@@ -88,14 +88,16 @@ class ChainInput:
         spacing = Row("", "spacing D", self.cell.spacing, "m").text(scale)
         return f"{masses}; contact force {force}, {stiffnesses}; {spacing}"
 
-    def load(self, given: sp.Expr | None) -> sp.Expr | None:
+    def load(self, given: sp.Expr | None, background: sp.Expr | None) -> sp.Expr | None:
         """The static force: that of the file, or the given one; None for none.
 
-        Raises `lwa.InputError` for two loads.
+        Raises `lwa.InputError` for a file with a load and another one, a force or a strain.
         """
-        if self.precompression and given is not None:
+        if self.precompression and not (given is None and background is None):
             raise InputError(
-                f"the file has a precompression of {self.precompression}: give no other load"
+                f"the file has a precompression of {self.precompression}: give no other load",
+                precompression=None,
+                background=None,
             )
         return self.precompression or given
 

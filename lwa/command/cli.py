@@ -146,7 +146,13 @@ def _status(command: click.Command, name: str, arguments: Sequence[str]) -> int:
 def next_step(
     refusal: Refusal, command: click.Command, name: str, arguments: Sequence[str]
 ) -> str:
-    """The reason of a refusal and, where an option is to be changed, the line to paste."""
+    """The reason of a refusal and, behind "; try:", a whole line to paste.
+
+    The line is the user's own with the arguments of `Refusal.change`, or with the example of the
+    option that the reason names; else the last example of the command's help.
+    """
+    if TRY in refusal.reason:  # the reason has a line of its own, on a file
+        return refusal.reason
     line: list[str] = []
     for word in arguments:  # --k=2 is --k 2
         line += word.split("=", 1) if word.startswith("--") else [word]
@@ -155,30 +161,70 @@ def next_step(
         # Options of the group itself end it, so that the first word is a command.
         _, chosen, _ = command.resolve_command(click.Context(command), line)
     options = {called(option): option for option in chosen.params} if chosen else {}
-    change = refusal.change or _example(refusal.reason, options, line)
-    # A change of Python's arguments that are no options is said as Python writes it.
-    if not change or not options.keys() >= change.keys():
-        return str(refusal)
-    added = {name for name, value in change.items() if value is not None}
-    # A file stands in place of the options of a chain: it is the file that is to be changed.
-    if "--spheres" in line and added & _CHAIN:
-        return f"{refusal.reason}; change it in the file"
-    changes = []
-    for changed, value in change.items():
-        while f"--{changed}" in line:  # an option and its value
-            at = line.index(f"--{changed}")
-            del line[at : at + 2]
-        if isinstance(value, tuple):  # as options take several numbers
-            value = ",".join(map(str, value))
-        if value is not None:
-            changes += [f"--{changed}", str(value)]
-    proposed = shlex.join([name, *line, *changes])
-    # A message is cut in its middle: the whole line to paste stands at its end, or is not there.
-    if changes and len(proposed) > LONGEST_MESSAGE // 2:
-        proposed = shlex.join(changes)
-    room = LONGEST_MESSAGE - len(f"{name}: ; try: {proposed}")
-    return f"{cut(refusal.reason, room)}; try: {proposed}"
+    change = {}
+    for n, option in options.items():
+        for known in (n, option.name):  # on the command line and in Python
+            if known in refusal.change:
+                change[n] = refusal.change[known]
+    change = change or _example(refusal.reason, options, line)
+    # A file stands in place of the options of a chain: a wrong one is left out.
+    if "--spheres" in line and change.keys() & _CHAIN:
+        change = {n: None for n in change if f"--{n}" in line}
+        if not change:
+            return cut(f"{refusal.reason}; change it in the file{TRY}{KEYS}")
+    proposed = _examples(chosen, name)[-1]
+    if change:
+        changes = _changed(line, change, options)
+        proposed = shlex.join([name, *line, *changes])
+        # A message is cut in its middle: the whole line stands at its end, or is not there.
+        if changes and len(proposed) > LONGEST_MESSAGE // 2:
+            proposed = shlex.join(changes)
+    room = LONGEST_MESSAGE - len(f"{name}: {TRY}{proposed}")
+    return f"{cut(refusal.reason, room)}{TRY}{proposed}"
 
+
+def _changed(
+    line: list[str],
+    change: Mapping[str, object],
+    options: Mapping[str, click.Parameter],
+) -> list[str]:
+    """Remove the options of a change from a line; return the words that take their place.
+
+    A mapping is an option that is given several times, as ``--column force=2``; a sequence is
+    written with commas, and None or an empty one leaves the option out.
+    """
+    words = []
+    for name, value in change.items():
+        flag = f"--{name}"
+        # A flag stands alone, another option before its value.
+        length = 1 if getattr(options[name], "is_flag", False) else 2
+        while flag in line:
+            at = line.index(flag)
+            del line[at : at + length]
+        texts = [str(value)]
+        if isinstance(value, Mapping):
+            texts = [f"{key}={part}" for key, part in value.items()]
+        elif isinstance(value, tuple | list):
+            texts = [",".join(map(str, value))]
+        for text in texts:
+            if value not in (None, ()):
+                words += [flag, text]
+    return words
+
+
+def _examples(command: click.Command | None, name: str) -> list[str]:
+    """The line that asks a program for help, and those at the end of a command's help."""
+    lines = []
+    if command:
+        lines = (command.epilog or "").splitlines()
+    return [f"{name} --help", *(x.strip() for x in lines if f" {name} " in x)]
+
+
+TRY = "; try: "
+"""Mark between the reason of a refusal and the line to paste."""
+
+KEYS = "lwa-validate run --keys"
+"""The line that shows all keys of a file."""
 
 _SUBJECT = re.compile(r"(\w+) is |'(\w+)' has no value")
 """The option at the start of a reason, or the symbol for which a number is wanted."""
@@ -193,7 +239,7 @@ def _example(
 ) -> dict[str, object]:
     """The example of the option that a reason is about; {} for none, and if it is given.
 
-    An option with neither example nor default is None: the command runs without it.
+    An option without an example is left out: its value is None.
     """
     subject = _SUBJECT.match(reason)
     if subject is None:
@@ -201,20 +247,16 @@ def _example(
     found: dict[str, object] = {}
     near = re.search(r"did you mean ([\w-]+)", reason)
     for name, option in options.items():
-        text = str(option.default)
+        # Options of `lwa` have an example; the default of others is a valid text.
+        text = option.default if isinstance(option.default, str) else None
+        example = getattr(option.type, "example", text)
         if f"--{name}" in line[:-1]:
             text = line[line.index(f"--{name}") + 1]
-        # Options of `lwa` have an example; the default of others is a valid text.
-        example = getattr(option.type, "example", option.default)
         if near:
             example = near[1]
-        meant = name == subject[1] or subject[2] in re.split(r"\W", text)
+        meant = name == subject[1] or subject[2] in re.split(r"\W", text or "")
         # A refusal of the example itself is about something else.
-        if not meant:
-            continue
-        if not isinstance(example, str) and f"--{name}" in line:
-            found[name] = None
-        elif isinstance(example, str) and example != text:
+        if meant and example != text:
             found[name] = example
     if subject[2] == "F" and not found:  # the symbol of a force that is not given
         found["force"] = "10"

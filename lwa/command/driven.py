@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from typing import Any
 
 import sympy as sp
@@ -66,26 +67,28 @@ def strike(
     """
     if spheres is None:
         raise InputError(
-            f"the chain is read from a file, such as one written by {_STRIKE_FILE}",
-            spheres="chain.toml",
+            f"the chain is read from a file by --spheres; try: {_STRIKE_FILE}"
         )
     chain = take_chain({"spheres": spheres})
     cell, striker = chain.cell, chain.striker
+    file = shlex.quote(spheres)
     # The relation of a strike rests on the wave without load, which scales with the force.
     if chain.precompression:
         raise InputError(
             f"precompression is {chain.precompression} in {spheres}: the pulse of a strike is that "
-            "of a chain without load; leave the key out"
+            f"of a chain without load; leave the key out; try: lwa-validate run {file}"
         )
     # A closed form of unlike beads knows no striker.
     if not cell.uniform:
         raise InputError(
-            f"{spheres} has unlike beads or contacts: the pulse is that of equal ones; "
-            f"lwa-validate run {spheres} simulates any chain"
+            f"{spheres} has unlike beads or contacts: the pulse is that of equal ones, and a "
+            f"simulation takes any; try: lwa-validate run {file}"
         )
     # Speed and width are lengths, which a file of masses may lack.
     if cell.spacing.is_Symbol:
-        raise InputError(f"{spheres} has no spacing: add spacings = 1.0 to [chain]")
+        raise InputError(
+            f"{spheres} has no spacing: add spacings = 1.0 to [chain]; try: lwa-validate run --keys"
+        )
     # Options stand above the file.
     if velocity is None and drop is None:
         velocity, drop = striker.velocity, striker.drop

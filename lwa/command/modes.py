@@ -55,7 +55,7 @@ def dispersion(
     # Options of the chain are taken out first: a file stands in their place.
     spheres = options["spheres"] is not None
     chain = take_chain(options)
-    precompression = chain.load(precompression)
+    precompression = chain.load(precompression, None)
     # The series of equal contacts is that of any k; the bands are those of spheres then.
     if precompression is not None and not (spheres or given("k")):
         chain = replace(chain, law=Power(EXPONENT))
@@ -166,7 +166,7 @@ def envelope(
     from lwa.envelopes import schrodinger  # here: `lwa dispersion` spares NumPy
 
     chain = take_chain(options)
-    load = chain.load(precompression)
+    load = chain.load(precompression, background)
     # Without a load nothing is linear, and no mode exists.
     if background is None and load is None:
         raise InputError(

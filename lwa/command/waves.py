@@ -77,7 +77,7 @@ def wave(
     """
     spheres = options["spheres"] is not None
     chain = take_chain(options)
-    static = chain.load(precompression)
+    static = chain.load(precompression, background)
     # Options of which one says the other are not given together.
     load = static if background is None else background
     # The wave under a load is of another class: that of any law, in numbers.

@@ -38,6 +38,7 @@ from lwa.base.exact import (
     InputError,
     brief,
     demand_distinct,
+    demand_numbers,
     factored,
     integer,
     positive,
@@ -174,7 +175,7 @@ class Envelope(Value):
         # Only then is the sign of an expression in symbols known.
         sign = self._tidy(sign)
         if sign.is_negative is None:
-            raise InputError("kind depends on symbols: give numbers")
+            demand_numbers(sign.free_symbols, "bright or dark depends on it")
         return "bright" if sign.is_negative else "dark"
 
     def breather(
@@ -206,7 +207,8 @@ class Envelope(Value):
             detuning = 1 - positive(frequency, "frequency") / self.frequency
         if self.group_velocity.is_zero is not True:
             raise InputError(
-                f"wavenumber is {self.wavenumber}: a breather stands where dω/dκ = 0"
+                f"wavenumber is {self.wavenumber}: a breather stands where dω/dκ = 0",
+                wavenumber=sp.pi,
             )
         return Breather(self, signed(detuning, "detuning"), kind or self.kind)
 

@@ -27,11 +27,14 @@ from lwa.expansion.recursion import Recursion
 from lwa.expansion.series import EpsilonSeries
 from lwa.law import ContactLaw, for_cell
 
+EPSILON_NAMES = ("ε", "varepsilon")
+"""Names that no symbol of a cell may have: ``k - 1`` is printed as ε, in LaTeX as varepsilon."""
+
 LARGEST = 3_000_000
 """Most terms of the polynomials of an expansion: half a minute for equal beads (order 114)."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Expansion(Value):
     """The traveling wave of a chain as a series in ``ε = k - 1`` (see `expand`).
 
@@ -48,6 +51,11 @@ class Expansion(Value):
     cell: Cell
     order: int
     k: sp.Expr = symbol_k
+
+    def __repr__(self) -> str:
+        # The speed is the quantity that takes least time.
+        shown = f"order={self.order}, k={self.k}, c²: {self.c2.answer}"
+        return f"Expansion({self.cell!r}, {shown})"
 
     @cached_property
     def _observables(self) -> Observables:
@@ -192,6 +200,12 @@ def expand(
             "and only a power law has a k"
         )
     k = exponent(law.exponent)
+    # Text and LaTeX call the series' own parameter so.
+    for symbol in {*cell.symbols, *k.free_symbols}:
+        if symbol.name in EPSILON_NAMES:
+            raise InputError(
+                f"{symbol} is the series' parameter k - 1: another name is wanted"
+            )
     if not k.free_symbols and k <= 1:
         raise InputError(f"k is {k}: the expansion in k - 1 wants k > 1")
     terms = _terms(shares_model(cell, k), order)

@@ -211,14 +211,14 @@ def joined_error(quantity: str, k_value: sp.Expr) -> float:
 # --- in elementary functions, for source code ---------------------------------------------------
 
 STEPS = 8
-"""Steps up to Γ(z + 8), where the next term of Stirling's series is 2e-8 and changes slowly."""
+"""Steps up to Γ(z + 8), where the next term of Stirling's series is 3e-10."""
 
-TERMS = 24
+TERMS = 30
 """Terms of the sum of the incomplete beta function, falling as ``x^j/√j``; x is at most ½."""
 
 
 def elementary(value: sp.Expr) -> sp.Expr:
-    """A closed form with Γ and the incomplete beta function written out, to 1e-8.
+    """A closed form with Γ and the incomplete beta function written out, to 1e-8 of the value.
 
     Some languages lack them.
     """
@@ -237,7 +237,7 @@ def _beta(a: sp.Expr, b: sp.Expr, low: sp.Expr, x: sp.Expr) -> sp.Expr:
 def _gamma(z: sp.Expr) -> sp.Expr:
     """Γ(z) by Stirling's series at z + `STEPS`."""
     w = z + STEPS
-    log = w * (sp.log(w) - 1) + 1 / (12 * w) - 1 / (360 * w**3)
+    log = w * (sp.log(w) - 1) + 1 / (12 * w) - 1 / (360 * w**3) + 1 / (1260 * w**5)
     value = sp.sqrt(2 * sp.pi / w) * sp.exp(log)
     # Γ(z) = Γ(z + 1)/z, step by step
     for j in range(STEPS):

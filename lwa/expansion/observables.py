@@ -111,13 +111,14 @@ class Observables:
         terms: Series = found(contact) if callable(found) else found
         result = []
         for n in range(self.order + 1):
-            total = sp.S.Zero
+            parts = []
             # Widths are polynomials in y², which is log 2 at half of the peak.
             for d, coefficient in by_degree(terms[2 * n]).items():
                 # t² = ε/I³
                 part = self._over_I(coefficient, 3 * n)
-                total += part * sp.log(2) ** (d // 2)
-            result.append(total)
+                parts.append(part * sp.log(2) ** (d // 2))
+            # SymPy sorts a sum anew for each term that is added.
+            result.append(sp.Add(*parts))
         return tuple(result)
 
     @cached_property

@@ -41,7 +41,7 @@ from lwa.expansion.observables import equal_beads, shares_model
 from lwa.linear.dispersion import Dispersion
 
 SHOWN = 3
-"""Terms of a series in LaTeX."""
+"""Terms of a series in LaTeX and in its repr."""
 
 LOWEST = 6
 """Lowest order that is summed.
@@ -195,7 +195,17 @@ class EpsilonSeries(Value):
         )
 
     def __repr__(self) -> str:
-        return f"EpsilonSeries({self.quantity} to ε^{self.order}, k={self.k}, {self.cell!r})"
+        name = f"{self.quantity} to ε^{self.order}"
+        return f"EpsilonSeries({name}, k={self.k}, {self.cell!r}, {self.answer})"
+
+    @property
+    def answer(self) -> str:
+        """The sum in text; the first `SHOWN` coefficients if the series is not summed."""
+        try:
+            return f"sum {self.at()}"
+        except InputError:
+            first = [shorten(value) for value in self.coefficients[:SHOWN]]
+            return f"coefficients {', '.join(first)}, …"
 
     def latex_rows(self) -> list[str]:
         """The series as a paper prints it: its name, its first `SHOWN` terms and dots."""

@@ -91,7 +91,7 @@ class Statics:
         """Newton's method for links that carry one force f, in ln f and the ln δ of the links.
 
         Logarithms keep the digits of a compression that is far smaller than the mean. A step to
-        where a law does not rise, as beyond a pole, is halved in the logarithm.
+        where a law does not rise, as beyond a pole, is halved in the logarithm; other links wait.
         """
         spans = self.network.spans
         total = self.network.size * e
@@ -111,7 +111,9 @@ class Statics:
                 common = missing / (gain / spans).sum(axis=-1)
                 forward = (common[..., None] - logs) * gain / delta
                 back = np.log(inside / delta) / 2
-                step = np.where(rises, forward, back)
+                # The forces of links that rise mean nothing while another link is beyond its law.
+                held = np.where(rises, 0.0, back)
+                step = np.where(rises.all(axis=-1, keepdims=True), forward, held)
                 # Far from the state the first order overshoots.
                 bounded = np.clip(step, -_BOLDEST, _BOLDEST)
                 step = np.where(np.isfinite(step), bounded, 0.0)

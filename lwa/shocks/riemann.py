@@ -111,7 +111,7 @@ class Shock(Value):
     def kind(self) -> Literal["shock", "rarefaction"]:
         """ "shock" where sound is faster behind the front, else "rarefaction"."""
         if self._gain.is_positive is None:
-            raise InputError("kind depends on symbols: give numbers")
+            demand_numbers(self._gain.free_symbols, "the kind depends on it")
         return "shock" if self._gain.is_positive else "rarefaction"
 
     @property

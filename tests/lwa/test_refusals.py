@@ -26,6 +26,7 @@ WAVE, ONE = canonical_wave(DIMER), canonical_wave(Cell([1], spacing=1), "3/2")
 HERTZ, LINK = Power("3/2"), Link(0, 1, Power("3/2"))
 EQUAL, BEADS = Cell([1], spacing=1), Lattice([1], [LINK])
 SOFT = Law(DELTA - DELTA**2)
+PRESSED = Law(DELTA + sp.Rational(1, 10))  # pushes with 1/10 before it is compressed
 BENT = named("polynomial", "1/2", "-1/4")  # F″ = 1 - 3δ/2
 WAVY = Law(2 * DELTA + sp.sin(DELTA), DELTA)  # F″ = -sin δ
 
@@ -73,6 +74,7 @@ CALLS = [
     (lambda: expand(Cell([1], [8]), 6, k="3/2").c2.at("6/5"), "that of k = 3/2"),
     (lambda: expand(CHAIN, 6).c2.at(1), "k is 1"),
     (lambda: expand(CHAIN, 5).c2.at("3/2"), "from order 6 on"),
+    (lambda: expand(Cell(["ε", 1])), "ε is the series' parameter"),
     (
         lambda: expand(CHAIN, 2, law=Law(sp.exp(DELTA) - 1, DELTA)),
         "only a power law has a k",
@@ -81,6 +83,10 @@ CALLS = [
     (lambda: loaded(lwa.general(), 1, 1).fwhm(), "no expression"),
     (lambda: lwa.loaded_wave(EQUAL, force=2, rise=1), "not by both"),
     (lambda: lwa.loaded_wave(EQUAL, force=2, precompression=1, law=SOFT), "reach"),
+    (
+        lambda: PRESSED.inverse(sp.Rational(1, 50)),
+        "force is 1/50: the law does not reach it",
+    ),
     (
         lambda: homogenize(Dimer(1, 2)).pde.traveling_wave().on_background(1),
         "canonical",
@@ -93,7 +99,7 @@ CALLS = [
     (lambda: front(1, -1), "ahead is -1: contacts of a power law only push"),
     (lambda: front(4, 1).trailing_speed, "the trailing edge holds up to 1.3"),
     (lambda: front(1, 2).peak, "a rarefaction has no pulse"),
-    (lambda: front("p", 1, law=Power("k")).kind, "kind depends on symbols"),
+    (lambda: front("p", 1, law=Power("k")).kind, "the kind depends"),
     (lambda: front(1, 0, law=Power(1)), "a front without load wants k > 1"),
     (
         lambda: front(1, 0, law=BENT),

@@ -126,7 +126,7 @@ class Contact:
         """Evaluate a function of the law: its "force", "slope" or "energy"."""
         assert self.law is not None
         with _refused(self.law):  # beyond a singular law's reach: inf or NaN
-            function = _functions(self.law, "numpy")[name]
+            function = _function(self.law, name, "numpy")
             if self.pulls:
                 values = function(compression)
                 # A constant is a number, whatever the array.
@@ -177,16 +177,19 @@ _NAMES = ("force", "slope", "energy")
 
 
 @lru_cache
-def _functions(law: ContactLaw, module: str) -> dict[str, Callable[..., Any]]:
-    """Return F, F′ and the energy of a law by name, as functions that call "numpy" or "math"."""
-    at_rest = sp.limit(law.energy, law.delta, 0, "+")
-    expressions = law.F, law.slope(), law.energy - at_rest
-    functions = {}
-    for name, expression in zip(_NAMES, expressions, strict=True):
-        # Exact coefficients become floats. Small compressions keep their digits in e^δ - 1.
-        prepared = optimize(sp.N(sp.sympify(expression), 20), [expm1_opt])
-        functions[name] = sp.lambdify(law.delta, prepared, module)
-    return functions
+def _function(law: ContactLaw, name: str, module: str) -> Callable[..., Any]:
+    """Return F, F′ or the energy of a law, as a function that calls "numpy" or "math"."""
+    # An energy by SymPy's integral takes seconds, which forces alone need not wait for.
+    if name == "force":
+        expression = law.F
+    elif name == "slope":
+        expression = law.slope()
+    else:
+        expression = law.energy - sp.limit(law.energy, law.delta, 0, "+")
+    # Exact coefficients become floats. Small compressions keep their digits in e^δ - 1.
+    prepared = optimize(sp.N(sp.sympify(expression), 20), [expm1_opt])
+    function: Callable[..., Any] = sp.lambdify(law.delta, prepared, module)
+    return function
 
 
 @lru_cache
@@ -196,8 +199,7 @@ def _machine_code(law: ContactLaw) -> dict[str, Any]:
 
     compiled = cfunc("f8(f8)", error_model="numpy")
     with _refused(law):
-        functions = _functions(law, "math")
-        return {name: compiled(function) for name, function in functions.items()}
+        return {name: compiled(_function(law, name, "math")) for name in _NAMES}
 
 
 @contextmanager

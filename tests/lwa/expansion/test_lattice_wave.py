@@ -9,6 +9,7 @@ from lwa.cell import k as symbol_k
 from lwa.expansion.dimers import exponent_of_light_beads
 from lwa.expansion.joined import TWO_BODIES, phi_series
 from tests.lwa.expansion.test_exact_waves import lattice
+from tests.lwa.wave.test_source import answers, in_each_language
 from tests.test_errors import LOOSE, holds
 from validation import simulate
 from validation.pulses.pulse import measure
@@ -242,16 +243,36 @@ def test_a_wave_of_symbols():
     assert r"\Gamma" in wave._repr_latex_()
 
 
-def test_a_program_computes_the_wave():
-    """Γ and the incomplete beta function are written out."""
-    wave = lattice_wave(Cell(["m"], ["A"]), force="F")
-    program = {}
-    exec(wave.code("numpy"), program)
-    assert "tgamma" not in wave.code("c")
-    for k in ("1.05", 20):
-        at = wave.at(k=k, m=1, A=1, D=1, F=1)
-        speed = program["speed"](1, float(at.k), 1, 1, 1)
-        assert float(speed) == pytest.approx(float(at.speed), rel=1e-8)
-        for name in ("strain", "force", "velocity"):
-            width = program[f"fwhm_{name}"](float(at.k), 1)
-            assert float(width) == pytest.approx(float(at.fwhm(name)), rel=1e-7)
+CHAINS = {
+    "equal": (Cell(["m"], ["A"]), {"m": 2, "A": 3}, ("1.05", "5/2", 60)),
+    "dimer": (Dimer("m1", "m2"), {"m1": 2, "m2": 0.25}, ("1.05", "3/2", 3)),
+}
+
+
+@in_each_language
+@pytest.mark.parametrize("chain", CHAINS)
+def test_a_program_computes_the_wave(tmp_path, language, chain):
+    """Γ and the incomplete beta function are written out, to 1e-8."""
+    cell, values, exponents = CHAINS[chain]
+    wave = lattice_wave(cell, force="F")
+    calls, expected = [], []
+    for k in exponents:
+        known = {"F": 5, "k": sp.Rational(k), **values, "D": 0.5}
+        for function, call in RESULTS.items():
+            name = {"c": "speed"}.get(function, "_".join(call))
+            symbols = {str(symbol) for symbol in read(wave, call).free_symbols}
+            # a function has the arguments that it depends on, in this order
+            used = [float(known[symbol]) for symbol in known if symbol in symbols]
+            calls.append((name, *used))
+            expected.append(float(read(wave.at(**known), call)))
+    source = wave.code(language)
+    assert "tgamma" not in source
+    found = answers(language, source, calls, tmp_path)
+    assert found == pytest.approx(expected, rel=1e-8)
+
+
+def read(wave, call):
+    """The result of an attribute, or of a method and its arguments."""
+    name, *arguments = call
+    value = getattr(wave, name)
+    return value(*arguments) if arguments else value

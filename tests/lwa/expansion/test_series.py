@@ -62,7 +62,11 @@ def test_what_takes_seconds_is_not_refused():
 
 def test_a_series_shows_in_a_notebook():
     widths = expand(Cell([1]), 12).fwhm("force")
-    assert len(repr(widths)) < 120
+    assert len(repr(widths)) < 200
+    assert "1/10 - log(2)/60" in repr(widths)
+    numbers = expand(Cell([1]), 8, k="3/2")
+    for shown in (numbers, numbers.c2):  # the lattice's c² is 0.819960
+        assert "0.81996" in repr(shown)
     first = r"\left(\frac{1}{10} - \frac{\log{\left(2 \right)}}{60}\right) \varepsilon"
     assert first in widths._repr_latex_()
     assert r" + \dots\Bigr)" in widths._repr_latex_()

@@ -106,3 +106,18 @@ def test_the_pole_of_a_magnet():
             delta = law.compression(CHAIN, sp.Rational(force))
             exact = 1 - (1 + sp.Rational(force)) ** sp.Rational(-1, n)
             assert abs(delta / exact.n(45) - 1) < 1e-33
+
+
+def test_a_weak_link_in_series_next_to_its_pole():
+    """V² = 2W/B² by the energies of both links.
+
+    Newton's method in δ itself finds no state; one that moves each link alone finds some.
+    """
+    weak = sp.Rational(1, 10000)
+    links = [Link(0, 1, HERTZ), Link(1, 2, named("magnetic", 2, 1), weak)]
+    near = 1 - 1 / math.sqrt(1 + 1 / weak)  # weak ((1-δ)^-2 - 1) = 1
+    energy = 2 / 5 + weak * (1 / (1 - near) - 1 - near)
+    rise = (1 + near) / 2
+    wave = loaded_wave(Lattice([1, 1], links), force=1)
+    assert float(wave.strain) == pytest.approx(rise, rel=1e-14)
+    assert float(wave.speed) ** 2 == pytest.approx(energy / rise**2, rel=1e-12)

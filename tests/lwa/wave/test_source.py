@@ -155,7 +155,7 @@ def expected(name):
     return rows
 
 
-@pytest.mark.parametrize(
+in_each_language = pytest.mark.parametrize(
     "language",
     [
         pytest.param(name, marks=pytest.mark.optional(PROGRAMS[name]))
@@ -164,6 +164,9 @@ def expected(name):
         for name in LANGUAGES
     ],
 )
+
+
+@in_each_language
 @pytest.mark.parametrize("name", WAVES)
 def test_closed_forms_and_profiles_are_good_to_1e14(tmp_path, language, name):
     functions, rows = functions_of(WAVES[name][0]), expected(name)

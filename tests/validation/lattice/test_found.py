@@ -95,6 +95,33 @@ def test_damping_does_not_take_a_laws_attraction(damping, parting):
     assert abs(run.energy_drift) < 1e-7
 
 
+def test_an_energy_of_attraction_is_no_scale():
+    """The beads attract each other, and are slow: their energy is negative."""
+    law = Law(X ** sp.Rational(3, 2) - sp.Rational(1, 10), X)
+    scene = Scene(**PAIR, law=law, displacements=(0.1,), velocities=(0.1,), duration=10)
+    assert abs(simulate(scene).energy_drift) < 1e-8
+
+
+def test_a_driven_bead_that_leaves_sets_no_tolerance():
+    """The piston's energy is 1e8 times that of the collision behind it."""
+    scene = Scene(
+        masses=(1,) * 3, stiffnesses=(1, 1), k=1.5, duration=200, drive=Drive(velocity=-1),
+        velocities=(0, 1e-4),
+    )  # fmt: skip
+    run = simulate(scene, rtol=1e-6)
+    assert run.velocities == pytest.approx([-1, 0, 1e-4], abs=1e-9)
+
+
+def test_corrected_kinks_shorten_no_steps():
+    """Forty beads collide: 59 steps, and three times as many by the pair alone."""
+    random = np.random.default_rng(3)
+    scene = Scene(
+        masses=(1,) * 40, stiffnesses=(1,) * 39, k=1, velocities=random.normal(size=40),
+        displacements=np.cumsum(random.uniform(0, 0.3, 40)), duration=15,
+    )  # fmt: skip
+    assert scene.duration / simulate(scene, rtol=1e-5).step < 100
+
+
 @pytest.mark.parametrize(
     "law", [named("exponential", 1), Law(X**2 * sp.log(1 + 1 / X), X)]
 )

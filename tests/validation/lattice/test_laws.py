@@ -1,8 +1,12 @@
 """Contact laws other than powers: Toda's exact soliton, and a wall that recedes."""
 
+import math
+
 import numpy as np
+import pytest
 
 from lwa.law import named
+from validation.lattice.laws import Contact
 from validation.lattice.simulate import simulate
 from validation.scenes.forcing import Drive
 from validation.scenes.scene import Scene
@@ -37,3 +41,8 @@ def test_a_wall_recedes_from_a_chain_that_softens():
     )  # fmt: skip
     fast, other = simulate(scene), simulate(scene, method="DOP853")
     assert np.abs(fast.displacements - other.displacements).max() < 1e-7
+
+
+def test_a_small_force_has_all_digits():
+    force = Contact(1, named("exponential", 1)).force(np.array([1e-9]))
+    assert force == pytest.approx([math.expm1(1e-9)], rel=1e-15, abs=0)
