@@ -294,7 +294,7 @@ def factored(value: sp.Expr) -> sp.Expr:
     return rearranged(sp.factor, value)
 
 
-def rearranged(method: Callable[[sp.Expr], sp.Expr], value: sp.Expr) -> sp.Expr:
+def rearranged(method: Callable[[sp.Expr], Any], value: sp.Expr) -> sp.Expr:
     """Apply SymPy's `factor` or `cancel`; powers with long exponents are taken for symbols.
 
     SymPy takes ``x^{p/q}`` for the power p of ``x^{1/q}``. Polynomials of such a degree fill the

@@ -206,81 +206,52 @@ def equal_beads(contacts: Contacts, wavenumber: sp.Expr) -> Mode:
     )
 
 
-def pair_at_edge(contacts: Contacts, edge: sp.Integer, branch: int) -> Mode:
-    """The mode of two beads at the edge of a band in closed form.
+def lone_bead(contacts: Contacts, branch: int) -> Mode:
+    """The mode of two unlike beads between equal contacts at ``κ = π``, in closed form.
 
-    At ``κ = 0`` the beads swing against each other. At ``κ = π`` one of two unlike beads between
-    equal contacts swings alone, and one of two unlike contacts between equal beads works alone.
+    Every second bead, of the mass m, swings alone: on the optical branch the light one, on the
+    acoustic one the heavy one. Both its contacts are always compressed by opposite amounts, so that
+    no force drives the second harmonic, and ``c_g = 0`` leaves no lasting force. With M for the
+    mass of the beads at rest the relation of the branches::
 
-    The second harmonic has the wavenumber 0. It shifts the first bead by y against the second, and
-    so compresses the contacts by y and -y::
+        m M x² - 2 K2 (m + M) x + 2 K2² (1 - cos κ) = 0
 
-        (K2_1 + K2_2 - 4x μ) y = K3_2 d_2² - K3_1 d_1²,    μ = m_1 m_2/(m_1 + m_2).
+    at ``x = 2 K2/m``, differentiated twice by κ, gives ``ω ω″``.
 
     Parameters
     ----------
     contacts : Contacts
-        The cell under load; at ``κ = π`` masses or contacts are alike. Of symbols the first mass is
-        taken to be the heavier one, and the first contact the stiffer one.
-    edge : {1, -1}
-        ``cos κ``.
+        The cell under load. Of symbols the first mass is taken to be the heavier one.
     branch : int
         0 for the acoustic branch, 1 for the optical one.
 
     Raises
     ------
     InputError
-        Where the branches touch, and where the second harmonic is a mode that the mode drives.
+        For equal masses, where the branches touch.
     """
     m1, m2 = contacts.masses
-    k1, k2 = contacts.K2
-    total = m1 + m2
-    reduced = m1 * m2 / total
-    light = 0 if (m1 - m2).is_negative else 1
-    if edge == 1:
-        # The branch is the optical one. Momentum is 0, and the light bead moves farther.
-        x = (k1 + k2) / reduced
-        phi = np.array([m2, -m1]) / sp.sqrt(m1 * m2 * total)
-        if light == 1:
-            phi = -phi
-    elif m1 != m2:
-        # The bead between two contacts that both push it back; its neighbours rest.
-        bead = light if branch == 1 else 1 - light
-        mass = contacts.masses[bead]
-        x = 2 * k1 / mass
-        phi = np.array([sp.S.Zero, sp.S.Zero])
-        phi[bead] = 1 / sp.sqrt(mass)
-    elif k1 != k2:
-        stiff = 1 if (k1 - k2).is_negative else 0
-        contact = stiff if branch == 1 else 1 - stiff
-        x = 2 * contacts.K2[contact] / m1
-        # The beads on both sides of the contact move against each other.
-        phi = np.array([1, -1 if contact == 0 else 1]) / sp.sqrt(2 * m1)
-    else:
+    if m1 == m2:
         raise InputError(TOUCHING)
-    inside = phi[0] - phi[1]
-    across = phi[1] - edge * phi[0]  # the contact to the next cell
-    size = np.array([inside**2, across**2])
-    K3 = contacts.K3
-    drive = K3[1] * size[1] - K3[0] * size[0]
-    y = sp.S.Zero
-    if drive != 0:  # else a resonance does not matter
-        stiffness = k1 + k2 - 4 * x * reduced
-        if stiffness.is_zero:
-            raise InputError(DRIVEN)
-        y = drive / stiffness
-    # c_g is 0 at the edge, and so is the lasting force.
-    mean = -2 * K3 * size / contacts.K2
-    # m_1 m_2 x² - (K2_1 + K2_2)(m_1 + m_2) x + 2 K2_1 K2_2 (1 - cos κ) = 0, differentiated twice
-    rate = (k1 + k2) * total - 2 * m1 * m2 * x
-    of_contacts = 3 * contacts.K4 * size**2 + 2 * K3 * size * mean
+    light = 0 if (m1 - m2).is_negative else 1
+    bead = light if branch == 1 else 1 - light
+    m = contacts.masses[bead]
+    at_rest = contacts.masses[1 - bead]
+    K2 = contacts.K2[0]
+    K3 = contacts.K3[0]
+    K4 = contacts.K4[0]
+    size = 1 / m
+    mean = -2 * K3 * size / K2
+    of_contact = 3 * K4 * size**2 + 2 * K3 * size * mean
+    phi = [sp.S.Zero, sp.S.Zero]
+    phi[bead] = 1 / sp.sqrt(m)
     return Mode(
-        square=x,
+        square=2 * K2 / m,
         slope=sp.S.Zero,
-        curvature=edge * k1 * k2 / rate,
-        cubic=of_contacts.sum() - 2 * drive * y,
-        mean=mean,
-        size=size,
+        curvature=K2 / (2 * (at_rest - m)),
+        cubic=2 * of_contact,
+        mean=[mean, mean],
+        size=[size, size],
         shape=phi,
     )
 
@@ -340,8 +311,8 @@ def cell_mode(
             s = law.phi(2).subs(law.delta, static) / 2
             t = law.phi(3).subs(law.delta, static) / 6
     # Unlike contacts have a power law, under which δ0, K2, K3 and K4 are powers of c.
-    compliances = cell.compliances(law.exponent)
-    c = np.array([sp.powsimp(part / compliances[0]) for part in compliances])
+    compliances = np.array(cell.compliances(law.exponent))
+    c = compliances / compliances[0]
     masses = np.array(cell.masses)
     contacts = Contacts(masses, K2=1 / c, K3=s / c**2, K4=t / c**3)
     mode = _mode(contacts, wavenumber, branch, floats)
@@ -364,8 +335,8 @@ def _mode(contacts: Contacts, wavenumber: sp.Expr, branch: int, floats: bool) ->
             demand_numbers(value.free_symbols, "floats need numbers")
         numbers = Contacts(*(row.astype(float) for row in rows))
         return numbers.mode(float(wavenumber), branch)
-    if wavenumber.is_zero and branch == 0:
-        raise InputError(SOUND)
     if len(contacts.masses) == 1:
+        if wavenumber.is_zero:
+            raise InputError(SOUND)
         return equal_beads(contacts, wavenumber)
-    return pair_at_edge(contacts, sp.cos(wavenumber), branch)
+    return lone_bead(contacts, branch)

@@ -388,14 +388,14 @@ def envelope(
     """The nonlinear Schrödinger equation of a mode of a chain under load.
 
     Results are exact, in symbols as well, for cells of one bead at any wavenumber, and of two beads
-    at ``κ = 0`` and, with equal masses or contacts, at ``κ = π``, unless they are `numeric`;
-    elsewhere they are floats, for numbers.
+    with equal contacts at ``κ = π``, unless they are `numeric`; elsewhere they are floats, for
+    numbers.
 
     Parameters
     ----------
     cell : Cell
         The periodic cell. Of two masses that are symbols the first one is taken to be the heavier
-        one, and of two stiffnesses the larger one.
+        one.
     law : ContactLaw, optional
         The contact law, by default a power; under `lwa.general` results hold the symbols K2, K3, K4
         of the force ``K2 δ + K3 δ² + K4 δ³`` on top of the load, for equal contacts.
@@ -445,9 +445,8 @@ def envelope(
         wavenumber=kappa.free_symbols,
     )
     number = _branch_number(branch, cell)
-    # Elsewhere ω² is no rational function of masses and stiffnesses.
-    alike = len({*cell.masses}) == 1 or cell.equal_contacts
-    edge = cell.size == 2 and (kappa.is_zero or (kappa == sp.pi and alike))
+    # A bead between equal contacts swings alone there; other modes are floats.
+    edge = cell.size == 2 and kappa == sp.pi and cell.equal_contacts
     exact = cell.size == 1 or edge
     return Envelope(cell, law, static, kappa, number, floats=not exact)
 

@@ -77,14 +77,12 @@ class Bands(Value):
         mass = np.sqrt(P * self.fractions)
         share = np.sqrt(self.shares)
         # f_i = (a_{i+1} - a_i)/C_i: contact i pulls on particle i and on the next one.
-        B = np.zeros((*phase.shape, P, P), complex)
-        for i in range(P):
-            B[..., i, i] = -1 / (share[i] * mass[i])
-        for i in range(P - 1):
-            B[..., i, i + 1] = 1 / (share[i] * mass[i + 1])
-        # The last contact joins the next cell's first particle, a_P = e^{iPκ} a_0. In a cell of one
-        # particle this is the entry that is set above, hence the sum.
-        B[..., -1, 0] += phase / (share[-1] * mass[0])
+        here = np.eye(P)
+        following = np.roll(here, 1, axis=1)
+        B = np.zeros((*phase.shape, P, P), complex) + following - here
+        # The last contact joins the next cell's first particle, a_P = e^{iPκ} a_0.
+        B[..., -1, :] = phase[..., None] * following[-1] - here[-1]
+        B /= share[:, None] * mass
         # NumPy's singular values descend.
         descending = np.linalg.svd(B, compute_uv=False)
         return descending[..., ::-1].astype(float) * self.rate

@@ -1,8 +1,8 @@
 """The compact wave's closed forms in float64: NumPy functions of arrays of k and m2/m1, or ω.
 
 The functions are those that `lwa.wave.source` writes, compiled; lengths are in units of D. Relative
-errors are below 1e-11; next to the edge of the domain of waves, where G + H + I or V² vanishes, the
-last digit of k or ω changes the results by more.
+errors are below 1e-11 where (G + H + I)/D² and ``V²/B^{k-1}`` are above 1e-3; nearer to the edge of
+the domain of waves, where one of the two vanishes, they grow (`lwa.wave.source`).
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from lwa.base.words import QuantityName, one_of
 from lwa.wave.arch import Arch
 from lwa.wave.source import Functions, wave_functions
 
-LARGEST = 1e150
-"""Largest mass ratio: V² holds the square of its reciprocal, the least that a double has."""
+LARGEST = 1e6
+"""Largest mass ratio: V² is of the size of its reciprocal's square, 1e-12, and cancels to 1e-4."""
 
 Missing = Literal["raise", "nan"]
 """Answers where no wave exists: raise `lwa.NoSolitaryWave`, or return NaN."""
@@ -49,7 +49,7 @@ class NumericWave(Value):
     Raises
     ------
     InputError
-        For another wave, and for ω beyond 1e±150.
+        For another wave, and for ω beyond 1e±6.
 
     Examples
     --------

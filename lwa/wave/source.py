@@ -1,11 +1,12 @@
 """Source text of programs: functions for β, widths, speed, amplitude and profile of compact waves.
 
 SymPy's printers write the expressions; a table has what they leave out, the lines about them. All
-numbers are doubles. The formulas are written in forms that keep their digits in floating point:
-relative errors are 1e-14, with three ill-conditioned exceptions. The amplitude's exponent
-``2/(k-1)`` makes each rounding ``|ln B|`` times larger. Near the edge of the domain of waves (G + H
-+ I → 0, V² → 0) the last digit of k or of a mass changes the result by more. Near the end of the
-support the last digit of ξ does: the profile is right to 1e-14 B at a ξ off by 1e-14 ξ.
+numbers are doubles. Widths and ``ln V²`` are written in forms that keep their digits as k → 1.
+Relative errors are 1e-14, with three ill-conditioned exceptions. The amplitude's exponent
+``2/(k-1)`` makes each rounding ``|ln B|`` times larger. Near the edge of the domain of waves, where
+(G + H + I)/D² or ``f = V²/B^{k-1}`` is small, terms cancel: errors are 1e-14/f, as is the change by
+the last digit of k or of a mass. Near the end of the support the last digit of ξ does the same: the
+profile is right to 1e-14 B at a ξ off by 1e-14 ξ.
 """
 
 from __future__ import annotations
@@ -261,11 +262,9 @@ def wave_functions(wave: Arch) -> Functions:
     D = cell.spacing
     functions = Functions(k, *cell.masses, *cell.stiffnesses, D, wave.coefficient_sum)
     define = functions.define
-    total = _stable(wave.coefficient_sum, k)
-    factor = _stable(wave.speed_factor, k)
-    excess = _stable(sp.factor(sp.cancel(wave.speed_factor - 1)), k)
-    total = define("coefficient_sum", "(G + H + I)/D^2", total)
-    factor = define("speed_factor", "V_s^2/B^(k - 1)", factor)
+    excess = sp.factor(sp.cancel(wave.speed_factor - 1))
+    total = define("coefficient_sum", "(G + H + I)/D^2", wave.coefficient_sum)
+    factor = define("speed_factor", "V_s^2/B^(k - 1)", wave.speed_factor)
     beta = define(
         "beta",
         "beta = (k - 1)/(2 sqrt(G + H + I))",
@@ -318,37 +317,3 @@ def wave_functions(wave: Arch) -> Functions:
         speed.subs(_B, strain) * scale,
     )
     return functions
-
-
-def _stable(ratio: sp.Expr, k: sp.Expr) -> sp.Expr:
-    """Rewrite the sums of a rational expression as polynomials in the masses and the ``A^{1/k}``.
-
-    Their coefficients are factored in k: a coefficient that vanishes at a k does so in floats, too.
-    """
-    if not k.is_Symbol:  # a number has no digits to lose
-        return ratio
-    roots: dict[sp.Expr, sp.Symbol] = {}  # a symbol for each A^{1/k}
-
-    def root(power: sp.Pow) -> sp.Expr:
-        # A^{n/k} is the power n of A^{1/k}.
-        n, _ = (power.exp * k).as_coeff_Mul()
-        symbol = sp.Dummy(positive=True)
-        return roots.setdefault(power.base ** (power.exp / n), symbol) ** n
-
-    def is_sum(part: sp.Expr) -> bool:
-        # k - 1 and its like lose no digits.
-        return bool(part.is_Add and part.has(k) and not (part - k).is_number)
-
-    def factored_in_k(total: sp.Expr) -> sp.Expr:
-        others = sorted(total.free_symbols - {k}, key=str)
-        if not others:
-            return sp.factor(total)
-        rewritten = sp.S.Zero
-        for powers, coefficient in sp.Poly(total, *others).terms():
-            monomial = sp.prod(map(sp.Pow, others, powers))
-            rewritten += sp.factor(coefficient) * monomial
-        return rewritten
-
-    ratio = ratio.replace(lambda e: e.is_Pow and e.exp.has(k), root)
-    ratio = ratio.replace(is_sum, factored_in_k)
-    return ratio.xreplace({symbol: power for power, symbol in roots.items()})

@@ -188,7 +188,8 @@ def _function(law: ContactLaw, name: str, module: str) -> Callable[..., Any]:
         expression = law.energy - sp.limit(law.energy, law.delta, 0, "+")
     # Exact coefficients become floats. Small compressions keep their digits in e^δ - 1.
     prepared = optimize(sp.N(sp.sympify(expression), 20), [expm1_opt])
-    return sp.lambdify(law.delta, prepared, module)
+    function: Callable[..., Any] = sp.lambdify(law.delta, prepared, module)
+    return function
 
 
 @lru_cache

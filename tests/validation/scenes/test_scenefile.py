@@ -17,6 +17,7 @@ from lwa.law import named
 from lwa.spheres import beads
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from tests.validation.scenes.test_scene import anything
+from validation.lattice.simulate import simulate
 from validation.scenes import scenefile
 from validation.scenes.chains import STEEL
 from validation.scenes.forcing import DAMPINGS, Damping, Drive
@@ -107,6 +108,17 @@ def test_the_cell_of_a_scene_is_read_by_the_theory():
         [float(A) for A in cell.stiffnesses], rel=1e-15
     )
     assert chain.spacings[:2] == (float(cell.spacing),) * 2
+
+
+@pytest.mark.parametrize(("cell", "k"), [([1], 1.2), ([2, 2, 1], 1.5), ([1, 3], 4.0)])
+def test_without_a_duration_the_pulse_of_a_striker_reaches_the_last_contact(cell, k):
+    chain = {"cell": cell, "k": k, "repeat": 12, "stiffnesses": 5}
+    content = {"chain": chain, "striker": {"velocity": 0.1}}
+    last = len(cell) * 12 - 1
+    run = simulate(scene(content | {"sensors": {"contacts": [last]}}))
+    # The peak at the last contact has passed, and the run is no longer than three times that.
+    arrival = run.time[run.contact_force[0].argmax()]
+    assert arrival < 0.95 * run.time[-1] < 3 * arrival
 
 
 # --- what is refused ------------------------------------------------------------------------
