@@ -176,27 +176,24 @@ def _stage_forces(
     On the curve p the pair's quadrature and the integral err alike, by the error of p. But the
     stages after a jump of the force are so far off p that their own motion is taken.
     """
-    law, r, points, push_of = (
-        chain.laws[chain.law[i]],
-        chain.r[i],
-        beads.points,
-        beads.push,
-    )
+    law = chain.laws[chain.law[i]]
+    r, points = chain.r[i], beads.points
     for s in range(len(pair.nodes)):
         d, slope = kinks.value_and_slope(p, pair.nodes[s])
         if jumps:
             ch = pair.nodes[s] * h
-            y, v = beads.y[i], beads.v[i]
-            near, rate = y + ch * v, v
+            rate = beads.v[i]
+            y = beads.y[i] + ch * rate
             if i == 0 and chain.drive.driven:
-                near, rate, _ = drive_motion(chain.drive, t + h / 2, t + ch)
-            d = chain.rest[i] + near - beads.y[i + 1] - ch * beads.v[i + 1]
+                y, rate, _ = drive_motion(chain.drive, t + h / 2, t + ch)
+            d = chain.rest[i] + y - beads.y[i + 1] - ch * beads.v[i + 1]
             slope = h * (rate - beads.v[i + 1])
             for j in range(s):
-                a = h * h * (push_of[j, i] - push_of[j, i + 1])
-                d += pair.moments[s, j] * a
-                slope += pair.impulses[s, j] * a
-        points[0, s], points[1, s] = d, slope
+                bend = h * h * (beads.push[j, i] - beads.push[j, i + 1])
+                d += pair.moments[s, j] * bend
+                slope += pair.impulses[s, j] * bend
+        points[0, s] = d
+        points[1, s] = slope
         points[2, s] = push(law, r, d, slope / h)
 
 
