@@ -49,6 +49,10 @@ _SUDDEN = 11.0  # growth, in a width, of a force that begins: two widths before 
 _EXACT = 1e-4  # noise over the peak of a record without noise
 
 
+class InvertedError(MeasureError):
+    """A record that falls where pulses rise: its sign may be the wrong one."""
+
+
 @dataclass(frozen=True)
 class NoisyPulse:
     """A pulse of a record.
@@ -64,9 +68,7 @@ class NoisyPulse:
     noise: float = 0.0
 
 
-def noisy_pulse(
-    time: ArrayLike, values: ArrayLike, unit: str = "", turned: str = ""
-) -> NoisyPulse:
+def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPulse:
     """Measure the first pulse of a record.
 
     Parameters
@@ -75,8 +77,6 @@ def noisy_pulse(
         Times and values of the samples, (S,).
     unit : str
         Unit of the times, for messages.
-    turned : str
-        What changes the sign of the values, for the message on an inverted record.
 
     Returns
     -------
@@ -97,11 +97,11 @@ def noisy_pulse(
     >>> print(noisy_pulse(t, np.exp(-9 * t**2) + noise).numbers["fwhm"])  # √(4 ln 2)/3
     0.557 ± 0.004
     """
-    return next(noisy_pulses(time, values, unit, turned))
+    return next(noisy_pulses(time, values, unit))
 
 
 def noisy_pulses(
-    time: ArrayLike, values: ArrayLike, unit: str = "", turned: str = ""
+    time: ArrayLike, values: ArrayLike, unit: str = ""
 ) -> Iterator[NoisyPulse]:
     """Measure the pulses of a record one after the other, as `noisy_pulse` does the first.
 
@@ -117,7 +117,7 @@ def noisy_pulses(
     if _is_exact(f) and step < _EXACT * np.ptp(f):
         yield from _exact(t, f, size)
         return
-    rise, fall = _place(t, f - f[:_EARLY].mean(), turned)
+    rise, fall = _place(t, f - f[:_EARLY].mean())
     block = max(1, int(np.count_nonzero((t > rise) & (t < fall))) // _MOST)
     whole = len(t) // block * block
     at, means = np.array((t, f))[:, :whole].reshape(2, -1, block).mean(axis=2)
@@ -148,7 +148,7 @@ def noisy_pulses(
         later = means[behind] - base.at(at[behind])
         if not later.max(initial=0.0) > _LATER * highest:
             return
-        rise, fall = _place(at[behind], later, turned)
+        rise, fall = _place(at[behind], later)
 
 
 def _is_exact(f: Array) -> bool:
@@ -239,19 +239,16 @@ def _step(f: Array) -> float:
     return float(step) if np.abs(levels - levels.round()).max() < 0.25 else 0.0
 
 
-def _place(t: Array, f: Array, turned: str) -> tuple[float, float]:
-    """Return about the times at which the first pulse rises and falls through half of its peak.
-
-    turned : what changes the sign of the signal, for a message.
-    """
+def _place(t: Array, f: Array) -> tuple[float, float]:
+    """Return about the times at which the first pulse rises and falls through half of its peak."""
     highest = max(f.max(), np.finfo(float).tiny)
     samples = (_neighbours(f) / (_SMOOTH * highest)) ** 2
     count = math.ceil(min(max(1.0, samples), len(f)))
     g = np.convolve(f, np.full(count, 1 / count), "same")
     if -g.min() > max(g.max(), 0):
-        raise MeasureError(
+        raise InvertedError(
             "the signal falls farther below its start than it rises: it begins in a pulse, or is "
-            f"inverted: {turned}".removesuffix(": ")
+            "inverted"
         )
     if not g.max() > 0:
         raise MeasureError("no pulse is in the record: its signal is nowhere positive")

@@ -49,8 +49,8 @@ class Cells:
     ----------
     head : list of rows
         Cells of the lines above the numbers.
-    entries : row
-        Cells of a line of numbers, "" for those that are none; empty in a text without numbers.
+    entries : dict of str
+        Cells of a line of numbers, by the numbers of the columns, from 1; without other cells.
     """
 
     def __init__(self, text: str) -> None:
@@ -70,14 +70,17 @@ class Cells:
         self._mark = mark = max(_MARKS, key=weight)
         start, end = record(mark)
         self.head = tables[mark][:start] if end else tables[mark]
-        self.entries = []
-        for cell in tables[mark][min(start + _SETTINGS, end - 1)] if end else ():
-            self.entries.append(cell if re.fullmatch(_number(mark), cell) else "")
+        line = tables[mark][min(start + _SETTINGS, end - 1)] if end else []
+        self.entries = {}
+        for number, cell in enumerate(line, start=1):
+            if re.fullmatch(_number(mark), cell):
+                self.entries[number] = cell
         if mark == " ":
             # Headers of several words stand apart by several blanks.
-            for i, line in enumerate(lines[: len(self.head)]):
-                apart = _split(re.sub(r"[ \t]{2,}", "\t", line.strip("#% \t")), "\t")
-                if len(apart) == len(self.entries):
+            for i, text_line in enumerate(lines[: len(self.head)]):
+                tabs = re.sub(r"[ \t]{2,}", "\t", text_line.strip("#% \t"))
+                apart = _split(tabs, "\t")
+                if len(apart) == len(line):
                     self.head[i] = apart
 
     @classmethod
@@ -93,6 +96,11 @@ class Cells:
         for sign, plain in _SIGNS.items():
             text = text.replace(sign, plain)
         return cls(_COMMA.sub(r"\1.\2", text))
+
+    def beginning(self) -> Cells:
+        """Return the first lines alone."""
+        lines = islice(_LINE.finditer(self._text), _HEAD)
+        return Cells("\n".join(line[0] for line in lines))
 
     @property
     def headers(self) -> set[str]:
@@ -119,20 +127,14 @@ class Cells:
                     return numbers
         return []
 
-    def hint(self, names: Sequence[str]) -> str:
-        """Return words on the columns of numbers, and options that give names to some of them."""
-        found = {}
-        for number, entry in enumerate(self.entries, start=1):
-            if entry:
-                header = " ".join(self.above(number)[-2:])[-20:].strip()
-                found[number] = f"{number} {header!r} {entry[:12]}"
-        listed = ", ".join(islice(found.values(), _LISTED)) or "no numbers"
-        # A record's time mostly stands in front of its signals.
-        places = [*found][int("time" not in names) :]
-        words = f"found {listed}"
-        for name, place in zip(names, places, strict=False):
-            words += f" --column '{name}={place}'"
-        return words
+    @property
+    def listed(self) -> str:
+        """Words on the first columns of numbers: number, header and an entry."""
+        found = []
+        for number, entry in self.entries.items():
+            header = " ".join(self.above(number)[-2:])[-20:].strip()
+            found.append(f"{number} {header!r} {entry[:12]}")
+        return ", ".join(found[:_LISTED]) or "no numbers"
 
     def numbers(self, places: Sequence[int]) -> Array:
         """Return columns, (lines, columns), at increasing places; NaN for a cell without a number.
@@ -183,13 +185,11 @@ class Cells:
     def rows(self, table: Array) -> tuple[int, int]:
         """Return start and end of the record in a table of columns: the rows without any NaN.
 
-        Raises `SceneError` without any such row, and for a gap or an infinite value in the record.
+        There must be such a row. Raises `SceneError` for a gap or an infinite value in the record.
         """
         numbers = ~np.isnan(table)
         complete = np.all(numbers, axis=1)
         start, end = longest(complete)
-        if not end:
-            raise SceneError("no row has numbers in all of these columns")
         found = runs(complete)
         place = found.index((start, end))
         # A preamble may hold rows of numbers, few, and lines without any behind them.

@@ -10,9 +10,6 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from lwa.base.exact import shorten
-from validation.scenes.checks import SceneError
-
 BASES = {
     "time": "s",
     "displacement": "m",
@@ -87,32 +84,26 @@ def found_unit(cells: Sequence[str]) -> str:
     return next(filter(known, reversed(cells)), "")
 
 
-def size_of(unit: str, column: str) -> float:
-    """Return the value in SI of an entry 1 of a column, such as "bead 8 force", from its unit.
+def read_statement(text: str, base: str) -> tuple[float, str] | None:
+    """Return the value in SI of an entry 1, and the name of the file's unit ("" if none is named).
 
-    Raises `SceneError` for a unit of another quantity, and for none.
+    Parameters
+    ----------
+    text : str
+        A statement of the user.
+    base : str
+        Unit in SI of the quantity, one of `BASES`.
+
+    Returns
+    -------
+    tuple or None
+        None for a text that is no statement of this quantity.
+
+    Examples
+    --------
+    >>> read_statement("12.5 mN/V", "N"), read_statement("us", "s"), read_statement("us", "N")
+    ((0.0125, 'V'), (1e-06, 'us'), None)
     """
-    base = BASES[column.split()[-1]]
-    size = in_si(unit, base)
-    if size is None:
-        says = f"has the unit {shorten(unit)}" if unit else "has no unit"
-        raise SceneError(
-            f"column {column} {says}: --unit '{column}={base}', or as a calibration "
-            f"--unit '{column}=12.5 {base}/{unit or 'V'}'"
-        )
-    return size
-
-
-def read_statement(text: str, column: str) -> tuple[float, str]:
-    """Return the value in SI of an entry 1 of a column, such as "bead 8 force", and the name of the
-    file's unit ("" if none is named).
-
-    Raises `SceneError` for a text that is no statement of this column's quantity.
-
-    >>> read_statement("12.5 mN/V", "force"), read_statement("us", "time")
-    ((0.0125, 'V'), (1e-06, 'us'))
-    """
-    base = BASES[column.split()[-1]]
     parts = re.fullmatch(rf"(-?)({_NUMBER})? *(.*)", text.replace("μ", "µ").strip())
     assert parts is not None  # all may be empty
     sign, number, unit = parts.groups()
@@ -126,7 +117,4 @@ def read_statement(text: str, column: str) -> tuple[float, str]:
             named = "/".join(words[count:])
             # A unit alone is the file's, too.
             return size * multiple, named or ("" if number else unit)
-    raise SceneError(
-        f"unit of {column} is {shorten(text)}: such as {base}, m{base}, 0.04 {base} or "
-        f"12.5 {base}/V is wanted"
-    )
+    return None

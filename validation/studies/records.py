@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Unpack
@@ -17,7 +17,7 @@ from lwa.command.options import Words
 from validation.lattice.cost import RunProgress, silent
 from validation.pictures import Curve, Panel
 from validation.pulses.discharge import corrected, suggested
-from validation.pulses.noisy import NoisyPulse, noisy_pulse, noisy_pulses
+from validation.pulses.noisy import InvertedError, NoisyPulse, noisy_pulse, noisy_pulses
 from validation.pulses.pulse import MeasureError
 from validation.pulses.sensors import Reading, forces_at_start, record, speeds_between
 from validation.report.study import Report, number, option, study
@@ -47,6 +47,8 @@ _COLUMN = (
     "repeatable. Names: time, bead 8 force, contact 8 force, bead 8 velocity, force, speed."
 )
 
+_TIMES = {"column": "1", "unit": "s"}  # examples of what is stated of a column time
+
 
 def column_options(function: Any) -> Any:
     """Give a study that reads a measured file its options --column and --unit."""
@@ -55,12 +57,17 @@ def column_options(function: Any) -> Any:
         context: click.Context, given: click.Parameter, pairs: Sequence[str]
     ) -> dict[str, str]:
         stated: dict[str, str] = {}
+        fault = ""
         for pair in pairs:
             name, equals, value = (part.strip() for part in pair.partition("="))
             if not (name and equals and value) or name in stated:
-                wanted = f"{given.metavar} is wanted, once a name"
-                raise SceneError(f"{called(given)} is {shorten(pair)}: {wanted}")
-            stated[name] = value
+                fault = shorten(pair)
+            else:
+                stated[name] = value
+        if fault:
+            wanted = f"{given.metavar} is wanted, once a name"
+            change = {called(given): stated or {"time": _TIMES[called(given)]}}
+            raise SceneError(f"{called(given)} is {fault}: {wanted}", **change)
         return stated
 
     for name, parameter, metavar, says in (
@@ -106,13 +113,28 @@ class Measured:
 
     @classmethod
     def read(
-        cls, paths: Paths, of: str, time_constant: str | None, stated: Stated
+        cls,
+        paths: Paths,
+        of: str,
+        time_constant: str | None,
+        stated: Stated,
+        wanted: Sequence[str] = ("force",),
     ) -> Measured:
         """Read files; records of sensors with a time constant are corrected.
 
-        Sensors of several files that have no number are numbered in the order of the files.
-        Raises `SceneError` for files of which some have no units, and for a sensor in two files.
+        Sensors of several files that have no number are numbered in the order of the files. The
+        ``wanted`` names are proposed for columns of files without sensors. Raises `SceneError` for
+        files of which some have no units, and for a sensor in two files.
         """
+        constant = math.inf
+        if time_constant:
+            statement = read_statement(time_constant, "s")
+            if statement is None or not statement[0] > 0:
+                raise SceneError(
+                    f"time-constant is {shorten(time_constant)}: a time above 0 is wanted",
+                    time_constant="1 ms",
+                )
+            constant, _ = statement
         names = [paths] if isinstance(paths, str | Path) else [*paths]
         files = [MeasuredFile(name, **stated) for name in names]
         signals: dict[tuple[str, int | None], Record] = {}
@@ -121,11 +143,10 @@ class Measured:
                 raise SceneError(
                     f"{file.path}: it has units, {names[0]} not, or the reverse"
                 )
-            for signal in file.records(of):
+            for signal in file.records(of, wanted):
                 if len(files) > 1:
                     signal = replace(signal, number=signal.number or place)
                 if time_constant:
-                    constant, _ = read_statement(time_constant, "time")
                     values = corrected(signal.time, signal.values, constant)
                     signal = replace(signal, values=values)
                 sensor = (signal.kind, signal.number)
@@ -133,8 +154,6 @@ class Measured:
                     named = f"{signal.kind} {signal.number or ''}".strip()
                     raise SceneError(f"{file.path}: {named} is there twice")
                 signals[sensor] = signal
-        if len(signals) > 1 and None in [number for _, number in signals]:
-            raise SceneError(f"{names[0]}: each of several sensors needs its number")
         notes = [note for file in files for note in file.notes]
         return cls([*signals.values()], files[0].si, notes)
 
@@ -200,6 +219,7 @@ def pulses(
     curves = []
     places = []
     notes = [*read.notes]
+    turned: dict[str, str] = {}  # statements of units that change signs
     for i, signal in enumerate(read.signals):
         site = signal.number or 1
         blank = Reading(signal.kind, (site,), {}, math.nan, quantity=signal.quantity)
@@ -209,9 +229,7 @@ def pulses(
             places[-1]["speed"] = apart * site
         place = 1
         try:
-            for pulse in noisy_pulses(
-                signal.time, signal.values, read.unit, signal.inverted
-            ):
+            for pulse in noisy_pulses(signal.time, signal.values, read.unit):
                 reading = replace(blank, numbers=pulse.numbers, missing=pulse.missing)
                 found.append(replace(reading, static=pulse.base, pulse=place))
                 hint = suggested(signal.time, signal.values, pulse, read.unit)
@@ -220,10 +238,16 @@ def pulses(
                 place += 1
         except MeasureError as error:
             found.append(replace(blank, missing=str(error), pulse=place))
+            if isinstance(error, InvertedError):
+                turned[signal.key] = signal.inverted
+                notes.append(
+                    f"{blank.name}: --unit '{signal.key}={signal.inverted}' turns it."
+                )
     firsts = [reading for reading in found if reading.pulse == 1]
     if not any(first.numbers for first in firsts):
         raise MeasureError(
-            f"no sensor has a pulse: {found[0].name}: {found[0].missing}"
+            f"no sensor has a pulse: {found[0].name}: {found[0].missing}",
+            **_units(stated, turned),
         )
     # The noise of two sensors is independent.
     speeds = speeds_between(firsts, places, math.hypot)
@@ -284,11 +308,12 @@ def compare(
     ``shift_value``.
     """
     chain = read_scene(scene)
-    read = Measured.read(measured, "contact", time_constant, stated)
-    check_units(read.si, chain.units, "the measured file")
     # Beads that fall onto each other carry no load before: a record's base is its start.
     levels = forces_at_start(chain)
-    found = _first_pulses(read, [*levels])
+    wanted = [f"{name} force" for name in levels]
+    read = Measured.read(measured, "contact", time_constant, stated, wanted)
+    check_units(read.si, chain.units, "the measured file")
+    found = _first_pulses(read, [*levels], stated)
     velocities = [name for name, (s, _) in found.items() if s.quantity == "velocity"]
     simulation = record(
         chain, velocities=velocities, levels=levels, progress=run_progress
@@ -362,26 +387,38 @@ def compare(
 
 
 def _first_pulses(
-    read: Measured, sensors: Sequence[str]
+    read: Measured, sensors: Sequence[str], stated: Stated
 ) -> dict[str, tuple[Record, NoisyPulse]]:
     """Return measured signals and their first pulses by the scene's sensors, at least one."""
-    found = {}
+    named = {}
     for signal in read.signals:
         name = f"{signal.kind} {signal.number}"
         if signal.number is None and len(sensors) == 1:
             (name,) = sensors
         if name in sensors:
-            try:
-                pulse = noisy_pulse(
-                    signal.time, signal.values, read.unit, signal.inverted
-                )
-            except MeasureError as error:
-                raise MeasureError(f"{name}: {error}") from None
-            found[name] = (signal, pulse)
-    if not found:
-        wanted = (
-            " or ".join(f"{name} force" for name in sensors[:5])
-            or "wanted: the scene has none"
-        )
-        raise SceneError(f"no measured sensor is {wanted}")
+            named[name] = signal
+    if not named:
+        wanted = " or ".join(sensors[:5]) or "wanted: the scene has none"
+        headers = {}
+        for name, header in (stated.get("columns") or {}).items():
+            if not name.endswith(("force", "velocity")):
+                headers[name] = header
+        for sensor, signal in zip(sensors, read.signals, strict=False):
+            headers[f"{sensor} {signal.quantity}"] = str(signal.column)
+        raise SceneError(f"no measured sensor is {wanted}", columns=headers)
+    found = {}
+    for name, signal in named.items():
+        try:
+            pulse = noisy_pulse(signal.time, signal.values, read.unit)
+        except MeasureError as error:
+            turned = {}
+            if isinstance(error, InvertedError):
+                turned[signal.key] = signal.inverted
+            raise MeasureError(f"{name}: {error}", **_units(stated, turned)) from None
+        found[name] = (signal, pulse)
     return found
+
+
+def _units(stated: Stated, turned: Mapping[str, str]) -> dict[str, Any]:
+    """Return the user's statements of units with those that change signs, if there are any."""
+    return {"units": {**(stated.get("units") or {}), **turned}} if turned else {}

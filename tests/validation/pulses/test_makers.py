@@ -7,6 +7,7 @@ import json
 import math
 import re
 import shlex
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -188,11 +189,10 @@ LAYOUTS = {
 }
 
 
-@pytest.mark.parametrize("layout", LAYOUTS)
-def test_pulses_are_read_within_three_errors(capsys, chain, tmp_path, layout):
-    """A column without a kind is of the kind that is given; by a step the clock starts at 0."""
-    time, forces, true = chain
-    head, *forms, stated = LAYOUTS[layout]
+def written(layout, chain):
+    """Write the chain's record in a layout to the folder; return the file's name."""
+    time, forces, _ = chain
+    head, *forms, _ = LAYOUTS[layout]
     kept = math.exp(-1e-6 / CONSTANT)
     lost = lfilter(math.sqrt(kept) * np.array([1, -1]), [1, -kept], forces[0])
     text = head
@@ -209,11 +209,20 @@ def test_pulses_are_read_within_three_errors(capsys, chain, tmp_path, layout):
         text = re.sub(r"([-+])(\d)", r"\1 \2", text)
     if layout == "Fortran":
         text = text.replace("E", "D")
-    file = tmp_path / "record.txt"
+    file = Path("record.txt")
     file.write_bytes(text.encode("latin-1"))
+    return str(file)
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_pulses_are_read_within_three_errors(capsys, chain, folder, layout):
+    """A column without a kind is of the kind that is given; by a step the clock starts at 0."""
+    *_, true = chain
+    file = written(layout, chain)
+    head, *_, stated = LAYOUTS[layout]
     options = ["--of", "bead", "--distance", str(SPACING), "--format", "json"]
     options += shlex.split(stated)
-    status, out, err = ended(capsys, cli.main, "pulses", str(file), *options)
+    status, out, err = ended(capsys, cli.main, "pulses", file, *options)
     assert status == 0, err
     found = json.loads(out)
     assert [row["kind"] for row in found["sensors"]] == ["bead"] * len(found["sensors"])
@@ -233,6 +242,23 @@ def test_pulses_are_read_within_three_errors(capsys, chain, tmp_path, layout):
         speed = 6 * SPACING / (true[1].arrival - true[0].arrival)
         error = row["speed_error_value"]
         assert abs(row["speed_value"] - speed) < 3 * error < 0.02 * speed
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_a_refusal_ends_in_the_line_that_reads_the_file(chain, folder, capsys, layout):
+    """At most two lines are pasted; a gap or a name that is not there needs the user's own word."""
+    line = ["pulses", written(layout, chain)]
+    refused = []
+    status = 2
+    while status == 2 and len(refused) < 3:
+        status, _, err = ended(capsys, cli.main, *line)
+        if status == 2:
+            reason, _, proposed = err.partition("; try: ")
+            assert reason not in refused
+            refused.append(reason)
+            assert proposed, err
+            _, *line = shlex.split(proposed)
+    assert status == 0, refused
 
 
 def test_one_file_a_channel(chain, tmp_path):

@@ -258,7 +258,7 @@ WHITE = np.random.default_rng(2).normal(size=400)
         (39.1 * np.minimum(PULSE, 0.97) / 0.97, "clipped from 297 to 303"),
         (np.minimum(PULSE + 0.003 * WHITE, 0.9), "clipped from 29"),
         (np.round(120 * np.minimum(PULSE + 0.003 * WHITE, 0.9)), "clipped from 29"),
-        (2 - PULSE + 0.01 * WHITE, "inverted: --unit"),
+        (2 - PULSE + 0.01 * WHITE, "is inverted"),
         (
             PULSE + np.exp(-(((N - 345) / 20) ** 2)) + 0.001 * WHITE,
             "pulses overlap: peaks at 30[01] and 34[45]",
@@ -267,4 +267,4 @@ WHITE = np.random.default_rng(2).normal(size=400)
 )
 def test_records_without_a_measurable_pulse_are_refused(f, named):
     with pytest.raises(MeasureError, match=named):
-        noisy_pulse(N, f, turned="--unit 'force=-N'")
+        noisy_pulse(N, f)

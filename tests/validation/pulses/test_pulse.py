@@ -77,7 +77,7 @@ T = np.linspace(-2, 2, 401)
         (T[180:], arch(T[180:]), "the pulse .*: its front does not pass half"),
         (T, 0 * T, "no pulse is in the record"),
         (T, T * np.nan, "time and signal must be finite"),
-        (-T, arch(T), "time must increase: .* --step 0.01"),
+        (-T, arch(T), "time must increase"),
         (T[::40], arch(T[::40]), rf"\d samples lie above half .*: at least {FEWEST}"),
         (T, arch(T)[:-1], r".*: the shapes are \(401,\) and \(400,\)$"),
         (T, ["tea"] * 401, "time and signal must be equally long rows .*: .*'tea'"),

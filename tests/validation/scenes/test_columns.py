@@ -143,35 +143,43 @@ def test_one_time_is_that_of_all_sensors_or_the_first_that_of_the_first(
 def test_an_inverted_record_is_turned_by_the_users_own_statement(tmp_path):
     text = "time (s),force (mV)\n1,7\n2,8\n"
     (record,) = read(tmp_path, text, units={"2": "12.5 N/mV"}).records()
-    assert record.inverted == "--unit '2=-12.5 N/mV'"
+    assert (record.key, record.inverted) == ("2", "-12.5 N/mV")
     (record,) = read(tmp_path, text.replace("mV", "N")).records()
-    assert record.inverted == "--unit 'force=-N'"
+    assert (record.key, record.inverted) == ("force", "-N")
     (record,) = read(tmp_path, text, units={"force": "-N", "time": "s"}).records()
     assert record.values.tolist() == [-7, -8]
-    assert record.inverted == "--unit 'force=N'"
+    assert record.inverted == "N"
 
 
 HEAD = "time (s),force (N)\n"
+STATED = {"columns": {"force": "2"}}
 
 
 @pytest.mark.parametrize(
     ("text", "stated", "named"),
     [
-        ("time (s),force (lbf)\n1,2\n", {}, "has the unit 'lbf': --unit 'force=N'"),
+        ("time (s),force (lbf)\n1,2\n", {}, "has the unit 'lbf'.*'force': '1 N/lbf'"),
         ("time,force\n1,2\n", {"units": {"force": "N"}}, "column time has no unit"),
         (f"{HEAD}1,2\n", {"units": {"force": "x N/V"}}, "unit of force is 'x N/V'"),
         (f"{HEAD}1,2\n", {"units": {"CH9": "N"}}, "no column is 'CH9': found"),
         (
             "TIME (s),CH1\n0.1,2\n",
             {},
-            "no column is 'force': found 1 'TIME .s.' 0.1, 2 'CH1' 2 --column 'force=2'",
+            "2 'CH1' 2; try columns={'force': '2'}, units={'force': 'N'}$",
         ),
         # Settings in the first column: the numbers are those of the others.
         (
             "Length,9,0,1\nSource,CH1,0,2\n" + ",,1,3\n" * 30,
             {},
-            "found 3 '' 1, 4 '' 3 --column 'time=3' --column 'force=4'$",
+            "found 3 '' 1, 4 '' 3; try columns={'time': '3', 'force': '4'}$",
         ),
+        # Numbers of samples are no times.
+        (
+            "X,CH1\n0,2\n1,3\n",
+            {},
+            "try columns={'force': '2'}, step='1 us', units={'force': 'N'}$",
+        ),
+        ("time (s),V (N)\n0,2\n0,3\n1,4\n", STATED, "increase.* step='0.5 s'$"),
         ("time,V,V\n1,2,3\n", {"columns": {"force": "V"}}, "2 columns are 'V'"),
         (f"{HEAD}1,2\n", {"columns": {"force": "fource"}}, "near: force .N.: found"),
         ("time,force\n1,2\n", {"columns": {"bead x": "1"}}, "column is 'bead x'"),
@@ -180,9 +188,11 @@ HEAD = "time (s),force (N)\n"
         (
             "time,1 force,time\n1,5,2\n",
             {},
-            "2 columns are 'time': .* --column 'time=1'",
+            "2 columns are 'time': .* columns={'time': '1'}",
         ),
-        ("time,force\n1,x\n", {"columns": {"force": "9"}}, "no row has numbers"),
+        (f"{HEAD}1,2\n", {"columns": {"force": "9"}}, "no row .*'2'}$"),
+        ("time,force,force\n1,2,3\n", {}, "its number; try columns={'1 force': '2'"),
+        (f"{HEAD}1,2\n", {"step": "x"}, "step is 'x': .* step='1 us'$"),
     ],
 )
 def test_a_bad_file_is_refused_in_a_short_line(tmp_path, text, stated, named):

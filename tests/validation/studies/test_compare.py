@@ -135,7 +135,7 @@ RECORD = "".join(f"{t},1\n" for t in range(9))
     ("text", "options", "named"),
     [
         (None, {"units": UNITS}, "units = 'SI'"),
-        (f"time,force\n{RECORD}", {}, "is contact 12 force or contact 18 force$"),
+        (f"time,force\n{RECORD}", {}, "is contact 12 or contact 18; try columns="),
     ],
 )
 def test_bad_records_and_options_are_refused(files, text, options, named):

@@ -19,7 +19,7 @@ from typing import Any
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel import kinks
-from validation.lattice.kernel.arrays import ROOM, TILE, Beads, Chain, Plan
+from validation.lattice.kernel.arrays import ROOM, TILE, Beads, Chain, Pair, Plan
 from validation.lattice.kernel.compiled import (
     FIRST,
     ONE,
@@ -50,6 +50,9 @@ _ROUNDS, _SETTLED = 4, 0.1
 # time for equal beads, _VERY_NEAR for all a quarter more for dimers at small tolerances.
 # The singularity of damping, δ^{1/4} say, is felt farther away.
 _NEAR, _VERY_NEAR, _NEAR_DAMPED, _STRONG = 0.3, 0.03, 0.6, 1e3
+# Mean distance of the quintic from a p with ``p'' = 9 P₄(x)``, Legendre's polynomial: the distance
+# is ``9 · 0.0365 (1 - (2x - 1)²)³``.
+_MISFIT = 0.15
 # Share of a neighbour's correction that counts as error.
 _SECOND = 0.5
 # Step-size control of Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.4.
@@ -157,15 +160,57 @@ def _motion(beads: Beads, h: float, i: int) -> kinks.Curve:
     return kinks.fitted_curve(start, end, kinks.STRAIGHT)
 
 
+@alone
+def _stage_forces(
+    chain: Chain,
+    beads: Beads,
+    pair: Pair,
+    p: kinks.Curve,
+    t: float,
+    h: float,
+    i: int,
+    jumps: bool,
+) -> None:
+    """Compute a contact's compression, slope and force at the stages; they go to ``beads.points``.
+
+    On the curve p the pair's quadrature and the integral err alike, by the error of p. But the
+    stages after a jump of the force are so far off p that their own motion is taken.
+    """
+    law, r, points, push_of = (
+        chain.laws[chain.law[i]],
+        chain.r[i],
+        beads.points,
+        beads.push,
+    )
+    for s in range(len(pair.nodes)):
+        d, slope = kinks.value_and_slope(p, pair.nodes[s])
+        if jumps:
+            ch = pair.nodes[s] * h
+            y, v = beads.y[i], beads.v[i]
+            near, rate = y + ch * v, v
+            if i == 0 and chain.drive.driven:
+                near, rate, _ = drive_motion(chain.drive, t + h / 2, t + ch)
+            d = chain.rest[i] + near - beads.y[i + 1] - ch * beads.v[i + 1]
+            slope = h * (rate - beads.v[i + 1])
+            for j in range(s):
+                a = h * h * (push_of[j, i] - push_of[j, i + 1])
+                d += pair.moments[s, j] * a
+                slope += pair.impulses[s, j] * a
+        points[0, s], points[1, s] = d, slope
+        points[2, s] = push(law, r, d, slope / h)
+
+
 @inlined
-def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -> None:
+def correct_contact(
+    chain: Chain, beads: Beads, plan: Plan, t: float, h: float, i: int
+) -> None:
     """Correct a step for the pair's error at contact i, which opens or closes."""
     pair, last, inverse = plan.scheme, len(beads.border) - 1, chain.inverse
     A, r, law = chain.A[i], chain.r[i], chain.laws[chain.law[i]]
     points, edges, both = beads.points, beads.edges, inverse[i] + inverse[i + 1]
     start, end = _ends(chain, beads, h, i)
     force, bend = points[2], -A * h * h * both
-    impulse = moment = change = 0.0
+    impulse = moment = change = rough = 0.0
     found = kinks.STRAIGHT
     driven = i == 0 and chain.drive.driven
     drive = _motion(beads, h, i)
@@ -178,10 +223,10 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
             law, r, start, corrected, h, bend, found, edges
         )
         found = p[6]
-        once, twice, third, work, given = kinks.integrals(
-            law, r, p, h, 1.0, points, edges, count, driven, drive
+        once, twice, third, work, given, rough = kinks.integrals(
+            law, r, p, h, 1.0, points, edges, count, driven, drive, bend
         )
-        kinks.stage_forces(law, r, p, h, pair, bend, jump, points)
+        _stage_forces(chain, beads, pair, p, t, h, i, jump != 0.0)
         before = impulse
         impulse = h * A * (once - _integral(pair.impulses[last], force))
         moment = h * h * A * (twice - _integral(pair.moments[last], force))
@@ -213,8 +258,15 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
             power = A * force[s] * kinks.value_and_slope(drive, pair.nodes[s])[1]
             beads.books[2] -= pair.impulses[last, s] * power
             beads.books[3] += pair.errors[1, s] * power
+    squares = inverse[i] ** 2 + inverse[i + 1] ** 2
+    if r > 0.0:
+        # ∫ (1 - x) F dx and the heat ∫ r δ^p (dδ/dt)² dt are as wrong as p is, the impulse is not.
+        missed = _MISFIT * abs(rough) * A * r * drag(law, max(top, 0.0))
+        heated = 2.0 * missed * abs(start[1]) / h / plan.energy
+        moved = h * missed / plan.y
+        beads.books[4] += heated * heated + moved * moved * squares
     unsettled = change / plan.v
-    beads.books[4] += unsettled * unsettled * (inverse[i] ** 2 + inverse[i + 1] ** 2)
+    beads.books[4] += unsettled * unsettled * squares
     for n in range(max(0, i - 1), i + 2):
         share = both if n == i else -inverse[max(i, n)]
         d = chain.rest[n] + beads.next_y[n] - beads.next_y[n + 1]
