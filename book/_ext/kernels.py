@@ -10,8 +10,10 @@ import asyncio
 import atexit
 import json
 import os
+import signal
 import subprocess
 import sys
+from contextlib import suppress
 from importlib.metadata import EntryPoint
 from pathlib import Path
 from shutil import rmtree
@@ -61,7 +63,20 @@ class Forked(LocalProvisioner):
         if self.process is not None:
             os.killpg(self.process, signum)
 
+    async def terminate(self, restart: bool = False) -> None:
+        # A busy machine may need longer than Jupyter waits for a kernel to end by itself.
+        await self._end(signal.SIGTERM)
+
+    async def kill(self, restart: bool = False) -> None:
+        await self._end(signal.SIGKILL)
+
+    async def _end(self, signum: int) -> None:
+        with suppress(ProcessLookupError):
+            await self.send_signal(signum)
+
     async def poll(self) -> int | None:
+        if self.process is None:
+            return 0
         try:
             os.kill(self.process, 0)  # a question, no signal
         except ProcessLookupError:
