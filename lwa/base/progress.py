@@ -12,8 +12,8 @@ from typing import Any, TypeVar
 EVERY = 30.0
 """Seconds to the first bar, and between two, where standard error is no terminal."""
 
-QUIET = 10.0
-"""Seconds of a terminal without a sign of life."""
+QUIET = 8.0
+"""Seconds of a terminal without a sign of life: ten with the start of Python on a busy machine."""
 
 T = TypeVar("T")
 Progress = Callable[[Iterable[T]], Iterable[T]]

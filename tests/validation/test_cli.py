@@ -13,9 +13,11 @@ import pytest
 from lwa.base import progress
 from tests.commands import ended, small_disk, terminal
 from validation import cli
+from validation.pulses.steady import Point
 from validation.report import study
 from validation.report.study import Report
 from validation.report.table import Column, Finding, Table
+from validation.studies import sweep
 from validation.studies.run import EXAMPLES
 
 ROOT = Path(__file__).parents[2]
@@ -165,6 +167,7 @@ def test_a_result_that_cannot_be_written_leaves_the_old_one(capsys, folder, name
     assert {file.name for file in folder.iterdir()} == {"scene.toml", name}
 
 
+NO_FILE = "it cannot be written, No such file or directory; try: lwa-validate"
 BAD = [
     ("run s.toml --out o.csv", "out is o.csv, but the scene names no s"),
     ("paper --velocity __import__('os')", "velocity is "),
@@ -173,13 +176,25 @@ BAD = [
         "paper --format jsn",
         "format is 'jsn': did you mean json?; try: lwa-validate paper",
     ),
+    ("paper --plot x/y.pdf", f"plot is x/y.pdf: {NO_FILE} paper --plot y.pdf"),
+    ("paper --plot .", "plot is .: a file ending in .pdf, .png, .svg is wanted"),
+    ("materials --plot m.svg", "plot is asked for: this result has no picture; try: "),
     ("exact --masses 1,0.2733", "no solitary wave"),
+    ("exact --masses 1,2,3", "3 masses"),
+    ("exact --masses 1,x", "masses is x: a number is wanted"),
+    ("exact --masses 1,0.001", "masses is 0.001: the ratio of two"),
+    ("resonances --k 1", "k is 1: special mass ratios are found for k from 1.1"),
     ("resonances --count x", "count is x: a number is wanted; try: lwa-validate res"),
     ("resonances --count 5/2", "count is 5/2: an integer"),
     ("run s.toml --method DOP8", "method is 'DOP8': did you mean DOP853?; try: "),
     ("sweep --k 1", "k is 1:"),
     ("sweep --k 1:2", "k is '1:2':"),
-    ("sweep --k 1:2:1001", "the count of k is 1001:"),
+    ("sweep --k 1:2:1001", "k is '1:2:1001': the count of a range is an integer"),
+    ("sweep --k 1.1:1.9:600,2:3:600", "k is '1.1:1.9:600,2:3:600': it has 1200 values"),
+    ("sweep --jobs 5/2", "jobs is 5/2: an integer is wanted; try: lwa-validate sweep"),
+    ("sweep --file x/y.sqlite", f"file is x/y.sqlite: {NO_FILE} sweep --file y.sqlite"),
+    ("sweep --file s.toml --k 3", "file is s.toml: a file ending in .sqlite is wanted"),
+    ("sweep --cluster a", "cluster is 'a': no Dask scheduler"),
     (
         "sweep --jobs 0 --file s.sqlite",
         "jobs is 0: an integer from 1 to 1024 is wanted; try: lwa-validate sweep --file",
@@ -189,15 +204,20 @@ BAD = [
 
 
 @pytest.mark.parametrize(("line", "message"), BAD)
-def test_bad_input_prints_one_line_with_status_2_and_leaves_no_file(
-    capsys, folder, line, message
+def test_bad_input_prints_one_line_to_paste_with_status_2_and_leaves_no_file(
+    capsys, folder, monkeypatch, line, message
 ):
+    """The line to paste gives a result, or is refused for another reason."""
+    monkeypatch.setattr(sweep, "point", lambda k, omega, _: Point(k, omega, None, {}))
     Path("s.toml").write_text(SCENE.replace("sensors", "#"))
     status, out, err = run(capsys, *line.split())
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert err.startswith(f"lwa-validate: {message}")
     assert len(err) <= 301
     assert [file.name for file in folder.iterdir()] == ["s.toml"]
+    refusal, _, proposed = err.partition("; try: lwa-validate ")
+    _, _, again = run(capsys, *shlex.split(proposed))
+    assert not again.startswith(refusal)
 
 
 def test_without_arguments_the_commands_are_listed(capsys):

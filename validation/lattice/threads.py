@@ -47,7 +47,9 @@ def cluster(address: str, patience: float = 5.0) -> Iterator[Executor]:
     try:
         import distributed  # an optional package
     except ImportError:
-        raise InputError("cluster needs Dask: pip install 'lwa[cluster]'") from None
+        raise InputError(
+            "cluster needs Dask: pip install 'lwa[cluster]'", cluster=None
+        ) from None
 
     async def call() -> None:  # a client hangs where a stranger accepts its call
         await (await asyncio.wait_for(distributed.connect(address), patience)).close()

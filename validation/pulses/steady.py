@@ -254,14 +254,9 @@ class PointFile:
                     "select count(*) from sqlite_master"
                 ).fetchone()
                 if tables and not version:
-                    raise InputError(
-                        f"file is {self.path}: a database, but not a sweep's; choose another name"
-                    )
+                    raise self._refusal("a database, but not a sweep's")
                 if version not in (0, own):
-                    raise InputError(
-                        f"file is {self.path}: its points have another stretch or definition; "
-                        "choose another name"
-                    )
+                    raise self._refusal("its points have another stretch or definition")
                 if not version:
                     data.execute(f"pragma user_version = {own}")
                     data.execute(
@@ -295,4 +290,11 @@ class PointFile:
         except (sqlite3.Error, ValueError, TypeError, KeyError) as error:
             if isinstance(error, InputError):
                 raise
-            raise InputError(f"file is {self.path}: {error}") from None
+            raise self._refusal(str(error)) from None
+
+    def _refusal(self, fault: str) -> InputError:
+        """The refusal of the file, which proposes the first name beside it that is free."""
+        number = 2
+        while (free := self.path.with_stem(f"{self.path.stem}-{number}")).exists():
+            number += 1
+        return InputError(f"file is {self.path}: {fault}", file=str(free))

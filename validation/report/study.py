@@ -331,11 +331,12 @@ def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
         For another ending, and where no file can be written.
     """
     file = Path(path)
-    change = {}
+    # In the current folder, which most likely takes files.
+    proposed = file.name
     try:
         if file.suffix.lower() not in suffixes:
+            proposed = str(file.parent / f"{file.stem or name}{suffixes[-1]}")
             fault = f"a file ending in {', '.join(suffixes)} is wanted"
-            change[name] = str(file.with_suffix(suffixes[-1]))
         elif file.exists() and not file.is_file():
             fault = "a regular file is wanted"
         else:
@@ -344,6 +345,9 @@ def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
                 return file
     except (OSError, ValueError, RuntimeError) as error:  # a null byte, a loop of links
         fault = f"it cannot be written, {reason(error)}"
+    # A name that cannot be written there, either, is left out.
+    usable = proposed != path and proposed.isprintable()
+    change = {name: proposed if usable else None}
     raise InputError(f"{name} is {path[:_LONGEST]}: {fault}", **change)
 
 

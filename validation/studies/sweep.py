@@ -191,9 +191,11 @@ def _axis(text: str, name: str) -> Iterator[sp.Expr]:
             yield numbers[0]
         elif len(numbers) == 3:
             start, stop, given = numbers
-            count = integer(given, f"the count of {name}", 2, _MOST)
-            for i in range(count):
-                yield start + (stop - start) * i / (count - 1)
+            if not (given.is_Integer and 2 <= given <= _MOST):
+                wanted = f"the count of a range is an integer from 2 to {_MOST}"
+                raise SceneError(f"{name} is {shorten(part)}: {wanted}")
+            for i in range(given):
+                yield start + (stop - start) * i / (given - 1)
         else:
             raise SceneError(f"{name} is {shorten(part)}: a range is start:stop:count")
 
@@ -209,7 +211,8 @@ def _values(given: str | Iterable[Any], name: str) -> tuple[Rational, ...]:
             raise SceneError(f"{name} is {shorten(value)}: {wanted}")
         values.add(value)
     if not 0 < len(values) <= _MOST:
-        raise SceneError(f"{name} has {len(values)} values: 1 to {_MOST} are wanted")
+        fault = f"it has {len(values)} values, and 1 to {_MOST} are wanted"
+        raise SceneError(f"{name} is {shorten(given)}: {fault}")
     return tuple(sorted(values))
 
 

@@ -63,10 +63,17 @@ class NoWave(InputError):
     """Failure to find a wave; the message names the wave's parameters."""
 
     def __init__(
-        self, text: str, masses: newton.Pair, k: float, more: str = ""
+        self,
+        text: str,
+        masses: newton.Pair,
+        k: float,
+        more: str = "",
+        /,
+        **change: object,
     ) -> None:
         m1, m2 = masses
-        super().__init__(f"{text} at k = {k:g}, masses {m1:.10g}, {m2:.10g}{more}")
+        where = f"at k = {k:g}, masses {m1:.10g}, {m2:.10g}"
+        super().__init__(f"{text} {where}{more}", **change)
 
 
 def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWave:
@@ -101,11 +108,12 @@ def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWa
     >>> round(wave.fwhm("force"), 6), round(wave.fwhm("strain"), 6), wave.solitary
     (1.411928, 1.725713, True)
     """
-    given = [between(m, "mass", 1e-100, 1e100) for m in items(masses, "masses")]
+    given = [between(m, "masses", 1e-100, 1e100) for m in items(masses, "masses")]
     if len(given) not in (1, 2):
         raise SceneError(
             f"{len(given)} masses: exact waves are found for cells of 1 or 2 beads; others are "
-            "simulated, see lwa-validate run --example trimer"
+            "simulated, see lwa-validate run --example trimer",
+            masses=tuple(given[:1]),
         )
     p0 = _background(background)
     most = STEEPEST_LOADED if p0 else STEEPEST
@@ -119,7 +127,8 @@ def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWa
             f"background is {p0:g}: under a load exact waves are for equal masses"
         )
     light, heavy = sorted(given)
-    between(light / heavy, "ratio of the masses", 0.01, 1)
+    ratio = "the ratio of two masses lies between 0.01 and 1"
+    between(light / heavy, "masses", 0.01, 1, ratio)
     wave = _dimer((given[0], given[1]), k)
     if given[0] == heavy:
         return replace(wave, masses=(heavy, heavy * wave.omega), c2=wave.c2 / heavy)
@@ -182,7 +191,11 @@ def _dimer(pair: newton.Pair, k: float) -> ExactWave:
         return near
     struck = f"lwa-validate sweep --k {k:.10g} --omega {ratio:.10g} measures a pulse"
     more = f": the nearest ratio with one is {near.omega:.9g} (resonances); {struck}"
-    raise NoWave("no solitary wave", pair, k, more)
+    heavy = max(pair)
+    masses = [mass if mass == heavy else heavy * near.omega for mass in pair]
+    # Nine digits are enough for `NEAR`.
+    change = tuple(float(f"{mass:.9g}") for mass in masses)
+    raise NoWave("no solitary wave", pair, k, more, masses=change)
 
 
 def solve(problem: newton.Problem, start: ExactWave | None = None) -> ExactWave:
@@ -263,7 +276,8 @@ def special_waves(k: Any) -> Iterator[ExactWave]:
             yield waves[i] if waves[i].k == k else _followed(waves[i], k)
         except NoWave:
             lost = f"special ratio number {i + 1} is lost on the way from k = 3/2 and is not known"
-            raise NoWave(lost, waves[i].masses, k) from None
+            change = {"count": i} if i else {"k": "3/2"}
+            raise NoWave(lost, waves[i].masses, k, **change) from None
 
 
 def _root(wave: ExactWave) -> float:

@@ -19,7 +19,7 @@ def struck(mass, k):
         duration=200 / min(mass, 1) ** 0.4,
         velocities=(1,),
         contact_sensors=(60,),
-        samples=40001,
+        samples=100001,
     )
     (force,) = simulate(blow).contact_force
     front = (force > 0.3 * force.max()).argmax()
@@ -32,6 +32,7 @@ def struck(mass, k):
     [
         ("5/4", 0.1), ("5/4", 0.5), ("5/4", 1), ("5/4", 1.3), ("5/4", 8), ("3/2", 0.02),
         ("3/2", 0.3), ("3/2", 1), ("3/2", 4), ("3/2", 1000), ("5/2", 0.3), ("5/2", 2), ("5/2", 50),
+        ("5", 0.3), ("5", 8), ("20", 0.3), ("20", 50),
     ],
 )  # fmt: skip
 def test_the_error_of_a_strike(engine, k, mass):
@@ -39,8 +40,8 @@ def test_the_error_of_a_strike(engine, k, mass):
     peak = struck(mass, float(found.k))
     deviation = abs(found.force.value - peak)
     assert deviation <= found.force.error
-    # next to m_eff the rule passes through the lattice's force
-    assert mass == 1.3 or holds(found.force.error, deviation, 2e-5)
+    # next to m_eff, and at large k, the rule passes through the lattice's force
+    assert mass == 1.3 or found.k > 5 or holds(found.force.error, deviation, 2e-5)
     assert found.train == (mass > 2)
 
 

@@ -13,13 +13,15 @@ from validation.report.study import output_file, replacing
     [
         ("no/p.svg", "it cannot be written, No such file or directory"),
         ("folder.svg", "a regular file is wanted"),
-        ("p.txt", r"a file ending in .svg is wanted; try plot=.*p.svg."),
+        ("p.txt", r"a file ending in .svg is wanted"),
         ("p\0.svg", "it cannot be written, embedded null byte"),
     ],
 )
 def test_a_place_that_cannot_take_a_file(tmp_path, name, message):
     (tmp_path / "folder.svg").mkdir()
-    with pytest.raises(InputError, match=rf"^plot is [^\n]{{,300}}: {message}$"):
+    with pytest.raises(
+        InputError, match=rf"^plot is [^\n]{{,300}}: {message}; try plot="
+    ):
         output_file("plot", str(tmp_path / name), (".svg",))
     assert [file.name for file in tmp_path.iterdir()] == ["folder.svg"]
 
