@@ -175,9 +175,11 @@ def next_step(
     proposed = _examples(chosen, name)[-1]
     if change:
         changes = _changed(line, change, options)
-        proposed = shlex.join([name, *line, *changes])
+        whole = shlex.join([name, *line, *changes])
         # A message is cut in its middle: the whole line stands at its end, or is not there.
-        if changes and len(proposed) > LONGEST_MESSAGE // 2:
+        if len(whole) < LONGEST_MESSAGE - _SHORTEST_REASON:
+            proposed = whole
+        elif changes:
             proposed = shlex.join(changes)
     room = LONGEST_MESSAGE - len(f"{name}: {TRY}{proposed}")
     return f"{cut(refusal.reason, room)}{TRY}{proposed}"
@@ -219,6 +221,9 @@ def _examples(command: click.Command | None, name: str) -> list[str]:
         lines = (command.epilog or "").splitlines()
     return [f"{name} --help", *(x.strip() for x in lines if f" {name} " in x)]
 
+
+_SHORTEST_REASON = 100
+"""Characters that a reason keeps beside a long line: a line and a quarter of a terminal."""
 
 TRY = "; try: "
 """Mark between the reason of a refusal and the line to paste."""

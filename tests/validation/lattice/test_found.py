@@ -170,6 +170,25 @@ def test_heat_of_a_contact_that_has_stopped_pushing_when_its_neighbour_closes(rt
     assert abs(simulate(scene, rtol=rtol).energy_drift) < 10 * rtol
 
 
+@pytest.mark.parametrize("rtol", [1e-8, 1e-10])
+@pytest.mark.parametrize(
+    ("masses", "k", "damping", "drive", "velocity"),
+    [
+        ((0.409, 1.455), 2.5, ("restitution", 0.589), (0.344, 0.446), -1.643),
+        ((1.104, 1.106), 2.0, ("kuwabara_kono", 0.55), (0.225, 0.402), -0.04),
+        ((0.715, 1.488), 1.5, ("kuwabara_kono", 0.378), (0.91, 0.315), 0.039),
+    ],
+)
+def test_energy_of_a_damped_driven_bead_that_hits_a_moving_bead(
+    masses, k, damping, drive, velocity, rtol
+):
+    scene = Scene(
+        masses=masses, stiffnesses=(1,), wall=1, k=k, duration=20, velocities=(0, velocity),
+        damping=Damping(*damping), drive=Drive(amplitude=drive[0], frequency=drive[1]),
+    )  # fmt: skip
+    assert abs(simulate(scene, rtol=rtol).energy_drift) < 12 * rtol
+
+
 def test_a_piston_that_does_more_work_than_was_guessed():
     scene = Scene(
         masses=(1,) * 10, stiffnesses=(1,) * 9, k=7, duration=50, drive=Drive(velocity=1.4),

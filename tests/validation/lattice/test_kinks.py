@@ -18,7 +18,7 @@ def compiled(laws, r, quintic, h, points, edges):
     law = laws[0]
     count, _ = find_edges(law, r, quintic, h, edges)
     # The work of a bead that moves as the contact's compression does is the fourth integral.
-    return integrals(law, r, quintic, h, 1.0, points, edges, count, True, quintic)
+    return integrals(law, r, quintic, h, 1.0, points, edges, count, True, quintic, 0.0)
 
 
 def force(contact, quintic, h, x):

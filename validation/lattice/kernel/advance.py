@@ -81,6 +81,6 @@ def advance(
             marks += watch_drive(chain, beads, plan, now.t, h)
         for _ in range(marks):
             i = next_mark(beads.marks, i + 1)
-            correct_contact(chain, beads, plan, h, i)
+            correct_contact(chain, beads, plan, now.t, h, i)
         error = step_error(beads, plan, h, hi)
         made, corrected = end_step(beads, plan, now, h, error, stopping), marks > 0

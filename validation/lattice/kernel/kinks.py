@@ -19,7 +19,6 @@ from typing import Any
 import numpy as np
 
 from lwa.base.arrays import Array
-from validation.lattice.kernel.arrays import Pair
 from validation.lattice.kernel.compiled import FIRST, alone, call, index, part
 from validation.lattice.kernel.force import drag, elastic, power, push
 
@@ -225,7 +224,7 @@ def _find_jump(
     A force that begins as ``r δ^b dδ/dt`` with a small b almost jumps.
     """
     found = 1.0, 0.0, 0.0
-    for n in range(1, count):
+    for n in range(count):
         p, slope = value_and_slope(c, edges[n])
         if abs(p) < 1e-9 * abs(slope):
             force = push(law, r, _OPENS, slope / h)
@@ -300,40 +299,6 @@ def _root(c: Curve, x: float, side: float) -> float:
     return math.nan
 
 
-@alone
-def stage_forces(
-    law: Any,
-    r: float,
-    c: Curve,
-    h: float,
-    pair: Pair,
-    bend: float,
-    jump: float,
-    points: Array,
-) -> None:
-    """Compute compressions, slopes and forces at the stages of a pair; they go to ``points``.
-
-    A stage's motion has the pair's own error for a force that jumps at the bend of c; ``bend`` is
-    the change of p'' by a force of 1.
-    """
-    place, _, b = c[6]
-    unit = place, 1.0, b
-    pace = value_and_slope(c, place)[1]
-    for s in range(len(pair.nodes)):
-        p, slope = value_and_slope(c, pair.nodes[s])
-        if jump != 0.0:
-            moment, impulse, _ = bent(unit, pair.nodes[s])
-            for j in range(s):
-                if (points[0, j] > 0.0) == (pace > 0.0):
-                    seen = power(b, points[0, j] / pace) if b > 0.0 else 1.0
-                    moment -= pair.moments[s, j] * seen
-                    impulse -= pair.impulses[s, j] * seen
-            p -= bend * jump * moment
-            slope -= bend * jump * impulse
-        points[0, s], points[1, s] = p, slope
-        points[2, s] = push(law, r, p, slope / h)
-
-
 @part
 def _place_points(
     q: float, zero: float, near: float, far: float, points: Array
@@ -350,6 +315,13 @@ def _place_points(
         points[0, m], points[1, m] = zero + span * u * pace / q, scale * _W[m] * pace
 
 
+@part
+def _fourth(x: float) -> float:
+    """Return Legendre's polynomial of degree 4 for the interval from 0 to 1."""
+    t = 2.0 * x - 1.0
+    return (35.0 * t * t * t * t - 30.0 * t * t + 3.0) / 8.0
+
+
 @alone
 def integrals(
     law: Any,
@@ -362,18 +334,23 @@ def integrals(
     count: int,
     driven: bool,
     bead: Curve,
-) -> tuple[float, float, float, float, float]:
-    """Return five integrals over a step up to ``x = until``.
+    bend: float,
+) -> tuple[float, float, float, float, float, float]:
+    """Return six integrals over a step up to ``x = until``.
 
     Those of ``F``, ``(1 - x) F``, ``(1 - x)²/2 F`` and ``F p'``, in the ``count`` intervals between
-    the places ``edges``, and that of ``F b'`` for the motion b of a driven bead, else 0.
+    the places ``edges``; that of ``F b'`` for the motion b of a driven bead, else 0; and, for a
+    damped contact, that of ``bend F``, less the bend of c, times Legendre's polynomial of degree 4:
+    0 for a force that the second derivative of a quintic follows. A force of 1 changes ``p''`` by
+    ``bend``.
     """
     x, w = points[0], points[1]
-    once = twice = third = work = given = 0.0
+    once = twice = third = work = given = rough = 0.0
     for n in range(count):
         a, b = edges[n], edges[n + 1]
         p, slope = value_and_slope(c, 0.5 * (a + b))
-        if not a < min(b, until) or push(law, r, p, slope / h) == 0.0:
+        idle = push(law, r, p, slope / h) == 0.0 and c[6][1] == 0.0
+        if idle or not a < min(b, until):
             continue
         low, high, b = _root(c, a, -1.0), _root(c, b, 1.0), min(b, until)
         middle = 0.5 * (a + b)
@@ -395,6 +372,9 @@ def integrals(
                 twice += left * force
                 third += 0.5 * left * left * force
                 work += slope * force
+                if r > 0.0:
+                    _, _, known = bent(c[6], x[m])
+                    rough += _fourth(x[m]) * (bend * force - w[m] * known)
                 if driven:
                     given += value_and_slope(bead, x[m])[1] * force
-    return once, twice, third, work, given
+    return once, twice, third, work, given, rough

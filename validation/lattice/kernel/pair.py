@@ -19,7 +19,7 @@ from typing import Any
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel import kinks
-from validation.lattice.kernel.arrays import ROOM, TILE, Beads, Chain, Plan
+from validation.lattice.kernel.arrays import ROOM, TILE, Beads, Chain, Pair, Plan
 from validation.lattice.kernel.compiled import (
     FIRST,
     ONE,
@@ -50,6 +50,9 @@ _ROUNDS, _SETTLED = 4, 0.1
 # time for equal beads, _VERY_NEAR for all a quarter more for dimers at small tolerances.
 # The singularity of damping, δ^{1/4} say, is felt farther away.
 _NEAR, _VERY_NEAR, _NEAR_DAMPED, _STRONG = 0.3, 0.03, 0.6, 1e3
+# Mean distance of the quintic from a p with ``p'' = 9 P₄(x)``, Legendre's polynomial: the distance
+# is ``9 · 0.0365 (1 - (2x - 1)²)³``.
+_MISFIT = 0.15
 # Share of a neighbour's correction that counts as error.
 _SECOND = 0.5
 # Step-size control of Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.4.
@@ -157,15 +160,54 @@ def _motion(beads: Beads, h: float, i: int) -> kinks.Curve:
     return kinks.fitted_curve(start, end, kinks.STRAIGHT)
 
 
+@alone
+def _stage_forces(
+    chain: Chain,
+    beads: Beads,
+    pair: Pair,
+    p: kinks.Curve,
+    t: float,
+    h: float,
+    i: int,
+    jumps: bool,
+) -> None:
+    """Compute a contact's compression, slope and force at the stages; they go to ``beads.points``.
+
+    On the curve p the pair's quadrature and the integral err alike, by the error of p. But the
+    stages after a jump of the force are so far off p that their own motion is taken.
+    """
+    law = chain.laws[chain.law[i]]
+    r, points = chain.r[i], beads.points
+    for s in range(len(pair.nodes)):
+        d, slope = kinks.value_and_slope(p, pair.nodes[s])
+        if jumps:
+            ch = pair.nodes[s] * h
+            rate = beads.v[i]
+            y = beads.y[i] + ch * rate
+            if i == 0 and chain.drive.driven:
+                y, rate, _ = drive_motion(chain.drive, t + h / 2, t + ch)
+            d = chain.rest[i] + y - beads.y[i + 1] - ch * beads.v[i + 1]
+            slope = h * (rate - beads.v[i + 1])
+            for j in range(s):
+                bend = h * h * (beads.push[j, i] - beads.push[j, i + 1])
+                d += pair.moments[s, j] * bend
+                slope += pair.impulses[s, j] * bend
+        points[0, s] = d
+        points[1, s] = slope
+        points[2, s] = push(law, r, d, slope / h)
+
+
 @inlined
-def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) -> None:
+def correct_contact(
+    chain: Chain, beads: Beads, plan: Plan, t: float, h: float, i: int
+) -> None:
     """Correct a step for the pair's error at contact i, which opens or closes."""
     pair, last, inverse = plan.scheme, len(beads.border) - 1, chain.inverse
     A, r, law = chain.A[i], chain.r[i], chain.laws[chain.law[i]]
     points, edges, both = beads.points, beads.edges, inverse[i] + inverse[i + 1]
     start, end = _ends(chain, beads, h, i)
     force, bend = points[2], -A * h * h * both
-    impulse = moment = change = 0.0
+    impulse = moment = change = rough = 0.0
     found = kinks.STRAIGHT
     driven = i == 0 and chain.drive.driven
     drive = _motion(beads, h, i)
@@ -178,10 +220,10 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
             law, r, start, corrected, h, bend, found, edges
         )
         found = p[6]
-        once, twice, third, work, given = kinks.integrals(
-            law, r, p, h, 1.0, points, edges, count, driven, drive
+        once, twice, third, work, given, rough = kinks.integrals(
+            law, r, p, h, 1.0, points, edges, count, driven, drive, bend
         )
-        kinks.stage_forces(law, r, p, h, pair, bend, jump, points)
+        _stage_forces(chain, beads, pair, p, t, h, i, jump != 0.0)
         before = impulse
         impulse = h * A * (once - _integral(pair.impulses[last], force))
         moment = h * h * A * (twice - _integral(pair.moments[last], force))
@@ -213,8 +255,15 @@ def correct_contact(chain: Chain, beads: Beads, plan: Plan, h: float, i: int) ->
             power = A * force[s] * kinks.value_and_slope(drive, pair.nodes[s])[1]
             beads.books[2] -= pair.impulses[last, s] * power
             beads.books[3] += pair.errors[1, s] * power
+    squares = inverse[i] ** 2 + inverse[i + 1] ** 2
+    if r > 0.0:
+        # ∫ (1 - x) F dx and the heat ∫ r δ^p (dδ/dt)² dt are as wrong as p is, the impulse is not.
+        missed = _MISFIT * abs(rough) * A * r * drag(law, max(top, 0.0))
+        heated = 2.0 * missed * abs(start[1]) / h / plan.energy
+        moved = h * missed / plan.y
+        beads.books[4] += heated * heated + moved * moved * squares
     unsettled = change / plan.v
-    beads.books[4] += unsettled * unsettled * (inverse[i] ** 2 + inverse[i + 1] ** 2)
+    beads.books[4] += unsettled * unsettled * squares
     for n in range(max(0, i - 1), i + 2):
         share = both if n == i else -inverse[max(i, n)]
         d = chain.rest[n] + beads.next_y[n] - beads.next_y[n + 1]
@@ -302,23 +351,24 @@ def watch_drive(chain: Chain, beads: Beads, plan: Plan, t: float, h: float) -> i
     if not chain.opens[0] > 0.0:
         return 0
     start, end = _ends(chain, beads, h, FIRST)
+    # Within the step δ changes by less than this from either end.
     reach = abs(start[1]) + abs(end[1]) + abs(start[2]) + abs(end[2])
     if not chain.damped and min(start[0], end[0]) > reach:
         return 0
     p = kinks.fitted_curve(start, end, kinks.STRAIGHT)
     count, top = kinks.find_edges(law, r, p, h, beads.edges)
+    # The quintic's middle by the values at both ends: half their sum, 5/32 of the difference of the
+    # slopes, 1/64 of the sum of the second derivatives.
+    middle = (beads.y[0] + beads.next_y[0]) / 2
+    middle += 5 * h * (beads.v[0] - beads.next_v[0]) / 32
+    middle += h * h * (beads.given[0] + beads.given[1]) / 64
     given, _, _ = drive_motion(chain.drive, t + h / 2, t + h / 2)
-    ends = (beads.y[0] + beads.next_y[0]) / 2 + h * h * (
-        beads.given[0] + beads.given[1]
-    ) / 64
-    missed = abs(given - ends - 5 * h * (beads.v[0] - beads.next_v[0]) / 32)
+    missed = abs(given - middle)
     if count > 1 or beads.marks[0] > 0.0 or abs(top) < missed:
         force = elastic(law, max(top, 0.0) + missed) - elastic(law, top)
         impulse = h * A * force
-        moved, work = (
-            impulse * chain.inverse[1] / plan.v,
-            impulse * beads.v[0] / plan.energy,
-        )
+        moved = impulse * chain.inverse[1] / plan.v
+        work = impulse * beads.v[0] / plan.energy
         beads.books[4] += moved * moved + work * work
     if count > 1 and not beads.marks[0] > 0.0:
         beads.marks[0] = 1.0
@@ -438,15 +488,13 @@ def end_step(
 @inlined
 def begin_step(beads: Beads, hi: int) -> None:
     """Move the beads, and their forces, to the end of a step, which is the start of the next."""
-    last, power, force, push = (
-        len(beads.border) - 1,
-        beads.power,
-        beads.force,
-        beads.push,
-    )
+    last = len(beads.border) - 1
     for i in range(index(hi)):
-        beads.y[i], beads.v[i] = beads.next_y[i], beads.next_v[i]
-        force[ZERO, i + ONE] = force[ONE, i + ONE]
-        push[ZERO, i] = push[index(last), i]
-    power[0, 0], power[1, 0] = power[0, last], power[1, last]
+        beads.y[i] = beads.next_y[i]
+        beads.v[i] = beads.next_v[i]
+        beads.force[ZERO, i + ONE] = beads.force[ONE, i + ONE]
+        beads.push[ZERO, i] = beads.push[index(last), i]
+    # Stage 0 of the next step is the last stage of this one: heat, and work of the drive.
+    beads.power[0, 0] = beads.power[0, last]
+    beads.power[1, 0] = beads.power[1, last]
     beads.given[0] = beads.given[1]

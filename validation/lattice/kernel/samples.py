@@ -115,8 +115,8 @@ def _take_kink_away(
         )
     for s in range(first, last + 1):
         x = (time[s] - knots.time[n]) / h if s < last else 1.0
-        once, twice, _, _, _ = kinks.integrals(
-            law, ratio, p, h, x, points, edges, count, False, p
+        once, twice, _, _, _, _ = kinks.integrals(
+            law, ratio, p, h, x, points, edges, count, False, p, -near - far
         )
         moment = twice - (1.0 - x) * once  # ∫ (x - s) F(s) ds
         if s < last:
