@@ -239,11 +239,11 @@ def strip(axes: Axes, ratios: Sequence[str], measured: Sequence[Any]) -> Any:
 def shock(above: Axes, below: Axes, over: Any, train: Any) -> Any:
     """A shock's train with its edges, and the strain over place and time; the image."""
     for curve in train.curves:
-        (line,) = above.plot(curve.x, curve.y, curve.style, lw=1.3)
-        if len(curve.x) == 2:  # an edge
-            top = above.get_ylim()[1]
-            look = dict(rotation=90, va="top", fontsize=9, color=line.get_color())
-            above.text(curve.x[0] + 1, top, curve.label, **look)
+        # Two of the edges nearly coincide: their names stand in the legend, not beside them.
+        edge = len(curve.x) == 2
+        label = curve.label if edge else None
+        above.plot(curve.x, curve.y, curve.style, lw=1.3, label=label)
+    above.legend(loc="lower left")
     above.set(ylabel="strain at the last time")
     found = over.map
     look = dict(cmap="Blues", shading="nearest", rasterized=True)

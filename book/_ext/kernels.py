@@ -1,4 +1,4 @@
-"""Kernels for the book's pages that are forked from one process.
+"""Kernels for the book's pages, and the pages' shell commands, that are forked from one process.
 
 That process has loaded the pages' packages (`loaded.py`). A kernel of its own would load them
 again, which takes more CPU than most pages.
@@ -7,25 +7,29 @@ again, which takes more CPU than most pages.
 from __future__ import annotations
 
 import asyncio
+import atexit
 import json
 import os
 import subprocess
 import sys
 from importlib.metadata import EntryPoint
 from pathlib import Path
+from shutil import rmtree
+from tempfile import mkdtemp
 from threading import Lock
 from typing import Any
 
 from jupyter_client.provisioning import KernelProvisionerFactory, LocalProvisioner
 
 PROGRAM = Path(__file__).with_name("loaded.py")
+COMMAND = Path(__file__).with_name("command.py")
 
 
 class Loaded:
     """The process that forks, which ends with this one."""
 
-    def __init__(self) -> None:
-        command = [sys.executable, str(PROGRAM)]
+    def __init__(self, address: Path) -> None:
+        command = [sys.executable, str(PROGRAM), str(address)]
         pipe = subprocess.PIPE
         self.process = subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True)
         self.lock = Lock()
@@ -78,9 +82,17 @@ def prepare() -> None:
     # The pages' matrices are small, and threads that wait for each other burn time.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     # Pages show commands of the environment in which this program runs.
-    programs = str(Path(sys.executable).parent)
-    os.environ["PATH"] = programs + os.pathsep + os.environ["PATH"]
-    Forked.loaded = Loaded()
+    programs = Path(mkdtemp())
+    atexit.register(rmtree, programs)
+    address = programs / "socket"
+    for name in ("lwa", "lwa-validate"):
+        program = programs / name
+        line = f'exec {sys.executable} -IS {COMMAND} {address} {name} "$@"'
+        program.write_text(f"#!/bin/sh\n{line}\n", encoding="utf-8")
+        program.chmod(0o755)
+    places = [str(programs), str(Path(sys.executable).parent), os.environ["PATH"]]
+    os.environ["PATH"] = os.pathsep.join(places)
+    Forked.loaded = Loaded(address)
     group = KernelProvisionerFactory.GROUP_NAME
     entry = EntryPoint("forked", f"{__name__}:Forked", group)
     KernelProvisionerFactory.provisioners["forked"] = entry

@@ -1,15 +1,19 @@
-"""A program that forks kernels which have the pages' packages loaded; `kernels.py` runs it.
+"""A program that forks processes which have the pages' packages loaded; `kernels.py` runs it.
 
-Each line of its input asks for a kernel, each line of its output is the number of the process.
-Loading costs four seconds of CPU, reading the compiled engine another one.
+Each line of its input asks for a kernel, each line of its output is the number of the process. The
+socket of its argument serves the pages' shell commands: `command.py` is the other end. Loading
+costs four seconds of CPU, reading the compiled engine another one.
 """
 
 import json
 import os
+import selectors
 import signal
+import socket
 import sys
 from contextlib import suppress
 from importlib import import_module
+from importlib.metadata import entry_points
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -17,6 +21,11 @@ from ipykernel.kernelapp import IPKernelApp
 
 import lwa
 import validation
+
+# Commands that come while the packages load wait for them.
+server = socket.socket(socket.AF_UNIX)
+server.bind(sys.argv[1])
+server.listen()
 
 for name in ("matplotlib.backends.backend_svg", "sympy"):
     import_module(name)
@@ -51,17 +60,56 @@ def serve(connection: str, folder: str, environment: dict[str, str]) -> None:
     IPKernelApp.launch_instance(argv=options)
 
 
+def run(connection: socket.socket) -> None:
+    """Run the package's command for the process at the other end of a connection."""
+    request, descriptors, *_ = socket.recv_fds(connection, 2**20, 3)
+    name, arguments, folder, environment = json.loads(request)
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    for standard, given in enumerate(descriptors):
+        os.dup2(given, standard)
+    # Streams without what the old ones have buffered
+    sys.stdin = os.fdopen(0)
+    sys.stdout = os.fdopen(1, "w")
+    sys.stderr = os.fdopen(2, "w")
+    os.chdir(folder)
+    os.environ.clear()
+    os.environ.update(environment)
+    sys.argv = [name, *arguments]
+    (program,) = entry_points(group="console_scripts", name=name)
+    try:
+        status = program.load()()
+    except SystemExit as end:
+        status = end.code
+    sys.stdout.flush()
+    connection.sendall(bytes([status or 0]))
+
+
 def reap(*_: object) -> None:
-    """Wait for the kernels that have ended, so that their numbers are free and their CPU counts."""
+    """Wait for the processes that have ended, so that their numbers are free, their CPU counts."""
     with suppress(ChildProcessError):
         while os.waitpid(-1, os.WNOHANG)[0]:
             pass
 
 
 signal.signal(signal.SIGCHLD, reap)
-for line in sys.stdin:
-    number = os.fork()
-    if not number:
-        serve(**json.loads(line))
-        break
-    print(number, flush=True)
+requests = selectors.DefaultSelector()
+requests.register(sys.stdin, selectors.EVENT_READ)
+requests.register(server, selectors.EVENT_READ)
+while True:
+    asked = [key.fileobj for key, _ in requests.select()]
+    if server in asked:
+        connection, _ = server.accept()
+        if not os.fork():
+            run(connection)
+            break
+        connection.close()
+    if sys.stdin in asked:
+        # The sender waits for each answer: one line at most is there.
+        line = sys.stdin.readline()
+        if not line:
+            break
+        number = os.fork()
+        if not number:
+            serve(**json.loads(line))
+            break
+        print(number, flush=True)

@@ -316,16 +316,18 @@ class Breather(Value):
 
     @property
     def _shift(self) -> sp.Expr:
-        """The ratio χ a²/Δ: 2Ω/Δ for bright, Ω/Δ for dark breathers."""
-        rate = -self.envelope.frequency  # Ω/Δ
-        if self.kind == "bright":
-            return 2 * rate
-        return rate
+        """The shift ``Ω = -Δω`` of the frequency."""
+        return -self.detuning * self.envelope.frequency
+
+    @property
+    def _share(self) -> int:
+        """The ratio ``χ a²/Ω`` of the two kinds."""
+        return 2 if self.kind == "bright" else 1
 
     @cached_property
     def _square(self) -> sp.Expr:
         """Square a² of the envelope's amplitude."""
-        square = self._shift * self.detuning / self.envelope.nonlinearity
+        square = self._share * self._shift / self.envelope.nonlinearity
         return sp.powsimp(factored(square))
 
     @cached_property
@@ -336,10 +338,10 @@ class Breather(Value):
     @cached_property
     def width(self) -> sp.Expr:
         """Width 1/b, in cells, of the envelope sech(bn) or tanh(bn)."""
-        ratio = self.envelope.dispersion / (self._shift * self.detuning)
-        if self.kind == "bright":  # ω″ b² = -2Ω, in place of Ω
-            ratio = -ratio
-        return sp.sqrt(factored(ratio))
+        squared = self.envelope.dispersion / (self._share * self._shift)
+        if self.kind == "bright":  # ω″ b² = -2Ω
+            squared = -squared
+        return sp.sqrt(factored(squared))
 
     @cached_property
     def opening_detuning(self) -> sp.Expr:
@@ -348,8 +350,10 @@ class Breather(Value):
         Under a power law it is the same at every load. In the lattice contacts open earlier: for
         spheres of mass ratios 0.3 to 0.5 at 0.018 instead of 3/128, which is 0.0234.
         """
-        ratio = self.envelope.opening * self.envelope.nonlinearity / self._shift
-        return sp.simplify(ratio)
+        # a² = -share Δ ω/χ
+        rate = self._share * self.envelope.frequency
+        opening = self.envelope.opening * self.envelope.nonlinearity
+        return sp.simplify(-opening / rate)
 
     def displacements(self, cells: ArrayLike) -> Array:
         """Displacements of the beads at the time 0 to leading order, in floats.

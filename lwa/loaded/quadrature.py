@@ -355,8 +355,5 @@ class Nodes:
         logs = g.from_peak(g.logs[g.rows])
         last = xi[-1]
         inside = _interpolated(xi, logs, np.minimum(places, last))
-        # v decays exponentially behind the last node under a load, and ends there without.
-        falls = g.from_peak((g.ds / g.s)[g.rows])  # of ln v, from node to node
-        decay = falls[-1] / g.from_peak(self.distances)[-1]
-        beyond = np.maximum(places - last, 0)
-        return np.asarray(np.exp(inside - decay * beyond))
+        # Behind the last node v is below what grids may differ by, or they are refined.
+        return np.where(places > last, 0.0, np.exp(inside))

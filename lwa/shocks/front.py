@@ -142,19 +142,13 @@ def _front(cell: Cell, law: ContactLaw, behind: sp.Expr, ahead: sp.Expr) -> Shoc
             raise InputError(
                 f"{name} is 0 and k {law.exponent}: a front without load wants k > 1"
             )
-    jump = behind - ahead
-    # Equal strains are refused below, with the words for equal speeds of sound.
-    if behind.is_number and ahead.is_number and not jump.is_zero:
-        least = SMALLEST * max(abs(behind), abs(ahead))
-        if abs(jump) < least:
-            raise InputError(
-                f"the jump of the strain is {sp.N(jump, 3)}: 1e-15 of it at least is wanted"
-            )
+    _demand_resolved(behind, ahead)
     strains = _floats(law, behind, ahead)
-    # The sign of a sum of floats and powers of a symbol is not known.
-    hold_floats = any(p.has(sp.Float) for p in strains)
-    scaled = law.homogeneous and not any(p.free_symbols for p in strains)
-    if hold_floats and not scaled and cell.spacing.is_Symbol:
+    # The spacing only scales the results of numbers under a power law. Elsewhere it stands in
+    # sums with floats, whose sign is not known.
+    numbers = not any(p.free_symbols for p in strains)
+    in_sums = cell.spacing.is_Symbol and not (law.homogeneous and numbers)
+    if in_sums and any(p.has(sp.Float) for p in strains):
         raise InputError(
             f"spacing is {cell.spacing}: beside long decimals a number is wanted",
             spacing=1,
@@ -167,6 +161,19 @@ def _front(cell: Cell, law: ContactLaw, behind: sp.Expr, ahead: sp.Expr) -> Shoc
             "sound is as fast behind as ahead: there is no shock and no rarefaction"
         )
     return front
+
+
+def _demand_resolved(behind: sp.Expr, ahead: sp.Expr) -> None:
+    """Raise `lwa.InputError` for a jump that is too small for results of 30 digits."""
+    jump = abs(behind - ahead)
+    # Equal strains are refused later, with the words for equal speeds of sound. Of springs the
+    # jump may be a number where the strains are not.
+    if jump.is_zero or sp.Tuple(behind, ahead).free_symbols:
+        return
+    if jump < SMALLEST * max(abs(behind), abs(ahead)):
+        raise InputError(
+            f"the jump of the strain is {sp.N(jump, 3)}: 1e-15 of it at least is wanted"
+        )
 
 
 def _floats(law: ContactLaw, *values: sp.Expr) -> tuple[sp.Expr, ...]:

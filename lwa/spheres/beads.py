@@ -80,6 +80,7 @@ STRIKER = ("velocity", "drop", "like")
 def read_materials(file: Table) -> dict[str, Material]:
     """Materials by name: the built-in `MATERIALS` ("steel" is steel 316), and those of a file."""
     materials: dict[str, Material] = file.read("materials", named(_material), {})
+    # Porter et al. 2008, whose chains are the examples, have beads of steel 316.
     known = MATERIALS | {"steel": MATERIALS["steel 316"]}
     # A file's own names come first in lists, and its values stand above the built-in ones.
     return materials | known | materials
@@ -141,6 +142,7 @@ def read_row(file: Table, beads: Mapping[str, Sphere]) -> Row:
     """Read the table ``chain``, whose cell holds names of these beads or masses."""
     given = file.read("chain", table(CHAIN))
     cell = given.read("cell", array)
+    # An array of TOML may be empty; a cell of no beads has no mass.
     if not cell:
         raise InputError(
             "chain.cell is empty: names, or masses, of one bead or more are wanted"
@@ -205,6 +207,7 @@ def spheres(content: Any) -> list[Sphere]:
 def _material(value: Any, name: str) -> Material:
     """Read a material: a material like it, E, ν and the density."""
     entries = Table(value, name, ("like", "E", "nu", "density"))
+    # Density is needed by beads without a mass alone, which ask for it.
     needed = {"E", "nu"}
     values: dict[str, Any] = {}
     if "like" in entries:
@@ -217,6 +220,7 @@ def _material(value: Any, name: str) -> Material:
     try:
         return Material(**values)
     except InputError as fault:
+        # A material does not know its name in the file.
         raise InputError(f"{name}.{fault}") from None
 
 

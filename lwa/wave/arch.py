@@ -124,8 +124,8 @@ class Arch(Value, ABC):
             For another quantity.
         """
         # The quantity scales as strain^q: cos^{mq}(βξ) = 1/2.
-        exponent = strain_power(quantity, self.k) * self.m
-        return 2 * sp.acos(2 ** (-1 / exponent)) / self.beta
+        cosines = strain_power(quantity, self.k) * self.m
+        return 2 * sp.acos(2 ** (-1 / cosines)) / self.beta
 
     def speed(self, B: Any = RISE) -> sp.Expr:
         """Speed ``V = dx/dτ`` of the wave whose strain peaks at B."""

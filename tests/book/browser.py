@@ -59,6 +59,7 @@ window.addEventListener("load", async () => {
   await new Promise(done => setTimeout(done, 50)); // for events on their way
   for (const image of document.images) image.loading = "eager";
   await Promise.all([...document.images].map(image => image.decode().catch(() => 0)));
+  const body = document.querySelector("article") || document.body;
   // What axe finds, in a window of full width.
   const rules = async () => !window.axe ? [] : (await axe.run(document, {preload: false}))
     .violations
@@ -67,9 +68,30 @@ window.addEventListener("load", async () => {
   const early = [...document.querySelectorAll(".lwa-below")].filter(e => e.clientWidth).length;
   asked.forEach(row => row.firstChild.click());
   const axeFound = await rules(); // before the many entries of the packages unfold
+  // Every control at its ends, and back: each text has its numbers.
+  const ends = [];
+  for (const control of body.querySelectorAll("input[type=range]")) {
+    const home = control.closest("[class^=lwa-]:has(> canvas)");
+    const {tell} = lwaTurn.things[home.className.replace("lwa-", "")];
+    for (const end of [control.min, control.max, control.value]) {
+      control.value = end;
+      control.dispatchEvent(new Event("input", {bubbles: true}));
+      const text = `${control.getAttribute("aria-valuetext")} ${tell(home.scene)}`;
+      if (/NaN|undefined|null|Infinity/.test(text)) ends.push(`${control.name} ${end}: ${text}`);
+    }
+  }
+  // What a screen reader says while a hand moves a control.
+  const live = body.querySelector(".lwa-chain output");
+  const spoken = [];
+  if (live) {
+    new MutationObserver(() => spoken.push(live.textContent)).observe(live, {childList: true});
+    for (let i = 0; i < 50; i++) {
+      body.querySelector(".lwa-chain input").dispatchEvent(new Event("input", {bubbles: true}));
+      await new Promise(done => setTimeout(done, 50));
+    }
+  }
   for (const details of document.querySelectorAll("details")) details.open = true;
   const math = [...document.querySelectorAll(".math")];
-  const body = document.querySelector("article") || document.body;
   const text = body.cloneNode(true);
   const texts = kind => [...document.querySelectorAll(kind)].map(e => e.textContent);
   const overflow = e => getComputedStyle(e).overflowX;
@@ -100,6 +122,12 @@ window.addEventListener("load", async () => {
       .filter(e => e.getClientRects().length > 2).map(e => e.textContent),
     wider: document.scrollingElement.scrollWidth > innerWidth + 1,
     axe: axeFound,
+    ends,
+    spoken: spoken.length > 4 ? spoken : [],
+    // What scrolls has to be reached by the keyboard.
+    stops: [...document.querySelectorAll("mjx-container, mjx-container *")]
+      .filter(e => e.tabIndex >= 0 && !e.closest("a") && e.scrollWidth <= e.clientWidth + 1)
+      .map(e => e.textContent),
     sliders: body.querySelectorAll("input[type=range]").length,
     asked: asked.length,
     early,

@@ -24,7 +24,7 @@ PHONE, WINDOW = 390, 1280
 """Widths of a page, in CSS pixels."""
 FAULTS = (
     "errors", "unrendered", "merrors", "raw", "broken", "unshown", "foreign", "axe", "cut",
-    "crumbled", "wider",
+    "crumbled", "wider", "ends", "spoken", "stops",
 )  # fmt: skip
 
 
@@ -130,6 +130,7 @@ BAD = {
     "unshown": ["<pre>&lt;Figure size 650x520 with 1 Axes&gt;</pre>"],
     "broken": ['<img alt="x" src="nowhere.png">'],
     "crumbled": [ROW % "anywhere"],  # neither cut nor wider than the page
+    "stops": ['<mjx-container tabindex="0">x</mjx-container>'],
     "cut": [LINE % "", LINE % "overflow-x: hidden", PICTURE % 300],
 }
 GOOD = [

@@ -80,6 +80,13 @@ def test_simulated_records_are_called_so():
     assert not [caption for caption in captions if "measured" in caption]
 
 
+def test_light_beads_oscillate_on_the_page_of_the_lattices_own_wave():
+    """A sentence that says so links to the page that shows it."""
+    sentences = every(r"[^.]*light beads?[^.]* oscillates?\b[^.]*\{doc\}[^.]*")
+    assert sentences
+    assert not [sentence for sentence in sentences if "{doc}`exact`" not in sentence]
+
+
 def test_names_on_the_pages():
     """Files that are there, kinds of statements, the materials, letters and labels that are one."""
     files = every(r"`((?:tests|book)/[\w/.]+)`")

@@ -217,9 +217,9 @@ Object.assign(things, {
       const {lattice} = scene;
       const arch = beside && (x => beside.at(x, lattice.time));
       const words = [BARS, LINE, ["sound", LIGHT]];
-      const {x, base} = drawRow(pen, lattice, scene.top, {arch, before: scene.before, trail: false, words});
+      const {x, base, below} = drawRow(pen, lattice, scene.top, {arch, before: scene.before, trail: false, words});
       const front = soundSpeed(scene.values.p0) * lattice.time;
-      if (front > 0 && front < lattice.n) pen.line([[x(front), 8], [x(front), base]], LIGHT);
+      if (front > 0 && front < lattice.n) pen.line([[x(front), below], [x(front), base]], LIGHT);
     },
     tell(scene) {
       const sound = soundSpeed(scene.values.p0);
@@ -335,9 +335,9 @@ Object.assign(things, {
     },
     draw({lattice, plateau, edge}, pen) {
       const words = [BARS, ["plateau and leading edge by the theory", THEORY]];
-      const {x, y, base} = drawRow(pen, lattice, 3.2 * plateau, {words});
+      const {x, y, base, below} = drawRow(pen, lattice, 3.2 * plateau, {words});
       pen.line([[x(0), y(plateau)], [x(lattice.n), y(plateau)]], THEORY, 1);
-      pen.line([[x(edge * lattice.time), 8], [x(edge * lattice.time), base]], THEORY, 1);
+      pen.line([[x(edge * lattice.time), below], [x(edge * lattice.time), base]], THEORY, 1);
     },
     tell({edge, fastest, v}) {
       const grows = fastest < 1.9 * v ? " The train still grows." : "";

@@ -218,11 +218,11 @@ function calculator(home) {
     },
   }, () => {
     shown.hidden = false;
+    home.querySelector(".lwa-still")?.classList.add("lwa-replaced");
     update();
   });
   shown.hidden = true;
   home.append(shown);
-  home.querySelector(".lwa-still")?.classList.add("lwa-replaced");
 }
 
 // Four digits with a prefix and the unit.

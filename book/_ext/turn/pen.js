@@ -96,7 +96,7 @@ const TRAIL = ["highest force so far", GHOST];
 //   top: force at the upper edge. from, to: beads at the left and right edge.
 //   arch: dynamic force of the theory over the place, or null. before: a lattice drawn in grey.
 //   trail: whether the highest force of each contact stays. words: of the legend.
-// Returns the functions from beads and forces to the picture.
+// Returns the functions from beads and forces to the picture, and the height below the legend.
 function drawRow(pen, lattice, top, {from = 0, to = lattice.n - 1, ...more} = {}) {
   const {arch = null, before = null, trail = true, words = [BARS], light = LIGHT} = more;
   const site = pen.width / (to - from + 2);
@@ -136,5 +136,5 @@ function drawRow(pen, lattice, top, {from = 0, to = lattice.n - 1, ...more} = {}
     pen.disk(x(i) + moved * lattice.u[i], pen.height - radius - 4, r, fill, pen.ink);
   }
   legend(pen, words);
-  return {x, y, base};
+  return {x, y, base, below: 6 + 17 * words.length};
 }

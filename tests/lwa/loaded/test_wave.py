@@ -196,10 +196,16 @@ def chain(law, second=None):
 def test_errors_cover_the_exact_wave(lattice, force, load):
     known = exact(lattice, force, load)
     wave = loaded_wave(lattice, force=force, precompression=load)
-    missed = abs(float(wave.speed) - math.sqrt(known.square))
-    assert missed < wave.estimate("speed").error < 30 * missed
-    missed = abs(float(wave.fwhm(known.of)) - known.fwhm)
-    assert missed < wave.estimate("fwhm", known.of).error < 30 * missed
+    speed = wave.estimate("speed")
+    missed = abs(speed.value - math.sqrt(known.square))
+    assert missed < speed.error < 30 * missed
+    width = wave.estimate("fwhm", known.of)
+    missed = abs(width.value - known.fwhm)
+    assert missed < width.error < 30 * missed
+    # The time of passage is a quotient, and relative errors add.
+    time = wave.estimate("fwhm", known.of, "time")
+    relative = width.error / width.value + speed.error / speed.value
+    assert time.error / time.value == pytest.approx(relative)
 
 
 def test_four_particles_with_an_exponential_second_neighbour():

@@ -176,27 +176,24 @@ def _stage_forces(
     On the curve p the pair's quadrature and the integral err alike, by the error of p. But the
     stages after a jump of the force are so far off p that their own motion is taken.
     """
-    law, r, points, push_of = (
-        chain.laws[chain.law[i]],
-        chain.r[i],
-        beads.points,
-        beads.push,
-    )
+    law = chain.laws[chain.law[i]]
+    r, points = chain.r[i], beads.points
     for s in range(len(pair.nodes)):
         d, slope = kinks.value_and_slope(p, pair.nodes[s])
         if jumps:
             ch = pair.nodes[s] * h
-            y, v = beads.y[i], beads.v[i]
-            near, rate = y + ch * v, v
+            rate = beads.v[i]
+            y = beads.y[i] + ch * rate
             if i == 0 and chain.drive.driven:
-                near, rate, _ = drive_motion(chain.drive, t + h / 2, t + ch)
-            d = chain.rest[i] + near - beads.y[i + 1] - ch * beads.v[i + 1]
+                y, rate, _ = drive_motion(chain.drive, t + h / 2, t + ch)
+            d = chain.rest[i] + y - beads.y[i + 1] - ch * beads.v[i + 1]
             slope = h * (rate - beads.v[i + 1])
             for j in range(s):
-                a = h * h * (push_of[j, i] - push_of[j, i + 1])
-                d += pair.moments[s, j] * a
-                slope += pair.impulses[s, j] * a
-        points[0, s], points[1, s] = d, slope
+                bend = h * h * (beads.push[j, i] - beads.push[j, i + 1])
+                d += pair.moments[s, j] * bend
+                slope += pair.impulses[s, j] * bend
+        points[0, s] = d
+        points[1, s] = slope
         points[2, s] = push(law, r, d, slope / h)
 
 
@@ -355,23 +352,24 @@ def watch_drive(chain: Chain, beads: Beads, plan: Plan, t: float, h: float) -> i
     if not chain.opens[0] > 0.0:
         return 0
     start, end = _ends(chain, beads, h, FIRST)
+    # Within the step δ changes by less than this from either end.
     reach = abs(start[1]) + abs(end[1]) + abs(start[2]) + abs(end[2])
     if not chain.damped and min(start[0], end[0]) > reach:
         return 0
     p = kinks.fitted_curve(start, end, kinks.STRAIGHT)
     count, top = kinks.find_edges(law, r, p, h, beads.edges)
+    # The quintic's middle by the values at both ends: half their sum, 5/32 of the difference of the
+    # slopes, 1/64 of the sum of the second derivatives.
+    middle = (beads.y[0] + beads.next_y[0]) / 2
+    middle += 5 * h * (beads.v[0] - beads.next_v[0]) / 32
+    middle += h * h * (beads.given[0] + beads.given[1]) / 64
     given, _, _ = drive_motion(chain.drive, t + h / 2, t + h / 2)
-    ends = (beads.y[0] + beads.next_y[0]) / 2 + h * h * (
-        beads.given[0] + beads.given[1]
-    ) / 64
-    missed = abs(given - ends - 5 * h * (beads.v[0] - beads.next_v[0]) / 32)
+    missed = abs(given - middle)
     if count > 1 or beads.marks[0] > 0.0 or abs(top) < missed:
         force = elastic(law, max(top, 0.0) + missed) - elastic(law, top)
         impulse = h * A * force
-        moved, work = (
-            impulse * chain.inverse[1] / plan.v,
-            impulse * beads.v[0] / plan.energy,
-        )
+        moved = impulse * chain.inverse[1] / plan.v
+        work = impulse * beads.v[0] / plan.energy
         beads.books[4] += moved * moved + work * work
     if count > 1 and not beads.marks[0] > 0.0:
         beads.marks[0] = 1.0
@@ -491,15 +489,13 @@ def end_step(
 @inlined
 def begin_step(beads: Beads, hi: int) -> None:
     """Move the beads, and their forces, to the end of a step, which is the start of the next."""
-    last, power, force, push = (
-        len(beads.border) - 1,
-        beads.power,
-        beads.force,
-        beads.push,
-    )
+    last = len(beads.border) - 1
     for i in range(index(hi)):
-        beads.y[i], beads.v[i] = beads.next_y[i], beads.next_v[i]
-        force[ZERO, i + ONE] = force[ONE, i + ONE]
-        push[ZERO, i] = push[index(last), i]
-    power[0, 0], power[1, 0] = power[0, last], power[1, last]
+        beads.y[i] = beads.next_y[i]
+        beads.v[i] = beads.next_v[i]
+        beads.force[ZERO, i + ONE] = beads.force[ONE, i + ONE]
+        beads.push[ZERO, i] = beads.push[index(last), i]
+    # Stage 0 of the next step is the last stage of this one: heat, and work of the drive.
+    beads.power[0, 0] = beads.power[0, last]
+    beads.power[1, 0] = beads.power[1, last]
     beads.given[0] = beads.given[1]
