@@ -8,6 +8,7 @@ import pytest
 import scipy
 
 from validation import simulate
+from validation.pulses.base import Base
 from validation.pulses.discharge import corrected, suggested
 from validation.pulses.noisy import noisy_pulse, noisy_pulses
 from validation.pulses.pulse import MeasureError, first_pulse
@@ -289,3 +290,12 @@ def test_the_arrival_of_two_humps_is_unsure_by_their_distance(samples):
             assert abs(off) < numbers[name].error < 0.6 * true.fwhm, name
         missed += numbers["arrival"].value < 0
     assert missed > 0
+
+
+def test_the_doubt_between_two_bases_is_in_the_drawn_errors():
+    """Without any noise, the draws lie where each of two equally likely bases would put a pulse."""
+    base = Base.guessed(np.repeat([1.0, 0.0], [5, 95]), 0.0)
+    t = np.linspace(0, 1, 5)
+    drawn = base.drawn(t, np.zeros(5), 0.0, 0.0)
+    assert set(drawn.ravel().round(12)) == {-0.5, 0.5}
+    assert abs(drawn.mean()) < 0.1
