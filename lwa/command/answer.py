@@ -246,7 +246,7 @@ class Row:
         return f"{formula} ≈ {digits}"
 
     def latex(self, scale: Scale) -> str:
-        """The row as ``symbol = value``."""
+        """The row as ``symbol = expression``, or with its number and error where that is known."""
         if self.estimate is None or math.isnan(self.estimate.error):
             return latex.row(self.symbol, self.value)
         number = self.estimate.latex()

@@ -166,8 +166,9 @@ def _front(cell: Cell, law: ContactLaw, behind: sp.Expr, ahead: sp.Expr) -> Shoc
 def _demand_resolved(behind: sp.Expr, ahead: sp.Expr) -> None:
     """Raise `lwa.InputError` for a jump that is too small for results of 30 digits."""
     jump = abs(behind - ahead)
-    # Equal strains are refused later, with the words for equal speeds of sound.
-    if jump.is_zero or jump.free_symbols:
+    # Equal strains are refused later, with the words for equal speeds of sound. Of springs the
+    # jump may be a number where the strains are not.
+    if jump.is_zero or sp.Tuple(behind, ahead).free_symbols:
         return
     if jump < SMALLEST * max(abs(behind), abs(ahead)):
         raise InputError(

@@ -75,6 +75,7 @@ CALLS = [
     (lambda: expand(CHAIN, 6).c2.at(1), "k is 1"),
     (lambda: expand(CHAIN, 5).c2.at("3/2"), "from order 6 on"),
     (lambda: expand(Cell(["ε", 1])), "ε is the series' parameter"),
+    (lambda: lwa.piston(Cell([1], spacing=1), 2, "m1", k=1), "as fast behind as ahead"),
     (
         lambda: expand(CHAIN, 2, law=Law(sp.exp(DELTA) - 1, DELTA)),
         "only a power law has a k",

@@ -26,6 +26,7 @@ from validation.pulses.base import FEWEST, Base
 from validation.pulses.fitted import fitted
 from validation.pulses.pulse import (
     MeasureError,
+    Pulse,
     all_pulses,
     first_pulse,
     highest_pulse,
@@ -46,6 +47,9 @@ _LATER = 0.1  # smallest peak of a later pulse over the first
 _EQUAL = 1e-6  # of the record's range: samples that differ less are equal
 _CONSTANT = 1e-8  # range of a signal without pulses, over its size
 _SUDDEN = 11.0  # growth, in a width, of a force that begins: two widths before a Gaussian's top
+_GRID = 400  # intervals in which the maxima of a pulse are looked for
+_SAME = 0.01  # distance, over the width, of two readings of one maximum
+_LEAST_OF_WIDTH = 0.1  # relative error of a width over that of the peak, at least
 _EXACT = 1e-4  # noise over the peak of a record without noise
 
 
@@ -190,11 +194,32 @@ def _exact(t: Array, f: Array, size: float) -> Iterator[NoisyPulse]:
             value = getattr(pulse, name)
             error = max(abs(value - getattr(other, name)) for other in rough)
             numbers[name] = Estimate(value, error)
+        # Which of two humps is the higher is unsure within the error of the peak.
+        peak = numbers["peak"]
+        apart = 0.0
+        for other in (signal, *coarse):
+            tops = _tops(other, pulse, pulse.peak - peak.error)
+            apart = max(apart, np.abs(tops - pulse.arrival).max(initial=0.0))
+        if apart > _SAME * pulse.fwhm:
+            late = numbers["arrival"]
+            error = max(late.error, apart + _SAME * pulse.fwhm)
+            numbers["arrival"] = Estimate(late.value, error)
+        # Both differences of the width may vanish by chance.
+        least = _LEAST_OF_WIDTH * peak.relative_error * pulse.fwhm
+        width = numbers["fwhm"]
+        numbers["fwhm"] = Estimate(width.value, max(width.error, least))
         # A base that is off by this much moves the peak as much, and both flanks at its half.
         for name in ("peak", "fwhm"):
             numbers[name] = numbers[name].widened(doubt / pulse.peak)
         numbers["peak"] *= size
         yield NoisyPulse(numbers, level * size)
+
+
+def _tops(signal: Piecewise, pulse: Pulse, least: float) -> Array:
+    """Return times at which a signal has a maximum above a value in a pulse."""
+    times = np.linspace(pulse.rise, pulse.fall, _GRID + 1)
+    places, _ = find_peaks(signal(times), height=least)
+    return np.asarray(times[places])
 
 
 def _front(f: Array, width: float) -> float:

@@ -1,10 +1,11 @@
 """Pulses at the sensors of a scene: arrival, peak force, FWHM, and the speed between sensors.
 
-Forces are dynamic: the static force of gravity and precompression is subtracted. Every number of a
-recording is measured in a run and in less accurate runs, whose differences are its error
-(`validation.pulses.pulse.compared`). Where a hump of about half the record's maximum precedes the
-first pulse, or is it, another run may take the other one: the error is then at least the distance
-between them (`first_numbers`).
+Forces are dynamic: they count from the start, as in a record. Beads that start in equilibrium carry
+the static force of gravity and precompression; beads that fall onto each other carry none. Every
+number of a recording is measured in a run and in less accurate runs, whose differences are its
+error (`validation.pulses.pulse.compared`). Where a hump of about half the record's maximum precedes
+the first pulse, or is it, another run may take the other one: the error is then at least the
+distance between them (`first_numbers`).
 """
 
 from __future__ import annotations
@@ -66,7 +67,7 @@ class Reading:
     numbers : mapping of Estimate
         Those of `READINGS` or of `SPEEDS` that are known, by name.
     static : float
-        Force at the (first) sensor from which dynamic forces count: the static one, or a given one.
+        Force at the (first) sensor from which dynamic forces count: the one at the start.
     missing : str, optional
         Reason why numbers are missing.
     pulse : int
@@ -130,7 +131,7 @@ class Track:
         Place along the chain in sites and in lengths, by the names `SPEEDS`; empty for a bead
         with one contact, whose force is that of a place half a site away.
     static : float
-        Force from which dynamic forces count, the static one by default.
+        Force from which dynamic forces count, the one at the start.
     quantity : {"force", "velocity"}
         The signal.
     """
@@ -150,7 +151,6 @@ def record(
     rtol: Any = TOLERANCE,
     every: bool = False,
     velocities: Container[str] = (),
-    levels: Mapping[str, float] | None = None,
     progress: RunProgress = silent,
 ) -> Recording:
     """Simulate a scene and measure the pulses at its sensors.
@@ -167,8 +167,6 @@ def record(
         True for all pulses at each sensor instead of the first.
     velocities : container of str
         Names of bead sensors, such as "bead 15", whose velocity is measured, not the force.
-    levels : mapping of float, optional
-        Forces by sensor from which dynamic forces count; by default `static_forces`.
     progress : callable
         Progress of the runs, as of `validation.simulate`.
 
@@ -186,8 +184,8 @@ def record(
         )
     runs = repeated(scene, tolerances(rtol), method=method, progress=progress)
     run, *checks = runs
-    fine = tracks(run, velocities, levels=levels)
-    less_accurate = [tracks(check, velocities, 2, levels) for check in checks]
+    fine = tracks(run, velocities)
+    less_accurate = [tracks(check, velocities, 2) for check in checks]
     firsts: list[Reading] = []
     found: list[Reading] = []
     for track, *others in zip(fine, *less_accurate, strict=True):
@@ -249,7 +247,6 @@ def tracks(
     run: Run,
     velocities: Container[str] = (),
     every: int = 1,
-    levels: Mapping[str, float] | None = None,
 ) -> tuple[Track, ...]:
     """Return the dynamic forces at the sensors of a run; beads first.
 
@@ -262,12 +259,9 @@ def tracks(
     every : int
         Samples that count, each one or each second one, where the motion takes too much memory
         to be kept and the signals are splines through the samples.
-    levels : mapping of float, optional
-        Forces by sensor from which dynamic forces count; by default `static_forces`.
     """
     scene = run.scene
-    if levels is None:
-        levels = static_forces(scene)
+    levels = forces_at_start(scene)
     # A contact is midway between its beads, the wall's half a spacing behind the last bead.
     x = np.cumsum((0.0, *scene.spacings, *scene.spacings[-1:]))
     found = []
@@ -299,11 +293,6 @@ def _above(force: Signal, static: float) -> Piecewise:
     return Piecewise(force.times, lambda t: force(t) - static)
 
 
-def static_forces(scene: Scene) -> dict[str, float]:
-    """Return the static forces at the sensors of a scene, by names such as "bead 15"."""
-    return _at_sensors(scene, scene.load)
-
-
 def forces_at_start(scene: Scene) -> dict[str, float]:
     """Return the forces at the start at the sensors of a scene, by names such as "bead 15".
 
@@ -313,7 +302,7 @@ def forces_at_start(scene: Scene) -> dict[str, float]:
     motion = Motion(scene)
     y, v = motion.start[: 2 * scene.size].reshape(2, scene.size)
     if not y.any():
-        return static_forces(scene)
+        return _at_sensors(scene, scene.load)
     compression = motion.compression(y)
     elastic = motion.force(compression)
     return _at_sensors(scene, motion.damped_force(elastic, compression, motion.rate(v)))

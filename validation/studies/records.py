@@ -300,24 +300,20 @@ def compare(
     SCENE is a scene file, as of `lwa-validate run`. MEASURED, files as of `lwa-validate pulses`,
     have the columns time and, for each sensor, such as "bead 15 force" or "bead 15 velocity"; for a
     single sensor also "force". Without units they are in the scene's own numbers. Base and slope of
-    a record are those of its part before the pulse. Where beads of the scene start displaced, as
-    those that fall, simulated forces also count from the start, not from the static forces.
+    a record are those of its part before the pulse; simulated forces count from the start.
 
     ``rows``: ``kind``, ``number``, ``quantity`` ("arrival", "peak" or "fwhm"), ``simulated_value``,
     ``measured_value`` and ``difference_value``, measured less simulated, with errors;
     ``shift_value``.
     """
     chain = read_scene(scene)
-    # Beads that fall onto each other carry no load before: a record's base is its start.
-    levels = forces_at_start(chain)
-    wanted = [f"{name} force" for name in levels]
+    sensors = [*forces_at_start(chain)]
+    wanted = [f"{name} force" for name in sensors]
     read = Measured.read(measured, "contact", time_constant, stated, wanted)
     check_units(read.si, chain.units, "the measured file")
-    found = _first_pulses(read, [*levels], stated)
+    found = _first_pulses(read, sensors, stated)
     velocities = [name for name, (s, _) in found.items() if s.quantity == "velocity"]
-    simulation = record(
-        chain, velocities=velocities, levels=levels, progress=run_progress
-    )
+    simulation = record(chain, velocities=velocities, progress=run_progress)
     run = simulation.run
     rows: list[dict[str, Any]] = []
     curves: list[Curve] = []

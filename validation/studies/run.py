@@ -44,7 +44,9 @@ EXAMPLES = ("paper", "vertical", "precompressed", "defect", "trimer", "striker")
 
 _NOTE = "{} at each sensor, in {} units. ±: differences to less accurate runs."
 _FIRST = "First pulse above half of the record's maximum"
-_DYNAMIC = "\nDynamic force: force less the static force at the sensor."
+_DYNAMIC = (
+    "\nDynamic force: force less that at the start, the static force in equilibrium."
+)
 
 
 def example(name: str) -> str:

@@ -46,6 +46,21 @@ def test_a_contact_near_an_inflection_of_its_drive_is_seen(rtol):
     assert velocity == pytest.approx(-0.9960454316, abs=max(10 * rtol, 1e-9))
 
 
+@pytest.mark.parametrize("rtol", [1e-7, 1e-8, 1e-9])
+def test_a_contact_near_an_inflection_of_its_compression_is_seen(rtol):
+    """A free bead and one on a two-sided spring: the tangents at a step's ends meet at δ < 0. A
+    later start of the free bead by 1e-9 changes its last velocity by 2e-6."""
+    M = 2.1142389262361596
+    scene = Scene(
+        masses=(1, M), stiffnesses=(7019.103753306874,), wall=M, duration=4.117043315338246,
+        law=(Power(1), named("polynomial", 0, 0)), displacements=(-3.13544791102043, 0),
+        velocities=(0.9980176230955882, -1),
+    )  # fmt: skip
+    exact = simulate(scene, rtol=1e-12).velocities[0]
+    velocity = simulate(scene, rtol=rtol).velocities[0]
+    assert velocity == pytest.approx(exact, abs=2e3 * rtol)
+
+
 @pytest.mark.parametrize("short", [1e-4, 1e-5])
 def test_a_contact_that_touches_between_two_steps_is_seen(short):
     """A bead on a two-sided spring goes ``short`` beyond a hard bead, which is at rest."""

@@ -8,6 +8,7 @@ import pytest
 import scipy
 
 from validation import simulate
+from validation.pulses.base import Base
 from validation.pulses.discharge import corrected, suggested
 from validation.pulses.noisy import noisy_pulse, noisy_pulses
 from validation.pulses.pulse import MeasureError, first_pulse
@@ -268,3 +269,33 @@ WHITE = np.random.default_rng(2).normal(size=400)
 def test_records_without_a_measurable_pulse_are_refused(f, named):
     with pytest.raises(MeasureError, match=named):
         noisy_pulse(N, f)
+
+
+def two_humps(t):
+    """A pulse whose second hump is higher by 3e-5, as that of a bead between two contacts."""
+    return np.exp(-((t - 0.4) ** 2) / 0.2) + 0.99997 * np.exp(-((t + 0.4) ** 2) / 0.2)
+
+
+@pytest.mark.parametrize("samples", [6.5, 9.0, 12.0])
+def test_the_arrival_of_two_humps_is_unsure_by_their_distance(samples):
+    """Without noise, too: coarse samples do not tell which of two humps is the higher."""
+    dense = np.linspace(-5, 5, 20_001)
+    true = first_pulse(spline(dense, two_humps(dense)))
+    missed = 0
+    for start in np.linspace(0, 1, 9):
+        t = np.arange(-5, 5, true.fwhm / samples) + start * true.fwhm / samples
+        numbers = noisy_pulse(t, two_humps(t)).numbers
+        for name in NUMBERS:
+            off = numbers[name].value - getattr(true, name)
+            assert abs(off) < numbers[name].error < 0.6 * true.fwhm, name
+        missed += numbers["arrival"].value < 0
+    assert missed > 0
+
+
+def test_the_doubt_between_two_bases_is_in_the_drawn_errors():
+    """Without any noise, the draws lie where each of two equally likely bases would put a pulse."""
+    base = Base.guessed(np.repeat([1.0, 0.0], [5, 95]), 0.0)
+    t = np.linspace(0, 1, 5)
+    drawn = base.drawn(t, np.zeros(5), 0.0, 0.0)
+    assert set(drawn.ravel().round(12)) == {-0.5, 0.5}
+    assert abs(drawn.mean()) < 0.1

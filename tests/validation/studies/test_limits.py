@@ -78,6 +78,17 @@ def test_a_theory_off_by_half_a_permille_is_refused(quantity, wrong):
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES)
+def test_bounds_are_as_tight_as_the_numbers_allow(quantity):
+    """At most twice the errors; a coefficient's bound is that of the next test."""
+    theory = [theory_numbers(k)[quantity] for k in EXPONENTS]
+    lattice = [lattice_numbers(k)[quantity] for k in EXPONENTS]
+    *rows, order, _ = compared(quantity, theory, lattice)
+    used = [abs(row["error_value"]) / row["bound_value"] for row in (*rows, order)]
+    assert max(used[:-1]) > 1 / 2
+    assert used[-1] > 1 / 2
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
 @pytest.mark.parametrize("factor", [0.75, 1.3])
 def test_an_order_that_is_off_by_a_third_is_refused(quantity, factor):
     """By exact numbers, whose error is a pure power of k - 1."""

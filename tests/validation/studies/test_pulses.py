@@ -105,3 +105,34 @@ def test_a_sensor_without_a_pulse_has_no_numbers(folder):
 def test_bad_records_are_refused(folder, header, options, named):
     with pytest.raises(SceneError, match=rf"^[^\n]*{named}[^\n]*$"):
         pulses(noisy(header), **options)
+
+
+FALLING = """
+duration = 2
+samples = 2001
+gravity = 9.81
+units = "SI"
+chain = {cell = [1], repeat = 2, k = 1, stiffnesses = 1000, spacings = 1}
+wall = {stiffness = 1000}
+start = {displacements = [-2, -1]}
+sensors = {beads = [1, 2]}
+"""
+
+
+def test_forces_of_falling_beads_count_from_the_start(capsys, folder):
+    """Beads that fall carry no static load at the start: one rule for run, pulses and compare."""
+    (folder / "fall.toml").write_text(FALLING)
+    found = []
+    for line in ("run fall.toml --out fall.csv", "pulses fall.csv"):
+        _, out, _ = ended(capsys, cli.main, *line.split(), "--format", "json")
+        found.append(json.loads(out)["sensors"])
+    for ours, theirs in zip(*found, strict=True):
+        assert ours["static_force_value"] == theirs["static_force_value"] == 0
+        for name in ("arrival", "peak", "fwhm"):
+            error = ours[f"{name}_error_value"] + theirs[f"{name}_error_value"]
+            assert abs(ours[f"{name}_value"] - theirs[f"{name}_value"]) < error
+    _, out, _ = ended(
+        capsys, cli.main, "compare", "fall.toml", "fall.csv", "--format", "json"
+    )
+    for row in json.loads(out)["rows"]:
+        assert abs(row["difference_value"]) <= row["difference_error_value"]

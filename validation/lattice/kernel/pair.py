@@ -330,10 +330,11 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
             near = (near & (low < nearly * most)) | (
                 (most > 0.0) & (low < very_nearly * most)
             )
-            # A contact that is open at both ends can close in between where the tangents at the
-            # ends meet at δ > 0.
-            meeting = (after - end_rise) * rise - before * end_rise > 0.0
-            unseen = (most <= 0.0) & (rise > 0.0) & (end_rise < 0.0) & meeting
+            # A contact that is open at both ends can close in between if the tangent at an end
+            # comes to δ > 0 within the step. Where the tangents meet does not tell, as δ may have
+            # an inflection.
+            reach = max(before + rise, after - end_rise)
+            unseen = (most <= 0.0) & (reach > 0.0)
             mark = ((strong & (near | changed)) | unseen) & (opens[i] > 0.0)
             marks[i] = 1.0 if mark else 0.0
             count += 1 if mark else 0
