@@ -199,8 +199,10 @@ def test_the_nearest_theory_has_a_name():
         wave = lattice_wave(Cell(masses, spacing=1), k=k)
         assert theory in wave.theory
         assert np.isfinite(wave.estimate("fwhm", "strain", "time").error)
-    with pytest.raises(NoSolitaryWave, match="3/5"):
-        lattice_wave(Dimer(1, "0.6", spacing=1), k=2)
+    # on the grid of measured ratios, and between two of them, one of which decays
+    for ratio, k in (("3/5", 2), ("13/100", 40)):
+        with pytest.raises(NoSolitaryWave, match=ratio):
+            lattice_wave(Dimer(1, ratio, spacing=1), k=k)
     beyond = lattice_wave(Dimer(1, "0.1", spacing=1), k=61)  # not measured
     assert np.isnan(beyond.estimate("speed").error)
 
