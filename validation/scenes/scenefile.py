@@ -166,7 +166,7 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
 
 
 _STRUCK = ("masses", "stiffnesses", "k", "velocities")
-"""What the passage of a striker's pulse depends on."""
+"""Fields of a scene that set the time of passage of a striker's pulse."""
 
 
 def _passage(
