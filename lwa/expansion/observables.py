@@ -12,12 +12,10 @@ from functools import cached_property, lru_cache
 import sympy as sp
 from flint import fmpq, fmpq_mpoly
 
-from lwa.algebra.model import Model
-from lwa.algebra.ring import to_sympy
+from lwa.algebra.model import Model, to_sympy
 from lwa.cell import Cell
 from lwa.expansion.pulse import (
     Series,
-    at_power,
     by_degree,
     half_width,
     logarithm,
@@ -45,7 +43,6 @@ class Observables:
     def __init__(self, wave: Recursion) -> None:
         self.wave = wave
         self.order = wave.order
-        self._forces: dict[int, Series] = {}
 
     @cached_property
     def c2(self) -> Series:
@@ -59,14 +56,11 @@ class Observables:
 
     def force(self, contact: int = 0) -> Series:
         """Full width at half maximum of a contact's force."""
-        # The strain's width needs this, too.
-        if contact not in self._forces:
-            self._forces[contact] = half_width(self.wave.force[contact].log)
-        return self._forces[contact]
+        return half_width(self.wave.force[contact].log)
 
     def strain(self, contact: int = 0) -> Series:
-        """Full width at half maximum of a contact's strain: the force's at ``2^{-(1+ε)}``."""
-        return at_power(self.force(contact), self.wave.epsilon)
+        """Full width at half maximum of a contact's strain."""
+        return half_width(self.wave.strain[contact].log)
 
     def velocity(self, contact: int = 0) -> Series:
         """Full width at half maximum of the velocity of the bead before a contact."""
@@ -130,7 +124,7 @@ class Observables:
         """The quotient numerator / I^e, in the caller's symbols."""
         I = self.wave.I
         # Numbers need no polynomial division.
-        if not self.wave.model.ring.names:
+        if not self.wave.model.names:
             return to_sympy(_number(numerator) / _number(I) ** e)
         # Lowest terms: factors I cancel as long as they divide without remainder.
         while e:
@@ -145,7 +139,7 @@ class Observables:
         """A polynomial without Z in the caller's symbols."""
         # Z is the first generator.
         terms = [(tuple(map(int, e[1:])), c) for e, c in polynomial.terms()]
-        return self.wave.model.ring.expression(terms)
+        return self.wave.model.expression(terms)
 
 
 def _number(polynomial: fmpq_mpoly) -> fmpq:

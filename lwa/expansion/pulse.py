@@ -7,7 +7,6 @@ generator is Z; t is its small parameter. The waves of `lwa.expansion.expand` ar
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 from flint import fmpq, fmpq_mpoly
@@ -71,18 +70,11 @@ def product(a: Series, b: Series) -> Series:
 
 
 def power(S: Series, a: fmpq) -> Series:
-    """The power ``(Σ S_n t^n)^a``, where S_0 is 1.
-
-    By ``n R_n = Σ_j (a j - (n - j)) S_j R_{n-j}`` for j from 1 to n.
-    """
-    R = [S[0]]
-    # The recurrence is the coefficient of t^n in S R' = a S' R.
-    for n in range(1, len(S)):
-        total = 0 * S[0]
-        for j in range(1, n + 1):
-            weight = a * j - (n - j)
-            total = total + weight * S[j] * R[n - j]
-        R.append(total / n)
+    """The power ``(Σ S_n t^n)^a``, where S_0 is 1, by the logarithm."""
+    log = [a * term for term in logarithm(S)]
+    R: Series = []
+    for _ in S:
+        R.append(exp_term(log, R))
     return R
 
 
@@ -141,30 +133,6 @@ def half_width(log: Series) -> Series:
     width = [_over_square(term, y) for term in even]
     width[0] = width[0] + 1
     return width
-
-
-def at_power(width: Series, epsilon: fmpq_mpoly) -> Series:
-    """The `half_width` of a pulse to the power 1/(1 + ε), ε at ``t²``, from that of the pulse.
-
-    The power is at ``e^{-y²}`` where the pulse is at ``e^{-(1+ε) y²}``: in ``4y Σ h_n t^n`` each
-    ``y^{d+1}`` gets the factor ``(1 + ε)^{(d+1)/2}``, whose binomial series is multiplied out.
-    """
-    changed = list(width)
-    terms = width
-    for j in range(1, (len(width) + 1) // 2):
-        weighted = []
-        for term in terms[: len(width) - 2 * j]:
-            grown = _reweighted(term, partial(_next_binomial, j))
-            weighted.append(epsilon * grown)
-        terms = weighted
-        for n, term in enumerate(terms, start=2 * j):
-            changed[n] = changed[n] + term
-    return changed
-
-
-def _next_binomial(j: int, d: int) -> fmpq:
-    """The ratio of the coefficients of ε^j and ε^{j-1} in ``(1 + ε)^{(d+1)/2}``."""
-    return fmpq(d + 3 - 2 * j, 2 * j)
 
 
 def _from_peak(log: Series) -> Series:

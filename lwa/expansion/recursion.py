@@ -84,11 +84,11 @@ class Recursion:
     def __init__(self, model: Model, order: int) -> None:
         self.model = model
         self.order = order
-        self.context = fmpq_mpoly_ctx.get(("Z", *model.ring.names), Ordering.lex)
+        self.context = fmpq_mpoly_ctx.get(("Z", *model.names), Ordering.lex)
         self.Z = self.context.gen(0)
         self.zero = self.context.constant(0)
-        self.mu = model.ring.masses.elements(self.context)
-        self.c = model.ring.contacts.elements(self.context)
+        self.mu = model.masses.elements(self.context)
+        self.c = model.contacts.elements(self.context)
         self.P = model.cell.size
         self.I = self._dispersion()
         # -I times the logarithmic slope of the Gaussian

@@ -24,8 +24,7 @@ Since ``∂(z^e r_2) = z^e (r_3 + (e - 1) r_1 r_2)``, the integrating factor ``z
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Self
 
@@ -35,11 +34,11 @@ from lwa.base import latex
 from lwa.base.exact import factored, positive, power, signed
 from lwa.base.frozen import RISE, SPEED, NoSolitaryWave, Value, strain_power
 from lwa.base.words import QuantityName
-from lwa.cell import Cell, exponent, substitution
+from lwa.cell import Cell, Parametric, exponent
 
 
 @dataclass(frozen=True)
-class Arch(Value, ABC):
+class Arch(Parametric, ABC):
     """Closed forms of the arch of a chain; a subclass has the two numbers.
 
     Results are exact SymPy expressions; the speed ``V = dx/dτ`` becomes dx/dt by `time_scale`.
@@ -159,33 +158,6 @@ class Arch(Value, ABC):
         xi = signed(xi, "xi")
         arch = positive(B, "B") * sp.cos(self.beta * xi) ** self.m
         return sp.Piecewise((arch, sp.Abs(xi) <= self.width / 2), (0, True))
-
-    def at(self, **values: Any) -> Self:
-        """Substitute numbers (or other symbols) for the named symbols, and for ``ω = m2/m1``.
-
-        Raises
-        ------
-        InputError
-            For a name that the wave does not contain, and a value that is not positive.
-        NoSolitaryWave
-            For values without a wave.
-
-        Examples
-        --------
-        >>> from lwa import canonical_wave
-        >>> canonical_wave(Cell(["m1", "m2"]), "k").at(k="3/2", omega=1).beta
-        sqrt(10)/(5*D)
-        """
-        return self.replaced(substitution(values, self.cell, self.k))
-
-    def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Self:
-        """The wave with other values of symbols."""
-        # All fields but the cell are expressions.
-        values = {}
-        for field in fields(self):
-            if field.name != "cell":
-                values[field.name] = getattr(self, field.name).xreplace(new)
-        return replace(self, cell=self.cell.replaced(new), **values)
 
 
 @dataclass(frozen=True)

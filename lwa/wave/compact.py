@@ -29,9 +29,9 @@ from lwa.base.exact import (
 )
 from lwa.base.frozen import SPEED
 from lwa.base.words import LanguageName, one_of
-from lwa.cell import Cell, exponent, read_cell
+from lwa.cell import Cell
 from lwa.cell import k as symbol_k
-from lwa.law import ContactLaw, for_cell
+from lwa.law import ContactLaw, power_exponent
 from lwa.linear.dispersion import Dispersion
 from lwa.wave.arch import Arch, Reduction, roots
 from lwa.wave.physical import BEARERS, BearerName, PhysicalWave
@@ -39,6 +39,13 @@ from lwa.wave.physical import BEARERS, BearerName, PhysicalWave
 if TYPE_CHECKING:
     from lwa.loaded.wave import LoadedWave
     from lwa.wave.numeric import Missing, NumericWave
+
+
+POWERS_ALONE = (
+    "the compact wave in closed form belongs to a power law; `lwa.loaded_wave` has the waves of "
+    "any law, on a background or of a force"
+)
+"""Refusal of other laws."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -257,16 +264,7 @@ def canonical_wave(
     >>> canonical_wave(Cell((1, 1)), "3/2").beta
     sqrt(10)/(5*D)
     """
-    if law is not None:
-        law = for_cell(law, cell, k)
-        if not law.homogeneous:
-            raise InputError(
-                f"law is {law.text}: the compact wave is that of a power law; waves of any law are "
-                "those of `lwa.loaded_wave`"
-            )
-        k = law.exponent
-    read_cell(cell)
-    k = exponent(k)
+    k = power_exponent(law, cell, k, POWERS_ALONE)
     # Masses and contacts enter by I alone.
     I = Dispersion(cell, k).I
     G = I * (k - 1) * (k - 2) / 2
