@@ -16,7 +16,10 @@ Series = list[fmpq_mpoly]
 """The coefficients of 1, t, t², …"""
 
 
-def log_term(S: Series, log: Series) -> fmpq_mpoly:
+def log_term(
+    S: Series,
+    log: Series,
+) -> fmpq_mpoly:
     """The next coefficient of ``log Σ S_n t^n``, where S_0 is 1.
 
     By ``n log_n = n S_n - Σ j log_j S_{n-j}``.
@@ -28,7 +31,10 @@ def log_term(S: Series, log: Series) -> fmpq_mpoly:
     return S[n] - _weighted(log, S, n - 1, n) / n
 
 
-def exp_term(log: Series, S: Series) -> fmpq_mpoly:
+def exp_term(
+    log: Series,
+    S: Series,
+) -> fmpq_mpoly:
     """The next coefficient of ``exp Σ log_n t^n``, where log_0 is 0.
 
     By ``n S_n = Σ j log_j S_{n-j}``.
@@ -39,7 +45,12 @@ def exp_term(log: Series, S: Series) -> fmpq_mpoly:
     return _weighted(log, S, n, n) / n
 
 
-def _weighted(log: Series, S: Series, end: int, n: int) -> fmpq_mpoly:
+def _weighted(
+    log: Series,
+    S: Series,
+    end: int,
+    n: int,
+) -> fmpq_mpoly:
     """The sum Σ j log_j S_{n-j}, j = 1 … end, of the coefficients of ln S and of S."""
     total = 0 * log[0]
     for j in range(1, end + 1):
@@ -57,7 +68,10 @@ def logarithm(S: Series) -> Series:
     return log
 
 
-def product(a: Series, b: Series) -> Series:
+def product(
+    a: Series,
+    b: Series,
+) -> Series:
     """The product of two series, to the length of the first one."""
     total = [0 * a[0] for _ in a]
     for n, term in enumerate(a):
@@ -69,7 +83,10 @@ def product(a: Series, b: Series) -> Series:
     return total
 
 
-def power(S: Series, a: fmpq) -> Series:
+def power(
+    S: Series,
+    a: fmpq,
+) -> Series:
     """The power ``(Σ S_n t^n)^a``, where S_0 is 1, by the logarithm."""
     log = [a * term for term in logarithm(S)]
     R: Series = []
@@ -89,7 +106,10 @@ def by_degree(polynomial: fmpq_mpoly) -> dict[int, fmpq_mpoly]:
     return {d: context.from_dict(part) for d, part in parts.items()}
 
 
-def moments(series: Series, variance: int) -> Series:
+def moments(
+    series: Series,
+    variance: int,
+) -> Series:
     """The means of the coefficients of a series under the normal distribution of Z."""
     means = []
     for polynomial in series:
@@ -153,7 +173,11 @@ def _from_peak(log: Series) -> Series:
     return [0 * Z, *(_reweighted(term, lambda d: fmpq(min(d, 1))) for term in phi[1:])]
 
 
-def _shifted(phi: Series, place: fmpq_mpoly, n: int) -> Series:
+def _shifted(
+    phi: Series,
+    place: fmpq_mpoly,
+    n: int,
+) -> Series:
     """The series of φ(Z + place · t^n), by Taylor's formula."""
     moved = list(phi)
     derivatives = phi
@@ -164,14 +188,20 @@ def _shifted(phi: Series, place: fmpq_mpoly, n: int) -> Series:
     return moved
 
 
-def _over_square(polynomial: fmpq_mpoly, y: fmpq_mpoly) -> fmpq_mpoly:
+def _over_square(
+    polynomial: fmpq_mpoly,
+    y: fmpq_mpoly,
+) -> fmpq_mpoly:
     """The quotient by y²; python-flint divides no zero polynomial."""
     if not polynomial:
         return polynomial
     return polynomial // y**2
 
 
-def _reweighted(polynomial: fmpq_mpoly, weight: Callable[[int], fmpq]) -> fmpq_mpoly:
+def _reweighted(
+    polynomial: fmpq_mpoly,
+    weight: Callable[[int], fmpq],
+) -> fmpq_mpoly:
     """Multiply each term c Z^d of a polynomial by weight(d)."""
     terms = {}
     for exponents, coefficient in polynomial.terms():
