@@ -285,17 +285,17 @@ class Shock(Value):
 
     def _relative_error(self, name: EstimatedName, rule: RuleName) -> float:
         """The relative error of a result of a shock."""
-        delta = self._pulse.steepness
+        rho = self._pulse.rho
         if name == "leading_speed" and rule == "doubling":
-            return speed_error(delta)
+            return speed_error(rho)
         if name == "leading_speed":
-            return leading_error(self._edges_differ(), delta)
+            return leading_error(self._edges_differ(), rho)
         if name == "trailing_speed":
             sound = self.sound(self.behind) / self.trailing_speed
             return trailing_error(self._edges_differ()) * abs(float(sound))
         # Floats of 15 digits are enough for an error.
         peak = sp.N(self.peak)
-        error = rise_error(delta) * sp.N(self._pulse.contact_rise)
+        error = rise_error(rho) * sp.N(self._pulse.contact_rise)
         if name == "peak":
             return abs(float(error / peak))
         # towards the strain ahead: the rule is too high, and a law may have a pole beyond the peak
