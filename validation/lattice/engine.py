@@ -56,7 +56,7 @@ from validation.lattice.kernel.kinks import EDGES
 from validation.lattice.kernel.symplectic import advance_split
 from validation.lattice.knots import Recorder
 from validation.lattice.laws import Contact
-from validation.lattice.result import Run, finished
+from validation.lattice.result import Run
 from validation.lattice.schemes import BLANES_MOAN, RK853, RKN86
 from validation.lattice.signal import recorded, sampled
 
@@ -176,14 +176,10 @@ class _Integration:
             # The drive also accelerates its bead.
             gained = motion.masses[0] * (beads.v[0] ** 2 - motion.start[n] ** 2) / 2
             work = now["work"] + gained
+        end = np.concatenate((beads.y[:n], beads.v[:n], (now["lost"], work)))
         records = recorded(motion, self.needed, self.recorder.y, self.recorder.v)
-        return finished(
-            motion,
-            np.concatenate((beads.y[:n], beads.v[:n], (now["lost"], work))),
-            {"time": self.time} | records,
-            steps=int(now["steps"]),
-            path=self.recorder.path(),
-        )
+        path = self.recorder.path()
+        return Run(motion, end, int(now["steps"]), self.time, path=path, **records)
 
 
 def _plan(motion: Motion, scheme: Pair | Splitting, rtol: float, **steps: Any) -> Plan:
@@ -308,11 +304,12 @@ def _exponent(law: Contact) -> float:
 
 def _front(motion: Motion) -> int:
     """Return the number of the first bead at rest, plus a margin."""
-    y, v = np.abs(motion.start[: 2 * motion.size].reshape(2, motion.size))
-    moves = (y > _NOISE * y.max()) | (v > _NOISE * v.max())
-    if motion.scene.drive is not None:
-        moves[0] = True
-    first = moves.size - int(np.argmax(moves[::-1])) if moves.any() else 0
+    motions = np.abs(motion.start[:-2].reshape(2, -1))  # |y| and |v|
+    moves = motions.T > _NOISE * motions.max(axis=1)
+    moving, _ = moves.nonzero()
+    first = 0 if motion.scene.drive is None else 1
+    if len(moving):
+        first = max(first, int(moving[-1]) + 1)
     return min(motion.size, MARGIN + first)
 
 

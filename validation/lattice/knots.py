@@ -73,13 +73,13 @@ class KnotPath:
         """Return displacements and velocities (beads, S) at times (S,) within the run."""
         # A bead's acceleration changes with its neighbours' displacements.
         near = _with_neighbours(beads)
-        rows = np.searchsorted(self.knots.watched, near)
-        step = np.searchsorted(self.time[1:-1], time, side="right")
+        rows = self.knots.watched.searchsorted(near)
+        step = self.time[1:-1].searchsorted(time, side="right")
         y, v = np.empty((2, len(rows), len(time)))
         # Working memory: the compiled loops allocate nothing.
         working = np.empty((2, len(rows), 4)), np.empty((3, ROOM)), np.empty(EDGES)
         interpolate(self.chain, self.knots, rows, time, step, y, v, *working)
-        own = np.searchsorted(near, beads)
+        own = near.searchsorted(beads)
         y, v = y[own], v[own]
         if self.motion.scene.drive is not None and 0 in beads:
             y[0], v[0], _ = self.motion.scene.drive.at(time)
@@ -136,7 +136,7 @@ class Recorder:
             return 0
         time, state = times[:count].copy(), states[:count].copy()
         path = KnotPath(self.motion, self.chain, Knots(time, state, watched))
-        due = int(np.searchsorted(self.time, time[-1], side="right"))
+        due = int(self.time.searchsorted(time[-1], side="right"))
         now = slice(self._sampled, due)
         self.y[:, now], self.v[:, now] = path(self.needed, self.time[now])
         self._sampled = due

@@ -120,10 +120,13 @@ def recorded(
     found = _quantities(motion, beads, y, v)
     records = {}
     for kind, numbers in sensors_of(motion.scene).items():
-        rows: Any = np.searchsorted(beads, numbers)
+        first = numbers[0] if numbers else 0
+        rows: Any = beads.searchsorted(first)
         # Neighbours are a slice, without a copy, of which large records gain an eighth.
-        if len(numbers) > 1 and (np.diff(rows) == 1).all():
-            rows = slice(int(rows[0]), int(rows[-1]) + 1)
+        if numbers == tuple(range(first, first + len(numbers))):
+            rows = slice(rows, rows + len(numbers))
+        else:
+            rows = beads.searchsorted(numbers)
         for (own, _), name in RECORDS.items():
             if own == kind:
                 records[name] = found[name][rows]

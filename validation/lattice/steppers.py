@@ -11,7 +11,7 @@ import scipy
 from lwa.base.arrays import Array
 from validation.lattice.cost import IntegrationError, check_memory, step_limit
 from validation.lattice.equations import Motion
-from validation.lattice.result import Run, finished
+from validation.lattice.result import Run
 from validation.lattice.signal import Beads, recorded, sampled
 
 METHODS = ("DOP853", "RK45", "RK23", "LSODA", "Radau", "BDF")
@@ -73,5 +73,7 @@ def integrate(motion: Motion, method: str, rtol: float, longest: float) -> Run:
         )
     time, beads = sampled(motion)
     path = DensePath(motion, found.sol)
-    records = {"time": time} | recorded(motion, beads, *path(beads, time))
-    return finished(motion, found.y[:, -1], records, steps=len(found.t) - 1, path=path)
+    # A copy: a view would keep the states of all steps in memory.
+    end = found.y[:, -1].copy()
+    records = recorded(motion, beads, *path(beads, time))
+    return Run(motion, end, len(found.t) - 1, time, path=path, **records)
