@@ -25,6 +25,7 @@ from __future__ import annotations
 
 import math
 import sys
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -58,7 +59,6 @@ from validation.lattice.knots import Recorder
 from validation.lattice.laws import Contact
 from validation.lattice.result import Run
 from validation.lattice.schemes import BLANES_MOAN, RK853, RKN86
-from validation.lattice.signal import recorded, sampled
 
 # The response of a drive is guessed: a run is made again where its energy turns out less than _WEAK
 # times, or more than _STRONG times, the energy that sets the tolerance, and no more than _GUESSES
@@ -119,8 +119,7 @@ class _Integration:
         self._make_plan(motion)
         self.chain = _chain(motion)
         self.beads = _start(motion, len(self.chain.A), self.plan.scheme)
-        self.time, self.needed = sampled(motion)
-        self.recorder = Recorder(motion, self.chain, self.needed, self.time)
+        self.recorder = Recorder(motion, self.chain)
         self.now = initial_progress(self.plan, _front(motion), motion.free_energy)
 
     def _make_plan(self, motion: Motion) -> None:
@@ -177,9 +176,11 @@ class _Integration:
             gained = motion.masses[0] * (beads.v[0] ** 2 - motion.start[n] ** 2) / 2
             work = now["work"] + gained
         end = np.concatenate((beads.y[:n], beads.v[:n], (now["lost"], work)))
-        records = recorded(motion, self.needed, self.recorder.y, self.recorder.v)
-        path = self.recorder.path()
-        return Run(motion, end, int(now["steps"]), self.time, path=path, **records)
+        samples = self.recorder.samples
+        if samples:
+            all_samples = np.concatenate(samples, axis=2)
+            return Run(motion, end, int(now["steps"]), samples=all_samples)
+        return Run(motion, end, int(now["steps"]), self.recorder.path())
 
 
 def _plan(motion: Motion, scheme: Pair | Splitting, rtol: float, **steps: Any) -> Plan:
@@ -232,6 +233,7 @@ def _splitting_plan(motion: Motion, rtol: float, step: float) -> tuple[Plan, int
     return plan, most
 
 
+@lru_cache(maxsize=1)
 def _chain(motion: Motion) -> Chain:
     """Build the kernel's chain, padded by beads of infinite mass; the first of them is the wall."""
     n, contacts = motion.size, len(motion.rest)
@@ -302,10 +304,11 @@ def _exponent(law: Contact) -> float:
     return 4.0
 
 
+@lru_cache(maxsize=1)
 def _front(motion: Motion) -> int:
     """Return the number of the first bead at rest, plus a margin."""
     motions = np.abs(motion.start[:-2].reshape(2, -1))  # |y| and |v|
-    moves = motions.T > _NOISE * motions.max(axis=1)
+    moves = _NOISE * motions.max(axis=1) < motions.T
     moving, _ = moves.nonzero()
     first = 0 if motion.scene.drive is None else 1
     if len(moving):

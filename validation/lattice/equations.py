@@ -14,7 +14,7 @@ import math
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -311,6 +311,12 @@ class Motion:
             _check_range("velocity", v)
             rounding = sys.float_info.epsilon * float(self.rest.max()) / y
         return Scales(energy, deepest, y, v, time, rounding)
+
+
+@lru_cache(maxsize=1)
+def motion_of(scene: Scene) -> Motion:
+    """Return the equations of motion of a scene, which its runs at several tolerances share."""
+    return Motion(scene)
 
 
 def _array(row: tuple[float, ...]) -> Array:

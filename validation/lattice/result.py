@@ -5,13 +5,23 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from lwa.base.arrays import Array
 from validation.lattice.cost import IntegrationError
 from validation.lattice.equations import Motion
-from validation.lattice.signal import RECORDS, Path, SensorSignal, sensors_of, signal
+from validation.lattice.signal import (
+    RECORDS,
+    Path,
+    SensorSignal,
+    recorded,
+    sample_times,
+    sensed_beads,
+    sensors_of,
+    signal,
+)
 from validation.pictures import Curve, Map, Panel, Pictured
 from validation.scenes.checks import SceneError
 from validation.scenes.scene import Scene
@@ -46,17 +56,12 @@ class Run(Pictured):
         Final state, in the order of `Motion.start`.
     steps : int
         Number of steps.
-    time : array, shape (S,)
-        Sample times.
-    contact_force, compression : array, shape (contacts, S)
-        Forces and compressions at the scene's contact sensors; the compression of a gap is
-        negative.
-    bead_force, bead_displacement, bead_velocity : array, shape (beads, S)
-        Motion at the bead sensors. The force is the mean of the bead's two contacts, the
-        displacement counts from the equilibrium.
     path : Path, optional
-        Motion of the beads near sensors throughout the run, for `signal`; None if it takes too much
-        memory.
+        Motion of the beads near sensors throughout the run; None if it takes too much memory, or
+        without sensors.
+    samples : array, shape (2, beads, S), optional
+        Displacements and velocities of `validation.lattice.signal.sensed_beads` at the sample
+        times; None if ``path`` is known.
 
     Raises
     ------
@@ -67,13 +72,8 @@ class Run(Pictured):
     motion: Motion
     end: Array
     steps: int
-    time: Array
-    contact_force: Array
-    compression: Array
-    bead_force: Array
-    bead_displacement: Array
-    bead_velocity: Array
     path: Path | None = None
+    samples: Array | None = None
 
     def __post_init__(self) -> None:
         # A sum is finite only if all its terms are.
@@ -82,8 +82,54 @@ class Run(Pictured):
                 "the motion overflows: choose other units, or a step of "
                 f"{self.step:g} is too long"
             )
-        for name in ("time", "end", *RECORDS.values()):
-            getattr(self, name).setflags(write=False)
+        self.end.setflags(write=False)
+
+    @cached_property
+    def time(self) -> Array:
+        """Sample times, shape (S,)."""
+        time = sample_times(self.scene)
+        time.setflags(write=False)
+        return time
+
+    @cached_property
+    def _records(self) -> dict[str, Array]:
+        """All records, by their names in `RECORDS`."""
+        beads = sensed_beads(self.motion)
+        samples: Any = self.samples
+        if self.path is not None:
+            samples = self.path(beads, self.time)
+        elif samples is None:
+            samples = np.zeros((2, 0, len(self.time)))
+        y, v = samples
+        records = recorded(self.motion, beads, y, v)
+        for record in records.values():
+            record.setflags(write=False)
+        return records
+
+    @property
+    def contact_force(self) -> Array:
+        """Forces at the scene's contact sensors, shape (contacts, S)."""
+        return self._records["contact_force"]
+
+    @property
+    def compression(self) -> Array:
+        """Compressions at the contact sensors, shape (contacts, S); negative for a gap."""
+        return self._records["compression"]
+
+    @property
+    def bead_force(self) -> Array:
+        """Means of the forces of the two contacts of the sensors' beads, shape (beads, S)."""
+        return self._records["bead_force"]
+
+    @property
+    def bead_displacement(self) -> Array:
+        """Displacements of the sensors' beads from the equilibrium, shape (beads, S)."""
+        return self._records["bead_displacement"]
+
+    @property
+    def bead_velocity(self) -> Array:
+        """Velocities of the sensors' beads, shape (beads, S)."""
+        return self._records["bead_velocity"]
 
     @property
     def scene(self) -> Scene:
