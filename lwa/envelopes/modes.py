@@ -36,6 +36,7 @@ from numpy.typing import NDArray
 from lwa.base.exact import InputError, demand_numbers
 from lwa.cell import Cell
 from lwa.law import ContactLaw
+from lwa.linear.springs import compressions
 
 Matrix = NDArray[Any]
 
@@ -100,9 +101,7 @@ class Contacts:
 
     def _strains(self, z: complex) -> Matrix:
         """The matrix B(κ) in floats, shape (contacts, beads), ``z = e^{iκ}``."""
-        identity = np.eye(len(self.masses))
-        after = np.roll(identity, 1, axis=1)
-        return np.asarray(identity - np.vstack([after[:-1], z * after[-1:]]))
+        return compressions(np.array(z), len(self.masses))
 
     def _modes(self, z: complex) -> tuple[Matrix, Matrix]:
         """Squared frequencies, and the modes φ as columns."""
