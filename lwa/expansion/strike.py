@@ -75,7 +75,8 @@ class Strike(Value):
     k: sp.Expr
 
     def __repr__(self) -> str:
-        return f"Strike(F={self.force}, dx/dt={self.speed}, FWHM of the force {self.fwhm()} in time)"
+        width = f"FWHM of the force {self.fwhm()} in time"
+        return f"Strike(F={self.force}, dx/dt={self.speed}, {width})"
 
     @property
     def _ratio(self) -> float:
