@@ -19,7 +19,7 @@ import sympy as sp
 from lwa.algebra.model import Model
 from lwa.base.exact import InputError, integer
 from lwa.base.words import QUANTITIES, QuantityName, one_of
-from lwa.cell import Cell, Parametric
+from lwa.cell import Cell, Parametric, exponent, read_cell
 from lwa.cell import k as symbol_k
 from lwa.expansion.observables import Observables, shares_model
 from lwa.expansion.recursion import Recursion
@@ -52,6 +52,10 @@ class Expansion(Parametric):
     k: sp.Expr = symbol_k
 
     def __post_init__(self) -> None:
+        read_cell(self.cell)
+        order = integer(self.order, "order", 1)
+        object.__setattr__(self, "order", order)
+        object.__setattr__(self, "k", exponent(self.k))
         # Text and LaTeX call the series' own parameter so.
         for symbol in {*self.cell.symbols, *self.k.free_symbols}:
             if symbol.name in EPSILON_NAMES:
@@ -60,10 +64,10 @@ class Expansion(Parametric):
                 )
         if not self.k.free_symbols and self.k <= 1:
             raise InputError(f"k is {self.k}: the expansion in k - 1 wants k > 1")
-        terms = _terms(shares_model(self.cell, self.k), self.order)
+        terms = _terms(shares_model(self.cell, self.k), order)
         if terms > LARGEST:
             raise InputError(
-                f"order is {self.order}: polynomials of some {terms:.0e} terms take hours; a lower "
+                f"order is {order}: polynomials of some {terms:.0e} terms take hours; a lower "
                 "order, or numbers for symbols, takes fewer"
             )
 
@@ -193,7 +197,6 @@ def expand(
     >>> wave.fwhm("force").at(1.5).value.__round__(6)  # the uniform Hertz chain, in D
     1.411928
     """
-    order = integer(order, "order", 1)
     why = "the expansion is one in k - 1 about the linear chain, and only a power law has a k"
     return Expansion(cell, order, power_exponent(law, cell, k, why))
 

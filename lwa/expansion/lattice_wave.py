@@ -33,7 +33,7 @@ from lwa.base.words import (
     QuantityName,
     one_of,
 )
-from lwa.cell import Cell, Parametric
+from lwa.cell import Cell, Parametric, exponent, read_cell
 from lwa.cell import k as symbol_k
 from lwa.expansion.dimers import (
     ALIKE,
@@ -90,7 +90,8 @@ class LatticeWave(Parametric):
     def __post_init__(self) -> None:
         # A frozen dataclass takes a value that was read in this way only.
         object.__setattr__(self, "force", positive(self.force, "force"))
-        cell = self.cell
+        object.__setattr__(self, "k", exponent(self.k))
+        cell = read_cell(self.cell)
         if cell.uniform:
             # However many equal beads a cell lists, its wave is that of one.
             one = Cell(cell.masses[:1], cell.stiffnesses[:1], cell.spacing)
