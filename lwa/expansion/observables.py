@@ -12,7 +12,7 @@ from functools import cached_property, lru_cache
 import sympy as sp
 from flint import fmpq, fmpq_mpoly
 
-from lwa.algebra.model import Model, to_sympy
+from lwa.algebra.model import Model
 from lwa.cell import Cell
 from lwa.expansion.pulse import (
     Series,
@@ -142,13 +142,9 @@ class Observables:
         e: int,
     ) -> sp.Expr:
         """The quotient numerator / I^e, in the caller's symbols."""
-        I = self.wave.I
-        # Numbers need no polynomial division.
-        if not self.wave.model.names:
-            return to_sympy(_number(numerator) / _number(I) ** e)
         # Lowest terms: factors I cancel as long as they divide without remainder.
-        while e:
-            quotient, remainder = divmod(numerator, I)
+        while e and numerator:
+            quotient, remainder = divmod(numerator, self.wave.I)
             if remainder:
                 break
             numerator = quotient
@@ -163,13 +159,6 @@ class Observables:
         # Z is the first generator.
         terms = [(tuple(map(int, e[1:])), c) for e, c in polynomial.terms()]
         return self.wave.model.expression(terms)
-
-
-def _number(polynomial: fmpq_mpoly) -> fmpq:
-    """The constant of a polynomial over a ring without generators."""
-    if not polynomial:
-        return fmpq(0)
-    return polynomial.leading_coefficient()
 
 
 def shares_model(
