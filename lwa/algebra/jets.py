@@ -150,7 +150,7 @@ class JetAlgebra:
             self._dt[index] = -s[1] * scaled
             if n < self.weight:
                 self._dx[index] = s[n + 1] - r[1] * scaled
-        # The highest φ_n has none either: the next one stands in it. The first generator is φ_2.
+        # The highest φ_n has no derivative either: φ_{n+1} stands in it. Generators begin with φ_2.
         for n in range(2, highest):
             slope = phi[n + 1] + (n - 1) * phi[n]  # p dφ_n/dp
             slope = slope - phi[n] * phi[2]
