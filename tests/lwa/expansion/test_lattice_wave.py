@@ -107,14 +107,6 @@ def test_relative_errors_of_composed_results_add_up():
         assert wave.estimate(*composed).relative_error == pytest.approx(total, rel=1e-2)
 
 
-def test_light_beads_that_weigh_nothing():
-    heavy = lattice_wave(Cell([3], [sp.Rational(1, 4)], 2), k=2, force=5)
-    light = lattice_wave(Dimer(3, "1e-30", spacing=1), k=2, force=5)
-    for call in RESULTS.values():
-        values = [wave.estimate(*call).value for wave in (heavy, light)]
-        assert values[1] == pytest.approx(values[0], rel=1e-12)
-
-
 def passage(k, omega, speed, length):
     """Momentum, energy and width of the heavy bead's velocity of a struck chain's leading pulse.
 
