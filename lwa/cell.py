@@ -14,13 +14,14 @@ the share ``C_i`` of the strain, and the cell responds like one of P equal conta
 from __future__ import annotations
 
 from collections.abc import (
+    Collection,
     Iterable,
     Mapping,
     Sequence,
 )
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import sympy as sp
 
@@ -32,6 +33,7 @@ from lwa.base.exact import (
     positive,
     power,
     read_exact,
+    replaced,
     shorten,
 )
 from lwa.base.files import items
@@ -156,7 +158,7 @@ class Cell(Value):
         >>> Cell(["m1", "m1", "m2"]).at(omega="1/3").masses
         (m1, m1, m1/3)
         """
-        return self.replaced(substitution(values, self))
+        return self.replaced(substitution(values, self.symbols, self))
 
     def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Cell:
         """The cell with expressions in place of some of its symbols."""
@@ -209,6 +211,65 @@ class Cell(Value):
         k = exponent(k)
         modulus = self.size * k * self.stiffness(k) * power(self.spacing, k + 1)
         return power(modulus / self.mass, sp.S.Half)
+
+
+class Parametric(Value):
+    """Base of results of a chain, for whose symbols values can be given.
+
+    The fields hold cells, contact laws, expressions, and results that are of this kind themselves.
+    """
+
+    def at(self, **values: Any) -> Self:
+        """Substitute numbers (or other symbols) for the named symbols, and for ``ω = m2/m1``.
+
+        Parameters
+        ----------
+        **values
+            Values by the names of symbols; see `lwa.cell.substitution`.
+
+        Raises
+        ------
+        InputError
+            For a name that does not occur, and a value that the result cannot have.
+        NoSolitaryWave
+            For values without a wave.
+
+        Examples
+        --------
+        >>> from lwa import Dimer, canonical_wave, homogenize
+        >>> homogenize(Dimer("m1", "m2")).at(k="3/2", omega=1).pde.I
+        D**2/12
+        >>> canonical_wave(Cell(["m1", "m2"]), "k").at(k="3/2", omega=1).beta
+        sqrt(10)/(5*D)
+        """
+        parts = self._parts()
+        symbols: set[sp.Symbol] = set()
+        for part in parts:
+            if isinstance(part, sp.Expr):
+                symbols |= part.free_symbols
+            else:  # a cell or a law; words and numbers have no symbols
+                symbols |= {*getattr(part, "symbols", ())}
+        cell = next(part for part in parts if isinstance(part, Cell))
+        return self.replaced(substitution(values, symbols, cell))
+
+    def _parts(self) -> list[Any]:
+        """The fields, with those of results in place of the results."""
+        parts: list[Any] = []
+        for field in fields(self):
+            part = getattr(self, field.name)
+            parts += part._parts() if isinstance(part, Parametric) else [part]
+        return parts
+
+    def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Self:
+        """The result with expressions in place of some of its symbols."""
+        changed = {}
+        for field in fields(self):
+            part = getattr(self, field.name)
+            if isinstance(part, sp.Expr):
+                changed[field.name] = replaced(part, new)
+            elif hasattr(part, "replaced"):
+                changed[field.name] = part.replaced(new)
+        return replace(self, **changed)
 
 
 def Dimer(
@@ -280,22 +341,19 @@ def exponent(value: Any) -> sp.Expr:
 
 def substitution(
     values: Mapping[str, Any],
+    symbols: Collection[sp.Symbol],
     cell: Cell,
-    k: sp.Expr = sp.S.One,
-    more: Sequence[sp.Symbol] = (),
 ) -> dict[sp.Symbol, sp.Expr]:
-    """Map symbols of a cell, of its exponent and more to the values given for their names.
+    """Map symbols of a cell and of its results to the values given for their names.
 
     Parameters
     ----------
     values : mapping
         Values by the names of symbols. Unless a symbol has this name, ``omega`` is the ratio m2/m1
         of the cell's two masses.
+    symbols : collection of symbols
+        The symbols. Values of those that are none of the cell's may have either sign.
     cell : Cell
-    k : expression
-        Exponent of the contact law.
-    more : sequence of symbols
-        Further symbols, of values of either sign.
 
     Returns
     -------
@@ -305,13 +363,12 @@ def substitution(
     Raises
     ------
     InputError
-        For a name that does not occur or that two symbols have, and a value of the cell or the
-        exponent that is not positive.
+        For a name that does not occur or that two symbols have, and a value of the cell that is
+        not positive.
     """
-    symbols = dict.fromkeys((*cell.symbols, *sorted(k.free_symbols, key=str), *more))
     known: dict[str, sp.Symbol] = {}
     # SymPy tells symbols of one name and different assumptions apart; a caller's keyword cannot.
-    for symbol in symbols:
+    for symbol in sorted(symbols, key=str):
         if symbol.name in known:
             raise InputError(
                 f"{symbol.name!r} names two symbols, with different assumptions: use one"
@@ -321,8 +378,8 @@ def substitution(
     new = {}
     for name, value in values.items():
         if name in known:
-            # Masses, stiffnesses, lengths and k are positive; a law's parameters need not be.
-            read = read_exact if known[name] in more else positive
+            # Masses, stiffnesses and lengths are positive; a law's parameters need not be.
+            read = positive if known[name] in cell.symbols else read_exact
             new[known[name]] = read(value, name)
         elif name != "omega":
             names = ", ".join(known) or "there are none"

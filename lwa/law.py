@@ -41,7 +41,7 @@ from lwa.base.exact import (
 )
 from lwa.base.frozen import Value
 from lwa.base.words import one_of, shorten
-from lwa.cell import Cell, exponent, read_cell, substitution
+from lwa.cell import Cell, exponent, read_cell
 from lwa.cell import k as symbol_k
 
 if TYPE_CHECKING:
@@ -544,26 +544,33 @@ def for_cell(law: Any, cell: Cell, k: Any = symbol_k) -> ContactLaw:
     return law
 
 
-def substituted(
-    values: Mapping[str, Any], cell: Cell, law: ContactLaw, *expressions: sp.Expr
-) -> tuple[Any, ...]:
-    """Substitute values in a cell, a law and expressions, as `lwa.cell.substitution`.
+def power_exponent(
+    law: ContactLaw | None,
+    cell: Cell,
+    k: Any,
+    why: str,
+) -> sp.Expr:
+    """Return the exponent of the power law of a cell's contacts.
 
     Parameters
     ----------
-    values : mapping
-        Values by the names of symbols.
+    law : ContactLaw or None
     cell : Cell
-    law : ContactLaw
-    *expressions : expressions
+    k : number or symbol
+        Exponent of the power that stands for None.
+    why : str
+        End of the message that refuses other laws.
 
     Returns
     -------
-    tuple
-        The cell, the law and the expressions, in this order.
+    expression
+
+    Raises
+    ------
+    InputError
+        For a law that is no power, and as `for_cell`.
     """
-    # A symbol of the law that is also one of the cell is positive, as the cell's.
-    more = sp.Tuple(*law.symbols, *expressions).free_symbols - {*cell.symbols}
-    new = substitution(values, cell, more=sorted(more, key=str))
-    others = [replaced(expression, new) for expression in expressions]
-    return cell.replaced(new), law.replaced(new), *others
+    contact = for_cell(law, cell, k)
+    if not contact.homogeneous:
+        raise InputError(f"law is {contact.text}: {why}")
+    return contact.exponent

@@ -112,8 +112,7 @@ class Theory(OfClosure):
         """Mapping from n to φ_n in the compression; {} for powers and laws without expression."""
         if self.law.formless:
             return {}
-        # The ring of a power has no φ_n.
-        last = self.closure.model.ring.highest
+        last = self.closure.model.highest
         return {n: self.law.phi(n) for n in range(2, last + 1)}
 
     def __repr__(self) -> str:
@@ -161,17 +160,6 @@ class Theory(OfClosure):
 
     def _repr_latex_(self) -> str:
         return latex.display(self.latex_rows(3))
-
-    def at(self, **values: Any) -> Theory:
-        """The theory for these values of the named symbols, and of m2/m1 by ``omega``.
-
-        Raises `lwa.InputError` for a name that does not occur or a value that is not positive.
-
-        >>> from lwa import Dimer
-        >>> homogenize(Dimer("m1", "m2")).at(k="3/2", omega=1).pde.I
-        D**2/12
-        """
-        return Theory(self.closure.at(**values))
 
 
 def homogenize(
@@ -255,10 +243,9 @@ def _check_length(
     closure: ClosureName,
 ) -> None:
     """Raise `lwa.InputError` for a derivation of more than `MOST_TERMS` terms, by an estimate."""
-    ring = model.ring
     # The φ_n of a law that is no power grow as powers of one parameter, k.
-    parameters = min(len(ring.law), 1)
-    parameters += len(ring.masses.names) + len(ring.contacts.names)
+    parameters = min(len(model.parameters), 1)
+    parameters += len(model.masses.names) + len(model.contacts.names)
     # The order D^{k+n} has at most one monomial per partition of n; its coefficient, of degree n in
     # P free parameters, has at most C(n + P, P) terms. The jets of the velocity multiply the total
     # by about n.

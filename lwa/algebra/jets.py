@@ -11,7 +11,7 @@ The velocity has jets of its own, ``s_i = ∂_x^i u_τ / p^{(k+1)/2}`` of weight
 strain. The wave equation ``u_ττ = p^k Σ_j D^{j-1} E_j`` then gives the derivative in time
 (`GradedSeries.dt`). Since every factor D comes with one derivative in space, a series in the
 spacing D is a list of polynomials, the n-th of weight n. Coefficients are elements of
-`lwa.algebra.ring`.
+`lwa.algebra.model`.
 
 For a law F(p) that is no power, ``p F'(p)`` replaces ``p^k``, and k is the local exponent
 ``d ln(p F')/d ln p = 1 + φ_2``. The parameters of the law are generators that depend on p::
@@ -39,7 +39,7 @@ from flint import (
     fmpq_mpoly_ctx,
 )
 
-from lwa.algebra.ring import CoefficientRing, Term
+from lwa.algebra.model import Model, Term
 
 Powers = tuple[tuple[int, int], ...]
 """A product of powers of derivatives: pairs (i, e) of the order of each and its exponent."""
@@ -63,10 +63,10 @@ class JetAlgebra:
 
     Parameters
     ----------
-    ring : CoefficientRing
-        The ring of the coefficients.
+    model : Model
+        The model, with the ring of the coefficients.
     weight : int
-        Highest order of a jet.
+        Highest order of a jet, at least 1.
 
     Attributes
     ----------
@@ -84,37 +84,36 @@ class JetAlgebra:
     Examples
     --------
     >>> from lwa import Cell, Power
-    >>> from lwa.algebra.model import Model
-    >>> jets = JetAlgebra(Model(Cell([1]), Power(2)).ring, weight=2)
+    >>> jets = JetAlgebra(Model(Cell([1]), Power(2)), weight=2)
     >>> jets.dx(jets.r[1], 0)
     -r1^2 + r2
     """
 
     def __init__(
         self,
-        ring: CoefficientRing,
+        model: Model,
         weight: int,
     ) -> None:
         strain = [f"r{n}" for n in range(1, weight + 1)]
         velocity = [f"s{n}" for n in range(weight + 1)]
-        names = [*ring.names, *strain, *velocity]
+        names = [*model.names, *strain, *velocity]
         self.context = fmpq_mpoly_ctx.get(names, Ordering.lex)
         self.weight = weight
         self.zero = self.context.constant(0)
         self.one = self.context.constant(1)
-        self.k = ring.exponent(self.context)
-        self.mu = ring.masses.elements(self.context)
-        self.c = ring.contacts.elements(self.context)
-        self.phi = ring.phi(self.context, weight)
+        self.k = model.exponent(self.context)
+        self.mu = model.masses.elements(self.context)
+        self.c = model.contacts.elements(self.context)
+        self.phi = model.phi(self.context, weight)
         self.half = (self.k + 1) / 2
         # The generators in their order: parameters of law and cell, r_1 …, s_0 ….
         generators = self.context.gens()
-        self._r1 = len(ring.names)
+        self._r1 = len(model.names)
         self._s0 = self._r1 + weight
         self.r = [self.one, *generators[self._r1 : self._s0]]
         self.s = list(generators[self._s0 :])
         # Of the parameters the φ_n alone, which come first, depend on x; k is a number.
-        first_constant = len(ring.law) if ring.highest else 0
+        first_constant = len(model.parameters) if model.highest else 0
         self._constants = range(first_constant, self._r1)
         # The jets that stand in the derivative of the jet below them, highest first: r_1 and s_0
         # are the lowest ones.
@@ -122,7 +121,7 @@ class JetAlgebra:
             *range(len(names) - 1, self._s0, -1),
             *range(self._s0 - 1, self._r1, -1),
         ]
-        self._set_derivatives(ring.highest)
+        self._set_derivatives(model.highest)
 
     def _set_derivatives(self, highest: int) -> None:
         """Set the mappings from the index of a generator to its derivatives.
@@ -151,7 +150,7 @@ class JetAlgebra:
             self._dt[index] = -s[1] * scaled
             if n < self.weight:
                 self._dx[index] = s[n + 1] - r[1] * scaled
-        # The highest φ_n has none either: the next one stands in it. The first generator is φ_2.
+        # The highest φ_n has no derivative either: φ_{n+1} stands in it. Generators begin with φ_2.
         for n in range(2, highest):
             slope = phi[n + 1] + (n - 1) * phi[n]  # p dφ_n/dp
             slope = slope - phi[n] * phi[2]
@@ -254,25 +253,6 @@ class JetAlgebra:
             split.setdefault(jet, []).append(term)
         return split
 
-    def antiderivative(
-        self,
-        f: fmpq_mpoly,
-        exponent: fmpq_mpoly,
-    ) -> fmpq_mpoly | None:
-        """Antiderivative g, ``∂_x (p^e g) = p^e f``, of an f of weight 2 or more; else None."""
-        # A total derivative is linear in its highest jet, with the coefficient ∂g/∂(the jet below).
-        # Subtracting the derivative of this part of g lowers the highest jet, first among those of
-        # the velocity, then among those of the strain.
-        total = self.zero
-        for index in self._derived:
-            slope = f.derivative(index)
-            if not slope.derivative(index).is_zero():
-                return None
-            part = slope.integral(index - 1)
-            total = total + part
-            f = f - self.dx(part, exponent)
-        return total if f.is_zero() else None
-
     def by_parts(
         self,
         f: fmpq_mpoly,
@@ -281,7 +261,8 @@ class JetAlgebra:
         """Reduce f by a total derivative ``p^{-e} ∂_x (p^e g)`` until no highest jet is linear.
 
         All terms of f have one weight. The highest jet of a term is its ``s_n`` of the largest n,
-        in a term without jets of the velocity its ``r_n`` of the largest n.
+        in a term without jets of the velocity its ``r_n`` of the largest n. A total derivative is
+        linear in the highest of all its jets: nothing is left of it.
         """
         for index in self._derived:
             part = self._linear_part(f, index).integral(index - 1)

@@ -14,7 +14,7 @@ from dataclasses import replace
 
 from flint import fmpq_mpoly
 
-from lwa.algebra.jets import GradedSeries, taylor
+from lwa.algebra.jets import GradedSeries, JetAlgebra, taylor
 from lwa.algebra.model import Model
 from lwa.base.progress import Progress
 from lwa.closure.slaving import (
@@ -57,7 +57,7 @@ def _acoustic(
     progress: Progress[int],
 ) -> Solution:
     """The ansatz of a dimer's acoustic branch."""
-    algebra = model.algebra(model.order - 1)
+    algebra = JetAlgebra(model, max(model.order - 1, 1))
     mu, c = algebra.mu, algebra.c  # mass fractions, strain shares
     right = Force(algebra)  # of the contact inside the cell
     left = Force(algebra)  # of the contact to the next cell
@@ -95,8 +95,10 @@ def _acoustic(
     # The algebra of order 1 has one jet more, as the least weight is 1.
     for b_n, r_n in zip(b[1:], algebra.r, strict=False):
         slaved.append(b_n * r_n)
-    fields = (algebra.zero,) * len(slaved), tuple(slaved)
-    return replace(solution, fields=fields)
+    fields = []
+    for terms in ([algebra.zero] * len(slaved), slaved):
+        fields.append(GradedSeries(algebra, algebra.one, terms))
+    return replace(solution, fields=tuple(fields))
 
 
 def _optical(
@@ -109,7 +111,7 @@ def _optical(
     ``u(x + 2D) - w = (u/m̂_1)(1 + Z)``. Forces are those of a `Force` with Y or Z for X, and the
     series of both equations of motion are those of ε in ``u_ττ = -u^k (1 + kε)``.
     """
-    algebra = model.algebra(model.order)
+    algebra = JetAlgebra(model, model.order)
     k, mu, stiffness = algebra.k, algebra.mu, algebra.c
     right = Force(algebra)  # with Y
     left = Force(algebra)  # with Z

@@ -1,4 +1,4 @@
-"""The consistency condition, solved by the paper's closure or by that of all equations of motion.
+"""The consistency condition of a model, solved by the linear or by the full closure.
 
 Both closures, `lwa.closure.ansatz` ("linear") and `lwa.closure.slaving` ("full"), solve the
 equations of `lwa.closure.slaving` in one algebra, `lwa.algebra.jets`.
@@ -6,9 +6,8 @@ equations of `lwa.closure.slaving` in one algebra, `lwa.algebra.jets`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import sympy as sp
 
@@ -16,10 +15,9 @@ from lwa.algebra.jets import Jet
 from lwa.algebra.model import Model
 from lwa.base import latex
 from lwa.base.exact import InputError
-from lwa.base.frozen import Value
 from lwa.base.progress import shown
 from lwa.base.words import ClosureName, FieldName
-from lwa.cell import Cell
+from lwa.cell import Cell, Parametric
 from lwa.closure.ansatz import linear
 from lwa.closure.slaving import Solution, full
 from lwa.law import ContactLaw
@@ -29,7 +27,7 @@ SLOW_ORDER = 12
 
 
 @dataclass(frozen=True, repr=False)
-class Closure(Value):
+class Closure(Parametric):
     """The consistency condition of a model, solved on first use.
 
     Parameters
@@ -107,7 +105,7 @@ class Closure(Value):
             # b_n is a number: the term of a polynomial without jets
             terms = algebra.terms(b, self.model.base)
             number = terms.get(Jet(()), [])
-            found[n] = self.model.ring.expression(number)
+            found[n] = self.model.expression(number)
         return found
 
     def latex_rows(self, most: int | None = None) -> list[str]:
@@ -140,13 +138,9 @@ class Closure(Value):
             f"branch={model.branch!r}, field={self.field!r})"
         )
 
-    def at(self, **values: Any) -> Closure:
-        """The closure for these values of the named symbols; see `lwa.cell.substitution`."""
-        return replace(self, model=self.model.at(**values))
-
 
 @dataclass(frozen=True)
-class OfClosure(Value):
+class OfClosure(Parametric):
     """Base of results that are computed from a closure."""
 
     closure: Closure

@@ -127,8 +127,12 @@ class Solution:
     ansatz : tuple of elements
         The numbers ``b_0 … b_order``. The second particle's field is ``λ Σ b_n D^n ∂_x^n φ`` in the
         linear closure, and has this linear part in the full one.
-    fields : tuple of tuples of elements
-        The ``S_0, S_1, …`` of each field ``w_i = φ + D φ_x Σ D^n S_n``; () on the optical branch.
+    fields : tuple of GradedSeries
+        The series S of each field ``w_i = φ + D φ_x S_i``; () on the optical branch.
+    rates : tuple of GradedSeries
+        In the full closure the series ``∂_τ (D φ_x S_i)`` of each field.
+    forces : tuple of Force
+        In the full closure the forces of the contacts.
     defect : tuple of elements
         The ``E_n`` of the first equation of motion minus those of the second.
     """
@@ -136,7 +140,9 @@ class Solution:
     algebra: JetAlgebra
     acceleration: tuple[fmpq_mpoly, ...]
     ansatz: tuple[fmpq_mpoly, ...] = ()
-    fields: tuple[tuple[fmpq_mpoly, ...], ...] = ()
+    fields: tuple[GradedSeries, ...] = ()
+    rates: tuple[GradedSeries, ...] = ()
+    forces: tuple[Force, ...] = ()
     defect: tuple[fmpq_mpoly, ...] = ()
 
 
@@ -150,18 +156,20 @@ def full(
     for n in progress(range(1, model.order)):
         chain.extend(n)
     algebra = chain.algebra
-    fields = tuple(map(tuple, chain.S))
     # The linear part of the second particle's field
     ansatz = []
-    if len(fields) > 1:
-        ansatz = [algebra.one, fields[1][0]]
-        for n in range(1, len(fields[1])):
-            ansatz.append(algebra.slope(fields[1][n], n))
+    if chain.size > 1:
+        second = chain.S[1]
+        ansatz = [algebra.one, second[0]]
+        for n in range(1, model.order):
+            ansatz.append(algebra.slope(second[n], n))
     return Solution(
         algebra,
         acceleration=tuple(chain.E),
         ansatz=tuple(ansatz),
-        fields=fields,
+        fields=tuple(chain.S),
+        rates=tuple(chain.rates),
+        forces=tuple(chain.forces),
     )
 
 
@@ -186,7 +194,7 @@ class _Slaving:
         model: Model,
         field: FieldName,
     ) -> None:
-        self.algebra = algebra = model.algebra(model.order - 1)
+        self.algebra = algebra = JetAlgebra(model, max(model.order - 1, 1))
         self.order = model.order
         self.size = model.cell.size
         self.x = list(accumulate(algebra.c[:-1], initial=algebra.zero))

@@ -36,6 +36,7 @@ from numpy.typing import NDArray
 from lwa.base.exact import InputError, demand_numbers
 from lwa.cell import Cell
 from lwa.law import ContactLaw
+from lwa.linear.springs import compressions
 
 Matrix = NDArray[Any]
 
@@ -100,9 +101,7 @@ class Contacts:
 
     def _strains(self, z: complex) -> Matrix:
         """The matrix B(κ) in floats, shape (contacts, beads), ``z = e^{iκ}``."""
-        identity = np.eye(len(self.masses))
-        after = np.roll(identity, 1, axis=1)
-        return np.asarray(identity - np.vstack([after[:-1], z * after[-1:]]))
+        return compressions(np.array(z), len(self.masses))
 
     def _modes(self, z: complex) -> tuple[Matrix, Matrix]:
         """Squared frequencies, and the modes φ as columns."""
@@ -127,10 +126,10 @@ class Contacts:
         c = 1 / self.K2
         # Derivatives of x by κ follow from those of T by x.
         # T(x) - 2 cos κ = Π m Π c Π_j (x_j - x) over the modes j, differentiated at a root
-        first = -np.prod(self.masses * c * np.append(gaps, 1))
-        second = -2 * first * (1 / gaps).sum()
-        slope = -2 * z.imag / first  # x′, as T′ x′ = -2 sin κ
-        bend = (-2 * z.real - second * slope**2) / first  # T″ x′² + T′ x″ = -2 cos κ
+        T1 = -np.prod(self.masses * c * np.append(gaps, 1))
+        T2 = -2 * T1 * (1 / gaps).sum()
+        slope = -2 * z.imag / T1  # x′, as T′ x′ = -2 sin κ
+        bend = (-2 * z.real - T2 * slope**2) / T1  # T″ x′² + T′ x″ = -2 cos κ
         speed = self.masses.sum() * c.sum() * slope**2 / (4 * x)  # (c_g/c_0)²
         if x < self._close or 1 - speed < _SLOWER:
             exact = "; exact results stand" if len(self.masses) == 1 else ""
@@ -146,8 +145,8 @@ class Contacts:
         driven = (c * K3 * size).sum() / c.sum()
         force = 2 * driven * speed / (speed - 1)
         mean = c * (force - 2 * K3 * size)
-        second = self._harmonic(z * z, 4 * x, K3 * d**2)  # e2
-        harmonic = np.real(d.conj() ** 2 * second)
+        e2 = self._harmonic(z * z, 4 * x, K3 * d**2)
+        harmonic = np.real(d.conj() ** 2 * e2)
         cubic = 3 * self.K4 * size**2
         cubic += 2 * K3 * (harmonic + size * mean)
         bead = np.argmax(np.abs(phi))  # the one whose φ becomes positive

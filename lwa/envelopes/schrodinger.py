@@ -47,10 +47,10 @@ from lwa.base.exact import (
 )
 from lwa.base.frozen import Value
 from lwa.base.words import BRANCHES, BranchName, one_of
-from lwa.cell import Cell
+from lwa.cell import Cell, Parametric
 from lwa.cell import k as symbol_k
 from lwa.envelopes.modes import Mode, cell_mode
-from lwa.law import ContactLaw, for_cell, substituted
+from lwa.law import ContactLaw, for_cell
 
 KindName = Literal["bright", "dark"]
 """A kind of envelope: localised, ``ω″χ < 0``, or a dip in a wave train."""
@@ -59,7 +59,7 @@ KINDS: tuple[KindName, ...] = get_args(KindName)
 
 
 @dataclass(frozen=True, repr=False)
-class Envelope(Value):
+class Envelope(Parametric):
     """The envelope's equation of one mode (see `envelope`), exact or in floats.
 
     Units are those of the cell; frequencies are in radians per unit of time.
@@ -110,15 +110,6 @@ class Envelope(Value):
     def numeric(self) -> Envelope:
         """Float values of the coefficients, for any cell of numbers and any wavenumber."""
         return replace(self, floats=True)
-
-    def at(self, **values: Any) -> Envelope:
-        """The envelope for these values of the named symbols, and of m2/m1 by ``omega``."""
-        cell, law, compression, wavenumber = substituted(
-            values, self.cell, self.law, self.compression, self.wavenumber
-        )
-        return replace(
-            self, cell=cell, law=law, compression=compression, wavenumber=wavenumber
-        )
 
     # --- coefficients ---
 

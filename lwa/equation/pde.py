@@ -18,7 +18,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import sympy as sp
 
@@ -29,6 +28,7 @@ from lwa.base.exact import (
     power,
     shorten,
 )
+from lwa.cell import k as symbol_k
 from lwa.closure.consistency import OfClosure
 from lwa.equation.energy import conservative, energy
 from lwa.equation.terms import (
@@ -38,7 +38,8 @@ from lwa.equation.terms import (
     latex_by_order,
     terms,
 )
-from lwa.wave.compact import CompactWave
+from lwa.law import power_exponent
+from lwa.wave.compact import POWERS_ALONE, CompactWave
 
 LETTERS = {
     "G": Jet(((2, 3),)),
@@ -240,16 +241,6 @@ class PDE(OfClosure):
     def _repr_latex_(self) -> str:
         return latex.display(self.latex_rows(3))
 
-    def at(self, **values: Any) -> PDE:
-        """The equation for these values of the named symbols, and of m2/m1 by ``omega``.
-
-        Raises
-        ------
-        InputError
-            For a name that does not occur, or a value that is no quantity.
-        """
-        return PDE(self.closure.at(**values))
-
     def traveling_wave(self) -> CompactWave:
         """The compact wave of the equation truncated at ``D^{k+3}``, in closed form.
 
@@ -265,11 +256,7 @@ class PDE(OfClosure):
             If the closed form does not apply: the law is no power, the order is below 4, the branch
             optical, or ``D^{k+2}`` does not vanish (the linear closure with unequal contacts).
         """
-        if not self.law.homogeneous:
-            raise InputError(
-                f"law is {self.law.text}: the compact wave in closed form belongs to a power law; "
-                "`lwa.loaded_wave` has the waves of any law, on a background or of a force"
-            )
+        power_exponent(self.law, self.cell, symbol_k, POWERS_ALONE)
         # G, H, I refuse an order below 4 and the optical branch.
         wave = CompactWave(
             cell=self.cell,

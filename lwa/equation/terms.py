@@ -22,8 +22,7 @@ import sympy as sp
 from flint import fmpq_mpoly
 
 from lwa.algebra.jets import Jet, Powers
-from lwa.algebra.model import Model
-from lwa.algebra.ring import Term
+from lwa.algebra.model import Model, Term
 from lwa.base import latex
 from lwa.base.frozen import Value
 from lwa.closure.consistency import Closure
@@ -72,7 +71,7 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
     def __getitem__(self, jet: Jet | Powers) -> sp.Expr:
         jet = jet if isinstance(jet, Jet) else Jet(jet)
         if jet not in self._converted:
-            self._converted[jet] = self.model.ring.expression(self.raw[jet])
+            self._converted[jet] = self.model.expression(self.raw[jet])
         return self._converted[jet]
 
     @cached_property

@@ -17,15 +17,14 @@ from typing import Any
 import sympy as sp
 
 from lwa.algebra.model import Model
-from lwa.base.exact import InputError, integer, shorten
-from lwa.base.frozen import Value
+from lwa.base.exact import InputError, integer
 from lwa.base.words import QUANTITIES, QuantityName, one_of
-from lwa.cell import Cell, exponent, read_cell, substitution
+from lwa.cell import Cell, Parametric, exponent, read_cell
 from lwa.cell import k as symbol_k
 from lwa.expansion.observables import Observables, shares_model
 from lwa.expansion.recursion import Recursion
 from lwa.expansion.series import EpsilonSeries
-from lwa.law import ContactLaw, for_cell
+from lwa.law import ContactLaw, power_exponent
 
 EPSILON_NAMES = ("ε", "varepsilon")
 """Names that no symbol of a cell may have: ``k - 1`` is printed as ε, in LaTeX as varepsilon."""
@@ -35,7 +34,7 @@ LARGEST = 3_000_000
 
 
 @dataclass(frozen=True, repr=False)
-class Expansion(Value):
+class Expansion(Parametric):
     """The traveling wave of a chain as a series in ``ε = k - 1`` (see `expand`).
 
     The first contact has the peak force 1; lengths are in D (sites), masses and A in the cell's
@@ -51,6 +50,26 @@ class Expansion(Value):
     cell: Cell
     order: int
     k: sp.Expr = symbol_k
+
+    def __post_init__(self) -> None:
+        read_cell(self.cell)
+        order = integer(self.order, "order", 1)
+        object.__setattr__(self, "order", order)
+        object.__setattr__(self, "k", exponent(self.k))
+        # Text and LaTeX call the series' own parameter so.
+        for symbol in {*self.cell.symbols, *self.k.free_symbols}:
+            if symbol.name in EPSILON_NAMES:
+                raise InputError(
+                    f"{symbol} is the series' parameter k - 1: another name is wanted"
+                )
+        if not self.k.free_symbols and self.k <= 1:
+            raise InputError(f"k is {self.k}: the expansion in k - 1 wants k > 1")
+        terms = _terms(shares_model(self.cell, self.k), order)
+        if terms > LARGEST:
+            raise InputError(
+                f"order is {order}: polynomials of some {terms:.0e} terms take hours; a lower "
+                "order, or numbers for symbols, takes fewer"
+            )
 
     def __repr__(self) -> str:
         # The speed is the quantity that takes least time.
@@ -135,19 +154,6 @@ class Expansion(Value):
         coefficients = self._observables.coefficients(quantity, contact)
         return EpsilonSeries(unit, power, coefficients, self.k, self.cell, quantity)
 
-    def at(self, **values: Any) -> Expansion:
-        """The expansion for these values of the named symbols, and of m2/m1 by ``omega``.
-
-        Raises
-        ------
-        lwa.InputError
-            For a name that does not occur or a value that is not positive.
-        """
-        # Cells of numbers have a simpler ring than those of symbols: expanded anew.
-        new = substitution(values, self.cell, self.k)
-        cell = self.cell.replaced(new)
-        return expand(cell, self.order, k=self.k.xreplace(new))
-
     def latex_rows(self) -> list[str]:
         """LaTeX of the series of c², the widths, momentum and energy."""
         widths = [self.fwhm(quantity) for quantity in QUANTITIES]
@@ -191,30 +197,8 @@ def expand(
     >>> wave.fwhm("force").at(1.5).value.__round__(6)  # the uniform Hertz chain, in D
     1.411928
     """
-    read_cell(cell)
-    order = integer(order, "order", 1)
-    law = for_cell(law, cell, k)
-    if not law.homogeneous:
-        raise InputError(
-            f"law is {shorten(law)}: the expansion is one in ε = k - 1 about the linear chain, "
-            "and only a power law has a k"
-        )
-    k = exponent(law.exponent)
-    # Text and LaTeX call the series' own parameter so.
-    for symbol in {*cell.symbols, *k.free_symbols}:
-        if symbol.name in EPSILON_NAMES:
-            raise InputError(
-                f"{symbol} is the series' parameter k - 1: another name is wanted"
-            )
-    if not k.free_symbols and k <= 1:
-        raise InputError(f"k is {k}: the expansion in k - 1 wants k > 1")
-    terms = _terms(shares_model(cell, k), order)
-    if terms > LARGEST:
-        raise InputError(
-            f"order is {order}: polynomials of some {terms:.0e} terms take hours; a lower order, "
-            "or numbers for symbols, takes fewer"
-        )
-    return Expansion(cell, order, k)
+    why = "the expansion is one in k - 1 about the linear chain, and only a power law has a k"
+    return Expansion(cell, order, power_exponent(law, cell, k, why))
 
 
 def _terms(model: Model, order: int) -> int:
@@ -226,7 +210,7 @@ def _terms(model: Model, order: int) -> int:
     for equal beads to order 80 (estimated: 1.02), 1.4 million for unlike contacts to 16 (1.2). Only
     the fields themselves are kept: 11 MB at order 80.
     """
-    ratios = len(model.ring.masses.names) + len(model.ring.contacts.names)
+    ratios = len(model.masses.names) + len(model.contacts.names)
     # Any larger order is refused, and binomials of it take long.
     n = min(order, 10**6)
     return 2 * n**3 * comb(9 * n + ratios, ratios)

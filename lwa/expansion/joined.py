@@ -107,7 +107,10 @@ def phi(quantity: str) -> sp.Expr:
     return pade(phi_series(quantity, ORDERS.get(quantity, 2)), 1)
 
 
-def phi_series(quantity: str, order: int) -> list[mpmath.mpf]:
+def phi_series(
+    quantity: str,
+    order: int,
+) -> list[mpmath.mpf]:
     """Coefficients of the powers of ε in φ, up to this order, to `DIGITS` digits.
 
     >>> [round(float(term), 6) for term in phi_series("momentum", 1)]
@@ -131,18 +134,26 @@ def phi_series(quantity: str, order: int) -> list[mpmath.mpf]:
     return taylor(exponent, order + 1)[1:]
 
 
-def decimals(values: Iterable[sp.Expr]) -> list[mpmath.mpf]:
-    """Exact numbers to `DIGITS` digits."""
-    return [mpmath.mpmathify(sp.N(value, DIGITS)) for value in values]
+def decimals(
+    values: Iterable[sp.Expr],
+    digits: int = DIGITS,
+) -> list[mpmath.mpf]:
+    """Exact numbers to this many digits."""
+    return [mpmath.mpmathify(sp.N(value, digits)) for value in values]
 
 
-def power_series(coefficients: list[mpmath.mpf], x: mpmath.mpf) -> mpmath.mpf:
+def power_series(
+    coefficients: Sequence[mpmath.mpf],
+    x: mpmath.mpf,
+) -> mpmath.mpf:
     """The polynomial in x with these coefficients, that of ``x⁰`` first."""
+    # mpmath's polynomials begin with the highest power.
     return mpmath.polyval(coefficients[::-1], x)
 
 
 def taylor(
-    function: Callable[[mpmath.mpf], mpmath.mpf], order: int
+    function: Callable[[mpmath.mpf], mpmath.mpf],
+    order: int,
 ) -> list[mpmath.mpf]:
     """Taylor coefficients of a function at 0, to `DIGITS` digits."""
     # SymPy's derivatives of these functions take a hundred times as long.
@@ -150,7 +161,10 @@ def taylor(
         return list(mpmath.taylor(function, 0, order))
 
 
-def pade(terms: Sequence[mpmath.mpf], n: int) -> sp.Expr:
+def pade(
+    terms: Sequence[mpmath.mpf],
+    n: int,
+) -> sp.Expr:
     """The Padé approximant of a series with n powers of `EPSILON` in its denominator."""
     with mpmath.workdps(DIGITS):
         # numerator and denominator
@@ -185,7 +199,10 @@ SLOW = ("strain", "velocity")
 """Quantities whose error falls as ``2^{-k}``, not as ``4^{-k}``."""
 
 
-def joined_error(quantity: str, k_value: sp.Expr) -> float:
+def joined_error(
+    quantity: str,
+    k_value: sp.Expr,
+) -> float:
     """Relative error of a quantity of equal beads, for every k > 1.
 
     The first term that the exponent εφ leaves out, divided by (1 + ε)² as the approximant goes on
@@ -225,7 +242,12 @@ def elementary(value: sp.Expr) -> sp.Expr:
     return value.replace(sp.betainc_regularized, _beta).replace(sp.gamma, _gamma)
 
 
-def _beta(a: sp.Expr, b: sp.Expr, low: sp.Expr, x: sp.Expr) -> sp.Expr:
+def _beta(
+    a: sp.Expr,
+    b: sp.Expr,
+    low: sp.Expr,
+    x: sp.Expr,
+) -> sp.Expr:
     """I_x(a, ½) for x ≤ ½: x^a/B(a, ½) Σ_j C(2j, j) (x/4)^j/(a + j)."""
     # (1 - t)^{-1/2} = Σ_j C(2j, j) (t/4)^j, integrated with t^{a-1}
     total = sp.S.Zero

@@ -24,7 +24,7 @@ import sympy as sp
 
 from lwa.base import latex
 from lwa.base.exact import InputError, number, positive, power, shorten
-from lwa.base.frozen import RISE, Estimate, NoSolitaryWave, Value
+from lwa.base.frozen import RISE, Estimate, NoSolitaryWave
 from lwa.base.words import (
     EXTENTS,
     QUANTITIES,
@@ -33,7 +33,7 @@ from lwa.base.words import (
     QuantityName,
     one_of,
 )
-from lwa.cell import Cell, exponent, read_cell, substitution
+from lwa.cell import Cell, Parametric, exponent, read_cell
 from lwa.cell import k as symbol_k
 from lwa.expansion.dimers import (
     ALIKE,
@@ -42,7 +42,7 @@ from lwa.expansion.dimers import (
     steadiness,
 )
 from lwa.expansion.joined import TWO_BODIES, elementary, joined, joined_error
-from lwa.law import ContactLaw, Power, for_cell
+from lwa.law import ContactLaw, Power, power_exponent
 from lwa.wave.source import Functions, module
 
 _PARTS = {
@@ -72,7 +72,7 @@ _MEANINGS = {
 
 
 @dataclass(frozen=True, repr=False)
-class LatticeWave(Value):
+class LatticeWave(Parametric):
     """The solitary wave of equal beads or of a dimer in closed form; see `lattice_wave`.
 
     Attributes
@@ -90,9 +90,27 @@ class LatticeWave(Value):
     def __post_init__(self) -> None:
         # A frozen dataclass takes a value that was read in this way only.
         object.__setattr__(self, "force", positive(self.force, "force"))
+        object.__setattr__(self, "k", exponent(self.k))
+        cell = read_cell(self.cell)
+        if cell.uniform:
+            # However many equal beads a cell lists, its wave is that of one.
+            one = Cell(cell.masses[:1], cell.stiffnesses[:1], cell.spacing)
+            object.__setattr__(self, "cell", one)
+        elif cell.size != 2 or not cell.equal_contacts:
+            raise InputError(
+                f"cell is {shorten(cell)}: closed forms are those of equal beads and of two beads "
+                "with equal contacts; expand(cell, 8, k=…) takes any cell"
+            )
         # A symbol k is taken for one above 1.
         if self.k.is_number and not self.k > 1:
             raise NoSolitaryWave(f"k is {self.k}: a solitary wave needs k > 1")
+        ratio = self.mass_ratio
+        # The nearest of the measured pulses decide, by the share of those that are steady.
+        if ratio.is_number and self.k.is_number and steadiness(self.k, ratio) <= 0.5:
+            raise NoSolitaryWave(
+                f"m2/m1 is {shorten(ratio)} at k = {self.k}: the light beads resonate with the "
+                "pulse of a struck chain, which decays"
+            )
 
     def __repr__(self) -> str:
         shown = f"force={self.force}"
@@ -275,20 +293,6 @@ class LatticeWave(Value):
         """The wave of another peak force, a number or a name."""
         return replace(self, force=F)
 
-    def at(self, **values: Any) -> LatticeWave:
-        """Substitute numbers or other symbols for named symbols, and for m2/m1 by ``omega``.
-
-        >>> lattice_wave(Cell(["m"], spacing=1)).at(m=1, k=2).estimate("speed")
-        0.845861 ± 9e-06
-        """
-        # The force may hold symbols that the cell does not have.
-        more = sorted(self.force.free_symbols, key=str)
-        new = substitution(values, self.cell, self.k, more)
-        cell = self.cell.replaced(new)
-        force = self.force.xreplace(new)
-        # Numbers may belong to another theory than their symbols.
-        return lattice_wave(cell, k=self.k.xreplace(new), force=force)
-
     def latex_rows(self) -> list[str]:
         """LaTeX of speed and widths at the peak force."""
         rows = {latex.SPEED: self.speed}
@@ -368,29 +372,8 @@ def lattice_wave(
     >>> wave.theory, wave.estimate("speed")
     ('light beads that follow, closed form', 1.708 ± 0.006)
     """
-    read_cell(cell)
-    law = for_cell(law, cell, k)
-    if not law.homogeneous:
-        raise InputError(
-            f"law is {law.text}: closed forms of the lattice's wave are those of a power law; "
-            "loaded_wave(cell, rise=…, background=…, law=law) takes any law"
-        )
-    k = exponent(law.exponent)
-    if cell.uniform:
-        # However many equal beads a cell lists, its wave is that of one.
-        one = Cell(cell.masses[:1], cell.stiffnesses[:1], cell.spacing)
-        return LatticeWave(one, k, force)
-    if cell.size != 2 or len(set(cell.stiffnesses)) > 1:
-        raise InputError(
-            f"cell is {shorten(cell)}: closed forms are those of equal beads and of two beads with "
-            "equal contacts; expand(cell, 8, k=…) takes any cell"
-        )
-    wave = LatticeWave(cell, k, force)
-    ratio = wave.mass_ratio
-    # The nearest of the measured pulses decide, by the share of those that are steady.
-    if ratio.is_number and k.is_number and steadiness(k, ratio) <= 0.5:
-        raise NoSolitaryWave(
-            f"m2/m1 is {shorten(ratio)} at k = {k}: the light beads resonate with the pulse of a "
-            "struck chain, which decays"
-        )
-    return wave
+    why = (
+        "closed forms of the lattice's wave are those of a power law; "
+        "loaded_wave(cell, rise=…, background=…, law=law) takes any law"
+    )
+    return LatticeWave(cell, power_exponent(law, cell, k, why), force)

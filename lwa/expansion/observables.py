@@ -13,11 +13,9 @@ import sympy as sp
 from flint import fmpq, fmpq_mpoly
 
 from lwa.algebra.model import Model
-from lwa.algebra.ring import to_sympy
 from lwa.cell import Cell
 from lwa.expansion.pulse import (
     Series,
-    at_power,
     by_degree,
     half_width,
     logarithm,
@@ -42,10 +40,12 @@ class Observables:
     Full widths at half maximum are in units of ``4 √(I log 2/ε)``, the width of the Gaussian.
     """
 
-    def __init__(self, wave: Recursion) -> None:
+    def __init__(
+        self,
+        wave: Recursion,
+    ) -> None:
         self.wave = wave
         self.order = wave.order
-        self._forces: dict[int, Series] = {}
 
     @cached_property
     def c2(self) -> Series:
@@ -57,18 +57,24 @@ class Observables:
         """The speed c, divided by its leading term."""
         return power(self.c2, fmpq(1, 2))
 
-    def force(self, contact: int = 0) -> Series:
+    def force(
+        self,
+        contact: int = 0,
+    ) -> Series:
         """Full width at half maximum of a contact's force."""
-        # The strain's width needs this, too.
-        if contact not in self._forces:
-            self._forces[contact] = half_width(self.wave.force[contact].log)
-        return self._forces[contact]
+        return half_width(self.wave.force[contact].log)
 
-    def strain(self, contact: int = 0) -> Series:
-        """Full width at half maximum of a contact's strain: the force's at ``2^{-(1+ε)}``."""
-        return at_power(self.force(contact), self.wave.epsilon)
+    def strain(
+        self,
+        contact: int = 0,
+    ) -> Series:
+        """Full width at half maximum of a contact's strain."""
+        return half_width(self.wave.strain[contact].log)
 
-    def velocity(self, contact: int = 0) -> Series:
+    def velocity(
+        self,
+        contact: int = 0,
+    ) -> Series:
         """Full width at half maximum of the velocity of the bead before a contact."""
         return half_width(logarithm(self.wave.slope[contact]))
 
@@ -105,7 +111,11 @@ class Observables:
         square = product(self.momentum, self.momentum)
         return product(square, power(self.energy, fmpq(-1)))
 
-    def coefficients(self, quantity: str, contact: int = 0) -> tuple[sp.Expr, ...]:
+    def coefficients(
+        self,
+        quantity: str,
+        contact: int = 0,
+    ) -> tuple[sp.Expr, ...]:
         """Coefficients of the powers of ε in the named quantity, from the power 0 on."""
         found = getattr(self, quantity)
         terms: Series = found(contact) if callable(found) else found
@@ -126,36 +136,35 @@ class Observables:
         """Coefficient I in the linear chain's dispersion ``Ω² = κ² - I κ⁴ + …``, in units of D²."""
         return self._expression(self.wave.I)
 
-    def _over_I(self, numerator: fmpq_mpoly, e: int) -> sp.Expr:
+    def _over_I(
+        self,
+        numerator: fmpq_mpoly,
+        e: int,
+    ) -> sp.Expr:
         """The quotient numerator / I^e, in the caller's symbols."""
-        I = self.wave.I
-        # Numbers need no polynomial division.
-        if not self.wave.model.ring.names:
-            return to_sympy(_number(numerator) / _number(I) ** e)
         # Lowest terms: factors I cancel as long as they divide without remainder.
-        while e:
-            quotient, remainder = divmod(numerator, I)
+        while e and numerator:
+            quotient, remainder = divmod(numerator, self.wave.I)
             if remainder:
                 break
             numerator = quotient
             e -= 1
         return self._expression(numerator) / self.I**e
 
-    def _expression(self, polynomial: fmpq_mpoly) -> sp.Expr:
+    def _expression(
+        self,
+        polynomial: fmpq_mpoly,
+    ) -> sp.Expr:
         """A polynomial without Z in the caller's symbols."""
         # Z is the first generator.
         terms = [(tuple(map(int, e[1:])), c) for e, c in polynomial.terms()]
-        return self.wave.model.ring.expression(terms)
+        return self.wave.model.expression(terms)
 
 
-def _number(polynomial: fmpq_mpoly) -> fmpq:
-    """The constant of a polynomial over a ring without generators."""
-    if not polynomial:
-        return fmpq(0)
-    return polynomial.leading_coefficient()
-
-
-def shares_model(cell: Cell, k: sp.Expr) -> Model:
+def shares_model(
+    cell: Cell,
+    k: sp.Expr,
+) -> Model:
     """The model of a cell; with 1 for k if contacts are equal, whose shares do not depend on k."""
     # With symbols for k the ring of the recursion would have one generator more.
     if len({*cell.stiffnesses}) == 1:
@@ -169,6 +178,9 @@ def _equal_beads(order: int) -> Observables:
 
 
 @lru_cache(maxsize=64)
-def equal_beads(quantity: str, order: int) -> tuple[sp.Expr, ...]:
+def equal_beads(
+    quantity: str,
+    order: int,
+) -> tuple[sp.Expr, ...]:
     """Coefficients of the chain of equal beads; cached, as the sums of other chains need them."""
     return _equal_beads(order).coefficients(quantity)

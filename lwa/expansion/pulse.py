@@ -7,7 +7,6 @@ generator is Z; t is its small parameter. The waves of `lwa.expansion.expand` ar
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 from flint import fmpq, fmpq_mpoly
@@ -17,7 +16,10 @@ Series = list[fmpq_mpoly]
 """The coefficients of 1, t, t², …"""
 
 
-def log_term(S: Series, log: Series) -> fmpq_mpoly:
+def log_term(
+    S: Series,
+    log: Series,
+) -> fmpq_mpoly:
     """The next coefficient of ``log Σ S_n t^n``, where S_0 is 1.
 
     By ``n log_n = n S_n - Σ j log_j S_{n-j}``.
@@ -29,7 +31,10 @@ def log_term(S: Series, log: Series) -> fmpq_mpoly:
     return S[n] - _weighted(log, S, n - 1, n) / n
 
 
-def exp_term(log: Series, S: Series) -> fmpq_mpoly:
+def exp_term(
+    log: Series,
+    S: Series,
+) -> fmpq_mpoly:
     """The next coefficient of ``exp Σ log_n t^n``, where log_0 is 0.
 
     By ``n S_n = Σ j log_j S_{n-j}``.
@@ -40,7 +45,12 @@ def exp_term(log: Series, S: Series) -> fmpq_mpoly:
     return _weighted(log, S, n, n) / n
 
 
-def _weighted(log: Series, S: Series, end: int, n: int) -> fmpq_mpoly:
+def _weighted(
+    log: Series,
+    S: Series,
+    end: int,
+    n: int,
+) -> fmpq_mpoly:
     """The sum Σ j log_j S_{n-j}, j = 1 … end, of the coefficients of ln S and of S."""
     total = 0 * log[0]
     for j in range(1, end + 1):
@@ -58,7 +68,10 @@ def logarithm(S: Series) -> Series:
     return log
 
 
-def product(a: Series, b: Series) -> Series:
+def product(
+    a: Series,
+    b: Series,
+) -> Series:
     """The product of two series, to the length of the first one."""
     total = [0 * a[0] for _ in a]
     for n, term in enumerate(a):
@@ -70,19 +83,15 @@ def product(a: Series, b: Series) -> Series:
     return total
 
 
-def power(S: Series, a: fmpq) -> Series:
-    """The power ``(Σ S_n t^n)^a``, where S_0 is 1.
-
-    By ``n R_n = Σ_j (a j - (n - j)) S_j R_{n-j}`` for j from 1 to n.
-    """
-    R = [S[0]]
-    # The recurrence is the coefficient of t^n in S R' = a S' R.
-    for n in range(1, len(S)):
-        total = 0 * S[0]
-        for j in range(1, n + 1):
-            weight = a * j - (n - j)
-            total = total + weight * S[j] * R[n - j]
-        R.append(total / n)
+def power(
+    S: Series,
+    a: fmpq,
+) -> Series:
+    """The power ``(Σ S_n t^n)^a``, where S_0 is 1, by the logarithm."""
+    log = [a * term for term in logarithm(S)]
+    R: Series = []
+    for _ in S:
+        R.append(exp_term(log, R))
     return R
 
 
@@ -97,7 +106,10 @@ def by_degree(polynomial: fmpq_mpoly) -> dict[int, fmpq_mpoly]:
     return {d: context.from_dict(part) for d, part in parts.items()}
 
 
-def moments(series: Series, variance: int) -> Series:
+def moments(
+    series: Series,
+    variance: int,
+) -> Series:
     """The means of the coefficients of a series under the normal distribution of Z."""
     means = []
     for polynomial in series:
@@ -143,30 +155,6 @@ def half_width(log: Series) -> Series:
     return width
 
 
-def at_power(width: Series, epsilon: fmpq_mpoly) -> Series:
-    """The `half_width` of a pulse to the power 1/(1 + ε), ε at ``t²``, from that of the pulse.
-
-    The power is at ``e^{-y²}`` where the pulse is at ``e^{-(1+ε) y²}``: in ``4y Σ h_n t^n`` each
-    ``y^{d+1}`` gets the factor ``(1 + ε)^{(d+1)/2}``, whose binomial series is multiplied out.
-    """
-    changed = list(width)
-    terms = width
-    for j in range(1, (len(width) + 1) // 2):
-        weighted = []
-        for term in terms[: len(width) - 2 * j]:
-            grown = _reweighted(term, partial(_next_binomial, j))
-            weighted.append(epsilon * grown)
-        terms = weighted
-        for n, term in enumerate(terms, start=2 * j):
-            changed[n] = changed[n] + term
-    return changed
-
-
-def _next_binomial(j: int, d: int) -> fmpq:
-    """The ratio of the coefficients of ε^j and ε^{j-1} in ``(1 + ε)^{(d+1)/2}``."""
-    return fmpq(d + 3 - 2 * j, 2 * j)
-
-
 def _from_peak(log: Series) -> Series:
     """Shift -Z²/4 + Σ log_n t^n to its maximum; without -Z²/4 and the value there.
 
@@ -185,7 +173,11 @@ def _from_peak(log: Series) -> Series:
     return [0 * Z, *(_reweighted(term, lambda d: fmpq(min(d, 1))) for term in phi[1:])]
 
 
-def _shifted(phi: Series, place: fmpq_mpoly, n: int) -> Series:
+def _shifted(
+    phi: Series,
+    place: fmpq_mpoly,
+    n: int,
+) -> Series:
     """The series of φ(Z + place · t^n), by Taylor's formula."""
     moved = list(phi)
     derivatives = phi
@@ -196,14 +188,20 @@ def _shifted(phi: Series, place: fmpq_mpoly, n: int) -> Series:
     return moved
 
 
-def _over_square(polynomial: fmpq_mpoly, y: fmpq_mpoly) -> fmpq_mpoly:
+def _over_square(
+    polynomial: fmpq_mpoly,
+    y: fmpq_mpoly,
+) -> fmpq_mpoly:
     """The quotient by y²; python-flint divides no zero polynomial."""
     if not polynomial:
         return polynomial
     return polynomial // y**2
 
 
-def _reweighted(polynomial: fmpq_mpoly, weight: Callable[[int], fmpq]) -> fmpq_mpoly:
+def _reweighted(
+    polynomial: fmpq_mpoly,
+    weight: Callable[[int], fmpq],
+) -> fmpq_mpoly:
     """Multiply each term c Z^d of a polynomial by weight(d)."""
     terms = {}
     for exponents, coefficient in polynomial.terms():

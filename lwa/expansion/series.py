@@ -37,6 +37,7 @@ from lwa.base import latex
 from lwa.base.exact import InputError, demand_numbers, shorten
 from lwa.base.frozen import Estimate, Value
 from lwa.cell import Cell, exponent
+from lwa.expansion.joined import decimals, power_series
 from lwa.expansion.observables import equal_beads, shares_model
 from lwa.linear.dispersion import Dispersion
 
@@ -125,7 +126,10 @@ class EpsilonSeries(Value):
         """The highest power of ε in the sum."""
         return len(self.coefficients) - 1
 
-    def at(self, k: Any = None) -> Estimate:
+    def at(
+        self,
+        k: Any = None,
+    ) -> Estimate:
         """Sum the series at a number k > 1, with an estimate of the error.
 
         Parameters
@@ -180,7 +184,10 @@ class EpsilonSeries(Value):
         radiation = radiated(self.cell, self.k)
         return resum(self.coefficients, epsilon, unit, base, radiation)
 
-    def _for(self, k: sp.Expr) -> EpsilonSeries:
+    def _for(
+        self,
+        k: sp.Expr,
+    ) -> EpsilonSeries:
         """The series with a number or symbol in place of its symbol k."""
         if not self.k.is_Symbol:
             raise InputError(
@@ -245,7 +252,7 @@ def resum(
     Estimate
     """
     with mpmath.workdps(TERM_DIGITS):
-        x = _mp(epsilon / (1 + epsilon))
+        x, scale = decimals([epsilon / (1 + epsilon), unit], TERM_DIGITS)
         whole = _transformed(coefficients)
         if base:
             equal = _transformed(base)
@@ -253,23 +260,15 @@ def resum(
             parts = [_sum(equal, x), _truncated(rest, x)]
         else:
             parts = [_sum(whole, x)]
-        scale = _mp(unit)
         value = scale * mpmath.fsum(part.value for part in parts)
         error = abs(scale) * mpmath.fsum(part.error for part in parts)
         # The sum leaves as a float, whose last digit is rounded.
         return Estimate(float(value), float(error)).widened(relative + 2**-52)
 
 
-def _mp(value: sp.Expr) -> mpmath.mpf:
-    """An exact number with the digits of mpmath's context."""
-    if value.is_Rational:
-        return mpmath.mpf(int(value.p)) / int(value.q)
-    return mpmath.mpf(value.evalf(TERM_DIGITS)._mpf_)
-
-
 def _transformed(coefficients: Sequence[sp.Expr]) -> list[mpmath.mpf]:
     """Coefficients b_n of x^n from those of ε^n."""
-    a = [_mp(value) for value in coefficients]
+    a = decimals(coefficients, TERM_DIGITS)
     b = a[:1]
     for n in range(1, len(a)):
         total = mpmath.mpf(0)
@@ -279,18 +278,23 @@ def _transformed(coefficients: Sequence[sp.Expr]) -> list[mpmath.mpf]:
     return b
 
 
-def _sum(b: Sequence[mpmath.mpf], x: mpmath.mpf) -> Estimate:
+def _sum(
+    b: Sequence[mpmath.mpf],
+    x: mpmath.mpf,
+) -> Estimate:
     """Sum Σ b_n x^n to the last term, or to that of x^LAST."""
     b = b[: LAST + 1]
     # The terms left out are at most as large as a geometric series, 1/(1 - x) times the first.
     k = 1 / (1 - x)
     largest = max(abs(term) for term in b[-WINDOW:])
     error = max(SAFETY, REST * k) * largest * x ** len(b)
-    # mpmath's polynomials begin with the highest power.
-    return Estimate(mpmath.polyval(b[::-1], x), error)
+    return Estimate(power_series(b, x), error)
 
 
-def _truncated(b: Sequence[mpmath.mpf], x: mpmath.mpf) -> Estimate:
+def _truncated(
+    b: Sequence[mpmath.mpf],
+    x: mpmath.mpf,
+) -> Estimate:
     """Sum Σ b_n x^n up to the first term that is smaller than the next, if there is one."""
     # A later term may be small by chance, next to a change of sign: the first growth decides.
     terms = [term * x**n for n, term in enumerate(b)]
@@ -301,7 +305,10 @@ def _truncated(b: Sequence[mpmath.mpf], x: mpmath.mpf) -> Estimate:
 
 
 @lru_cache(maxsize=64)
-def radiated(cell: Cell, k: sp.Expr) -> float:
+def radiated(
+    cell: Cell,
+    k: sp.Expr,
+) -> float:
     """Relative error of the sums of unlike beads by radiation, which no order in ε removes.
 
     Light beads rattle under the pulse and leave an oscillating tail. An oscillation that stands in

@@ -39,11 +39,10 @@ class Bloch:
     """
 
     def __init__(self, model: Model) -> None:
-        ring = model.ring
-        context = fmpq_mpoly_ctx.get(ring.names, Ordering.degrevlex)
+        context = fmpq_mpoly_ctx.get(model.names, Ordering.degrevlex)
         self.P = model.cell.size
-        self.mu = ring.masses.elements(context)
-        self.c = ring.contacts.elements(context)
+        self.mu = model.masses.elements(context)
+        self.c = model.contacts.elements(context)
         self.one = context.constant(1)
         self.zero = context.constant(0)
 

@@ -33,9 +33,9 @@ from lwa.base.exact import (
 from lwa.base.frozen import Value
 from lwa.cell import (
     Cell,
+    Parametric,
     exponent,
     read_cell,
-    substitution,
 )
 from lwa.law import (
     ContactLaw,
@@ -54,7 +54,7 @@ MOST_TERMS = 200_000
 
 
 @dataclass(frozen=True, repr=False)
-class Dispersion(Value):
+class Dispersion(Parametric):
     """The dispersion relation Ω(κ) of the linear chain with a cell's masses and strain shares.
 
     Ω is the frequency in τ times D and κ the wavenumber times D. In time t the frequency is
@@ -87,11 +87,6 @@ class Dispersion(Value):
         with suppress(InputError):
             relation = f"Ω² = κ² + ({shorten(self.acoustic(4)[4])}) κ⁴ + …"
         return f"Dispersion({self.cell!r}, k={self.k}: {relation})"
-
-    def at(self, **values: Any) -> Dispersion:
-        """The relation for these values of the named symbols; see `lwa.cell.substitution`."""
-        new = substitution(values, self.cell, self.k)
-        return Dispersion(self.cell.replaced(new), self.k.xreplace(new))
 
     def latex_rows(self, order: int = 4) -> list[str]:
         """LaTeX of ``Ω²(κ)`` to ``κ^order``, of the acoustic and of a dimer's optical branch."""
@@ -173,7 +168,7 @@ class Dispersion(Value):
     def _expression(self, polynomial: fmpq_mpoly) -> sp.Expr:
         terms = list(polynomial.terms())
         # Compliances enter as 1/A.
-        return sp.together(self._model.ring.expression(terms))
+        return sp.together(self._model.expression(terms))
 
     def _length(self, order: Any) -> int:
         """Return the number of powers of κ² up to κ^order; raise `lwa.InputError` for too many.
@@ -184,7 +179,7 @@ class Dispersion(Value):
         # Odd powers of κ have no term.
         n = integer(order, "order", 1) // 2
         terms = n * n
-        for part in (self._model.ring.masses, self._model.ring.contacts):
+        for part in (self._model.masses, self._model.contacts):
             degree = 2 * max(n, 1) - 2
             parameters = len(part.names)
             terms *= comb(degree + parameters, parameters)

@@ -25,10 +25,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import factorial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from lwa.base.arrays import Array, finite
 from lwa.base.frozen import Value
@@ -76,13 +76,7 @@ class Bands(Value):
         phase = np.exp(1j * finite(turn, "wavenumber times length"))
         mass = np.sqrt(P * self.fractions)
         share = np.sqrt(self.shares)
-        # f_i = (a_{i+1} - a_i)/C_i: contact i pulls on particle i and on the next one.
-        here = np.eye(P)
-        following = np.roll(here, 1, axis=1)
-        B = np.zeros((*phase.shape, P, P), complex) + following - here
-        # The last contact joins the next cell's first particle, a_P = e^{iPκ} a_0.
-        B[..., -1, :] = phase[..., None] * following[-1] - here[-1]
-        B /= share[:, None] * mass
+        B = compressions(phase, P) / (share[:, None] * mass)
         # NumPy's singular values descend.
         descending = np.linalg.svd(B, compute_uv=False)
         return descending[..., ::-1].astype(float) * self.rate
@@ -97,6 +91,28 @@ class Bands(Value):
 
     def __repr__(self) -> str:
         return f"Bands(edges={np.round(self.edges(), 6).tolist()})"
+
+
+def compressions(phase: NDArray[Any], size: int) -> NDArray[Any]:
+    """The matrix from displacements in a cell to the compressions of its contacts.
+
+    Parameters
+    ----------
+    phase : ndarray, shape (…)
+        The factor ``e^{iPκ}`` of the displacements from a cell to the next one.
+    size : int
+        The number P of particles and contacts in a cell.
+
+    Returns
+    -------
+    ndarray, shape (…, P, P)
+        Contact i is compressed by ``a_i - a_{i+1}``, the last one by ``a_{P-1} - e^{iPκ} a_0``.
+    """
+    here = np.eye(size)
+    following = np.roll(here, 1, axis=1)
+    factors = np.ones((*phase.shape, size, 1), phase.dtype)
+    factors[..., -1, 0] = phase
+    return np.asarray(here - factors * following)
 
 
 class Acoustic(NamedTuple):

@@ -14,8 +14,8 @@ from typing import Any, Self
 import sympy as sp
 
 from lwa.base.exact import InputError, evaluated, number, read_exact, real
-from lwa.base.frozen import NoSolitaryWave, Value
-from lwa.cell import Cell
+from lwa.base.frozen import NoSolitaryWave
+from lwa.cell import Cell, Parametric
 from lwa.law import ContactLaw
 from lwa.loaded.background import Background
 from lwa.loaded.lattice import Lattice
@@ -24,7 +24,7 @@ _DIGITS = 20  # of results that have no closed form: more than a double holds
 
 
 @dataclass(frozen=True)
-class States(Value):
+class States(Parametric):
     """The static states ahead of a wave and at its peak.
 
     Parameters

@@ -29,10 +29,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from math import pi, sqrt
-from typing import Any, Literal, get_args
+from typing import Any, Literal, Self, get_args
 
 import numpy as np
 import sympy as sp
@@ -59,7 +59,7 @@ from lwa.base.frozen import (
 from lwa.base.words import ExtentName, QuantityName, one_of
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
-from lwa.law import ContactLaw, for_cell, substituted
+from lwa.law import ContactLaw, for_cell
 from lwa.loaded.background import Background, KdV, demand_sound, squared_speed
 from lwa.loaded.errors import Bounds, bounds, steepness
 from lwa.loaded.lattice import Lattice
@@ -136,28 +136,11 @@ class LoadedWave(States):
             return rows
         return [*self.law.latex_rows(), *rows]
 
-    def at(self, **values: Any) -> LoadedWave:
-        """Substitute values for symbols of a chain, as `lwa.CompactWave.at`."""
+    def at(self, **values: Any) -> Self:
+        """Substitute values for symbols of the chain of a cell, as `lwa.CompactWave.at`."""
         if isinstance(self.chain, Lattice):
             raise InputError("the symbols of a lattice are given where it is made")
-        chain, law, load, force, ahead, rise = substituted(
-            values,
-            self.chain,
-            self.law,
-            self.precompression,
-            self.force,
-            self.exact_static_compression,
-            self.exact_compression,
-        )
-        return replace(
-            self,
-            chain=chain,
-            law=law,
-            precompression=load,
-            force=force,
-            exact_static_compression=ahead,
-            exact_compression=rise,
-        )
+        return super().at(**values)
 
     @cached_property
     def speed(self) -> sp.Expr:

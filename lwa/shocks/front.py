@@ -1,7 +1,7 @@
 """The front between two strains, or in front of a moving wall, read from a user's values.
 
 Exact powers such as ``0.392**2.091`` pass through integers of thousands of digits, and so do those
-of symbols. Floats of `lwa.shocks.simple.WORKING` digits take their place.
+of symbols. Floats of `lwa.shocks.waves.WORKING` digits take their place.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from lwa.cell import k as symbol_k
 from lwa.law import ContactLaw, for_cell
 from lwa.loaded.background import Background
 from lwa.shocks.riemann import Shock
-from lwa.shocks.simple import WORKING, demand_one_sign, strain
+from lwa.shocks.waves import WORKING, demand_one_sign, strain
 
 SHORT = 64
 """Largest numerator and denominator of numbers whose powers are kept exact."""

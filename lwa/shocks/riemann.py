@@ -15,7 +15,7 @@ For equal beads ``f = 2 sin κ/2`` makes the integrals ``-2 ln cos κ/4`` and ``
 that the speeds are ``2/r - 1`` and ``√(r(r-1))/arcosh √r``.
 
 Doubling rule. The leading pulse is the solitary wave on p₊ whose beads move at 2 v_p at most; exact
-for Toda's law, small jumps (KdV) and hard spheres. `lwa.shocks.pulse` has the closed forms of the
+for Toda's law, small jumps (KdV) and hard spheres. `lwa.shocks.waves` has the closed forms of the
 canonical wave, and the errors of both rules.
 """
 
@@ -42,14 +42,17 @@ from lwa.base.frozen import Estimate, Value
 from lwa.cell import Cell
 from lwa.law import ContactLaw
 from lwa.loaded.background import Background
-from lwa.shocks.pulse import (
+from lwa.shocks.waves import (
+    DIGITS,
+    WORKING,
     Pulse,
+    demand_one_sign,
     leading_error,
     rise_error,
     speed_error,
     trailing_error,
+    velocity,
 )
-from lwa.shocks.simple import DIGITS, WORKING, demand_one_sign, velocity
 
 RuleName = Literal["dispersion", "doubling"]
 """A rule for the leading edge: El's, or the solitary wave with beads at 2 v_p."""
@@ -169,9 +172,8 @@ class Shock(Value):
         >>> shock(Cell([1], spacing=1), 2, "9/5", k=3).trailing_speed
         8*sqrt(3)/5
         """
-        if (
-            self._gain.is_negative
-        ):  # a rarefaction ends where sound behind it has come to
+        # A rarefaction ends at the place that sound behind the front has reached.
+        if self._gain.is_negative:
             return self.sound(self.behind)
         r = self._edge_ratio()
         if r.is_number and r > STEEPEST:
@@ -282,17 +284,17 @@ class Shock(Value):
 
     def _relative_error(self, name: EstimatedName, rule: RuleName) -> float:
         """The relative error of a result of a shock."""
-        delta = self._pulse.steepness
+        rho = self._pulse.rho
         if name == "leading_speed" and rule == "doubling":
-            return speed_error(delta)
+            return speed_error(rho)
         if name == "leading_speed":
-            return leading_error(self._edges_differ(), delta)
+            return leading_error(self._edges_differ(), rho)
         if name == "trailing_speed":
             sound = self.sound(self.behind) / self.trailing_speed
             return trailing_error(self._edges_differ()) * abs(float(sound))
         # Floats of 15 digits are enough for an error.
         peak = sp.N(self.peak)
-        error = rise_error(delta) * sp.N(self._pulse.contact_rise)
+        error = rise_error(rho) * sp.N(self._pulse.contact_rise)
         if name == "peak":
             return abs(float(error / peak))
         # towards the strain ahead: the rule is too high, and a law may have a pole beyond the peak

@@ -23,24 +23,22 @@ Since ``∂(z^e r_2) = z^e (r_3 + (e - 1) r_1 r_2)``, the integrating factor ``z
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Self
+from typing import Any
 
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import factored, positive, power, signed
+from lwa.base.exact import factored, integer, positive, power, signed
 from lwa.base.frozen import RISE, SPEED, NoSolitaryWave, Value, strain_power
 from lwa.base.words import QuantityName
-from lwa.cell import Cell, exponent, substitution
+from lwa.cell import Cell, Parametric, exponent
 
 
 @dataclass(frozen=True)
-class Arch(Value, ABC):
-    """Closed forms of the arch of a chain; a subclass has the two numbers.
+class Arch(Parametric):
+    """Closed forms of the compact wave of a wave equation, the arch.
 
     Results are exact SymPy expressions; the speed ``V = dx/dτ`` becomes dx/dt by `time_scale`.
 
@@ -50,15 +48,20 @@ class Arch(Value, ABC):
         The chain.
     k : Expr
         Exponent of its contact law.
+    G, H, I : Expr
+        Coefficients of the wave equation, D² included.
 
     Raises
     ------
     NoSolitaryWave
-        For numbers without a wave.
+        For numbers without a wave: ``k ≤ 1``, ``G + H + I ≤ 0``, or ``V² ≤ 0``.
     """
 
     cell: Cell
     k: sp.Expr
+    G: sp.Expr
+    H: sp.Expr
+    I: sp.Expr
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "k", exponent(self.k))
@@ -74,15 +77,67 @@ class Arch(Value, ABC):
                 f"V²/B^(k-1) is {self.speed_factor}: a compact wave needs V² > 0"
             )
 
-    @property
-    @abstractmethod
+    @cached_property
+    def _ratios(self) -> tuple[sp.Expr, sp.Expr]:
+        """The ratios G/I and H/I, which in the canonical field depend on k alone."""
+        # Expressions in these two stay short where G, H and I have long factors in common.
+        g = factored(self.G / self.I)
+        h = factored(self.H / self.I)
+        return g, h
+
+    @cached_property
     def coefficient_sum(self) -> sp.Expr:
         """The sum (G + H + I) / D²."""
+        g, h = self._ratios
+        if (g + h).free_symbols <= self.k.free_symbols:  # I stays a factor
+            return self.I / self.D**2 * factored(1 + g + h)
+        return factored((self.G + self.H + self.I) / self.D**2)
 
-    @property
-    @abstractmethod
+    @cached_property
     def speed_factor(self) -> sp.Expr:
-        """The ratio ``V²/B^{k-1}``."""
+        """The ratio ``V²/B^{k-1} = 1 - β² [(H + 3I) m - 2I]``."""
+        # With β² = (k-1)²/(4 I (1+g+h)) and m = 2/(k-1) written out k - 1 cancels.
+        k = self.k
+        g, h = self._ratios
+        less = (k - 1) * (h + 4 - k) / (2 * (1 + g + h))
+        return factored(1 - less)
+
+    @cached_property
+    def roots(self) -> tuple[sp.Expr, sp.Expr]:
+        """The two p for which ``v = z^p`` removes ``z_ξ³``; the paper's is the first."""
+        # A p² - B p + 2 = 0
+        A = factored(self.coefficient_sum * self.D**2 / self.I)
+        B = factored(self._ratios[1] + 3)
+        root = square_root(factored(B**2 - 8 * A))
+        # Any sign of the root will do, as both are returned.
+        root = root.replace(sp.Abs, lambda x: x)
+        first = (B - root) / (2 * A)
+        second = (B + root) / (2 * A)
+        return sp.together(first), sp.together(second)
+
+    def reduction(self, root: int = 0, V: Any = SPEED) -> Reduction:
+        """Reduction to ``z'' = μ z^η - σ z`` for one of the `roots` p.
+
+        Parameters
+        ----------
+        root : {0, 1}
+            Index of the root; the paper has the first.
+        V : number or str
+            Speed dx/dτ of the wave.
+        """
+        k = self.k
+        I = self.I
+        p = self.roots[integer(root, "root", 0, 1)]
+        a = factored(3 + self._ratios[1] - k) * p - 2  # 1 - kp + 3 (p - 1) + p H/I
+        eta = 1 + p - k * p
+        return Reduction(
+            p=p,
+            a=a,
+            mu=positive(V, "V") ** 2 / (I * (p + a)),
+            eta=eta,
+            sigma=1 / (I * (k * p + a)),
+            s=2 / (1 - eta),
+        )
 
     @property
     def D(self) -> sp.Expr:
@@ -160,33 +215,6 @@ class Arch(Value, ABC):
         arch = positive(B, "B") * sp.cos(self.beta * xi) ** self.m
         return sp.Piecewise((arch, sp.Abs(xi) <= self.width / 2), (0, True))
 
-    def at(self, **values: Any) -> Self:
-        """Substitute numbers (or other symbols) for the named symbols, and for ``ω = m2/m1``.
-
-        Raises
-        ------
-        InputError
-            For a name that the wave does not contain, and a value that is not positive.
-        NoSolitaryWave
-            For values without a wave.
-
-        Examples
-        --------
-        >>> from lwa import canonical_wave
-        >>> canonical_wave(Cell(["m1", "m2"]), "k").at(k="3/2", omega=1).beta
-        sqrt(10)/(5*D)
-        """
-        return self.replaced(substitution(values, self.cell, self.k))
-
-    def replaced(self, new: Mapping[sp.Symbol, sp.Expr]) -> Self:
-        """The wave with other values of symbols."""
-        # All fields but the cell are expressions.
-        values = {}
-        for field in fields(self):
-            if field.name != "cell":
-                values[field.name] = getattr(self, field.name).xreplace(new)
-        return replace(self, cell=self.cell.replaced(new), **values)
-
 
 @dataclass(frozen=True)
 class Reduction(Value):
@@ -218,22 +246,6 @@ class Reduction(Value):
     sigma: sp.Expr
     s: sp.Expr
 
-    @classmethod
-    def of(
-        cls, p: sp.Expr, k: sp.Expr, I: sp.Expr, H_over_I: sp.Expr, V: sp.Expr
-    ) -> Self:
-        """Return the reduction of a wave of the speed ``V = dx/dτ`` by the root p."""
-        a = factored(3 + H_over_I - k) * p - 2  # 1 - kp + 3 (p - 1) + p H/I
-        eta = 1 + p - k * p
-        return cls(
-            p=p,
-            a=a,
-            mu=V**2 / (I * (p + a)),
-            eta=eta,
-            sigma=1 / (I * (k * p + a)),
-            s=2 / (1 - eta),
-        )
-
     def latex_rows(self) -> list[str]:
         equation = r"z'' = \mu z^{\eta} - \sigma z, \quad v = z^{p}"
         values = {
@@ -244,19 +256,6 @@ class Reduction(Value):
             r"\sigma": self.sigma,
         }
         return [equation, *latex.rows(values)]
-
-
-def roots(total: sp.Expr, H_over_I: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-    """The two roots p; ``total`` is (G + H + I)/I. The paper has the first root."""
-    # A p² - B p + 2 = 0
-    A = factored(total)
-    B = factored(H_over_I + 3)
-    root = square_root(factored(B**2 - 8 * A))
-    # Any sign of the root will do, as both are returned.
-    root = root.replace(sp.Abs, lambda x: x)
-    first = (B - root) / (2 * A)
-    second = (B + root) / (2 * A)
-    return sp.together(first), sp.together(second)
 
 
 def square_root(value: sp.Expr) -> sp.Expr:

@@ -13,7 +13,6 @@ arch ``v = B cos^m(βξ)`` (Porter et al. 2008; `lwa.wave.arch`), with::
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, overload
 
 import sympy as sp
@@ -21,19 +20,15 @@ import sympy as sp
 from lwa.base import latex
 from lwa.base.exact import (
     InputError,
-    factored,
-    integer,
-    positive,
     read_exact,
     shorten,
 )
-from lwa.base.frozen import SPEED
 from lwa.base.words import LanguageName, one_of
-from lwa.cell import Cell, exponent, read_cell
+from lwa.cell import Cell
 from lwa.cell import k as symbol_k
-from lwa.law import ContactLaw, for_cell
+from lwa.law import ContactLaw, power_exponent
 from lwa.linear.dispersion import Dispersion
-from lwa.wave.arch import Arch, Reduction, roots
+from lwa.wave.arch import Arch
 from lwa.wave.physical import BEARERS, BearerName, PhysicalWave
 
 if TYPE_CHECKING:
@@ -41,28 +36,20 @@ if TYPE_CHECKING:
     from lwa.wave.numeric import Missing, NumericWave
 
 
+POWERS_ALONE = (
+    "the compact wave in closed form belongs to a power law; `lwa.loaded_wave` has the waves of "
+    "any law, on a background or of a force"
+)
+"""Refusal of other laws."""
+
+
 @dataclass(frozen=True, repr=False)
 class CompactWave(Arch):
     """The compact wave ``v = u_x = B cos^m(βξ)`` of a wave equation, ``ξ = x - V τ``.
 
-    Parameters
-    ----------
-    cell : Cell
-        The chain.
-    k : Expr
-        Exponent of its contact law.
-    G, H, I : Expr
-        Coefficients of the wave equation, D² included.
-
-    Raises
-    ------
-    NoSolitaryWave
-        For numbers without a wave: ``k ≤ 1``, ``G + H + I ≤ 0``, or ``V² ≤ 0``.
+    Parameters are those of `lwa.wave.arch.Arch`; `canonical_wave` and `lwa.PDE.traveling_wave` make
+    such waves.
     """
-
-    G: sp.Expr
-    H: sp.Expr
-    I: sp.Expr
 
     def __repr__(self) -> str:
         return f"CompactWave({self.cell!r}, k={self.k}, β={shorten(self.beta)})"
@@ -77,51 +64,6 @@ class CompactWave(Arch):
             latex.row(latex.fwhm("force"), self.fwhm("force")),
             latex.row("V_{s}", self.speed()),
         ]
-
-    @cached_property
-    def _ratios(self) -> tuple[sp.Expr, sp.Expr]:
-        """The ratios G/I and H/I, which in the canonical field depend on k alone."""
-        # Expressions in these two stay short where G, H and I have long factors in common.
-        g = factored(self.G / self.I)
-        h = factored(self.H / self.I)
-        return g, h
-
-    @cached_property
-    def coefficient_sum(self) -> sp.Expr:
-        """The sum (G + H + I) / D²."""
-        g, h = self._ratios
-        if (g + h).free_symbols <= self.k.free_symbols:  # I stays a factor
-            return self.I / self.D**2 * factored(1 + g + h)
-        return factored((self.G + self.H + self.I) / self.D**2)
-
-    @cached_property
-    def speed_factor(self) -> sp.Expr:
-        """The ratio ``V²/B^{k-1} = 1 - β² [(H + 3I) m - 2I]``."""
-        # With β² = (k-1)²/(4 I (1+g+h)) and m = 2/(k-1) written out k - 1 cancels.
-        k = self.k
-        g, h = self._ratios
-        less = (k - 1) * (h + 4 - k) / (2 * (1 + g + h))
-        return factored(1 - less)
-
-    @cached_property
-    def roots(self) -> tuple[sp.Expr, sp.Expr]:
-        """The two p for which ``v = z^p`` removes ``z_ξ³``; the paper's is the first."""
-        # 1 + G/I + H/I
-        total = self.coefficient_sum * self.D**2 / self.I
-        return roots(total, self._ratios[1])
-
-    def reduction(self, root: int = 0, V: Any = SPEED) -> Reduction:
-        """Reduction to ``z'' = μ z^η - σ z`` for one of the `roots` p.
-
-        Parameters
-        ----------
-        root : {0, 1}
-            Index of the root; the paper has the first.
-        V : number or str
-            Speed dx/dτ of the wave.
-        """
-        p = self.roots[integer(root, "root", 0, 1)]
-        return Reduction.of(p, self.k, self.I, self._ratios[1], positive(V, "V"))
 
     @overload
     def at_force(self, F: Any = "F", of: BearerName = "contact") -> PhysicalWave: ...
@@ -257,16 +199,7 @@ def canonical_wave(
     >>> canonical_wave(Cell((1, 1)), "3/2").beta
     sqrt(10)/(5*D)
     """
-    if law is not None:
-        law = for_cell(law, cell, k)
-        if not law.homogeneous:
-            raise InputError(
-                f"law is {law.text}: the compact wave is that of a power law; waves of any law are "
-                "those of `lwa.loaded_wave`"
-            )
-        k = law.exponent
-    read_cell(cell)
-    k = exponent(k)
+    k = power_exponent(law, cell, k, POWERS_ALONE)
     # Masses and contacts enter by I alone.
     I = Dispersion(cell, k).I
     G = I * (k - 1) * (k - 2) / 2

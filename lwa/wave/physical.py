@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 import sympy as sp
 
@@ -24,9 +24,9 @@ from lwa.base.exact import (
     power,
     shorten,
 )
-from lwa.base.frozen import Value, known_extent, known_quantity, strain_power
+from lwa.base.frozen import known_extent, known_quantity, strain_power
 from lwa.base.words import ExtentName, QuantityName, one_of
-from lwa.cell import substitution
+from lwa.cell import Parametric
 from lwa.law import Power
 from lwa.wave.arch import Arch
 
@@ -42,7 +42,7 @@ BEARERS: tuple[BearerName, ...] = get_args(BearerName)
 
 
 @dataclass(frozen=True, repr=False)
-class PhysicalWave(Value):
+class PhysicalWave(Parametric):
     """The compact wave of a given peak force in a chain without load, in the units of the cell.
 
     Parameters
@@ -257,11 +257,3 @@ class PhysicalWave(Value):
             both = arch(xi - half) + arch(xi + half)
             return np.asarray(peak * both / 2)
         return np.asarray(peak * arch(xi))
-
-    def at(self, **values: Any) -> PhysicalWave:
-        """Substitute values for symbols of the wave and of the force, as `lwa.CompactWave.at`."""
-        # Symbols that the force has besides those of the wave
-        own = {*self.wave.cell.symbols, *self.wave.k.free_symbols}
-        more = sorted(self.force.free_symbols - own, key=str)
-        new = substitution(values, self.wave.cell, self.wave.k, more)
-        return PhysicalWave(self.wave.replaced(new), self.force.xreplace(new), self.of)

@@ -25,6 +25,7 @@ from __future__ import annotations
 
 import math
 import sys
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -56,9 +57,8 @@ from validation.lattice.kernel.kinks import EDGES
 from validation.lattice.kernel.symplectic import advance_split
 from validation.lattice.knots import Recorder
 from validation.lattice.laws import Contact
-from validation.lattice.result import Run, finished
+from validation.lattice.result import Run
 from validation.lattice.schemes import BLANES_MOAN, RK853, RKN86
-from validation.lattice.signal import recorded, sampled
 
 # The response of a drive is guessed: a run is made again where its energy turns out less than _WEAK
 # times, or more than _STRONG times, the energy that sets the tolerance, and no more than _GUESSES
@@ -119,8 +119,7 @@ class _Integration:
         self._make_plan(motion)
         self.chain = _chain(motion)
         self.beads = _start(motion, len(self.chain.A), self.plan.scheme)
-        self.time, self.needed = sampled(motion)
-        self.recorder = Recorder(motion, self.chain, self.needed, self.time)
+        self.recorder = Recorder(motion, self.chain)
         self.now = initial_progress(self.plan, _front(motion), motion.free_energy)
 
     def _make_plan(self, motion: Motion) -> None:
@@ -176,14 +175,12 @@ class _Integration:
             # The drive also accelerates its bead.
             gained = motion.masses[0] * (beads.v[0] ** 2 - motion.start[n] ** 2) / 2
             work = now["work"] + gained
-        records = recorded(motion, self.needed, self.recorder.y, self.recorder.v)
-        return finished(
-            motion,
-            np.concatenate((beads.y[:n], beads.v[:n], (now["lost"], work))),
-            {"time": self.time} | records,
-            steps=int(now["steps"]),
-            path=self.recorder.path(),
-        )
+        end = np.concatenate((beads.y[:n], beads.v[:n], (now["lost"], work)))
+        samples = self.recorder.samples
+        if samples:
+            all_samples = np.concatenate(samples, axis=2)
+            return Run(motion, end, int(now["steps"]), samples=all_samples)
+        return Run(motion, end, int(now["steps"]), self.recorder.path())
 
 
 def _plan(motion: Motion, scheme: Pair | Splitting, rtol: float, **steps: Any) -> Plan:
@@ -236,6 +233,7 @@ def _splitting_plan(motion: Motion, rtol: float, step: float) -> tuple[Plan, int
     return plan, most
 
 
+@lru_cache(maxsize=1)
 def _chain(motion: Motion) -> Chain:
     """Build the kernel's chain, padded by beads of infinite mass; the first of them is the wall."""
     n, contacts = motion.size, len(motion.rest)
@@ -306,13 +304,15 @@ def _exponent(law: Contact) -> float:
     return 4.0
 
 
+@lru_cache(maxsize=1)
 def _front(motion: Motion) -> int:
     """Return the number of the first bead at rest, plus a margin."""
-    y, v = np.abs(motion.start[: 2 * motion.size].reshape(2, motion.size))
-    moves = (y > _NOISE * y.max()) | (v > _NOISE * v.max())
-    if motion.scene.drive is not None:
-        moves[0] = True
-    first = moves.size - int(np.argmax(moves[::-1])) if moves.any() else 0
+    motions = np.abs(motion.start[:-2].reshape(2, -1))  # |y| and |v|
+    moves = _NOISE * motions.max(axis=1) < motions.T
+    moving, _ = moves.nonzero()
+    first = 0 if motion.scene.drive is None else 1
+    if len(moving):
+        first = max(first, int(moving[-1]) + 1)
     return min(motion.size, MARGIN + first)
 
 

@@ -11,9 +11,10 @@ depend on velocities, and a drive makes the motion of bead 0 depend on time.
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -139,10 +140,9 @@ class Motion:
         """Evaluate a method of `Contact` for the rows of some contacts, law by law."""
         if len(self.laws) == 1:
             return evaluate(self.laws[0], *rows)
-        numbers = self.law_of[contacts]
         result = np.empty(rows[0].shape)
         for n, law in enumerate(self.laws):
-            own = numbers == n
+            own = self.law_of[contacts] == n
             result[own] = evaluate(law, *(row[own] for row in rows))
         return result
 
@@ -245,8 +245,10 @@ class Motion:
     def _moves(self) -> bool:
         """True if a bead has a velocity, or a contact is pressed more than in equilibrium."""
         n = self.size
-        pressed = self.compression(self.start[:n]) > self.rest.max(initial=0.0)
-        return bool(self.start[n : 2 * n].any() or pressed.any())
+        if self.start[n : 2 * n].any():
+            return True
+        deepest = self.compression(self.start[:n]).max(initial=0.0)
+        return bool(deepest > self.rest.max(initial=0.0))
 
     def _energy_scale(self) -> float:
         """Return the greatest energy of the motion, known or estimated; 0 in equilibrium."""
@@ -273,12 +275,14 @@ class Motion:
         # F′ of the two contacts of each bead; the last one's is a wall's.
         springs = np.zeros(n + 1)
         for number, law in enumerate(self.laws):
-            own = np.flatnonzero(self.law_of == number)
-            if not own.size:  # a single bead without a wall
+            # All contacts of a chain with one law: a slice takes no copies.
+            own: Any = self.law_of == number if len(self.laws) > 1 else slice(None)
+            rest, stiffnesses = self.rest[own], self.stiffnesses[own]
+            if not rest.size:  # a single bead without a wall
                 continue
             # Scale of the compression: all the energy in the stiffest contact of this law.
-            static = self.rest[own].max()
-            largest = self.stiffnesses[own].max()
+            static = float(rest.max())
+            largest = float(stiffnesses.max())
             depth = static
             if energy > 0:
                 depth = max(depth, law.reached_by(energy / largest, static))
@@ -287,28 +291,32 @@ class Motion:
             deepest = max(deepest, depth)
             # F′ = k A δ^{k-1}; the factor k counts in the time alone.
             slope = law.steepest(static, depth)
-            _check_range("stiffest spring", largest * slope)
             stiffest = max(stiffest, largest * slope)
-            stiff = law.k * slope * self.stiffnesses[own]
-            springs[own] += stiff
-            springs[own + 1] += stiff
+            _check_range("stiffest spring", largest * slope)
+            stiff = law.k * slope * stiffnesses
+            springs[: len(self.rest)][own] += stiff
+            springs[1 : len(self.rest) + 1][own] += stiff
         if not deepest:  # nothing presses: any scale does
             return Scales(energy, 0.0, 1.0, 1.0, math.inf)
-        time = 1 / np.sqrt((springs[:n] / self.masses).max())
+        time = 1 / math.sqrt((springs[:n] / self.masses).max())
         _check_range("shortest time", time)
         y = deepest
         v = deepest / time
         rounding = 0.0
         if energy > 0:
             # energy = F′ y² and m v², up to factors of order 1, with the mean mass
-            y = np.sqrt(energy / stiffest)
-            v = np.sqrt(energy / self.masses.mean())
+            y = math.sqrt(energy / stiffest)
+            v = math.sqrt(energy / self.masses.mean())
             _check_range("displacement", y)
             _check_range("velocity", v)
-            rounding = np.finfo(float).eps * self.rest.max() / y
-        return Scales(
-            energy, float(deepest), float(y), float(v), float(time), float(rounding)
-        )
+            rounding = sys.float_info.epsilon * float(self.rest.max()) / y
+        return Scales(energy, deepest, y, v, time, rounding)
+
+
+@lru_cache(maxsize=1)
+def motion_of(scene: Scene) -> Motion:
+    """Return the equations of motion of a scene, which its runs at several tolerances share."""
+    return Motion(scene)
 
 
 def _array(row: tuple[float, ...]) -> Array:

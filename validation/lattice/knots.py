@@ -17,7 +17,7 @@ from validation.lattice.equations import Motion
 from validation.lattice.kernel.arrays import ROOM, Chain, Knots
 from validation.lattice.kernel.kinks import EDGES
 from validation.lattice.kernel.samples import interpolate
-from validation.lattice.signal import Beads
+from validation.lattice.signal import Beads, sample_times, sensed_beads
 
 # Numbers that the engine stores between two calls of `take`: 2 MB, which a cache holds.
 BUFFER = 2**18
@@ -73,13 +73,13 @@ class KnotPath:
         """Return displacements and velocities (beads, S) at times (S,) within the run."""
         # A bead's acceleration changes with its neighbours' displacements.
         near = _with_neighbours(beads)
-        rows = np.searchsorted(self.knots.watched, near)
-        step = np.searchsorted(self.time[1:-1], time, side="right")
+        rows = self.knots.watched.searchsorted(near)
+        step = self.time[1:-1].searchsorted(time, side="right")
         y, v = np.empty((2, len(rows), len(time)))
         # Working memory: the compiled loops allocate nothing.
         working = np.empty((2, len(rows), 4)), np.empty((3, ROOM)), np.empty(EDGES)
         interpolate(self.chain, self.knots, rows, time, step, y, v, *working)
-        own = np.searchsorted(near, beads)
+        own = near.searchsorted(beads)
         y, v = y[own], v[own]
         if self.motion.scene.drive is not None and 0 in beads:
             y[0], v[0], _ = self.motion.scene.drive.at(time)
@@ -87,7 +87,7 @@ class KnotPath:
 
 
 class Recorder:
-    """Collector of a run's knots, which computes the samples and keeps the motion for signals.
+    """Collector of a run's knots, which keeps them for signals, or computes the samples.
 
     Parameters
     ----------
@@ -95,60 +95,56 @@ class Recorder:
         The equations of motion.
     chain : Chain
         The chain of the compiled loops.
-    needed : array of int, (B,)
-        Numbers of the beads that the sensors need.
-    time : array, (S,)
-        Sample times.
 
     Attributes
     ----------
     knots : Knots
         Arrays that the engine fills.
-    y, v : array, (B, S)
-        Samples of displacements and velocities.
+    samples : list of array, (2, B, S)
+        Displacements and velocities of the beads that the sensors need, at the sample times of
+        knots that were not kept.
     """
 
-    def __init__(
-        self, motion: Motion, chain: Chain, needed: NDArray[np.int_], time: Array
-    ) -> None:
+    def __init__(self, motion: Motion, chain: Chain) -> None:
         self.motion = motion
         self.chain = chain
-        self.needed = needed
-        self.time = time
-        watched = _with_neighbours(needed)
+        watched = _with_neighbours(sensed_beads(motion))
         most = 2  # the ends of a step
         if len(watched):
             # A knot: four numbers a bead, and its time.
             most += BUFFER // (4 * len(watched) + 1)
         self.knots = Knots(np.empty(most), np.empty((most, len(watched), 4)), watched)
-        self.y, self.v = np.empty((2, len(needed), len(time)))
+        self.samples: list[Array] = []
         self._parts: list[tuple[Array, Array]] = []  # times and states of knots
         self._bytes = 0
-        self._sampled = 0
 
     def take(self, count: int) -> int:
-        """Compute the samples up to knot ``count`` - 1, and keep the knots.
+        """Keep the knots up to number ``count`` - 1, or compute their samples.
 
         Returns the number of knots left for the engine: the last knot begins its next step.
         """
         times, states, watched = self.knots
         if not len(watched):
             return 0
-        time, state = times[:count].copy(), states[:count].copy()
-        path = KnotPath(self.motion, self.chain, Knots(time, state, watched))
-        due = int(np.searchsorted(self.time, time[-1], side="right"))
-        now = slice(self._sampled, due)
-        self.y[:, now], self.v[:, now] = path(self.needed, self.time[now])
-        self._sampled = due
-        self._bytes += state.nbytes
+        # The first knot is the last one of the part before.
+        new = slice(len(self._parts) > 0, count)
+        self._parts.append((times[new].copy(), states[new].copy()))
+        self._bytes += self._parts[-1][1].nbytes
+        times[0], states[0] = times[count - 1], states[count - 1]
         if self._bytes > _MOST_BYTES:
-            self._parts.clear()
-        else:
-            # The first knot is the last one of the part before.
-            new = slice(len(self._parts) > 0, None)
-            self._parts.append((time[new], state[new]))
-        times[0], states[0] = time[-1], state[-1]
+            self._sample()
         return 1
+
+    def _sample(self) -> None:
+        """Compute the samples up to the last knot, and drop the knots."""
+        path = self.path()
+        assert path is not None
+        time = sample_times(self.motion.scene)
+        done = sum(part.shape[2] for part in self.samples)
+        due = int(time.searchsorted(path.time[-1], side="right"))
+        y, v = path(sensed_beads(self.motion), time[done:due])
+        self.samples.append(np.array((y, v)))
+        self._parts.clear()
 
     def path(self) -> KnotPath | None:
         """Return the motion of the whole run; None if it takes more than `_MOST_BYTES` bytes."""

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,16 @@ import numpy as np
 from lwa.base.arrays import Array
 from validation.lattice.cost import IntegrationError
 from validation.lattice.equations import Motion
-from validation.lattice.signal import RECORDS, Path, SensorSignal, sensors_of, signal
+from validation.lattice.signal import (
+    RECORDS,
+    Path,
+    SensorSignal,
+    recorded,
+    sample_times,
+    sensed_beads,
+    sensors_of,
+    signal,
+)
 from validation.pictures import Curve, Map, Panel, Pictured
 from validation.scenes.checks import SceneError
 from validation.scenes.scene import Scene
@@ -40,56 +50,136 @@ class Run(Pictured):
 
     Parameters
     ----------
-    scene : Scene
-        The scene.
-    time : array, shape (S,)
-        Sample times.
-    contact_force, compression : array, shape (contacts, S)
-        Forces and compressions at the scene's contact sensors; the compression of a gap is
-        negative.
-    bead_force, bead_displacement, bead_velocity : array, shape (beads, S)
-        Motion at the bead sensors. The force is the mean of the bead's two contacts, the
-        displacement counts from the equilibrium.
-    displacements, velocities : array, shape (n,)
-        Those of all beads at the end.
-    energy_drift : float
-        Error of the energy at the end: change of the energy above equilibrium, plus ``dissipated``,
-        less ``work``. The unit is the initial energy, or that of the response to a drive; without
-        energy the drift is 0.
-    momentum_drift : float, optional
-        Change of the momentum divided by ``Σ m|v|`` at the end; None with a wall or a drive.
-    step : float
-        Mean step.
+    motion : Motion
+        The equations of motion.
+    end : array
+        Final state, in the order of `Motion.start`.
+    steps : int
+        Number of steps.
     path : Path, optional
-        Motion of the beads near sensors throughout the run, for `signal`; None if it takes too much
-        memory.
-    dissipated : float
-        Energy that damped contacts have turned into heat.
-    work : float
-        Work of the drive.
+        Motion of the beads near sensors throughout the run; None if it takes too much memory, or
+        without sensors.
+    samples : array, shape (2, beads, S), optional
+        Displacements and velocities of `validation.lattice.signal.sensed_beads` at the sample
+        times; None if ``path`` is known.
+
+    Raises
+    ------
+    IntegrationError
+        If a number of the final state, or its energy, is not finite.
     """
 
-    scene: Scene
-    time: Array
-    contact_force: Array
-    compression: Array
-    bead_force: Array
-    bead_displacement: Array
-    bead_velocity: Array
-    displacements: Array
-    velocities: Array
-    energy_drift: float
-    momentum_drift: float | None
-    step: float
-    path: Path | None = field(default=None, compare=False)
-    dissipated: float = 0.0
-    work: float = 0.0
+    motion: Motion
+    end: Array
+    steps: int
+    path: Path | None = None
+    samples: Array | None = None
+
+    def __post_init__(self) -> None:
+        # A sum is finite only if all its terms are.
+        if not math.isfinite(self.energy_drift + self.end.sum()):
+            raise IntegrationError(
+                "the motion overflows: choose other units, or a step of "
+                f"{self.step:g} is too long"
+            )
+        self.end.setflags(write=False)
+
+    @cached_property
+    def time(self) -> Array:
+        """Sample times, shape (S,)."""
+        time = sample_times(self.scene)
+        time.setflags(write=False)
+        return time
+
+    @cached_property
+    def _records(self) -> dict[str, Array]:
+        """All records, by their names in `RECORDS`."""
+        beads = sensed_beads(self.motion)
+        samples: Any = self.samples
+        if self.path is not None:
+            samples = self.path(beads, self.time)
+        elif samples is None:
+            samples = np.zeros((2, 0, len(self.time)))
+        y, v = samples
+        records = recorded(self.motion, beads, y, v)
+        for record in records.values():
+            record.setflags(write=False)
+        return records
+
+    @property
+    def contact_force(self) -> Array:
+        """Forces at the scene's contact sensors, shape (contacts, S)."""
+        return self._records["contact_force"]
+
+    @property
+    def compression(self) -> Array:
+        """Compressions at the contact sensors, shape (contacts, S); negative for a gap."""
+        return self._records["compression"]
+
+    @property
+    def bead_force(self) -> Array:
+        """Means of the forces of the two contacts of the sensors' beads, shape (beads, S)."""
+        return self._records["bead_force"]
+
+    @property
+    def bead_displacement(self) -> Array:
+        """Displacements of the sensors' beads from the equilibrium, shape (beads, S)."""
+        return self._records["bead_displacement"]
+
+    @property
+    def bead_velocity(self) -> Array:
+        """Velocities of the sensors' beads, shape (beads, S)."""
+        return self._records["bead_velocity"]
+
+    @property
+    def scene(self) -> Scene:
+        """The scene."""
+        return self.motion.scene
+
+    @property
+    def displacements(self) -> Array:
+        """Displacements of all beads at the end, shape (n,)."""
+        return self.end[: self.motion.size]
+
+    @property
+    def velocities(self) -> Array:
+        """Velocities of all beads at the end, shape (n,)."""
+        return self.end[self.motion.size : -2]
+
+    @property
+    def dissipated(self) -> float:
+        """Energy that damped contacts have turned into heat."""
+        return float(self.end[-2])
+
+    @property
+    def work(self) -> float:
+        """Work of the drive."""
+        return float(self.end[-1])
+
+    @property
+    def step(self) -> float:
+        """Mean step."""
+        return self.scene.duration / self.steps
+
+    @cached_property
+    def energy_drift(self) -> float:
+        """Error of the energy at the end.
+
+        The change of the energy above equilibrium, plus the heat, less the work, in units of the
+        initial energy, or of the energy of the response to a drive; 0 without energy.
+        """
+        change = self.motion.energy_change(self.end) + self.dissipated - self.work
+        return change / (self.motion.scales.energy or math.inf)
+
+    @cached_property
+    def momentum_drift(self) -> float | None:
+        """Change of the momentum over ``Σ m|v|`` at the end; None with a wall or a drive."""
+        return self.motion.momentum_drift(self.end)
 
     def __repr__(self) -> str:
         sensors = len(self.scene.bead_sensors) + len(self.scene.contact_sensors)
         recorded = f"{sensors} sensor{'s' * (sensors != 1)}, {len(self.time)} samples"
-        steps = round(self.scene.duration / self.step)
-        made = f"{steps} steps, energy drift {self.energy_drift:.1g}"
+        made = f"{self.steps} steps, energy drift {self.energy_drift:.1g}"
         return f"{type(self).__name__}({self.scene}; {made}; {recorded})"
 
     def label(self, quantity: str) -> str:
@@ -158,55 +248,3 @@ class Run(Pictured):
                 "the run has too many steps to keep the motion: read its samples"
             )
         return signal(self.path, kind, number, quantity)
-
-
-def finished(
-    motion: Motion, end: Array, records: dict[str, Array], *, steps: int, **fields: Any
-) -> Run:
-    """Return the result of an integration.
-
-    Parameters
-    ----------
-    motion : Motion
-        The equations of motion.
-    end : array
-        Final state, in the order of `Motion.start`.
-    records : dict of array
-        Sample times and records, by their names in `Run`.
-    steps : int
-        Number of steps.
-    **fields
-        Further fields of the `Run`.
-
-    Raises
-    ------
-    IntegrationError
-        If a number is not finite.
-    """
-    # Copies: a view would keep the whole state, and with SciPy's methods all states, in memory.
-    n = motion.size
-    arrays: dict[str, Any] = records | {
-        "displacements": end[:n].copy(),
-        "velocities": end[n : 2 * n].copy(),
-    }
-    dissipated, work = map(float, end[2 * n :])
-    drift = motion.energy_change(end) + dissipated - work
-    step = motion.scene.duration / steps
-    # A sum is finite only if all its terms are, and takes no memory.
-    total = drift + sum(float(row.sum()) for row in arrays.values())
-    if not math.isfinite(total):
-        raise IntegrationError(
-            f"the motion overflows: choose other units, or a step of {step:g} is too long"
-        )
-    for array in arrays.values():
-        array.setflags(write=False)
-    return Run(
-        scene=motion.scene,
-        energy_drift=drift / (motion.scales.energy or math.inf),
-        momentum_drift=motion.momentum_drift(end),
-        step=step,
-        dissipated=dissipated,
-        work=work,
-        **arrays,
-        **fields,
-    )

@@ -110,7 +110,7 @@ def _quantities(
 def recorded(
     motion: Motion, beads: NDArray[np.int_], y: Array, v: Array
 ) -> dict[str, Array]:
-    """Return the records of all sensors by name, from the motion y, v, (B, S), of `beads_at`.
+    """Return the records of all sensors by name, from the motion y, v, (B, S), of `sensed_beads`.
 
     The forces of all contacts are computed at once: of 76 sensors, one after the other, they took
     ten times as long as the integration.
@@ -120,22 +120,28 @@ def recorded(
     found = _quantities(motion, beads, y, v)
     records = {}
     for kind, numbers in sensors_of(motion.scene).items():
-        rows: Any = np.searchsorted(beads, numbers)
+        first = numbers[0] if numbers else 0
+        rows: Any = beads.searchsorted(first)
         # Neighbours are a slice, without a copy, of which large records gain an eighth.
-        if len(numbers) > 1 and (np.diff(rows) == 1).all():
-            rows = slice(int(rows[0]), int(rows[-1]) + 1)
+        if numbers == tuple(range(first, first + len(numbers))):
+            rows = slice(rows, rows + len(numbers))
+        else:
+            rows = beads.searchsorted(numbers)
         for (own, _), name in RECORDS.items():
             if own == kind:
                 records[name] = found[name][rows]
     return records
 
 
-def sampled(motion: Motion) -> tuple[Array, NDArray[np.int_]]:
-    """Return the sample times of a scene, and the numbers of the beads that its sensors need."""
-    scene = motion.scene
+def sensed_beads(motion: Motion) -> NDArray[np.int_]:
+    """Return increasing numbers of the beads on which a scene's sensors depend."""
+    return beads_at(motion, motion.scene.contact_sensors, motion.scene.bead_sensors)
+
+
+def sample_times(scene: Scene) -> Array:
+    """Return the sample times of a scene, (S,)."""
     # np.linspace takes three times as long
-    time = np.arange(scene.samples) / (scene.samples - 1) * scene.duration
-    return time, beads_at(motion, scene.contact_sensors, scene.bead_sensors)
+    return np.arange(scene.samples) / (scene.samples - 1) * scene.duration
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,7 +21,7 @@ import numpy as np
 from lwa.base.exact import shorten
 from validation.lattice import steppers
 from validation.lattice.cost import RunProgress, silent
-from validation.lattice.equations import Motion
+from validation.lattice.equations import motion_of
 from validation.lattice.result import Run
 from validation.lattice.schemes import SCHEMES
 from validation.lattice.steppers import METHODS
@@ -96,7 +96,7 @@ def simulate(
     longest = math.inf if step is None else positive(step, "step")
     # Values beyond floats are refused by name: no warnings of NumPy besides.
     with np.errstate(over="ignore", invalid="ignore"):
-        motion = Motion(scene)
+        motion = motion_of(scene)
         if method in METHODS:
             return steppers.integrate(motion, method, rtol, longest)
         from validation.lattice import engine  # start-up: numba takes its time

@@ -11,8 +11,8 @@ import scipy
 from lwa.base.arrays import Array
 from validation.lattice.cost import IntegrationError, check_memory, step_limit
 from validation.lattice.equations import Motion
-from validation.lattice.result import Run, finished
-from validation.lattice.signal import Beads, recorded, sampled
+from validation.lattice.result import Run
+from validation.lattice.signal import Beads
 
 METHODS = ("DOP853", "RK45", "RK23", "LSODA", "Radau", "BDF")
 """Names of `solve_ivp`: explicit Runge–Kutta pairs of order 8, 5 and 3, and implicit methods."""
@@ -71,7 +71,6 @@ def integrate(motion: Motion, method: str, rtol: float, longest: float) -> Run:
         raise IntegrationError(
             f"integration stopped at t = {found.t[-1]:g}: {found.message}"
         )
-    time, beads = sampled(motion)
-    path = DensePath(motion, found.sol)
-    records = {"time": time} | recorded(motion, beads, *path(beads, time))
-    return finished(motion, found.y[:, -1], records, steps=len(found.t) - 1, path=path)
+    # A copy: a view would keep the states of all steps in memory.
+    end = found.y[:, -1].copy()
+    return Run(motion, end, len(found.t) - 1, DensePath(motion, found.sol))

@@ -2,10 +2,10 @@
 
 Forces are dynamic: they count from the start, as in a record. Beads that start in equilibrium carry
 the static force of gravity and precompression; beads that fall onto each other carry none. Every
-number of a recording is measured in a run and in less accurate runs, whose differences are its
-error (`validation.pulses.pulse.compared`). Where a hump of about half the record's maximum precedes
-the first pulse, or is it, another run may take the other one: the error is then at least the
-distance between them (`first_numbers`).
+number of a recording is measured in a run and in a second, more accurate one, whose difference
+tells its error (`validation.pulses.pulse.compared`). Where a hump of about half the record's
+maximum precedes the first pulse, or is it, another run may take the other one: the error is then
+at least the distance between them (`first_numbers`).
 """
 
 from __future__ import annotations
@@ -177,21 +177,23 @@ def record(
     """
     rtol = between(rtol, "rtol", 1e-13, 1e-5)
     motion = Motion(scene)
-    if (lost := motion.scales.rounding) > _ROUNDING * rtol:
+    lost = motion.scales.rounding
+    if lost > _ROUNDING * rtol:
         raise SceneError(
             f"rtol is {rtol:g}: rounding of the static compression, {motion.rest.max():.1g}, takes "
             f"{lost:.1g} of the motion; {lost / _ROUNDING:.1g} or more is wanted"
         )
-    runs = repeated(scene, tolerances(rtol), method=method, progress=progress)
-    run, *checks = runs
-    fine = tracks(run, velocities)
-    less_accurate = [tracks(check, velocities, 2) for check in checks]
+    both = tolerances(rtol, lost)
+    runs = repeated(scene, both, method=method, progress=progress)
+    run, check = runs
+    recorded = tracks(run, velocities)
+    checks = tracks(check, velocities, 2)
     firsts: list[Reading] = []
     found: list[Reading] = []
-    for track, *others in zip(fine, *less_accurate, strict=True):
-        firsts += _readings(track, others, every=False)
+    for track, other in zip(recorded, checks, strict=True):
+        firsts += _readings(track, other, every=False)
         if every:
-            found += _readings(track, others, every=True)
+            found += _readings(track, other, every=True)
 
     def doubt(first: Reading, second: Reading, sites: float) -> str:
         """Return why one pulse does not pass two sensors at a speed; "" if it may."""
@@ -202,19 +204,19 @@ def record(
             return "no wave is so fast: the sensors see different pulses"
         start = first.numbers["arrival"].value
         end = second.numbers["arrival"].value - second.numbers["fwhm"].value
-        force = fine[firsts.index(second)].force
+        force = recorded[firsts.index(second)].force
         if end > start and force(np.linspace(start, end, _LOOKS)).max() > peaks[0] / 2:
             return "another pulse passes the second sensor before"
         return ""
 
-    # Errors of both arrivals are added: in the less accurate speed they may cancel.
-    places = [track.place for track in fine]
+    # Errors of both arrivals are added: in the other run's speed they may cancel.
+    places = [track.place for track in recorded]
     speeds = speeds_between(firsts, places, operator.add, doubt)
     end = {
         i + 1: compared(partial(_state_at_end, bead=i), runs)
         for i in scene.bead_sensors
     }
-    return Recording(run, fine, tuple(found or firsts), speeds, end)
+    return Recording(run, recorded, tuple(found or firsts), speeds, end)
 
 
 def _state_at_end(run: Run, bead: int) -> dict[str, float]:
@@ -321,19 +323,20 @@ def _at_sensors(scene: Scene, contact_forces: ArrayLike) -> dict[str, float]:
     return forces
 
 
-def _readings(fine: Track, others: Sequence[Track], every: bool) -> list[Reading]:
-    """Measure the first pulse at a sensor, or every pulse, with errors from less accurate runs."""
-    blank = Reading(fine.kind, (fine.number,), {}, fine.static, quantity=fine.quantity)
+def _readings(track: Track, other: Track, every: bool) -> list[Reading]:
+    """Measure the first pulse at a sensor, or every pulse, with errors from another run."""
+    place = (track.number,)
+    blank = Reading(track.kind, place, {}, track.static, quantity=track.quantity)
     try:
         if every:
-            known = [all_pulses(other.force) for other in others]
+            known = all_pulses(other.force)
             found = []
-            for pulse in all_pulses(fine.force):
+            for pulse in all_pulses(track.force):
                 # Another run may see a pulse less, or one more.
-                same = [min(row, key=partial(_delay, pulse)) for row in known]
-                found.append(compared(readings, [pulse, *same]))
+                same = min(known, key=partial(_delay, pulse))
+                found.append(compared(readings, [pulse, same]))
         else:
-            found = [first_numbers(fine.force, [other.force for other in others])]
+            found = [first_numbers(track.force, other.force)]
     except MeasureError as error:
         return [replace(blank, missing=str(error))]
     found = [numbers for numbers in found if numbers["peak"].relative_error < _HIDDEN]
@@ -351,35 +354,32 @@ def _delay(pulse: Pulse, other: Pulse) -> float:
     return abs(other.arrival - pulse.arrival)
 
 
-def first_numbers(fine: Signal, others: Sequence[Signal]) -> dict[str, Estimate]:
-    """Return `READINGS` of the first pulse, with errors from less accurate signals.
+def first_numbers(force: Signal, other: Signal) -> dict[str, Estimate]:
+    """Return `READINGS` of the first pulse, with errors from another run's signal.
 
-    The first pulse is the first one above half the maximum. The less accurate signals are also
-    searched a little below and above half, and the largest error counts.
+    The first pulse is the first one above half the maximum. The other signal is also searched a
+    little below and above half, and the largest error counts.
 
     Parameters
     ----------
-    fine : Signal
+    force : Signal
         A signal.
-    others : sequence of Signal
-        The same signal of less accurate runs, see `validation.pulses.pulse.compared`.
+    other : Signal
+        The same signal of another run, see `validation.pulses.pulse.compared`.
 
     Raises
     ------
     MeasureError
         If one of the signals has no pulse.
     """
-    first = readings(first_pulse(fine))
+    first = readings(first_pulse(force))
     shares = [(1 + part) / 2 for part in (-_UNSURE, 0.0, _UNSURE)]
-    runs = [first]
-    for other in others:
-        seen = [readings(pulse) for pulse in first_pulses(other, shares)]
-        farthest = {}
-        for name, value in first.items():
-            values = [numbers[name] for numbers in seen]
-            farthest[name] = max(values, key=lambda x: abs(x - value))
-        runs.append(farthest)
-    return compared(dict, runs)
+    seen = [readings(pulse) for pulse in first_pulses(other, shares)]
+    farthest = {}
+    for name, value in first.items():
+        values = [numbers[name] for numbers in seen]
+        farthest[name] = max(values, key=lambda x: abs(x - value))
+    return compared(dict, [first, farthest])
 
 
 def readings(pulse: Pulse) -> dict[str, float]:

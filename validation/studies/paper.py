@@ -69,7 +69,7 @@ STATED = {"m1 ≫ m2": 0.092, "m2/m1 = 0.27": 0.025, "m1 = m2": 0.228}
 
 # From here on the width no longer changes on its way: the average starts here.
 FIRST_BEAD = 10
-_LESS_ACCURATE = "differences to less accurate runs"
+_COMPARED = "differences to a more accurate run"
 
 
 def chain_cell(N: int = 1, ptfe: Sphere = PTFE_BEAD) -> Cell:
@@ -211,7 +211,7 @@ def paper(
     return Report(
         f"{BEADS} beads, steel (the striker, {velocity:g} m/s) and PTFE in turn, steel wall; "
         f"sensors in beads {SENSORS[0]} and {SENSORS[1]}",
-        (Table.of(_COLUMNS, rows, "rows", note=_NOTE, errors=_LESS_ACCURATE),),
+        (Table.of(_COLUMNS, rows, "rows", note=_NOTE, errors=_COMPARED),),
         panels=(_panel(runs[0], waves["F_m"]),),
         data={"velocity_value": velocity, "beads": BEADS, "sensors": SENSORS},
     )
@@ -337,7 +337,7 @@ def figures(progress: Progress[Any] = iter) -> Report:
     return Report(
         "Figures 2 and 3 of Porter et al. (2008)",
         (
-            Table.of(_DROPS, drops, "rows", errors=_LESS_ACCURATE),
+            Table.of(_DROPS, drops, "rows", errors=_COMPARED),
             Table.of(_WIDTHS, stated_errors(), "widths", note=_WIDTH_NOTE),
         ),
         panels=tuple(panels),

@@ -272,7 +272,7 @@ _COLUMNS = (
 )
 _COMPARED = (
     "First pulses of dynamic forces. Measured times are shifted by {}, so that the pulses arrive "
-    "together at {}. ±: of the simulation, differences to less accurate runs; of the measurement, "
+    "together at {}. ±: of the simulation, differences to a more accurate run; of the measurement, "
     "one standard deviation by the noise before the pulse."
 )
 

@@ -42,7 +42,7 @@ from validation.scenes.units import BASES
 EXAMPLES = ("paper", "vertical", "precompressed", "defect", "trimer", "striker")
 """Names of the examples of scene files."""
 
-_NOTE = "{} at each sensor, in {} units. ±: differences to less accurate runs."
+_NOTE = "{} at each sensor, in {} units. ±: differences to a more accurate run."
 _FIRST = "First pulse above half of the record's maximum"
 _DYNAMIC = (
     "\nDynamic force: force less that at the start, the static force in equilibrium."
@@ -256,7 +256,7 @@ SUFFIXES = (".json", ".csv")
 
 _METHODS = Words((*COMPILED, *METHODS))
 _INTEGRATOR = f"Integrator: {' and '.join(COMPILED)} are compiled, the others SciPy's."
-_RTOL = "Relative tolerance. Errors are differences to less accurate runs."
+_RTOL = "Relative tolerance. Errors are differences to a more accurate run."
 
 
 @study(

@@ -18,6 +18,7 @@ from validation.pulses.pulse import (
     derived,
     measure,
     speed,
+    tolerances,
 )
 from validation.pulses.signals import Piecewise
 
@@ -103,13 +104,20 @@ def test_a_measured_number_carries_its_error():
 
 
 @pytest.mark.parametrize(
-    ("checks", "error"),
-    [((1, 1), ROUNDING), ((1, 1.5), 0.1), ((1.5, 1), 0.75), ((1, math.nan), math.nan)],
+    ("check", "error"), [(1, ROUNDING), (1.5, 1.0), (math.nan, math.nan)]
 )
-def test_the_error_is_the_difference_to_less_accurate_runs(checks, error):
-    """At least rounding; a number that one of the runs does not have has an unknown error."""
-    found = compared(lambda value: {"x": value}, [1.0, *checks])["x"]
+def test_the_error_is_twice_the_difference_to_another_run(check, error):
+    """At least rounding; a number that the other run does not have has an unknown error."""
+    found = compared(lambda value: {"x": value}, [1.0, check])["x"]
     assert found.error == pytest.approx(error, nan_ok=True)
+
+
+@pytest.mark.parametrize(
+    ("rtol", "rounding", "check"),
+    [(1e-10, 0, 1e-12), (1e-12, 0, 1e-13), (1e-13, 0, 1e-12), (1e-10, 1e-9, 1e-9)],
+)
+def test_another_run_is_more_accurate_unless_rounding_hides_it(rtol, rounding, check):
+    assert tolerances(rtol, rounding) == pytest.approx((rtol, check))
 
 
 def test_a_record_beyond_the_floats_is_refused():
