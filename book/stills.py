@@ -74,7 +74,7 @@ for (const [name, thing] of Object.entries(lwaTurn.things)) {
   const values = {};
   for (const control of thing.controls ?? []) values[control.name] = control.start;
   const scene = thing.begin(values, null);
-  for (let i = 0; !thing.quiet && i < 240 && thing.next(scene, 1); i++);
+  lwaTurn.toRest(thing, scene);
   const pen = new Svg(thing.shape);
   thing.draw(scene, pen);
   drawn[name] = pen.written;

@@ -50,10 +50,11 @@ def small_disk(size):
 
 
 @contextmanager
-def terminal():
+def terminal(lines=24, columns=80):
     """Make standard error a terminal; a function returns what was written to it so far."""
     screen, keyboard = pty.openpty()
-    fcntl.ioctl(keyboard, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
+    size = struct.pack("HHHH", lines, columns, 0, 0)
+    fcntl.ioctl(keyboard, termios.TIOCSWINSZ, size)
 
     def written():
         found = b""

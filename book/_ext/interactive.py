@@ -22,7 +22,7 @@ from lwa.law import named
 from lwa.wave.source import Function, module
 
 FOLDER = Path(__file__).with_name("turn")
-SCRIPTS = ("lattice", "pen", "stage", "pulse", "beyond", "calculator", "main")
+SCRIPTS = ("lattice", "pen", "stage", "rows", "waves", "swings", "calculator", "main")
 THING = re.compile(r'<div class="lwa-([a-z]+)"[^>]*></div>')
 
 # The laws of the chapter on laws, with the parameters of its figure.

@@ -150,7 +150,7 @@ class JetAlgebra:
             self._dt[index] = -s[1] * scaled
             if n < self.weight:
                 self._dx[index] = s[n + 1] - r[1] * scaled
-        # The highest φ_n has none either: the next one stands in it. The first generator is φ_2.
+        # The highest φ_n has no derivative either: φ_{n+1} stands in it. Generators begin with φ_2.
         for n in range(2, highest):
             slope = phi[n + 1] + (n - 1) * phi[n]  # p dφ_n/dp
             slope = slope - phi[n] * phi[2]
@@ -253,25 +253,6 @@ class JetAlgebra:
             split.setdefault(jet, []).append(term)
         return split
 
-    def antiderivative(
-        self,
-        f: fmpq_mpoly,
-        exponent: fmpq_mpoly,
-    ) -> fmpq_mpoly | None:
-        """Antiderivative g, ``∂_x (p^e g) = p^e f``, of an f of weight 2 or more; else None."""
-        # A total derivative is linear in its highest jet, with the coefficient ∂g/∂(the jet below).
-        # Subtracting the derivative of this part of g lowers the highest jet, first among those of
-        # the velocity, then among those of the strain.
-        total = self.zero
-        for index in self._derived:
-            slope = f.derivative(index)
-            if not slope.derivative(index).is_zero():
-                return None
-            part = slope.integral(index - 1)
-            total = total + part
-            f = f - self.dx(part, exponent)
-        return total if f.is_zero() else None
-
     def by_parts(
         self,
         f: fmpq_mpoly,
@@ -280,7 +261,8 @@ class JetAlgebra:
         """Reduce f by a total derivative ``p^{-e} ∂_x (p^e g)`` until no highest jet is linear.
 
         All terms of f have one weight. The highest jet of a term is its ``s_n`` of the largest n,
-        in a term without jets of the velocity its ``r_n`` of the largest n.
+        in a term without jets of the velocity its ``r_n`` of the largest n. A total derivative is
+        linear in the highest of all its jets: nothing is left of it.
         """
         for index in self._derived:
             part = self._linear_part(f, index).integral(index - 1)

@@ -1,4 +1,4 @@
-"""The consistency condition, solved by the paper's closure or by that of all equations of motion.
+"""The consistency condition of a model, solved by the linear or by the full closure.
 
 Both closures, `lwa.closure.ansatz` ("linear") and `lwa.closure.slaving` ("full"), solve the
 equations of `lwa.closure.slaving` in one algebra, `lwa.algebra.jets`.

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import repeat
 from typing import Any, Self
@@ -209,7 +209,7 @@ class Row:
     def text(self, scale: Scale) -> str:
         """The row as a line of text; values that are all alike stand once."""
         if isinstance(self.value, InputError):
-            return f"{self.label}: {self.value.reason}"
+            return f"{self.label}: {self.value}"
         numbers = self.numbers(scale) or repeat(None)
         texts = []
         for value, number in zip(self.values, numbers, strict=False):
@@ -265,7 +265,10 @@ def attempt(read: Callable[..., Any], *arguments: Any) -> Any:
 
 
 Values = dict[str, Any]
-Lines = list["Row | str | Answer"]
+Made = Callable[[], Iterable[str]]
+"""Function of lines that take long to print: they are made if they are printed."""
+
+Lines = list["Row | str | Answer | Made"]
 """Rows, lines of text, and parts of an answer."""
 
 
@@ -277,12 +280,12 @@ class Answer:
     ----------
     head : mapping
         JSON of the chain and the settings; expressions become strings when they are printed.
-    rows : sequence of Row, str or Answer
-        Results, lines of text, and parts, in the order of the text.
+    rows : sequence of Row, str, Answer or callable
+        Results, lines of text (or a function of them), and parts, in the order of the text.
     scale : Scale
         Units of the numbers.
-    shown : sequence of Shown or str
-        Results, or equations in LaTeX, that stand in LaTeX before those of the rows.
+    shown : sequence of Shown or callable
+        Results, or functions of equations, that stand in LaTeX before those of the rows.
     errors : str
         Meaning of ±, printed below rows with an error.
     notes : sequence of str
@@ -292,9 +295,9 @@ class Answer:
     """
 
     head: Mapping[str, Any]
-    rows: Sequence[Row | str | Answer]
+    rows: Sequence[Row | str | Answer | Made]
     scale: Scale = UNITLESS
-    shown: Sequence[Shown | str] = ()
+    shown: Sequence[Shown | Made] = ()
     errors: str = ""
     notes: Sequence[str] = ()
     key: str = ""
@@ -345,11 +348,13 @@ class Answer:
                 lines.append(row.text())
             elif isinstance(row, str):
                 lines.append(row)
+            elif callable(row):
+                lines += row()
             elif row.label:
                 lines.append(f"  {row.text(self.scale)}")
         # What ± means is said once, below the rows, and only where one is.
         if self.errors and "±" in "".join(lines):
-            lines.append(f"±: {self.errors}")
+            lines.append(f"±: {self.errors}; at least one in the last digit shown")
         for note in self.notes:
             lines += ["", f"Note: {note}"]
         return "\n".join(lines)
@@ -365,7 +370,7 @@ class Answer:
 
     def _equations(self) -> Iterator[str]:
         for result in self.shown:
-            yield from [result] if isinstance(result, str) else result.latex_rows()
+            yield from result() if callable(result) else result.latex_rows()
         for row in self.rows:
             if isinstance(row, Answer):
                 yield from row._equations()

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from functools import partial
 from typing import Any
 
-from lwa.base.frozen import Shown
 from lwa.command.answer import Answer, Lines, Row, Values
 from lwa.command.chain import take_chain
 from lwa.command.options import command, given, theory_options
@@ -94,24 +94,25 @@ def derive(style: str, **options: Any) -> None:
         f"{theory.closure.model.branch} branch, to D^{theory.order}; τ = t·{pde.time_scale}",
         *_law_lines(theory),
         "",
-        *_ansatz_lines(theory),
-        *_field_lines(theory),
-        str(pde),
-        "",
-        *_defect_lines(theory),
+        partial(_ansatz_lines, theory),
+        partial(_field_lines, theory),
+        lambda: [str(pde), ""],
+        partial(_defect_lines, theory),
     ]
     # G, H and I are the coefficients at D^{k+3}, which an ansatz to D^4 has.
     if depends_on_first(theory) and theory.order >= 4:
         canonical = canonical_wave(theory.cell, theory.k)
         letters = [Row.of(canonical, x, x) for x in "GHI"]
         rows.append(Answer({}, ["", FIRST, *letters], key="canonical"))
-    shown: list[Shown | str] = [theory]
-    if theory.defect:
-        # The equations of motion of the two beads in one cell.
-        defect = latex_by_order([], theory.defect, theory.cell.spacing)
-        difference = r"{u_{\tau\tau}^{(1)} - u_{\tau\tau}^{(2)}}"
-        shown.append(f"{difference} = {defect}")
+    shown = theory, partial(_defect_latex, theory)
     Answer(head, rows, shown=shown).print(style)
+
+
+def _defect_latex(theory: Theory) -> Iterator[str]:
+    """LaTeX of the difference between the equations of motion of the two beads in a cell."""
+    if theory.defect:
+        defect = latex_by_order([], theory.defect, theory.cell.spacing)
+        yield rf"{{u_{{\tau\tau}}^{{(1)}} - u_{{\tau\tau}}^{{(2)}}}} = {defect}"
 
 
 def _law_lines(theory: Theory) -> list[str]:

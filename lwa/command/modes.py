@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import sympy as sp
@@ -11,7 +13,7 @@ import sympy as sp
 from lwa.base.exact import InputError, positive
 from lwa.base.frozen import Shown
 from lwa.base.words import BRANCHES, BranchName, one_of
-from lwa.command.answer import Answer, Lines, Row, Values, attempt
+from lwa.command.answer import Answer, Lines, Made, Row, Values, attempt
 from lwa.command.chain import take_chain
 from lwa.command.options import (
     BACKGROUND,
@@ -67,21 +69,18 @@ def dispersion(
         "Ω²(κ), κ = qD and Ω/D the frequency in τ",
         "",
     ]
-    for name, series in linear.series(order).items():
-        head[name] = series
-        # Coefficients are exact, one a line as those of the wave equation.
-        rows.append(f"{name}:")
-        for n, c in series.items():
-            power = f"κ^{n}" if n else "1"
-            rows.append(f"  {power}: {c}")
-    shown: list[Shown | str] = [linear]
+    series = linear.series(order)
+    head |= series
+    rows.append(partial(_series_lines, series))
+    shown: list[Shown | Made] = [linear]
     if precompression is not None:
         loaded = LoadedChain(chain.cell, chain.law, precompression)
         shown.append(loaded)
         head["precompression"] = precompression
         rows += [
             "",
-            f"about the load {precompression}:",
+            "about the load:",
+            Row("", "static force F0", precompression, "N"),
             Row.of(loaded, "spring_constants", "spring constants", "N/m"),
             Row.of(loaded, "sound_speed", "sound speed dx/dt", "m/s"),
         ]
@@ -99,6 +98,17 @@ def dispersion(
                 ends = tuple(sp.Float(float(x)) for x in band)
                 rows.append(Row("", f"band {i}{unit}", ends, "Hz"))
     Answer(head, rows, chain.scale, shown).print(style)
+
+
+def _series_lines(
+    branches: Mapping[str, Mapping[int, sp.Expr]],
+) -> Iterator[str]:
+    """Lines of text with the coefficients of each branch, exact, one a line."""
+    for name, series in branches.items():
+        yield f"{name}:"
+        for n, c in series.items():
+            power = f"κ^{n}" if n else "1"
+            yield f"  {power}: {c}"
 
 
 def _branch(text: str, name: str) -> BranchName | int:
@@ -206,7 +216,7 @@ def envelope(
         Row.of(equation, "nonlinearity", "χ", "1/(s kg m²)"),
         described,
     ]
-    shown: list[Shown | str] = [equation]
+    shown: list[Shown | Made] = [equation]
     # A breather is one solution of the equation: that of a frequency.
     if frequency is not None or detuning is not None:
         angular = frequency and frequency * turn

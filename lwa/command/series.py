@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import partial
 from typing import Any
 
 from lwa.base.words import QUANTITIES
@@ -66,14 +67,14 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
                 series[f"fwhm_contact_{i + 1}.{q}"] = (label, expanded.fwhm(q, i))
     series["momentum"] = ("momentum", expanded.momentum)
     series["energy"] = ("energy", expanded.energy)
-    sums: Lines = [
+    rows: Lines = [
         chain.text,
         "ε = k - 1; peak force 1 on the first contact, lengths in D",
         "",
     ]
     if expanded.numeric:
-        sums += _sum_rows(expanded, series)
-    rows = [*sums, *_series_lines(series)]
+        rows += _sum_rows(expanded, series)
+    rows.append(partial(_series_lines, series))
     Answer(head, rows, shown=[expanded], errors=_ERRORS).print(style)
 
 

@@ -14,7 +14,7 @@ from lwa.base import latex
 from lwa.base.exact import InputError, number, read_exact
 from lwa.base.frozen import Estimate, NoSolitaryWave, Shown
 from lwa.base.words import EXTENTS, LANGUAGES, QUANTITIES, ExtentName
-from lwa.command.answer import LONG, Answer, Lines, Row, Scale
+from lwa.command.answer import LONG, Answer, Lines, Made, Row, Scale
 from lwa.command.chain import ChainInput, take_chain
 from lwa.command.derivation import closure_lines, depends_on_first, settings_json
 from lwa.command.options import (
@@ -221,7 +221,7 @@ def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
         Row.of(wave, "beta", "β", "1/m"),
         Row.of(wave, "width", "width π/β", "m", symbol=r"\frac{\pi}{\beta}"),
     ]
-    shown: list[Shown | str] = [theory.pde, wave]
+    shown: list[Shown | Made] = [theory.pde, wave]
     notes = []
     # A number of the size turns V_s and B into speed and strain in space and time.
     if force is not None:
@@ -352,7 +352,7 @@ def under_load(
     wave = loaded_wave(chain.cell, force=force, precompression=static, law=chain.law)
     rows: Lines = [
         chain.text,
-        f"the wave in a chain under the load {static}:",
+        "the wave in a chain under load:",
         *closure_lines(theory),
         "",
         *pulse_rows(wave, "rise of the"),
@@ -381,7 +381,7 @@ def on_background(chain: ChainInput, theory: Theory, p0: sp.Expr) -> Answer:
         f"  dx/dt = V_s · {field.time_scale}",
         *_unit_rise(field),
     ]
-    shown: list[Shown | str] = [field]
+    shown: list[Shown | Made] = [field]
     # Small waves of a law without curvature have another equation, and a chain without load none.
     try:
         kdv = field.kdv

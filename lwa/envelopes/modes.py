@@ -126,10 +126,10 @@ class Contacts:
         c = 1 / self.K2
         # Derivatives of x by κ follow from those of T by x.
         # T(x) - 2 cos κ = Π m Π c Π_j (x_j - x) over the modes j, differentiated at a root
-        first = -np.prod(self.masses * c * np.append(gaps, 1))
-        second = -2 * first * (1 / gaps).sum()
-        slope = -2 * z.imag / first  # x′, as T′ x′ = -2 sin κ
-        bend = (-2 * z.real - second * slope**2) / first  # T″ x′² + T′ x″ = -2 cos κ
+        T1 = -np.prod(self.masses * c * np.append(gaps, 1))
+        T2 = -2 * T1 * (1 / gaps).sum()
+        slope = -2 * z.imag / T1  # x′, as T′ x′ = -2 sin κ
+        bend = (-2 * z.real - T2 * slope**2) / T1  # T″ x′² + T′ x″ = -2 cos κ
         speed = self.masses.sum() * c.sum() * slope**2 / (4 * x)  # (c_g/c_0)²
         if x < self._close or 1 - speed < _SLOWER:
             exact = "; exact results stand" if len(self.masses) == 1 else ""
@@ -145,8 +145,8 @@ class Contacts:
         driven = (c * K3 * size).sum() / c.sum()
         force = 2 * driven * speed / (speed - 1)
         mean = c * (force - 2 * K3 * size)
-        second = self._harmonic(z * z, 4 * x, K3 * d**2)  # e2
-        harmonic = np.real(d.conj() ** 2 * second)
+        e2 = self._harmonic(z * z, 4 * x, K3 * d**2)
+        harmonic = np.real(d.conj() ** 2 * e2)
         cubic = 3 * self.K4 * size**2
         cubic += 2 * K3 * (harmonic + size * mean)
         bead = np.argmax(np.abs(phi))  # the one whose φ becomes positive

@@ -18,8 +18,9 @@ import sympy as sp
 
 from lwa.algebra.model import Model
 from lwa.base.exact import InputError, integer
-from lwa.base.words import QUANTITIES, QuantityName, one_of
-from lwa.cell import Cell, Parametric
+from lwa.base.frozen import known_quantity
+from lwa.base.words import QUANTITIES, QuantityName
+from lwa.cell import Cell, Parametric, exponent, read_cell
 from lwa.cell import k as symbol_k
 from lwa.expansion.observables import Observables, shares_model
 from lwa.expansion.recursion import Recursion
@@ -52,6 +53,10 @@ class Expansion(Parametric):
     k: sp.Expr = symbol_k
 
     def __post_init__(self) -> None:
+        read_cell(self.cell)
+        order = integer(self.order, "order", 1)
+        object.__setattr__(self, "order", order)
+        object.__setattr__(self, "k", exponent(self.k))
         # Text and LaTeX call the series' own parameter so.
         for symbol in {*self.cell.symbols, *self.k.free_symbols}:
             if symbol.name in EPSILON_NAMES:
@@ -60,10 +65,10 @@ class Expansion(Parametric):
                 )
         if not self.k.free_symbols and self.k <= 1:
             raise InputError(f"k is {self.k}: the expansion in k - 1 wants k > 1")
-        terms = _terms(shares_model(self.cell, self.k), self.order)
+        terms = _terms(shares_model(self.cell, self.k), order)
         if terms > LARGEST:
             raise InputError(
-                f"order is {self.order}: polynomials of some {terms:.0e} terms take hours; a lower "
+                f"order is {order}: polynomials of some {terms:.0e} terms take hours; a lower "
                 "order, or numbers for symbols, takes fewer"
             )
 
@@ -79,9 +84,9 @@ class Expansion(Parametric):
 
     @cached_property
     def numeric(self) -> bool:
-        """True if the series can be summed: k > 1 and the cell are numbers."""
+        """True if the series can be summed: k and the cell are numbers."""
         values = sp.Tuple(*self.cell.masses, *self.cell.stiffnesses, self.k)
-        return not values.free_symbols and bool(self.k > 1)
+        return not values.free_symbols
 
     @cached_property
     def compliance(self) -> sp.Expr:
@@ -111,7 +116,7 @@ class Expansion(Parametric):
             A length in D.
         """
         i = integer(contact, "contact", 0, self.cell.size - 1)
-        one_of(quantity, QUANTITIES, "quantity")
+        known_quantity(quantity)
         # The Gaussian F = e^{-Z²/4}, Z = √(ε/I) ξ, is 1/2 at Z = 2√log 2.
         unit = 4 * sp.sqrt(self._observables.I * sp.log(2))
         return self._series(quantity, unit, -sp.S.Half, i)
@@ -193,7 +198,6 @@ def expand(
     >>> wave.fwhm("force").at(1.5).value.__round__(6)  # the uniform Hertz chain, in D
     1.411928
     """
-    order = integer(order, "order", 1)
     why = "the expansion is one in k - 1 about the linear chain, and only a power law has a k"
     return Expansion(cell, order, power_exponent(law, cell, k, why))
 

@@ -24,16 +24,21 @@ import sympy as sp
 
 from lwa.base import latex
 from lwa.base.exact import InputError, number, positive, power, shorten
-from lwa.base.frozen import RISE, Estimate, NoSolitaryWave
+from lwa.base.frozen import (
+    RISE,
+    Estimate,
+    NoSolitaryWave,
+    known_extent,
+    known_quantity,
+)
 from lwa.base.words import (
-    EXTENTS,
     QUANTITIES,
     ExtentName,
     LanguageName,
     QuantityName,
     one_of,
 )
-from lwa.cell import Cell, Parametric
+from lwa.cell import Cell, Parametric, exponent, read_cell
 from lwa.cell import k as symbol_k
 from lwa.expansion.dimers import (
     ALIKE,
@@ -90,7 +95,8 @@ class LatticeWave(Parametric):
     def __post_init__(self) -> None:
         # A frozen dataclass takes a value that was read in this way only.
         object.__setattr__(self, "force", positive(self.force, "force"))
-        cell = self.cell
+        object.__setattr__(self, "k", exponent(self.k))
+        cell = read_cell(self.cell)
         if cell.uniform:
             # However many equal beads a cell lists, its wave is that of one.
             one = Cell(cell.masses[:1], cell.stiffnesses[:1], cell.spacing)
@@ -242,8 +248,8 @@ class LatticeWave(Parametric):
         -------
         sympy.Expr
         """
-        length = self._result(one_of(quantity, QUANTITIES, "quantity"))
-        if one_of(extent, EXTENTS, "extent") == "length":
+        length = self._result(known_quantity(quantity))
+        if known_extent(extent) == "length":
             return length
         return length / self.speed
 

@@ -12,7 +12,7 @@ from functools import cached_property, lru_cache
 import sympy as sp
 from flint import fmpq, fmpq_mpoly
 
-from lwa.algebra.model import Model, to_sympy
+from lwa.algebra.model import Model
 from lwa.cell import Cell
 from lwa.expansion.pulse import (
     Series,
@@ -142,13 +142,9 @@ class Observables:
         e: int,
     ) -> sp.Expr:
         """The quotient numerator / I^e, in the caller's symbols."""
-        I = self.wave.I
-        # Numbers need no polynomial division.
-        if not self.wave.model.names:
-            return to_sympy(_number(numerator) / _number(I) ** e)
         # Lowest terms: factors I cancel as long as they divide without remainder.
-        while e:
-            quotient, remainder = divmod(numerator, I)
+        while e and numerator:
+            quotient, remainder = divmod(numerator, self.wave.I)
             if remainder:
                 break
             numerator = quotient
@@ -165,20 +161,13 @@ class Observables:
         return self.wave.model.expression(terms)
 
 
-def _number(polynomial: fmpq_mpoly) -> fmpq:
-    """The constant of a polynomial over a ring without generators."""
-    if not polynomial:
-        return fmpq(0)
-    return polynomial.leading_coefficient()
-
-
 def shares_model(
     cell: Cell,
     k: sp.Expr,
 ) -> Model:
     """The model of a cell; with 1 for k if contacts are equal, whose shares do not depend on k."""
     # With symbols for k the ring of the recursion would have one generator more.
-    if len({*cell.stiffnesses}) == 1:
+    if cell.equal_contacts:
         k = sp.S.One
     return Model(cell, Power(k))
 

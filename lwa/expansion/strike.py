@@ -115,7 +115,7 @@ class Strike(Value):
             return 5e-4 + 0.028 * math.exp(-1.44 * epsilon) * unequal
         # A bead before a heavy striker reaches twice the velocity: the limit of the error.
         limit = 0.45 * math.exp(-0.5 * epsilon)
-        # Just above one bead the rule is off by the share η, which it leaves out.
+        # Just above the mass of a bead the rule is off by the share η, which the rule leaves out.
         just_above = NEAR + 0.021 * math.exp(-5.5 * (epsilon - 0.25))
         return max(just_above, limit * (ratio - 1) / (ratio + 14))
 

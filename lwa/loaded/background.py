@@ -83,13 +83,9 @@ class Background(Value):
 
     def __post_init__(self) -> None:
         for_cell(self.law, self.cell)
-        if isinstance(self.p0, sp.Expr):
-            p0 = real(
-                self.p0, "background"
-            )  # floats keep the digits of a shock's strains
-        else:
-            p0 = read_exact(self.p0, "background")
-        object.__setattr__(self, "p0", p0)
+        # Floats in an expression keep the digits of a shock's strains.
+        read = real if isinstance(self.p0, sp.Expr) else read_exact
+        object.__setattr__(self, "p0", read(self.p0, "background"))
         if self.law.homogeneous and self.p0.is_negative:
             raise InputError(
                 f"background is {shorten(self.p0)}: under a power law it must not be negative"

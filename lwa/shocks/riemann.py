@@ -172,9 +172,8 @@ class Shock(Value):
         >>> shock(Cell([1], spacing=1), 2, "9/5", k=3).trailing_speed
         8*sqrt(3)/5
         """
-        if (
-            self._gain.is_negative
-        ):  # a rarefaction ends where sound behind it has come to
+        # A rarefaction ends at the place that sound behind the front has reached.
+        if self._gain.is_negative:
             return self.sound(self.behind)
         r = self._edge_ratio()
         if r.is_number and r > STEEPEST:

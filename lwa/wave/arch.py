@@ -25,7 +25,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Self
+from typing import Any
 
 import sympy as sp
 
@@ -105,9 +105,15 @@ class Arch(Parametric):
     @cached_property
     def roots(self) -> tuple[sp.Expr, sp.Expr]:
         """The two p for which ``v = z^p`` removes ``z_ξ³``; the paper's is the first."""
-        # 1 + G/I + H/I
-        total = self.coefficient_sum * self.D**2 / self.I
-        return roots(total, self._ratios[1])
+        # A p² - B p + 2 = 0
+        A = factored(self.coefficient_sum * self.D**2 / self.I)
+        B = factored(self._ratios[1] + 3)
+        root = square_root(factored(B**2 - 8 * A))
+        # Any sign of the root will do, as both are returned.
+        root = root.replace(sp.Abs, lambda x: x)
+        first = (B - root) / (2 * A)
+        second = (B + root) / (2 * A)
+        return sp.together(first), sp.together(second)
 
     def reduction(self, root: int = 0, V: Any = SPEED) -> Reduction:
         """Reduction to ``z'' = μ z^η - σ z`` for one of the `roots` p.
@@ -119,8 +125,19 @@ class Arch(Parametric):
         V : number or str
             Speed dx/dτ of the wave.
         """
+        k = self.k
+        I = self.I
         p = self.roots[integer(root, "root", 0, 1)]
-        return Reduction.of(p, self.k, self.I, self._ratios[1], positive(V, "V"))
+        a = factored(3 + self._ratios[1] - k) * p - 2  # 1 - kp + 3 (p - 1) + p H/I
+        eta = 1 + p - k * p
+        return Reduction(
+            p=p,
+            a=a,
+            mu=positive(V, "V") ** 2 / (I * (p + a)),
+            eta=eta,
+            sigma=1 / (I * (k * p + a)),
+            s=2 / (1 - eta),
+        )
 
     @property
     def D(self) -> sp.Expr:
@@ -229,22 +246,6 @@ class Reduction(Value):
     sigma: sp.Expr
     s: sp.Expr
 
-    @classmethod
-    def of(
-        cls, p: sp.Expr, k: sp.Expr, I: sp.Expr, H_over_I: sp.Expr, V: sp.Expr
-    ) -> Self:
-        """Return the reduction of a wave of the speed ``V = dx/dτ`` by the root p."""
-        a = factored(3 + H_over_I - k) * p - 2  # 1 - kp + 3 (p - 1) + p H/I
-        eta = 1 + p - k * p
-        return cls(
-            p=p,
-            a=a,
-            mu=V**2 / (I * (p + a)),
-            eta=eta,
-            sigma=1 / (I * (k * p + a)),
-            s=2 / (1 - eta),
-        )
-
     def latex_rows(self) -> list[str]:
         equation = r"z'' = \mu z^{\eta} - \sigma z, \quad v = z^{p}"
         values = {
@@ -255,19 +256,6 @@ class Reduction(Value):
             r"\sigma": self.sigma,
         }
         return [equation, *latex.rows(values)]
-
-
-def roots(total: sp.Expr, H_over_I: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-    """The two roots p; ``total`` is (G + H + I)/I. The paper has the first root."""
-    # A p² - B p + 2 = 0
-    A = factored(total)
-    B = factored(H_over_I + 3)
-    root = square_root(factored(B**2 - 8 * A))
-    # Any sign of the root will do, as both are returned.
-    root = root.replace(sp.Abs, lambda x: x)
-    first = (B - root) / (2 * A)
-    second = (B + root) / (2 * A)
-    return sp.together(first), sp.together(second)
 
 
 def square_root(value: sp.Expr) -> sp.Expr:

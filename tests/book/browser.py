@@ -68,18 +68,6 @@ window.addEventListener("load", async () => {
   const early = [...document.querySelectorAll(".lwa-below")].filter(e => e.clientWidth).length;
   asked.forEach(row => row.firstChild.click());
   const axeFound = await rules(); // before the many entries of the packages unfold
-  // Every control at its ends, and back: each text has its numbers.
-  const ends = [];
-  for (const control of body.querySelectorAll("input[type=range]")) {
-    const home = control.closest("[class^=lwa-]:has(> canvas)");
-    const {tell} = lwaTurn.things[home.className.replace("lwa-", "")];
-    for (const end of [control.min, control.max, control.value]) {
-      control.value = end;
-      control.dispatchEvent(new Event("input", {bubbles: true}));
-      const text = `${control.getAttribute("aria-valuetext")} ${tell(home.scene)}`;
-      if (/NaN|undefined|null|Infinity/.test(text)) ends.push(`${control.name} ${end}: ${text}`);
-    }
-  }
   // What a screen reader says while a hand moves a control.
   const live = body.querySelector(".lwa-chain output");
   const spoken = [];
@@ -122,13 +110,11 @@ window.addEventListener("load", async () => {
       .filter(e => e.getClientRects().length > 2).map(e => e.textContent),
     wider: document.scrollingElement.scrollWidth > innerWidth + 1,
     axe: axeFound,
-    ends,
     spoken: spoken.length > 4 ? spoken : [],
     // What scrolls has to be reached by the keyboard.
     stops: [...document.querySelectorAll("mjx-container, mjx-container *")]
       .filter(e => e.tabIndex >= 0 && !e.closest("a") && e.scrollWidth <= e.clientWidth + 1)
       .map(e => e.textContent),
-    sliders: body.querySelectorAll("input[type=range]").length,
     asked: asked.length,
     early,
     errors: errors,

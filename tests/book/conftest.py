@@ -1,17 +1,16 @@
-"""The test of the built book needs a browser and runs only if its path is given.
+"""The tests of the built book need a browser and run only if their paths are given.
 
-pytest tests/book/test_pages.py
+pytest tests/book/test_pages.py tests/book/test_ends.py
 """
 
 from pathlib import Path
 
-PAGES = Path(__file__).with_name("test_pages.py")
+BROWSED = [Path(__file__).with_name(f"test_{name}.py") for name in ("pages", "ends")]
 
 
 def pytest_ignore_collect(collection_path, config):
-    if collection_path != PAGES:
+    if collection_path not in BROWSED:
         return None
     given = (Path(config.invocation_params.dir, a.split("::")[0]) for a in config.args)
-    return (
-        None if any(path.resolve() in (PAGES, PAGES.parent) for path in given) else True
-    )
+    wanted = collection_path, collection_path.parent
+    return None if any(path.resolve() in wanted for path in given) else True

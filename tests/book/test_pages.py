@@ -24,7 +24,7 @@ PHONE, WINDOW = 390, 1280
 """Widths of a page, in CSS pixels."""
 FAULTS = (
     "errors", "unrendered", "merrors", "raw", "broken", "unshown", "foreign", "axe", "cut",
-    "crumbled", "wider", "ends", "spoken", "stops",
+    "crumbled", "wider", "spoken", "stops",
 )  # fmt: skip
 
 

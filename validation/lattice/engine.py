@@ -96,9 +96,10 @@ def integrate(
     for _ in range(_GUESSES):
         run = _Integration(motion, method, rtol, longest)
         run.advance(progress)
+        if motion.scene.drive is None:
+            return run.finished()
         energy, response = run.motion.scales.energy, float(run.now["response"])
-        weak = 8 * _NOISE * energy < response < _WEAK * energy
-        if motion.scene.drive is None or not weak:
+        if not 8 * _NOISE * energy < response < _WEAK * energy:
             return run.finished()
         motion = Motion(motion.scene, response)
     raise IntegrationError(
@@ -238,7 +239,7 @@ def _chain(motion: Motion) -> Chain:
     """Build the kernel's chain, padded by beads of infinite mass; the first of them is the wall."""
     n, contacts = motion.size, len(motion.rest)
     padded = n + 2 * SHORTEST
-    inverse, A, r, rest, load, opens = _lines(6, padded, 0)
+    inverse, A, r, rest, load, opens = _lines(6, padded)
     inverse[:n] = 1 / motion.masses
     if motion.scene.drive is not None:
         inverse[0] = 0.0
@@ -321,7 +322,9 @@ def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
     n, stages, estimates = motion.size, 1, 0
     if isinstance(scheme, Pair):
         estimates, stages = len(scheme.errors), len(scheme.nodes)
-    rows = _lines(6 + estimates + ROOM, padded + 1, 0)
+    rows = _lines(8 + estimates + ROOM, padded + 2)
+    # Two rows, one place ahead of the others: lines begin at column 1, the force of contact 0.
+    ahead = rows.reshape(-1)[-2 * rows.shape[1] - 1 : -1]
     y, v, next_y, next_v, still, marks = rows[:6]
     y[:n] = next_y[:n] = motion.start[:n]
     v[:n] = next_v[:n] = motion.start[n : 2 * n]
@@ -334,9 +337,9 @@ def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
         next_y=next_y,
         next_v=next_v,
         still=still,
-        force=_lines(2, padded + 1, 1),
+        force=ahead.reshape(2, -1),
         border=np.zeros(stages),
-        push=rows[6 + estimates :],
+        push=rows[6 + estimates : -2],
         errors=rows[6 : 6 + estimates],
         marks=marks,
         power=np.zeros((2, ROOM)),
@@ -347,12 +350,12 @@ def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
     )
 
 
-def _lines(rows: int, columns: int, first: int) -> Array:
-    """Return an array of zeros, with a column ``first`` at which lines of the cache begin.
+def _lines(rows: int, columns: int) -> Array:
+    """Return an array of zeros whose rows begin at lines of the cache.
 
     A row has an odd number of lines, so that rows do not compete for the same places in the cache.
     """
     width = 8 * (-(-columns // 8) | 1)
     memory = np.zeros(8 + rows * width)
-    start = (-memory.ctypes.data // 8 - first) % 8
+    start = -memory.ctypes.data // 8 % 8
     return memory[start : start + rows * width].reshape(rows, width)

@@ -66,7 +66,7 @@ class Run(Pictured):
     Raises
     ------
     IntegrationError
-        If a number of the final state, or its energy, is not finite.
+        If the square of a number of the final state is not finite.
     """
 
     motion: Motion
@@ -76,8 +76,8 @@ class Run(Pictured):
     samples: Array | None = None
 
     def __post_init__(self) -> None:
-        # A sum is finite only if all its terms are.
-        if not math.isfinite(self.energy_drift + self.end.sum()):
+        # A sum is finite only if all its terms are; squares, as energies overflow, too.
+        if not math.isfinite(np.square(self.end).sum()):
             raise IntegrationError(
                 "the motion overflows: choose other units, or a step of "
                 f"{self.step:g} is too long"

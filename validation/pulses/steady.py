@@ -135,12 +135,21 @@ def _measured(
         measured[name] = Estimate(float(values[1 + best]), float(errors[name][best]))
     place = near[best + 1]
     decayed = math.exp(measured["decay"].value * (near[-1] - far))
-    higher = float(np.mean(rough["highest"][-1] / (fine["peak"][-1] * decayed)))
+    expected = fine["peak"][-1] * decayed
+    higher = float(np.mean(rough["highest"][-1] / expected))
     if not abs(higher - 1) <= STEADY:
-        found = "a higher pulse has overtaken, or follows" if higher > 1 else "it fades"
+        rises = rough["peak"][1:] / rough["peak"][:-1]
+        late = rough["peak"][-1] / expected
+        # No pulse grows on its way: one that is higher than before, or than expected, is another.
+        if max(rises.max(), late.max()) > 1 + STEADY:
+            found = "a higher pulse has overtaken"
+        elif higher > 1:
+            found = "a higher pulse follows"
+        else:
+            found = "it fades"
         raise MeasureError(
-            f"not steady: at {far} sites {found}, with {higher:.3g} times the force that the "
-            f"leading pulse's decay at {place} sites predicts"
+            f"not steady: {found}; at {far} sites the highest pulse has {higher:.3g} times the "
+            f"force that the leading pulse's decay at {place} sites predicts"
         )
     return Point(k, omega, (place, place + chain.sites), measured)
 

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 
 from lwa.base import files
 from lwa.base.arrays import Array
+from lwa.base.exact import shorten
 from validation.scenes.checks import SceneError
 from validation.scenes.units import name_of
 
@@ -38,7 +39,6 @@ _PLAIN = {
 }
 _FEW = 0.1  # rows of numbers outside of the record, at most, over those of the record
 _SETTINGS = 20  # lines in whose first columns recorders write settings
-_LISTED = 4  # columns in a message
 _BLOCK = 10_000  # rows of numbers that are read at once
 
 
@@ -127,31 +127,25 @@ class Cells:
                     return numbers
         return []
 
-    @property
-    def listed(self) -> str:
-        """Words on the first columns of numbers: number, header and an entry."""
-        found = []
-        for number, entry in self.entries.items():
-            header = " ".join(self.above(number)[-2:])[-20:].strip()
-            found.append(f"{number} {header!r} {entry[:12]}")
-        return ", ".join(found[:_LISTED]) or "no numbers"
-
     def numbers(self, places: Sequence[int]) -> Array:
         """Return columns, (lines, columns), at increasing places; NaN for a cell without a number.
 
-        Blank lines are left out.
+        Blank lines are left out. Raises `SceneError` for cells that NumPy cannot read.
         """
         if not self.entries:
             return np.empty((0, len(places)))
-        # NumPy's reader parses 2 million rows in a second, Python's in twelve.
-        return np.loadtxt(
-            self._lines(places),
-            delimiter=self._mark.strip(" ") or None,
-            comments=None,
-            quotechar='"',
-            usecols=places,
-            ndmin=2,
-        )
+        try:
+            # NumPy's reader parses 2 million rows in a second, Python's in twelve.
+            return np.loadtxt(
+                self._lines(places),
+                delimiter=self._mark.strip(" ") or None,
+                comments=None,
+                quotechar='"',
+                usecols=places,
+                ndmin=2,
+            )
+        except (ValueError, csv.Error) as error:
+            raise SceneError(shorten(str(error))) from None
 
     def _lines(self, places: Sequence[int]) -> Iterator[str]:
         """Yield the lines, NaN in place of other cells, as NumPy's reader takes them."""

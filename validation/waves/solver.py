@@ -26,6 +26,7 @@ are found from ``k = 1.3`` on, five at 1.25, four at 1.2, three at 1.15, two at 
 from __future__ import annotations
 
 import math
+from bisect import bisect
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -52,6 +53,9 @@ STEEPEST = 60.0  # k: beyond, 1200 points take a second
 STEEPEST_LOADED = 8.0  # k on a background, where narrower waves were not tried
 NEAR = 1e-7  # relative difference from a special mass ratio: ratios are given in seven digits
 MOST = 6  # ratios at one k
+FOLLOWED = (1.15, 1.2, 1.25, 1.3)
+"""Least k of the third to the sixth special ratio, measured: below, the strain T that tells a
+ratio from its neighbours is lost in rounding."""
 HERTZ = 1.5
 PUBLISHED = (0.3428, 0.1548)  # the first ratios at k = 3/2, by Jayaprakash et al.
 # Change of √(m1/m2) in one step along k; neighbours differ by 0.2 or more.
@@ -181,11 +185,10 @@ def _dimer(pair: newton.Pair, k: float) -> ExactWave:
     """Return the solitary wave of masses 1 and m2 < 1, in the ratio of a pair of masses."""
     ratio = min(pair) / max(pair)
     special: list[ExactWave] = []
-    with suppress(NoWave):  # smaller ratios may be unknown near k = 1
-        for wave in special_waves(k):
-            special.append(wave)
-            if wave.omega < ratio:
-                break
+    for wave in special_waves(k):
+        special.append(wave)
+        if wave.omega < ratio:
+            break
     near = min(special, key=lambda wave: abs(wave.omega / ratio - 1))
     if abs(near.omega / ratio - 1) < NEAR:
         return near
@@ -254,30 +257,33 @@ def resonances(k: Any, count: Any) -> tuple[ExactWave, ...]:
     Raises
     ------
     SceneError
-        For numbers out of range.
-    NoWave
-        For waves that are not found.
+        For numbers out of range, and for more ratios than are found at k, see `FOLLOWED`.
     """
-    return tuple(islice(special_waves(k), integer(count, "count", 1, MOST)))
+    count = integer(count, "count", 1, MOST)
+    known = _known(k)
+    if count > known:
+        found = f"at k = {k:g} the {known} largest special mass ratios are found"
+        raise SceneError(f"count is {count}: {found}", count=known)
+    return tuple(islice(special_waves(float(k)), count))
 
 
-def special_waves(k: Any) -> Iterator[ExactWave]:
-    """Yield the solitary waves at the `MOST` largest special ratios, the largest first; m1 is 1.
-
-    Raises `SceneError` for k out of range, `NoWave` for a ratio that is lost on the way to k.
-    """
+def _known(k: Any) -> int:
+    """Number of the special ratios that are found at k."""
     # Nearer to k = 1 the strain T is lost in rounding.
     k = between(k, "k", 1.1, 5, "special mass ratios are found for k from 1.1 to 5")
+    return len(PUBLISHED) + bisect(FOLLOWED, k)
+
+
+def special_waves(k: float) -> Iterator[ExactWave]:
+    """Yield the solitary waves at all special ratios that are found at k, the largest first.
+
+    The mass m1 is 1. Raises `SceneError` for k out of range.
+    """
     waves = [solve(SpecialRatio((1.0, ratio), HERTZ)) for ratio in PUBLISHED]
-    for i in range(MOST):
+    for i in range(_known(k)):
         if i == len(waves):
             waves.append(_next(*waves[-2:]))
-        try:
-            yield waves[i] if waves[i].k == k else _followed(waves[i], k)
-        except NoWave:
-            lost = f"special ratio number {i + 1} is lost on the way from k = 3/2 and is not known"
-            change = {"count": i} if i else {"k": "3/2"}
-            raise NoWave(lost, waves[i].masses, k, **change) from None
+        yield waves[i] if waves[i].k == k else _followed(waves[i], k)
 
 
 def _root(wave: ExactWave) -> float:

@@ -198,11 +198,11 @@ function calculator(home) {
     put("decay", "loss of force per ball", percent(-Math.expm1(-decay)));
     if (sound) put("sound", "speed of sound", si(sound, "m/s"));
     put("pressure", "Hertz's pressure", si(pressure, "Pa"));
-    put("ratio", "mass ratio; A", `${omega.toPrecision(4)}; ${A.toPrecision(4)}\u00a0N/m^1.5`);
+    put("ratio", "mass ratio; A", `${omega.toPrecision(4)}; ${tens(A, 3)}\u00a0N/m^1.5`);
     note("blow", `The striker moves at ${v.toPrecision(4)}\u00a0m/s.`);
     if (!steady) note("unsteady", `The pulse changes its duration by ${percent(growth)} between contacts 40 and 80: it is no solitary wave, and the theories do not describe it.`);
     note("yields", yielding(pressure, ["first", "second"].map((name, i) => [`the ${name} ball`, yields[i]])));
-    drawRecord(found, new Pen(canvas, 3));
+    drawRecord(found, new Pen(canvas, {shape: 3}));
   }
   form.addEventListener("input", () => {
     clearTimeout(late);

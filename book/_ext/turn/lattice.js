@@ -122,6 +122,11 @@ class Lattice {
     return this.n - 3 - AHEAD;
   }
 
+  // The last contact at which, as at its next, the pulse has been read.
+  get front() {
+    return this.arrivals.length - 2;
+  }
+
   // Run until the pulse has been read at contact `last`, or until it is late.
   to(last, late = 1e4) {
     while (this.arrivals.length <= last && this.time < late) this.advance(1);
@@ -147,11 +152,13 @@ class Lattice {
   }
 }
 
-// A row of n beads of masses 1 and omega in turn, all contacts alike.
-function row({omega = 0.2733, k = 1.5, law = power(k), n = 40, mass = [1, omega], ...rest} = {}) {
+// A row of n beads of masses 1 and omega, or any, and of contact laws, in turn. Further masses are
+// `inside`, further links `more`.
+function row({omega = 0.2733, k = 1.5, law = power(k), n = 40, inside = [], more = [], ...rest} = {}) {
+  const {mass = [1, omega], laws = [law], ...blow} = rest;
   const masses = Array.from({length: n}, (_, i) => mass[i % mass.length]);
-  const links = masses.slice(1).map((_, i) => ({i, j: i + 1, law}));
-  return new Lattice({mass: masses, links, contacts: n - 1, ...rest});
+  const contacts = masses.slice(1).map((_, i) => ({i, j: i + 1, law: laws[i % laws.length]}));
+  return new Lattice({mass: [...masses, ...inside], links: [...contacts, ...more], contacts: n - 1, ...blow});
 }
 
 // The first pulse of a record of rows [time, force], as lwa-validate finds it: the highest hump of

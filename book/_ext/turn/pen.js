@@ -12,11 +12,11 @@ const ink = () =>
   getComputedStyle(document.documentElement).getPropertyValue("--pst-color-text-base") || "#333";
 
 class Pen {
-  // shape: width over height; on a phone a picture is less flat.
-  constructor(canvas, shape) {
+  // shape: width over height; least: of the height, so that on a phone a picture is less flat.
+  constructor(canvas, {shape, least = 220}) {
     const ratio = window.devicePixelRatio || 1;
     this.width = canvas.clientWidth || 600;
-    this.height = Math.round(Math.max(this.width / shape, Math.min(220, this.width / 1.6)));
+    this.height = Math.round(Math.max(this.width / shape, least));
     canvas.width = this.width * ratio;
     canvas.height = this.height * ratio;
     canvas.style.height = `${this.height}px`;
@@ -77,6 +77,9 @@ function curve(g, from, to, count = 240) {
     return [x, g(x)];
   });
 }
+
+// The pulse of spheres over its peak: the arch of a length.
+const archOf = length => xi => (2 * Math.abs(xi) < length ? Math.cos((Math.PI * xi) / length) ** 6 : 0);
 
 // Names of a picture's curves, each in its own colour, in the upper left corner.
 function legend(pen, entries) {

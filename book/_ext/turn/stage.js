@@ -2,18 +2,27 @@
 // controls appear. A thing has
 //   ask, answers, verdict() -> {right, text}: the question, answers, number of the right one, and why;
 //   then: values that the controls take after the answer;
-//   label: of the picture, for those who do not see it; shape: its width over its height;
+//   label: of the picture, for those who do not see it; shape: its width over its height; least: of
+//     the height, in pixels;
 //   controls: sliders {name, text, low, high, step, start, value, show}, where value(x) is the
 //     quantity at the slider's place x and show its text, or choices {name, text, options, start};
 //   begin(values, old) -> scene; next(scene, ticks) advances it by sixtieths of a second, false at its
-//     end; draw(scene, pen); tell(scene) -> the line below; quiet: nothing moves by itself;
+//     end; draw(scene, pen); tell(scene) -> the line below; rest(scene, ticks): whether a picture
+//     that does not play stands here; quiet: nothing moves by itself;
 //   touch(scene, x, y) -> values that a pointer at (x, y), parts of the picture, gives the controls;
 //   a scene may have `controls`, values that the controls take with it.
 
 const things = {};
 
 const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
-const STILL = 240; // sixtieths of a second after which a picture that does not move is drawn
+
+// A thing whose scene are its values, and which nothing moves.
+const QUIET = {quiet: true, begin: values => values, next: () => true, rest: () => true};
+
+// Run a scene to where it stands when it does not play: by default four seconds on.
+function toRest({next, rest = (_, ticks) => ticks === 240}, scene) {
+  for (let ticks = 0; !rest(scene, ticks) && next(scene, 1); ticks++);
+}
 
 function element(name, attributes = {}, ...children) {
   const made = document.createElement(name);
@@ -24,8 +33,16 @@ function element(name, attributes = {}, ...children) {
 
 // Three significant digits and a true minus.
 const short = x => Number(x.toPrecision(3)).toString().replace("-", "−");
-const percent = (x, digits = 1) => `${(100 * x).toFixed(digits).replace("-", "−")}\u00a0%`;
+const percent = (x, digits = 1) =>
+  `${(100 * x).toFixed(digits).replace(/^-(?=0\.?0*$)/, "").replace("-", "−")}\u00a0%`;
 const signed = (x, digits = 1) => (x > 0 ? "+" : "") + percent(x, digits);
+
+// A number as digits and a power of ten; without digits the power alone.
+function tens(x, digits) {
+  const [number, power] = x.toExponential(digits ?? 0).split("e");
+  const raised = [...String(Number(power))].map(sign => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(sign)]);
+  return `${digits === undefined ? "" : `${number}·`}10${raised.join("")}`;
+}
 
 // The question; the buttons stay, so that the focus stays, and the verdict stands below them.
 function question(home, {ask, answers, verdict}, answered) {
@@ -84,7 +101,7 @@ function stage(home, thing) {
   const output = element("output", plain ? {} : {"aria-live": "polite"});
   const button = element("button", {type: "button", class: "lwa-play"}, "Play");
   const panel = element("div", {class: "lwa-panel"});
-  const values = {};
+  const values = (home.values = {});
   const controls = {};
   let scene = null;
   let settled = null; // values before the hand came to a control
@@ -92,7 +109,7 @@ function stage(home, thing) {
   let last = 0; // time of the picture before
   let due = 0; // time from which the line below may be written again
 
-  const show = () => thing.draw(scene, new Pen(canvas, thing.shape));
+  const show = () => thing.draw(scene, new Pen(canvas, thing));
   // The line below is written once a second at most; a control that comes to rest has the last word.
   const tell = () => {
     clearTimeout(home.rest);
@@ -110,9 +127,7 @@ function stage(home, thing) {
       controls[name].set(value);
       values[name] = value;
     }
-    if (!playing && !thing.quiet) {
-      for (let i = 0; i < STILL && thing.next(scene, 1); i++);
-    }
+    if (!playing) toRest(thing, scene);
     show();
     tell();
   };

@@ -26,24 +26,22 @@ RESULTS = {
 
 
 def test_closed_forms_are_the_lattices_at_every_k():
-    """The stated bounds hold, and so does ±, which is not too large for nine numbers of ten."""
-    ratios = []
+    """The stated bounds hold, and so does ±: near the deviation of some k, and not too large for
+    nine numbers of ten. The short form of the speed is right to two in a thousand.
+    """
+    ratios = {name: [] for name in RESULTS}
     for k in (1 + np.geomspace(0.01, 59, 30).round(3)).tolist():
         wave, exact = lattice_wave(EQUAL, k=k), lattice(k)[0]
+        assert float(wave.short_speed) == pytest.approx(exact["c"], rel=2e-3)
         for name, call in RESULTS.items():
             found = wave.estimate(*call)
             deviation = abs(found.value / exact[name] - 1)
             assert deviation <= BOUNDS[name], (k, name)
             assert deviation <= found.relative_error + 2e-12, (k, name)
             if deviation > 1e-11:
-                ratios.append(found.relative_error / deviation)
-    assert np.mean(np.array(ratios) <= LOOSE) >= 0.9
-
-
-def test_the_short_form_is_right_to_two_in_a_thousand():
-    for k in (1.05, 1.5, 2, 3, 5, 10):
-        short = float(lattice_wave(EQUAL, k=k).short_speed)
-        assert short == pytest.approx(lattice(float(k))[0]["c"], rel=2e-3)
+                ratios[name].append(found.relative_error / deviation)
+    assert all(min(of_name) < 1.5 for of_name in ratios.values())
+    assert np.mean(np.concatenate([*ratios.values()]) <= LOOSE) >= 0.9
 
 
 def test_the_coefficients_are_exact():
@@ -109,14 +107,6 @@ def test_relative_errors_of_composed_results_add_up():
         assert wave.estimate(*composed).relative_error == pytest.approx(total, rel=1e-2)
 
 
-def test_light_beads_that_weigh_nothing():
-    heavy = lattice_wave(Cell([3], [sp.Rational(1, 4)], 2), k=2, force=5)
-    light = lattice_wave(Dimer(3, "1e-30", spacing=1), k=2, force=5)
-    for call in RESULTS.values():
-        values = [wave.estimate(*call).value for wave in (heavy, light)]
-        assert values[1] == pytest.approx(values[0], rel=1e-12)
-
-
 def passage(k, omega, speed, length):
     """Momentum, energy and width of the heavy bead's velocity of a struck chain's leading pulse.
 
@@ -148,10 +138,10 @@ def passage(k, omega, speed, length):
     }
 
 
-# Between the points of the grid of measured deviations; the paper's dimer is the second.
-STEADY = [("5/4", "1/9"), ("3/2", "41/150"), ("9/5", "1/35"), ("7/3", "1/7"), ("7/2", "3/7"),
-          ("9/2", "1/60"), ("7", "8/9"), ("9", "2/7"), ("3/2", "7/9")]  # fmt: skip
-MORE = [("23/20", "1/4"), ("3/2", "1/3000"), ("3/2", "1/8"), ("2", "1/16"), ("27/20", "1/5"),
+# Between the points of the grid of measured deviations; the paper's dimer is the first.
+STEADY = [("3/2", "41/150"), ("9/5", "1/35"), ("7", "8/9"), ("3/2", "7/9")]
+MORE = [("5/4", "1/9"), ("7/3", "1/7"), ("7/2", "3/7"), ("9/2", "1/60"), ("9", "2/7"),
+        ("23/20", "1/4"), ("3/2", "1/3000"), ("3/2", "1/8"), ("2", "1/16"), ("27/20", "1/5"),
         ("8/5", "5/16"), ("6/5", "8/9"), ("11/4", "5/16"), ("10/3", "1/28"), ("5", "1/8"),
         ("11/2", "5/11"), ("7", "1/33"), ("9", "7/8"), ("16", "31/100"),
         ("25", "7/8"), ("50", "21/200")]  # fmt: skip

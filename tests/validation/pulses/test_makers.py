@@ -186,6 +186,60 @@ LAYOUTS = {
         "  {t:.9E}  {F:.9E}\n",
         "--column time=1 --column '8 force=2' --unit time=s --unit 2=N",
     ),
+    # The layouts below are those that public programs read or write, named with them.
+    # A channel may begin later (readers of CSV files of InfiniiVision oscilloscopes).
+    "Keysight": (
+        "x-axis,1,2\nsecond,Volt,Volt\n",
+        "{t:.6E},,\n",
+        "{t:.6E},{a:+.6E},{b:+.6E}\n",
+        "--column time=1 --unit time=s " + AB_23 + V_AB,
+    ),
+    # One channel, without times (the class TWaveform, a reader of files of GDS oscilloscopes)
+    "GW Instek": (
+        "Memory Length,701,\nTrigger Level,-2.40000e+01,\nSource,CH2,\nProbe,1.0X,\n"
+        "Vertical Units,V,\nHorizontal Units,S,\nSampling Period,1.00000e-06,\nWaveform Data,\n",
+        "{a:.5f},\n",
+        "--column '8 force=1' --step 1us --unit '8 force=12.5 N/V'",
+    ),
+    # Notes that look like comments (Scope-Analyser, of a DSO5202P)
+    "Hantek": (
+        "#timebase=20000000(ps)\n,#voltbase=1000000(uV)\n#size=701\n",
+        "{t:.5E},{a:.3f}\n",
+        "--column time=1 --unit time=s --column '8 force=2' --unit 2='12.5 N/V'",
+    ),
+    # glscopeclient, import of CSV files
+    "Digilent WaveForms": (
+        "#Digilent WaveForms Oscilloscope Acquisition\n#Sample rate: 1e6Hz\n#Samples: 701\n\n"
+        "Time (s),Channel 1 (V),Channel 2 (V)\n",
+        "{t:.7f},{a:.6f},{b:.6f}\n",
+        "--column '8 force=Channel 1' --column '14 force=Channel 2'" + V_AB,
+    ),
+    # A reader of files of an MDO4014B
+    "Tektronix MDO4000": (
+        "Model,MDO4014B-3\nFirmware Version,3.22\n\nHorizontal Units,s\nSample Interval,1e-06\n"
+        "Record Length,701\nVertical Units,V\nVertical Position,-3.76\n,\n,\nLabel,\nTIME,CH2\n",
+        "{t:.10e},{a:.5f}\n",
+        "--unit time=s --column '8 force=CH2' --unit CH2='12.5 N/V'",
+    ),
+    # bidsphysio and popp, readers of LabChart's text
+    "ADInstruments": (
+        "Interval=\t1e-06 s\nExcelDateTime=\t4.37494e+04\t10/11/19 11:08:37.485584\n"
+        "ChannelTitle=\tPulse\tVolume\nRange=\t2.000 V\t50.0 mV\nTopValue=\t*\t56.44\n",
+        "{t:.7f}\t{a:.6f}\t{b:.6f}\n",
+        "--column time=1 --unit time=s " + AB_23 + V_AB,
+    ),
+    # Logger Pro, by a German reader
+    "Vernier": (
+        "Latest: Time (s);Latest: Potential 1 (V);Latest: Potential 2 (V)\n",
+        "{t:.7f};{a:.6f};{b:.6f}\n",
+        "--column time=1 " + AB_23 + V_AB,
+    ),
+    # Numbers of samples from 1 (the comments of an importer by ElmüSoft)
+    "OWON": (
+        "Unit:(mV)\n,CH1\nFrequency,866.567 Hz\nPeriod,1.154 ms\n",
+        "{i},{a:.5f}e3\n",
+        "--column '8 force=CH1' --step 1us --unit '8 force=0.0125 N/mV'",
+    ),
 }
 
 
@@ -203,7 +257,7 @@ def written(layout, chain):
         text += form.format(**numbers)
     if layout == "a footer":
         text += "End of data,,\n"
-    if layout in ("a logger in German", "decimal commas in quotes"):
+    if layout in ("a logger in German", "decimal commas in quotes", "Vernier"):
         text = text.replace(".", ",")
     if layout == "Graphtec":
         text = re.sub(r"([-+])(\d)", r"\1 \2", text)

@@ -80,12 +80,16 @@ def test_the_errors_cover_other_distances():
 
 
 @pytest.mark.parametrize(
-    ("omega", "reason"),
-    [("0.5", "not steady: at 320 sites"), (R(1, 10**40), "duration is ")],
+    ("k", "omega", "reason"),
+    [
+        (HERTZ, R(1, 2), "not steady: a higher pulse follows; at 320 sites"),
+        # From 56 to 64 sites the force of the first pulse rises by a half.
+        (R(3), R(3, 5), "not steady: a higher pulse has overtaken; at 320 sites"),
+        (HERTZ, R(1, 10**40), "duration is "),  # longer than any run
+    ],
 )
-def test_a_pulse_without_numbers_states_the_reason(omega, reason):
-    """Overtaken by a higher one at ω = 0.5; longer than any run at 1e-40."""
-    found = point(HERTZ, R(omega), STRETCH)
+def test_a_pulse_without_numbers_states_the_reason(k, omega, reason):
+    found = point(k, omega, STRETCH)
     assert (found.sites, found.numbers) == (None, {})
     assert found.missing.startswith(reason)
 

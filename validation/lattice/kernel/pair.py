@@ -43,7 +43,7 @@ from validation.lattice.kernel.force import (
 _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the tolerance
 # A contact is corrected so often, or until the correction changes by less than _SETTLED times the
 # tolerance. Measured: without the rounds damped gases err by up to ten times as much.
-_ROUNDS, _SETTLED = 4, 0.1
+_ROUNDS, _SETTLED = 4, 0.02
 # A contact is nearly open at a step's one end if δ there is less than _NEAR times δ at the other. A
 # weak contact, whose force is less than _STRONG times the least that counts, is nearly open below
 # _VERY_NEAR, as the pair's own error is smaller there. Measured: _NEAR for all takes a tenth more
@@ -230,7 +230,11 @@ def correct_contact(
         impulse = h * A * (once - _integral(pair.impulses[last], force))
         moment = h * h * A * (twice - _integral(pair.moments[last], force))
         change = impulse - before
-        if jump == 0.0 and not r > 0.0:
+        if r > 0.0:
+            # The next round changes the correction by about this share of the change.
+            steepness = r * drag(law, max(top, 0.0)) / h + stiffness(law, top)
+            change *= min(1.0, abs(bend) * steepness)
+        elif jump == 0.0:
             change = 0.0  # an elastic force hardly depends on the correction
         if abs(change) * both < _SETTLED * plan.v:
             break

@@ -1,7 +1,69 @@
-// Things to turn in the other parts: light beads, the series, loads, laws, lattices, shocks, modes,
-// unequal beads.
+// Things to turn in which a blow or a wall drives a row.
 
+const FORMING = "The pulse is forming …";
+const RINGING = 25; // the light bead whose swing is drawn
+
+// Controls that several things have.
+const BLOW = {name: "v", text: "velocity of the blow", low: 0.2, high: 2, step: 0.05, start: 1};
+const RATIO = {
+  name: "omega", text: "mass ratio ω", low: -1.7, high: 0, step: 0.01, start: 0.2733, value: x => 10 ** x,
+};
+const EXPONENT = {name: "k", text: "exponent k", low: 1.1, high: 4, step: 0.05, start: 1.5};
 const LOAD = {name: "p0", text: "load: static compression p₀", low: 0, high: 0.5, step: 0.01, start: 0};
+
+// A struck row whose scale and clock stay while a slider moves; the row as it was before runs along.
+// make: values -> lattice. last: contact at which the picture ends.
+function struckRow(values, old, make, last) {
+  const probe = make(values);
+  probe.to(8, 4000);
+  const peak = Math.max(...probe.arrivals.slice(1).map(arrival => arrival.force), 1e-6);
+  const sites = probe.arrivals[8]?.time - probe.arrivals[4]?.time || 8;
+  return {
+    values: {...values}, lattice: make(values), last: last ?? probe.end,
+    before: old?.before ? make(old.before) : null,
+    top: Math.max(1.3 * peak, old?.top || 0),
+    pace: old?.pace || sites / 40, // a site in ten pictures
+  };
+}
+
+function runRow(scene, ticks) {
+  for (const lattice of [scene.lattice, scene.before]) lattice?.advance(scene.pace * ticks);
+  return scene.lattice.arrivals.length <= scene.last && scene.lattice.time < 4000 * scene.pace;
+}
+
+// What things have in common that are rows: at rest the pulse is past twenty contacts.
+const ROW = {
+  next: runRow,
+  rest: ({lattice}) => lattice.arrivals.length > 24,
+};
+
+// Speed of the pulse behind a blow once it has formed, sites per unit of time.
+function settledSpeed(lattice) {
+  lattice.to(lattice.end);
+  return lattice.speed();
+}
+
+// A struck row of two masses and the theory beside it, drawn where the pulse has formed.
+function theoryBeside(scene) {
+  if (scene.theory === undefined && scene.lattice.arrivals.length > 12) {
+    const probe = row({...scene.values, n: 40});
+    probe.to(31, 4000 * scene.pace);
+    scene.theory = probe.formed ? theory(probe, {k: 1.5, p0: 0, ...scene.values}) : null;
+  }
+  return scene.theory;
+}
+
+function tellSpeeds(scene) {
+  const beside = theoryBeside(scene);
+  const speed = scene.lattice.speed();
+  const other = scene.before?.speed();
+  const grey = other ? ` Grey, before the change: ${other.toFixed(3)}.` : "";
+  if (!speed) return FORMING;
+  const now = `Speed ${speed.toFixed(3)} sites per unit of time`;
+  if (!beside) return `${now}. The pulse still changes its length: no theory is drawn.${grey}`;
+  const error = signed(beside.speed / speed - 1);
+  return `${now}; by the theory ${beside.speed.toFixed(3)} (${error}).${grey}`;
+}
 
 // A law by its name in the book, with functions that lwa writes.
 function named(name) {
@@ -28,12 +90,7 @@ const HIDDEN = {mass: 0.3, spring: 60};
 const LATTICES = [
   {
     name: "rubber between every second pair",
-    make(v) {
-      const masses = Array(40).fill(1);
-      const law = i => (i % 2 ? spring(1) : power(1.5));
-      const links = masses.slice(1).map((_, i) => ({i, j: i + 1, law: law(i)}));
-      return new Lattice({mass: masses, links, contacts: 39, v});
-    },
+    make: v => row({omega: 1, laws: [power(1.5), spring(1)], v}),
     // F is the same in both contacts: p = (F^{2/3} + F)/2 and V^2 = 2 (pF - ∫ p dF)/p^2
     speed(F) {
       const p = (F ** (2 / 3) + F) / 2;
@@ -44,21 +101,17 @@ const LATTICES = [
   {
     name: `${HIDDEN.mass} of the mass on a spring inside each ball`,
     make(v) {
-      const balls = Array(40).fill(1 - HIDDEN.mass);
-      const links = balls.slice(1).map((_, i) => ({i, j: i + 1, law: power(1.5)}));
-      balls.forEach((_, i) => links.push({i, j: 40 + i, law: spring(HIDDEN.spring)}));
-      const mass = [...balls, ...balls.map(() => HIDDEN.mass)];
-      return new Lattice({mass, links, contacts: 39, v});
+      const inside = Array(40).fill(HIDDEN.mass);
+      const more = inside.map((_, i) => ({i, j: 40 + i, law: spring(HIDDEN.spring)}));
+      return row({mass: [1 - HIDDEN.mass], inside, more, v});
     },
     speed: F => f.pulse_speed(F, 1.5, 1, 1, 1, 1),
   },
   {
     name: "a quarter of the stiffness between second neighbours",
     make(v) {
-      const masses = Array(40).fill(1);
-      const links = masses.slice(1).map((_, i) => ({i, j: i + 1, law: power(1.5)}));
-      masses.slice(2).forEach((_, i) => links.push({i, j: i + 2, law: power(1.5, 0.25)}));
-      return new Lattice({mass: masses, links, contacts: 39, v});
+      const more = Array.from({length: 38}, (_, i) => ({i, j: i + 2, law: power(1.5, 0.25)}));
+      return row({omega: 1, more, v});
     },
     // W = (p^{5/2} + (2p)^{5/2}/4)/(5/2); F here is the force of nearest neighbours, p^{3/2}
     speed(F) {
@@ -89,404 +142,6 @@ function meanLoss(spread) {
   return (side(lwaLosses.heavier) + side(lwaLosses.lighter)) / 2;
 }
 
-// Count the upward passages of a swinging bead through the middle of its neighbours.
-function swing(scene, time) {
-  const {lattice, middle, bottom} = scene;
-  lattice.advance(time / bottom, () => {
-    const now = lattice.u[middle] - (lattice.u[middle - 1] + lattice.u[middle + 1]) / 2;
-    if (scene.last < 0 && now >= 0) {
-      scene.turns.push(lattice.time - (lattice.step * now) / (now - scene.last));
-    }
-    scene.last = now;
-  });
-  return bottom * lattice.time;
-}
-
-// The counted frequency in units of that of a small swing; NaN before two turns.
-function rate({turns, bottom}) {
-  const count = turns.length - 1;
-  return count < 2 ? NaN : (2 * Math.PI * count) / (turns[count] - turns[0]) / bottom;
-}
-
-const toFour = x => (Number.isNaN(x) ? "…" : x.toFixed(4));
-
-Object.assign(things, {
-  // A light bead between heavy ones as a pulse passes, and what the swing costs the pulse.
-  ring: {
-    ask: "The light balls weigh 0.6 of the heavy ones. Thirty balls further on, how high is the pulse?",
-    answers: ["as high as before", "more than a third lower", "nearly gone"],
-    verdict() {
-      const lattice = row({omega: 0.6, n: 60});
-      lattice.to(43);
-      const [before, after] = [12, 42].map(place => lattice.at(place, "force"));
-      return {right: 1, text: `its force falls from ${before.toFixed(3)} to ${after.toFixed(3)}. The light balls keep the rest.`};
-    },
-    then: {omega: 0.6},
-    label: "A struck row, the highest force of each contact, and below it the swing of one light bead over time",
-    shape: 2.4,
-    controls: [{...RATIO, low: -1.3, high: 0}],
-    begin: (values, old) => ({...struckRow(values, null, one => row({...one, n: 64})), trace: [], old}),
-    next(scene, ticks) {
-      const going = runRow(scene, ticks);
-      const {u} = scene.lattice;
-      scene.trace.push([scene.lattice.time, u[RINGING] - (u[RINGING - 1] + u[RINGING + 1]) / 2]);
-      return going;
-    },
-    draw({lattice, top, trace, pace}, pen) {
-      const whole = pen.height;
-      pen.height = 0.6 * whole;
-      drawRow(pen, lattice, top, {words: [BARS, TRAIL]});
-      pen.height = whole;
-      const span = 420 * pace;
-      const start = Math.max(lattice.time - span, 0);
-      const middle = 0.82 * whole;
-      const size = Math.max(...trace.map(([, off]) => Math.abs(off)), 0.02);
-      const points = trace
-        .filter(([time]) => time >= start)
-        .map(([time, off]) => [((time - start) / span) * pen.width, middle - (0.15 * whole * off) / size]);
-      pen.line([[0, middle], [pen.width, middle]], GHOST, 1);
-      if (points.length > 1) pen.line(points, LIGHT);
-      pen.text(`swing of light bead ${RINGING} between its neighbours, over time`, 2, 0.68 * whole);
-    },
-    tell({lattice}) {
-      const last = lattice.arrivals.length - 2;
-      if (last < 14) return "The pulse is forming …";
-      const [before, now] = [lattice.at(12, "force"), lattice.at(last, "force")];
-      return `Force at contact 12: ${before.toFixed(3)}; at contact ${last}: ${now.toFixed(3)}, ${signed(now / before - 1)}.`;
-    },
-  },
-
-  // Partial sums of the series of c^2 beside the lattice's own wave.
-  sum: {
-    ask: "The partial sums of the series for c² are taken to ever higher order, for spheres. What does their error do?",
-    answers: ["it falls without end", "it falls, then it grows", "it grows from the start"],
-    verdict() {
-      const errors = lwaSums.find(({k}) => k === 1.5).errors;
-      const best = errors.indexOf(Math.min(...errors));
-      const [least, end] = [errors[best], errors.at(-1)].map(x => x.toExponential(0));
-      return {right: 1, text: `it falls to ${least} at order ${best} and is ${end} again at order ${errors.length - 1}.`};
-    },
-    then: {order: 12},
-    label: "Errors of the partial sums over their order, on a logarithmic axis",
-    shape: 2.6,
-    quiet: true,
-    controls: [
-      {name: "order", text: "order", low: 0, high: 60, step: 1, start: 2, show: n => n.toFixed(0)},
-      {name: "k", text: "exponent k", low: 1.1, high: 2, step: 0.1, start: 1.5, show: k => k.toFixed(1)},
-    ],
-    begin: values => values,
-    next: () => true,
-    draw({order, k}, pen) {
-      const {errors} = sums(k);
-      const x = n => 46 + (n / 61) * (pen.width - 56);
-      const y = error => pen.height - 34 - ((Math.log10(Math.max(error, 1e-12)) + 12) / 14) * (pen.height - 66);
-      for (let power = -12; power <= 0; power += 3) {
-        pen.line([[x(0), y(10 ** power)], [pen.width - 10, y(10 ** power)]], GHOST, 0.6);
-        pen.text(power ? `1e${power}`.replace("-", "−") : "1", 40, y(10 ** power) + 4, {align: "right", size: 11});
-      }
-      errors.forEach((error, n) => {
-        const shown = n <= order;
-        if (error < 50) pen.disk(x(n), y(error), n === order ? 6 : 3, shown ? LATTICE : null, shown ? null : GHOST);
-      });
-      pen.line([[x(0), y(sums(k).summed)], [pen.width - 10, y(sums(k).summed)]], THEORY);
-      pen.text("order of the last term", pen.width / 2, pen.height - 8, {align: "center"});
-      legend(pen, [["error of the partial sum of c²", LATTICE], ["the same 61 terms, summed by a Padé approximant", THEORY]]);
-    },
-    tell({order, k}) {
-      const {errors, truth} = sums(k);
-      return `c² of the lattice ${truth.toFixed(9)}; the sum to order ${order} errs by ${errors[order].toExponential(1)}.`;
-    },
-  },
-
-  // A struck row under a load, and sound.
-  load: {
-    ask: "The row is pressed together before the same gentle blow. How does the pulse run?",
-    answers: ["slower", "at the same speed", "faster"],
-    verdict() {
-      const [bare, pressed] = [0, 0.3].map(p0 => settledSpeed(row({omega: 1, v: 0.2, p0, n: 60})));
-      return {right: 2, text: `${pressed.toFixed(3)} against ${bare.toFixed(3)} sites per unit of time; sound alone runs at ${soundSpeed(0.3).toFixed(3)}.`};
-    },
-    then: {p0: 0.3},
-    label: "A row of equal beads under a load, bars of the dynamic force, and a mark that runs at the speed of sound",
-    shape: 3,
-    controls: [LOAD, {...BLOW, start: 0.2, low: 0.05}],
-    begin: (values, old) => struckRow({omega: 1, ...values}, old, one => row({n: 60, ...one})),
-    next: runRow,
-    draw(scene, pen) {
-      const beside = theoryBeside(scene);
-      const {lattice} = scene;
-      const arch = beside && (x => beside.at(x, lattice.time));
-      const words = [BARS, LINE, ["sound", LIGHT]];
-      const {x, base, below} = drawRow(pen, lattice, scene.top, {arch, before: scene.before, trail: false, words});
-      const front = soundSpeed(scene.values.p0) * lattice.time;
-      if (front > 0 && front < lattice.n) pen.line([[x(front), below], [x(front), base]], LIGHT);
-    },
-    tell(scene) {
-      const sound = soundSpeed(scene.values.p0);
-      const speed = scene.lattice.speed();
-      const over = sound && speed ? ` Sound runs at ${sound.toFixed(3)}; the pulse is ${(speed / sound).toFixed(3)} times as fast.` : "";
-      return tellSpeeds(scene) + over;
-    },
-  },
-
-  // Other contact laws.
-  law: {
-    ask: "Magnets on a rail in place of balls. A gentle blow becomes twice as fast. How much faster is the pulse?",
-    answers: ["about a seventh, as with spheres", "less", "more"],
-    verdict() {
-      const grown = name => {
-        const [slow, fast] = [0.1, 0.2].map(v => settledSpeed(row({omega: 1, law: named(LAWS[name]), v})));
-        return fast / slow;
-      };
-      const [spheres, magnets] = [grown("spheres"), grown("magnets")];
-      return {right: magnets < spheres ? 1 : 2, text: `${magnets.toFixed(3)} times as fast with these magnets, ${spheres.toFixed(3)} times with spheres.`};
-    },
-    then: {v: 0.2},
-    label: "A row of equal particles with a contact law of choice, bars of the force in each contact",
-    shape: 3.2,
-    controls: [
-      {name: "law", text: "law", options: Object.keys(LAWS), start: "magnets"},
-      {...BLOW, low: 0.05, high: 1.5, start: 0.1},
-    ],
-    begin(values, old) {
-      const scene = struckRow(values, null, ({law, v}) => row({omega: 1, law: named(LAWS[law]), v}));
-      return {...scene, law: named(LAWS[values.law]), pace: old?.values?.law === values.law ? old.pace : scene.pace};
-    },
-    next: runRow,
-    draw: ({lattice, top}, pen) => void drawRow(pen, lattice, top, {words: [BARS, TRAIL]}),
-    tell({lattice, law}) {
-      const speed = lattice.speed();
-      if (!speed) return "The pulse is forming …";
-      const force = lattice.at(lattice.arrivals.length - 2, "force");
-      const theory = lawSpeed(law, force);
-      return `Peak force ${force.toFixed(3)}. Speed ${speed.toFixed(3)} sites per unit of time; by the theory ${theory.toFixed(3)} (${signed(theory / speed - 1)}).`;
-    },
-  },
-
-  // Four lattices at once.
-  lattices: {
-    ask: "In the second row 0.3 of each ball's mass hangs on a spring inside it. How fast is its pulse, beside balls of the same mass without a spring and at the same force?",
-    answers: ["faster", "as fast, within a hundredth", "slower"],
-    verdict() {
-      const hidden = LATTICES[1].make(1);
-      const speed = settledSpeed(hidden);
-      const plain = settledSpeed(row({omega: 1})) * (hidden.at(32, "force") / row33()) ** (1 / 6);
-      return {right: 1, text: `${speed.toFixed(3)} against ${plain.toFixed(3)}: the speed knows the mass and the static law alone.`};
-    },
-    label: "Four rows: rubber between every second pair, a hidden mass in each ball, second neighbours, rows of marbles; a pulse runs down each",
-    shape: 1.5,
-    controls: [BLOW],
-    begin({v}) {
-      const rows = LATTICES.map(({make}) => make(v));
-      const probes = LATTICES.map(({make}) => make(v));
-      probes.forEach(probe => probe.to(8));
-      const tops = probes.map(probe => 1.4 * Math.max(...probe.arrivals.slice(1).map(a => a.force)));
-      return {rows, tops, pace: (probes[3].arrivals[8].time - probes[3].arrivals[4].time) / 40};
-    },
-    next({rows, pace}, ticks) {
-      rows.forEach(lattice => lattice.advance(pace * ticks));
-      return rows.some(lattice => lattice.arrivals.length <= lattice.end);
-    },
-    draw: drawLattices,
-    tell({rows}) {
-      const speeds = rows.map((lattice, i) => {
-        const speed = lattice.speed(11);
-        const theory = lattice.arrivals.length > 13 ? LATTICES[i].speed(lattice.at(lattice.arrivals.length - 2, "force")) : NaN;
-        return speed ? `${speed.toFixed(3)} (theory ${signed(theory / speed - 1)})` : "…";
-      });
-      return `Speeds from above, in sites or layers per unit of time: ${speeds.join("; ")}.`;
-    },
-  },
-
-  // A wall drives equal spheres: the plateau by the Riemann invariant, the front by the doubling rule.
-  shock: {
-    ask: "A wall pushes the row at a steady velocity. How fast do the balls at the very front move?",
-    answers: ["as fast as the wall", "nearly twice as fast", "more slowly"],
-    verdict() {
-      const scene = things.shock.begin({v: 0.4, p0: 0.25});
-      while (things.shock.next(scene, 1));
-      return {right: 1, text: `${(scene.fastest / 0.4).toFixed(2)} times as fast as the wall after 110 balls.`};
-    },
-    label: "A row of beads that a wall drives from the left, bars of the dynamic force in each contact, and lines of the plateau and of the leading edge",
-    shape: 3,
-    controls: [
-      {name: "v", text: "velocity of the wall", low: 0.05, high: 1, step: 0.05, start: 0.4},
-      {...LOAD, high: 1, step: 0.05, start: 0.25},
-    ],
-    begin({v, p0}) {
-      const energy = (p, k) => Math.pow(p, k + 1) / (k + 1);
-      const k = 1.5;
-      const whole = p => ((2 * Math.sqrt(k)) / (k + 1)) * Math.pow(p, (k + 1) / 2); // ∫ c dp
-      const behind = root(p => whole(p) - whole(p0) - v, p0, 50);
-      const left = b => energy(p0 + b, k) - energy(p0, k) - Math.pow(p0, k) * b - 2 * v * v;
-      const B = root(left, 0, 50);
-      const lattice = row({omega: 1, p0, v, n: 120, wall: true});
-      const plateau = Math.pow(behind, k) - Math.pow(p0, k);
-      return {lattice, v, plateau, edge: (2 * v) / B, fastest: 0};
-    },
-    next(scene, ticks) {
-      const {lattice, edge} = scene;
-      lattice.advance((0.12 * ticks) / edge, () => 0); // a site in about eight pictures
-      const front = Math.floor(edge * lattice.time);
-      for (let i = Math.max(front - 6, 1); i < Math.min(front + 6, lattice.n); i++) {
-        if (front > 40) scene.fastest = Math.max(scene.fastest, lattice.w[i]);
-      }
-      return front < lattice.n - 8;
-    },
-    draw({lattice, plateau, edge}, pen) {
-      const words = [BARS, ["plateau and leading edge by the theory", THEORY]];
-      const {x, y, base, below} = drawRow(pen, lattice, 3.2 * plateau, {words});
-      pen.line([[x(0), y(plateau)], [x(lattice.n), y(plateau)]], THEORY, 1);
-      pen.line([[x(edge * lattice.time), below], [x(edge * lattice.time), base]], THEORY, 1);
-    },
-    tell({edge, fastest, v}) {
-      const grows = fastest < 1.9 * v ? " The train still grows." : "";
-      const seen = fastest ? `the leading balls have moved ${(fastest / v).toFixed(2)} times as fast as the wall.${grows}` : "the train is forming …";
-      return `Leading edge by the doubling rule: ${edge.toFixed(3)} sites per unit of time; ${seen}`;
-    },
-  },
-
-  // One light bead between two heavy ones that a load presses together, of small mass: its heavy
-  // neighbours do not follow the swing, but they make room for its mean force.
-  light: {
-    ask: "A light ball swings between two heavy ones that a load presses together. It swings twice as far. What does its frequency do?",
-    answers: ["it rises", "it stays", "it falls"],
-    verdict() {
-      const [small, large] = [0.4, 0.8].map(a => {
-        const scene = things.light.begin({a, k: 1.5});
-        while (things.light.next(scene, 1));
-        return rate(scene);
-      });
-      return {right: 2, text: `it falls from ${small.toFixed(4)} to ${large.toFixed(4)} of that of a small swing.`};
-    },
-    then: {a: 0.8},
-    label: "A light bead between two heavy ones, and bars of the force in both contacts",
-    shape: 3,
-    controls: [
-      {name: "a", text: "amplitude over the static compression", low: 0.1, high: 0.8, step: 0.05, start: 0.4},
-      {...EXPONENT, high: 3},
-    ],
-    begin({a, k}) {
-      const omega = 1e-4;
-      const turn = Array.from({length: 64}, (_, i) => Math.cos(((i + 0.5) * Math.PI) / 64));
-      const mean = x => turn.reduce((sum, c) => sum + Math.pow(Math.max(1 - x + a * c, 0), k), 0) / 64;
-      const room = root(x => 1 - mean(x), 0, 1);
-      const start = i => (i - 1) * room + (i === 1 ? a : 0);
-      const lattice = row({omega, k, p0: 1, v: 0, n: 3, start, fine: 4});
-      return {lattice, a, k, room, middle: 1, bottom: Math.sqrt((2 * k) / omega), turns: [], last: a};
-    },
-    next: (scene, ticks) => swing(scene, 0.08 * ticks) < 220,
-    draw({lattice, k}, pen) {
-      const {width, height} = pen;
-      const heavy = 0.33 * height;
-      const small = 0.14 * height;
-      const side = Math.min(1.75 * height, 0.46 * width);
-      const place = i => width / 2 + (i - 1) * (heavy + small) + 0.3 * small * lattice.u[i];
-      const fills = [HEAVY, LIGHT, HEAVY];
-      fills.forEach((fill, i) => pen.disk(place(i), height / 2, i === 1 ? small : heavy, fill, pen.ink));
-      const y = force => height - 6 - (force / 2 ** k) * (height - 40);
-      const bar = 0.15 * height;
-      [width / 2 - side, width / 2 + side - bar].forEach((x, i) => {
-        pen.bar(x, y(lattice.contact[i]), bar, y(0) - y(lattice.contact[i]), LATTICE);
-        pen.line([[x, y(1)], [x + bar, y(1)]], THEORY);
-      });
-      legend(pen, [["force in the contact", LATTICE], ["the load", THEORY]]);
-    },
-    tell(scene) {
-      const {a, k, room} = scene;
-      const second = (1 - (k * (k - 1) * a * a) / 16).toFixed(4);
-      return `Frequency over that of a small swing: ${toFour(rate(scene))}; to second order in the amplitude ${second}. Each contact has expanded by ${room.toFixed(3)} of its static compression: its mean force stays the load, and it is softer.`;
-    },
-  },
-
-  // A breather of a loaded dimer, an orbit that Newton's method found (`lwaBreathers`).
-  breather: {
-    ask: "The light balls of a breather swing more strongly. What does their frequency do?",
-    answers: ["it rises", "it stays", "it falls"],
-    verdict() {
-      const [weak, strong] = [lwaBreathers[1], lwaBreathers.at(-1)];
-      const part = ({nu}) => (1 - nu).toFixed(4);
-      return {right: 2, text: `from ${part(weak)} to ${part(strong)} of the band's edge, deeper in the gap, as their amplitude grows from ${weak.amplitude.toFixed(3)} to ${strong.amplitude.toFixed(3)}.`};
-    },
-    then: {number: 5},
-    label: "Displacement of each bead of a loaded chain over its place, and the envelope of the theory",
-    shape: 3,
-    controls: [{
-      name: "number", text: "detuning 1 − f/f₀", low: 1, high: 5, step: 1, start: 2,
-      show: n => lwaBreathers[n - 1].nu.toFixed(4),
-    }],
-    begin({number}) {
-      const {nu, start, U, b} = lwaBreathers[number - 1];
-      const [k, omega] = [1.5, 0.5];
-      const n = start.length;
-      const middle = (n - 1) / 2; // a light bead
-      const envelope = i => U / Math.cosh((b * (i - middle)) / 2);
-      const lasting = i => (((k - 1) * U * U) / (2 * b)) * Math.tanh((b * (i - middle)) / 2);
-      const lattice = row({mass: middle % 2 ? [1, omega] : [omega, 1], k, p0: 1, v: 0, n, start: i => start[i], fine: 6});
-      const bottom = Math.sqrt((2 * k) / omega); // F' = k at the compression 1
-      return {lattice, middle, bottom, U, nu, envelope, lasting, turns: [], last: start[middle]};
-    },
-    next: (scene, ticks) => swing(scene, 0.25 * ticks) < 2200,
-    draw({lattice, U, middle, envelope, lasting}, pen) {
-      const x = i => ((i + 1) / (lattice.n + 1)) * pen.width;
-      const y = u => pen.height / 2 + 12 - (u / (1.7 * U)) * (pen.height / 2 - 14);
-      for (const sign of [1, -1]) {
-        const upper = i => y(lasting(i) + sign * envelope(i));
-        pen.line(curve(upper, 0, lattice.n - 1).map(([i, height]) => [x(i), height]), THEORY, 1);
-      }
-      const drift = (lattice.u[0] + lattice.u[lattice.n - 1]) / 2;
-      lattice.u.forEach((u, i) => {
-        const light = (i - middle) % 2 === 0;
-        pen.disk(x(i), y(u - drift), light ? 3.5 : 2.5, light ? LIGHT : HEAVY);
-      });
-      legend(pen, [["light balls", LIGHT], ["heavy balls", HEAVY], ["envelope by the theory", THEORY]]);
-    },
-    tell: scene => `Frequency over that of the band's edge: orbit ${(1 - scene.nu).toFixed(4)}, counted here ${toFour(rate(scene))}. No small wave of the chain has a frequency just below 1.`,
-  },
-
-  // A row of unequal beads, and the book's rule for the mean loss.
-  disorder: {
-    ask: "The masses of the balls differ by up to a fifth. How much of the pulse's force is left sixty balls further on?",
-    answers: ["about 99 %", "about 90 %", "about 50 %"],
-    verdict() {
-      const left = Array.from({length: 8}, (_, i) => {
-        const lattice = unequal(0.2, i + 1);
-        lattice.to(73);
-        return lattice.at(72, "force") / lattice.at(12, "force");
-      });
-      const mean = left.reduce((sum, part) => sum + part, 0) / left.length;
-      return {right: 1, text: `${percent(mean, 0)} in the mean of eight rows; the rule has ${percent(Math.exp(-60 * meanLoss(0.2)), 0)}.`};
-    },
-    then: {spread: 0.2},
-    label: "A row of balls of unequal masses, bars of the force in each contact, and the force by the rule over the place",
-    shape: 3,
-    controls: [
-      {name: "spread", text: "masses within ±", low: 0, high: 0.4, step: 0.05, start: 0.1, show: x => percent(x, 0)},
-      {name: "draw", text: "row", low: 1, high: 20, step: 1, start: 1, show: n => n.toFixed(0)},
-    ],
-    begin: (values, old) => struckRow(values, null, ({spread, draw}) => unequal(spread, draw)),
-    next: runRow,
-    draw({lattice, top, values}, pen) {
-      const words = [BARS, TRAIL, ["mean by the rule", THEORY]];
-      const {x, y} = drawRow(pen, lattice, top, {words, light: HEAVY});
-      if (lattice.arrivals.length < 14) return;
-      const force = lattice.at(12, "force");
-      const left = i => force * Math.exp(-meanLoss(values.spread) * (i - 12));
-      pen.line(curve(left, 12, lattice.n - 1, 40).map(([i, part]) => [x(i), y(part)]), THEORY, 1.5, [6, 4]);
-    },
-    tell({lattice, values}) {
-      const last = lattice.arrivals.length - 2;
-      if (last < 20) return "The pulse is forming …";
-      const left = lattice.at(last, "force") / lattice.at(12, "force");
-      const rule = Math.exp(-meanLoss(values.spread) * (last - 12));
-      return `Between contacts 12 and ${last} the force has fallen to ${percent(left)}; by the rule, in the mean of many rows, to ${percent(rule)}.`;
-    },
-  },
-});
-
-const RINGING = 25;
-
-const sums = k => lwaSums.find(one => Math.abs(one.k - k) < 0.01);
 
 // Speed of sound in equal spheres under the static compression p0, sites per unit of time.
 const soundSpeed = p0 => (p0 > 0 ? f.sound_speed(Math.pow(p0, 1.5), 1.5, 1, 1, 1, 1) : 0);
@@ -532,3 +187,288 @@ function drawLattices({rows, tops}, pen) {
     pen.text(LATTICES[number].name, 4, number * strip + 15);
   });
 }
+
+Object.assign(things, {
+  // Forty equal steel balls, from a drop of five millimetres; the picture follows the pulse.
+  hero: {
+    label: "A row of equal steel balls. Bars of force run along it, and the long-wave theory as a line with them",
+    shape: 2.8,
+    begin() {
+      const scene = struckRow({omega: 1}, null, values => row({...values, n: 44}));
+      return {...scene, pace: scene.pace * 0.8, from: -1};
+    },
+    next(scene, ticks) {
+      const going = runRow(scene, ticks);
+      const ahead = scene.lattice.arrivals.length + AHEAD;
+      scene.from += (Math.max(ahead - 12, -1) - scene.from) * Math.min(0.05 * ticks, 1);
+      return going;
+    },
+    draw(scene, pen) {
+      const beside = theoryBeside(scene);
+      const arch = beside && (x => beside.at(x, scene.lattice.time));
+      const view = {from: scene.from, to: scene.from + 17, words: [BARS, LINE, TRAIL], arch};
+      drawRow(pen, scene.lattice, scene.top, view);
+    },
+    tell: () => "",
+  },
+
+  chain: {
+    ask: "Steel and PTFE balls in turn. The blow becomes twice as fast. How much faster is the pulse?",
+    answers: ["twice as fast", "about a seventh faster", "no faster"],
+    verdict() {
+      const [slow, fast] = [1, 2].map(v => settledSpeed(row({v})));
+      const numbers = `${fast.toFixed(3)}/${slow.toFixed(3)} = ${(fast / slow).toFixed(3)}`;
+      return {right: 1, text: `the pulse is ${numbers} times as fast.`};
+    },
+    then: {v: 2},
+    label: "A row of forty beads, bars of the force in each contact, the pulse before the last change in grey, and the theory's wave as a line",
+    shape: 3.2,
+    controls: [BLOW, RATIO],
+    begin: (values, old) => struckRow(values, old, row),
+    ...ROW,
+    draw(scene, pen) {
+      const beside = theoryBeside(scene);
+      const arch = beside && (x => beside.at(x, scene.lattice.time));
+      drawRow(pen, scene.lattice, scene.top, {before: scene.before, arch, words: [BARS, LINE]});
+    },
+    tell: tellSpeeds,
+  },
+
+  // A light bead between heavy ones as a pulse passes, and what the swing costs the pulse.
+  ring: {
+    ask: "The light balls weigh 0.6 of the heavy ones. Thirty balls further on, how high is the pulse?",
+    answers: ["as high as before", "more than a third lower", "nearly gone"],
+    verdict() {
+      const lattice = row({omega: 0.6, n: 60});
+      lattice.to(43);
+      const [before, after] = [12, 42].map(place => lattice.at(place, "force"));
+      return {right: 1, text: `its force falls from ${before.toFixed(3)} to ${after.toFixed(3)}. The light balls keep the rest.`};
+    },
+    then: {omega: 0.6},
+    label: "A struck row, the highest force of each contact, and below it the swing of one light bead over time",
+    shape: 2.4,
+    controls: [{...RATIO, low: -1.3, high: 0}],
+    begin: (values, old) => ({...struckRow(values, null, one => row({...one, n: 64})), trace: [], old}),
+    next(scene, ticks) {
+      const going = runRow(scene, ticks);
+      const {u} = scene.lattice;
+      scene.trace.push([scene.lattice.time, u[RINGING] - (u[RINGING - 1] + u[RINGING + 1]) / 2]);
+      return going;
+    },
+    rest: ({lattice}) => lattice.arrivals.length > 40,
+    draw({lattice, top, trace, pace}, pen) {
+      const whole = pen.height;
+      pen.height = 0.6 * whole;
+      drawRow(pen, lattice, top, {words: [BARS, TRAIL]});
+      pen.height = whole;
+      const span = 420 * pace;
+      const start = Math.max(lattice.time - span, 0);
+      const middle = 0.82 * whole;
+      const size = Math.max(...trace.map(([, off]) => Math.abs(off)), 0.02);
+      const points = trace
+        .filter(([time]) => time >= start)
+        .map(([time, off]) => [((time - start) / span) * pen.width, middle - (0.15 * whole * off) / size]);
+      pen.line([[0, middle], [pen.width, middle]], GHOST, 1);
+      if (points.length > 1) pen.line(points, LIGHT);
+      pen.text(`swing of light bead ${RINGING} over time`, 2, 0.68 * whole);
+    },
+    tell({lattice}) {
+      const last = lattice.front;
+      if (last < 14) return FORMING;
+      const [before, now] = [lattice.at(12, "force"), lattice.at(last, "force")];
+      return `Force at contact 12: ${before.toFixed(3)}; at contact ${last}: ${now.toFixed(3)}, ${signed(now / before - 1)}.`;
+    },
+  },
+
+  // A struck row under a load, and sound.
+  load: {
+    ask: "The row is pressed together before the same gentle blow. How does the pulse run?",
+    answers: ["slower", "at the same speed", "faster"],
+    verdict() {
+      const [bare, pressed] = [0, 0.3].map(p0 => settledSpeed(row({omega: 1, v: 0.2, p0, n: 60})));
+      return {right: 2, text: `${pressed.toFixed(3)} against ${bare.toFixed(3)} sites per unit of time; sound alone runs at ${soundSpeed(0.3).toFixed(3)}.`};
+    },
+    then: {p0: 0.3},
+    label: "A row of equal beads under a load, bars of the dynamic force, and a mark that runs at the speed of sound",
+    shape: 3,
+    controls: [LOAD, {...BLOW, start: 0.2, low: 0.05}],
+    begin: (values, old) => struckRow({omega: 1, ...values}, old, one => row({n: 60, ...one})),
+    ...ROW,
+    draw(scene, pen) {
+      const beside = theoryBeside(scene);
+      const {lattice} = scene;
+      const arch = beside && (x => beside.at(x, lattice.time));
+      const words = [BARS, LINE, ["sound", LIGHT]];
+      const {x, base, below} = drawRow(pen, lattice, scene.top, {arch, before: scene.before, trail: false, words});
+      const front = soundSpeed(scene.values.p0) * lattice.time;
+      if (front > 0 && front < lattice.n) pen.line([[x(front), below], [x(front), base]], LIGHT);
+    },
+    tell(scene) {
+      const sound = soundSpeed(scene.values.p0);
+      const speed = scene.lattice.speed();
+      const over = sound && speed ? ` Sound runs at ${sound.toFixed(3)}; the pulse is ${(speed / sound).toFixed(3)} times as fast.` : "";
+      return tellSpeeds(scene) + over;
+    },
+  },
+
+  // Other contact laws.
+  law: {
+    ask: "Magnets on a rail in place of balls. A gentle blow becomes twice as fast. How much faster is the pulse?",
+    answers: ["about a seventh, as with spheres", "less", "more"],
+    verdict() {
+      const grown = name => {
+        const [slow, fast] = [0.1, 0.2].map(v => settledSpeed(row({omega: 1, law: named(LAWS[name]), v})));
+        return fast / slow;
+      };
+      const [spheres, magnets] = [grown("spheres"), grown("magnets")];
+      return {right: magnets < spheres ? 1 : 2, text: `${magnets.toFixed(3)} times as fast with these magnets, ${spheres.toFixed(3)} times with spheres.`};
+    },
+    then: {v: 0.2},
+    label: "A row of equal particles with a contact law of choice, bars of the force in each contact",
+    shape: 3.2,
+    controls: [
+      {name: "law", text: "law", options: Object.keys(LAWS), start: "magnets"},
+      {...BLOW, low: 0.05, high: 1.5, start: 0.1},
+    ],
+    begin(values, old) {
+      const law = named(LAWS[values.law]);
+      const clock = old?.values?.law === values.law ? {pace: old.pace} : null;
+      return {...struckRow(values, clock, ({v}) => row({omega: 1, law, v})), law};
+    },
+    ...ROW,
+    draw: ({lattice, top}, pen) => void drawRow(pen, lattice, top, {words: [BARS, TRAIL]}),
+    tell({lattice, law}) {
+      const speed = lattice.speed();
+      if (!speed) return FORMING;
+      const force = lattice.at(lattice.front, "force");
+      const theory = lawSpeed(law, force);
+      return `Peak force ${force.toFixed(3)}. Speed ${speed.toFixed(3)} sites per unit of time; by the theory ${theory.toFixed(3)} (${signed(theory / speed - 1)}).`;
+    },
+  },
+
+  // Four lattices at once.
+  lattices: {
+    ask: "In the second row 0.3 of each ball's mass hangs on a spring inside it. How fast is its pulse, beside balls of the same mass without a spring and at the same force?",
+    answers: ["faster", "as fast, within a hundredth", "slower"],
+    verdict() {
+      const hidden = LATTICES[1].make(1);
+      const speed = settledSpeed(hidden);
+      const plain = settledSpeed(row({omega: 1})) * (hidden.at(32, "force") / row33()) ** (1 / 6);
+      return {right: 1, text: `${speed.toFixed(3)} against ${plain.toFixed(3)}: the speed knows the mass and the static law alone.`};
+    },
+    label: "Four rows: rubber between every second pair, a hidden mass in each ball, second neighbours, rows of marbles; a pulse runs down each",
+    shape: 1.5,
+    least: 400,
+    controls: [BLOW],
+    begin({v}) {
+      const rows = LATTICES.map(({make}) => make(v));
+      const probes = LATTICES.map(({make}) => make(v));
+      probes.forEach(probe => probe.to(8));
+      const tops = probes.map(probe => 1.4 * Math.max(...probe.arrivals.slice(1).map(a => a.force)));
+      return {rows, tops, pace: (probes[3].arrivals[8].time - probes[3].arrivals[4].time) / 40};
+    },
+    next({rows, pace}, ticks) {
+      rows.forEach(lattice => lattice.advance(pace * ticks));
+      return rows.some(lattice => lattice.arrivals.length <= lattice.end);
+    },
+    rest: ({rows}) => rows.every(lattice => lattice.arrivals.length > 20),
+    draw: drawLattices,
+    tell({rows}) {
+      if (!rows.every(lattice => lattice.speed(11))) return FORMING;
+      const speeds = rows.map((lattice, i) => {
+        const speed = lattice.speed(11);
+        const theory = LATTICES[i].speed(lattice.at(lattice.front, "force"));
+        return `${speed.toFixed(3)} (theory ${signed(theory / speed - 1)})`;
+      });
+      return `Speeds from above, in sites or layers per unit of time: ${speeds.join("; ")}.`;
+    },
+  },
+
+  // A wall drives equal spheres: the plateau by the Riemann invariant, the front by the doubling rule.
+  shock: {
+    ask: "A wall pushes the row at a steady velocity. How fast do the balls at the very front move?",
+    answers: ["as fast as the wall", "nearly twice as fast", "more slowly"],
+    verdict() {
+      const scene = things.shock.begin({v: 0.4, p0: 0.25});
+      while (things.shock.next(scene, 1));
+      return {right: 1, text: `${(scene.fastest / 0.4).toFixed(2)} times as fast as the wall after 110 balls.`};
+    },
+    label: "A row of beads that a wall drives from the left, bars of the dynamic force in each contact, and lines of the plateau and of the leading edge",
+    shape: 3,
+    controls: [
+      {name: "v", text: "velocity of the wall", low: 0.05, high: 1, step: 0.05, start: 0.4},
+      {...LOAD, high: 1, step: 0.05, start: 0.25},
+    ],
+    begin({v, p0}) {
+      const energy = (p, k) => Math.pow(p, k + 1) / (k + 1);
+      const k = 1.5;
+      const whole = p => ((2 * Math.sqrt(k)) / (k + 1)) * Math.pow(p, (k + 1) / 2); // ∫ c dp
+      const behind = root(p => whole(p) - whole(p0) - v, p0, 50);
+      const left = b => energy(p0 + b, k) - energy(p0, k) - Math.pow(p0, k) * b - 2 * v * v;
+      const B = root(left, 0, 50);
+      const lattice = row({omega: 1, p0, v, n: 120, wall: true});
+      const plateau = Math.pow(behind, k) - Math.pow(p0, k);
+      return {lattice, v, plateau, edge: (2 * v) / B, fastest: 0};
+    },
+    next(scene, ticks) {
+      const {lattice, edge} = scene;
+      lattice.advance((0.12 * ticks) / edge, () => 0); // a site in about eight pictures
+      const front = Math.floor(edge * lattice.time);
+      for (let i = Math.max(front - 6, 1); i < Math.min(front + 6, lattice.n); i++) {
+        if (front > 40) scene.fastest = Math.max(scene.fastest, lattice.w[i]);
+      }
+      return front < lattice.n - 8;
+    },
+    rest: ({lattice, edge}) => edge * lattice.time > 60,
+    draw({lattice, plateau, edge}, pen) {
+      const words = [BARS, ["plateau and leading edge by the theory", THEORY]];
+      const {x, y, base, below} = drawRow(pen, lattice, 3.2 * plateau, {words});
+      pen.line([[x(0), y(plateau)], [x(lattice.n), y(plateau)]], THEORY, 1);
+      pen.line([[x(edge * lattice.time), below], [x(edge * lattice.time), base]], THEORY, 1);
+    },
+    tell({edge, fastest, v}) {
+      const grows = fastest < 1.9 * v ? " The train still grows." : "";
+      const seen = fastest ? `the leading balls have moved ${(fastest / v).toFixed(2)} times as fast as the wall.${grows}` : "the train is forming …";
+      return `Leading edge by the doubling rule: ${edge.toFixed(3)} sites per unit of time; ${seen}`;
+    },
+  },
+
+  // A row of unequal beads, and the book's rule for the mean loss.
+  disorder: {
+    ask: "The masses of the balls differ by up to a fifth. How much of the pulse's force is left sixty balls further on?",
+    answers: ["about 99 %", "about 90 %", "about 50 %"],
+    verdict() {
+      const left = Array.from({length: 8}, (_, i) => {
+        const lattice = unequal(0.2, i + 1);
+        lattice.to(73);
+        return lattice.at(72, "force") / lattice.at(12, "force");
+      });
+      const mean = left.reduce((sum, part) => sum + part, 0) / left.length;
+      return {right: 1, text: `${percent(mean, 0)} in the mean of eight rows; the rule has ${percent(Math.exp(-60 * meanLoss(0.2)), 0)}.`};
+    },
+    then: {spread: 0.2},
+    label: "A row of balls of unequal masses, bars of the force in each contact, and the force by the rule over the place",
+    shape: 3,
+    controls: [
+      {name: "spread", text: "masses within ±", low: 0, high: 0.4, step: 0.05, start: 0.1, show: x => percent(x, 0)},
+      {name: "draw", text: "row", low: 1, high: 20, step: 1, start: 1, show: n => n.toFixed(0)},
+    ],
+    begin: values => struckRow(values, null, ({spread, draw}) => unequal(spread, draw)),
+    ...ROW,
+    draw({lattice, top, values}, pen) {
+      const words = [BARS, TRAIL, ["mean by the rule", THEORY]];
+      const {x, y} = drawRow(pen, lattice, top, {words, light: HEAVY});
+      if (lattice.arrivals.length < 14) return;
+      const force = lattice.at(12, "force");
+      const left = i => force * Math.exp(-meanLoss(values.spread) * (i - 12));
+      pen.line(curve(left, 12, lattice.n - 1, 40).map(([i, part]) => [x(i), y(part)]), THEORY, 1.5, [6, 4]);
+    },
+    tell({lattice, values}) {
+      const last = lattice.front;
+      if (last < 20) return FORMING;
+      const left = lattice.at(last, "force") / lattice.at(12, "force");
+      const rule = Math.exp(-meanLoss(values.spread) * (last - 12));
+      return `Between contacts 12 and ${last} the force has fallen to ${percent(left)}; by the rule, in the mean of many rows, to ${percent(rule)}.`;
+    },
+  },
+});

@@ -1,62 +1,6 @@
-// Things to turn in the first part of the book: the pulse, its arch, the ansatz, a cell.
+// Things to turn that do not move by themselves: the arch, the ansatz, two observers, a cell, a sum.
 
-const tenth = x => 10 ** x;
-
-// A slider of the blow's velocity, the mass ratio, the exponent or the load.
-const BLOW = {name: "v", text: "velocity of the blow", low: 0.2, high: 2, step: 0.05, start: 1};
-const RATIO = {
-  name: "omega", text: "mass ratio ω", low: -1.7, high: 0, step: 0.01, start: 0.2733, value: tenth,
-};
 const PAPERS = "the paper's";
-const EXPONENT = {name: "k", text: "exponent k", low: 1.1, high: 4, step: 0.05, start: 1.5};
-
-// A struck row whose scale and clock stay while a slider moves; the row as it was before runs along.
-// make: values -> lattice. last: contact at which the picture ends.
-function struckRow(values, old, make, last) {
-  const probe = make(values);
-  probe.to(8, 4000);
-  const peak = Math.max(...probe.arrivals.slice(1).map(arrival => arrival.force), 1e-6);
-  const sites = probe.arrivals[8]?.time - probe.arrivals[4]?.time || 8;
-  return {
-    values: {...values}, lattice: make(values), last: last ?? probe.end,
-    before: old?.before ? make(old.before) : null,
-    top: Math.max(1.3 * peak, old?.top || 0),
-    pace: old?.pace || sites / 40, // a site in ten pictures
-  };
-}
-
-function runRow(scene, ticks) {
-  for (const lattice of [scene.lattice, scene.before]) lattice?.advance(scene.pace * ticks);
-  return scene.lattice.arrivals.length <= scene.last && scene.lattice.time < 4000 * scene.pace;
-}
-
-// Speed of the pulse behind a blow once it has formed, sites per unit of time.
-function settledSpeed(lattice) {
-  lattice.to(lattice.end);
-  return lattice.speed();
-}
-
-// A struck row of two masses and the theory beside it, drawn where the pulse has formed.
-function theoryBeside(scene) {
-  if (scene.theory === undefined && scene.lattice.arrivals.length > 12) {
-    const probe = row({...scene.values, n: 40});
-    probe.to(31, 4000 * scene.pace);
-    scene.theory = probe.formed ? theory(probe, {k: 1.5, p0: 0, ...scene.values}) : null;
-  }
-  return scene.theory;
-}
-
-function tellSpeeds(scene) {
-  const beside = theoryBeside(scene);
-  const speed = scene.lattice.speed();
-  const other = scene.before?.speed();
-  const grey = other ? ` Grey, before the change: ${other.toFixed(3)}.` : "";
-  if (beside === undefined) return "The pulse is forming …";
-  const now = speed ? `${speed.toFixed(3)} sites per unit of time` : "…";
-  if (beside === null) return `Speed ${now}. The pulse still changes its length: no theory is drawn.${grey}`;
-  const error = speed ? ` (${signed(beside.speed / speed - 1)})` : "";
-  return `Speed ${now}; by the theory ${beside.speed.toFixed(3)}${error}.${grey}`;
-}
 
 // The true neighbour of a small wave of the paper's dimer, h cos(kappa (x + 1)), and the complex
 // amplitude of the ansatz up to b_n, both over that of the heavy beads (`lwaAnsatz`: 1, b1 … b4).
@@ -129,60 +73,15 @@ function drawCell({masses, bead}, pen) {
   const scale = ((wide ? 0.42 : 0.9) * pen.width) / 20; // pixels a site: the longest pulse has 20
   const middle = left + 10 * scale;
   for (const [several, style, dash] of [[[1, 1, 1, 1], pen.ink, [4, 4]], [masses, THEORY, []]]) {
-    const beta = Math.PI / cellLength(several);
-    const arch = xi => (Math.abs(beta * xi) < Math.PI / 2 ? Math.cos(beta * xi) ** 6 : 0);
-    const points = curve(arch, -10, 10, 400).map(([xi, v]) => [middle + scale * xi, floor - height * v]);
+    const points = curve(archOf(cellLength(several)), -10, 10, 400).map(([xi, v]) => [middle + scale * xi, floor - height * v]);
     pen.line(points, style, 2, dash);
   }
   if (wide) pen.text("pulse; dashed: equal balls", middle, floor + 18, {align: "center"});
 }
 
+const sums = k => lwaSums.find(one => Math.abs(one.k - k) < 0.01);
+
 Object.assign(things, {
-  // Forty equal steel balls, from a drop of five millimetres; the picture follows the pulse.
-  hero: {
-    label: "A row of equal steel balls. Bars of force run along it, and the long-wave theory as a line with them",
-    shape: 2.8,
-    begin() {
-      const scene = struckRow({omega: 1}, null, values => row({...values, n: 44}));
-      return {...scene, pace: scene.pace * 0.8, from: -1};
-    },
-    next(scene, ticks) {
-      const going = runRow(scene, ticks);
-      const ahead = scene.lattice.arrivals.length + AHEAD;
-      scene.from += (Math.max(ahead - 12, -1) - scene.from) * Math.min(0.05 * ticks, 1);
-      return going;
-    },
-    draw(scene, pen) {
-      const beside = theoryBeside(scene);
-      const arch = beside && (x => beside.at(x, scene.lattice.time));
-      const view = {from: scene.from, to: scene.from + 17, words: [BARS, LINE, TRAIL], arch};
-      drawRow(pen, scene.lattice, scene.top, view);
-    },
-    tell: () => "",
-  },
-
-  chain: {
-    ask: "Steel and PTFE balls in turn. The blow becomes twice as fast. How much faster is the pulse?",
-    answers: ["twice as fast", "about a seventh faster", "no faster"],
-    verdict() {
-      const [slow, fast] = [1, 2].map(v => settledSpeed(row({v})));
-      const numbers = `${fast.toFixed(3)}/${slow.toFixed(3)} = ${(fast / slow).toFixed(3)}`;
-      return {right: 1, text: `the pulse is ${numbers} times as fast.`};
-    },
-    then: {v: 2},
-    label: "A row of forty beads, bars of the force in each contact, the pulse before the last change in grey, and the theory's wave as a line",
-    shape: 3.2,
-    controls: [BLOW, RATIO],
-    begin: (values, old) => struckRow(values, old, row),
-    next: runRow,
-    draw(scene, pen) {
-      const beside = theoryBeside(scene);
-      const arch = beside && (x => beside.at(x, scene.lattice.time));
-      drawRow(pen, scene.lattice, scene.top, {before: scene.before, arch, words: [BARS, LINE]});
-    },
-    tell: tellSpeeds,
-  },
-
   // The arch over the beads, at rest: equal beads, peak strain 1.
   arch: {
     ask: "The exponent of the contacts doubles from 3/2 to 3. What does the length of the pulse do?",
@@ -194,10 +93,8 @@ Object.assign(things, {
     then: {k: 3},
     label: "One arch of a power of a cosine over a row of beads",
     shape: 3.6,
-    quiet: true,
+    ...QUIET,
     controls: [EXPONENT],
-    begin: values => values,
-    next: () => true,
     draw({k}, pen) {
       const x = xi => (xi / 13 + 0.5) * pen.width;
       const y = v => pen.height - 34 - v * (pen.height - 70);
@@ -231,17 +128,15 @@ Object.assign(things, {
     then: {terms: 4},
     label: "A wave of heavy and light beads; rings show where the ansatz places the light beads",
     shape: 2.8,
-    quiet: true,
+    ...QUIET,
     controls: [
       {name: "terms", text: "terms b₁ to", low: 0, high: 4, step: 1, start: 0, show: n => (n ? `b${"₁₂₃₄"[n - 1]}` : "none")},
       {name: "length", text: "wavelength in beads", low: 4.5, high: 40, step: 0.5, start: 10, show: x => x.toFixed(1)},
     ],
-    begin: values => values,
-    next: () => true,
     draw({terms, length}, pen) {
       const kappa = (2 * Math.PI) / length;
       const x = place => ((place + 1) / 26) * pen.width;
-      const y = u => 0.54 * pen.height - 0.26 * pen.height * u;
+      const y = u => 0.6 * pen.height - 0.26 * pen.height * u;
       const {h, guess} = neighbour(terms, kappa);
       pen.line(curve(u => Math.cos(kappa * u), -0.6, 24.6).map(([p, u]) => [x(p), y(u)]), HEAVY, 1);
       for (let j = 0; j <= 24; j += 2) pen.disk(x(j), y(Math.cos(kappa * j)), 9, HEAVY, pen.ink);
@@ -249,12 +144,12 @@ Object.assign(things, {
         pen.disk(x(j + 1), y(h * Math.cos(kappa * (j + 1))), 5.5, LIGHT, pen.ink);
         const [re, im] = guess;
         const guessed = re * Math.cos(kappa * j) - im * Math.sin(kappa * j);
-        pen.disk(x(j + 1), y(Math.max(Math.min(guessed, 1.9), -1.9)), 8, null, THEORY);
+        pen.disk(x(j + 1), y(Math.max(Math.min(guessed, 1.5), -1.5)), 8, null, THEORY);
       }
       legend(pen, [["heavy beads, displacement u upwards", HEAVY], ["light beads", LIGHT], ["light beads by the ansatz", THEORY]]);
     },
     tell({terms, length}) {
-      return `The guess errs by ${percent(guessError(terms, length))} of the heavy beads' amplitude.`;
+      return `The guess errs by ${short(100 * guessError(terms, length))}\u00a0% of the heavy beads' amplitude.`;
     },
   },
 
@@ -268,13 +163,11 @@ Object.assign(things, {
     },
     label: "A row of two kinds of bead and the pulses that two observers predict",
     shape: 3,
-    quiet: true,
+    ...QUIET,
     controls: [
       {...RATIO, low: -1.3, high: 1.3},
       {name: "closure", text: "closure", options: [PAPERS, "the full one, in the common field"], start: PAPERS},
     ],
-    begin: values => values,
-    next: () => true,
     draw(values, pen) {
       const lengths = observed(values);
       const [x, y] = [xi => (xi / 15 + 0.5) * pen.width, v => pen.height - 36 - v * (pen.height - 84)];
@@ -285,12 +178,10 @@ Object.assign(things, {
         pen.disk(x(j), pen.height - 17, Math.max(r, 2.5), light ? LIGHT : HEAVY, pen.ink);
       }
       [HEAVY, LIGHT].forEach((colour, i) => {
-        const beta = Math.PI / lengths[i];
-        const arch = xi => (Math.abs(beta * xi) < Math.PI / 2 ? Math.cos(beta * xi) ** 6 : 0);
-        const points = curve(arch, -7.4, 7.4, 480).map(([xi, v]) => [x(xi), y(v)]);
+        const points = curve(archOf(lengths[i]), -7.4, 7.4, 480).map(([xi, v]) => [x(xi), y(v)]);
         pen.line(points, colour, i ? 2 : 3.5, i ? [7, 5] : []);
       });
-      legend(pen, [["by the observer of these", HEAVY], ["by the observer of those", LIGHT]]);
+      legend(pen, [["seen from the dark balls", HEAVY], ["seen from the orange balls", LIGHT]]);
     },
     tell(values) {
       const [steel, light] = observed(values);
@@ -310,7 +201,7 @@ Object.assign(things, {
     then: {mass: 4},
     label: "Staircase of the mass of a cell over its place, the line of slope one, and the pulse above it",
     shape: 2.4,
-    quiet: true,
+    ...QUIET,
     controls: [
       {name: "bead", text: "bead", low: 1, high: 4, step: 1, start: 1, show: n => n.toFixed(0)},
       {name: "mass", text: "its mass", low: 0.1, high: 6, step: 0.1, start: 1},
@@ -320,17 +211,58 @@ Object.assign(things, {
       if (!old || old.bead === bead) masses[bead - 1] = mass;
       return {bead, masses, controls: {mass: masses[bead - 1]}};
     },
-    next: () => true,
     touch({masses}, x, y) {
       if (x > 1) return {};
       const bead = Math.min(4, Math.floor(4 * x) + 1);
-      masses[bead - 1] = Math.max(0.1, Math.round(60 * (1 - y)) / 10);
-      return {bead};
+      const mass = Math.max(0.1, Math.round(60 * (1 - y)) / 10);
+      masses[bead - 1] = mass;
+      return {bead, mass};
     },
     draw: drawCell,
     tell({masses}) {
       const I = cellVariance(masses);
       return `Masses ${masses.map(short).join(", ")}: variance I = ${I.toFixed(4)} D² (equal beads 0.0833), length of the pulse ${cellLength(masses).toFixed(2)} sites.`;
+    },
+  },
+
+  // Partial sums of the series of c^2 beside the lattice's own wave.
+  sum: {
+    ask: "The partial sums of the series for c² are taken to ever higher order, for spheres. What does their error do?",
+    answers: ["it falls without end", "it falls, then it grows", "it grows from the start"],
+    verdict() {
+      const errors = lwaSums.find(({k}) => k === 1.5).errors;
+      const best = errors.indexOf(Math.min(...errors));
+      const [least, end] = [errors[best], errors.at(-1)].map(x => tens(x, 0));
+      return {right: 1, text: `it falls to ${least} at order ${best} and is ${end} again at order ${errors.length - 1}.`};
+    },
+    then: {order: 12},
+    label: "Errors of the partial sums over their order, on a logarithmic axis",
+    shape: 2.6,
+    ...QUIET,
+    controls: [
+      {name: "order", text: "order", low: 0, high: 60, step: 1, start: 2, show: n => n.toFixed(0)},
+      {name: "k", text: "exponent k", low: 1.1, high: 2, step: 0.1, start: 1.5, show: k => k.toFixed(1)},
+    ],
+    draw({order, k}, pen) {
+      const {errors} = sums(k);
+      const x = n => 46 + (n / 61) * (pen.width - 56);
+      const y = error => pen.height - 34 - ((Math.log10(Math.max(error, 1e-12)) + 12) / 14) * (pen.height - 66);
+      for (let power = -12; power <= 0; power += 3) {
+        pen.line([[x(0), y(10 ** power)], [pen.width - 10, y(10 ** power)]], GHOST, 0.6);
+        pen.text(power ? tens(10 ** power) : "1", 40, y(10 ** power) + 4, {align: "right", size: 11});
+      }
+      errors.forEach((error, n) => {
+        const shown = n <= order;
+        if (error < 50) pen.disk(x(n), y(error), n === order ? 6 : 3, shown ? LATTICE : null, shown ? null : GHOST);
+      });
+      pen.line([[x(0), y(sums(k).summed)], [pen.width - 10, y(sums(k).summed)]], THEORY);
+      pen.text("order of the last term", pen.width / 2, pen.height - 8, {align: "center"});
+      legend(pen, [["error of the partial sum of c²", LATTICE], ["the same 61 terms by a Padé approximant", THEORY]]);
+    },
+    tell({order, k}) {
+      const {errors, truth} = sums(k);
+      const error = errors[order] < 1e-12 ? `less than ${tens(1e-12, 0)}` : tens(errors[order], 1);
+      return `c² of the lattice ${truth.toFixed(9)}; the sum to order ${order} errs by ${error}.`;
     },
   },
 });

@@ -1,0 +1,533 @@
+"""Things to turn, at the ends of their controls, by a mouse, a keyboard and a finger.
+
+Each number that a page then shows is computed by the packages, no word of a picture is cut, and the
+console says nothing. Run by its path, after the book is built:
+``python -m pytest tests/book/test_ends.py``.
+"""
+
+import json
+import math
+import re
+import time
+from collections import defaultdict
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+import pytest
+import scipy
+import sympy as sp
+
+from lwa import (
+    Cell,
+    Dimer,
+    Power,
+    canonical_wave,
+    expand,
+    homogenize,
+    loaded_wave,
+    piston,
+)
+from lwa.law import named
+from tests.book.hands import DESKTOP, PHONE, SHIFT, Browser, Page
+from tests.book.prose import BOOK
+from tests.book.test_turn import bloch_error, mean_loss, numbers
+from validation import Scene, exact_wave, measure, simulate
+from validation.pulses.pulse import first_pulse
+from validation.pulses.sensors import tracks
+
+HTML = BOOK / "_build" / "html"
+HERTZ = Power("3/2")
+EQUAL = Cell([1], spacing=1)
+
+LIVE = 1.1
+"""Seconds after which the line below a picture, written once a second at most, is the last one."""
+
+
+MIDDLE = 0.5, 0.5
+"""A point of an element, in parts of its width and height."""
+
+
+def close(value):
+    """A number with three decimals, of the page's own steps of time beside the engine's."""
+    return pytest.approx(value, rel=2e-3, abs=6e-4)
+
+
+def decimals(value, count):
+    """A number that is printed with so many decimals."""
+    return pytest.approx(value, abs=0.6 * 10**-count)
+
+
+# --- the packages' numbers, by the values of the controls and by how far the page's row has run
+
+
+@dataclass(frozen=True)
+class Run:
+    """Time of the page's row, and contacts at which it has read the pulse; of several rows."""
+
+    time: float
+    read: list[int]
+
+    def pair(self, first=12, number=0):
+        """A contact and the last one of its kind."""
+        return first, first + 2 * ((self.read[number] - 1 - first) // 2)
+
+    @property
+    def front(self):
+        """The last two contacts."""
+        return self.read[0] - 2, self.read[0] - 1
+
+
+def pulses(places, duration, masses, **rest):
+    """Pulses at contacts of a row that is struck."""
+    places = sorted({*places})
+    scene = Scene(
+        masses=masses, stiffnesses=(1.0,) * (len(masses) - 1), duration=duration,
+        contact_sensors=places, **rest,
+    )  # fmt: skip
+    read = (first_pulse(track.force) for track in tracks(simulate(scene, rtol=1e-8)))
+    return dict(zip(places, read, strict=True))
+
+
+def speed_between(first, last, seen):
+    return (last - first) / (seen[last].arrival - seen[first].arrival)
+
+
+def force_at(places, seen):
+    return sum(seen[place].peak for place in places) / 2
+
+
+def alternating(omega, beads):
+    return tuple((1.0, omega)[i % 2] for i in range(beads))
+
+
+def beside_theory(run, v, omega=1.0, p0=0.0, beads=40):
+    """Speed, and where the pulse has formed that of the theory and its error in percent."""
+    load = p0**1.5
+    blow = dict(k=1.5, velocities=(v,))
+    if p0:
+        blow |= dict(precompression=load, wall=1.0)
+    ends = run.pair()
+    speed = speed_between(
+        *ends, pulses(ends, run.time, alternating(omega, beads), **blow)
+    )
+    near, later = (11, 12), (30, 31)
+    seen = pulses(near + later, 37 / speed, alternating(omega, 40), **blow)
+    longer = sum(seen[i].fwhm for i in later) / sum(seen[i].fwhm for i in near)
+    if abs(longer - 1) > 0.03:
+        return [close(speed)]
+    force = sp.Float(load + force_at(near, seen))
+    cell = EQUAL if omega == 1 else Dimer(1, sp.Float(omega), spacing=1)
+    wave = canonical_wave(cell, "3/2")
+    wave = (
+        wave.at_force(force, precompression=sp.Float(load))
+        if p0
+        else wave.at_force(force)
+    )
+    theory = float(wave.speed)
+    return [
+        close(speed),
+        close(theory),
+        pytest.approx(100 * (theory / speed - 1), abs=0.25),
+    ]
+
+
+def under_load(run, p0, v):
+    found = beside_theory(run, v, p0=p0, beads=60)
+    if p0:
+        wave = canonical_wave(EQUAL, "3/2")
+        sound = wave.at_force(1, precompression=sp.Float(p0**1.5)).sound_speed
+        found += [close(float(sound)), close(found[0].expected / float(sound))]
+    return found
+
+
+def arch(run, k):
+    wave = canonical_wave(EQUAL, str(k))
+    length, width = float(wave.sites), float(wave.fwhm("strain"))
+    return [
+        pytest.approx(2 / (k - 1), rel=5e-3),
+        decimals(length, 2),
+        decimals(width, 2),
+    ]
+
+
+def ansatz(run, terms, length):
+    return [decimals(100 * bloch_error(int(terms), length), 1)]
+
+
+def observers(run, omega, closure):
+    omega = sp.Float(omega)
+    if closure != "the paper's":
+        wave = canonical_wave(Dimer(1, omega, spacing=1), "3/2")
+        return [decimals(float(wave.sites), 2)] * 2
+    waves = [
+        homogenize(Dimer(*masses, spacing=1), k="3/2").pde.traveling_wave()
+        for masses in ((1, omega), (omega, 1))
+    ]
+    one, two = (float(wave.sites) for wave in waves)
+    return [decimals(one, 2), decimals(two, 2), pytest.approx(one / two, rel=6e-3)]
+
+
+def cell(run, masses, **rest):
+    wave = canonical_wave(Cell(list(map(str, masses)), spacing=1), "3/2")
+    return [*masses, decimals(float(wave.I), 4), 0.0833, decimals(float(wave.sites), 2)]
+
+
+def ring(run, omega):
+    seen = pulses(
+        (12, 13, *run.front), run.time, alternating(omega, 64), k=1.5, velocities=(1.0,)
+    )
+    before, after = force_at((12, 13), seen), force_at(run.front, seen)
+    change = pytest.approx(100 * (after / before - 1), abs=0.3)
+    return [12, close(before), run.front[0], close(after), change]
+
+
+@cache
+def coefficients():
+    return [float(c) for c in expand(EQUAL, 60).c2.coefficients]
+
+
+def partial_sum(run, order, k):
+    truth = exact_wave([1], k).c2
+    terms = [c * (k - 1) ** n for n, c in enumerate(coefficients())]
+    error = abs(sum(terms[: int(order) + 1]) - truth)
+    return [decimals(truth, 9), order, pytest.approx(max(error, 1e-12), rel=0.06)]
+
+
+LAWS = {
+    "spheres": HERTZ,
+    "magnets": named("magnetic", 4, 1),
+    "Toda": named("exponential", 1),
+    "Hertz's next order": named("hertz2", 1, 1),
+}
+
+
+def law(run, law, v):
+    chosen = LAWS[law]
+    ends = run.pair()
+    rest = {"law": chosen, "velocities": (v,)}
+    seen = pulses((*ends, *run.front), run.time, (1.0,) * 40, **rest)
+    force, speed = force_at(run.front, seen), speed_between(*ends, seen)
+    strain = chosen.compression(EQUAL, sp.Float(force))
+    theory = float(loaded_wave(EQUAL, rise=strain, background=0, law=chosen).speed)
+    error = pytest.approx(100 * (theory / speed - 1), abs=0.25)
+    return [close(force), close(speed), close(theory), error]
+
+
+def moved(masses, links, v, duration):
+    """Forces of links (i, j, stiffness, k) over time; those with k = 1 pull, too."""
+    i, j, stiffness, k = (np.array(column) for column in zip(*links, strict=True))
+    i, j = i.astype(int), j.astype(int)
+
+    def forces(u):
+        gap = u[i] - u[j]
+        return np.where(k == 1, stiffness * gap, stiffness * np.maximum(gap, 0) ** k)
+
+    def rate(_, state):
+        u, w = np.split(state, 2)
+        push = np.zeros(len(u))
+        np.subtract.at(push, i, forces(u))
+        np.add.at(push, j, forces(u))
+        return np.concatenate([w, push / masses])
+
+    start = np.zeros(2 * len(masses))
+    start[len(masses)] = v
+    grid = np.linspace(0, duration, round(50 * duration))
+    path = scipy.integrate.solve_ivp(
+        rate, (0, duration), start, "DOP853", grid, rtol=1e-7, atol=1e-9
+    )
+    return grid, np.array([forces(u) for u in np.split(path.y, 2)[0].T])
+
+
+def lattices(run, v):
+    """Speeds of four lattices by an integrator of SciPy."""
+    each = [(i, i + 1, 1.0, 1.5) for i in range(39)]
+    rubber = [(i, j, 1.0, 1.0 if i % 2 else 1.5) for i, j, *_ in each]
+    hidden = each + [(i, 40 + i, 60.0, 1.0) for i in range(40)]
+    second = each + [(i, i + 2, 0.25, 1.5) for i in range(38)]
+    marbles = [(i, j, 2 * 0.75**1.25, 1.5) for i, j, *_ in each]
+    one = np.ones(40)
+    rows = (
+        (one, rubber),
+        (np.repeat([0.7, 0.3], 40), hidden),
+        (one, second),
+        (one, marbles),
+    )
+    found = []
+    for number, (masses, links) in enumerate(rows):
+        ends = run.pair(11, number)
+        grid, forces = moved(masses, links, v, run.time)
+        seen = {place: measure(grid, forces[:, place]) for place in ends}
+        # the theory's speeds are held in test_turn
+        found += [close(speed_between(*ends, seen)), pytest.approx(0, abs=6)]
+    return found
+
+
+def shock(run, v, p0):
+    """Leading edge by the doubling rule, and the fastest beads near it, over the wall."""
+    rule = piston(EQUAL, str(v), law=HERTZ, ahead=str(p0))
+    edge = float(rule.leading_speed())
+    beads = tuple(range(30, 90))
+    wall = 1e9  # mass of the wall over that of a bead
+    held = dict(precompression=p0**1.5, wall=1.0) if p0 else {}
+    scene = Scene(
+        masses=(wall, *(1.0,) * 119), stiffnesses=(1.0,) * 119, k=1.5, velocities=(v,),
+        duration=run.time, bead_sensors=beads, samples=8001, **held,
+    )  # fmt: skip
+    run = simulate(scene, rtol=1e-8)
+    ahead = np.array(beads)[:, None] - np.floor(edge * run.time)
+    near = (ahead >= -6) & (ahead < 6) & (edge * run.time >= 41)
+    return [
+        decimals(edge, 3),
+        pytest.approx(run.bead_velocity[near].max() / v, abs=0.02),
+    ]
+
+
+def light(run, a, k):
+    """A bead between two that only its mean force moves; the period is a quadrature."""
+    s = (np.arange(4000) + 0.5) * math.pi / 4000
+
+    def pushed(room, x, power):
+        return np.maximum(1 - room + x, 0) ** power
+
+    def excess(room):
+        return pushed(room, a * np.cos(s), k).mean() - 1
+
+    room = scipy.optimize.brentq(excess, 0, 1)
+
+    def energy(x):
+        return (pushed(room, x, k + 1) + pushed(room, -x, k + 1)) / (k + 1)
+
+    x = a * np.sin(s / 2)
+    slowness = np.sqrt((a * a - x * x) / 2 / (energy(a) - energy(x)))
+    rate = 1 / slowness.mean() / math.sqrt(2 * k)
+    second = 1 - k * (k - 1) * a * a / 16
+    return [pytest.approx(rate, abs=3e-4), decimals(second, 4), decimals(room, 3)]
+
+
+def breather(run, number):
+    rate = 1 - (1e-3, 1.5e-3, 2.5e-3, 4e-3, 5e-3)[int(number) - 1]
+    return [decimals(rate, 4), pytest.approx(rate, abs=3e-4)]
+
+
+def disorder(run, spread, draw):
+    """A row by the page's own generator of random numbers, Park and Miller's."""
+    state = int(draw) * 7919
+    masses = []
+    for _ in range(90):
+        state = state * 48271 % 2147483647
+        masses.append(1 + spread * (2 * state / 2147483647 - 1))
+    seen = pulses((12, 13, *run.front), run.time, masses, k=1.5, velocities=(1.0,))
+    left = 100 * force_at(run.front, seen) / force_at((12, 13), seen)
+    last = run.front[0]
+    rule = 100 * math.exp(-mean_loss(spread) * (last - 12))
+    return [12, last, pytest.approx(left, abs=0.3), decimals(rule, 1)]
+
+
+# --- the table
+
+
+@dataclass(frozen=True)
+class Thing:
+    """A thing's page, its controls with the texts of their ends, and the numbers shown."""
+
+    page: str
+    controls: dict[str, tuple[str, str]]
+    numbers: Callable[..., list]
+
+
+SPEEDS = "0.2", "2"
+RATIOS = "0.02", "1"
+THINGS = {
+    "chain": Thing("play", {"v": SPEEDS, "omega": RATIOS}, beside_theory),
+    "arch": Thing("equal", {"k": ("1.1", "4")}, arch),
+    "ansatz": Thing(
+        "paper", {"terms": ("none", "b₄"), "length": ("4.5", "40.0")}, ansatz
+    ),
+    "observers": Thing(
+        "closure",
+        {
+            "omega": ("0.0501", "20"),
+            "closure": ("the paper's", "the full one, in the common field"),
+        },
+        observers,
+    ),
+    "cell": Thing("cells", {"bead": ("1", "4"), "mass": ("0.1", "6")}, cell),
+    "ring": Thing("exact", {"omega": ("0.0501", "1")}, ring),
+    "sum": Thing("expansion", {"order": ("0", "60"), "k": ("1.1", "2.0")}, partial_sum),
+    "load": Thing("pressed", {"p0": ("0", "0.5"), "v": ("0.05", "2")}, under_load),
+    "law": Thing(
+        "laws", {"law": ("spheres", "Hertz's next order"), "v": ("0.05", "1.5")}, law
+    ),
+    "lattices": Thing("links", {"v": SPEEDS}, lattices),
+    "shock": Thing("shocks", {"v": ("0.05", "1"), "p0": ("0", "1")}, shock),
+    "light": Thing("modes", {"a": ("0.1", "0.8"), "k": ("1.1", "3")}, light),
+    "breather": Thing("modes", {"number": ("0.0010", "0.0050")}, breather),
+    "disorder": Thing(
+        "column", {"spread": ("0\u00a0%", "40\u00a0%"), "draw": ("1", "20")}, disorder
+    ),
+}
+
+WATCH = """
+const draw = CanvasRenderingContext2D.prototype.fillText;
+CanvasRenderingContext2D.prototype.fillText = function (words, x, y) {
+  const scale = this.getTransform().a;
+  const wide = this.measureText(words).width;
+  const left = x - wide * {left: 0, center: 0.5, right: 1}[this.textAlign];
+  const [right, low] = [this.canvas.width / scale, this.canvas.height / scale];
+  if (left < -1 || left + wide > right + 1 || y < 8 || y > low) console.error(`cut: ${words}`);
+  draw.call(this, words, x, y);
+};
+"""
+"""A word that is drawn across the edge of its picture is an error of the console."""
+
+READ = """(() => {
+  const home = document.querySelector(".lwa-%s");
+  const {scene} = home;
+  const rows = scene.rows ?? [scene.lattice];
+  const control = home.querySelector("[name=%s]");
+  return {
+    said: control.getAttribute("aria-valuetext") ?? control.value,
+    line: home.querySelector("output").textContent,
+    focused: document.activeElement === control,
+    time: rows[0]?.time ?? 0,
+    read: rows.map(row => row?.arrivals.length ?? 0),
+    values: {...home.values, ...(scene.masses && {masses: scene.masses})},
+  };
+})()"""
+
+
+@dataclass
+class Hand:
+    """A thing on a page that is turned in one way, one step at a time."""
+
+    page: Page
+    name: str
+    way: str
+
+    def select(self, part):
+        return f".lwa-{self.name} {part}"
+
+    def ask(self, part, expression):
+        """The value of an expression of the element `e`."""
+        found = f"document.querySelector({json.dumps(self.select(part))})"
+        return self.page.evaluate(f"(e => {expression})({found})")
+
+    def drag(self, part, *points):
+        """Press a part and move over it with the mouse or the finger."""
+        drag = self.page.finger if self.way == "finger" else self.page.mouse
+        drag(*(self.page.place(self.select(part), *point) for point in points))
+
+    def begin(self):
+        """Answer the question, and stop what moves."""
+        if self.way == "keyboard":
+            self.page.mouse(self.page.place(self.select(".lwa-question")))
+            self.page.key("Tab")
+            self.page.key("Enter")
+            assert self.page.evaluate("document.activeElement.ariaPressed") == "true"
+            answers = self.ask(".lwa-answers", "e.children.length")
+            for _ in range(answers + len(THINGS[self.name].controls)):
+                self.page.key("Tab")
+            if self.page.evaluate("document.activeElement.textContent") == "Pause":
+                self.page.key("Enter")
+        else:
+            self.drag(".lwa-answers button", MIDDLE)
+            if self.ask(".lwa-play", "e?.textContent") == "Pause":
+                self.drag(".lwa-play", MIDDLE)
+
+    def steps(self):
+        """Both ends of each control, from the last control on."""
+        for control in reversed(THINGS[self.name].controls):
+            if self.way == "keyboard":
+                self.page.key("Tab", SHIFT)
+            for end in (0, 1):
+                self.turn(f"[name={control}]", end)
+                yield control, end
+        if self.name == "cell" and self.way != "keyboard":
+            for end, height in enumerate((0.999, 0.001)):
+                self.drag("canvas", (0.3, 0.5), (0.3, 0.6), (0.3, height))
+                yield "mass", end
+
+    def turn(self, part, end):
+        other, key = ("Home", "End") if end else ("End", "Home")
+        if self.way == "keyboard":
+            self.page.key(other)  # so that the value changes
+            self.page.key(key)
+        elif self.ask(part, "e.tagName") == "SELECT":
+            # The list that opens is the system's own: there the keyboard goes on.
+            self.drag(part, MIDDLE)
+            self.page.key(key)
+            self.page.key("Enter")
+        else:
+            self.drag(part, MIDDLE, (0.3 + 0.4 * end, 0.5), (0.001 + 0.998 * end, 0.5))
+
+    def read(self, control, end):
+        seen = self.page.evaluate(READ % (self.name, control))
+        return {**seen, "way": self.way, "control": control, "end": end}
+
+
+@cache
+def turned():
+    """What all things show at all ends, and what their consoles said."""
+    seen = defaultdict(list)
+    faults = {}
+    with Browser() as browser:
+        for screen, ways in ((DESKTOP, ("keyboard", "mouse")), (PHONE, ("finger",))):
+            pages = {
+                name: browser.open(HTML / f"{thing.page}.html", screen, WATCH)
+                for name, thing in THINGS.items()
+            }
+            for page in pages.values():
+                page.loaded()
+            for way in ways:
+                hands = [Hand(page, name, way) for name, page in pages.items()]
+                for hand in hands:
+                    hand.begin()
+                running = [(hand, hand.steps()) for hand in hands]
+                while running:
+                    stepped = [
+                        (hand, steps, next(steps, None)) for hand, steps in running
+                    ]
+                    running = [(hand, steps) for hand, steps, step in stepped if step]
+                    time.sleep(LIVE)  # for all things at once
+                    for hand, _, step in stepped:
+                        if step:
+                            seen[hand.name].append(hand.read(*step))
+            for hand in hands:
+                if hand.ask(".lwa-play", "Boolean(e)"):
+                    hand.drag(".lwa-play", MIDDLE)  # on with the last values
+            time.sleep(LIVE)
+            for name, page in pages.items():
+                page.evaluate("0")  # what was said until now
+                if page.faults:
+                    faults[name, ways] = page.faults
+                page.close()
+    return seen, faults
+
+
+def test_the_console_says_nothing():
+    assert not turned()[1]
+
+
+@cache
+def wanted(step):
+    """The packages' numbers for what a page shows."""
+    name, duration, read, values = json.loads(step)
+    return THINGS[name].numbers(Run(duration, read), **values)
+
+
+@pytest.mark.parametrize("name", THINGS)
+def test_a_thing_shows_the_packages_numbers_at_its_ends(name):
+    thing = THINGS[name]
+    steps = turned()[0][name]
+    assert len(steps) == 6 * len(thing.controls) + 4 * (name == "cell")
+    for step in steps:
+        control, values = step["control"], step["values"]
+        assert step["said"] == thing.controls[control][step["end"]], step
+        # a finger leaves the focus where it was
+        assert step["focused"] or step["way"] == "finger" or "cell" in thing.page, step
+        ours = wanted(json.dumps([name, step["time"], step["read"], values]))
+        # the speed before the change is that of another row
+        line = re.sub(r" Grey, [^.]*[.]\d+[.]", "", step["line"])
+        assert numbers(line)[: len(ours)] == ours, step
