@@ -47,8 +47,8 @@ _FACTORED_BITS = 200
 minute for 1e300."""
 
 _FINEST_ROOT = 12
-"""Greatest q of powers ``x^{p/q}`` that are rearranged as polynomials in ``x^{1/q}``: an exponent
-(k - 1)/2k has q of 6 and 10 at k = 3/2 and 5/2, and of 394 at k = 1.97."""
+"""Greatest q of powers ``x^{p/q}`` that are rearranged as polynomials in ``x^{1/q}``: the exponent
+``(k - 1)/2k`` has a q of 6 at k of 3/2, of 10 at 5/2, and of 394 at 1.97."""
 
 _POWER_BITS = 300
 """Most bits of a number, times the larger part of an exponent, of powers that are written out.
