@@ -209,7 +209,7 @@ def correct_contact(
     points, edges, both = beads.points, beads.edges, inverse[i] + inverse[i + 1]
     start, end = _ends(chain, beads, h, i)
     force, bend = points[2], -A * h * h * both
-    impulse = moment = change = rough = 0.0
+    impulse = moment = rough = 0.0
     found = kinks.STRAIGHT
     driven = i == 0 and chain.drive.driven
     drive = _motion(beads, h, i)
@@ -261,15 +261,13 @@ def correct_contact(
             power = A * force[s] * kinks.value_and_slope(drive, pair.nodes[s])[1]
             beads.books[2] -= pair.impulses[last, s] * power
             beads.books[3] += pair.errors[1, s] * power
-    squares = inverse[i] ** 2 + inverse[i + 1] ** 2
     if r > 0.0:
         # ∫ (1 - x) F dx and the heat ∫ r δ^p (dδ/dt)² dt are as wrong as p is, the impulse is not.
         missed = _MISFIT * abs(rough) * A * r * drag(law, max(top, 0.0))
         heated = 2.0 * missed * abs(start[1]) / h / plan.energy
         moved = h * missed / plan.y
+        squares = inverse[i] ** 2 + inverse[i + 1] ** 2
         beads.books[4] += heated * heated + moved * moved * squares
-    unsettled = change / plan.v
-    beads.books[4] += unsettled * unsettled * squares
     for n in range(max(0, i - 1), i + 2):
         share = both if n == i else -inverse[max(i, n)]
         d = chain.rest[n] + beads.next_y[n] - beads.next_y[n + 1]
