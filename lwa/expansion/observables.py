@@ -167,7 +167,7 @@ def shares_model(
 ) -> Model:
     """The model of a cell; with 1 for k if contacts are equal, whose shares do not depend on k."""
     # With symbols for k the ring of the recursion would have one generator more.
-    if len({*cell.stiffnesses}) == 1:
+    if cell.equal_contacts:
         k = sp.S.One
     return Model(cell, Power(k))
 
