@@ -5,6 +5,7 @@ import pytest
 import sympy as sp
 
 from lwa.law import Law, Power, named
+from tests.validation.lattice.reference import follow
 from validation.lattice.simulate import simulate
 from validation.scenes.forcing import Damping, Drive
 from validation.scenes.scene import Scene
@@ -238,3 +239,15 @@ def test_contacts_of_their_own_move_as_parts_of_a_chain_do():
     )  # fmt: skip
     expected = np.concatenate([run.velocities for run in alone])
     assert simulate(both).velocities == pytest.approx(expected, abs=1e-8)
+
+
+@pytest.mark.parametrize("rtol", [1e-7, 1e-10])
+def test_two_forces_that_jump_in_one_step_shift_each_other(rtol):
+    """A bead between two others that hit it: the motion erred by up to 31,000 times rtol."""
+    scene = Scene(
+        masses=(0.01, 0.0379, 0.2029), stiffnesses=(1, 1), law=Law(X ** sp.Rational(3, 2) + 0.1, X),
+        displacements=(0, 0.000999, 0.00277), velocities=(0.213, 0, -0.293), duration=0.3,
+    )  # fmt: skip
+    true = follow(scene, [scene.duration], 1e-13, (0.1, 0.1, 0.1)).v[0]
+    off = np.abs(simulate(scene, rtol=rtol).velocities - true).max()
+    assert off < 20 * rtol

@@ -38,7 +38,7 @@ EDGES = 4 * _PLACES + 2
 # Width at which the search for a place ends: at 1e-10 the energy lost errs by 15 times an rtol of
 # 1e-11.
 _CLOSE = 1e-13
-_OPENS = 1e-100  # a compression at which a contact is about to open, in any units
+OPENS = 1e-100  # a compression at which a contact is about to open, in any units
 
 
 @part
@@ -227,7 +227,7 @@ def _find_jump(
     for n in range(count):
         p, slope = value_and_slope(c, edges[n])
         if abs(p) < 1e-9 * abs(slope):
-            force = push(law, r, _OPENS, slope / h)
+            force = push(law, r, OPENS, slope / h)
             if slope > 0.0 and r > 0.0 and law.p > 0.0 and law.p < 1.0:
                 found = edges[n], r * slope / h * drag(law, slope), law.p
             else:

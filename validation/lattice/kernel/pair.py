@@ -53,6 +53,8 @@ _NEAR, _VERY_NEAR, _NEAR_DAMPED, _STRONG = 0.3, 0.03, 0.6, 1e3
 # Mean distance of the quintic from a p with ``p'' = 9 P₄(x)``, Legendre's polynomial: the distance
 # is ``9 · 0.0365 (1 - (2x - 1)²)³``.
 _MISFIT = 0.15
+# Greatest distance of the quintic from a p whose second derivative jumps by 1.
+_UNBENT = 0.014
 # Share of a neighbour's correction that counts as error.
 _SECOND = 0.5
 # Step-size control of Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.4.
@@ -271,6 +273,13 @@ def correct_contact(
     for n in range(max(0, i - 1), i + 2):
         share = both if n == i else -inverse[max(i, n)]
         d = chain.rest[n] + beads.next_y[n] - beads.next_y[n + 1]
+        if n != i and jump != 0.0 and beads.marks[n] > 0.0:
+            # The jump bends the neighbour's curve, too, and shifts the place of its own jump.
+            rate = abs(beads.next_v[n] - beads.next_v[n + 1])
+            own = push(chain.laws[chain.law[n]], chain.r[n], kinks.OPENS, rate)
+            shift = _UNBENT * h * h * A * abs(jump * share)
+            missed = chain.A[n] * own * min(shift / max(rate, kinks.OPENS), h) / plan.v
+            beads.books[4] += missed * missed * (inverse[n] ** 2 + inverse[n + 1] ** 2)
         if n == i:
             d = top
         closed = n == i or beads.force[1, n + 1] + chain.load[n] > 0.0
