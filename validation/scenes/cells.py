@@ -30,15 +30,9 @@ HEAD = 1000
 
 _MARKS = "\t;, "
 _COMMA = re.compile(r'"([-+]?\d+),(\d+(?:[eE][-+]?\d+)?)"')  # a number in quotes
-# Numbers that NumPy's reader does not take: some loggers write + 1.5, Fortran 1.5D-3. By blanks a
-# sign may stand alone; where commas do not separate they are decimal commas.
-_SIGNS_APART = {"+ ": "+", "- ": "-"}
-_PLAIN = {
-    "\t": {"D": "e", ",": ".", **_SIGNS_APART},
-    ";": {"D": "e", ",": ".", **_SIGNS_APART},
-    ",": {"D": "e", **_SIGNS_APART},
-    " ": {"D": "e", ",": "."},
-}
+# Signs that NumPy's reader does not take, as it takes them, and the separator beside which they
+# stay: Fortran writes 1.5D-3; decimal commas; some loggers write + 1.5.
+_PLAIN = (("D", "e", ""), (",", ".", ","), ("+ ", "+", " "), ("- ", "-", " "))
 _NUMBER = r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|inf)"
 _FEW = 0.1  # rows of numbers outside of the record, at most, over those of the record
 _SETTINGS = 20  # lines in whose first columns recorders write settings
@@ -214,8 +208,9 @@ def runs(flags: ArrayLike) -> list[tuple[int, int]]:
 
 def _plain(text: str, mark: str) -> str:
     """Return a text with its numbers as NumPy's reader takes them."""
-    for sign, plain in _PLAIN[mark].items():
-        text = text.replace(sign, plain)
+    for sign, plain, kept_beside in _PLAIN:
+        if mark != kept_beside:
+            text = text.replace(sign, plain)
     return text
 
 

@@ -131,13 +131,14 @@ def read_time(text: str, name: str, example: str) -> float:
     text : str
         The statement.
     name : str
-        Name of its option.
+        Name of its option in Python.
     example : str
         A statement that is proposed in its place.
     """
     statement = read_statement(text, "s")
     if statement is None or not statement[0] > 0:
+        option = name.replace("_", "-")
         raise SceneError(
-            f"{name} is {shorten(text)}: a time above 0 is wanted", **{name: example}
+            f"{option} is {shorten(text)}: a time above 0 is wanted", **{name: example}
         )
     return statement[0]
