@@ -21,8 +21,15 @@ from lwa.base.files import reason
 from lwa.base.words import similar
 from validation.scenes.cells import Cells
 from validation.scenes.checks import SceneError
-from validation.scenes.columns import NAME, NAMES, Column, Columns, Stated
-from validation.scenes.proposals import STEP, refusal
+from validation.scenes.columns import (
+    NAME,
+    NAMES,
+    STEP,
+    Column,
+    Columns,
+    Stated,
+    refusal,
+)
 from validation.scenes.units import name_of, read_time
 
 

@@ -25,25 +25,23 @@ from lwa.base.files import Reader
 from lwa.law import ContactLaw
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes.checks import (
+    MISSING,
     SceneError,
     alike,
     check_count,
+    contact_law,
     each,
     finite,
     integer,
     items,
+    numeric,
     one_of,
     one_or_each,
     positive,
-)
-from validation.scenes.forcing import Damping, Drive
-from validation.scenes.laws import (
-    MISSING,
-    contact_law,
-    numeric,
     read_contact_law,
     read_exponent,
 )
+from validation.scenes.forcing import Damping, Drive
 
 __all__ = ["Scene", "SceneError"]
 
