@@ -100,9 +100,10 @@ class Column:
     @property
     def fault(self) -> str:
         """Words on a unit that is missing or of another quantity."""
-        unit = self.stated or self.unit
-        found = shorten(unit) if unit else "missing"
         base = self.base
+        found = "missing"
+        if self.stated or self.unit:
+            found = shorten(self.stated or self.unit)
         return (
             f"unit of {self.name} is {found}: such as {base}, m{base}, 0.04 {base} or 12.5 "
             f"{base}/{self.unit or 'V'} is wanted"
@@ -151,6 +152,7 @@ class Columns:
         columns = []
         if self.step:
             columns.append(Column("time", None, "", "", self.step))
+        # The user's word stands above the file's headers.
         taken = {*names.values(), *(column.name for column in columns)}
         for row in reversed(self.cells.head):  # the lowest header counts
             found = {}
@@ -160,6 +162,7 @@ class Columns:
                     found[number] = name
             names = found | names
             taken |= {*found.values()}
+        # A unit is that of the column of this name, else of all columns with this header.
         keys: dict[int, str] = {}
         for given in self.units:
             own = [number for number, name in names.items() if name == name_of(given)]

@@ -48,8 +48,9 @@ def refusal(
     for column in replace(columns, headers=headers).named:
         if column.name not in missing:
             used.add(column.number)
+    # Columns that are named already are not proposed for another name.
     free = [number for number in cells.entries if number not in used]
-    steps = _steps(cells) if missing else {}
+    steps = _steps(cells)
     for name in missing:
         rank = partial(_rank, cells, steps, name)
         best = min(free, key=rank, default=None)
@@ -102,6 +103,7 @@ def _steps(cells: Cells) -> dict[int, Array]:
     try:
         table = cells.numbers([number - 1 for number in numbers], HEAD)
     except InputError:
+        # Without numbers nothing is known of the columns' behaviour.
         table = np.empty((0, len(numbers)))
     steps = {}
     for number, column in zip(numbers, table.T, strict=True):
