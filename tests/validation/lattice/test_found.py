@@ -186,13 +186,16 @@ def test_heat_of_a_contact_that_has_stopped_pushing_when_its_neighbour_closes(rt
     assert abs(simulate(scene, rtol=rtol).energy_drift) < 10 * rtol
 
 
-@pytest.mark.parametrize("rtol", [1e-8, 1e-10])
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10])
 @pytest.mark.parametrize(
     ("masses", "k", "damping", "drive", "velocity"),
     [
         ((0.409, 1.455), 2.5, ("restitution", 0.589), (0.344, 0.446), -1.643),
         ((1.104, 1.106), 2.0, ("kuwabara_kono", 0.55), (0.225, 0.402), -0.04),
         ((0.715, 1.488), 1.5, ("kuwabara_kono", 0.378), (0.91, 0.315), 0.039),
+        # The wall's contact, idle as damping may not pull, seems to push at some stages.
+        ((1.361, 0.578), 3.0, ("contact", 0.395), (0.824, 0.592), -1.128),
+        ((1.404, 0.973), 2.5, ("contact", 0.684), (0.621, 0.391), 0.08),
     ],
 )
 def test_energy_of_a_damped_driven_bead_that_hits_a_moving_bead(
