@@ -22,7 +22,9 @@ import sympy as sp
 from lwa import (
     Cell,
     Dimer,
+    Material,
     Power,
+    Sphere,
     canonical_wave,
     expand,
     homogenize,
@@ -531,3 +533,94 @@ def test_a_thing_shows_the_packages_numbers_at_its_ends(name):
         # the speed before the change is that of another row
         line = re.sub(r" Grey, [^.]*[.]\d+[.]", "", step["line"])
         assert numbers(line)[: len(ours)] == ours, step
+
+
+# --- the calculator, by what is typed
+
+FIRST = {"blow": "1.37", "diameterB": "4.76", "load": "0"}
+"""What its fields hold before anything is typed; a comma is a decimal point."""
+TYPED = (
+    {"blow": "0,01"}, {"blow": "6"}, {"diameterB": "1,6"}, {"diameterB": "30"}, {"load": "2"},
+)  # fmt: skip
+REFUSED = (
+    ({"diameterB": "1"}, "0.00252"),
+    ({"diameterB": "60"}, "545"),
+    ({"blow": "1e4"}, "Hertz"),
+    ({"blow": "0"}, "positive"),
+    ({"load": "two"}, "not negative"),
+)
+"""Beyond the ends: a part of the refusal."""
+
+
+@cache
+def calculated(way):
+    """Rows of the calculator for all that is typed, and what the console said."""
+    rows = "[...e.closest('.lwa-calculator').querySelectorAll('[data-name]')]"
+    told = f"Object.fromEntries({rows}.map(r => [r.dataset.name, r.innerText.split('\\t')]))"
+    found = []
+    with Browser() as browser:
+        screen = PHONE if way == "finger" else DESKTOP
+        page = browser.open(HTML / "calculator.html", screen, WATCH)
+        page.loaded()
+        hand = Hand(page, "calculator", way)
+        hand.begin()
+        held = FIRST
+        for typed in (*TYPED, *(typed for typed, _ in REFUSED)):
+            for name, text in (FIRST | typed).items():
+                if text == held[name]:
+                    continue
+                hand.drag(f"[name={name}]", MIDDLE)
+                page.key("Home")
+                page.key("End", SHIFT)
+                for letter in text:
+                    page.key(letter)
+                time.sleep(
+                    0.5
+                )  # the page waits for further letters, and for a second tap
+            held = FIRST | typed
+            found.append(hand.ask("tbody", told))
+        return found, page.faults
+
+
+@pytest.mark.parametrize("way", ["mouse", "finger"])
+def test_the_calculator_at_its_ends(way):
+    seen, faults = calculated(way)
+    assert not faults
+    for shown, typed in zip(seen, TYPED, strict=False):
+        given = {
+            name: float(text.replace(",", "."))
+            for name, text in (FIRST | typed).items()
+        }
+        radii = 2.38e-3, given["diameterB"] / 2e3
+        solids = Material.named("steel 316"), Material.named("PTFE")
+        spheres = [
+            Sphere.solid(str(R), solid) for R, solid in zip(radii, solids, strict=True)
+        ]
+        chain = Cell.of_spheres(spheres)
+        load = given["load"]
+        (speed, *_), (theory, *_) = (numbers(shown["speed"][part]) for part in (1, 2))
+        row = simulate(Scene.of_cell(
+            chain, 50, "3/2", velocities=(given["blow"],), duration=92 * sum(radii) / speed,
+            contact_sensors=(79, 80, 81), precompression=load,
+            wall=float(chain.stiffnesses[0]) if load else None, samples=20001,
+        ))  # fmt: skip
+        before, here, after = (measure(row.time, f - f[0]) for f in row.contact_force)
+        # forces of the contacts 80 and 81; the speed is that at contact 80
+        ours = load + (here.peak + after.peak) / 2
+        milli = 1e-3 if "mN" in shown["force"][1] else 1
+        assert milli * numbers(shown["force"][1])[0] == pytest.approx(ours, rel=3e-3), (
+            typed
+        )
+        passed = after.arrival - before.arrival
+        assert speed == pytest.approx(2 * sum(radii) / passed, rel=0.02), typed
+        more = {"precompression": load} if load else {}
+        wave = canonical_wave(chain, "3/2").at_force(sp.Float(ours), **more)
+        assert theory == pytest.approx(float(wave.speed), rel=1e-3), typed
+        micro = 1e-6 if "µs" in shown["width"][2] else 1e-3
+        width = float(wave.fwhm("force", "time"))
+        assert micro * numbers(shown["width"][2])[0] == pytest.approx(
+            width, rel=2e-3
+        ), typed
+    for shown, (typed, part) in zip(seen[len(TYPED) :], REFUSED, strict=True):
+        assert list(shown) == ["refused"], typed
+        assert part in shown["refused"][0], typed
