@@ -17,7 +17,6 @@ document.addEventListener("readystatechange", () => {
 
 addEventListener("load", async () => {
   await window.MathJax?.startup?.promise;
-  await document.fonts.ready;
   if (phone) {
     for (const image of document.querySelectorAll("figure > img[class*=panels-]")) stack(image);
   }
@@ -28,6 +27,7 @@ addEventListener("load", async () => {
     document.querySelectorAll(wide).forEach(reach);
   };
   arrange();
+  document.fonts.ready.then(arrange); // letters have other widths then
   addEventListener("resize", arrange);
   document.addEventListener("toggle", arrange, true); // what was folded has a width now
 });
