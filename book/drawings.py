@@ -11,11 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Circle, Rectangle
 from studies.breather import Standing, continued
-from studies.gravity import Upright
 
 from lwa import Cell, Dispersion, Envelope, LoadedWave
 from lwa.wave.numeric import NumericWave
-from validation.scenes.chains import PTFE_BEAD, STEEL_BEAD, numeric_cell
+from validation.scenes.chains import PTFE_BEAD, STEEL_BEAD
 from validation.studies.paper import RECORDED, forces
 
 BEAD, INNER = "#8FA3B5", "#E69F00"
@@ -319,26 +318,23 @@ def ridges(figure: Figure, runs: dict[str, Any]) -> None:
     bar.minorticks_off()
 
 
-def upright(panels: Sequence[Axes], weak: Any, strong: Any) -> None:
-    """Width over depth: fronts of weak blows, and pulses of three strong ones in equal spheres."""
+def upright(panels: Sequence[Axes], chains: Sequence[Any]) -> None:
+    """Width over depth, from the study's panels of equal spheres and of a dimer.
+
+    Fronts of weak blows in both, and pulses of three strong blows in equal spheres.
+    """
     left, right = panels
-    chains = {"equal spheres": (1,), "dimer": (1, "1/2")}
-    for i, (name, row) in enumerate(zip(chains, weak, strict=True)):
-        depth, width, _ = Upright(numeric_cell(chains[name]), 1.5, 1500).fronts()
-        left.loglog(depth, width, f"C{i}{'os'[i]}", mfc="none", label=name)
-        line = row["prefactor_theory_value"] * np.cbrt(depth)
-        left.loglog(depth, line, f"C{i}-", lw=1)
-    for i, blow in enumerate((10.0, 100.0, 1000.0)):
-        rows = []
-        for row in strong:
-            if len(row["masses"]) == 1 and row["blow_value"] == blow:
-                rows.append(row)
-        sites = [row["site_value"] for row in rows]
-        widths = [row["width_value"] for row in rows]
-        alone = [row["solitary_value"] for row in rows]
-        right.loglog(sites, widths, f"C{i}{'osD'[i]}", label=f"blow of {blow:g}")
-        label = "solitary waves" if blow == 1000 else None
-        right.loglog(sites, alone, f"C{i}--", lw=1, label=label)
+    for i, (chain, name) in enumerate(
+        zip(chains, ("equal spheres", "dimer"), strict=True)
+    ):
+        front, theory = chain.curves[:2]
+        left.loglog(front.x, front.y, f"C{i}{'os'[i]}", mfc="none", label=name)
+        left.loglog(theory.x, theory.y, f"C{i}-", lw=1)
+    equal = chains[0].curves[2:]  # a pulse and its solitary wave for each blow
+    for i, (pulse, alone) in enumerate(zip(equal[::2], equal[1::2], strict=True)):
+        right.loglog(pulse.x, pulse.y, f"C{i}{'osD'[i]}", label=pulse.label)
+        label = "solitary waves" if i == 2 else None
+        right.loglog(alone.x, alone.y, f"C{i}--", lw=1, label=label)
     left.set(ylabel="FWHM of the velocity in sites")
     right.set(ylabel="FWHM of the force in sites")
     for axes, ticks in ((left, [8, 10, 12, 15, 18]), (right, [2, 5, 10, 20, 40])):
@@ -371,7 +367,7 @@ def forms(
 def laws(panels: Sequence[Axes], waves: dict[str, LoadedWave]) -> None:
     """Force over compression, and speed over peak strain, of laws by name."""
     left, right = panels
-    heights = np.linspace(1e-3, 0.3, 120)
+    heights = 0.3 * np.linspace(0.05, 1, 40) ** 2  # densest where speeds rise steeply
     for name, wave in waves.items():
         left.plot(heights, wave.law.at(heights), label=name)
         right.plot(heights, [float(wave.field.speed(sp.Float(B))) for B in heights])

@@ -57,7 +57,8 @@ def work_precision() -> dict[tuple[str, str], list[tuple[float, float]]]:
         for label, (options, tolerances) in METHODS.items():
             if scene.damping and label == "symplectic":
                 continue  # forces that depend on velocities are no kicks
-            simulate(scene, rtol=1e-4, **options)  # compiles
+            if label != "SciPy DOP853":
+                simulate(scene, rtol=1e-4, **options)  # compiles
             for n in tolerances:
                 start = time.process_time()
                 run = simulate(scene, rtol=10.0**-n, **options)

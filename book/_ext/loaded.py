@@ -27,7 +27,18 @@ server = socket.socket(socket.AF_UNIX)
 server.bind(sys.argv[1])
 server.listen()
 
-for name in ("matplotlib.backends.backend_svg", "sympy"):
+# What the packages load when it is needed, and several pages need
+later = (
+    "matplotlib.backends.backend_svg",
+    "scipy.integrate",
+    "scipy.interpolate",
+    "scipy.optimize",
+    "scipy.signal",
+    "sympy",
+    "validation.pulses.steady",
+    "validation.studies.records",
+)
+for name in later:
     import_module(name)
 # Packages load the modules of what they export at its first use.
 for package in (lwa, validation):

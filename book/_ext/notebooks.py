@@ -12,6 +12,7 @@ import os
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 
@@ -68,6 +69,7 @@ class Book:
     sources: Mapping[str, str] = field(default_factory=dict)
 
 
+@cache
 def sources(bibliography: Path) -> dict[str, str]:
     """Authors and year of each entry, as in "Porter et al. 2008"."""
     found = {}

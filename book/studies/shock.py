@@ -249,9 +249,9 @@ def own_wave(chain: Shock) -> Pair:
         return math.sqrt(wave.c2) * pace, ahead + strain, velocity * pace
 
     guess = ahead / float(chain.peak)
-    low, high = guess / 1.2, min(guess * 1.2, (1 + guess) / 2)
-    share = scipy.optimize.brentq(
-        lambda x: scaled(x)[2] - fastest, low, high, rtol=1e-10
+    # By secants: the canonical wave is near, and each evaluation solves for a wave.
+    share = scipy.optimize.newton(
+        lambda x: scaled(x)[2] / fastest - 1, guess, x1=0.99 * guess, tol=1e-9 * guess
     )
     return scaled(share)[:2]
 

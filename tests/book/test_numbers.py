@@ -209,7 +209,7 @@ def test_the_closed_form_by_hand():
 
 def test_closed_forms_hold_for_every_exponent():
     """Bounds of the page, on exponents that `lwa`'s own tests do not use."""
-    for k in ("1.03", "1.7", "2.6", "7", "33"):
+    for k in ("1.03", "2.6", "33"):
         form, wave = lattice_wave(UNIFORM, k=k), exact_wave([1], float(k))
         assert float(form.speed) == pytest.approx(wave.c, rel=1e-5)
         assert float(form.short_speed) == pytest.approx(wave.c, rel=2e-3)

@@ -41,6 +41,7 @@ def test_the_widths():
     assert wave.beta == sp.sqrt(10) / (5 * D)
 
 
+@pytest.mark.slow
 def test_the_errors_of_the_width_are_those_of_the_command():
     """Theirs and ours; the old sentence said that one command reproduces them."""
     number = r"([+−]?[\d.]+)"

@@ -19,10 +19,10 @@ from lwa.law import DELTA, named
 
 y = sp.Symbol("y", positive=True)
 STEEL = lwa.Material(1, 0)
-BALL, CHAIN = lwa.Sphere(1, 1, STEEL), Cell([1])
+CHAIN = Cell([1])
 TWO_A = Cell([sp.Symbol("a"), sp.Symbol("a", positive=True)])
-DIMER, TWO = Dimer("m1", "m2"), Cell([1, 2])
-WAVE, ONE = canonical_wave(DIMER), canonical_wave(Cell([1], spacing=1), "3/2")
+DIMER = Dimer("m1", "m2")
+WAVE = canonical_wave(DIMER)
 HERTZ, LINK = Power("3/2"), Link(0, 1, Power("3/2"))
 EQUAL, BEADS = Cell([1], spacing=1), Lattice([1], [LINK])
 SOFT = Law(DELTA - DELTA**2)

@@ -214,7 +214,7 @@ class Motion:
         """The `energies` of the initial state."""
         return self.energies(self.start)
 
-    @property
+    @cached_property
     def free_energy(self) -> float:
         """Initial energy of the contacts and of the beads that are not driven."""
         kinetic, stored = self.initial_energies

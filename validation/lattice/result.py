@@ -35,9 +35,8 @@ _SI = {
     "displacement": "m",
     "velocity": "m/s",
 }
-_MOST = (
-    10  # sensors of one kind that are drawn as curves, in ten colours; more make a map
-)
+# Sensors of one kind that are drawn as curves, in ten colours; more make a map.
+_MOST = 10
 _FINEST = 1000  # places, and times, of a map: a picture has some thousand pixels a side
 
 
@@ -66,7 +65,7 @@ class Run(Pictured):
     Raises
     ------
     IntegrationError
-        If a number of the final state, or its energy, is not finite.
+        If the square of a number of the final state is not finite.
     """
 
     motion: Motion
@@ -76,8 +75,8 @@ class Run(Pictured):
     samples: Array | None = None
 
     def __post_init__(self) -> None:
-        # A sum is finite only if all its terms are.
-        if not math.isfinite(self.energy_drift + self.end.sum()):
+        # A sum is finite only if all its terms are; squares, as energies overflow, too.
+        if not math.isfinite(np.square(self.end).sum()):
             raise IntegrationError(
                 "the motion overflows: choose other units, or a step of "
                 f"{self.step:g} is too long"
