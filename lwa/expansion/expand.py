@@ -18,7 +18,8 @@ import sympy as sp
 
 from lwa.algebra.model import Model
 from lwa.base.exact import InputError, integer
-from lwa.base.words import QUANTITIES, QuantityName, one_of
+from lwa.base.frozen import known_quantity
+from lwa.base.words import QUANTITIES, QuantityName
 from lwa.cell import Cell, Parametric, exponent, read_cell
 from lwa.cell import k as symbol_k
 from lwa.expansion.observables import Observables, shares_model
@@ -83,9 +84,9 @@ class Expansion(Parametric):
 
     @cached_property
     def numeric(self) -> bool:
-        """True if the series can be summed: k > 1 and the cell are numbers."""
+        """True if the series can be summed: k and the cell are numbers."""
         values = sp.Tuple(*self.cell.masses, *self.cell.stiffnesses, self.k)
-        return not values.free_symbols and bool(self.k > 1)
+        return not values.free_symbols
 
     @cached_property
     def compliance(self) -> sp.Expr:
@@ -115,7 +116,7 @@ class Expansion(Parametric):
             A length in D.
         """
         i = integer(contact, "contact", 0, self.cell.size - 1)
-        one_of(quantity, QUANTITIES, "quantity")
+        known_quantity(quantity)
         # The Gaussian F = e^{-Z²/4}, Z = √(ε/I) ξ, is 1/2 at Z = 2√log 2.
         unit = 4 * sp.sqrt(self._observables.I * sp.log(2))
         return self._series(quantity, unit, -sp.S.Half, i)

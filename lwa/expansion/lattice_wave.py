@@ -24,9 +24,14 @@ import sympy as sp
 
 from lwa.base import latex
 from lwa.base.exact import InputError, number, positive, power, shorten
-from lwa.base.frozen import RISE, Estimate, NoSolitaryWave
+from lwa.base.frozen import (
+    RISE,
+    Estimate,
+    NoSolitaryWave,
+    known_extent,
+    known_quantity,
+)
 from lwa.base.words import (
-    EXTENTS,
     QUANTITIES,
     ExtentName,
     LanguageName,
@@ -243,8 +248,8 @@ class LatticeWave(Parametric):
         -------
         sympy.Expr
         """
-        length = self._result(one_of(quantity, QUANTITIES, "quantity"))
-        if one_of(extent, EXTENTS, "extent") == "length":
+        length = self._result(known_quantity(quantity))
+        if known_extent(extent) == "length":
             return length
         return length / self.speed
 

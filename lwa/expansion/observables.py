@@ -7,7 +7,7 @@ coefficients of a series in ε, in the caller's symbols.
 
 from __future__ import annotations
 
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, lru_cache
 
 import sympy as sp
 from flint import fmpq, fmpq_mpoly
@@ -167,17 +167,18 @@ def shares_model(
 ) -> Model:
     """The model of a cell; with 1 for k if contacts are equal, whose shares do not depend on k."""
     # With symbols for k the ring of the recursion would have one generator more.
-    if len({*cell.stiffnesses}) == 1:
+    if cell.equal_contacts:
         k = sp.S.One
     return Model(cell, Power(k))
 
 
+# An order of 80 holds 11 MB.
 @lru_cache(maxsize=4)
 def _equal_beads(order: int) -> Observables:
     return Observables(Recursion(shares_model(Cell((1,)), sp.S.One), order))
 
 
-@lru_cache(maxsize=64)
+@cache
 def equal_beads(
     quantity: str,
     order: int,

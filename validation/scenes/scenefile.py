@@ -44,8 +44,8 @@ from lwa.spheres.beads import (
 )
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes.checks import SceneError, finite, positive
-from validation.scenes.columns import MeasuredFile
 from validation.scenes.forcing import DAMPINGS, Damping, Drive
+from validation.scenes.measured import MeasuredFile
 from validation.scenes.scene import Scene, contacts_of
 
 MOST_BEADS = 1_000_000
@@ -292,7 +292,7 @@ def _drive(given: Table, units: str, folder: Path) -> Drive:
         if not isinstance(name, str):
             raise SceneError(f"drive.file is {shorten(name)}: a file's name is wanted")
         file = MeasuredFile(folder / name, **stated)
-        check_units(file.si, units, file.path)
+        check_units(file.columns.si, units, file.path)
         motion["time"], motion["displacement"] = file.rows("time", "displacement").T
     return Drive(**motion)
 

@@ -10,6 +10,9 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from lwa.base.exact import shorten
+from validation.scenes.checks import SceneError
+
 BASES = {
     "time": "s",
     "displacement": "m",
@@ -118,3 +121,23 @@ def read_statement(text: str, base: str) -> tuple[float, str] | None:
             # A unit alone is the file's, too.
             return size * multiple, named or ("" if number else unit)
     return None
+
+
+def read_time(text: str, name: str, example: str) -> float:
+    """Return a time above 0 in SI, as a statement of the user; `SceneError` for another text.
+
+    Parameters
+    ----------
+    text : str
+        The statement.
+    name : str
+        Name of its option.
+    example : str
+        A statement that is proposed in its place.
+    """
+    statement = read_statement(text, "s")
+    if statement is None or not statement[0] > 0:
+        raise SceneError(
+            f"{name} is {shorten(text)}: a time above 0 is wanted", **{name: example}
+        )
+    return statement[0]

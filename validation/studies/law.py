@@ -37,7 +37,8 @@ from validation.pictures import Curve, Panel
 from validation.report.study import Report, option, study
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError
-from validation.scenes.columns import MeasuredFile, Stated
+from validation.scenes.columns import Stated
+from validation.scenes.measured import MeasuredFile
 from validation.studies.records import column_options
 from validation.waves.solver import exact_wave
 
@@ -139,7 +140,7 @@ def law(
         numbers["E"] = _modulus(content, material, fit.hertz)
     units = {"k": ""}
     axes = ("peak contact force", "speed")
-    if file.si:
+    if file.columns.si:
         units |= {"A": f" (N/m^{fit.k.value:.3g})", "E": " (Pa)"}
         axes = ("peak contact force (N)", "speed (m/s)")
     # Speeds beside one power, for which ln V is linear in ln F.
@@ -164,7 +165,7 @@ def law(
         rows.append((name + units.get(name, ""), number))
         values |= {f"{name}_value": number.value, f"{name}_error_value": number.error}
     return Report(
-        f"{len(force)} pulses, forces {force[0]:.4g} … {force[-1]:.4g}{' N' * file.si}",
+        f"{len(force)} pulses, forces {force[0]:.4g} … {force[-1]:.4g}{' N' * file.columns.si}",
         (Table(_POWER, tuple(rows)),),
         panels=(Panel(*axes, curves, "xy"),),
         notes=(*file.notes, *notes, _NOTE),
@@ -174,7 +175,7 @@ def law(
 
 def _pulses(file: MeasuredFile) -> tuple[Array, Array, Array | None]:
     """Return rising forces of `_FEWEST` or more pulses, their speeds and weights (None if none)."""
-    errors = [n for n in ("force_error", "speed_error") if n in file.names]
+    errors = [n for n in ("force_error", "speed_error") if n in file.columns.names]
     read = file.rows("force", "speed", *errors).T
     force, speed, *deviations = read[:, np.argsort(read[0])]
     if len(force) < _FEWEST or not (force[0] > 0 and speed.min() > 0):

@@ -19,11 +19,13 @@ from validation.pictures import Curve, Panel
 from validation.pulses.discharge import corrected, suggested
 from validation.pulses.noisy import InvertedError, NoisyPulse, noisy_pulse, noisy_pulses
 from validation.pulses.pulse import MeasureError
-from validation.pulses.sensors import Reading, forces_at_start, record, speeds_between
+from validation.pulses.readings import Reading, speeds_between
+from validation.pulses.sensors import forces_at_start, record
 from validation.report.study import Report, number, option, study
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError, one_of, positive
-from validation.scenes.columns import MeasuredFile, Record, Stated
+from validation.scenes.columns import Stated
+from validation.scenes.measured import MeasuredFile, Record
 from validation.scenes.scenefile import check_units, read_scene
 from validation.scenes.units import BASES, read_statement
 from validation.studies.run import reading_tables
@@ -139,7 +141,7 @@ class Measured:
         files = [MeasuredFile(name, **stated) for name in names]
         signals: dict[tuple[str, int | None], Record] = {}
         for place, file in enumerate(files, start=1):
-            if file.si != files[0].si:
+            if file.columns.si != files[0].columns.si:
                 raise SceneError(
                     f"{file.path}: it has units, {names[0]} not, or the reverse"
                 )
@@ -155,7 +157,7 @@ class Measured:
                     raise SceneError(f"{file.path}: {named} is there twice")
                 signals[sensor] = signal
         notes = [note for file in files for note in file.notes]
-        return cls([*signals.values()], files[0].si, notes)
+        return cls([*signals.values()], files[0].columns.si, notes)
 
     @property
     def unit(self) -> str:

@@ -26,11 +26,10 @@ RESULTS = {
 
 
 def test_closed_forms_are_the_lattices_at_every_k():
-    """The stated bounds hold, and so does ±, which is not too large for nine numbers of ten.
-
-    The short form of the speed is right to two in a thousand.
+    """The stated bounds hold, and so does ±: near the deviation of some k, and not too large for
+    nine numbers of ten. The short form of the speed is right to two in a thousand.
     """
-    ratios = []
+    ratios = {name: [] for name in RESULTS}
     for k in (1 + np.geomspace(0.01, 59, 30).round(3)).tolist():
         wave, exact = lattice_wave(EQUAL, k=k), lattice(k)[0]
         assert float(wave.short_speed) == pytest.approx(exact["c"], rel=2e-3)
@@ -40,8 +39,9 @@ def test_closed_forms_are_the_lattices_at_every_k():
             assert deviation <= BOUNDS[name], (k, name)
             assert deviation <= found.relative_error + 2e-12, (k, name)
             if deviation > 1e-11:
-                ratios.append(found.relative_error / deviation)
-    assert np.mean(np.array(ratios) <= LOOSE) >= 0.9
+                ratios[name].append(found.relative_error / deviation)
+    assert all(min(of_name) < 1.5 for of_name in ratios.values())
+    assert np.mean(np.concatenate([*ratios.values()]) <= LOOSE) >= 0.9
 
 
 def test_the_coefficients_are_exact():
@@ -105,14 +105,6 @@ def test_relative_errors_of_composed_results_add_up():
     }.items():
         total = sum(errors[part] for part in parts)
         assert wave.estimate(*composed).relative_error == pytest.approx(total, rel=1e-2)
-
-
-def test_light_beads_that_weigh_nothing():
-    heavy = lattice_wave(Cell([3], [sp.Rational(1, 4)], 2), k=2, force=5)
-    light = lattice_wave(Dimer(3, "1e-30", spacing=1), k=2, force=5)
-    for call in RESULTS.values():
-        values = [wave.estimate(*call).value for wave in (heavy, light)]
-        assert values[1] == pytest.approx(values[0], rel=1e-12)
 
 
 def passage(k, omega, speed, length):

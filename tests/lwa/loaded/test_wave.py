@@ -153,8 +153,6 @@ def test_errors_are_nan_where_nothing_was_measured(lattice, force, load, unknown
 
 
 CUBIC = Power(3)
-
-
 CURVED = named("polynomial", 0, 1)  # F″ = 0 at the start
 INFLECTED = named("polynomial", "-3/10", "3/10")  # F″ < 0 there
 
@@ -198,10 +196,10 @@ def test_errors_cover_the_exact_wave(lattice, force, load):
     wave = loaded_wave(lattice, force=force, precompression=load)
     speed = wave.estimate("speed")
     missed = abs(speed.value - math.sqrt(known.square))
-    assert missed < speed.error < 30 * missed
+    assert missed < speed.error < 5 * missed
     width = wave.estimate("fwhm", known.of)
     missed = abs(width.value - known.fwhm)
-    assert missed < width.error < 30 * missed
+    assert missed < width.error < 5 * missed
     # The time of passage is a quotient, and relative errors add.
     time = wave.estimate("fwhm", known.of, "time")
     relative = width.error / width.value + speed.error / speed.value

@@ -9,7 +9,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from lwa import InputError
-from validation.scenes.columns import MeasuredFile
+from validation.scenes.measured import MeasuredFile
 from validation.scenes.units import in_si
 
 
@@ -102,7 +102,7 @@ def test_units_are_stated_by_the_user_or_by_the_file(tmp_path, header, units, si
     assert file.rows("time", "force") == pytest.approx(
         np.array([[1, 7 * size]]), rel=1e-15
     )
-    assert file.si == (header != "time,CH1")
+    assert file.columns.si == (header != "time,CH1")
     assert bool(file.notes) == ("mN" in header)
 
 
@@ -158,8 +158,12 @@ STATED = {"columns": {"force": "2"}}
 @pytest.mark.parametrize(
     ("text", "stated", "named"),
     [
-        ("time (s),force (lbf)\n1,2\n", {}, "has the unit 'lbf'.*'force': '1 N/lbf'"),
-        ("time,force\n1,2\n", {"units": {"force": "N"}}, "column time has no unit"),
+        (
+            "time (s),force (lbf)\n1,2\n",
+            {},
+            "unit of force is 'lbf'.*'force': '1 N/lbf'",
+        ),
+        ("time,force\n1,2\n", {"units": {"force": "N"}}, "unit of time is missing"),
         (f"{HEAD}1,2\n", {"units": {"force": "x N/V"}}, "unit of force is 'x N/V'"),
         (f"{HEAD}1,2\n", {"units": {"CH9": "N"}}, "no column is 'CH9': found"),
         (
@@ -175,7 +179,7 @@ STATED = {"columns": {"force": "2"}}
         ),
         # Numbers of samples are no times.
         (
-            "X,CH1\n0,2\n1,3\n",
+            "X,CH1\n0,2\n1,3\n2,1\n",
             {},
             "try columns={'force': '2'}, step='1 us', units={'force': 'N'}$",
         ),
@@ -186,7 +190,7 @@ STATED = {"columns": {"force": "2"}}
         ("\x00\xff\n", {"encoding": "latin-1"}, "found no numbers"),
         ("time,force\n1,2\n1.5,∞\n2,3\n", {}, "line 3 holds ∞, the signal is clipped"),
         (
-            "time,1 force,time\n1,5,2\n",
+            "time,1 force,time\n1,5,2\n3,5,4\n",
             {},
             "2 columns are 'time': .* columns={'time': '1'}",
         ),

@@ -1,0 +1,259 @@
+"""Measured files: records of named columns, in the rows where all of them are numbers.
+
+Preambles, rows of units, footers and blank ends are not data; a gap inside a record is refused.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import cycle
+from pathlib import Path
+from typing import Unpack
+
+import numpy as np
+
+from lwa.base.arrays import Array
+from lwa.base.exact import shorten
+from lwa.base.files import reason
+from lwa.base.words import similar
+from validation.scenes.cells import Cells
+from validation.scenes.checks import SceneError
+from validation.scenes.columns import NAME, NAMES, Column, Columns, Stated
+from validation.scenes.proposals import STEP, refusal
+from validation.scenes.units import name_of, read_time
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """Samples of a signal at a sensor.
+
+    Parameters
+    ----------
+    kind : {"bead", "contact"}
+        Kind of the sensor.
+    number : int or None
+        Number of the bead or contact, from 1; None if the file does not say it.
+    quantity : {"force", "velocity"}
+        The signal.
+    time, values : array
+        Times and values of the samples, (S,).
+    column : int
+        Number of the signal's column in its file, from 1.
+    key, inverted : str
+        Name or header under which the user states the signal's unit, and the statement that
+        changes the signal's sign.
+    """
+
+    kind: str
+    number: int | None
+    quantity: str
+    time: Array
+    values: Array
+    column: int
+    key: str
+    inverted: str
+
+
+class MeasuredFile:
+    """The named columns of a file.
+
+    Parameters
+    ----------
+    path : str or Path
+        Name of the file; "-" is standard input.
+    columns, units, step
+        Statements of the user, see `validation.scenes.columns.Stated`.
+
+    Attributes
+    ----------
+    columns : Columns
+        The columns that have names.
+
+    Raises
+    ------
+    SceneError
+        In one line, for a file that cannot be read or has no such columns, and for statements on
+        columns that the file does not have. It proposes statements that make the file readable.
+    """
+
+    def __init__(self, path: str | Path, **stated: Unpack[Stated]) -> None:
+        self.path = "standard input" if str(path) == "-" else path
+        try:
+            cells = Cells.read(path)
+        except (OSError, SceneError, csv.Error) as error:
+            raise SceneError(f"{self.path}: {reason(error)}") from None
+        step = stated.get("step") or ""
+        if step:
+            read_time(step, "step", STEP)
+        headers: dict[str, str] = {}
+        for given, header in (stated.get("columns") or {}).items():
+            name = name_of(given)
+            if not NAME.fullmatch(name):
+                near = similar(name, NAMES) or ["force"]
+                raise SceneError(
+                    f"column is {shorten(given)}: such as {', '.join(NAMES)} is wanted",
+                    columns={**headers, near[0]: header},
+                )
+            # A step stands in place of a column.
+            if name != "time" or not step:
+                headers[name] = str(header)
+        units = {key: str(unit) for key, unit in (stated.get("units") or {}).items()}
+        self.columns = Columns(cells, headers, units, step)
+        for name, header in headers.items():
+            self._demand(header, len(cells.headed(header)), [name])
+        for key in units:
+            there = name_of(key) in self.columns.names or cells.headed(key)
+            self._demand(key, 1 if there else 0, [])
+
+    def _demand(self, header: str, count: int, missing: Sequence[str]) -> None:
+        """Refuse a header, or a name, unless one column has it."""
+        if count == 1:
+            return
+        words = f"{count} columns are {shorten(header)}"
+        if count == 0:
+            words = f"no column is {shorten(header)}"
+            near = similar(header, self.columns.cells.headers)
+            if near:
+                words += f", near: {', '.join(near)}"
+        raise self._refusal(words, missing)
+
+    def _refusal(
+        self, words: str, missing: Sequence[str] = (), step: str = ""
+    ) -> SceneError:
+        """Return an error that names the file, lists its columns and proposes statements."""
+        return refusal(f"{self.path}: {words}", self.columns, missing, step)
+
+    @property
+    def notes(self) -> list[str]:
+        """Lines on units that the user states otherwise than the file."""
+        return [column.note for column in self.columns.named if column.note]
+
+    def rows(self, *names: str) -> Array:
+        """Return the record of columns, (rows, columns), in SI if a unit is stated.
+
+        Raises `SceneError`, in one line, for two columns of one name, for a gap in the record, for
+        a value beyond the recorder's range, and for a unit of another quantity.
+        """
+        there = self.columns.names
+        missing = [name for name in names if there.count(name) != 1]
+        for name in missing:
+            self._demand(name, there.count(name), missing)
+        by_name = {column.name: column for column in self.columns.named}
+        return self._record([by_name[name] for name in names])
+
+    def records(
+        self, of: str = "contact", wanted: Sequence[str] = ("force",)
+    ) -> list[Record]:
+        """Return the records of all sensors, those of beads first.
+
+        One column "time" is that of all sensors; of several columns the first is that of the first
+        sensor, and so on. The velocity of a bead whose force is there is left out.
+
+        Parameters
+        ----------
+        of : {"contact", "bead"}
+            Kind of the sensors whose names do not say it.
+        wanted : sequence of str
+            Names that are proposed for columns of a file without sensors.
+
+        Raises
+        ------
+        SceneError
+            As `rows` does, for columns of time that are not as many as the sensors, and for one of
+            several sensors without a number.
+        """
+        names = self.columns.names
+        times = []
+        sensors = []
+        for column in self.columns.named:
+            place, _, quantity = column.name.rpartition(" ")
+            force = f"{place} force".strip()
+            if column.name == "time":
+                times.append(column)
+            elif quantity == "force" or (quantity == "velocity" and force not in names):
+                sensors.append(column)
+        missing = []
+        if len(times) not in (1, len(sensors) or 1):
+            missing.append("time")
+        if not sensors:
+            missing += wanted
+        for name in missing:
+            self._demand(name, names.count(name), missing)
+        records = []
+        for time, signal in zip(cycle(times), sensors, strict=False):
+            records.append(self._signal(time, signal, of))
+        if len(records) > 1 and None in [record.number for record in records]:
+            headers = dict(self.columns.headers)
+            for number, column in enumerate(sensors, start=1):
+                headers.pop(column.name, None)
+                place, _, quantity = column.name.rpartition(" ")
+                kind = place.rstrip(" 0123456789")
+                headers[f"{kind} {number} {quantity}".strip()] = str(column.number)
+            raise SceneError(
+                f"{self.path}: each of several sensors needs its number",
+                columns=headers,
+            )
+        return sorted(records, key=lambda record: record.kind)
+
+    def _signal(self, time: Column, signal: Column, of: str) -> Record:
+        """Return the record of a sensor from the columns of its time and signal."""
+        sensor = NAME.fullmatch(signal.name)
+        assert sensor is not None
+        assert signal.number is not None
+        kind, number, quantity = sensor.groups()
+        t, values = self._record([time, signal]).T
+        if len(t) > 1 and np.diff(t).min() <= 0:
+            step = f"{np.ptp(t) / (len(t) - 1):.6g}{' s' * self.columns.si}"
+            words = "time must increase, --step states it of evenly spaced samples"
+            raise self._refusal(words, ["time"], step)
+        given = signal.stated or signal.unit or "1"
+        return Record(
+            kind or ("bead" if quantity == "velocity" else of),
+            int(number) if number else None,
+            quantity,
+            t,
+            values,
+            signal.number,
+            signal.key,
+            f"-{given}".removeprefix("--"),
+        )
+
+    def _record(self, columns: Sequence[Column]) -> Array:
+        """Return columns, (rows, columns), in the rows where all of them are numbers."""
+        cells = self.columns.cells
+        entries = [self._numbers[c.number] for c in columns if c.number is not None]
+        table = np.column_stack(entries)
+        names = " and ".join(column.name for column in columns)
+        if np.isnan(table).any(axis=1).all():
+            known = (None, *cells.entries)
+            missing = [column.name for column in columns if column.number not in known]
+            raise self._refusal(f"no row has numbers in {names}", missing)
+        try:
+            start, end = cells.rows(table)
+        except SceneError as error:
+            raise SceneError(f"{self.path}: {names}: {error}") from None
+        record = []
+        for column in columns:
+            size = column.size if self.columns.si or column.stated else 1.0
+            if size is None:
+                raise self._refusal(column.fault)
+            if column.number is None:
+                # The times that a step states start with the record.
+                values = np.arange(end - start, dtype=float)
+            else:
+                values = self._numbers[column.number][start:end]
+            record.append(size * values)
+        return np.column_stack(record)
+
+    @cached_property
+    def _numbers(self) -> dict[int, Array]:
+        """Columns of all lines by number, with NaN where a cell is no number."""
+        numbers = [c.number for c in self.columns.named if c.number is not None]
+        try:
+            table = self.columns.cells.numbers([number - 1 for number in numbers])
+        except SceneError as error:
+            raise SceneError(f"{self.path}: {error}") from None
+        return dict(zip(numbers, table.T, strict=True))
