@@ -25,10 +25,11 @@ WANTED = (
     "core.js",
     "input/tex.js",
     "input/tex/extensions/",
-    "output/chtml",
+    "output/chtml.js",
+    "output/chtml/fonts/",
     "a11y/assistive-mml.js",
 )
-"""Files of MathJax: TeX input, HTML output with its fonts, formulas for screen readers."""
+"""Files of MathJax that pages load: TeX input, HTML output with its fonts, MathML for listeners."""
 
 
 def fetched(
