@@ -11,6 +11,7 @@ import subprocess
 import sys
 import zipfile
 from pathlib import Path
+from shutil import rmtree
 
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
@@ -19,8 +20,16 @@ PACKAGE = "sphinx-mathjax-offline==0.0.2"
 WHEEL = "sphinx_mathjax_offline-0.0.2-py3-none-any.whl"
 SHA256 = "206418155b2ff2f57496fb8501fdccae3da978e53031ff296c73729ba16062c4"
 INSIDE = "sphinx-mathjax-offline/static/mathjax/"
-WANTED = ("tex-chtml-full.js", "output/chtml/fonts/", "a11y/", "sre/")
-"""Files of MathJax: TeX input, HTML output with its fonts, parts that the menu can load."""
+WANTED = (
+    "startup.js",
+    "core.js",
+    "input/tex.js",
+    "input/tex/extensions/",
+    "output/chtml.js",
+    "output/chtml/fonts/",
+    "a11y/assistive-mml.js",
+)
+"""Files of MathJax that pages load: TeX input, HTML output with its fonts, MathML for listeners."""
 
 
 def fetched(
@@ -44,6 +53,7 @@ def unpack(app: Sphinx, error: Exception | None) -> None:
     if error is not None or app.builder.format != "html":
         return
     out = Path(app.outdir)
+    rmtree(out / "mathjax", ignore_errors=True)  # another build may have put more there
     with zipfile.ZipFile(fetched(out.parent / "mathjax-wheel")) as wheel:
         for name in wheel.namelist():
             relative = name.removeprefix(INSIDE)
