@@ -107,8 +107,8 @@ _RATIOS = (
 def resonances(k: float, count: int) -> Report:
     """Mass ratios m2/m1 < 1 of the dimers with a solitary wave.
 
-    ``k_value`` and, in falling order, ``mass_ratios``, ``c2_value``, ``tail_value``,
-    ``residual_value``; ``rows``, the printed table.
+    ``k_value``; ``mass_ratios`` in falling order; ``rows``, the printed table:
+    ``mass_ratio_value``, ``c2_value``, ``tail_value``, ``residual_value``.
     """
     waves = special_ratios(k, count)
     # A pulse of a dimer at peak force 1 is three sites wide, and rests on no tail.
@@ -125,10 +125,6 @@ def resonances(k: float, count: int) -> Report:
         panels=(Panel("ξ / D", "force of a contact", tuple(curves)),),
         data={
             "k_value": waves[0].k,
-            # Lists, too, as programs want a row of ratios.
             "mass_ratios": [wave.omega for wave in waves],
-            "c2_value": [wave.c2 for wave in waves],
-            "tail_value": [wave.tail for wave in waves],
-            "residual_value": [wave.residual for wave in waves],
         },
     )
