@@ -40,7 +40,7 @@ ODD = (
 OWN = {
     "CompactWave", "LatticeWave", "InputError", "LoadedWave", "NoSolitaryWave", "SceneError",
     "MeasureError", "anew", "check_strain", "compression", "compressions",
-    "latex_rows", "of_strain", "phi", "replaced",
+    "Expansion", "latex_rows", "of_strain", "phi", "replaced",
     "ExactWave", "Pulse", "Run", "plot", "simulate_many",  # the last two take objects of others
 }  # fmt: skip
 

@@ -44,4 +44,4 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     """Names that editors and shells complete, loaded or not."""
-    return sorted({*globals(), *_modules()})
+    return sorted([*_modules(), "__version__"])

@@ -29,7 +29,8 @@ from lwa.command.options import quantities
 from lwa.spheres.hertz import stiffness
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import MeasureError
-from validation.pulses.sensors import echoes, record
+from validation.pulses.readings import echoes
+from validation.pulses.sensors import record
 from validation.report.study import Report, option, study
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError, integer, items, positive

@@ -50,7 +50,8 @@ TABLE_DIGITS = 6
 """Significant digits of a number in a table of text, at most."""
 
 PLAIN = -5, 5
-"""Powers of ten of the first digit of a number that is printed without a power of ten."""
+"""Powers of ten of the first digit of a number that is printed without a power of ten: five zeros
+are counted at a glance."""
 
 LEAST_PLAIN = 1e-3
 """The least error that is printed without a power of ten."""

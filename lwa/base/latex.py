@@ -12,8 +12,8 @@ import sympy as sp
 
 from lwa.base.exact import evaluated
 
-NUMBER = 24  # symbols of an exact number beyond which its digits stand in its place
-DIGITS = 6  # digits of an irrational number behind its formula
+NUMBER = 24  # symbols of an exact number, a third of a line; digits stand in place of longer ones
+DIGITS = 6  # digits of an irrational number behind its formula, as in tables of text
 WIDTH = 64
 """Symbols in a line of a display; a page holds about 70 in a row."""
 

@@ -13,9 +13,9 @@ from typing import Any, TypeVar
 EVERY = 30.0
 """Seconds to the first bar, and between two, where standard error is no terminal."""
 
-QUIET = 6.0
+QUIET = 5.0
 """Seconds of a terminal without a sign of life: ten with the start of Python on a busy machine,
-which was measured to take up to 3.3 s."""
+which took up to 5 s at a load of 12."""
 
 T = TypeVar("T")
 Progress = Callable[[Iterable[T]], Iterable[T]]

@@ -36,9 +36,10 @@ BRANCHES: tuple[BranchName, ...] = get_args(BranchName)
 FIELDS: tuple[FieldName, ...] = get_args(FieldName)
 LANGUAGES: tuple[LanguageName, ...] = get_args(LanguageName)
 
-_SHOWN = 60  # characters of an offending value in a message
-_NEAR = 3  # similar words that a message names
-_LISTED = 12  # known words that a message names where none is similar
+# A message has `LONGEST_MESSAGE` characters, a third of them for the line to paste.
+_SHOWN = 60  # characters of an offending value: most of a line of a terminal
+_NEAR = 3  # similar words that a message names; more are no hint
+_LISTED = 12  # known words where none is similar: all laws, closures and materials
 
 Word = TypeVar("Word", bound=str)
 

@@ -60,8 +60,9 @@ class Scale:
         # Substitution in an expression with other symbols would take long, for no number.
         if not value.free_symbols <= ones.keys():
             return None
-        # Thirty digits, so that the float is the nearest one.
+        # Thirty digits, twice those of a float, so that the float is the nearest one.
         number = evaluated(value.subs(ones), 30)
+        # Of numbers nearer to the ends of a float's range a product with a unit may be lost.
         if not number.is_real or not (number == 0 or 1e-300 < abs(number) < 1e300):
             return None
         return Estimate(float(number), 0.0)
@@ -246,14 +247,15 @@ class Row:
         return f"{formula} ≈ {digits}"
 
     def latex(self, scale: Scale) -> str:
-        """The row as ``symbol = expression``, or with its number and error where that is known."""
+        """The row as an equation: the exact value, or digits with their error if that is known."""
         if self.estimate is None or math.isnan(self.estimate.error):
             return latex.row(self.symbol, self.value)
-        number = self.estimate.latex()
-        symbols = scale.symbols(self.value)
-        if symbols not in (1, None):
-            number = rf"\left({number}\right) {sp.latex(symbols)}"
-        return f"{self.symbol} = {number}"
+        digits = self.estimate.latex()
+        # An estimate is a number of units of length where the spacing is a symbol: (1.41 ± 0.01) D.
+        unit = scale.symbols(self.value)
+        if unit is None or unit == 1:
+            return f"{self.symbol} = {digits}"
+        return rf"{self.symbol} = \left({digits}\right) {sp.latex(unit)}"
 
 
 def attempt(read: Callable[..., Any], *arguments: Any) -> Any:

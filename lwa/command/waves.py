@@ -170,17 +170,16 @@ def width_rows(wave: Any, extents: Sequence[ExtentName] = ("length",)) -> Iterat
         for q in QUANTITIES:
             label = f"FWHM of the {q}"
             symbol = latex.fwhm(q)
-            row = Row.of(wave, "fwhm", label, "m", q, key=f"fwhm.{q}", symbol=symbol)
-            if extent == "time":
+            # A wave of any amplitude has no width in time, and its method no extent.
+            if extent == "length":
+                place = f"fwhm.{q}"
+                row = Row.of(wave, "fwhm", label, "m", q, key=place, symbol=symbol)
+            else:
+                label += " in time"
+                symbol += "^{(t)}"
+                place = f"fwhm_time.{q}"
                 row = Row.of(
-                    wave,
-                    "fwhm",
-                    f"{label} in time",
-                    "s",
-                    q,
-                    extent,
-                    key=f"fwhm_time.{q}",
-                    symbol=f"{symbol}^{{(t)}}",
+                    wave, "fwhm", label, "s", q, extent, key=place, symbol=symbol
                 )
             if isinstance(row.value, InputError):
                 return

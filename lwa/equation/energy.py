@@ -67,9 +67,9 @@ def energy(closure: Closure) -> list[fmpq_mpoly]:
             closure="full",
         )
     solution = closure.solution
-    if closure.name == "linear":
-        # A linear ansatz without a defect is the full closure: its fields are determined.
-        solution = full(closure.model)
+    if not solution.forces:
+        # A closure without a defect is the full closure: the fields are determined.
+        solution = full(closure.model, closure.field)
     algebra = solution.algebra
     # The density is known to the order to which the velocities are.
     densities = []

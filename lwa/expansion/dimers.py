@@ -29,7 +29,7 @@ nearly alike.
 from __future__ import annotations
 
 import math
-from functools import lru_cache
+from functools import cache
 from importlib.resources import files
 
 import mpmath
@@ -87,7 +87,7 @@ class FollowingRecursion(Recursion):
         return super()._last_force(n) + self._inertia(1, n) / 2
 
 
-@lru_cache(maxsize=1)
+@cache
 def _light() -> Observables:
     """The quantities of the reduced chain of masses 1 and `LIGHT`."""
     # k does not matter to the shares of equal contacts.
@@ -95,7 +95,7 @@ def _light() -> Observables:
     return Observables(FollowingRecursion(model, ORDER))
 
 
-@lru_cache(maxsize=16)
+@cache
 def exponent_of_light_beads(quantity: str) -> sp.Expr:
     """The exponent e of a quantity as a function of the symbol k."""
     heavy = decimals(equal_beads(quantity, ORDER))
@@ -128,7 +128,7 @@ from 12 to 55, half of them by errors up to 1.6 times the deviation.
 """
 
 
-@lru_cache(maxsize=1)
+@cache
 def _deviations() -> Array:
     """The file ``dimers.csv``: rows of k, m2/m1 and a deviation for each of `TWO_BODIES`.
 

@@ -29,7 +29,7 @@ so that the closed forms hold nothing that was fitted.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from functools import lru_cache, partial
+from functools import cache, partial
 
 import mpmath
 import sympy as sp
@@ -90,7 +90,7 @@ _REGULARIZED = {"betainc_regularized": partial(mpmath.betainc, regularized=True)
 """I_x(a, b) for `sympy.lambdify`, which takes the integral that is not divided by B(a, b)."""
 
 
-@lru_cache(maxsize=16)
+@cache
 def joined(quantity: str) -> sp.Expr:
     """The closed form of a quantity of `TWO_BODIES` as a function of the symbol k."""
     limit = TWO_BODIES[quantity]

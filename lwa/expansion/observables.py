@@ -7,7 +7,7 @@ coefficients of a series in ε, in the caller's symbols.
 
 from __future__ import annotations
 
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, lru_cache
 
 import sympy as sp
 from flint import fmpq, fmpq_mpoly
@@ -172,12 +172,13 @@ def shares_model(
     return Model(cell, Power(k))
 
 
+# An order of 80 holds 11 MB.
 @lru_cache(maxsize=4)
 def _equal_beads(order: int) -> Observables:
     return Observables(Recursion(shares_model(Cell((1,)), sp.S.One), order))
 
 
-@lru_cache(maxsize=64)
+@cache
 def equal_beads(
     quantity: str,
     order: int,

@@ -43,7 +43,7 @@ NEAR = 0.007
 """Largest relative error of the force for strikers of 1.3 to 1.6 beads."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Strike(Value):
     """The leading pulse of a chain of equal beads struck by a mass, in the units of the cell.
 
@@ -73,6 +73,10 @@ class Strike(Value):
     mass: sp.Expr
     velocity: sp.Expr
     k: sp.Expr
+
+    def __repr__(self) -> str:
+        width = f"FWHM of the force {self.fwhm()} in time"
+        return f"Strike(F={self.force}, dx/dt={self.speed}, {width})"
 
     @property
     def _ratio(self) -> float:

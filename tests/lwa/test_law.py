@@ -85,6 +85,8 @@ def test_a_law_is_a_value():
     assert theory.law.phi(3) == (law.symbols[0] * law.delta) ** 2
     assert homogenize(dimer, law=Power("k")) == homogenize(dimer)
     assert theory.pde.at(a=1).law == named("exponential", 1)
+    softer = homogenize(dimer, law=named("polynomial", "a", 1)).at(a=-2)
+    assert softer.law == named("polynomial", -2, 1)
     kept = pickle.loads(pickle.dumps(theory.at(a="1/2").law))
     assert (kept.text, repr(kept)) == ("exponential:1/2", "named('exponential', 1/2)")
     assert kept == Law(kept.F)

@@ -24,5 +24,6 @@ def test_all_names_exist_and_type_checkers_see_the_same(package):
     typed = {name.asname for names in imports for name in names}
     assert typed - {"D", "k", None} == set(package.__all__)
     assert Path(package.__file__).with_name("py.typed").exists()
-    assert set(lwa.__all__) <= set(dir(lwa))
+    bound_by_name = {"D", "k", "__version__"}
+    assert set(dir(package)) - bound_by_name == set(package.__all__)
     assert (lwa.D.name, lwa.k.name) == ("D", "k")  # bound by name only

@@ -98,7 +98,8 @@ def integrate(
         run.advance(progress)
         if motion.scene.drive is None:
             return run.finished()
-        energy, response = run.motion.scales.energy, float(run.now["response"])
+        energy = run.motion.scales.energy
+        response = float(run.now["response"])
         if not 8 * _NOISE * energy < response < _WEAK * energy:
             return run.finished()
         motion = Motion(motion.scene, response)
@@ -114,7 +115,8 @@ class _Integration:
     def __init__(
         self, motion: Motion, method: str, rtol: float, longest: float
     ) -> None:
-        self.motion, self.method = motion, method
+        self.motion = motion
+        self.method = method
         check_memory(motion.scene, method, _NUMBERS)
         self.steps = rtol, longest
         self._make_plan(motion)
@@ -131,7 +133,9 @@ class _Integration:
 
     def advance(self, progress: RunProgress) -> None:
         """Integrate to the end; a stronger response than was guessed loosens the tolerance."""
-        now, end, knots = self.now, self.plan.end, self.recorder.knots
+        now = self.now
+        end = self.plan.end
+        knots = self.recorder.knots
         # A step has some ten stages.
         glance = 1 + int(_BETWEEN_REPORTS / (10 * max(self.plan.size, SHORTEST)))
         go = advance if isinstance(self.plan.scheme, Pair) else advance_split
@@ -149,7 +153,8 @@ class _Integration:
 
     def _failure(self) -> str:
         """Say why the run does not come to its end."""
-        now, end = self.now, self.plan.end
+        now = self.now
+        end = self.plan.end
         where = f"t = {now['t']:g} of {end:g}"
         if not np.isfinite(self.beads.force[1:]).all() or now["h"] == 0:
             return f"a force is not a number near {where}: no step is short enough for the law"
@@ -170,7 +175,10 @@ class _Integration:
 
     def finished(self) -> Run:
         """Return the finished run."""
-        motion, beads, now, n = self.motion, self.beads, self.now, self.motion.size
+        motion = self.motion
+        beads = self.beads
+        now = self.now
+        n = self.motion.size
         work = 0.0
         if motion.scene.drive is not None:
             # The drive also accelerates its bead.
@@ -209,7 +217,9 @@ def _plan(motion: Motion, scheme: Pair | Splitting, rtol: float, **steps: Any) -
 
 def _pair_plan(motion: Motion, rtol: float, longest: float) -> tuple[Plan, int]:
     """Return the plan of an embedded pair, and the greatest number of steps."""
-    scene, time, end = motion.scene, motion.scales.time, float(motion.scene.duration)
+    scene = motion.scene
+    time = motion.scales.time
+    end = float(motion.scene.duration)
     pair = RKN86 if scene.damping is None else RK853
     stops = {end}
     if scene.drive is not None:
@@ -237,7 +247,8 @@ def _splitting_plan(motion: Motion, rtol: float, step: float) -> tuple[Plan, int
 @lru_cache(maxsize=1)
 def _chain(motion: Motion) -> Chain:
     """Build the kernel's chain, padded by beads of infinite mass; the first of them is the wall."""
-    n, contacts = motion.size, len(motion.rest)
+    n = motion.size
+    contacts = len(motion.rest)
     padded = n + 2 * SHORTEST
     inverse, A, r, rest, load, opens = _lines(6, padded)
     inverse[:n] = 1 / motion.masses
@@ -245,14 +256,16 @@ def _chain(motion: Motion) -> Chain:
         inverse[0] = 0.0
     A[:contacts] = motion.stiffnesses
     r[:contacts] = motion.damping / motion.stiffnesses
-    rest[:contacts], load[:contacts] = motion.rest, motion.load
+    rest[:contacts] = motion.rest
+    load[:contacts] = motion.load
     opens[:contacts] = 1.0
     laws = list(motion.laws)
     beyond = int(motion.law_of[-1]) if contacts else 0
     if laws[beyond].law is not None or laws[beyond].k >= _UNBOUNDED:
         beyond = len(laws)
         laws.append(Contact(1.0))
-    law_of, alike = np.full(padded, beyond), np.full(padded, padded)
+    law_of = np.full(padded, beyond)
+    alike = np.full(padded, padded)
     law_of[:contacts] = motion.law_of
     if len(laws) > 1:
         places = np.append(np.flatnonzero(np.diff(law_of)) + 1, padded)
@@ -319,9 +332,12 @@ def _front(motion: Motion) -> int:
 
 def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
     """Build the kernel's initial state, arrays with room for ``padded`` + 1 beads."""
-    n, stages, estimates = motion.size, 1, 0
+    n = motion.size
+    stages = 1
+    estimates = 0
     if isinstance(scheme, Pair):
-        estimates, stages = len(scheme.errors), len(scheme.nodes)
+        estimates = len(scheme.errors)
+        stages = len(scheme.nodes)
     rows = _lines(8 + estimates + ROOM, padded + 2)
     # Two rows, one place ahead of the others: lines begin at column 1, the force of contact 0.
     ahead = rows.reshape(-1)[-2 * rows.shape[1] - 1 : -1]

@@ -45,8 +45,11 @@ def integrate(motion: Motion, method: str, rtol: float, longest: float) -> Run:
 
     ``rtol`` bounds the errors in a step, relative to the state and to the scene's scales.
     """
-    scales, scene, n = motion.scales, motion.scene, motion.size
-    y, v = scales.displacement, scales.velocity
+    scales = motion.scales
+    scene = motion.scene
+    n = motion.size
+    y = scales.displacement
+    v = scales.velocity
     if scene.drive is not None:
         longest = min(longest, scene.drive.longest_step)
     step_limit(scene, method, scene.duration / min(scales.time, longest))

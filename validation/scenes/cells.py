@@ -25,21 +25,23 @@ from validation.scenes.units import name_of
 _LINE = re.compile(r"[^\r\n]*\S[^\r\n]*")  # a line that is not blank
 # Signs with several codes, and the sign of recorders for a value beyond their range
 _SIGNS = {"μ": "µ", "−": "-", "∞": "inf"}
-_HEAD = 1000  # lines in which the separator and the first numbers are looked for
+HEAD = 1000
+"""Lines in which the separator and the first numbers are looked for."""
+
 _MARKS = "\t;, "
 _COMMA = re.compile(r'"([-+]?\d+),(\d+(?:[eE][-+]?\d+)?)"')  # a number in quotes
-# What NumPy's reader does not take, by the separator: some loggers write + 1.5, Fortran 1.5D-3.
-_FORTRAN = {"D": "e"}
-_SIGNED = {"+ ": "+", "- ": "-", **_FORTRAN}
+# Numbers that NumPy's reader does not take: some loggers write + 1.5, Fortran 1.5D-3. By blanks a
+# sign may stand alone; where commas do not separate they are decimal commas.
+_SIGNS_APART = {"+ ": "+", "- ": "-"}
 _PLAIN = {
-    "\t": _SIGNED | {",": "."},
-    ";": _SIGNED | {",": "."},
-    ",": _SIGNED,
-    " ": _FORTRAN | {",": "."},
+    "\t": {"D": "e", ",": ".", **_SIGNS_APART},
+    ";": {"D": "e", ",": ".", **_SIGNS_APART},
+    ",": {"D": "e", **_SIGNS_APART},
+    " ": {"D": "e", ",": "."},
 }
+_NUMBER = r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|inf)"
 _FEW = 0.1  # rows of numbers outside of the record, at most, over those of the record
 _SETTINGS = 20  # lines in whose first columns recorders write settings
-_BLOCK = 10_000  # rows of numbers that are read at once
 
 
 class Cells:
@@ -54,30 +56,33 @@ class Cells:
     """
 
     def __init__(self, text: str) -> None:
-        self._text = text
-        lines = [line[0] for line in islice(_LINE.finditer(text), _HEAD)]
-        tables = {mark: [_split(line, mark) for line in lines] for mark in _MARKS}
+        lines = [line[0] for line in islice(_LINE.finditer(text), HEAD)]
+        tables = {}
+        for mark in _MARKS:
+            tables[mark] = [_split(_plain(line, mark), mark) for line in lines]
 
         def record(mark: str) -> tuple[int, int]:
             # A row of numbers may hold as many texts: states, dates.
-            return longest([_share(row, mark) >= 1 / 2 for row in tables[mark]])
+            return longest([_share(row) >= 1 / 2 for row in tables[mark]])
 
         def weight(mark: str) -> float:
             """Count the cells; texts beside the numbers of a row take some of its weight."""
             rows = tables[mark][slice(*record(mark))]
-            return sum(len(row) * _share(row, mark) ** 2 for row in rows)
+            return sum(len(row) * _share(row) ** 2 for row in rows)
 
         self._mark = mark = max(_MARKS, key=weight)
+        self._text = _plain(text, mark)
         start, end = record(mark)
-        self.head = tables[mark][:start] if end else tables[mark]
+        above = lines[:start] if end else lines
+        self.head = [_split(line, mark) for line in above]
         line = tables[mark][min(start + _SETTINGS, end - 1)] if end else []
         self.entries = {}
         for number, cell in enumerate(line, start=1):
-            if re.fullmatch(_number(mark), cell):
+            if re.fullmatch(_NUMBER, cell):
                 self.entries[number] = cell
         if mark == " ":
             # Headers of several words stand apart by several blanks.
-            for i, text_line in enumerate(lines[: len(self.head)]):
+            for i, text_line in enumerate(above):
                 tabs = re.sub(r"[ \t]{2,}", "\t", text_line.strip("#% \t"))
                 apart = _split(tabs, "\t")
                 if len(apart) == len(line):
@@ -96,11 +101,6 @@ class Cells:
         for sign, plain in _SIGNS.items():
             text = text.replace(sign, plain)
         return cls(_COMMA.sub(r"\1.\2", text))
-
-    def beginning(self) -> Cells:
-        """Return the first lines alone."""
-        lines = islice(_LINE.finditer(self._text), _HEAD)
-        return Cells("\n".join(line[0] for line in lines))
 
     @property
     def headers(self) -> set[str]:
@@ -127,17 +127,18 @@ class Cells:
                     return numbers
         return []
 
-    def numbers(self, places: Sequence[int]) -> Array:
+    def numbers(self, places: Sequence[int], most: int | None = None) -> Array:
         """Return columns, (lines, columns), at increasing places; NaN for a cell without a number.
 
-        Blank lines are left out. Raises `SceneError` for cells that NumPy cannot read.
+        Blank lines are left out, and lines behind the first ``most``. Raises `SceneError` for cells
+        that NumPy cannot read.
         """
         if not self.entries:
             return np.empty((0, len(places)))
         try:
             # NumPy's reader parses 2 million rows in a second, Python's in twelve.
             return np.loadtxt(
-                self._lines(places),
+                islice(self._lines(places), most),
                 delimiter=self._mark.strip(" ") or None,
                 comments=None,
                 quotechar='"',
@@ -148,33 +149,22 @@ class Cells:
             raise SceneError(shorten(str(error))) from None
 
     def _lines(self, places: Sequence[int]) -> Iterator[str]:
-        """Yield the lines, NaN in place of other cells, as NumPy's reader takes them."""
+        """Yield the lines with NaN in place of cells that are no numbers."""
         mark = self._mark
-        number = _number(mark)
         between = "[ \t]+" if mark == " " else f" *{mark} *"
-        other = r"[^ \t\r\n]+" if mark == " " else f'(?:"[^"]*"|[^"\r\n{mark}]*)'
+        other = r"[^ \t]+" if mark == " " else f'(?:"[^"]*"|[^"{mark}]*)'
         count = places[-1] + 1
-        wanted = f'"?{number}"?'
-        cells = between.join(wanted if i in places else other for i in range(count))
-        row = rf"[\r\n]* *{cells} *(?:{mark}[^\r\n]*)?(?![^\r\n])"
-        # Blocks of rows of numbers: a loop over lines takes longer than NumPy's reader.
-        rows = re.compile(f"(?:{row}){{1,{_BLOCK}}}+")
-        start = 0
-        while start < len(self._text):
-            block = rows.match(self._text, start)
-            if block:
-                text = block[0]
-            else:
-                block = _LINE.search(self._text, start)
-                if block is None:
-                    return
-                found = islice(chain(_split(block[0], mark), repeat("")), count)
-                line = [x if re.fullmatch(number, x) else "nan" for x in found]
-                text = mark.join(line)
-            for sign, plain in _PLAIN[mark].items():
-                text = text.replace(sign, plain)
-            yield from text.splitlines()
-            start = block.end()
+        forms = [f'"?{_NUMBER}"?' if i in places else other for i in range(count)]
+        row = re.compile(rf" *{between.join(forms)} *(?:{mark}.*)?")
+        for line in _LINE.finditer(self._text):
+            text = line[0]
+            # Most lines are rows of numbers: to match one takes less than to split it.
+            if not row.fullmatch(text):
+                cells = []
+                for cell in islice(chain(_split(text, mark), repeat("")), count):
+                    cells.append(cell if re.fullmatch(_NUMBER, cell) else "nan")
+                text = mark.join(cells)
+            yield text
 
     def rows(self, table: Array) -> tuple[int, int]:
         """Return start and end of the record in a table of columns: the rows without any NaN.
@@ -222,12 +212,11 @@ def runs(flags: ArrayLike) -> list[tuple[int, int]]:
     return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
 
 
-def _number(mark: str) -> str:
-    """Return the pattern of a number beside a separator."""
-    point = "." if mark == "," else ".,"
-    digits = rf"(?:\d+[{point}]?\d*|[{point}]\d+)(?:[eED][-+]?\d+)?"
-    blank = "" if mark == " " else " ?"  # some loggers write + 1.5
-    return f"(?:[-+]?{blank}(?:{digits}|inf))"
+def _plain(text: str, mark: str) -> str:
+    """Return a text with its numbers as NumPy's reader takes them."""
+    for sign, plain in _PLAIN[mark].items():
+        text = text.replace(sign, plain)
+    return text
 
 
 def _split(line: str, mark: str) -> list[str]:
@@ -239,8 +228,8 @@ def _split(line: str, mark: str) -> list[str]:
     return [" ".join(cell.split()) for cell in cells]
 
 
-def _share(row: Sequence[str], mark: str) -> float:
+def _share(row: Sequence[str]) -> float:
     """Return the share of numbers among the cells of a row that are not blank."""
     filled = [*filter(None, row)]
-    numbers = [cell for cell in filled if re.fullmatch(_number(mark), cell)]
+    numbers = [cell for cell in filled if re.fullmatch(_NUMBER, cell)]
     return len(numbers) / max(len(filled), 1)

@@ -15,7 +15,7 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError
-from validation.scenes.cells import Cells, longest
+from validation.scenes.cells import HEAD, Cells, longest
 from validation.scenes.checks import SceneError
 from validation.scenes.columns import Columns
 from validation.scenes.units import BASES, found_unit, in_si
@@ -100,7 +100,7 @@ def _steps(cells: Cells) -> dict[int, Array]:
     """Return the differences from line to line, at the beginning, of the columns of numbers."""
     numbers = [*cells.entries]
     try:
-        table = cells.beginning().numbers([number - 1 for number in numbers])
+        table = cells.numbers([number - 1 for number in numbers], HEAD)
     except InputError:
         table = np.empty((0, len(numbers)))
     steps = {}

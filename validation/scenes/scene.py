@@ -18,12 +18,10 @@ from itertools import accumulate, pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import sympy as sp
 
 from lwa import Cell
 from lwa.base.exact import shorten
 from lwa.base.files import Reader
-from lwa.cell import exponent
 from lwa.law import ContactLaw
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes.checks import (
@@ -39,17 +37,20 @@ from validation.scenes.checks import (
     positive,
 )
 from validation.scenes.forcing import Damping, Drive
+from validation.scenes.laws import (
+    MISSING,
+    contact_law,
+    numeric,
+    read_contact_law,
+    read_exponent,
+)
 
 __all__ = ["Scene", "SceneError"]
 
 Number = float | str
 """A number of a scene: a float, or a text such as "3/2" for the exponent."""
 
-_MISSING = math.nan
 _LONGEST = 100  # times the duration that a drive's record may last: longer, its unit is another
-# SymPy integrates F for δ > 0. Where a contact that pulls has δ < 0, a Piecewise goes on with its
-# first case, as the energy does, and these functions do not.
-_OTHER_CASES = sp.Max, sp.Min, sp.Abs, sp.sign, sp.Heaviside, sp.floor, sp.ceiling
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -125,7 +126,7 @@ class Scene:
 
     masses: tuple[float, ...]
     stiffnesses: tuple[float, ...]
-    k: float | tuple[float, ...] = _MISSING
+    k: float | tuple[float, ...] = MISSING
     duration: float
     wall: float | None = None
     gravity: float = 0.0
@@ -148,7 +149,7 @@ class Scene:
             *,
             masses: Iterable[Number],
             stiffnesses: Iterable[Number],
-            k: Number | Iterable[Number] = _MISSING,
+            k: Number | Iterable[Number] = MISSING,
             duration: Number,
             wall: Number | None = None,
             gravity: Number = 0.0,
@@ -203,14 +204,14 @@ class Scene:
     def _read_laws(self) -> None:
         """Check the exponents and the laws; a law that is a power is kept as its exponent."""
         k: Any = self.k
-        if k is not _MISSING:
-            k = one_or_each(_exponent)(k, "k")
-        law = one_or_each(_law)(self.law, "law")
+        if k is not MISSING:
+            k = one_or_each(read_exponent)(k, "k")
+        law = one_or_each(read_contact_law)(self.law, "law")
         check_count(k, "k", self.contact_count)
         check_count(law, "law", self.contact_count)
         differ = isinstance(k, tuple) or isinstance(law, tuple)
         count = self.contact_count if differ else 1
-        read = cache(_contact)  # a chain has few kinds of contacts
+        read = cache(contact_law)  # a chain has few kinds of contacts
         contacts = [*map(read, _row(k, count), _row(law, count))]
         object.__setattr__(self, "k", alike(tuple(k for k, _ in contacts)))
         object.__setattr__(self, "law", alike(tuple(law for _, law in contacts)))
@@ -329,8 +330,8 @@ class Scene:
         if not isinstance(cell, Cell):
             raise SceneError(f"cell is {shorten(cell)}: a Cell of lwa is wanted")
         repeats = integer(repeats, "repeats", 1)
-        masses = tuple(_number(m, "mass") for m in cell.masses) * repeats
-        stiffnesses = tuple(_number(A, "stiffness") for A in cell.stiffnesses) * repeats
+        masses = tuple(numeric(m, "mass") for m in cell.masses) * repeats
+        stiffnesses = tuple(numeric(A, "stiffness") for A in cell.stiffnesses) * repeats
         spacings = (
             (float(cell.spacing),) * (len(masses) - 1) if cell.spacing.is_number else ()
         )
@@ -362,62 +363,14 @@ class Scene:
 def contacts_of(beads: Sequence[Sphere]) -> dict[str, Any]:
     """Return the fields of a `Scene` that spheres in Hertz contact determine, as lists."""
     # Exact numbers take their time, and a chain has few kinds of beads and contacts.
-    mass = cache(lambda bead: _number(bead.mass, "mass"))
-    contact = cache(lambda a, b: _number(stiffness(a, b), "stiffness"))
+    mass = cache(lambda bead: numeric(bead.mass, "mass"))
+    contact = cache(lambda a, b: numeric(stiffness(a, b), "stiffness"))
     return {
         "masses": [mass(bead) for bead in beads],
         "stiffnesses": [contact(a, b) for a, b in pairwise(beads)],
         "spacings": [float(a.radius + b.radius) for a, b in pairwise(beads)],
         "k": 1.5,
     }
-
-
-def _exponent(value: Any, name: str) -> float:
-    """Read the exponent of a power law."""
-    if isinstance(value, str | sp.Expr):
-        return _number(exponent(value), name)
-    return finite(value, name)
-
-
-def _law(value: Any, name: str) -> ContactLaw | None:
-    """Read a contact law whose force can be evaluated; None stands for a power."""
-    if value is None:
-        return None
-    if not isinstance(value, ContactLaw):
-        raise SceneError(f"{name} is {shorten(value)}: a law of lwa.law is wanted")
-    return _evaluable(value)
-
-
-@cache  # a long chain has few laws
-def _evaluable(law: ContactLaw) -> ContactLaw:
-    """Return a law, or raise `SceneError` for a law with symbols or with cases left open."""
-    if law.symbols or law.formless:
-        raise SceneError(
-            f"law is {law.text}: the lattice needs numbers in place of symbols"
-        )
-    open_ends = (
-        cases for cases in law.F.atoms(sp.Piecewise) if cases.args[-1][1] != sp.true
-    )
-    if law.F.has(*_OTHER_CASES) or any(open_ends):
-        cases = "a force by cases is a Piecewise whose last condition is True"
-        raise SceneError(f"law is {shorten(law.text)}: {cases}")
-    return law
-
-
-def _contact(k: float, law: ContactLaw | None) -> tuple[float, ContactLaw | None]:
-    """Return exponent and law of a contact, None for a power, whose exponent may be given twice."""
-    if law is None:
-        if k is _MISSING:
-            raise SceneError("k is missing: an exponent or a law is wanted")
-    elif k is not _MISSING and k != 1:
-        raise SceneError(f"k is {k:g} and law {law.text}: one of them is wanted")
-    else:
-        k = float(law.exponent)
-        if law.homogeneous:
-            law = None
-    if k < 1:
-        raise SceneError(f"k is {k}: the contact law A δ^k is simulated for k ≥ 1")
-    return k, law
 
 
 def _row(value: Any, count: int) -> tuple[Any, ...]:
@@ -450,11 +403,3 @@ def _sensors(values: Any, name: str, count: int) -> tuple[int, ...]:
     if len(set(sensors)) < len(sensors):
         raise SceneError(f"{name} is {shorten(sensors)}: each may be named once")
     return sensors
-
-
-def _number(value: sp.Expr, name: str) -> float:
-    if not value.is_number:
-        raise SceneError(
-            f"{name} is {value}: the lattice needs numbers in place of symbols"
-        )
-    return float(value)

@@ -19,7 +19,8 @@ from validation.pictures import Curve, Panel
 from validation.pulses.discharge import corrected, suggested
 from validation.pulses.noisy import InvertedError, NoisyPulse, noisy_pulse, noisy_pulses
 from validation.pulses.pulse import MeasureError
-from validation.pulses.sensors import Reading, forces_at_start, record, speeds_between
+from validation.pulses.readings import Reading, speeds_between
+from validation.pulses.sensors import forces_at_start, record
 from validation.report.study import Report, number, option, study
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError, one_of, positive

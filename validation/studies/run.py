@@ -25,14 +25,8 @@ from validation.lattice.cost import RunProgress
 from validation.lattice.signal import RECORDS
 from validation.lattice.simulate import COMPILED
 from validation.lattice.steppers import METHODS
-from validation.pulses.sensors import (
-    TOLERANCE,
-    Reading,
-    Recording,
-    echoes,
-    enough_samples,
-    record,
-)
+from validation.pulses.readings import Reading, echoes
+from validation.pulses.sensors import TOLERANCE, Recording, enough_samples, record
 from validation.report.study import Report, option, output_option, replacing, study
 from validation.report.table import Column, Table, plain
 from validation.scenes import scenefile
@@ -62,7 +56,7 @@ def report(recording: Recording, every: bool = False) -> Report:
     ``sensors``: ``kind``, ``number``, with ``every`` ``pulse``, counted from 1, ``arrival_value``,
     ``peak_value`` (of the dynamic force), ``fwhm_value``, ``static_force_value``, ``missing``;
     ``echoes`` of later pulses: ``kind``, ``number``, ``pulse``, ``reflected``, ``delay_value``
-    behind the first pulse and ``ratio_value`` of their peaks (`validation.pulses.sensors.echoes`);
+    behind the first pulse and ``ratio_value`` of their peaks (`validation.pulses.readings.echoes`);
     ``speeds``: ``kind``, ``from``, ``to``, ``speed_sites_value``, ``speed_value`` (null without
     spacings), ``missing``; ``end`` of the bead sensors: ``bead``, ``velocity_value`` and
     ``displacement_value`` at the end; each value with its error, as ``arrival_error_value``, and

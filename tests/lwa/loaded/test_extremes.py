@@ -79,7 +79,7 @@ def test_a_force_hardly_above_the_load(chain, excess):
     assert float(rise * lattice.spacing * slope / tiny) == pytest.approx(1, rel=off)
     width = 2 * math.acosh(math.sqrt(2)) * float(sp.N(wave.kdv.width(rise), 20))
     assert float(wave.fwhm("strain")) == pytest.approx(width, rel=off + 1e-12)
-    if known:  # 20 digits of V
+    if known or excess == "1e-6":  # 20 digits of V, or 15 for a lattice
         above = sp.N(wave.speed / wave.sound_speed - 1, 10, maxn=400)
         expected = wave.kdv.nonlinearity * rise / 3 / wave.sound_speed
         assert float(above / expected) == pytest.approx(1, rel=off + 1e-3)

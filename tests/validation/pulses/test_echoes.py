@@ -10,7 +10,8 @@ import pytest
 from lwa import Estimate
 from validation import simulate
 from validation.pulses.noisy import noisy_pulses
-from validation.pulses.sensors import Reading, echoes, record
+from validation.pulses.readings import Reading, echoes
+from validation.pulses.sensors import record
 from validation.scenes.chains import struck
 
 SCENE = struck((1,), 24, wall=0.3, contact_sensors=(8, 14), duration=55.0, samples=1101)

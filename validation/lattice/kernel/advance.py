@@ -54,7 +54,8 @@ def advance(
     Returns the time that is reached. The integration also stops at a time to which no step can
     be added, and where the response is greater than ``plan.most``.
     """
-    until, hi = now.tries + tries, plan.size
+    until = now.tries + tries
+    hi = plan.size
     made = corrected = now.tries == 0
     while True:
         if made:
@@ -66,7 +67,8 @@ def advance(
         full = now.stored == len(knots.time)
         if now.t == plan.end or full or now.response > plan.most:
             return float(now.t)
-        h, left = now.h, plan.stops[now.stop] - now.t
+        h = now.h
+        left = plan.stops[now.stop] - now.t
         stopping = h > left - 1e-9 * h
         if stopping:
             h = left
@@ -76,11 +78,13 @@ def advance(
         now.tries += 1
         evaluate_stages(chain, beads, plan, now.t, h, hi)
         beads.books[:] = 0.0
-        marks, i = mark_kinks(chain, beads, plan, h, hi), -1
+        marks = mark_kinks(chain, beads, plan, h, hi)
+        i = -1
         if chain.drive.driven:
             marks += watch_drive(chain, beads, plan, now.t, h)
         for _ in range(marks):
             i = next_mark(beads.marks, i + 1)
             correct_contact(chain, beads, plan, now.t, h, i)
         error = step_error(beads, plan, h, hi)
-        made, corrected = end_step(beads, plan, now, h, error, stopping), marks > 0
+        made = end_step(beads, plan, now, h, error, stopping)
+        corrected = marks > 0

@@ -89,7 +89,8 @@ def cached(function: Function) -> Function:
     cache = compiled._cache
     # In place of the time and size of one file.
     cache._cache_file._source_stamp = SOURCES
-    known, keep = cache.load_overload, cache.save_overload
+    known = cache.load_overload
+    keep = cache.save_overload
 
     def load_if_possible(signature: Any, context: Any) -> Any:
         try:
@@ -107,7 +108,8 @@ def cached(function: Function) -> Function:
                 file=sys.stderr,
             )
 
-    cache.load_overload, cache.save_overload = load_if_possible, keep_if_possible
+    cache.load_overload = load_if_possible
+    cache.save_overload = keep_if_possible
     return compiled  # type: ignore[no-any-return]
 
 

@@ -36,9 +36,13 @@ def quarters(x: float, d: float) -> float:
     The binary digits of 4x are the exponents of ``d^{1/4}``, ``d^{1/2}``, d, d² and d⁴; the factor
     of a digit 0 is 1.
     """
-    n, root = int(4.0 * x), np.sqrt(d)
-    a, b, c = float(n & 1), float(n >> 1 & 1), float(n >> 2 & 1)
-    e, g = float(n >> 3 & 1), float(n >> 4 & 1)
+    n = int(4.0 * x)
+    root = np.sqrt(d)
+    a = float(n & 1)
+    b = float(n >> 1 & 1)
+    c = float(n >> 2 & 1)
+    e = float(n >> 3 & 1)
+    g = float(n >> 4 & 1)
     low = (1.0 - a + a * np.sqrt(root)) * (1.0 - b + b * root)
     high = (1.0 - e + e * d * d) * (1.0 - g + g * d * d * d * d)
     return float(low * (1.0 - c + c * d) * high)
@@ -95,7 +99,10 @@ def _loop(value: Any) -> Any:
     def loop(
         chain: Chain, law: Any, y: Array, f: Array, lo: int, hi: int, least: float
     ) -> None:
-        A, rest, load, k = chain.A, chain.rest, chain.load, law.k
+        A = chain.A
+        rest = chain.rest
+        load = chain.load
+        k = law.k
         for i in range(index(lo), index(hi)):
             d = rest[i] + y[i] - y[i + ONE]
             d = d if d > least else 0.0
@@ -124,10 +131,16 @@ def _damped_loop(value: Any, resistance: Any) -> Any:
         least: float,
         none: float,
     ) -> float:
-        A, rest, load, r = chain.A, chain.rest, chain.load, chain.r
-        k, p, lost = law.k, law.p, 0.0
+        A = chain.A
+        rest = chain.rest
+        load = chain.load
+        r = chain.r
+        k = law.k
+        p = law.p
+        lost = 0.0
         for i in range(index(lo), index(hi)):
-            x, rate = rest[i] + y[i] - y[i + ONE], v[i] - v[i + ONE]
+            x = rest[i] + y[i] - y[i + ONE]
+            rate = v[i] - v[i + ONE]
             d = x if x > least else 0.0
             force = value(law, k, d)
             lowest = force if force < none else none
@@ -164,7 +177,8 @@ def tile_bounds(tile: int, s: int, hi: int) -> tuple[int, int, int, int]:
     All stages of a step go through a tile before the next tile. The contact of a tile's last bead
     waits for the bead ahead, so each stage ends one bead behind the stage before.
     """
-    lo, up = max(tile - s, 0), min(tile + TILE - s, hi)
+    lo = max(tile - s, 0)
+    up = min(tile + TILE - s, hi)
     return lo, up, max(lo - 1, 0), up if up == hi else up - 1
 
 
@@ -188,9 +202,12 @@ def contact_forces(
     lo, hi : int
         Range of the contacts.
     """
-    f, lost, start = beads.force[1], beads.power[0, s] if lo > 0 else 0.0, lo
+    f = beads.force[1]
+    lost = beads.power[0, s] if lo > 0 else 0.0
+    start = lo
     while lo < hi:
-        law, up = chain.laws[chain.law[lo]], min(hi, chain.alike[lo])
+        law = chain.laws[chain.law[lo]]
+        up = min(hi, chain.alike[lo])
         least = -math.inf if law.pulls else NEGLIGIBLE * plan.deepest
         none = -math.inf if law.sticks else 0.0
         fast = is_quarters(law.k) and not law.generated
@@ -226,11 +243,13 @@ def drive_motion(drive: Drive, middle: float, t: float) -> tuple[float, float, f
     t : float
         The time.
     """
-    low, high = 0, len(drive.times)
+    low = 0
+    high = len(drive.times)
     while high - low > 1:
         n = (low + high) // 2
         low, high = (n, high) if drive.times[n] <= middle else (low, n)
-    s, c = t - drive.times[low], drive.cubics[low]
+    s = t - drive.times[low]
+    c = drive.cubics[low]
     y, v, a = _oscillation(t, drive.amplitude, drive.w, drive.ramp)
     y += c[0] + s * (c[1] + s * (c[2] + s * c[3]))
     v += c[1] + s * (2.0 * c[2] + s * 3.0 * c[3])

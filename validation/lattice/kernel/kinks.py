@@ -31,6 +31,7 @@ POINTS = 12  # of the rule: three of the machine's vectors
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(POINTS)
 _U, _W = (1 + _NODES) / 2, _WEIGHTS / 2
 STRAIGHT = (1.0, 0.0, 0.0)  # no bend
+NO_CURVE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, STRAIGHT)
 _PLACES = 8  # parts of a step at whose ends a contact is looked at
 # Each part has at most one turning point of p, and on both sides of it a contact that closes or
 # opens and begins or ceases to be damped; beside these the step's ends.
@@ -38,7 +39,7 @@ EDGES = 4 * _PLACES + 2
 # Width at which the search for a place ends: at 1e-10 the energy lost errs by 15 times an rtol of
 # 1e-11.
 _CLOSE = 1e-13
-_OPENS = 1e-100  # a compression at which a contact is about to open, in any units
+OPENS = 1e-100  # a compression at which a contact is about to open, in any units
 
 
 @part
@@ -79,7 +80,9 @@ def fitted_curve(
     bend: Bend,
 ) -> Curve:
     """Return the quintic with p, p' and p'' at both ends of the step, with a bend."""
-    d, v, c2 = start[0], start[1], start[2] / 2
+    d = start[0]
+    v = start[1]
+    c2 = start[2] / 2
     b0, b1, b2 = bent(bend, 1.0)
     # c3, c4 and c5 solve the conditions at x = 1, of which the bend, d, v and c2 leave r0, r1, r2.
     r0 = end[0] - b0 - d - v - c2
@@ -107,7 +110,8 @@ def _margin(law: Any, r: float, c: Curve, h: float, x: float) -> float:
 @alone
 def _crossing(law: Any, r: float, c: Curve, h: float, a: float, b: float) -> float:
     """Return the place between a and b at which `_margin` changes its sign."""
-    left, right = _margin(law, r, c, h, a), _margin(law, r, c, h, b)
+    left = _margin(law, r, c, h, a)
+    right = _margin(law, r, c, h, b)
     for _ in range(60):  # the Illinois variant of the rule of false position
         x = 0.5 * (a + b)
         if right != left:
@@ -116,10 +120,12 @@ def _crossing(law: Any, r: float, c: Curve, h: float, a: float, b: float) -> flo
             return x
         middle = _margin(law, r, c, h, x)
         if middle * right < 0.0:
-            a, left = b, right
+            a = b
+            left = right
         else:
             left *= 0.5
-        b, right = x, middle
+        b = x
+        right = middle
     return b
 
 
@@ -169,7 +175,9 @@ def _add_edges(
     """
     closes = first[0] <= 0.0 and last[0] > 0.0
     opens = first[0] > 0.0 and last[0] <= 0.0
-    root, margin, end_margin = b, first[2], last[2]
+    root = b
+    margin = first[2]
+    end_margin = last[2]
     if closes or opens:
         root = _crossing(law, 0.0, c, h, a, b)
     if closes:
@@ -195,7 +203,10 @@ def find_edges(
 
     The places between the intervals, 0 and 1 among them, go to ``edges``.
     """
-    n, low, before, top = FIRST + 1, 0.0, _state(law, r, c, h, 0.0), c[0]
+    n = FIRST + 1
+    low = 0.0
+    before = _state(law, r, c, h, 0.0)
+    top = c[0]
     edges[0] = 0.0
     for m in range(1, _PLACES + 1):
         high = m / _PLACES
@@ -207,10 +218,14 @@ def find_edges(
             turn = _turning_point(c, low, high)
             middle = _state(law, r, c, h, turn)
             n = _add_edges(law, r, c, h, low, turn, before, middle, edges, n)
-            low, before, top = turn, middle, max(top, middle[0])
+            low = turn
+            before = middle
+            top = max(top, middle[0])
         if before[0] > 0.0 or after[0] > 0.0:
             n = _add_edges(law, r, c, h, low, high, before, after, edges, n)
-        low, before, top = high, after, max(top, after[0])
+        low = high
+        before = after
+        top = max(top, after[0])
     edges[n] = 1.0
     return n, top
 
@@ -227,7 +242,7 @@ def _find_jump(
     for n in range(count):
         p, slope = value_and_slope(c, edges[n])
         if abs(p) < 1e-9 * abs(slope):
-            force = push(law, r, _OPENS, slope / h)
+            force = push(law, r, OPENS, slope / h)
             if slope > 0.0 and r > 0.0 and law.p > 0.0 and law.p < 1.0:
                 found = edges[n], r * slope / h * drag(law, slope), law.p
             else:
@@ -312,7 +327,8 @@ def _place_points(
     for m in range(index(POINTS)):
         u = start + (1.0 - start) * _U[m]
         pace = 1.0 if q == 1.0 else (2.0 * u if q == 2.0 else 4.0 * u * u * u)
-        points[0, m], points[1, m] = zero + span * u * pace / q, scale * _W[m] * pace
+        points[0, m] = zero + span * u * pace / q
+        points[1, m] = scale * _W[m] * pace
 
 
 @part
@@ -344,15 +360,19 @@ def integrals(
     0 for a force that the second derivative of a quintic follows. A force of 1 changes ``p''`` by
     ``bend``.
     """
-    x, w = points[0], points[1]
+    x = points[0]
+    w = points[1]
     once = twice = third = work = given = rough = 0.0
     for n in range(count):
-        a, b = edges[n], edges[n + 1]
+        a = edges[n]
+        b = edges[n + 1]
         p, slope = value_and_slope(c, 0.5 * (a + b))
         idle = push(law, r, p, slope / h) == 0.0 and c[6][1] == 0.0
         if idle or not a < min(b, until):
             continue
-        low, high, b = _root(c, a, -1.0), _root(c, b, 1.0), min(b, until)
+        low = _root(c, a, -1.0)
+        high = _root(c, b, 1.0)
+        b = min(b, until)
         middle = 0.5 * (a + b)
         if math.isnan(high):
             middle = b
@@ -367,7 +387,8 @@ def integrals(
                 _place_points(law.q, zero, near, far, points)
             for m in range(index(POINTS)):
                 p, slope = value_and_slope(c, x[m])
-                force, left = w[m] * push(law, r, p, slope / h), 1.0 - x[m]
+                force = w[m] * push(law, r, p, slope / h)
+                left = 1.0 - x[m]
                 once += force
                 twice += left * force
                 third += 0.5 * left * left * force

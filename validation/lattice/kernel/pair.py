@@ -48,11 +48,14 @@ _ROUNDS, _SETTLED = 4, 0.02
 # weak contact, whose force is less than _STRONG times the least that counts, is nearly open below
 # _VERY_NEAR, as the pair's own error is smaller there. Measured: _NEAR for all takes a tenth more
 # time for equal beads, _VERY_NEAR for all a quarter more for dimers at small tolerances.
-# The singularity of damping, δ^{1/4} say, is felt farther away.
+# The singularity of damping, δ^{1/4} say, is felt farther away: at δ halved within a step, and a
+# tolerance of 1e-10, the energy was off by 18 tolerances.
 _NEAR, _VERY_NEAR, _NEAR_DAMPED, _STRONG = 0.3, 0.03, 0.6, 1e3
 # Mean distance of the quintic from a p with ``p'' = 9 P₄(x)``, Legendre's polynomial: the distance
 # is ``9 · 0.0365 (1 - (2x - 1)²)³``.
 _MISFIT = 0.15
+# Greatest distance of the quintic from a p whose second derivative jumps by 1.
+_UNBENT = 0.014
 # Share of a neighbour's correction that counts as error.
 _SECOND = 0.5
 # Step-size control of Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.4.
@@ -137,12 +140,19 @@ def _ends(
     chain: Chain, beads: Beads, h: float, i: int
 ) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
     """Return δ, δ' and δ'' of contact i at both ends of a step, in units of the step."""
-    y, v, push, last = beads.y, beads.v, beads.push, len(beads.border) - 1
-    next_y, next_v = beads.next_y, beads.next_v
-    a, end_a = push[0, i] - push[0, i + 1], push[last, i] - push[last, i + 1]
+    y = beads.y
+    v = beads.v
+    push = beads.push
+    last = len(beads.border) - 1
+    next_y = beads.next_y
+    next_v = beads.next_v
+    a = push[0, i] - push[0, i + 1]
+    end_a = push[last, i] - push[last, i + 1]
     if i == 0:
-        a, end_a = a + beads.given[0], end_a + beads.given[1]
-    d, end = y[i] - y[i + 1], next_y[i] - next_y[i + 1]
+        a = a + beads.given[0]
+        end_a = end_a + beads.given[1]
+    d = y[i] - y[i + 1]
+    end = next_y[i] - next_y[i + 1]
     start = chain.rest[i] + d, h * (v[i] - v[i + 1]), h * h * a
     return start, (
         chain.rest[i] + end,
@@ -177,7 +187,8 @@ def _stage_forces(
     stages after a jump of the force are so far off p that their own motion is taken.
     """
     law = chain.laws[chain.law[i]]
-    r, points = chain.r[i], beads.points
+    r = chain.r[i]
+    points = beads.points
     for s in range(len(pair.nodes)):
         d, slope = kinks.value_and_slope(p, pair.nodes[s])
         if jumps:
@@ -197,23 +208,64 @@ def _stage_forces(
         points[2, s] = push(law, r, d, slope / h)
 
 
+@alone
+def _clipped(
+    chain: Chain, beads: Beads, plan: Plan, t: float, h: float, n: int
+) -> float:
+    """Return the squared error of a damped neighbour of a contact whose force jumps in a step.
+
+    The stages after the jump have velocities so far off that a neighbour which does not push, as
+    damping may not pull, may push at some of them, or the reverse. Elsewhere its force is linear in
+    the velocity, and the errors of the stages cancel.
+    """
+    pair = plan.scheme
+    law = chain.laws[chain.law[n]]
+    r = chain.r[n]
+    if not r > 0.0 or law.sticks or beads.marks[n] > 0.0:
+        return 0.0
+    points = beads.points
+    _stage_forces(chain, beads, pair, kinks.NO_CURVE, t, h, n, True)
+    pushes = points[2, 0] > 0.0
+    last = len(pair.nodes) - 1
+    missed = 0.0
+    for s in range(last + 1):
+        d = points[0, s]
+        wanted = 0.0
+        if pushes and d > 0.0:
+            wanted = elastic(law, d) + r * drag(law, d) * points[1, s] / h
+        missed += pair.impulses[last, s] * (points[2, s] - wanted)
+    missed *= h * chain.A[n]
+    moved = missed / plan.v
+    work = missed * (beads.v[n] - beads.v[n + 1]) / plan.energy
+    squares = chain.inverse[n] ** 2 + chain.inverse[n + 1] ** 2
+    return float(moved * moved * squares + work * work)
+
+
 @inlined
 def correct_contact(
     chain: Chain, beads: Beads, plan: Plan, t: float, h: float, i: int
 ) -> None:
     """Correct a step for the pair's error at contact i, which opens or closes."""
-    pair, last, inverse = plan.scheme, len(beads.border) - 1, chain.inverse
-    A, r, law = chain.A[i], chain.r[i], chain.laws[chain.law[i]]
-    points, edges, both = beads.points, beads.edges, inverse[i] + inverse[i + 1]
+    pair = plan.scheme
+    last = len(beads.border) - 1
+    inverse = chain.inverse
+    A = chain.A[i]
+    r = chain.r[i]
+    law = chain.laws[chain.law[i]]
+    points = beads.points
+    edges = beads.edges
+    both = inverse[i] + inverse[i + 1]
     start, end = _ends(chain, beads, h, i)
-    force, bend = points[2], -A * h * h * both
+    force = points[2]
+    bend = -A * h * h * both
     impulse = moment = change = rough = 0.0
     found = kinks.STRAIGHT
     driven = i == 0 and chain.drive.driven
     drive = _motion(beads, h, i)
     # The force also depends on the corrected end, all the more the later it jumps.
     for _ in range(_ROUNDS):
-        d, rise = end[0] - both * moment, end[1] - both * h * impulse
+        d = end[0] - both * moment
+        rise = end[1] - both * h * impulse
         own = push(law, r, d, rise / h) - push(law, r, end[0], end[1] / h)
         corrected = d, rise, end[2] + bend * own
         p, count, top, jump = kinks.resolved(
@@ -266,11 +318,22 @@ def correct_contact(
         heated = 2.0 * missed * abs(start[1]) / h / plan.energy
         moved = h * missed / plan.y
         beads.books[4] += heated * heated + moved * moved * squares
+    if r > 0.0 and jump != 0.0:
+        if i > 0:
+            beads.books[4] += _clipped(chain, beads, plan, t, h, i - 1)
+        beads.books[4] += _clipped(chain, beads, plan, t, h, i + 1)
     unsettled = change / plan.v
     beads.books[4] += unsettled * unsettled * squares
     for n in range(max(0, i - 1), i + 2):
         share = both if n == i else -inverse[max(i, n)]
         d = chain.rest[n] + beads.next_y[n] - beads.next_y[n + 1]
+        if n != i and jump != 0.0 and beads.marks[n] > 0.0:
+            # The jump bends the neighbour's curve, too, and shifts the place of its own jump.
+            rate = abs(beads.next_v[n] - beads.next_v[n + 1])
+            own = push(chain.laws[chain.law[n]], chain.r[n], kinks.OPENS, rate)
+            shift = _UNBENT * h * h * A * abs(jump * share)
+            missed = chain.A[n] * own * min(shift / max(rate, kinks.OPENS), h) / plan.v
+            beads.books[4] += missed * missed * (inverse[n] ** 2 + inverse[n + 1] ** 2)
         if n == i:
             d = top
         closed = n == i or beads.force[1, n + 1] + chain.load[n] > 0.0
@@ -304,33 +367,48 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
 
     Returns the number of marks, which are in ``beads.marks``.
     """
-    still, push = beads.still, beads.push
-    y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
-    rest, load, opens, marks = chain.rest, chain.load, chain.opens, beads.marks
-    start, end = beads.force[0], beads.force[1]
+    still = beads.still
+    push = beads.push
+    y = beads.y
+    v = beads.v
+    next_y = beads.next_y
+    next_v = beads.next_v
+    rest = chain.rest
+    load = chain.load
+    opens = chain.opens
+    marks = beads.marks
+    start = beads.force[0]
+    end = beads.force[1]
     # A force F changes a velocity by h F/m; the errors of all beads add up.
     least = _SLIGHT * plan.v * plan.lightest / (h * math.sqrt(hi))
     count = 0
-    nearly, very_nearly = _NEAR, _VERY_NEAR
+    nearly = _NEAR
+    very_nearly = _VERY_NEAR
     if chain.damped:
-        nearly, very_nearly = _NEAR_DAMPED, _NEAR
+        nearly = _NEAR_DAMPED
+        very_nearly = _NEAR
     for lo in range(0, hi, TILE):
         up = min(lo + TILE, hi)
         for q in range(len(beads.errors)):
             scale = h * h / plan.y if q % 2 == 0 else h / plan.v
-            weights, errors = plan.scheme.errors[q], beads.errors[q]
+            weights = plan.scheme.errors[q]
+            errors = beads.errors[q]
             _move_all(errors, still, still, 0.0, scale, weights, push, lo, up)
         for i in range(index(lo), index(up)):
             before = rest[i] + y[i] - y[i + ONE]
             after = rest[i] + next_y[i] - next_y[i + ONE]
-            rise, end_rise = h * (v[i] - v[i + ONE]), h * (next_v[i] - next_v[i + ONE])
-            first, then = abs(start[i + ONE] + load[i]), abs(end[i + ONE] + load[i])
+            rise = h * (v[i] - v[i + ONE])
+            end_rise = h * (next_v[i] - next_v[i + ONE])
+            first = abs(start[i + ONE] + load[i])
+            then = abs(end[i + ONE] + load[i])
             changed = chain.damped & ((first > 0.0) != (then > 0.0))
-            force, most = max(first, then), max(before, after)
+            force = max(first, then)
+            most = max(before, after)
             strong = (force > least) | (
                 chain.damped & ((before > 0.0) != (after > 0.0))
             )
-            low, near = min(before, after), (most > 0.0) & (force > _STRONG * least)
+            low = min(before, after)
+            near = (most > 0.0) & (force > _STRONG * least)
             near = (near & (low < nearly * most)) | (
                 (most > 0.0) & (low < very_nearly * most)
             )
@@ -352,7 +430,9 @@ def watch_drive(chain: Chain, beads: Beads, plan: Plan, t: float, h: float) -> i
     Returns the number of new marks. The acceleration of the bead is given, so that δ can rise,
     fall and rise again. The difference between its motion and the quintic counts as error.
     """
-    law, A, r = chain.laws[chain.law[0]], chain.A[0], chain.r[0]
+    law = chain.laws[chain.law[0]]
+    A = chain.A[0]
+    r = chain.r[0]
     if not chain.opens[0] > 0.0:
         return 0
     start, end = _ends(chain, beads, h, FIRST)
@@ -394,19 +474,33 @@ def evaluate_stages(
     chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int
 ) -> None:
     """Compute the accelerations at the stages of a step h of the beads 0 … hi-1 at time t."""
-    pair, stages = plan.scheme, len(plan.scheme.nodes)
-    y, v, next_y, next_v = beads.y, beads.v, beads.next_y, beads.next_v
-    force, push, inverse = beads.force[1], beads.push, chain.inverse
+    pair = plan.scheme
+    stages = len(plan.scheme.nodes)
+    y = beads.y
+    v = beads.v
+    next_y = beads.next_y
+    next_v = beads.next_v
+    force = beads.force[1]
+    push = beads.push
+    inverse = chain.inverse
     for tile in range(0, hi + stages, TILE):
         for s in range(1, stages):
             lo, up, first, behind = tile_bounds(tile, s, hi)
             if lo >= up:
                 continue
             ch = pair.nodes[s] * h
-            target, base, weights, time, scale = next_y, y, pair.moments[s], ch, h * h
+            target = next_y
+            base = y
+            weights = pair.moments[s]
+            time = ch
+            scale = h * h
             for _ in range(2 if chain.damped or s == stages - 1 else 1):
                 _move(target, base, v, time, scale, weights, s, push, lo, up)
-                target, base, weights, time, scale = next_v, v, pair.impulses[s], 0.0, h
+                target = next_v
+                base = v
+                weights = pair.impulses[s]
+                time = 0.0
+                scale = h
             if chain.drive.driven and lo == 0:
                 given = drive_motion(chain.drive, t + h / 2, t + ch)
                 next_y[0], next_v[0], beads.given[1] = given
@@ -422,7 +516,8 @@ def evaluate_stages(
 @inlined
 def evaluate_end(chain: Chain, beads: Beads, plan: Plan, hi: int) -> None:
     """Compute the accelerations at a step's end, after its motion was corrected."""
-    last, force = len(plan.scheme.nodes) - 1, beads.force[1]
+    last = len(plan.scheme.nodes) - 1
+    force = beads.force[1]
     contact_forces(chain, beads, plan, beads.next_y, beads.next_v, last, FIRST, hi)
     for i in range(index(hi)):
         net = force[i] - force[i + ONE]
@@ -432,7 +527,9 @@ def evaluate_end(chain: Chain, beads: Beads, plan: Plan, hi: int) -> None:
 @summed
 def _squared_error(errors: Array, row: int, hi: int) -> float:
     """Return the sum over all beads of the squared errors of displacements and velocities."""
-    total, ys, vs = 0.0, errors[row], errors[row + 1]
+    total = 0.0
+    ys = errors[row]
+    vs = errors[row + 1]
     for i in range(index(hi)):
         total += ys[i] * ys[i] + vs[i] * vs[i]
     return total
@@ -441,7 +538,9 @@ def _squared_error(errors: Array, row: int, hi: int) -> float:
 @inlined
 def step_error(beads: Beads, plan: Plan, h: float, hi: int) -> float:
     """Return the error of a step in units of the tolerance: of all beads, the heat and the work."""
-    weights, books, total = plan.scheme.errors, beads.books, 0.0
+    weights = plan.scheme.errors
+    books = beads.books
+    total = 0.0
     for q in range(0, len(weights), 2):
         squared = _squared_error(beads.errors, q, hi)
         for n in range(2):
@@ -463,7 +562,9 @@ def end_step(
     Returns True for a step that is made. The flag ``stopping`` is True for a step that was cut to
     end at the next stop.
     """
-    pair, factor, wanted = plan.scheme, 0.0, now.h
+    pair = plan.scheme
+    factor = 0.0
+    wanted = now.h
     if error < _HOPELESS:
         factor = _SAFETY * max(error, 1e-9) ** (-1.0 / pair.order)
     now.h = h * min(_GROWTH, max(_SHRINKAGE, factor))
@@ -476,7 +577,8 @@ def end_step(
     now.work += h * _integral(impulses, beads.power[1]) + beads.books[2]
     now.response = max(now.response, now.energy + now.work - now.lost)
     if stopping:
-        now.t, now.late = plan.stops[now.stop], 0.0
+        now.t = plan.stops[now.stop]
+        now.late = 0.0
         now.h = max(now.h, wanted)
         now.stop += 1
     else:

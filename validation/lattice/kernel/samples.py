@@ -28,8 +28,11 @@ def store_knot(chain: Chain, beads: Beads, knots: Knots, now: Any) -> None:
         return
     knots.time[now.stored] = now.t
     for q in range(len(knots.watched)):
-        j, state = knots.watched[q], knots.state[now.stored, q]
-        state[0], state[1], state[2] = beads.y[j], beads.v[j], beads.push[0, j]
+        j = knots.watched[q]
+        state = knots.state[now.stored, q]
+        state[0] = beads.y[j]
+        state[1] = beads.v[j]
+        state[2] = beads.push[0, j]
         if j == 0 and chain.drive.driven:
             state[2] = beads.given[0]
         state[3] = beads.marks[j]
@@ -41,7 +44,8 @@ def _compression(
     knots: Knots, n: int, q: int, rest: float
 ) -> tuple[float, float, float]:
     """Return δ, δ' and δ'' of the contact between the beads of rows q and q + 1, at knot n."""
-    near, far = knots.state[n, q], knots.state[n, q + 1]
+    near = knots.state[n, q]
+    far = knots.state[n, q + 1]
     return rest + near[0] - far[0], near[1] - far[1], near[2] - far[2]
 
 
@@ -67,11 +71,13 @@ def _septic(a: Array, b: Array) -> tuple[Curve, float, float]:
 
     The coefficients c0 … c5 are a curve without a bend.
     """
-    c2, c3 = a[2] / 2, a[3] / 6
+    c2 = a[2] / 2
+    c3 = a[3] / 6
     # c4 … c7 solve the four conditions at x = 1, of which c0 … c3 leave the remainders r0 … r3.
     r0 = b[0] - a[0] - a[1] - c2 - c3
     r1 = b[1] - a[1] - 2 * c2 - 3 * c3
-    r2, r3 = b[2] - 2 * c2 - 6 * c3, b[3] - 6 * c3
+    r2 = b[2] - 2 * c2 - 6 * c3
+    r3 = b[3] - 6 * c3
     c4 = 35 * r0 - 15 * r1 + 2.5 * r2 - r3 / 6
     c5 = -84 * r0 + 39 * r1 - 7 * r2 + r3 / 2
     c6 = 70 * r0 - 34 * r1 + 6.5 * r2 - r3 / 2
@@ -101,11 +107,15 @@ def _take_kink_away(
     The contact is ahead of the bead of row q, which is row r of ``ends``, y and v.
     """
     i = knots.watched[q]
-    law, ratio, scale = chain.laws[chain.law[i]], chain.r[i], h * h * chain.A[i]
-    near, far = scale * chain.inverse[i], scale * chain.inverse[i + 1]
+    law = chain.laws[chain.law[i]]
+    ratio = chain.r[i]
+    scale = h * h * chain.A[i]
+    near = scale * chain.inverse[i]
+    far = scale * chain.inverse[i + 1]
     d, u, a = _compression(knots, n, q, chain.rest[i])
     end, end_u, end_a = _compression(knots, n + 1, q, chain.rest[i])
-    begin, over = (d, h * u, h * h * a), (end, h * end_u, h * h * end_a)
+    begin = (d, h * u, h * h * a)
+    over = (end, h * end_u, h * h * end_a)
     p, count, _, _ = kinks.resolved(
         law, ratio, begin, over, h, -near - far, kinks.STRAIGHT, edges
     )
@@ -186,14 +196,19 @@ def interpolate(
     """
     last = FIRST
     while last < len(time):
-        first, n = last, step[last]
+        first = last
+        n = step[last]
         while last < len(time) and step[last] == n:
             last += 1
-        start, h = knots.time[n], knots.time[n + 1] - knots.time[n]
+        start = knots.time[n]
+        h = knots.time[n + 1] - knots.time[n]
         for r in range(len(rows)):
             for end in range(2):
-                state, row = knots.state[n + end, rows[r]], ends[end, r]
-                row[0], row[1], row[2] = state[0], h * state[1], h * h * state[2]
+                state = knots.state[n + end, rows[r]]
+                row = ends[end, r]
+                row[0] = state[0]
+                row[1] = h * state[1]
+                row[2] = h * h * state[2]
                 row[3] = 0.0
             for s in range(first, last):
                 y[r, s] = v[r, s] = 0.0

@@ -23,9 +23,15 @@ def advance_split(
 
     Returns the time that is reached.
     """
-    kicks, drifts, h = plan.scheme.kicks, plan.scheme.drifts, plan.h
-    until, last = now.tries + tries, len(drifts)
-    y, v, force, inverse = beads.y, beads.v, beads.force[1], chain.inverse
+    kicks = plan.scheme.kicks
+    drifts = plan.scheme.drifts
+    h = plan.h
+    until = now.tries + tries
+    last = len(drifts)
+    y = beads.y
+    v = beads.v
+    force = beads.force[1]
+    inverse = chain.inverse
     push = beads.push[0]
     contact_forces(chain, beads, plan, y, v, FIRST, FIRST, plan.size)
     if now.tries == 0:
@@ -39,7 +45,8 @@ def advance_split(
                 lo, up, first, behind = tile_bounds(tile, s, hi)
                 if lo >= up:
                     continue
-                b, a = h * kicks[s], h * drifts[s]
+                b = h * kicks[s]
+                a = h * drifts[s]
                 for i in range(index(lo), index(up)):
                     u = v[i] + b * (force[i] - force[i + ONE]) * inverse[i]
                     v[i] = u
