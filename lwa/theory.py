@@ -77,9 +77,6 @@ class Theory(OfClosure):
         The field of particle i (from 0) is ``w_i = u + u_x Σ D^n J_n``; u itself is left out.
         """
         found: dict[int, dict[int, Terms]] = {}
-        # The linear closure's field is the `ansatz`.
-        if self.closure.name == "linear":
-            return found
         for i, series in enumerate(self.closure.solution.fields):
             if any(not S.is_zero() for S in series):
                 orders = enumerate(series, start=1)

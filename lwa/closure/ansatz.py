@@ -88,17 +88,7 @@ def _acoustic(
         of_second = force_2 / (2 * mu[1])  # acceleration of w
         second.append(of_second - _applied(b, second, n))
         b.append(c[0] * strain)
-    solution = _solution(b, first, second)
-    # φ is the first particle's field. In that of the second stands
-    # b_{n+1} D^{n+1} ∂_x^{n+1} φ = D φ_x (D^n b_{n+1} r_n).
-    slaved = []
-    # The algebra of order 1 has one jet more, as the least weight is 1.
-    for b_n, r_n in zip(b[1:], algebra.r, strict=False):
-        slaved.append(b_n * r_n)
-    fields = []
-    for terms in ([algebra.zero] * len(slaved), slaved):
-        fields.append(GradedSeries(algebra, algebra.one, terms))
-    return replace(solution, fields=tuple(fields))
+    return _solution(b, first, second)
 
 
 def _optical(

@@ -128,11 +128,12 @@ class Solution:
         The numbers ``b_0 … b_order``. The second particle's field is ``λ Σ b_n D^n ∂_x^n φ`` in the
         linear closure, and has this linear part in the full one.
     fields : tuple of GradedSeries
-        The series S of each field ``w_i = φ + D φ_x S_i``; () on the optical branch.
+        The series S of each field ``w_i = φ + D φ_x S_i``; () in the linear closure, as `rates`
+        and `forces`.
     rates : tuple of GradedSeries
-        In the full closure the series ``∂_τ (D φ_x S_i)`` of each field.
+        The series ``∂_τ (D φ_x S_i)`` of each field.
     forces : tuple of Force
-        In the full closure the forces of the contacts.
+        The forces of the contacts.
     defect : tuple of elements
         The ``E_n`` of the first equation of motion minus those of the second.
     """

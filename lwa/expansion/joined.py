@@ -95,16 +95,12 @@ def joined(quantity: str) -> sp.Expr:
     """The closed form of a quantity of `TWO_BODIES` as a function of the symbol k."""
     limit = TWO_BODIES[quantity]
     epsilon = k - 1
-    rest = sp.exp(-epsilon * phi(quantity).subs(EPSILON, epsilon))
+    phi = pade(phi_series(quantity, ORDERS.get(quantity, 2)), 1)
+    rest = sp.exp(-epsilon * phi.subs(EPSILON, epsilon))
     # The speed is finite in both limits, where the others grow as 1/√ε.
     if quantity == "c":
         return limit * (1 + (1 / limit.subs(k, 1) - 1) * rest)
     return sp.sqrt(limit**2 + _SQUARED[quantity] * rest / epsilon)
-
-
-def phi(quantity: str) -> sp.Expr:
-    """The Padé approximant of φ, a function of `EPSILON`."""
-    return pade(phi_series(quantity, ORDERS.get(quantity, 2)), 1)
 
 
 def phi_series(

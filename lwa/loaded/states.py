@@ -76,25 +76,25 @@ class States(Parametric):
         return cls(chain, law, load, force, ahead, rise)
 
     @classmethod
-    def of_strains(cls, cell: Cell, law: ContactLaw, p0: sp.Expr, B: sp.Expr) -> Self:
-        """Return the states of a static strain p0 and of a strain that is larger by B.
+    def of_strains(cls, field: Background, B: sp.Expr) -> Self:
+        """Return the states of a field's static strain and of a strain that is larger by B.
 
-        Raises `lwa.InputError` for a static strain at which no sound runs, and
-        `lwa.NoSolitaryWave` for a peak at which none runs, as beyond a pole of the law.
+        Raises `lwa.NoSolitaryWave` for a peak at which no sound runs, as beyond a pole of the law.
         """
-        Background(cell, law, p0)
+        law = field.law
+        peak = field.p0 + B
         try:
-            law.check_strain(p0 + B, cell)
+            law.check_strain(peak, field.cell)
         except InputError as fault:
             raise NoSolitaryWave(str(fault)) from None
-        A = cell.stiffness(law.exponent)
-        D = cell.spacing
+        A = field.cell.stiffness(law.exponent)
+        D = field.cell.spacing
         return cls(
-            chain=cell,
+            chain=field.cell,
             law=law,
-            precompression=A * law.at(D * p0),
-            force=A * law.at(D * (p0 + B)),
-            exact_static_compression=D * p0,
+            precompression=A * law.at(D * field.p0),
+            force=A * law.at(D * peak),
+            exact_static_compression=D * field.p0,
             exact_compression=D * B,
         )
 

@@ -435,7 +435,7 @@ def _of_strains(
     if B.is_zero:
         raise InputError("rise is 0: `kdv` is the limit of small waves")
     try:
-        return LoadedWave.of_strains(cell, law, field.p0, B)
+        return LoadedWave.of_strains(field, B)
     except NoSolitaryWave as reason:
         raise NoSolitaryWave(
             f"p0 = {shorten(field.p0)}, B = {shorten(B)}: {reason}"

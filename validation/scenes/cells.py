@@ -30,15 +30,9 @@ HEAD = 1000
 
 _MARKS = "\t;, "
 _COMMA = re.compile(r'"([-+]?\d+),(\d+(?:[eE][-+]?\d+)?)"')  # a number in quotes
-# Numbers that NumPy's reader does not take: some loggers write + 1.5, Fortran 1.5D-3. By blanks a
-# sign may stand alone; where commas do not separate they are decimal commas.
-_SIGNS_APART = {"+ ": "+", "- ": "-"}
-_PLAIN = {
-    "\t": {"D": "e", ",": ".", **_SIGNS_APART},
-    ";": {"D": "e", ",": ".", **_SIGNS_APART},
-    ",": {"D": "e", **_SIGNS_APART},
-    " ": {"D": "e", ",": "."},
-}
+# Signs that NumPy's reader does not take, as it takes them, and the separator beside which they
+# stay: Fortran writes 1.5D-3; decimal commas; some loggers write + 1.5.
+_PLAIN = (("D", "e", ""), (",", ".", ","), ("+ ", "+", " "), ("- ", "-", " "))
 _NUMBER = r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|inf)"
 _FEW = 0.1  # rows of numbers outside of the record, at most, over those of the record
 _SETTINGS = 20  # lines in whose first columns recorders write settings
@@ -73,9 +67,14 @@ class Cells:
         self._mark = mark = max(_MARKS, key=weight)
         self._text = _plain(text, mark)
         start, end = record(mark)
-        above = lines[:start] if end else lines
-        self.head = [_split(line, mark) for line in above]
-        line = tables[mark][min(start + _SETTINGS, end - 1)] if end else []
+        above = lines
+        line: list[str] = []
+        if end:
+            above = lines[:start]
+            # Behind the settings a line shows which columns hold the numbers of the record.
+            line = tables[mark][min(start + _SETTINGS, end - 1)]
+        # Headers keep their signs: a comma in them is no decimal comma.
+        self.head = [_split(text_line, mark) for text_line in above]
         self.entries = {}
         for number, cell in enumerate(line, start=1):
             if re.fullmatch(_NUMBER, cell):
@@ -92,10 +91,13 @@ class Cells:
     def read(cls, path: str | Path) -> Cells:
         """Read a file, or standard input ("-"): UTF-8, UTF-16 by its mark, or Latin-1."""
         content = files.content(Path(path))
-        marked = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+        encoding = "utf-8-sig"
+        if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+            encoding = "utf-16"
         try:
-            text = content.decode("utf-16" if marked else "utf-8-sig")
+            text = content.decode(encoding)
         except UnicodeDecodeError:
+            # Any bytes are Latin-1: the µ of an older recorder, say.
             text = content.decode("latin-1")
         # A translation would take as much memory again.
         for sign, plain in _SIGNS.items():
@@ -151,8 +153,9 @@ class Cells:
     def _lines(self, places: Sequence[int]) -> Iterator[str]:
         """Yield the lines with NaN in place of cells that are no numbers."""
         mark = self._mark
-        between = "[ \t]+" if mark == " " else f" *{mark} *"
-        other = r"[^ \t]+" if mark == " " else f'(?:"[^"]*"|[^"{mark}]*)'
+        between, other = f" *{mark} *", f'(?:"[^"]*"|[^"{mark}]*)'
+        if mark == " ":  # several blanks and tabs are one separator
+            between, other = "[ \t]+", r"[^ \t]+"
         count = places[-1] + 1
         forms = [f'"?{_NUMBER}"?' if i in places else other for i in range(count)]
         row = re.compile(rf" *{between.join(forms)} *(?:{mark}.*)?")
@@ -172,6 +175,7 @@ class Cells:
         There must be such a row. Raises `SceneError` for a gap or an infinite value in the record.
         """
         numbers = ~np.isnan(table)
+        # A row of the record has a number in each wanted column.
         complete = np.all(numbers, axis=1)
         start, end = longest(complete)
         found = runs(complete)
@@ -214,8 +218,9 @@ def runs(flags: ArrayLike) -> list[tuple[int, int]]:
 
 def _plain(text: str, mark: str) -> str:
     """Return a text with its numbers as NumPy's reader takes them."""
-    for sign, plain in _PLAIN[mark].items():
-        text = text.replace(sign, plain)
+    for sign, plain, kept_beside in _PLAIN:
+        if mark != kept_beside:
+            text = text.replace(sign, plain)
     return text
 
 
@@ -224,6 +229,7 @@ def _split(line: str, mark: str) -> list[str]:
     if mark == " ":
         # The blank between a header and its unit in brackets does not separate.
         line, mark = re.sub(r"[ \t]+(?![([])", "\t", line.strip("#% \t")), "\t"
+    # Cells in quotes may hold separators.
     cells = next(csv.reader([line], delimiter=mark, skipinitialspace=True))
     return [" ".join(cell.split()) for cell in cells]
 

@@ -42,6 +42,7 @@ def struck(masses: Sequence[float], beads: int, k: float = 1.5, **rest: Any) -> 
     (1.0, 0.5, 1.0)
     """
     row = tuple(masses[i % len(masses)] for i in range(beads))
+    # A blow of velocity 1, unless another start is given.
     blow = {"velocities": (1.0,)} | rest
     return Scene(masses=row, stiffnesses=(1.0,) * (beads - 1), k=k, **blow)
 

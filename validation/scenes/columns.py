@@ -1,4 +1,4 @@
-"""Columns of a table of cells: their names and units, of the file and of the user.
+"""Columns of a table of cells: their names and units, of the file and of the user, and refusals.
 
 A column is named by its header, in whatever line the header stands, or by its number, from 1.
 
@@ -6,18 +6,26 @@ Units are stated, never guessed: by the user (`validation.scenes.units`), whose 
 the file's, in brackets behind a header, as in "Force (mN)", or in a row of units. Values are in SI.
 A file whose named columns have no unit at all is in the scene's own numbers; if one has a unit,
 each that is used needs one.
+
+A refusal lists the columns and proposes statements that read the file. For a name without a column
+it is the column that has a unit of the quantity; else one that behaves like it: times rise, but do
+not count their lines, signals vary. Where no column may be the time, a step is proposed.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from typing import TypedDict
 
+import numpy as np
+
+from lwa.base.arrays import Array
 from lwa.base.exact import shorten
-from validation.scenes.cells import Cells
+from validation.scenes.cells import HEAD, Cells, longest
+from validation.scenes.checks import SceneError
 from validation.scenes.units import (
     BASES,
     found_unit,
@@ -35,6 +43,13 @@ NAME = re.compile(
 
 NAMES = ("time", "bead 8 force", "bead 8 velocity", "contact 8 force", "speed")
 """Examples of names."""
+
+
+STEP = "1 us"
+"""An example of a time: a usual step of recorders."""
+
+_LISTED = 4  # columns in a message
+_UNLIKE = 2  # least rank of a column that does not behave like a quantity
 
 
 class Stated(TypedDict, total=False):
@@ -100,9 +115,10 @@ class Column:
     @property
     def fault(self) -> str:
         """Words on a unit that is missing or of another quantity."""
-        unit = self.stated or self.unit
-        found = shorten(unit) if unit else "missing"
         base = self.base
+        found = "missing"
+        if self.stated or self.unit:
+            found = shorten(self.stated or self.unit)
         return (
             f"unit of {self.name} is {found}: such as {base}, m{base}, 0.04 {base} or 12.5 "
             f"{base}/{self.unit or 'V'} is wanted"
@@ -151,6 +167,7 @@ class Columns:
         columns = []
         if self.step:
             columns.append(Column("time", None, "", "", self.step))
+        # The user's word stands above the file's headers.
         taken = {*names.values(), *(column.name for column in columns)}
         for row in reversed(self.cells.head):  # the lowest header counts
             found = {}
@@ -160,6 +177,7 @@ class Columns:
                     found[number] = name
             names = found | names
             taken |= {*found.values()}
+        # A unit is that of the column of this name, else of all columns with this header.
         keys: dict[int, str] = {}
         for given in self.units:
             own = [number for number, name in names.items() if name == name_of(given)]
@@ -181,3 +199,95 @@ class Columns:
         texts = [column.stated or column.unit for column in self.named]
         # A number alone is a factor.
         return bool(re.search(r"[^-+.\deE ]", "".join(texts)))
+
+
+def refusal(
+    words: str, columns: Columns, missing: Sequence[str] = (), step: str = ""
+) -> SceneError:
+    """Return an error that lists the columns of a file and proposes statements.
+
+    Parameters
+    ----------
+    words : str
+        What is wrong.
+    columns : Columns
+        The columns of the file.
+    missing : sequence of str
+        Names for which columns are proposed, the time first.
+    step : str
+        Time from sample to sample that is proposed in place of a column.
+    """
+    cells = columns.cells
+    headers = {n: header for n, header in columns.headers.items() if n not in missing}
+    used = set()
+    for column in replace(columns, headers=headers).named:
+        if column.name not in missing:
+            used.add(column.number)
+    # Columns that are named already are not proposed for another name.
+    free = [number for number in cells.entries if number not in used]
+    steps = _steps(cells)
+    for name in missing:
+        rank = partial(_rank, cells, steps, name)
+        best = min(free, key=rank, default=None)
+        if name == "time" and (step or best is None or rank(best) >= _UNLIKE):
+            step = step or STEP
+        elif best is not None:
+            free.remove(best)
+            headers[name] = str(best)
+    proposed = replace(columns, headers=headers, step=step or columns.step)
+    units = {}
+    for column in proposed.named:
+        # The unit of the times that a step states is its own.
+        if column.number is not None:
+            if column.size is None and proposed.si:
+                units[column.key] = column.proposed
+            elif column.stated:
+                units[column.key] = column.stated
+    change: dict[str, object] = {}
+    for option, given, wanted in (
+        ("columns", columns.headers, headers),
+        ("step", columns.step, proposed.step),
+        ("units", columns.units, units),
+    ):
+        if given or wanted:  # an empty one takes the user's away
+            change[option] = wanted
+    return SceneError(f"{words}: found {_listed(cells)}", **change)
+
+
+def _rank(cells: Cells, steps: dict[int, Array], name: str, number: int) -> int:
+    """Return the rank of a column among those for a name, 0 for the best."""
+    base = BASES[name.split()[-1]]
+    unknown = in_si(found_unit(cells.above(number)), base) is None
+    own = steps[number]
+    if name == "time":
+        # Numbers of lines rise by 1, as times in a unit may.
+        lines = unknown and np.all(own == 1)
+        alike = own.min(initial=0) >= 0 < own.max(initial=0) and not lines
+    else:
+        # Numbers of lines, and constants, are no signals.
+        alike = len(np.unique(own)) > 1
+    return unknown + _UNLIKE * (not alike)
+
+
+def _steps(cells: Cells) -> dict[int, Array]:
+    """Return the differences from line to line, at the beginning, of the columns of numbers."""
+    numbers = [*cells.entries]
+    try:
+        table = cells.numbers([number - 1 for number in numbers], HEAD)
+    except SceneError:
+        # Without numbers nothing is known of the columns' behaviour.
+        table = np.empty((0, len(numbers)))
+    steps = {}
+    for number, column in zip(numbers, table.T, strict=True):
+        start, end = longest(np.isfinite(column))
+        steps[number] = np.diff(column[start:end])
+    return steps
+
+
+def _listed(cells: Cells) -> str:
+    """Return words on the first columns of numbers: number, header and an entry."""
+    found = []
+    for number, entry in cells.entries.items():
+        header = " ".join(cells.above(number)[-2:])[-20:].strip()
+        found.append(f"{number} {header!r} {entry[:12]}")
+    return ", ".join(found[:_LISTED]) or "no numbers"

@@ -45,7 +45,7 @@ class Damping:
     def __post_init__(self) -> None:
         one_of(self.kind, DAMPINGS, "damping")
         value = one_or_each(finite)(self.value, self.kind)
-        for number in {value} if isinstance(value, float) else {*value}:
+        for number in {*np.atleast_1d(value).tolist()}:
             if self.kind == "restitution":
                 wanted = "a coefficient from 0.01 to 1 is wanted"
                 between(number, self.kind, 0.01, 1, wanted)
@@ -75,6 +75,7 @@ class Damping:
             Stiffnesses A and reduced masses of the two beads of each contact.
         """
         value = np.broadcast_to(self.value, stiffnesses.shape)
+        # γ is a factor itself, whatever the masses.
         if self.kind != "restitution":
             return value.astype(float)
         shares, kind_of = np.unique(value, return_inverse=True)
@@ -160,6 +161,7 @@ class Drive:
             row = each(finite)(getattr(self, name), f"drive.{name}")
             object.__setattr__(self, name, row)
         harmonic = self.amplitude is not None or self.frequency is not None
+        # Each kind of motion that is given counts one.
         motions = (
             (self.velocity is not None)
             + harmonic
@@ -185,11 +187,13 @@ class Drive:
             raise SceneError("drive.time must begin with 0 and increase")
         if self.velocity is not None:
             finite(self.velocity, "drive.velocity")
+        # Both are checked where one is given: neither has a default.
         elif harmonic:
             finite(self.amplitude, "drive.amplitude")
             positive(self.frequency, "drive.frequency")
         amplitude, w = self.oscillation
         pace = 1 / self.ramp if self.ramp else 0.0
+        # Bounds of the derivatives of the sine and of the ramp's polynomial.
         acceleration = abs(amplitude) * (w * w + 60 * pace * pace)
         if self.time:
             try:
@@ -244,6 +248,7 @@ class Drive:
     @property
     def longest_step(self) -> float:
         """Longest step in time that resolves the drive."""
+        # Less than a quarter of a wave: a step holds at most one extremum.
         if self.frequency is not None:
             return 1 / (8 * self.frequency)
-        return float(np.diff(self.time).max()) if self.time else math.inf
+        return float(np.diff(self.time).max(initial=0.0)) or math.inf

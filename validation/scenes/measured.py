@@ -21,8 +21,15 @@ from lwa.base.files import reason
 from lwa.base.words import similar
 from validation.scenes.cells import Cells
 from validation.scenes.checks import SceneError
-from validation.scenes.columns import NAME, NAMES, Column, Columns, Stated
-from validation.scenes.proposals import STEP, refusal
+from validation.scenes.columns import (
+    NAME,
+    NAMES,
+    STEP,
+    Column,
+    Columns,
+    Stated,
+    refusal,
+)
 from validation.scenes.units import name_of, read_time
 
 
@@ -80,7 +87,9 @@ class MeasuredFile:
     """
 
     def __init__(self, path: str | Path, **stated: Unpack[Stated]) -> None:
-        self.path = "standard input" if str(path) == "-" else path
+        self.path = path
+        if str(path) == "-":
+            self.path = "standard input"
         try:
             cells = Cells.read(path)
         except (OSError, SceneError, csv.Error) as error:
@@ -105,8 +114,8 @@ class MeasuredFile:
         for name, header in headers.items():
             self._demand(header, len(cells.headed(header)), [name])
         for key in units:
-            there = name_of(key) in self.columns.names or cells.headed(key)
-            self._demand(key, 1 if there else 0, [])
+            if name_of(key) not in self.columns.names and not cells.headed(key):
+                self._demand(key, 0, [])
 
     def _demand(self, header: str, count: int, missing: Sequence[str]) -> None:
         """Refuse a header, or a name, unless one column has it."""
@@ -175,6 +184,7 @@ class MeasuredFile:
                 times.append(column)
             elif quantity == "force" or (quantity == "velocity" and force not in names):
                 sensors.append(column)
+        # One column of times serves all sensors, or each has its own.
         missing = []
         if len(times) not in (1, len(sensors) or 1):
             missing.append("time")
@@ -185,6 +195,7 @@ class MeasuredFile:
         records = []
         for time, signal in zip(cycle(times), sensors, strict=False):
             records.append(self._signal(time, signal, of))
+        # One sensor may be any one; of several the file must tell which is which.
         if len(records) > 1 and None in [record.number for record in records]:
             headers = dict(self.columns.headers)
             for number, column in enumerate(sensors, start=1):
@@ -196,6 +207,7 @@ class MeasuredFile:
                 f"{self.path}: each of several sensors needs its number",
                 columns=headers,
             )
+        # The order in which `run` writes its sensors.
         return sorted(records, key=lambda record: record.kind)
 
     def _signal(self, time: Column, signal: Column, of: str) -> Record:
@@ -204,14 +216,17 @@ class MeasuredFile:
         assert sensor is not None
         assert signal.number is not None
         kind, number, quantity = sensor.groups()
+        if quantity == "velocity":
+            kind = "bead"  # contacts have none
         t, values = self._record([time, signal]).T
         if len(t) > 1 and np.diff(t).min() <= 0:
             step = f"{np.ptp(t) / (len(t) - 1):.6g}{' s' * self.columns.si}"
             words = "time must increase, --step states it of evenly spaced samples"
             raise self._refusal(words, ["time"], step)
+        # The user's own calibration, with the other sign, turns an inverted signal.
         given = signal.stated or signal.unit or "1"
         return Record(
-            kind or ("bead" if quantity == "velocity" else of),
+            kind or of,
             int(number) if number else None,
             quantity,
             t,
@@ -225,6 +240,7 @@ class MeasuredFile:
         """Return columns, (rows, columns), in the rows where all of them are numbers."""
         cells = self.columns.cells
         entries = [self._numbers[c.number] for c in columns if c.number is not None]
+        # A record needs numbers in all wanted columns; other columns may have gaps.
         table = np.column_stack(entries)
         names = " and ".join(column.name for column in columns)
         if np.isnan(table).any(axis=1).all():
@@ -237,7 +253,9 @@ class MeasuredFile:
             raise SceneError(f"{self.path}: {names}: {error}") from None
         record = []
         for column in columns:
-            size = column.size if self.columns.si or column.stated else 1.0
+            size: float | None = 1.0
+            if self.columns.si or column.stated:
+                size = column.size
             if size is None:
                 raise self._refusal(column.fault)
             if column.number is None:

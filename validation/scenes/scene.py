@@ -25,25 +25,23 @@ from lwa.base.files import Reader
 from lwa.law import ContactLaw
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from validation.scenes.checks import (
+    MISSING,
     SceneError,
     alike,
     check_count,
+    contact_law,
     each,
     finite,
     integer,
     items,
+    numeric,
     one_of,
     one_or_each,
     positive,
-)
-from validation.scenes.forcing import Damping, Drive
-from validation.scenes.laws import (
-    MISSING,
-    contact_law,
-    numeric,
     read_contact_law,
     read_exponent,
 )
+from validation.scenes.forcing import Damping, Drive
 
 __all__ = ["Scene", "SceneError"]
 
@@ -169,10 +167,12 @@ class Scene:
     def __post_init__(self) -> None:
         for name, read in _READERS.items():
             if name != "wall" or self.wall is not None:
+                # A frozen dataclass is set by its base class while it is made.
                 object.__setattr__(self, name, read(getattr(self, name), name))
         n = self.size
         if n == 0:
             raise SceneError("masses is empty: a chain has at least one bead")
+        # Between n beads are n - 1 contacts; spacings may be left out.
         for name in ("stiffnesses", "spacings"):
             given = len(getattr(self, name))
             if given != n - 1 and (given or name == "stiffnesses"):
@@ -181,6 +181,7 @@ class Scene:
             given = len(getattr(self, name))
             if given > n:
                 raise SceneError(f"{given} {name} for {n} beads: at most {n} wanted")
+        # Places along the chain are sums of spacings.
         if not math.isfinite(sum(self.spacings)):
             raise SceneError("the chain's length comes out as inf: choose other units")
         self._read_laws()
@@ -189,6 +190,7 @@ class Scene:
             ("precompression", "push against"),
         ):
             value = getattr(self, name)
+            # Without a wall nothing holds a chain that is pushed, and it has no equilibrium.
             if value < 0 or (value > 0 and self.wall is None):
                 wanted = f"it must be positive and needs a wall to {act}"
                 raise SceneError(f"{name} is {value:g}: {wanted}")
@@ -220,6 +222,7 @@ class Scene:
         """Refuse a start inside the wall or inside a neighbour, where the spacings tell."""
         if not (self.displacements and self.spacings):
             return
+        # Beads whose displacement is not given start at their places of rest.
         y = np.zeros(self.size)
         y[: len(self.displacements)] = self.displacements
         passed = y[:-1] - y[1:] > self.spacings
@@ -246,6 +249,7 @@ class Scene:
             raise SceneError(f"damping is {shorten(damping)}: a Damping is wanted")
         count = self.contact_count
         check_count(damping.value, f"damping {damping.kind}", count)
+        # A dashpot needs no exponent of the law; the other kinds are made for powers.
         if damping.kind == "contact" or self.law is None:
             return
         values = _row(damping.value, count)
@@ -262,11 +266,13 @@ class Scene:
             return
         if not isinstance(drive, Drive):
             raise SceneError(f"drive is {shorten(drive)}: a Drive is wanted")
+        # The drive says how bead 1 moves, from the start on.
         for row in (self.velocities, self.displacements):
             if row and row[0] != 0:
                 raise SceneError(
                     "drive moves bead 1, which has a velocity or displacement of its own"
                 )
+        # Only a record ends; a piston and an oscillation go on.
         end = drive.time[-1] if drive.time else self.duration
         if not self.duration <= end < _LONGEST * self.duration:
             wanted = (
@@ -332,11 +338,17 @@ class Scene:
         repeats = integer(repeats, "repeats", 1)
         masses = tuple(numeric(m, "mass") for m in cell.masses) * repeats
         stiffnesses = tuple(numeric(A, "stiffness") for A in cell.stiffnesses) * repeats
+        # Without a number for the spacing speeds are in sites alone.
         spacings = (
             (float(cell.spacing),) * (len(masses) - 1) if cell.spacing.is_number else ()
         )
         return cls(
-            masses=masses, stiffnesses=stiffnesses[:-1], k=k, spacings=spacings, **rest
+            # The cell's last contact would join the next cell.
+            masses=masses,
+            stiffnesses=stiffnesses[:-1],
+            k=k,
+            spacings=spacings,
+            **rest,
         )
 
     @classmethod

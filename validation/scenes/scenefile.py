@@ -111,10 +111,12 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     materials = read_materials(file)
     beads = read_beads(file, materials)
     row = read_row(file, beads)
+    # Such a chain would fill the memory before it is refused.
     if row.size > MOST_BEADS:
         made = f"chain.cell and repeat make {shorten(row.size)} beads"
         raise SceneError(f"{made}: at most {MOST_BEADS} are wanted")
     defects = [*file.read("defects", _defects, ())]
+    # A striker that is like another bead takes the place of bead 1.
     if "like" in striker:
         if any(defect.entries.get("bead") == 1 for defect in defects):
             raise SceneError(
@@ -123,14 +125,17 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
         other = {"bead": 1, "like": striker.entries["like"]}
         defects.append(Table(other, "striker", ("bead", "like")))
     spheres = row.spheres * row.repeat
+    # Spheres are replaced first: the contacts beside them follow from their radii.
     _replace_spheres(spheres, beads, defects)
     fields = _contacts(row, spheres)
     _change_contacts(fields, defects)
     contacts = row.size - 1
     if "wall" in file:
         fields["wall"] = _wall(tables["wall"], spheres, materials)
+        # The wall's contact is the last.
         contacts += 1
     own = partial(_own, period=len(row.spheres or row.masses), contacts=contacts)
+    # Spheres have the law of Hertz.
     if not spheres:
         key = row.given.one("k", "law")
         fields[key] = row.given.read(key, own(finite if key == "k" else read_law))
@@ -145,9 +150,11 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
                 "striker and start are both there: one says how the beads start"
             )
         fields["velocities"] = (striker_velocity(striker),)
+    # Materials are in SI.
     units = file.read("units", among({"SI": "SI"}), "SI" if spheres else "")
     if "drive" in file:
         fields["drive"] = _drive(tables["drive"], units, folder)
+    # The scene checks these; a key that is left out keeps the scene's default.
     for key in ("gravity", "precompression", "samples"):
         if key in file:
             fields[key] = file.entries[key]
@@ -209,6 +216,7 @@ def _own(reader: Reader, period: int, contacts: int) -> Reader:
                 f"{name} holds {len(values)}: {period}, one for each bead of the cell, or "
                 f"{contacts}, one for each contact, are wanted, or one for all"
             )
+        # The values of a cell repeat along the chain.
         return (values * (contacts // len(values) + 1))[:contacts]
 
     return read
@@ -227,6 +235,7 @@ def _defects(value: Any, name: str) -> list[Table]:
 
 def _defect(value: Any, name: str) -> Table:
     """Read one table of ``defects``."""
+    # A defect is told by what it names: a contact or a bead.
     if "contact" in entries(value, name):
         return Table(value, name, ("contact", "stiffness"))
     given = Table(value, name, ("bead", "like", "mass"))

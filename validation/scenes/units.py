@@ -56,8 +56,9 @@ def in_si(unit: str, base: str) -> float | None:
     parts = re.fullmatch(rf"([a-zA-Zµ]*?)(?i:{_SPELLINGS[base]})", unit)
     if parts is None:
         return None
-    prefix = parts[1] if parts[1] in _POWERS else parts[1].lower()
-    return 10.0 ** _POWERS[prefix] if prefix in _POWERS else None
+    # M is mega and m milli, but Micro is micro.
+    power = _POWERS.get(parts[1], _POWERS.get(parts[1].lower()))
+    return None if power is None else 10.0**power
 
 
 def known(unit: str) -> tuple[str, float] | None:
@@ -109,10 +110,12 @@ def read_statement(text: str, base: str) -> tuple[float, str] | None:
     """
     parts = re.fullmatch(rf"(-?)({_NUMBER})? *(.*)", text.replace("μ", "µ").strip())
     assert parts is not None  # all may be empty
+    # A sign alone turns an inverted signal: -N/V.
     sign, number, unit = parts.groups()
     size = float(f"{sign}{number or 1}")
     if number and not unit:
         return size, ""
+    # Behind the unit stands whatever the file calls its own, m/s^2 say.
     words = unit.split("/")
     for count in (1, 2):  # the unit of a velocity has a slash of its own
         multiple = in_si("/".join(words[:count]).strip(), base)
@@ -131,13 +134,14 @@ def read_time(text: str, name: str, example: str) -> float:
     text : str
         The statement.
     name : str
-        Name of its option.
+        Name of its option in Python.
     example : str
         A statement that is proposed in its place.
     """
     statement = read_statement(text, "s")
     if statement is None or not statement[0] > 0:
+        option = name.replace("_", "-")
         raise SceneError(
-            f"{name} is {shorten(text)}: a time above 0 is wanted", **{name: example}
+            f"{option} is {shorten(text)}: a time above 0 is wanted", **{name: example}
         )
     return statement[0]

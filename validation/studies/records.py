@@ -17,7 +17,7 @@ from lwa.command.options import Words
 from validation.lattice.cost import RunProgress, silent
 from validation.pictures import Curve, Panel
 from validation.pulses.discharge import corrected, suggested
-from validation.pulses.noisy import InvertedError, NoisyPulse, noisy_pulse, noisy_pulses
+from validation.pulses.noisy import InvertedError, noisy_pulse, noisy_pulses
 from validation.pulses.pulse import MeasureError
 from validation.pulses.readings import Reading, speeds_between
 from validation.pulses.sensors import forces_at_start, record
@@ -27,7 +27,7 @@ from validation.scenes.checks import SceneError, one_of, positive
 from validation.scenes.columns import Stated
 from validation.scenes.measured import MeasuredFile, Record
 from validation.scenes.scenefile import check_units, read_scene
-from validation.scenes.units import BASES, read_statement
+from validation.scenes.units import BASES, read_time
 from validation.studies.run import reading_tables
 
 Paths = str | Path | Sequence[str | Path]
@@ -130,13 +130,7 @@ class Measured:
         """
         constant = math.inf
         if time_constant:
-            statement = read_statement(time_constant, "s")
-            if statement is None or not statement[0] > 0:
-                raise SceneError(
-                    f"time-constant is {shorten(time_constant)}: a time above 0 is wanted",
-                    time_constant="1 ms",
-                )
-            constant, _ = statement
+            constant = read_time(time_constant, "time_constant", "1 ms")
         names = [paths] if isinstance(paths, str | Path) else [*paths]
         files = [MeasuredFile(name, **stated) for name in names]
         signals: dict[tuple[str, int | None], Record] = {}
@@ -313,38 +307,44 @@ def compare(
     wanted = [f"{name} force" for name in sensors]
     read = Measured.read(measured, "contact", time_constant, stated, wanted)
     check_units(read.si, chain.units, "the measured file")
-    found = _first_pulses(read, sensors, stated)
-    velocities = [name for name, (s, _) in found.items() if s.quantity == "velocity"]
+    signals = _by_sensor(read, sensors, stated)
+    found = {}
+    for name, signal in signals.items():
+        try:
+            found[name] = noisy_pulse(signal.time, signal.values, read.unit)
+        except MeasureError as error:
+            turned = {}
+            if isinstance(error, InvertedError):
+                turned[signal.key] = signal.inverted
+            raise MeasureError(f"{name}: {error}", **_units(stated, turned)) from None
+    velocities = [name for name, s in signals.items() if s.quantity == "velocity"]
     simulation = record(chain, velocities=velocities, progress=run_progress)
     run = simulation.run
+    simulated = {}
+    for reading, track in zip(simulation.sensors, simulation.tracks, strict=True):
+        name = f"{track.kind} {track.number}"
+        if name in signals:
+            if not reading.numbers:
+                raise SceneError(f"{reading.name}: {reading.missing}")
+            simulated[name] = (reading, track)
+    # The first pulses at the first sensor shall arrive together.
+    first, (leader, _) = next(iter(simulated.items()))
+    late = found[first].numbers["arrival"]
+    shift = Estimate(leader.numbers["arrival"].value - late.value, late.error)
     rows: list[dict[str, Any]] = []
     curves: list[Curve] = []
-    shift: Estimate | None = None
-    first = ""
-    for reading, track in zip(simulation.sensors, simulation.tracks, strict=True):
-        sensor = f"{track.kind} {track.number}"
-        if sensor not in found:
-            continue
-        if not reading.numbers:
-            raise SceneError(f"{reading.name}: {reading.missing}")
-        signal, pulse = found[sensor]
-        theirs = dict(pulse.numbers)
+    for i, (name, (reading, track)) in enumerate(simulated.items()):
+        theirs = dict(found[name].numbers)
         arrival = theirs["arrival"]
-        error = arrival.error
-        if shift is None:
-            first = reading.name
-            off = reading.numbers["arrival"].value - arrival.value
-            shift = Estimate(off, arrival.error)
-        else:
-            error = math.hypot(arrival.error, shift.error)
-        theirs["arrival"] = Estimate(arrival.value + shift.value, error)
-        labels = {
-            "arrival": "arrival",
-            "peak": f"peak dynamic {track.quantity}",
-            "fwhm": "FWHM",
-        }
-        for quantity, number_read in theirs.items():
+        doubt = arrival.error
+        if name != first:
+            doubt = math.hypot(doubt, shift.error)
+        theirs["arrival"] = Estimate(arrival.value + shift.value, doubt)
+        peak = f"peak dynamic {track.quantity}"
+        labels = {"arrival": "arrival", "peak": peak, "fwhm": "FWHM"}
+        for quantity, measured_number in theirs.items():
             ours = reading.numbers[quantity]
+            off = measured_number.value - ours.value
             rows.append(
                 {
                     "first pulse": f"{reading.name}: {run.label(labels[quantity])}",
@@ -352,69 +352,50 @@ def compare(
                     "number": track.number,
                     "quantity": quantity,
                     "simulated": ours,
-                    "measured": number_read,
-                    "difference": Estimate(
-                        number_read.value - ours.value, ours.error + number_read.error
-                    ),
+                    "measured": measured_number,
+                    "difference": Estimate(off, ours.error + measured_number.error),
                 }
             )
-        color = f"C{len(curves) // 2}"
-        curves += [
-            Curve(
-                f"{reading.name}, simulated",
-                run.time,
-                track.force(run.time),
-                f"{color}-",
-            ),
-            Curve(
-                "measured",
-                signal.time + shift.value,
-                signal.values - pulse.base,
-                f"{color}.",
-            ),
-        ]
-    assert shift is not None
+        ours_drawn = track.force(run.time)
+        curves.append(
+            Curve(f"{reading.name}, simulated", run.time, ours_drawn, f"C{i}-")
+        )
+        times = signals[name].time + shift.value
+        swing = signals[name].values - found[name].base
+        curves.append(Curve("measured", times, swing, f"C{i}."))
     shown = f"{shift.value:.6g} {chain.units and 's'}".strip()
     return Report(
         str(chain),
         (Table.of(_COLUMNS, rows, "rows"),),
         panels=(read.panel(curves),),
-        notes=(*read.notes, _COMPARED.format(shown, first)),
+        notes=(*read.notes, _COMPARED.format(shown, leader.name)),
         data={"shift_value": shift.value},
     )
 
 
-def _first_pulses(
+def _by_sensor(
     read: Measured, sensors: Sequence[str], stated: Stated
-) -> dict[str, tuple[Record, NoisyPulse]]:
-    """Return measured signals and their first pulses by the scene's sensors, at least one."""
+) -> dict[str, Record]:
+    """Return the measured signals by the names of a scene's sensors, at least one."""
     named = {}
     for signal in read.signals:
         name = f"{signal.kind} {signal.number}"
+        # A single sensor of the scene needs no number in the file.
         if signal.number is None and len(sensors) == 1:
             (name,) = sensors
         if name in sensors:
             named[name] = signal
-    if not named:
-        wanted = " or ".join(sensors[:5]) or "wanted: the scene has none"
-        headers = {}
-        for name, header in (stated.get("columns") or {}).items():
-            if not name.endswith(("force", "velocity")):
-                headers[name] = header
-        for sensor, signal in zip(sensors, read.signals, strict=False):
-            headers[f"{sensor} {signal.quantity}"] = str(signal.column)
-        raise SceneError(f"no measured sensor is {wanted}", columns=headers)
-    found = {}
-    for name, signal in named.items():
-        try:
-            pulse = noisy_pulse(signal.time, signal.values, read.unit)
-        except MeasureError as error:
-            turned = {}
-            if isinstance(error, InvertedError):
-                turned[signal.key] = signal.inverted
-            raise MeasureError(f"{name}: {error}", **_units(stated, turned)) from None
-        found[name] = (signal, pulse)
-    return found
+    if named:
+        return named
+    wanted = " or ".join(sensors[:5]) or "wanted: the scene has none"
+    # The signals of the file are proposed for the first sensors of the scene.
+    headers = {}
+    for name, header in (stated.get("columns") or {}).items():
+        if not name.endswith(("force", "velocity")):
+            headers[name] = header
+    for sensor, signal in zip(sensors, read.signals, strict=False):
+        headers[f"{sensor} {signal.quantity}"] = str(signal.column)
+    raise SceneError(f"no measured sensor is {wanted}", columns=headers)
 
 
 def _units(stated: Stated, turned: Mapping[str, str]) -> dict[str, Any]:

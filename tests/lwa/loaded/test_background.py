@@ -8,13 +8,7 @@ from lwa.law import named
 from lwa.loaded.background import Background
 from tests.identity import same
 
-CHAIN = Cell([1], spacing=1)
-HERTZ = Power("3/2")
-p0, B, k = sp.symbols("p0 B k", positive=True)
-
-
-def wave_of(law, load, rise, cell=CHAIN):
-    return loaded_wave(cell, rise=rise, background=load, law=law)
+p0, k = sp.symbols("p0 k", positive=True)
 
 
 @pytest.mark.parametrize("cell", [Cell([1]), Dimer("m1", "m2"), Dimer(3, 1, N=2)])

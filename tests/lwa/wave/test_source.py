@@ -35,11 +35,6 @@ console.log(JSON.stringify(calls.map(([name, ...values]) => eval(name)(...values
 """
 
 
-def functions_of(wave):
-    """The functions that `CompactWave.code` writes."""
-    return wave_functions(wave)
-
-
 def answers(language, source, calls, folder):
     """Values of the generated functions for calls (name, *numbers)."""
     if language == "numpy":
@@ -171,7 +166,7 @@ in_each_language = pytest.mark.parametrize(
 @in_each_language
 @pytest.mark.parametrize("name", WAVES)
 def test_closed_forms_and_profiles_are_good_to_1e14(tmp_path, language, name):
-    functions, rows = functions_of(WAVES[name][0]), expected(name)
+    functions, rows = wave_functions(WAVES[name][0]), expected(name)
     calls = [
         (function, *(values[s.name] for s in functions[function].arguments))
         for function, values, _, _ in rows
@@ -183,7 +178,7 @@ def test_closed_forms_and_profiles_are_good_to_1e14(tmp_path, language, name):
 
 
 def test_numpy_broadcasts_and_takes_integers():
-    functions, found = functions_of(WAVES["paper"][0]), {}
+    functions, found = wave_functions(WAVES["paper"][0]), {}
     exec(module([*functions.values()], "numpy", []), found)
     xi = np.linspace(-9, 9, 37)
     v = found["profile"](xi=xi, B=2, k=1.5, m1=1, m2=1, D=1)
@@ -196,7 +191,7 @@ def test_numpy_broadcasts_and_takes_integers():
 
 
 def test_arguments_have_one_order_in_all_languages():
-    functions = functions_of(canonical_wave(Cell(["z", "a"], ["y", "b"], "L"), "q"))
+    functions = wave_functions(canonical_wave(Cell(["z", "a"], ["y", "b"], "L"), "q"))
     names = {name: [s.name for s in f.arguments] for name, f in functions.items()}
     assert names["profile"] == ["xi", "B", "q", "z", "a", "y", "b", "L"]
     assert (
