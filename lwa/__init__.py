@@ -8,23 +8,9 @@
 D**2*(m1**2 - m1*m2 + m2**2)/(3*(m1 + m2)**2)
 """
 
-from functools import cache
 from typing import Any
 
-
-@cache
-def _modules() -> dict[str, str]:
-    """Modules of the public names, which the stub beside this file lists."""
-    import ast
-    from pathlib import Path
-
-    stub = Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8")
-    modules = {}
-    for node in ast.parse(stub).body:
-        if isinstance(node, ast.ImportFrom) and node.module:
-            for name in node.names:
-                modules[name.name] = node.module
-    return modules
+from lwa.base import public_modules
 
 
 def __getattr__(name: str) -> Any:
@@ -34,11 +20,13 @@ def __getattr__(name: str) -> Any:
 
         return version("lwa")
     if name == "__all__":
-        return sorted(_modules().keys() - {"D", "k"})  # bound by name only
-    if name not in _modules():
+        return sorted(
+            public_modules(__file__).keys() - {"D", "k"}
+        )  # bound by name only
+    if name not in public_modules(__file__):
         raise AttributeError(f"module 'lwa' has no attribute {name!r}")
-    return getattr(__import__(_modules()[name], fromlist=[name]), name)
+    return getattr(__import__(public_modules(__file__)[name], fromlist=[name]), name)
 
 
 def __dir__() -> list[str]:
-    return sorted([*_modules(), "__version__"])
+    return sorted([*public_modules(__file__), "__version__"])

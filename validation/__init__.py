@@ -10,23 +10,9 @@
 1.4119
 """
 
-from functools import cache
 from typing import Any
 
-
-@cache
-def _modules() -> dict[str, str]:
-    """Modules of the public names, which the stub beside this file lists."""
-    import ast
-    from pathlib import Path
-
-    stub = Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8")
-    modules = {}
-    for node in ast.parse(stub).body:
-        if isinstance(node, ast.ImportFrom) and node.module:
-            for name in node.names:
-                modules[name.name] = node.module
-    return modules
+from lwa.base import public_modules
 
 
 def __getattr__(name: str) -> Any:
@@ -36,12 +22,12 @@ def __getattr__(name: str) -> Any:
 
         return __version__
     if name == "__all__":
-        return sorted(_modules())
-    if name not in _modules():
+        return sorted(public_modules(__file__))
+    if name not in public_modules(__file__):
         raise AttributeError(f"module 'validation' has no attribute {name!r}")
-    return getattr(__import__(_modules()[name], fromlist=[name]), name)
+    return getattr(__import__(public_modules(__file__)[name], fromlist=[name]), name)
 
 
 def __dir__() -> list[str]:
     """Names that editors and shells complete, loaded or not."""
-    return sorted([*_modules(), "__version__"])
+    return sorted([*public_modules(__file__), "__version__"])

@@ -19,8 +19,16 @@ PACKAGE = "sphinx-mathjax-offline==0.0.2"
 WHEEL = "sphinx_mathjax_offline-0.0.2-py3-none-any.whl"
 SHA256 = "206418155b2ff2f57496fb8501fdccae3da978e53031ff296c73729ba16062c4"
 INSIDE = "sphinx-mathjax-offline/static/mathjax/"
-WANTED = ("tex-chtml-full.js", "output/chtml/fonts/", "a11y/", "sre/")
-"""Files of MathJax: TeX input, HTML output with its fonts, parts that the menu can load."""
+WANTED = (
+    "startup.js",
+    "core.js",
+    "input/tex.js",
+    "input/tex/extensions/",
+    "output/chtml.js",
+    "output/chtml/fonts/",
+    "a11y/assistive-mml.js",
+)
+"""Files of MathJax that pages load: TeX input, HTML output with its fonts, MathML for listeners."""
 
 
 def fetched(

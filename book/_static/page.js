@@ -1,21 +1,60 @@
-// Every page: pictures of several panels are stacked on a phone, what is wider than the page can be
-// scrolled from the keyboard, and names and roles are said that the theme leaves out.
+// Every page: pictures of several panels are stacked on a phone, formulas fit their column, what is
+// still wider can be scrolled from the keyboard, and names and roles are said that the theme leaves out.
 "use strict";
+const phone = matchMedia("(max-width: 40rem)").matches;
+
+// On a phone the parts of an equation stand below each other. MathJax, a deferred script, comes later.
+document.addEventListener("readystatechange", () => {
+  if (!phone || document.readyState !== "interactive") return;
+  for (const {lastChild: source} of document.querySelectorAll("div.math")) {
+    const body = source?.textContent.match(/^\s*\\\[([^&]*)\\\]\s*$/)?.[1];
+    if (!body?.includes("\\qquad")) continue;
+    const lines = body.replaceAll("\\qquad", "\\\\[0.4em]");
+    const several = lines.includes("\\begin{gathered}");
+    source.textContent = several ? `\\[${lines}\\]` : `\\[\\begin{gathered}${lines}\\end{gathered}\\]`;
+  }
+});
+
 addEventListener("load", async () => {
   await window.MathJax?.startup?.promise;
-  if (matchMedia("(max-width: 40rem)").matches) {
+  if (phone) {
     for (const image of document.querySelectorAll("figure > img[class*=panels-]")) stack(image);
   }
   name();
-  const wide = "pre, mjx-container[display=true], .text_html > table, .pst-scrollable-table-container";
-  for (const element of document.querySelectorAll(wide)) {
-    if (element.scrollWidth <= element.clientWidth + 1) continue;
-    element.tabIndex = 0;
-    if (element.getAttribute("role") === "math") continue; // named by its own text
-    element.setAttribute("role", "group");
-    element.setAttribute("aria-label", "wider than the page, scrolls");
-  }
+  const arrange = () => {
+    document.querySelectorAll("mjx-container[display=true]").forEach(fit);
+    const wide = "pre, mjx-container[display=true], .text_html > table, .pst-scrollable-table-container";
+    document.querySelectorAll(wide).forEach(reach);
+  };
+  arrange();
+  document.fonts.ready.then(arrange); // letters have other widths then
+  addEventListener("resize", arrange);
+  document.addEventListener("toggle", arrange, true); // what was folded has a width now
 });
+
+// A formula that is too wide is set smaller, if it stays readable: then it does not scroll.
+const SMALLEST = 9; // pixels
+function fit(formula) {
+  formula.dataset.size ??= formula.style.fontSize;
+  formula.style.fontSize = formula.dataset.size;
+  const part = formula.clientWidth / formula.scrollWidth;
+  const size = 0.99 * part * parseFloat(getComputedStyle(formula).fontSize);
+  if (part < 1 && size > SMALLEST) formula.style.setProperty("font-size", `${size}px`, "important");
+}
+
+// What is wider than its place is a stop of the Tab key; a formula is named by its own text.
+function reach(element) {
+  const scrolls = element.scrollWidth > element.clientWidth + 1;
+  const more = {tabindex: "0"};
+  if (element.getAttribute("role") !== "math") {
+    more.role = "group";
+    more["aria-label"] = "wider than the page, scrolls";
+  }
+  for (const [key, value] of Object.entries(more)) {
+    if (scrolls) element.setAttribute(key, value);
+    else element.removeAttribute(key);
+  }
+}
 
 function name() {
   // A formula is read as it is written in TeX.

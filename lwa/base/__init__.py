@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+from functools import cache
 
 INTERRUPTED = 128 + signal.SIGINT
 """Exit status of a command after Ctrl-C, as in shells."""
@@ -62,3 +63,18 @@ class InputError(Refusal):
 
 class NoSolitaryWave(Refusal):
     """Parameters without a solitary wave in the theory; the message says why."""
+
+
+@cache
+def public_modules(package: str) -> dict[str, str]:
+    """Modules of the public names of a package; the stub beside the file `package` lists them."""
+    import ast  # here: no command needs it
+    from pathlib import Path
+
+    stub = Path(package).with_suffix(".pyi").read_text(encoding="utf-8")
+    modules = {}
+    for node in ast.parse(stub).body:
+        if isinstance(node, ast.ImportFrom) and node.module:
+            for name in node.names:
+                modules[name.name] = node.module
+    return modules

@@ -120,19 +120,6 @@ window.addEventListener("load", async () => {
     errors: errors,
     foreign: window.foreign,
   };
-  const size = body.querySelector('.lwa-calculator [name="diameterB"]');
-  if (size) {
-    const told = () => [...body.querySelectorAll(".lwa-calculator [data-name]")]
-      .map(e => [e.dataset.name, e.textContent]);
-    report.calculator = told();
-    report.typed = [];
-    for (const text of ["4,76", "4.76", "4.760,5", "two"]) {
-      size.value = text;
-      size.dispatchEvent(new Event("input", {bubbles: true}));
-      await new Promise(done => setTimeout(done, 500)); // the page waits for further letters
-      report.typed.push(told());
-    }
-  }
   const answer = await fetch("/probe", {method: "POST", body: JSON.stringify(report)});
   const next = await answer.text();
   if (next) location.href = next;

@@ -90,19 +90,6 @@ def test_a_page_is_small_and_has_a_notebook_of_its_cells(page):
         assert sum(cell.cell_type == "code" for cell in notebook.cells) >= cells
 
 
-def test_the_calculator_reads_what_is_typed(visit):
-    """A comma is a decimal point; no other text is a number; every row has its numbers."""
-    report = visit.pages["calculator.html"]
-    first, (comma, point, mixed, word) = report["calculator"], report["typed"]
-    rows = dict(first)
-    assert {"force", "speed", "width", "beads", "pressure", "yields"} <= set(rows)
-    assert comma == point == first
-    assert mixed == word
-    assert [name for name, _ in word] == ["refused"]
-    told = " ".join(text for _, text in (*first, *word))
-    assert not re.findall("NaN|undefined|null|Infinity", told)
-
-
 def test_each_thing_to_turn_asks_first(visit):
     """Nothing moves before the answer, but on the first page, where nothing can be turned."""
     for page, report in visit.pages.items():

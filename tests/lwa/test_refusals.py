@@ -25,7 +25,6 @@ DIMER = Dimer("m1", "m2")
 WAVE = canonical_wave(DIMER)
 HERTZ, LINK = Power("3/2"), Link(0, 1, Power("3/2"))
 EQUAL, BEADS = Cell([1], spacing=1), Lattice([1], [LINK])
-SOFT = Law(DELTA - DELTA**2)
 PRESSED = Law(DELTA + sp.Rational(1, 10))  # pushes with 1/10 before it is compressed
 BENT = named("polynomial", "1/2", "-1/4")  # F″ = 1 - 3δ/2
 WAVY = Law(2 * DELTA + sp.sin(DELTA), DELTA)  # F″ = -sin δ
@@ -76,14 +75,9 @@ CALLS = [
     (lambda: expand(CHAIN, 5).c2.at("3/2"), "from order 6 on"),
     (lambda: expand(Cell(["ε", 1])), "ε is the series' parameter"),
     (lambda: lwa.piston(Cell([1], spacing=1), 2, "m1", k=1), "as fast behind as ahead"),
-    (
-        lambda: expand(CHAIN, 2, law=Law(sp.exp(DELTA) - 1, DELTA)),
-        "only a power law has a k",
-    ),
     (lambda: loaded(HERTZ, -1, 1), "must not be negative"),
     (lambda: loaded(lwa.general(), 1, 1).fwhm(), "no expression"),
     (lambda: lwa.loaded_wave(EQUAL, force=2, rise=1), "not by both"),
-    (lambda: lwa.loaded_wave(EQUAL, force=2, precompression=1, law=SOFT), "reach"),
     (
         lambda: PRESSED.inverse(sp.Rational(1, 50)),
         "force is 1/50: the law does not reach it",
@@ -96,7 +90,6 @@ CALLS = [
     (lambda: Lattice([1], [Link(1, 2, HERTZ)]), "particles 0 to 0"),
     (lambda: Lattice([1, 1], [Link(0, 2, HERTZ)]), "free"),
     (lambda: Lattice([1, 1], [LINK]), "carry no load"),
-    (lambda: front(2, 1, law=Power(1)), "sound is as fast behind as ahead"),
     (lambda: front(1, -1), "ahead is -1: contacts of a power law only push"),
     (lambda: front(4, 1).trailing_speed, "the trailing edge holds up to 1.3"),
     (lambda: front(1, 2).peak, "a rarefaction has no pulse"),
@@ -114,9 +107,6 @@ CALLS = [
     ),
 ]
 
-SOFTENING = Lattice(
-    [1, 1], [Link(0, 1, named("polynomial", "-1/2", 0)), Link(1, 2, Power(1))]
-)
 ATTRACTED = Lattice([1], [LINK, Link(0, 3, Law(-DELTA / 50))])
 NO_WAVES = [
     (lambda: loaded(HERTZ, 1, "-1/2"), "only B > 0"),
@@ -126,7 +116,6 @@ NO_WAVES = [
     (lambda: loaded(Power(1), 1, 1), "linear"),
     (lambda: loaded(named("polynomial", 1, 0), 0, "-1/10"), "does not stiffen"),
     (lambda: loaded(named("polynomial", -1, 0), 0, "7/10"), "needs F′ > 0"),
-    (lambda: loaded(named("polynomial", 1, -1), 0, "67/100"), "does not stiffen"),
     # 1 - cos δ is 0 in floats below 1e-8
     (lambda: loaded(Law(DELTA - sp.sin(DELTA)), 0, "1e-3"), "cancel"),
     *(
@@ -136,7 +125,6 @@ NO_WAVES = [
     (lambda: loaded(named("polynomial", 0, 1), 0, 1).kdv, "F″ is 0"),
     (lambda: lwa.loaded_wave(BEADS, force=1, precompression=1), "no wave"),
     (lambda: lwa.loaded_wave(BEADS, force="1/2", precompression=1), "stiffen"),
-    (lambda: lwa.loaded_wave(SOFTENING, force="2/5", precompression="1/5"), "stiffen"),
     (
         lambda: lwa.loaded_wave(ATTRACTED, force=2, precompression=1),
         "I is not positive",

@@ -46,9 +46,8 @@ def test_the_lattice_is_the_exact_wave_in_si(chain):
         "fwhm": wave.fwhm("force") / wave.c * time,
     }
     for name, value in scaled.items():
-        assert found[name] == pytest.approx(value, rel=2e-8), (
-            name
-        )  # the integrator's error
+        # the integrator's error
+        assert found[name] == pytest.approx(value, rel=2e-8), name
 
 
 def test_the_theorys_error_is_the_same_in_si_and_without_units(chain):
@@ -66,9 +65,8 @@ def test_the_theorys_error_is_the_same_in_si_and_without_units(chain):
             found["compression"], rel=2e-9
         )
         time = float(answer.fwhm("force", "time")) / found["fwhm"]
-        assert time == pytest.approx(
-            wide / slow, rel=5e-7
-        )  # seven digits are given above
+        # Seven digits are given above.
+        assert time == pytest.approx(wide / slow, rel=5e-7)
         # u_x is its mean over a site, the compression, and what the site's ends add: 10 % here
         assert float(answer.bead_velocity) == pytest.approx(
             found["bead_velocity"], rel=0.1

@@ -21,15 +21,15 @@ from validation.lattice.signal import Beads, sample_times, sensed_beads
 
 # Numbers that the engine stores between two calls of `take`: 2 MB, which a cache holds.
 BUFFER = 2**18
-_MOST_BYTES = (
-    2**28
-)  # of the motion that a run keeps: a small part of a machine's memory
+# Of the motion that a run keeps: a small part of a machine's memory.
+_MOST_BYTES = 2**28
 
 
 def _with_neighbours(beads: Beads) -> NDArray[np.int_]:
     """Return the increasing numbers of beads and their neighbours."""
     numbers = np.asarray(beads, int)
-    near = np.zeros(numbers.max(initial=-2) + 3, bool)  # of beads -1, 0, 1, …
+    # A row from bead -1 to the one behind the last; without beads it is bead -1 alone.
+    near = np.zeros(numbers.max(initial=-2) + 3, bool)
     near[numbers] = near[numbers + 1] = near[numbers + 2] = True
     return np.flatnonzero(near[1:])
 

@@ -150,7 +150,8 @@ class Contact:
     def reached_by(self, energy: float, start: float) -> float:
         """Return a scale of the compression that an energy reaches from ``start``."""
         if self.law is None:
-            return float(energy ** (1 / (self.k + 1)))  # of δ^{k+1}/(k+1) = energy
+            # δ^{k+1}/(k+1) = energy, without the factor k + 1, which no scale needs
+            return float(energy ** (1 / (self.k + 1)))
         # The first of many places, 1 % apart, at which the energy is reached, or a pole.
         change = np.geomspace(1e-15, 1e15, 7000)
         work = self.energy_above(np.full(change.shape, start), change)

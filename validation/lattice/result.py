@@ -35,9 +35,8 @@ _SI = {
     "displacement": "m",
     "velocity": "m/s",
 }
-_MOST = (
-    10  # sensors of one kind that are drawn as curves, in ten colours; more make a map
-)
+# Sensors of one kind that are drawn as curves, in ten colours; more make a map.
+_MOST = 10
 _FINEST = 1000  # places, and times, of a map: a picture has some thousand pixels a side
 
 

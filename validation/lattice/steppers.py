@@ -53,9 +53,8 @@ def integrate(motion: Motion, method: str, rtol: float, longest: float) -> Run:
     if scene.drive is not None:
         longest = min(longest, scene.drive.longest_step)
     step_limit(scene, method, scene.duration / min(scales.time, longest))
-    jacobian = (
-        (2 * n + 2) ** 2 * 8 if method in METHODS[3:] else 0
-    )  # bytes; the others need none
+    # Implicit methods store a Jacobian, of 8 bytes an entry.
+    jacobian = 8 * (2 * n + 2) ** 2 * (method in METHODS[3:])
     check_memory(scene, method, 4, jacobian)
     found = scipy.integrate.solve_ivp(
         motion,
@@ -66,9 +65,8 @@ def integrate(motion: Motion, method: str, rtol: float, longest: float) -> Run:
         rtol=rtol,
         atol=rtol * np.repeat([y, v, scales.energy or 1.0], [n, n, 2]),
         max_step=longest,
-        first_step=min(
-            1e-3 * y / v, scene.duration
-        ),  # SciPy's own guess depends on the units
+        # SciPy's own guess depends on the units.
+        first_step=min(1e-3 * y / v, scene.duration),
     )
     if not found.success:
         raise IntegrationError(

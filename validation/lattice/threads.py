@@ -60,9 +60,8 @@ def cluster(address: str, patience: float = 5.0) -> Iterator[Executor]:
             stack.callback(log.setLevel, log.level)
             log.setLevel(logging.CRITICAL)
         try:
-            with ThreadPoolExecutor(
-                1
-            ) as thread:  # a notebook's thread runs a loop already
+            # A notebook's own thread runs a loop already.
+            with ThreadPoolExecutor(1) as thread:
                 thread.submit(asyncio.run, call()).result()
             client = distributed.Client(address, timeout=patience, set_as_default=False)
             stack.enter_context(client).wait_for_workers(1, timeout=patience)

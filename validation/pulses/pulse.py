@@ -27,9 +27,8 @@ Source = TypeVar("Source")
 
 FEWEST = 8  # samples above half the peak; a record with fewer is too coarse
 _POINTS = 4  # grid points in each smooth interval
-_DEGREE = (
-    10  # of the interpolant about a peak, over half an interval: error about 1e-16
-)
+# Degree of the interpolant about a peak, over half an interval: error about 1e-16.
+_DEGREE = 10
 _NOISE = 1e-6  # of the largest |signal|: less may be rounding, or a spline's overshoot
 _LEAST = 0.01  # smallest prominence of a pulse over the highest peak
 # Tolerance, over that of a run, of a second run whose differences give the errors, and the factor
@@ -222,9 +221,8 @@ class _Grid:
         def above(part: float) -> float:
             return float(self.signal(low + part * step)) / level - 1
 
-        if (
-            above(0.0) * above(1.0) > 0
-        ):  # the signal jumps there: a damped contact opens
+        # The signal jumps there: a damped contact opens.
+        if above(0.0) * above(1.0) > 0:
             return float(self.t[i + 1])
         return float(low + scipy.optimize.brentq(above, 0.0, 1.0, xtol=1e-12) * step)
 

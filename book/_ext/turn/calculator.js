@@ -187,8 +187,9 @@ function calculator(home) {
     const cells = write => names.map(name => (theories[name] ? write(theories[name]) : "–"));
     put("force", "peak force of a contact", si(F, "N"), ...cells(() => "given"));
     const beside = (value, unit, truth, error) => {
-      const covered = error ? `, ±\u00a0${percent(error)}` : "";
-      return `${si(value, unit)} (${signed(value / truth - 1)}${covered})`;
+      const digits = error < 1e-3 ? 2 : 1;
+      const covered = error ? `, ±\u00a0${percent(error, digits)}` : "";
+      return `${si(value, unit)} (${signed(value / truth - 1, digits)}${covered})`;
     };
     const write = (name, unit, number) => cells(one =>
       one.refused ?? beside(one[name], unit, lattice[name], one.errors?.[number]));

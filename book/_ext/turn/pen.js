@@ -3,9 +3,9 @@
 
 const LATTICE = "#2C8FCB";
 const THEORY = "#D55E00";
-const HEAVY = "#44546A";
+const HEAVY = "#5A6F8C"; // seen on white and on black
 const LIGHT = "#E69F00";
-const GHOST = "#9a9a9a88";
+const GHOST = "#909090AA";
 
 // The page's own colour of text, for words and axes.
 const ink = () =>

@@ -44,6 +44,9 @@ function tens(x, digits) {
   return `${digits === undefined ? "" : `${number}·`}10${raised.join("")}`;
 }
 
+// A text whose numbers do not part from their units.
+const joined = text => text.replace(/(\d) (?=sites|beads|balls|D²)/g, "$1\u00a0");
+
 // The question; the buttons stay, so that the focus stays, and the verdict stands below them.
 function question(home, {ask, answers, verdict}, answered) {
   const buttons = answers.map(text => element("button", {type: "button"}, text));
@@ -57,7 +60,7 @@ function question(home, {ask, answers, verdict}, answered) {
         each.setAttribute("aria-pressed", String(i === chosen));
         if (i === right) each.classList.add("lwa-right");
       });
-      line.textContent = `${chosen === right ? "Yes" : "No"}: ${text}`;
+      line.textContent = joined(`${chosen === right ? "Yes" : "No"}: ${text}`);
       if (!home.answered) answered();
       home.answered = true;
     });
@@ -118,7 +121,7 @@ function stage(home, thing) {
       if (!playing) home.rest = setTimeout(tell, wait);
       return;
     }
-    output.textContent = thing.tell(scene);
+    output.textContent = joined(thing.tell(scene));
     due = performance.now() + 1000;
   };
   const restart = old => {

@@ -181,7 +181,7 @@ Object.assign(things, {
         const points = curve(archOf(lengths[i]), -7.4, 7.4, 480).map(([xi, v]) => [x(xi), y(v)]);
         pen.line(points, colour, i ? 2 : 3.5, i ? [7, 5] : []);
       });
-      legend(pen, [["seen from the dark balls", HEAVY], ["seen from the orange balls", LIGHT]]);
+      legend(pen, [["seen from the grey balls", HEAVY], ["seen from the orange balls", LIGHT]]);
     },
     tell(values) {
       const [steel, light] = observed(values);

@@ -2,6 +2,7 @@
 
 import math
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -46,3 +47,15 @@ def test_a_wall_recedes_from_a_chain_that_softens():
 def test_a_small_force_has_all_digits():
     force = Contact(1, named("exponential", 1)).force(np.array([1e-9]))
     assert force == pytest.approx([math.expm1(1e-9)], rel=1e-15, abs=0)
+
+
+@pytest.mark.parametrize("k", [1.5, 20])
+@pytest.mark.parametrize("part", [-2.0, -0.049, 1e-9, 0.049, 3.0])
+def test_the_energy_above_a_load_has_all_digits(k, part):
+    """``∫ (F(r + s) - F(r)) ds``, of which floats would lose up to eighteen digits."""
+    rest, change = 0.7, 0.7 * part
+    with mpmath.workdps(50):
+        r, x = mpmath.mpf(rest), mpmath.mpf(change)
+        exact = (max(r + x, 0) ** (k + 1) - r ** (k + 1)) / (k + 1) - r**k * x
+    found = Contact(k).energy_above(np.array([rest]), np.array([change]))
+    assert found == pytest.approx([float(exact)], rel=1e-13, abs=0)

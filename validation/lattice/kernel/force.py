@@ -57,7 +57,9 @@ def power(x: float, d: float) -> float:
         return float(np.sqrt(d))
     if x == 0.0:
         return 1.0  # where a contact pulls, too, at d < 0
-    return quarters(x, d) if is_quarters(x) else float(d**x)
+    if is_quarters(x):
+        return quarters(x, d)
+    return float(d**x)
 
 
 @part
@@ -65,7 +67,9 @@ def elastic(law: Any, d: float) -> float:
     """Return the elastic force F(d) for unit stiffness; 0 for an open contact."""
     if not (d > 0.0 or law.pulls):
         return 0.0
-    return float(call(law.force, d)) if law.generated else power(law.k, d)
+    if law.generated:
+        return float(call(law.force, d))
+    return power(law.k, d)
 
 
 @part
@@ -79,7 +83,9 @@ def stiffness(law: Any, d: float) -> float:
     """Return ``dF/dd`` for unit stiffness, ``k d^{k-1}`` of a power; 0 for an open contact."""
     if not (d > 0.0 or law.pulls):
         return 0.0
-    return float(call(law.slope, d) if law.generated else law.k * power(law.k - 1.0, d))
+    if law.generated:
+        return float(call(law.slope, d))
+    return float(law.k * power(law.k - 1.0, d))
 
 
 @part
@@ -89,7 +95,9 @@ def push(law: Any, r: float, d: float, rate: float) -> float:
     if not r > 0.0 or not (d > 0.0 or law.pulls):
         return force
     total = force + r * drag(law, d) * rate
-    return total if law.sticks else max(total, min(force, 0.0))
+    if law.sticks:
+        return total
+    return max(total, min(force, 0.0))
 
 
 def _loop(value: Any) -> Any:
@@ -247,7 +255,10 @@ def drive_motion(drive: Drive, middle: float, t: float) -> tuple[float, float, f
     high = len(drive.times)
     while high - low > 1:
         n = (low + high) // 2
-        low, high = (n, high) if drive.times[n] <= middle else (low, n)
+        if drive.times[n] <= middle:
+            low = n
+        else:
+            high = n
     s = t - drive.times[low]
     c = drive.cubics[low]
     y, v, a = _oscillation(t, drive.amplitude, drive.w, drive.ramp)

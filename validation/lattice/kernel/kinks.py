@@ -310,7 +310,7 @@ def _root(c: Curve, x: float, side: float) -> float:
     r = r - p / slope if slope != 0.0 else math.nan
     off = side * (r - x)
     if off > -1e-9 and off < 1.0:
-        return x if off < 0.0 else r
+        return max(r, x) if side > 0.0 else min(r, x)
     return math.nan
 
 
@@ -322,7 +322,9 @@ def _place_points(
     span = far - zero
     start = (near - zero) / span
     if q > 1.0:
-        start = math.sqrt(start) if q == 2.0 else math.sqrt(math.sqrt(start))
+        start = math.sqrt(start)
+    if q == 4.0:
+        start = math.sqrt(start)
     scale = abs(span) * (1.0 - start)
     for m in range(index(POINTS)):
         u = start + (1.0 - start) * _U[m]

@@ -101,7 +101,7 @@ def _mover(most: int) -> Any:
 _move_few, _move_some, _move_all = _mover(4), _mover(9), _mover(ROOM)
 
 
-@part
+@alone
 def _move(
     target: Array,
     base: Array,
@@ -133,6 +133,14 @@ def _integral(row: Array, values: Array) -> float:
     for s in range(index(len(row))):
         total += row[s] * values[s]
     return total
+
+
+@part
+def _error_scale(plan: Plan, h: float, q: int) -> float:
+    """Return the factor from accelerations to row q of the errors, in units of the tolerance."""
+    if q % 2 == 0:
+        return float(h * h / plan.y)
+    return float(h / plan.v)
 
 
 @part
@@ -221,7 +229,8 @@ def _clipped(
     pair = plan.scheme
     law = chain.laws[chain.law[n]]
     r = chain.r[n]
-    if not r > 0.0 or law.sticks or beads.marks[n] > 0.0:
+    opened = chain.rest[n] + beads.y[n] - beads.y[n + 1] <= 0.0
+    if not r > 0.0 or opened or law.sticks or beads.marks[n] > 0.0:
         return 0.0
     points = beads.points
     _stage_forces(chain, beads, pair, kinks.NO_CURVE, t, h, n, True)
@@ -290,8 +299,7 @@ def correct_contact(
             break
     third = h * h * h * A * (third - _integral(pair.thirds, force))
     for q in range(len(pair.errors)):
-        scale = h * h * A / plan.y if q % 2 == 0 else h * A / plan.v
-        seen = scale * _integral(pair.errors[q], force)
+        seen = A * _error_scale(plan, h, q) * _integral(pair.errors[q], force)
         beads.errors[q, i] += seen * inverse[i]
         beads.errors[q, i + 1] -= seen * inverse[i + 1]
     if chain.damped:
@@ -390,7 +398,7 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
     for lo in range(0, hi, TILE):
         up = min(lo + TILE, hi)
         for q in range(len(beads.errors)):
-            scale = h * h / plan.y if q % 2 == 0 else h / plan.v
+            scale = _error_scale(plan, h, q)
             weights = plan.scheme.errors[q]
             errors = beads.errors[q]
             _move_all(errors, still, still, 0.0, scale, weights, push, lo, up)
@@ -418,8 +426,8 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
             reach = max(before + rise, after - end_rise)
             unseen = (most <= 0.0) & (reach > 0.0)
             mark = ((strong & (near | changed)) | unseen) & (opens[i] > 0.0)
-            marks[i] = 1.0 if mark else 0.0
-            count += 1 if mark else 0
+            marks[i] = mark
+            count += mark
     return count
 
 
@@ -489,18 +497,10 @@ def evaluate_stages(
             if lo >= up:
                 continue
             ch = pair.nodes[s] * h
-            target = next_y
-            base = y
-            weights = pair.moments[s]
-            time = ch
-            scale = h * h
-            for _ in range(2 if chain.damped or s == stages - 1 else 1):
-                _move(target, base, v, time, scale, weights, s, push, lo, up)
-                target = next_v
-                base = v
-                weights = pair.impulses[s]
-                time = 0.0
-                scale = h
+            moments = pair.moments[s]
+            _move(next_y, y, v, ch, h * h, moments, s, push, lo, up)
+            if chain.damped or s == stages - 1:
+                _move(next_v, v, v, 0.0, h, pair.impulses[s], s, push, lo, up)
             if chain.drive.driven and lo == 0:
                 given = drive_motion(chain.drive, t + h / 2, t + ch)
                 next_y[0], next_v[0], beads.given[1] = given
