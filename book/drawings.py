@@ -44,9 +44,9 @@ def dimer(axes: Axes) -> None:
 
 def lattices(figure: Figure, rows: Sequence[dict[str, Any]]) -> None:
     """Four lattices; below them speeds and widths of struck ones, beside the theory's."""
-    _sketch(figure.subplots(1, 4, gridspec_kw=dict(bottom=0.8, top=0.97)))
-    below = dict(top=0.72, bottom=0.1, wspace=0.28)
-    speeds, widths = figure.subplots(1, 2, gridspec_kw=below)
+    above, below = figure.subfigures(2, 1, height_ratios=(1, 3))
+    _sketch(above.subplots(1, 4))
+    speeds, widths = below.subplots(1, 2)
     groups = {"unlike links": "δ", "resonators": "m_r", "packing": "a"}
     for (name, start), marker in zip(groups.items(), "osD", strict=True):
         for row in rows:
@@ -188,7 +188,8 @@ def breathers(
         left.plot(cells, 1e9 * line, color=color, ls="-", lw=1.2, label=label)
         left.plot(cells, 1e9 * dots, ".", color=color, ms=5, label=f"{name}, lattice")
     left.set(xlabel="cell", ylabel="displacement (nm)", ylim=(-500, 1400))
-    left.legend(loc="upper center", ncols=2, fontsize=7.5, columnspacing=1)
+    tight = dict(columnspacing=1, handlelength=1.2)  # names fit between the axes
+    left.legend(loc="upper center", ncols=2, fontsize=7.5, **tight)
     top = float(edge.frequency)
     orbits = [standing.orbit for standing in found.values()] + deepest[1::2]
     places = [orbit.frequency / top for orbit in orbits]
@@ -329,7 +330,8 @@ def upright(panels: Sequence[Axes], chains: Sequence[Any]) -> None:
     ):
         front, theory = chain.curves[:2]
         left.loglog(front.x, front.y, f"C{i}{'os'[i]}", mfc="none", label=name)
-        left.loglog(theory.x, theory.y, f"C{i}-", lw=1)
+        below = theory.x >= front.x[0]  # the study draws the line from the top on
+        left.loglog(theory.x[below], theory.y[below], f"C{i}-", lw=1)
     equal = chains[0].curves[2:]  # a pulse and its solitary wave for each blow
     for i, (pulse, alone) in enumerate(zip(equal[::2], equal[1::2], strict=True)):
         right.loglog(pulse.x, pulse.y, f"C{i}{'osD'[i]}", label=pulse.label)

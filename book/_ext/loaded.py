@@ -21,6 +21,7 @@ from ipykernel.kernelapp import IPKernelApp
 
 import lwa
 import validation
+from lwa.base import progress
 
 # Commands that come while the packages load wait for them.
 server = socket.socket(socket.AF_UNIX)
@@ -85,6 +86,8 @@ def run(connection: socket.socket) -> None:
     os.chdir(folder)
     os.environ.clear()
     os.environ.update(environment)
+    # Signs of life depend on how busy the machine is: they are no part of a page.
+    progress.QUIET = progress.EVERY = 1e6
     sys.argv = [name, *arguments]
     (program,) = entry_points(group="console_scripts", name=name)
     try:

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import zipfile
 from pathlib import Path
+from shutil import rmtree
 
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
@@ -52,6 +53,7 @@ def unpack(app: Sphinx, error: Exception | None) -> None:
     if error is not None or app.builder.format != "html":
         return
     out = Path(app.outdir)
+    rmtree(out / "mathjax", ignore_errors=True)  # another build may have put more there
     with zipfile.ZipFile(fetched(out.parent / "mathjax-wheel")) as wheel:
         for name in wheel.namelist():
             relative = name.removeprefix(INSIDE)

@@ -114,17 +114,6 @@ def test_the_papers_pulse():
     assert wave.at(k=second, m1=1, D=1).coefficient_sum.subs(m2, end) == 0
 
 
-def test_the_order_of_b2_by_hand():
-    """Both equations of motion at D^{k+1}, as the page writes them."""
-    b, k = sp.symbols("b k")
-    right, left = 1 + b, 1 - b  # coefficients of D² u_xx in the compressions
-    assert sp.expand(right - left) == 2 * b
-    force = k * (right - left), k * (2 - b - b)
-    solution = sp.solve(force[0] * m2 - force[1] * m1, b)
-    assert solution == [m1 / (m1 + m2)]
-    assert homogenize(Dimer(m1, m2)).ansatz[2] == solution[0]
-
-
 def test_the_number_of_a_cell():
     """The cell by hand, and contacts of two stiffnesses."""
     cell = canonical_wave(Cell([4, 1, 1, 1], spacing=1), "3/2")

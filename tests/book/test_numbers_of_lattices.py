@@ -262,6 +262,8 @@ def test_strong_blows_follow_the_narrower_of_two_waves():
     for row in strong:
         waves = row["solitary_value"], row["front_value"]
         narrower.append(100 * (1 - row["width_value"] / min(waves)))
+    depths = strong[0]["site_value"], strong[-1]["site_value"]
+    assert told("pressed", "of the figure, depths from # to # sites", *depths)
     assert float(least) - 0.5 < min(narrower)
     assert bounds(narrower, most)
 

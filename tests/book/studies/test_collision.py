@@ -50,18 +50,6 @@ def test_nearer_to_k_1_the_equation_is_better(hertz):
 # The equation by itself
 
 
-@pytest.mark.parametrize("kind", [Power("k"), law("exponential", 1)])
-def test_the_energy_is_conserved(kind):
-    """∂_τ e is ∂_x of the flux u_τ (F + I u_xττ): for u_ττ free, by the equation."""
-    equation, x, t = Background(ONE, kind, 0), *sp.symbols("x t", real=True)
-    u = sp.Function("u")(x, t)
-    v, F, W = u.diff(t), *(equation.force(u.diff(x), n) for n in (0, -1))
-    density = v**2 / 2 + equation.I * v.diff(x) ** 2 / 2 + W
-    flux = v * (F + equation.I * u.diff(x, t, t))
-    left = u.diff(t, 2) - equation.I * u.diff(x, 2, t, 2) - F.diff(x)
-    assert sp.simplify(density.diff(t) - flux.diff(x) - v * left) == 0
-
-
 @pytest.mark.parametrize(
     ("cell", "k"), [(ONE, "3/2"), (Dimer(1, "1/4", spacing=1), "2")]
 )
