@@ -210,14 +210,21 @@ class _Slaving:
             self.forces.append(Force(algebra))
 
     def extend(self, n: int) -> None:
-        """Append the terms in ``D^n`` of wave equation E, strains X, forces Φ and fields S."""
+        """Append the terms in ``D^n`` of wave equation E, strains X, forces Φ and fields S.
+
+        Let ``a_i`` be the term of ``∂_ττ (D φ_x S_i)``, which is known from lower orders. At
+        ``D^n`` the equation of motion of particle i > 0, and the sum of all equations, are, with
+        forces over ``p F′(p)``::
+
+            P m̂_i (E_n + a_i) = Φ_i - Φ_{i-1},
+            P (E_n + Σ m̂_i a_i) = F_{P-1}(x) - F_{P-1}(x - PD).
+        """
         accelerations = [rate.dt(self.E, n) for rate in self.rates]
         # The rates of the last order would enter the next one.
         if n + 1 < self.order:
             for rate, S in zip(self.rates, self.S, strict=True):
                 rate.append(S.dt(self.E, n))
-        # Momentum: in the sum of the equations of motion only the end forces remain, those of the
-        # last contact and of the same contact one cell before.
+        # The force of the last contact one cell before, less the force here
         outside = self.forces[-1].increment(-self.size, n)
         E_n = -outside / self.size
         for mu, acceleration in zip(self.algebra.mu, accelerations, strict=True):
@@ -233,7 +240,11 @@ class _Slaving:
     ) -> None:
         """Append the term ``X_n`` of each contact's strain.
 
-        The ``Φ_i - Φ_0`` give the differences of the strains, and the cell gives their sum.
+        Let ``X_i`` and ``Φ_i`` be these terms of contact i. The equations of motion (see `extend`)
+        give ``Φ_i - Φ_0``, and with ``Φ_i = X_i + nonlinear_i`` the differences ``X_i - X_0``. The
+        cell, in which ``Σ C_i = P``, gives their sum::
+
+            Σ C_i (1 + X_i) = [w_0(x + PD) - w_0(x)] / (D φ_x).
         """
         P, c = self.size, self.algebra.c
         first = self.forces[0].nonlinear
@@ -243,7 +254,7 @@ class _Slaving:
             inertia = self.E[n] + accelerations[i]
             push = push + P * self.algebra.mu[i] * inertia
             differences.append(push + first - self.forces[i].nonlinear)
-        # The strains C_i (1 + X) sum to the difference of w_0 over a cell.
+        # The right side is Σ C_i X_i; less Σ C_i (X_i - X_0) it is Σ C_i X_0 = P X_0.
         total = self.algebra.shift(P, n) + self.S[0].increment(P, n)
         for share, difference in zip(c, differences, strict=True):
             total = total - share * difference
@@ -251,7 +262,11 @@ class _Slaving:
             force.append(total / P + difference)
 
     def _append_fields(self, n: int) -> None:
-        """Append ``S_n`` of each particle, by the definition ``φ(x) = Σ g_i w_i(x - x_i D)``."""
+        """Append ``S_n`` of each particle.
+
+        Neighbours differ by a strain, ``S_{i+1} - S_i = C_i (1 + X_i)``. The term ``origin`` of the
+        first particle follows from the definition ``φ(x) = Σ g_i w_i(x - x_i D)``.
+        """
         relative = [self.algebra.zero]  # S_n less that of the first particle
         for c, force in zip(self.algebra.c[:-1], self.forces, strict=False):
             strain = c * force.X[n]

@@ -85,7 +85,8 @@ def bounds(lattice: Lattice, delta: float, added: float, rises: bool) -> Bounds:
     rule = _rule(lattice, bare=added > _BARE)
     if not rises or delta > rule.largest:
         rule = UNKNOWN
-    stiffening = exp(delta) - (1 - added)  # the rise of F′ over V²
+    # [F′(p0+B) - F′(p0)]/V²: the rules' unit of an error of V², relative. That of V is half of it.
+    stiffening = exp(delta) - (1 - added)
     return Bounds(speed=rule.square * delta * stiffening / 2, width=rule.width * delta)
 
 

@@ -329,13 +329,17 @@ class Nodes:
 
     @cached_property
     def distances(self) -> Array:
-        """The distances dξ between the nodes of the rows."""
+        """The distances ``dξ = √J dv / (v √(Q(B) - Q(v)))`` between the nodes of the rows.
+
+        With ``v = sB`` and the factor `Grid.length` they are ``length √J / √gap``, where the gap is
+        ``B (Q(B) - Q(v))/(B - v)``.
+        """
         B = self.wave.B
         J = self.wave.inertia(self.law)[self.grid.rows]
         # Roots first: their quotient neither over- nor underflows.
         above_smaller = np.sign(B) * (self.grid.kernel @ self.law.bend)
-        gap = np.sqrt(above_smaller) * np.sqrt(abs(B))
-        return np.asarray(self.grid.length * np.sqrt(J) / gap)
+        root_of_gap = np.sqrt(above_smaller) * np.sqrt(abs(B))
+        return np.asarray(self.grid.length * np.sqrt(J) / root_of_gap)
 
     @property
     def _to_places(self) -> Array:

@@ -96,10 +96,17 @@ class Statics:
     ) -> Array:
         """Newton's method for links that carry one force f, in ln f and the ln δ of the links.
 
+        A static state at the mean compression e has, for each link of the law ``F_l``::
+
+            cosine_l F_l(δ_l) = f,    Σ_l δ_l/cosine_l = P e,    δ_l > 0.
+
+        To first order link l has at ln f the compression ``δ_l + g_l (ln f - logs_l)``, with
+        ``g_l = dδ_l/d ln f`` and ``logs_l`` the ln f that belongs to the present ``δ_l``.
+
         Logarithms keep the digits of a compression that is far smaller than the mean. A step to
         where a law does not rise, as beyond a pole, is halved in the logarithm; other links wait.
         """
-        spans = self.network.spans
+        spans = self.network.spans  # the cosines: each link joins neighbours
         total = self.network.size * e
         delta = e[..., None] * spans
         inside = delta / _LARGEST  # the last compressions at which the laws rise
@@ -108,10 +115,11 @@ class Statics:
                 force = self.values(delta, 0)
                 springs = self.values(delta, 1)
                 rises = (force > 0) & (springs > 0)
-                # dδ/d ln f of each link
+                # dδ/d ln f = F/F′ of each link
                 gain = force / springs
                 logs = np.log(force * spans)
-                # ln f of the force at which the compressions add up, to first order
+                # ``common`` is the ln f at which, to first order, the compressions add up to the
+                # total; ``at_unit_force`` are their terms at ln f = 0.
                 at_unit_force = (delta - logs * gain) / spans
                 missing = total - at_unit_force.sum(axis=-1)
                 common = missing / (gain / spans).sum(axis=-1)
@@ -133,7 +141,12 @@ class Statics:
         self,
         e: Array,
     ) -> Array:
-        """Newton's method for the displacements inside the cell, at which the energy is least.
+        """Newton's method for the displacements w inside the cell, at which the energy is least.
+
+        The compressions are ``δ = e spans + Bw``, B the incidence matrix. Where the energy is least
+        the particles bear no force, and a step Δw makes this so to first order::
+
+            Bᵀ F(δ) = 0,    Bᵀ F′(δ) B Δw = -Bᵀ F(δ).
 
         The energy is convex where laws rise. Its slope along a step tells if the step is too long.
         """

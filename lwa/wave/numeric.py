@@ -108,7 +108,10 @@ class NumericWave(Value):
     def log_amplitude(
         self, k: ArrayLike, omega: ArrayLike, V: ArrayLike = 1.0
     ) -> Array:
-        """Logarithm of the peak strain B of the wave of speed V, finite where B is out of range."""
+        """Logarithm of the peak strain B of the wave of speed V, finite where B is out of range.
+
+        It is ``ln B = (ln V² - ln f)/(k-1)``, ``f = V²/B^{k-1}`` the wave's speed factor.
+        """
         log_square = 2 * np.log(_positive(V, "V"))
         log_factor = self._values("log_speed_factor", k, omega)
         return (log_square - log_factor) / (np.asarray(k, np.float64) - 1)
