@@ -72,6 +72,8 @@ def _show_time(name: str, ended: threading.Event) -> None:
         bars = list(tqdm._instances)
         for one in bars:
             one.refresh()
+            # A bar that tqdm did not draw itself is not wiped at its end.
+            one.last_print_t = time.time()
         if not bars:
             minutes, seconds = divmod(round(time.monotonic() - start), 60)
             # A line of its own: the result may be the next thing on the terminal.

@@ -53,6 +53,7 @@ def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
     ``amplitude_value``, ``fwhm_value``; ``rows``, the printed table.
     """
     wave = exact_wave(masses, k)
+    # What text says in the title, by name.
     data: dict[str, Any] = {
         "k_value": wave.k,
         "masses_value": wave.masses,
@@ -75,6 +76,7 @@ def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
         data[f"{key}_value"] = {row["of"]: row[key].value for row in rows}
         data[f"{key}_error_value"] = {row["of"]: row[key].error for row in rows}
     table = Table.of(_COLUMNS, rows, "rows", note=_NOTE, errors=_ERRORS)
+    # The wave's own masses: a ratio that was given in seven digits is a special one.
     return Report(
         f"masses {wave.masses[0]:.6g}, {wave.masses[1]:.6g}; k = {wave.k:g}; A = D = 1\n"
         f"c² = {wave.estimate('c2')}, c = {wave.estimate('c')}\n"
@@ -86,6 +88,7 @@ def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
 
 
 _RATIOS = (
+    # Seven digits of a ratio are wanted by `exact`: JSON has them.
     Column("mass_ratio_value", "m2/m1", format=".6g"),
     # Tail and residual tell how exact a row is; six digits are far from rounding.
     Column("c2_value", "c² at peak force 1", format=".6g"),
@@ -96,6 +99,7 @@ _RATIOS = (
 
 @study(
     EXPONENT,
+    # Two are published (Jayaprakash et al. 2011); the third shows how the row goes on.
     option("--count", default=3, says="Number of mass ratios, from the largest down."),
     page="exact",
     examples=("lwa-validate resonances --count 1 --plot waves.svg",),
@@ -103,8 +107,8 @@ _RATIOS = (
 def resonances(k: float, count: int) -> Report:
     """Mass ratios m2/m1 < 1 of the dimers with a solitary wave.
 
-    ``k_value`` and, in falling order, ``mass_ratios``, ``c2_value``, ``tail_value``,
-    ``residual_value``; ``rows``, the printed table.
+    ``k_value``; ``mass_ratios`` in falling order; ``rows``, the printed table:
+    ``mass_ratio_value``, ``c2_value``, ``tail_value``, ``residual_value``.
     """
     waves = special_ratios(k, count)
     # A pulse of a dimer at peak force 1 is three sites wide, and rests on no tail.
@@ -113,6 +117,7 @@ def resonances(k: float, count: int) -> Report:
     curves = []
     for wave in waves:
         rows.append((wave.omega, wave.c2, wave.tail, wave.residual))
+        # Solid lines, whose colours tell them apart: dashes would hide the humps.
         curves.append(Curve(f"m2/m1 = {wave.omega:.4f}", xi, wave.force(xi), "-"))
     return Report(
         f"k = {waves[0].k:g}: dimers with a solitary wave",
@@ -121,8 +126,5 @@ def resonances(k: float, count: int) -> Report:
         data={
             "k_value": waves[0].k,
             "mass_ratios": [wave.omega for wave in waves],
-            "c2_value": [wave.c2 for wave in waves],
-            "tail_value": [wave.tail for wave in waves],
-            "residual_value": [wave.residual for wave in waves],
         },
     )

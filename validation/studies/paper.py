@@ -101,7 +101,9 @@ def recorded_chain(
     """
     momentum = float(STEEL_BEAD.mass) * velocity
     pulse = of_momentum(canonical_wave(chain_cell(N, ptfe), HERTZ), momentum)
+    # N times steel, then PTFE: at places N + 1, 2(N + 1), …
     beads = [STEEL_BEAD if place % (N + 1) else ptfe for place in range(1, BEADS + 1)]
+    # From 0 on, bead 15 is number 14, between the contacts 13 and 14.
     contacts = {bead - 1 for bead in sensors} | {bead - 2 for bead in sensors}
     return Scene.of_beads(
         beads,
@@ -111,6 +113,7 @@ def recorded_chain(
         contact_sensors=[*sorted(contacts), BEADS - 1],
         # A pulse with all of the striker's momentum needs two thirds of this time to the wall.
         duration=1.6 * BEADS * DIAMETER / float(pulse.speed),
+        # Some hundred of them in a pulse's FWHM of 2.5 sites.
         samples=60 * BEADS,
     )
 
@@ -128,6 +131,7 @@ def bead_fwhm(wave: PhysicalWave) -> float:
     """Return the FWHM of the force of a bead, the mean of its two contacts', as a length."""
     half = number(wave.bead_force) / 2
 
+    # Two arches, a spacing apart, have no FWHM in closed form.
     def above_half(x: float) -> float:
         return float(wave.along(x, of="bead")) - half
 
@@ -192,8 +196,10 @@ def paper(
     """
     velocity = between(velocity, "velocity", 1e-6, 1000)
     scene = recorded_chain(sorted({*SENSORS, *LIKE[0], *LIKE[1]}), velocity)
+    # A run, and another whose difference to it is the error.
     runs = repeated(scene, tolerances(rtol), progress=run_progress)
     lattice = compared(lattice_numbers, runs)
+    # The paper's closure, for the displacement of the steel beads.
     wave = homogenize(chain_cell(), k=HERTZ).pde.traveling_wave()
     peak = lattice["peak bead force F_m"].value
     waves = {
@@ -238,6 +244,7 @@ def theory_numbers(wave: PhysicalWave) -> dict[str, float]:
         half = fwhm / V / 2
         pulses = {}
         for i in range(1, BEADS + 1):
+            # From any start: differences of arrivals alone count.
             arrival = i * DIAMETER / V
             pulses[i] = Pulse(arrival, peak, arrival - half, arrival + half)
         return Train(pulses, DIAMETER)
@@ -279,6 +286,7 @@ def _panel(run: Run, theory: PhysicalWave) -> Panel:
     curves = []
     for i, (bead, pulse) in enumerate(Train.of(run).only(SENSORS).pulses.items()):
         force = run.bead_force[run.scene.bead_sensors.index(bead - 1)]
+        # Peak upon peak: the theory has no time of the blow.
         wave = theory.curve(run.time - pulse.arrival)
         curves.append(Curve(f"bead {bead}, lattice", run.time, force, f"C{i}-"))
         curves.append(Curve(f"bead {bead}, theory by F_m", run.time, wave, f"C{i}--"))
@@ -318,6 +326,7 @@ def figures(progress: Progress[Any] = iter) -> Report:
     """
     records = {N: forces(N) for N in progress([*RECORDED])}
     scalings = {E: scaling(E) for E in progress(MODULI)}
+    # Hertz's law alone demands 1/6, whatever the moduli: the second one is a check.
     exponents = [fitted_exponent(rows) for rows in scalings.values()]
     drops = [row for rows in scalings.values() for row in rows]
     panels = []
@@ -374,6 +383,7 @@ def stated_errors() -> list[dict[str, Any]]:
 
     The FWHM is a time, of the contacts' force from bead `FIRST_BEAD` on, at an equal peak force.
     """
+    # Where the pulse has passed before the wave reaches the wall.
     places = range(FIRST_BEAD, BEADS - 2)
     run = simulate(recorded_chain(places), rtol=RTOL)
     contacts = Train.of(run, "contact").only(places)
@@ -392,6 +402,7 @@ def scaling(E: float, rtol: float = RTOL) -> list[dict[str, Any]]:
     for height in HEIGHTS:
         velocity = math.sqrt(2 * float(GRAVITY) * height)  # after the drop
         scenes.append(recorded_chain(SENSORS, velocity, ptfe=ptfe))
+    # The scenes of a tolerance at once, by all threads.
     runs = [simulate_many(scenes, rtol=tolerance) for tolerance in tolerances(rtol)]
     wave = canonical_wave(chain_cell(ptfe=ptfe), HERTZ)
     rows = []

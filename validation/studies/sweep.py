@@ -50,6 +50,7 @@ Grids = Mapping[str, Array]  # quantity → (len(ks), len(omegas)); NaN where mi
 
 _OMEGA = "ω = m2/m1"
 _COLUMNS = (
+    # Heads a part of the table.
     Column("k", format="k = {}".format),
     Column("omega", _OMEGA),
     Column("width", "width", error=True),
@@ -60,6 +61,7 @@ _COLUMNS = (
     Column("error.canonical.speed_value", "canonical", format=percent),
     Column("decay", "decay per site", error=True),
     Column("sites", "sites", format="{0[0]} … {0[1]}".format),
+    # From here on for JSON and CSV alone, as a terminal has no room.
     Column("strain_width", error=True),
     Column("missing"),
     *(
@@ -89,6 +91,7 @@ def report(
     """
     waves = theory(ks, omegas)
     rows = []
+    # Reasons stand below the table: a cell has no room for a sentence.
     missing = []
     grid = np.ndindex(len(ks), len(omegas))
     for place, found in zip(grid, points, strict=True):
@@ -136,6 +139,7 @@ def _panels(
     over_k = len(omegas) == 1
     x = "k" if over_k else _OMEGA
     groups: dict[str, list[Point]] = {}
+    # A curve for each k; where there is one ω, a single one over k.
     for found in points:
         name = f"{_OMEGA} = {found.omega}" if over_k else f"k = {found.k}"
         groups.setdefault(name, []).append(found)
@@ -169,6 +173,7 @@ def theory(ks: Axis, omegas: Axis) -> dict[str, Grids]:
     cell = Dimer("m1", "m2", spacing=1)
     waves = {
         "linear": homogenize(cell).pde.traveling_wave(),
+        # A width that does not depend on which bead is called the first.
         "canonical": canonical_wave(cell),
     }
     grids: dict[str, Grids] = {}
@@ -194,6 +199,7 @@ def _axis(text: str, name: str) -> Iterator[sp.Expr]:
             if not (given.is_Integer and 2 <= given <= _MOST):
                 wanted = f"the count of a range is an integer from 2 to {_MOST}"
                 raise SceneError(f"{name} is {shorten(part)}: {wanted}")
+            # Exact steps: 1/10 is a value of 1/20:1:20, and a file finds the point again.
             for i in range(given):
                 yield start + (stop - start) * i / (given - 1)
         else:
@@ -341,6 +347,7 @@ def sweep(
     1.4119
     """
     grid = _values(ks, "k"), _values(omegas, "omega")
+    # A stretch of one cell is shorter than the pulse.
     stretch = integer(stretch, "stretch", 2, 100)
     # Before the file: a refusal leaves none behind.
     if address is not None and jobs is not None:

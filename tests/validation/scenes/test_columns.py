@@ -111,6 +111,9 @@ def test_a_column_is_named_by_its_lowest_header_or_by_its_number(tmp_path):
     assert read(tmp_path, text).rows("time", "force").tolist() == [[1, 2]]
     stated = {"columns": {"time": "1", "force": "force (n)"}, "units": {"1": "ms"}}
     assert read(tmp_path, text, **stated).rows("time", "force").tolist() == [[0, 2]]
+    # A unit is that of the column of this name, not of a header that has it.
+    stated = {"columns": {"force": "4"}, "units": {"Force": "2 N/V"}}
+    assert read(tmp_path, text, **stated).rows("time", "force").tolist() == [[1, 6]]
     stated = {"columns": {"force": "volt"}, "units": {"4": "2 N/V"}, "step": "0.5 us"}
     assert read(tmp_path, text, **stated).rows("time", "force").tolist() == [[0, 6]]
 
@@ -176,6 +179,12 @@ STATED = {"columns": {"force": "2"}}
             "Length,9,0,1\nSource,CH1,0,2\n" + ",,1,3\n" * 30,
             {},
             "found 3 '' 1, 4 '' 3; try columns={'time': '3', 'force': '4'}$",
+        ),
+        # Units tell before the entries do: times in us may rise by 1, as numbers of lines.
+        (
+            "n,t (us),a,b (N)\n0,0,2,5\n1,1,4,7\n2,2,1,6\n",
+            {},
+            "try columns={'time': '2', 'force': '4'}$",
         ),
         # Numbers of samples are no times.
         (
