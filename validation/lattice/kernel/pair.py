@@ -515,10 +515,7 @@ def evaluate_stages(
 
 @inlined
 def evaluate_end(chain: Chain, beads: Beads, plan: Plan, hi: int) -> None:
-    """Compute the accelerations at a step's end, after its motion was corrected.
-
-    hi : beads 0 … hi-1 move.
-    """
+    """Compute the accelerations of beads 0 … hi-1 at a step's end, after a correction."""
     last = len(plan.scheme.nodes) - 1
     force = beads.force[
         1
