@@ -9,8 +9,8 @@ stiffness in the cell. Unlike contacts have the same shares at every strain only
 
 How to add a law of your own: ``Law(F, delta)`` with any SymPy expression F that grows with delta.
 To give it a name, on the command line and in files of chains too, add a line to `_NAMED`, the force
-as a function of the law's parameters, and a line to the docstring of `named`. The tests of names
-(tests/lwa/test_law.py) take it from there.
+as a function of the law's parameters, a line to the docstring of `named`, and one to the table of
+``book/laws.md``. The tests of names (tests/lwa/test_law.py) take it from there.
 """
 
 from __future__ import annotations

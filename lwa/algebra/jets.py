@@ -304,7 +304,7 @@ class GradedSeries:
     ----------
     algebra : JetAlgebra
     exponent : element
-        The exponent e.
+        The exponent e of the base p.
     terms : sequence of elements
         The first terms ``f_0, f_1, …``; more follow by `append`.
     """
@@ -317,8 +317,9 @@ class GradedSeries:
     ) -> None:
         self.algebra = algebra
         self.exponent = exponent
-        # Of each term the derivatives that are known: the term, the first one, ….
+        # Of each term the list of its derivatives in x so far, from the term itself on
         self._derivatives = [[f_n] for f_n in terms]
+        # Of each term the derivatives ∂f_n/∂s_i by the jets of the velocity, for `dt`
         self._velocity_slopes = cache(lambda n: algebra.velocity_slopes(self[n]))
 
     def __getitem__(self, n: int) -> fmpq_mpoly:

@@ -158,11 +158,14 @@ class Model(Parametric):
     def contacts(self) -> Partition:
         """The shares ``C_i`` of the contacts.
 
-        On the optical branch all contacts are compressed by equal amounts. There the C_i are shares
-        of the stiffness, proportional to A_i, instead of shares of the strain.
+        On the acoustic branch all contacts carry one force at leading order, and the C_i are shares
+        of the strain, proportional to the compliances. On the optical branch all contacts are
+        compressed by equal amounts, and the C_i are shares of the stiffness, proportional to A_i.
         """
         if self.branch == "optical":
+            # The forces of a bead's two contacts add up: so do their shares, to 1.
             return Partition(self.cell.stiffnesses, 1, "c")
+        # u_x is the mean of the strains C_i u_x of the contacts: the mean of the C_i is 1.
         return Partition(self.cell.compliances(self.law.exponent), self.cell.size, "c")
 
     @cached_property

@@ -102,10 +102,11 @@ class Closure(Parametric):
         algebra = self.solution.algebra
         found = {}
         for n, b in enumerate(self.solution.ansatz[1:], start=1):
-            # b_n is a number: the term of a polynomial without jets
+            # b_n depends on the parameters alone: all its terms belong to the empty product of
+            # jets. A b_n of 0 has no terms. (`base` numbers the jets, of which there are none.)
             terms = algebra.terms(b, self.model.base)
-            number = terms.get(Jet(()), [])
-            found[n] = self.model.expression(number)
+            without_jets = terms.get(Jet(()), [])
+            found[n] = self.model.expression(without_jets)
         return found
 
     def latex_rows(self, most: int | None = None) -> list[str]:

@@ -11,14 +11,16 @@ The frequencies are therefore the singular values of B. Its eigenvalue problem, 
 **Long waves.** Let the particle n have the displacement ``u_n = a_i e^{s n + λt}``, i the remainder
 of n by P; lengths are in spacings. A link from i to j with the spring constant K and the range
 ``r = j - i`` then has the compression ``b·a e^{s i}``, ``b = cosine (e_i - e^{s r} e_j)``. The
-particles obey::
+particles obey, M the diagonal matrix of the masses::
 
-    λ² m_i a_i + Σ_n s^n (k_n a)_i = 0,    Σ s^n k_n = Σ_links K b(-s) b(s)ᵀ.
+    λ² M a + K(s) a = 0,    K(s) = Σ_links K b(-s) b(s)ᵀ = Σ_n s^n k_n.
 
-At the imaginary ``s = iq`` the frequency is ``Ω² = -λ²``. The powers of s, with the series
-``a = 1 + s a_1 + s² a_2 + …``, give ``λ² = F′/m̄ (s² + (I/D²) s⁴ + …)`` one after the other, where
-``F′`` is the stiffness of the lattice, m̄ the mean mass, and I the coefficient in
-``Ω² = c² (q² - (I/D²) q⁴ + …)``.
+At the imaginary ``s = iq`` the frequency is ``Ω² = -λ²``. Series in s solve the equation::
+
+    a = Σ_m s^m a_m,    a_0 = (1, …, 1),    λ² = Σ_n Λ_n s^n = F′/m̄ (s² + (I/D²) s⁴ + …),
+
+where ``F′`` is the stiffness of the lattice, m̄ the mean mass, and I the coefficient in
+``Ω² = c² (q² - (I/D²) q⁴ + …)``. λ² is even in s, and ``Λ_0 = 0``: a shift needs no force.
 """
 
 from __future__ import annotations
@@ -184,7 +186,15 @@ class Network(NamedTuple):
         springs: Array,
         masses: Array,
     ) -> Acoustic:
-        """The acoustic branch; NaN where no particle is held.
+        """Compute the acoustic branch of long waves; NaN where springs of 0 hold no particle.
+
+        The equation ``λ² M a + K(s) a = 0`` (`lwa.linear.springs`) holds at each power of s. At
+        ``s^m`` it is::
+
+            k_0 a_m + Σ_{n=1}^m (k_n + Λ_n M) a_{m-n} = 0.
+
+        The terms ``k_0 a_m`` are forces inside the cell, whose sum over the particles is 0. The sum
+        of the equation therefore gives ``Λ_m``, and then the equation itself ``a_m``.
 
         Parameters
         ----------
@@ -198,26 +208,26 @@ class Network(NamedTuple):
             Arrays of the shape of the leading axes, and of ``springs``.
         """
         total = masses.sum()
-        # k_0 … k_4: the fourth power of s has the dispersion.
+        # k_0 … k_4: the dispersion stands in Λ_4.
         k = []
         for n in range(5):
-            k.append(np.tensordot(springs, self._powers(n), 1))
+            k.append(np.tensordot(springs, self._stiffnesses(n), 1))
         zero = np.zeros((*springs.shape[:-1], self.size))
         a: list[Array] = [zero + 1]  # a_0, a_1, …
-        square: dict[int, Array] = {}  # coefficients of s² and s⁴ in λ²
+        Lambda: dict[int, Array] = {}  # Λ_2 and Λ_4
         for m in range(1, 5):
-            # At s^m the unknown a_m stands in k_0 a_m alone; all other terms are known forces.
+            # The sum over n, whose term Λ_m M a_0 is still to come
             known = zero.copy()
             for n in range(1, m + 1):
                 column = a[m - n][..., None]
                 known += (k[n] @ column)[..., 0]
-                if n in square:
-                    known += square[n][..., None] * masses * a[m - n]
+                if n in Lambda:
+                    known += Lambda[n][..., None] * masses * a[m - n]
             if m % 2 == 0:
-                # The forces k_0 a_m inside the cell have the sum 0.
-                square[m] = -known.sum(axis=-1) / total
-                known += square[m][..., None] * masses
-            # The first particle moves by the 1 of a_0 alone; a_4 is not needed.
+                Lambda[m] = -known.sum(axis=-1) / total
+                known += Lambda[m][..., None] * masses
+            # k_0 a_m = -known without the first particle, whose entry of a_m is 0: a factor of a is
+            # free. No result needs a_4.
             a_m = zero.copy()
             if self.size > 1 and m < 4:
                 held = k[0][..., 1:, 1:]
@@ -225,18 +235,19 @@ class Network(NamedTuple):
             a.append(a_m)
         # 0/0 is NaN, the answer where no particle is held.
         with np.errstate(all="ignore"):
-            dispersion = square[4] / square[2]
+            dispersion = Lambda[4] / Lambda[2]
+        # To first order in s a spacing is compressed by -s, a link by s (incidence a_1 - spans).
         return Acoustic(
-            stiffness=square[2] * total / self.size,
+            stiffness=Lambda[2] * total / self.size,
             dispersion=dispersion,
             shares=self.spans - a[1] @ self.incidence.T,
         )
 
-    def _powers(self, n: int) -> Array:
-        """Coefficients of ``s^n`` in ``b(-s) b(s)ᵀ``, shape (links, size, size)."""
+    def _stiffnesses(self, n: int) -> Array:
+        """Parts of ``k_n`` by links of K = 1: ``s^n`` in ``b(-s) b(s)ᵀ``, shape (links, P, P)."""
         parts = np.zeros((len(self.links), self.size, self.size))
         for part, (i, j, cosine) in zip(parts, self.links, strict=True):
-            # The particle of a cell ahead moves as its image in this cell, times e^{s (j - last)}.
+            # The particle j of a cell ahead has the amplitude of its image ``last`` in this cell.
             last = j % self.size
             # The coefficient of s^n in cosine² e^{s r}
             coefficient = cosine**2 * (j - i) ** n / factorial(n)
@@ -264,13 +275,15 @@ def solved(
     -------
     ndarray, shape (…, n)
     """
-    # The determinant of entries of order 1 neither over- nor underflows.
+    # Elimination adds products of entries: near the largest float they overflow, and below the
+    # least normal one they lose digits. With entries up to 1 they do neither.
     largest = np.abs(matrix).max(axis=(-2, -1), keepdims=True)
     usable = np.isfinite(largest) & (largest > 0)
     scale = np.where(usable, largest, 1)
-    # NumPy refuses all systems if one is singular: the identity stands in for those.
+    # NumPy refuses all systems if one is singular: the identity stands in for such matrices.
     identity = np.eye(matrix.shape[-1])
     scaled = np.where(usable, matrix, identity) / scale
+    # The sign is 0 for a singular matrix alone; the determinant itself may underflow to 0.
     sign, _ = np.linalg.slogdet(scaled)
     usable &= (sign != 0)[..., None, None]
     scaled = np.where(usable, scaled, identity)

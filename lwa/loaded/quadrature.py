@@ -91,9 +91,12 @@ class Grid:
         return np.where(self.rest < 0.5, near_peak, np.log(self.s))
 
     @staticmethod
-    def from_peak(values: Array) -> Array:
-        """Values at the rows in the order from the peak to the foot, where `to_peak` holds."""
-        # Next to the foot the rows have less than half a window behind them.
+    def peak_first(values: Array) -> Array:
+        """Put values at the rows in the order from the peak to the foot.
+
+        The rows next to the foot go: there integrals by `to_peak` are not right.
+        """
+        # These rows have less than half a window of nodes behind them.
         first = _WINDOW // 2
         return values[first:][::-1]
 
@@ -272,14 +275,17 @@ class Quadrature:
     ) -> Array:
         """Refine the grid until a result is the result of half as many nodes.
 
+        The nodes are equally spaced in t, ``s = 1/(1 + exp(-π sinh t))``; t is 0 where the wave has
+        half of its rise.
+
         Parameters
         ----------
         compute : callable
-            The result by the values at the nodes of a grid.
+            Function from the wave at the nodes of a grid to the result.
         steps : tuple of int
             Nodes per unit of t of the grids, one after the other.
         start : float
-            First t of the grids' rows.
+            Least t of the rows, the nodes whose distances ξ from the peak are computed.
         least : float
             Size of a result below which its error is absolute.
         """
@@ -332,27 +338,36 @@ class Nodes:
         return np.asarray(self.grid.length * np.sqrt(J) / gap)
 
     @property
-    def _to_peak(self) -> Array:
-        """The part of the grid's matrix that maps distances to the rows' places ξ."""
+    def _to_places(self) -> Array:
+        """Matrix from the distances dξ between rows to the places ξ of the rows.
+
+        It has the columns of `Grid.to_peak` that belong to rows: a row's ξ is the sum from there to
+        the peak.
+        """
         return self.grid.to_peak[:, self.grid.rows]
 
     def half_width(self) -> Array:
         """The distance from the peak at which the strain has half of its rise."""
-        return np.asarray(self._to_peak[self.grid.middle] @ self.distances)
+        return np.asarray(self._to_places[self.grid.middle] @ self.distances)
 
     def half_width_of_force(self) -> Array:
         """The distance from the peak at which the force has half of its rise."""
         g = self.grid
+        # Rise of the force from node to node, over B
         dF = self.law.slope * g.ds
-        fall = g.from_peak(g.to_peak @ dF) / dF.sum()
-        places = g.from_peak(self._to_peak @ self.distances)
-        return _interpolated(fall, places, np.array([0.5]))
+        # By how much the force is less than at the peak, in parts of its rise: from 0 on
+        fall = g.peak_first(g.to_peak @ dF) / dF.sum()
+        # The distances ξ of the same rows from the peak
+        xi = g.peak_first(self._to_places @ self.distances)
+        # ξ as a function of the fall, at one half
+        return _interpolated(fall, xi, np.array([0.5]))
 
     def profile(self, places: Array) -> Array:
         """The ratio v/B at distances from the peak."""
         g = self.grid
-        xi = g.from_peak(self._to_peak @ self.distances)
-        logs = g.from_peak(g.logs[g.rows])
+        # ln s is interpolated instead of s = v/B: the tail, an exponential, is a line in ξ.
+        xi = g.peak_first(self._to_places @ self.distances)
+        logs = g.peak_first(g.logs[g.rows])
         last = xi[-1]
         inside = _interpolated(xi, logs, np.minimum(places, last))
         # Behind the last node v is below what grids may differ by, or they are refined.

@@ -154,7 +154,7 @@ def _front(cell: Cell, law: ContactLaw, behind: sp.Expr, ahead: sp.Expr) -> Shoc
             spacing=1,
         )
     front = Shock(cell, law, *strains)
-    gain = front._gain
+    gain = front._sound_gain
     demand_one_sign(front._field, front.behind, front.ahead)
     if gain.is_zero:
         raise InputError(

@@ -113,9 +113,9 @@ class Shock(Value):
     @property
     def kind(self) -> Literal["shock", "rarefaction"]:
         """ "shock" where sound is faster behind the front, else "rarefaction"."""
-        if self._gain.is_positive is None:
-            demand_numbers(self._gain.free_symbols, "the kind depends on it")
-        return "shock" if self._gain.is_positive else "rarefaction"
+        if self._sound_gain.is_positive is None:
+            demand_numbers(self._sound_gain.free_symbols, "the kind depends on it")
+        return "shock" if self._sound_gain.is_positive else "rarefaction"
 
     @property
     def oscillates(self) -> bool:
@@ -155,7 +155,7 @@ class Shock(Value):
         >>> shock(Cell([1], spacing=1), "p", k="3/2").plateau
         2*sqrt(6)*p**(5/4)/5
         """
-        return _tidy(self._gained * self._field.time_scale)
+        return _tidy(self._wall_velocity * self._field.time_scale)
 
     @cached_property
     def trailing_speed(self) -> sp.Expr:
@@ -173,7 +173,7 @@ class Shock(Value):
         8*sqrt(3)/5
         """
         # A rarefaction ends at the place that sound behind the front has reached.
-        if self._gain.is_negative:
+        if self._sound_gain.is_negative:
             return self.sound(self.behind)
         r = self._edge_ratio()
         if r.is_number and r > STEEPEST:
@@ -204,7 +204,7 @@ class Shock(Value):
             For dispersion without sound ahead, and for unequal beads.
         """
         one_of(rule, RULES, "rule")
-        if self._gain.is_negative:
+        if self._sound_gain.is_negative:
             return self.sound(self.ahead)
         if rule == "doubling":
             return _tidy(_evaluated(self._pulse.speed * self._field.time_scale))
@@ -273,7 +273,7 @@ class Shock(Value):
     @cached_property
     def _unscaled(self) -> Shock:
         """This front in numbers, with 1 for the symbols of the cell, which only scale results."""
-        demand_numbers(self._free, "an error is that of a number")
+        demand_numbers(self._free, "errors are computed in numbers")
         units = dict.fromkeys(self.cell.symbols, sp.S.One)
         return replace(
             self,
@@ -288,10 +288,10 @@ class Shock(Value):
         if name == "leading_speed" and rule == "doubling":
             return speed_error(rho)
         if name == "leading_speed":
-            return leading_error(self._edges_differ(), rho)
+            return leading_error(self._rule_difference(), rho)
         if name == "trailing_speed":
             sound = self.sound(self.behind) / self.trailing_speed
-            return trailing_error(self._edges_differ()) * abs(float(sound))
+            return trailing_error(self._rule_difference()) * abs(float(sound))
         # Floats of 15 digits are enough for an error.
         peak = sp.N(self.peak)
         error = rise_error(rho) * sp.N(self._pulse.contact_rise)
@@ -302,20 +302,20 @@ class Shock(Value):
         less = self.law.at(self.cell.spacing * (peak - error))
         return abs(float(1 - less / force))
 
-    def _edges_differ(self) -> float:
-        """Relative difference of the leading speeds by the two rules."""
+    def _rule_difference(self) -> float:
+        """Relative difference of the leading speeds by the doubling rule and by El's condition."""
         doubling = self.leading_speed("doubling")
         return abs(float(doubling / self.leading_speed("dispersion")) - 1)
 
     @cached_property
     def _pulse(self) -> Pulse:
         """The leading pulse by the doubling rule; an error for rarefactions and unequal beads."""
-        if self._gain.is_negative:
+        if self._sound_gain.is_negative:
             raise InputError(
                 "sound is slower behind the front: a rarefaction has no pulse"
             )
         # The doubling rule
-        pulse = Pulse(self._field, 2 * self._gained)
+        pulse = Pulse(self._field, 2 * self._wall_velocity)
         if not self.law.homogeneous:
             demand_one_sign(self._field, self.ahead, self.ahead + pulse.rise)
         return pulse
@@ -343,19 +343,24 @@ class Shock(Value):
 
     @property
     def _free(self) -> set[sp.Symbol]:
-        """Symbols that do more than scale results."""
+        """Symbols on which results depend otherwise than by a factor.
+
+        Symbols of the cell (masses, stiffnesses, the spacing) are only factors, in the strains too,
+        unless the ratio r holds them. Under a law that is no power a spacing is compared with the
+        law's own length.
+        """
         spacing = set() if self.law.homogeneous else self.cell.spacing.free_symbols
         strains = self.behind.free_symbols | self.ahead.free_symbols
         named = strains - {*self.cell.symbols}
         return {*self.ratio.free_symbols, *named, *self.law.symbols, *spacing}
 
     @cached_property
-    def _gained(self) -> sp.Expr:
+    def _wall_velocity(self) -> sp.Expr:
         """Velocity v_p as ``du/dτ``, in the units of the wave equation."""
         return _evaluated(velocity(self._field, self.behind))
 
     @cached_property
-    def _gain(self) -> sp.Expr:
+    def _sound_gain(self) -> sp.Expr:
         """Difference c₋ - c₊, negative for a rarefaction; symbols are taken to mean a shock."""
         gain = self._sound(self.behind) - self._sound(self.ahead)
         if self.cell.spacing.is_Symbol and not self.law.homogeneous:

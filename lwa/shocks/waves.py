@@ -258,13 +258,16 @@ def rise_error(rho: float) -> float:
     return 0.065 * rho**2 + 0.015
 
 
-def leading_error(off: float, rho: float) -> float:
-    """Relative error of El's leading edge, from which the doubling rule differs by ``off``."""
+def leading_error(difference: float, rho: float) -> float:
+    """Relative error of the speed of El's leading edge.
+
+    The ``difference`` is that of the leading speeds by the two rules, relative to El's.
+    """
     # The doubling rule stands between: its own error is known.
-    return off + (1 + off) * speed_error(rho)
+    return difference + (1 + difference) * speed_error(rho)
 
 
-def trailing_error(off: float) -> float:
-    """Error of El's trailing edge over c₋, by the same ``off``."""
+def trailing_error(difference: float) -> float:
+    """Error of the speed of El's trailing edge in c₋, by the difference at the leading edge."""
     # measured up to 5.3 times the difference at the leading edge; 2 % is what the runs resolve
-    return 0.02 + 6 * off
+    return 0.02 + 6 * difference

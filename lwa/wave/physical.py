@@ -96,12 +96,17 @@ class PhysicalWave(Parametric):
 
     @cached_property
     def _bead_share(self) -> sp.Expr:
-        """Ratio cos^{mk}(βD/2) of a bead's peak force to its contacts'."""
+        """Ratio cos^{mk}(βD/2) of a bead's peak force to its contacts'.
+
+        Here ``m = 2/(k-1)`` and ``β = (k-1)/(2 D √S)``, ``S = (G + H + I)/D²`` (`lwa.wave.arch`).
+        """
         k = self.wave.k
-        # From the sum itself, not from β, in which roots were taken out
-        angle = (k - 1) / (4 * sp.sqrt(self.wave.coefficient_sum))  # βD/2
-        exponent = 2 * k / (k - 1)
-        # At ξ = 0 the mean of cos^e(βξ ± angle) has its maximum only where it is concave.
+        # βD/2. `Arch.beta` is the same number, but takes the roots of the numerator and of the
+        # denominator of S apart: with symbols √S in one root is shorter.
+        angle = (k - 1) / (4 * sp.sqrt(self.wave.coefficient_sum))
+        exponent = 2 * k / (k - 1)  # mk
+        # At ξ = 0 the mean of cos^{mk}(βξ ± angle) over both contacts has its maximum only where it
+        # is concave: its second derivative has the sign of mk sin² angle - 1.
         if angle.is_number and not (
             angle < sp.pi / 2 and exponent * sp.sin(angle) ** 2 < 1
         ):

@@ -99,7 +99,7 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
     >>> t = np.linspace(-4, 3, 701)
     >>> noise = 0.01 * np.random.default_rng(0).normal(size=701)
     >>> print(noisy_pulse(t, np.exp(-9 * t**2) + noise).numbers["fwhm"])  # √(4 ln 2)/3
-    0.557 ± 0.004
+    0.557 ± 0.003
     """
     return next(noisy_pulses(time, values, unit))
 

@@ -254,3 +254,14 @@ def test_two_forces_that_jump_in_one_step_shift_each_other(rtol):
     true = follow(scene, [scene.duration], 1e-13, (0.1, 0.1, 0.1)).v[0]
     off = np.abs(simulate(scene, rtol=rtol).velocities - true).max()
     assert off < 20 * rtol
+
+
+def test_a_jump_whose_place_is_not_settled_counts_as_error():
+    """Else the motion errs by 51 times the tolerance."""
+    scene = Scene(
+        masses=(0.0864, 0.0634), stiffnesses=(1,), law=Law(X ** sp.Rational(3, 2) + 0.1, X),
+        displacements=(0, 0.0855), velocities=(0.62, 0.566), duration=3,
+        damping=Damping("contact", 0.013),
+    )  # fmt: skip
+    true = follow(scene, [3], 1e-13, (0.1, 0.1, 0.1)).v[0]
+    assert np.abs(simulate(scene, rtol=1e-6).velocities - true).max() < 1e-5
