@@ -57,7 +57,13 @@ def _pair(
     thirds: Array,
     order: int,
 ) -> Pair:
-    """Build a pair from exact coefficients; nodes are floats."""
+    """Build an embedded pair from exact coefficients.
+
+    Rows of ``moments`` and ``impulses`` are the weights of the accelerations in a stage's
+    displacement (over h²) and velocity (over h), the last row those of the step. ``errors``: the
+    same for the differences to the less accurate solutions. ``thirds``: the weights, from the same
+    matrices, of ``∫ (1 - x)²/2 f dx``, by which kinks move the neighbours. ``nodes``: floats.
+    """
     return Pair(
         nodes=nodes,
         moments=_padded(moments),

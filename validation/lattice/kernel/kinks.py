@@ -297,10 +297,12 @@ def resolved(
 def _root(c: Curve, x: float, side: float) -> float:
     """Return the root of p near an end x of an interval, on its outer side (±1); NaN without one.
 
-    The root shapes the substitution alone: two steps of Newton's method are enough.
+    x is in units of the step. The root is the z of the substitution ``x = z + (e - z) u^q`` alone,
+    which need not be accurate: two steps of Newton's method are enough.
     """
     p, slope = value_and_slope(c, x)
-    # No root within a step of x, or on the inner side.
+    # By the tangent: no root within a step of x, with half a step to spare as p bends, or on the
+    # inner side.
     if not abs(p) < 1.5 * abs(slope) or (
         side * p * slope > 0.0 and abs(p) > 1e-9 * abs(slope)
     ):

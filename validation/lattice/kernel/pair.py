@@ -515,9 +515,11 @@ def evaluate_stages(
 
 @inlined
 def evaluate_end(chain: Chain, beads: Beads, plan: Plan, hi: int) -> None:
-    """Compute the accelerations at a step's end, after its motion was corrected."""
+    """Compute the accelerations of beads 0 … hi-1 at a step's end, after a correction."""
     last = len(plan.scheme.nodes) - 1
-    force = beads.force[1]
+    force = beads.force[
+        1
+    ]  # row 1: at the stage that is computed last, here the step's end
     contact_forces(chain, beads, plan, beads.next_y, beads.next_v, last, FIRST, hi)
     for i in range(index(hi)):
         net = force[i] - force[i + ONE]

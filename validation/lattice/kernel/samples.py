@@ -205,6 +205,7 @@ def interpolate(
         for r in range(len(rows)):
             for end in range(2):
                 state = knots.state[n + end, rows[r]]
+                # y, y', y'' and the jerk in units of the step; contacts add the jerk below.
                 row = ends[end, r]
                 row[0] = state[0]
                 row[1] = h * state[1]
@@ -212,9 +213,12 @@ def interpolate(
                 row[3] = 0.0
             for s in range(first, last):
                 y[r, s] = v[r, s] = 0.0
+        # The contact between the beads of rows r and r + 1: its force changes the jerk of both, or,
+        # with a kink in the step, which no polynomial follows, its effect is set apart.
         for r in range(len(rows) - 1):
             q = rows[r]
-            if knots.state[n + 1, q, 3] > 0.0:
+            kink = knots.state[n + 1, q, 3] > 0.0
+            if kink:
                 _take_kink_away(
                     chain,
                     knots,
@@ -233,6 +237,7 @@ def interpolate(
                 )
             else:
                 _add_rates(chain, knots, n, q, r, h, ends)
+        # The polynomial of degree 7 with y, y', y'' and the jerk at both ends.
         for r in range(len(rows)):
             low, c6, c7 = _septic(ends[0, r], ends[1, r])
             for s in range(first, last):
