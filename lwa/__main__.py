@@ -21,7 +21,7 @@ def start(name: str, module: str) -> None:
 
 
 def main() -> None:
-    """Entry point of `python -m lwa`, which then loads the command."""
+    """Run the command `lwa`: the entry point of `lwa` and of `python -m lwa`."""
     start("lwa", "lwa.command.cli")
 
 

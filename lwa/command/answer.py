@@ -317,10 +317,11 @@ class Answer:
     def json(self) -> Values:
         """The object that ``--format json`` prints.
 
-        Names ending in ``_value`` are floats, in the unit of length where the spacing is a symbol,
-        at ``V_s = 1``, ``F = 1`` and ``B = 1``, or ``B = -1`` if B is negative. Symbols, complex
-        numbers and numbers beyond a double have none. The notes include the reasons of missing
-        values.
+        Names ending in ``_value`` are floats. Where the spacing is a symbol, it is the unit of
+        length of these floats. A symbol of the wave's size has the value 1 in them: ``V_s = 1``,
+        ``F = 1`` and ``B = 1``, or ``B = -1`` if B is negative. Values with other symbols, complex
+        numbers and numbers beyond a double have no such float. The notes include the reasons of
+        missing values.
         """
         result = dict(self.head)
         units: Values = {}
@@ -330,6 +331,7 @@ class Answer:
                 result[row.key] = row.json()
             elif isinstance(row, Row) and row.key:
                 if row.unit:
+                    # One unit for a row: "_value" and "_error_value" have the same.
                     _put(units, row.key, "", row.unit)
                 if isinstance(row.value, InputError):
                     notes.append(str(row.value))
@@ -381,7 +383,10 @@ class Answer:
 
 
 def _put(result: Values, key: str, ending: str, value: Any) -> None:
-    """Set the value of a key, whose part behind a dot is the name in a mapping."""
+    """Set ``result[key + ending]``, or an entry of that mapping for a key with a dot.
+
+    The key "fwhm.force" with the ending "_value" is the entry "force" of "fwhm_value".
+    """
     group, dot, entry = key.partition(".")
     if dot:
         result.setdefault(group + ending, {})[entry] = value

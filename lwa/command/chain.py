@@ -89,11 +89,22 @@ class ChainInput:
         return f"{masses}; contact force {force}, {stiffnesses}; {spacing}"
 
     def load(self, given: sp.Expr | None, background: sp.Expr | None) -> sp.Expr | None:
-        """The static force: that of the file, or the given one; None for none.
+        """The static force of the chain: the file's, else that of an option; None without both.
 
-        Raises `lwa.InputError` for a file with a load and another one, a force or a strain.
+        Parameters
+        ----------
+        given : Expr, optional
+            Value of ``--precompression``, a static force.
+        background : Expr, optional
+            Value of ``--background``, a static strain, which is another form of a load.
+
+        Raises
+        ------
+        lwa.InputError
+            For a file with a precompression, and a load by an option.
         """
         if self.precompression and not (given is None and background is None):
+            # The line to paste is the user's without both options: None leaves an option out.
             raise InputError(
                 f"the file has a precompression of {self.precompression}: give no other load",
                 precompression=None,

@@ -56,9 +56,15 @@ class Fit:
         return float(np.sum(self.noise**2)) / (len(self.noise) - len(self.sizes))
 
     @cached_property
-    def length(self) -> float:
-        """Samples whose noise, for its correlations, tells as much as that of one sample."""
+    def correlation_time(self) -> float:
+        """Integrated autocorrelation time of the noise, in samples; 1 without noise.
+
+        It is ``1 + 2 Σ ρ_j``, where ``ρ_j`` is the correlation of samples at a distance (lag) of
+        1, 2, … samples. A mean over N samples varies as one over ``N/(1 + 2 Σ ρ_j)`` independent
+        samples does.
+        """
         products = self.correlations
+        # products[j]/products[0] = ρ_j, and ρ_0 = 1 counts once.
         return float(2 * products.sum() / products[0] - 1) if products[0] else 1.0
 
     @cached_property
@@ -106,7 +112,10 @@ class Base:
             return None
         counts = _BASES if np.ptp(x) > _SLOW else _BASES[:1]
         fits = [Fit.of(x, f[calm], count) for count in counts]
-        scale = fits[-1].variance * fits[-1].length or 1.0  # of the base with all terms
+        # Akaike's criterion, for the independent among the samples, with the noise that the base
+        # with all terms leaves.
+        full = fits[-1]
+        scale = full.variance * full.correlation_time or 1.0
         criteria = [np.sum(fit.noise**2) / scale + 2 * len(fit.sizes) for fit in fits]
         weights = scipy.special.softmax(-np.array(criteria) / 2)
         return cls(rise, width, x, fits, weights, fits[int(np.argmax(weights))])

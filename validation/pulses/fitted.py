@@ -73,10 +73,12 @@ def fitted(
     rounding = (np.finfo(float).eps * np.abs(f).max()) ** 2
     variance = base.best.variance + rounding
     most = min(_HIGHEST, int(_DENSEST * len(t)))
-    wanted, spline, left = _smoothed(t, f, variance, base.best.length, most)
+    wanted, spline, left = _smoothed(t, f, variance, base.best.correlation_time, most)
     if left > _MISFIT * variance:  # the noise during the pulse is larger
         variance = left
-        wanted, spline, left = _smoothed(t, f, variance, base.best.length, most)
+        wanted, spline, left = _smoothed(
+            t, f, variance, base.best.correlation_time, most
+        )
         variance = max(variance, left)
     share = math.sqrt(variance) / float(spline(t).max())
     if share > _LOUDEST:
@@ -98,18 +100,19 @@ def fitted(
 
 
 def _smoothed(
-    t: Array, f: Array, variance: float, length: float, most: int
+    t: Array, f: Array, variance: float, correlation_time: float, most: int
 ) -> tuple[int, BSpline, float]:
     """Return the wanted number of coefficients, the spline with at most ``most`` of them, and the
     variance of its residuals.
 
-    variance : of the noise. length : samples that tell as much as one.
+    variance, correlation_time : of the noise, the time in samples.
     """
     tries = math.ceil(math.log(most / _LOWEST) / math.log(_RATIO))
     counts = np.geomspace(_LOWEST, most, tries + 1).round().astype(int)
     squares = [np.sum((_fit(t, f, count)(t) - f) ** 2) for count in counts]
-    penalty = math.log(max(len(t) / length, 2))
-    criterion = np.array(squares) / (variance * length) + counts * penalty
+    # Schwarz's criterion, Σ residual²/σ² + count · ln N, for the independent among the samples.
+    penalty = math.log(max(len(t) / correlation_time, 2))
+    criterion = np.array(squares) / (variance * correlation_time) + counts * penalty
     best = int(counts[np.argmin(criterion)])
     wanted = math.ceil(_FINER * best)
     spline = _fit(t, f, min(wanted, most))
@@ -130,13 +133,16 @@ def _read(splines: BSpline, ends: tuple[float, float]) -> Array:
     grid = np.linspace(*ends, _GRID + 1)
     numbers = []
     for f in splines(grid).T:
-        # The vertex of the parabola through the highest value and its neighbours
+        # The vertex of the parabola through the highest value and its neighbours: it lies at
+        # top - slope/bend, at most one interval away, and there f = f[top] - slope²/(2 bend).
         top = min(max(int(np.argmax(f)), 1), _GRID - 1)
         slope = (f[top + 1] - f[top - 1]) / 2
         bend = f[top - 1] - 2 * f[top] + f[top + 1]
         shift = min(max(-slope / bend, -1.0), 1.0) if bend < 0 else 0.0
         peak = f[top] + slope * shift / 2
-        # SciPy's width at half of a height: here of the vertex above the base, on the whole grid
+        # SciPy measures the width at the height f[top] - prominence/2. The prominence
+        # 2 f[top] - peak makes this peak/2, half of the vertex above the base, which is 0. Both
+        # flanks are looked for on the whole grid.
         bounds = (np.array([2 * f[top] - peak]), np.array([0]), np.array([_GRID]))
         width, *_ = peak_widths(f, [top], 0.5, bounds)
         numbers.append((top + shift, peak, width[0]))

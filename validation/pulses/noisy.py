@@ -307,19 +307,24 @@ def _check_top(
 ) -> None:
     """Refuse a pulse between two times that has few samples or that is clipped.
 
-    step : distance of the levels to which samples are rounded.
+    sides : times at which the pulse rises and falls through half of its peak. step : distance of
+    the levels to which samples are rounded.
     """
     inside = np.flatnonzero((t > sides[0]) & (t < sides[1]))
-    few = len(inside)
-    if few < fewest:
+    width = len(inside)  # FWHM in samples
+    if width < fewest:
         raise MeasureError(
-            f"{few} samples lie above half the pulse's peak: at least {fewest} are wanted"
+            f"{width} samples lie above half the pulse's peak: at least {fewest} are wanted"
         )
     top, low = f[inside].max(), f[inside].min()
+    # The longest run of samples at the top, equal but for `_EQUAL` of the record's range.
     start, end = longest(f[inside] >= top - _EQUAL * np.ptp(f))
-    # A smooth pulse 1 - e (t/width)², e ≈ 2.7, stays within a step of its top as long as
-    # 2 width √(step/(e peak)); twice as long, and three samples, are no top.
-    if end - start > 3 + 4 * few * math.sqrt(step / (2.7 * 2 * (top - low))):
+    # A smooth pulse about its top is peak (1 - 4 ln 2 (t/width)²), as a Gaussian is; 4 ln 2 ≈ 2.7.
+    # It stays within a step of its top for the time 2 width √(step/(2.7 peak)); a run of twice as
+    # many samples, and three, is no top. The peak is 2 (top - low), as all samples inside lie above
+    # its half. If all are equal, as in a square pulse, nothing is known of the top.
+    run = end - start
+    if run == width or run > 3 + 4 * width * math.sqrt(step / (2.7 * 2 * (top - low))):
         times = f"{t[inside[start]]:.6g} to {t[inside[end - 1]]:.6g}"
         raise MeasureError(
             f"the record is clipped from {times}: a larger range of the recorder is wanted"

@@ -284,11 +284,13 @@ def forces_at_start(scene: Scene) -> dict[str, float]:
 
 def _at_sensors(scene: Scene, contact_forces: ArrayLike) -> dict[str, float]:
     """Return the forces at the sensors of a scene, by names such as "bead 15"."""
-    # Of the contacts on the left and right of the beads
+    # Bead i stands between the contacts of the entries i and i + 1. The first bead has no contact
+    # on its left, and the last one none on its right without a wall: their entries stay 0.
     beside = np.zeros(scene.size + 1)
     beside[1 : scene.contact_count + 1] = contact_forces
     forces = {}
     for i in scene.bead_sensors:
+        # A sensor in a bead records the mean of its two contacts' forces, as `Run.bead_force` does.
         forces[f"bead {i + 1}"] = float(beside[i] + beside[i + 1]) / 2
     for i in scene.contact_sensors:
         forces[f"contact {i + 1}"] = float(beside[i + 1])

@@ -254,7 +254,13 @@ class Medium:
 
 
 def _exponent(slope: Any) -> Any:
-    """Return k = 1/(1 - 2 d ln V/d ln F), at most 50."""
+    """Return the exponent k of the law from the slope d ln V/d ln F of speeds; at most 50.
+
+    A power law has ``V ∝ F^{(k-1)/(2k)}``, so that the slope is ``(k - 1)/(2k)`` and
+    ``k = 1/(1 - 2 slope)``.
+    """
+    # The slope is below 1/2 at any k. In draws of noisy data it may reach 1/2, where k is infinite:
+    # at 0.49 k = 50, far above any k that is read.
     return 1 / (1 - 2 * np.minimum(slope, 0.49))
 
 

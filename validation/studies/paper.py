@@ -429,6 +429,7 @@ def fitted_exponent(rows: Sequence[dict[str, Any]]) -> Estimate:
 def _scaling_panel(scalings: dict[float, list[dict[str, Any]]]) -> Panel:
     """Return figure 3a: speeds on the lattice and by the theory over the peak force."""
     curves = []
+    # Circles and squares: the study compares two moduli of PTFE.
     for i, (E, rows) in enumerate(scalings.items()):
         peaks = [row["force"].value for row in rows]
         speeds = [row["speed"].value for row in rows]

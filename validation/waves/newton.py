@@ -85,14 +85,18 @@ def rise(strain: Array, k: float, p0: float) -> Array:
 def respond(
     force: NDArray[np.complex128], inverse: Pair, half_period: float
 ) -> NDArray[np.complex128]:
-    """Return the Fourier coefficients (…, n + 1) of c² a from those of F_a by equations (1).
+    """Return the Fourier coefficients (…, n + 1) of c² a from those of F_a, both of ``e^{iqξ}``.
 
-    Coefficients are those of ``e^{iqξ}``, ``q = 0 … πn/L``; the mean of a is set to 0. ``inverse``
-    holds 1/m1 and 1/m2.
+    With the coefficients a_q of the strain, f of F_a, and f* (conjugate) of ``F_b(ξ) = F_a(-ξ)``,
+    the equation of motion, which is (1) in the module's docstring, is::
+
+        c² q² a_q = (1/m1 + 1/m2) f - (e^{-iq}/m1 + e^{iq}/m2) f*,        q = 0 … πn/L.
+
+    The mean of a is set to 0. ``inverse`` holds 1/m1 and 1/m2.
     """
     q = np.pi * np.arange(force.shape[-1]) / half_period
-    # F_b has the conjugate coefficients f*, and Σf - f*(e^{-iq}/m1 + e^{iq}/m2) is written with
-    # e^{∓iq} - 1, as it nearly cancels at small q.
+    # The right side nearly cancels at small q. Without the difference of large terms it is
+    # (1/m1 + 1/m2)(f - f*) - [(e^{-iq} - 1)/m1 + (e^{iq} - 1)/m2] f*, and f - f* = 2i Im f.
     ahead = inverse[0] * np.expm1(-1j * q)
     behind = inverse[1] * np.expm1(1j * q)
     strain = 2j * sum(inverse) * force.imag - (ahead + behind) * force.conj()
@@ -206,7 +210,7 @@ class Problem:
         )
 
     def _further(self) -> list[float]:
-        """Unknowns beside the forces and c²."""
+        """Start values of the unknowns behind the forces and c² in x."""
         return []
 
     def _inverse(self, x: Array) -> Pair:
@@ -224,9 +228,12 @@ class Problem:
         """Return c² a, shifted to 0 at L, at the first ``count`` grid points, from the forces z.
 
         The strains are linear in the forces; z is one row of forces, or an array of rows.
+        ``inverse`` holds 1/m1 and 1/m2.
         """
         force = scipy.fft.rfft(self._everywhere(z))
-        if self.uniform:  # the imaginary part is rounding, which 1/q² would enlarge
+        # Equal masses: F_a is even, O = 0, and its Fourier coefficients are real. Their imaginary
+        # part is rounding, which the 1/q² of `respond` would enlarge.
+        if self.uniform:
             force = force.real.astype(complex)
         strain = respond(force, inverse, self.L)
         a = scipy.fft.irfft(strain, 2 * self.n)
@@ -280,9 +287,11 @@ class SpecialRatio(Problem):
     """The wave equations with m2 as one more unknown, and the condition ``T = 0``."""
 
     def _further(self) -> list[float]:
+        """The start value of 1/m2: of the inverse, in which equations (1) are linear."""
         return [self.inverse[1]]
 
     def _inverse(self, x: Array) -> Pair:
+        """1/m1, which is given, and 1/m2, the last of the unknowns x."""
         return (self.inverse[0], float(x[-1]))
 
     def _border(self, z: Array, slope: Array, a: Array, inverse: Pair) -> Border:

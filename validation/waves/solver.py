@@ -64,7 +64,22 @@ _EQUAL = (1.0, 1.0)
 
 
 class NoWave(InputError):
-    """Failure to find a wave; the message names the wave's parameters."""
+    """Failure to find a wave; the message names the wave's parameters.
+
+    Parameters
+    ----------
+    text : str
+        Beginning of the message, up to the parameters.
+    masses : (float, float)
+        m1 and m2.
+    k : float
+        Exponent.
+    more : str
+        End of the message, behind the parameters.
+    **change : object
+        Arguments by name that make the call valid, as of `lwa.InputError`, such as
+        ``masses=(1, 0.59)``; the message ends with them.
+    """
 
     def __init__(
         self,
@@ -72,7 +87,7 @@ class NoWave(InputError):
         masses: newton.Pair,
         k: float,
         more: str = "",
-        /,
+        /,  # so that a changed argument may be named masses or k
         **change: object,
     ) -> None:
         m1, m2 = masses
@@ -197,8 +212,8 @@ def _dimer(pair: newton.Pair, k: float) -> ExactWave:
     heavy = max(pair)
     masses = [mass if mass == heavy else heavy * near.omega for mass in pair]
     # Nine digits are enough for `NEAR`.
-    change = tuple(float(f"{mass:.9g}") for mass in masses)
-    raise NoWave("no solitary wave", pair, k, more, masses=change)
+    nearest = tuple(float(f"{mass:.9g}") for mass in masses)
+    raise NoWave("no solitary wave", pair, k, more, masses=nearest)
 
 
 def solve(problem: newton.Problem, start: ExactWave | None = None) -> ExactWave:

@@ -268,6 +268,8 @@ WHITE = np.random.default_rng(2).normal(size=400)
         (39.1 * np.minimum(PULSE, 0.97) / 0.97, "clipped from 297 to 303"),
         (np.minimum(PULSE + 0.003 * WHITE, 0.9), "clipped from 29"),
         (np.round(120 * np.minimum(PULSE + 0.003 * WHITE, 0.9)), "clipped from 29"),
+        # square: all samples inside are equal
+        (np.where(abs(N - 300) < 20, 1, 0.003 * WHITE), "clipped from 281 to 319"),
         (2 - PULSE + 0.01 * WHITE, "is inverted"),
         (
             PULSE + np.exp(-(((N - 345) / 20) ** 2)) + 0.001 * WHITE,
