@@ -130,8 +130,9 @@ class Contacts:
         T2 = -2 * T1 * (1 / gaps).sum()
         slope = -2 * z.imag / T1  # x′, as T′ x′ = -2 sin κ
         bend = (-2 * z.real - T2 * slope**2) / T1  # T″ x′² + T′ x″ = -2 cos κ
-        speed = self.masses.sum() * c.sum() * slope**2 / (4 * x)  # (c_g/c_0)²
-        if x < self._close or 1 - speed < _SLOWER:
+        # v² = (c_g/c_0)², with c_g² = x′²/(4x) and 1/c_0² = Σm Σc
+        v2 = self.masses.sum() * c.sum() * slope**2 / (4 * x)
+        if x < self._close or 1 - v2 < _SLOWER:
             exact = "; exact results stand" if len(self.masses) == 1 else ""
             raise InputError(
                 "the mode's group velocity is too close to that of sound, c_g = c_0, for floats: "
@@ -143,7 +144,7 @@ class Contacts:
         size = np.abs(d) ** 2
         K3 = self.K3
         driven = (c * K3 * size).sum() / c.sum()
-        force = 2 * driven * speed / (speed - 1)
+        force = 2 * driven * v2 / (v2 - 1)
         mean = c * (force - 2 * K3 * size)
         e2 = self._harmonic(z * z, 4 * x, K3 * d**2)
         harmonic = np.real(d.conj() ** 2 * e2)
@@ -153,6 +154,7 @@ class Contacts:
         return Mode(
             square=x,
             slope=slope,
+            # ω ω″ = x″/2 - x′²/(4x), from x = ω²
             curvature=bend / 2 - slope**2 / (4 * x),
             cubic=cubic.sum(),
             mean=mean,
@@ -161,7 +163,11 @@ class Contacts:
         )
 
     def _harmonic(self, z: complex, square: float, pressed: Matrix) -> Matrix:
-        """Compressions e2 under the forces ``K3 d²`` in the contacts; z is ``e^{2iκ}``."""
+        """Compressions e2 under the forces ``K3 d²`` in the contacts; z is ``e^{2iκ}``.
+
+        With the modes ``φ_j`` at 2κ, their compressions ``b_j = B(2κ) φ_j`` and squared frequencies
+        ``x_j`` it is ``e2 = -Σ_j b_j (b_j† K3 d²)/(x_j - 4ω²)``.
+        """
         squares, modes = self._modes(z)
         bent = self._strains(z) @ modes
         forces = bent.conj().T @ pressed

@@ -154,9 +154,10 @@ class Recursion:
         self,
         n: int,
     ) -> fmpq_mpoly:
-        """The residual at t^{n+2} of the balance of momentum over P, with 0 for q_n and later ones.
+        """The residual at t^{n+2} of the balance of momentum, with 0 for q_n and later ones.
 
-        The coefficient γ_{n+2}, which is not known yet, is left out of the residual.
+        It is ``γ Σ m̂_i s_i(ξ) - (1/P) ∫_0^P f_{P-1}(ξ - x) dx``, without the coefficient
+        γ_{n+2}, which is not known yet.
         """
         for m in range(len(self.mean), n + 3):
             self._append(m)
@@ -276,7 +277,11 @@ class Recursion:
         self,
         n: int,
     ) -> None:
-        """Append the terms at t^n to the slopes: s_0 is P∂/(e^{P∂} - 1) of the mean strain."""
+        """Append the terms at t^n to the slopes.
+
+        ``∫_0^P s_0(ξ + x) dx = Σ C_i r_i``, P times the mean strain, gives s_0 as
+        ``P∂/(e^{P∂} - 1)`` of the mean strain; the strain of each contact gives the next slope.
+        """
         slope = self._applied(self._inverse_cell_mean, self.mean, n)
         for i in range(self.P):
             self.slope[i].append(slope)

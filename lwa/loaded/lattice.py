@@ -288,10 +288,10 @@ class Lattice(Value):
         return total / self.size
 
     def stiffness(self, state: Equilibrium) -> sp.Expr:
-        """The slope dF/d(D p) of links in series at rest."""
+        """The slope ``dF/d(D p) = P / Σ 1/K`` at rest, K the springs of links in series."""
         compliance = sp.S.Zero
         for link, delta in zip(self.links, state.compressions, strict=True):
-            # The spring constant along the lattice is dF/dδ times the cosine squared.
+            # Along the lattice K is factor · dF/dδ times the cosine squared.
             spring = link.factor * link.cosine**2 * link.law.at(delta, 1)
             # One contact that only touches makes the whole lattice soft.
             if spring.is_zero:
@@ -306,7 +306,7 @@ class Lattice(Value):
         return sp.Add(*parts) / self.size
 
     def resonance(self, resonator: Resonator) -> float:
-        """The frequency ω0 of a resonator against its bead."""
+        """The frequency ``ω0 = √(k_r (1/m_r + 1/m))`` of a resonator against its bead."""
         inverse_mass = 1 / resonator.mass + 1 / self.masses[resonator.bead]
         return number(sp.sqrt(resonator.stiffness * inverse_mass))
 
