@@ -33,7 +33,8 @@ def folded(title: str, summary: str, directive: str, *options: str) -> str:
 
 def first_line(thing: object) -> str:
     """The first line of a docstring."""
-    return (inspect.getdoc(thing) or "").partition("\n")[0]
+    line = (inspect.getdoc(thing) or "").partition("\n")[0]
+    return line.removesuffix("::")  # of a line that ends in front of a formula
 
 
 def exported(package: str) -> Iterator[str]:
