@@ -170,6 +170,26 @@ def test_the_map():
     limited("expansion", words, *(100 * speeds.T))
 
 
+def test_where_the_closed_form_of_two_masses_ends():
+    words = "follow up to $\\omega = #$, equal beads of the mean mass from $#$ on"
+    for ratio in said("expansion", words):
+        assert lattice_wave(Dimer(1, ratio, spacing=1), k="3/2").speed > 0
+    words = "From $\\omega = #$ to $#$ the pulse decays"
+    for ratio in said("expansion", words):
+        with pytest.raises(lwa.NoSolitaryWave):
+            lattice_wave(Dimer(1, ratio, spacing=1), k="3/2")
+
+
+def test_a_law_that_stiffens_has_a_pulse():
+    """Q is a weighted mean of F′ from 0 to v, so that Q rises where F′ does."""
+    s, v = sp.symbols("s v", positive=True)
+    for law in (sp.exp(v) - 1, v + v**2 - v**3):
+        mean = 2 * sp.integrate((1 - s) * law.diff(v).subs(v, s * v), (s, 0, 1))
+        rest = sp.integrate(law, v)
+        Q = 2 * (rest - rest.subs(v, 0) - law.subs(v, 0) * v) / v**2
+        assert sp.simplify(mean - Q) == 0
+
+
 def test_the_closed_form_by_hand():
     """The approximant of the speed, the first correction, and the form without more of them."""
     k = lwa.cell.k

@@ -271,8 +271,10 @@ class Motion:
         energy = self._energy_scale()
         if energy != 0 or self._moves:
             _check_range("energy", energy)
+        # Greatest compression, and greatest spring without the factor k of a power.
         deepest = stiffest = 0.0
-        # F′ of the two contacts of each bead; the last one's is a wall's.
+        # springs[i] is the sum of F′ of the contacts behind and ahead of bead i; entry n is that of
+        # a wall, which has no equation of motion and is left out below.
         springs = np.zeros(n + 1)
         for number, law in enumerate(self.laws):
             # All contacts of a chain with one law: a slice takes no copies.
@@ -309,6 +311,8 @@ class Motion:
             v = math.sqrt(energy / self.masses.mean())
             _check_range("displacement", y)
             _check_range("velocity", v)
+            # What a float cannot tell of the static compression, over the displacement y: the part
+            # of the motion that rounding may hide.
             rounding = sys.float_info.epsilon * float(self.rest.max()) / y
         return Scales(energy, deepest, y, v, time, rounding)
 

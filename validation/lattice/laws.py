@@ -148,21 +148,31 @@ class Contact:
         return np.array(found)[place]
 
     def reached_by(self, energy: float, start: float) -> float:
-        """Return a scale of the compression that an energy reaches from ``start``."""
+        """Return a scale of the compression that an energy reaches from ``start``.
+
+        That of a power is the compression from 0, whatever the start: `Motion.scales` takes the
+        greater of both.
+        """
         if self.law is None:
             # δ^{k+1}/(k+1) = energy, without the factor k + 1, which no scale needs
             return float(energy ** (1 / (self.k + 1)))
         # The first of many places, 1 % apart, at which the energy is reached, or a pole.
         change = np.geomspace(1e-15, 1e15, 7000)
         work = self.energy_above(np.full(change.shape, start), change)
+        # Not `work >= energy`: beyond a pole the work is NaN, and the energy is reached there.
         reached = ~(work < energy)
         if not reached.any():
             reached = work == work.max()  # a barrier
         return float(start + change[np.argmax(reached)])
 
     def steepest(self, start: float, depth: float) -> float:
-        """Return the greater stiffness at two compressions, divided by k."""
+        """Return the greater one of the stiffnesses at two compressions, ``start ≤ depth``.
+
+        Both stiffnesses are divided by k, which is 1 for a law that is no power.
+        """
         if self.law is None:
+            # δ^{k-1} does not fall, as scenes have k ≥ 1: it is greatest at the greater depth. A
+            # NumPy float, which overflows to ∞; a Python one raises an exception.
             return float(np.float64(depth) ** (self.k - 1))
         return float(self.stiffness(np.array([start, depth])).max())
 

@@ -59,10 +59,17 @@ def _pair(
 ) -> Pair:
     """Build an embedded pair from exact coefficients.
 
-    Rows of ``moments`` and ``impulses`` are the weights of the accelerations in a stage's
-    displacement (over h²) and velocity (over h), the last row those of the step. ``errors``: the
-    same for the differences to the less accurate solutions. ``thirds``: the weights, from the same
-    matrices, of ``∫ (1 - x)²/2 f dx``, by which kinks move the neighbours. ``nodes``: floats.
+    The letters are those of `Pair`. With f the acceleration over the step, x from 0 to 1, and A the
+    matrix of a Runge–Kutta pair:
+
+    - ``nodes``, floats: places of the stages in the step;
+    - ``moments``: weights of ``∫ (c_s - x) f dx``, which times h² moves stage s; the matrix a of a
+      Nyström table, or A²; the last row is the step's;
+    - ``impulses``: weights of ``∫ f dx``, which times h changes the velocity of stage s; A;
+    - ``errors``: weights of the differences of step and less accurate solutions, rows of the
+      displacement and of the velocity in turn;
+    - ``thirds``: weights of ``∫ (1 - x)²/2 f dx``, the third integral of f, by which kinks move the
+      neighbours; the velocity's weights times a, or the last row of A³.
     """
     return Pair(
         nodes=nodes,

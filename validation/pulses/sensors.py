@@ -290,7 +290,8 @@ def _at_sensors(scene: Scene, contact_forces: ArrayLike) -> dict[str, float]:
     beside[1 : scene.contact_count + 1] = contact_forces
     forces = {}
     for i in scene.bead_sensors:
-        # A sensor in a bead records the mean of its two contacts' forces, as `Run.bead_force` does.
+        # The force between the two halves of a bead, where its sensor lies: each half takes half of
+        # the net force, so that the mean of both contacts' forces is left in the middle.
         forces[f"bead {i + 1}"] = float(beside[i] + beside[i + 1]) / 2
     for i in scene.contact_sensors:
         forces[f"contact {i + 1}"] = float(beside[i + 1])

@@ -57,6 +57,7 @@ summed: Callable[[Function], Function] = njit(
     forceinline=True, **_INNER | {"fastmath": {"nsz", "arcp", "contract", "reassoc"}}
 )
 # Unsigned indices: a signed one may count from the end, which keeps a loop from vectorising.
+# Sums take `ONE`: of an unsigned integer plus a plain 1 numba makes a signed one.
 index = np.uint64
 ZERO, ONE = index(0), index(1)
 # A plain 0 is a type of its own, for which numba compiles a function once more.

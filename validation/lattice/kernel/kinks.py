@@ -297,12 +297,13 @@ def resolved(
 def _root(c: Curve, x: float, side: float) -> float:
     """Return the root of p near an end x of an interval, on its outer side (±1); NaN without one.
 
-    x is in units of the step. The root is the z of the substitution ``x = z + (e - z) u^q`` alone,
-    which need not be accurate: two steps of Newton's method are enough.
+    x, and lengths below, are in units of the step. The root is the z of the substitution
+    ``x = z + (e - z) u^q`` by which `integrals` makes F smooth in u. It shapes the places of the
+    points alone, and need not be accurate: two steps of Newton's method are enough.
     """
     p, slope = value_and_slope(c, x)
-    # By the tangent: no root within a step of x, with half a step to spare as p bends, or on the
-    # inner side.
+    # The tangent's root is at x - p/slope. None is looked for if this is farther than 1.5 steps (a
+    # root within one step is wanted; the half more is a margin, as p bends), or on the inner side.
     if not abs(p) < 1.5 * abs(slope) or (
         side * p * slope > 0.0 and abs(p) > 1e-9 * abs(slope)
     ):

@@ -515,11 +515,14 @@ def evaluate_stages(
 
 @inlined
 def evaluate_end(chain: Chain, beads: Beads, plan: Plan, hi: int) -> None:
-    """Compute the accelerations of beads 0 … hi-1 at a step's end, after a correction."""
+    """Compute the accelerations of beads 0 … hi-1 at a step's end, after a correction.
+
+    Bead ``hi`` is the first one that does not move yet. Entry i of a row of forces is that of the
+    contact behind bead i, entry i + 1 that of the contact ahead of it.
+    """
     last = len(plan.scheme.nodes) - 1
-    force = beads.force[
-        1
-    ]  # row 1: at the stage that is computed last, here the step's end
+    # Row 1 holds the forces at the stage that is computed last, here the step's end.
+    force = beads.force[1]
     contact_forces(chain, beads, plan, beads.next_y, beads.next_v, last, FIRST, hi)
     for i in range(index(hi)):
         net = force[i] - force[i + ONE]

@@ -104,7 +104,9 @@ def _take_kink_away(
 ) -> None:
     """Move the effect of a contact's force from the motion at a step's ends to its samples.
 
-    The contact is ahead of the bead of row q, which is row r of ``ends``, y and v.
+    The contact is ahead of the bead of row q, which is row r of ``ends``, y and v. Its force, along
+    the curve p of its compression, is integrated up to each sample and added to y and v there; it
+    is taken away from ``ends``, so that the polynomial follows the smooth rest of the motion.
     """
     i = knots.watched[q]
     law = chain.laws[chain.law[i]]
@@ -150,7 +152,10 @@ def _take_kink_away(
 def _add_rates(
     chain: Chain, knots: Knots, n: int, q: int, r: int, h: float, ends: Array
 ) -> None:
-    """Add the rate of a contact's force to y''' at a step's ends."""
+    """Add the rate dF/dt of a contact's force to the jerks of its two beads, ``m y''' = ∓dF/dt``.
+
+    The contact is ahead of the bead of row q, which is row r of ``ends``.
+    """
     i = knots.watched[q]
     scale = h * h * h * chain.A[i]
     for end in range(2):
@@ -196,6 +201,7 @@ def interpolate(
     """
     last = FIRST
     while last < len(time):
+        # Samples first … last - 1 lie in one step, n.
         first = last
         n = step[last]
         while last < len(time) and step[last] == n:
@@ -205,7 +211,8 @@ def interpolate(
         for r in range(len(rows)):
             for end in range(2):
                 state = knots.state[n + end, rows[r]]
-                # y, y', y'' and the jerk in units of the step; contacts add the jerk below.
+                # y, y', y'' and the jerk y''' in units of the step. A knot has no jerk (column 3 of
+                # its state marks a kink): the jerk is a sum over the contacts, made below.
                 row = ends[end, r]
                 row[0] = state[0]
                 row[1] = h * state[1]
@@ -214,7 +221,9 @@ def interpolate(
             for s in range(first, last):
                 y[r, s] = v[r, s] = 0.0
         # The contact between the beads of rows r and r + 1: its force changes the jerk of both, or,
-        # with a kink in the step, which no polynomial follows, its effect is set apart.
+        # with a kink in the step, which no polynomial follows, its effect is set apart. The beads
+        # of the first and the last row, and those beside a gap in the rows, may lack a contact:
+        # they are there as neighbours of the beads that are wanted.
         for r in range(len(rows) - 1):
             q = rows[r]
             kink = knots.state[n + 1, q, 3] > 0.0
@@ -237,7 +246,8 @@ def interpolate(
                 )
             else:
                 _add_rates(chain, knots, n, q, r, h, ends)
-        # The polynomial of degree 7 with y, y', y'' and the jerk at both ends.
+        # The polynomial of degree 7 with y, y', y'' and the jerk at both ends. It is added to the
+        # effects of kinks, which y and v hold already.
         for r in range(len(rows)):
             low, c6, c7 = _septic(ends[0, r], ends[1, r])
             for s in range(first, last):
