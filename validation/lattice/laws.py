@@ -162,8 +162,7 @@ class Contact:
         # Not `work >= energy`: beyond a pole the work is NaN, and the energy is reached there.
         reached = ~(work < energy)
         if not reached.any():
-            # The energy overcomes a barrier, as the greatest work is less: the top of the barrier is
-            # the scale.
+            # The greatest work is less: the energy overcomes a barrier, whose top is the scale.
             reached = work == work.max()
         return float(start + change[np.argmax(reached)])
 
