@@ -33,7 +33,8 @@ def folded(title: str, summary: str, directive: str, *options: str) -> str:
 
 def first_line(thing: object) -> str:
     """The first line of a docstring."""
-    return (inspect.getdoc(thing) or "").partition("\n")[0]
+    line = (inspect.getdoc(thing) or "").partition("\n")[0]
+    return line.removesuffix("::")  # of a line that ends in front of a formula
 
 
 def exported(package: str) -> Iterator[str]:
@@ -78,8 +79,41 @@ class Folded(SphinxDirective):
         return self.parse_text_to_nodes("\n".join(entries(self.arguments[0])))
 
 
+def guard(
+    _app: Sphinx,
+    what: str,
+    _name: str,
+    _thing: object,
+    _options: object,
+    lines: list[str],
+) -> None:
+    """Begin a property's docstring by an empty comment, so that napoleon leaves its line whole.
+
+    Napoleon takes the words before a colon in this line for the type of the property.
+    """
+    if what == "property":
+        lines[:0] = ["..", ""]
+
+
+def join(
+    _app: Sphinx,
+    _what: str,
+    _name: str,
+    _thing: object,
+    _options: object,
+    lines: list[str],
+) -> None:
+    """Write the names of a field without blanks: Sphinx reads all names but the last as a type."""
+    for i, line in enumerate(lines):
+        if field := re.match(r":(?:ivar|vartype) [^:]*:", line):
+            lines[i] = field[0].replace(", ", ",") + line[field.end() :]
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """Sphinx's hook."""
+    # Napoleon has the priority 500.
+    app.connect("autodoc-process-docstring", guard, priority=400)
+    app.connect("autodoc-process-docstring", join, priority=600)
     for name in ("public", "studies", "methods"):
         app.add_directive(name, Folded)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -62,6 +62,8 @@ class Report(Pictured):
     data : mapping
         Entries that go to JSON unchanged.
 
+    Examples
+    --------
     >>> from validation.report.table import Column
     >>> row = Table((Column("n", "sites"), Column("c_value", "speed", format=".3f")), ((8, 1.25),))
     >>> Report("one chain", (row,))

@@ -132,6 +132,8 @@ class Table:
         key, **texts
             Further fields of the table.
 
+        Examples
+        --------
         >>> cubes = Table.of((Column("n", "n"), Column("", "n³")), [{"n": 2, "n³": 8}])
         >>> cubes.rows
         ((2, 8),)
@@ -259,6 +261,8 @@ class Finding:
     key : str
         JSON name, KEY_value; by default the finding stands in the list of findings alone.
 
+    Examples
+    --------
     >>> Finding("order", 2.4, 2.0, 3.0, error=0.1).ok
     True
     >>> Finding("order", 2.4, 2.0, 2.45, error=0.1).ok

@@ -56,12 +56,12 @@ _FEWEST = 6  # pulses: three more than the coefficients of the curvature's fit
 
 
 _EXAMPLE = """force (N),force_error (N),speed (m/s),speed_error (m/s)
-12,0.1,408,3
-25,0.2,463,3
-50,0.4,519,4
-101,0.8,584,4
-199,1.6,655,5
-402,3.2,735,6
+12,0.1,327,2
+25,0.2,371,2
+50,0.4,416,3
+101,0.8,468,3
+199,1.6,524,4
+402,3.2,588,5
 """
 
 

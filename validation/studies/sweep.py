@@ -343,6 +343,8 @@ def sweep(
     Failure
         When a worker fails; the file keeps finished points.
 
+    Examples
+    --------
     >>> round(sweep(["3/2"], [1]).document()["points"][0]["width_value"], 4)
     1.4119
     """

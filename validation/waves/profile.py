@@ -110,6 +110,8 @@ class ExactWave(Pictured):
         *arguments
             Arguments of the method, as in ``wave.estimate("fwhm", "force")``.
 
+        Examples
+        --------
         >>> from validation import exact_wave
         >>> print(exact_wave([1], 1.5).estimate("fwhm", "force"))
         1.41193 ± 1e-05

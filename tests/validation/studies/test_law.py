@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from lwa import Cell
+from lwa import Cell, Material, Sphere
 from tests.commands import ended
 from validation import cli
 from validation.scenes.chains import STEEL_BEAD
 from validation.scenes.scene import SceneError
-from validation.studies.law import Medium, fit_power, law, weights
+from validation.studies.law import _EXAMPLE, Medium, fit_power, law, weights
 from validation.waves.solver import exact_wave
 
 FORCES = np.geomspace(0.1, 10, 12)
@@ -127,6 +127,18 @@ def test_a_curved_law_is_not_one_power(chain):
     fit = fit_power(chain, FORCES, np.exp(x / 6 + 0.02 * x**2))
     assert fit.curvature.value == pytest.approx(0.02, rel=1e-9)
     assert not fit.one_power
+
+
+def test_the_example_has_blows_on_the_steel_balls_that_help_names():
+    """Hertz's stiffness of balls of 19.05 mm, by the modulus of 193 GPa."""
+    ball = Sphere("29e-3", "9.525e-3", Material(E="193e9", nu="0.3"))
+    (stiffness,) = Cell.of_spheres([ball]).stiffnesses
+    medium = Medium.of(Cell(("29e-3",), spacing="19.05e-3"))
+    force, _, speed, _ = np.loadtxt(_EXAMPLE.splitlines(), delimiter=",", skiprows=1).T
+    # c is proportional to A^(1/3): a percent of the speed, by its rounding and scatter.
+    assert speed == pytest.approx(
+        speeds(medium, 1.5, float(stiffness), force), rel=0.01
+    )
 
 
 def test_the_modulus_comes_back_from_the_speeds_of_its_spheres(folder):
