@@ -159,8 +159,9 @@ class Model(Parametric):
         """The shares ``C_i`` of the contacts.
 
         On the acoustic branch all contacts carry one force at leading order, and the C_i are shares
-        of the strain, proportional to the compliances. On the optical branch all contacts are
-        compressed by equal amounts, and the C_i are shares of the stiffness, proportional to A_i.
+        of the strain, proportional to the compliances; their sum is the number of contacts in a
+        cell. On the optical branch all contacts are compressed by equal amounts, and the C_i are
+        shares of the stiffness, proportional to A_i; their sum is 1.
         """
         if self.branch == "optical":
             # The forces of a bead's two contacts add up: so do their shares, to 1.

@@ -103,7 +103,7 @@ class Closure(Parametric):
         found = {}
         for n, b in enumerate(self.solution.ansatz[1:], start=1):
             # b_n depends on the parameters alone: all its terms belong to the empty product of
-            # jets. A b_n of 0 has no terms. (`base` numbers the jets, of which there are none.)
+            # jets. A b_n of 0 has no terms.
             terms = algebra.terms(b, self.model.base)
             without_jets = terms.get(Jet(()), [])
             found[n] = self.model.expression(without_jets)

@@ -91,6 +91,9 @@ class ChainInput:
     def load(self, given: sp.Expr | None, background: sp.Expr | None) -> sp.Expr | None:
         """The static force of the chain: the file's, else that of an option; None without both.
 
+        A ``background`` is a strain and never the result: it is only checked here, against a second
+        load in the file. With a background alone the result is None.
+
         Parameters
         ----------
         given : Expr, optional

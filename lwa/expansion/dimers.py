@@ -130,9 +130,13 @@ from 12 to 55, half of them by errors up to 1.6 times the deviation.
 
 @cache
 def _deviations() -> Array:
-    """The file ``dimers.csv``: rows of k, m2/m1 and a deviation for each of `TWO_BODIES`.
+    """The file ``dimers.csv``: the closed forms' relative deviations from struck lattices.
 
-    A deviation is that of the lattice over the closed form, less 1; NaN if no pulse is steady.
+    A row holds k, ``ω = m2/m1`` and six deviations, in the order of `TWO_BODIES`: of the speed, the
+    widths of strain and force, the velocity, the momentum and the energy of the leading pulse. Each
+    is ``Q_lattice/Q_form - 1``, where ``Q_form`` is the closed form of a
+    `lwa.expansion.lattice_wave.LatticeWave`: that of light beads that follow for ω below `ALIKE`,
+    else that of equal beads of the mean mass. It is NaN if no pulse is steady.
     """
     text = files("lwa.expansion").joinpath("dimers.csv").read_text("utf-8")
     return np.loadtxt(text.splitlines(), delimiter=",", skiprows=1)

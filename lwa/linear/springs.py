@@ -193,8 +193,10 @@ class Network(NamedTuple):
 
             k_0 a_m + Σ_{n=1}^m (k_n + Λ_n M) a_{m-n} = 0.
 
-        The terms ``k_0 a_m`` are forces inside the cell, whose sum over the particles is 0. The sum
-        of the equation therefore gives ``Λ_m``, and then the equation itself ``a_m``.
+        where ``λ² = Σ_n Λ_n s^n``. The terms ``k_0 a_m`` are forces inside the cell, whose sum over
+        the particles is 0. The sum of the equation therefore gives ``Λ_m``, and then the equation
+        itself ``a_m``. ``Λ_n`` of odd n are 0: a wave to the right, s, and one to the left, -s,
+        have one frequency, so that λ² is even in s.
 
         Parameters
         ----------
@@ -236,7 +238,9 @@ class Network(NamedTuple):
         # 0/0 is NaN, the answer where no particle is held.
         with np.errstate(all="ignore"):
             dispersion = Lambda[4] / Lambda[2]
-        # To first order in s a spacing is compressed by -s, a link by s (incidence a_1 - spans).
+        # At first order in s the mean compression of a spacing is -s. A link from i to j is
+        # compressed by s (incidence a_1 - spans): by the displacements a_1 inside the cell, less
+        # the mean motion over its span. The shares are the quotient of both.
         return Acoustic(
             stiffness=Lambda[2] * total / self.size,
             dispersion=dispersion,

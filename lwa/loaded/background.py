@@ -127,7 +127,8 @@ class Background(Value):
         """The symbol B: positive, negative under a power with k < 1, real under other laws."""
         if not self.law.homogeneous:
             return sp.Symbol("B", real=True)
-        # For k < 1 speeds fall with the strain: the fastest part of a wave is its lowest strain.
+        # For k < 1 speeds fall with the strain: the fastest part of a wave is its lowest strain. A
+        # symbol k, of which is not known whether it is below 1, counts as above 1.
         return FALL if (self.law.exponent - 1).is_negative else RISE
 
     def squared_speed(self, B: sp.Expr) -> sp.Expr:

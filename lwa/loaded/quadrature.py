@@ -359,7 +359,8 @@ class Nodes:
         g = self.grid
         # Rise of the force from node to node, over B
         dF = self.law.slope * g.ds
-        # By how much the force is less than at the peak, in parts of its rise: from 0 on
+        # By how much the force is less than at the peak, in parts of its rise, from 0 at the peak
+        # on: `to_peak` sums dF from each row's node to the peak.
         fall = g.peak_first(g.to_peak @ dF) / dF.sum()
         # The distances ξ of the same rows from the peak
         xi = g.peak_first(self._to_places @ self.distances)

@@ -272,7 +272,11 @@ class Shock(Value):
 
     @cached_property
     def _unscaled(self) -> Shock:
-        """This front in numbers, with 1 for the symbols of the cell, which only scale results."""
+        """This front with 1 in place of the symbols of the cell, such as m, A and D.
+
+        These symbols are units, by which results are multiplied: relative errors are the same.
+        Raises `lwa.InputError` if other symbols are left.
+        """
         demand_numbers(self._free, "errors are computed in numbers")
         units = dict.fromkeys(self.cell.symbols, sp.S.One)
         return replace(

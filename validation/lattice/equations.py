@@ -291,7 +291,9 @@ class Motion:
             if not depth:
                 continue
             deepest = max(deepest, depth)
-            # F′ = k A δ^{k-1}; the factor k counts in the time alone.
+            # F′ = k A δ^{k-1}. From δ = 0 the depth is that of the energy A δ^{k+1}, and y, of
+            # energy = F′ y² below, is this depth if F′ lacks the factor k. The shortest time is
+            # that of the true F′, with k.
             slope = law.steepest(static, depth)
             stiffest = max(stiffest, largest * slope)
             _check_range("stiffest spring", largest * slope)

@@ -162,7 +162,8 @@ class Contact:
         # Not `work >= energy`: beyond a pole the work is NaN, and the energy is reached there.
         reached = ~(work < energy)
         if not reached.any():
-            reached = work == work.max()  # a barrier
+            # The greatest work is less: the energy overcomes a barrier, whose top is the scale.
+            reached = work == work.max()
         return float(start + change[np.argmax(reached)])
 
     def steepest(self, start: float, depth: float) -> float:

@@ -98,6 +98,7 @@ class Run(Pictured):
         if self.path is not None:
             samples = self.path(beads, self.time)
         elif samples is None:
+            # Without sensors there is no motion to sample: y and v of no beads.
             samples = np.zeros((2, 0, len(self.time)))
         y, v = samples
         records = recorded(self.motion, beads, y, v)

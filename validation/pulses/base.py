@@ -52,7 +52,7 @@ class Fit:
 
     @property
     def variance(self) -> float:
-        """Variance of the noise."""
+        """Variance of the noise: its squares over the degrees of freedom, samples less terms."""
         return float(np.sum(self.noise**2)) / (len(self.noise) - len(self.sizes))
 
     @cached_property

@@ -39,12 +39,18 @@ _FEWEST = 16  # samples above half the peak; with 12 the errors no longer cover
 _FEWEST_EXACT = 6  # likewise in a record without noise
 _MOST = 400  # samples above half the peak; of more, neighbours are averaged
 _SMOOTH = 0.01  # noise of the moving mean over the peak
-_LOW = 0.45  # share of the peak below which a pulse has fallen, so that noise at half is no end
-_APART = 0.2  # share of the peak to which the signal falls between pulses that do not overlap
-# Depth, over the peak, of the dip between two pulses; a smaller dip lies in a pulse.
+# Share of the peak below which a pulse has fallen. It is less than a half: with a half, noise on
+# the front, where the signal has just passed half its peak, would count as the end of the pulse.
+_LOW = 0.45
+# Share of the peak to which the signal falls between pulses that do not overlap.
+_APART = 0.2
+# Depth, over the peak, of the dip between two pulses; a smaller dip lies in one pulse. It is far
+# above `_SMOOTH`, the noise that is left.
 _HUMP = 0.25
 _LATER = 0.1  # smallest peak of a later pulse over the first
-_EQUAL = 1e-6  # of the record's range: samples that differ less are equal
+# Share of the record's range: samples that differ by less, as by the rounding of printed numbers,
+# are equal.
+_EQUAL = 1e-6
 _CONSTANT = 1e-8  # range of a signal without pulses, over its size
 _SUDDEN = 11.0  # growth, in a width, of a force that begins: two widths before a Gaussian's top
 _GRID = 400  # intervals in which the maxima of a pulse are looked for
@@ -128,7 +134,7 @@ def noisy_pulses(
     base = Base.before(at, means, rise, fall - rise)
     missing = None
     if base is None:
-        base = Base.guessed(means, _neighbours(means))
+        base = Base.guessed(means, _noise_by_neighbours(means))
         wanted = max(2 * (fall - rise), FEWEST * float(np.median(np.diff(t))))
         missing = (
             f"no peak: the record starts {in_unit(rise - t[0], unit)} before the pulse, and "
@@ -243,8 +249,8 @@ def in_unit(time: float, unit: str) -> str:
     return f"{time / suited.size:.3g} {suited.name}".strip()
 
 
-def _neighbours(f: Array) -> float:
-    """Return the standard deviation of the noise between neighbouring samples."""
+def _noise_by_neighbours(f: Array) -> float:
+    """Return the standard deviation of the noise, by the differences of neighbouring samples."""
     # Fourth differences of a smooth pulse are small; those of white noise have the variance 70 σ².
     # A quarter of them lies below 0.3186 of their standard deviation, where the record is calm.
     if len(f) < 5:
@@ -265,9 +271,15 @@ def _step(f: Array) -> float:
 
 
 def _place(t: Array, f: Array) -> tuple[float, float]:
-    """Return about the times at which the first pulse rises and falls through half of its peak."""
+    """Return rough times at which the first pulse rises and falls through half of its peak.
+
+    They are the last time before, and the first time behind, the top at which a moving mean is
+    below `_LOW` of the top.
+    """
+    # The moving mean. The mean of n samples of noise σ has the noise σ/√n, which is _SMOOTH times
+    # the peak for n = (σ/(_SMOOTH peak))².
     highest = max(f.max(), np.finfo(float).tiny)
-    samples = (_neighbours(f) / (_SMOOTH * highest)) ** 2
+    samples = (_noise_by_neighbours(f) / (_SMOOTH * highest)) ** 2
     count = math.ceil(min(max(1.0, samples), len(f)))
     g = np.convolve(f, np.full(count, 1 / count), "same")
     if -g.min() > max(g.max(), 0):
@@ -277,9 +289,12 @@ def _place(t: Array, f: Array) -> tuple[float, float]:
         )
     if not g.max() > 0:
         raise MeasureError("no pulse is in the record: its signal is nowhere positive")
+    # The first pulse: from where the mean first exceeds half of its maximum to where it next falls
+    # below _LOW of the maximum.
     start = int(np.argmax(g > g.max() / 2))
     end = start + int(np.argmax(np.append(g[start:] < _LOW * g.max(), True)))
     top = start + int(np.argmax(g[start:end]))
+    # The sides of the pulse, now by its own top: another pulse may be higher.
     below = np.flatnonzero(g < _LOW * g[top])
     after = int(np.searchsorted(below, top))
     if after in (0, len(below)):
@@ -287,12 +302,13 @@ def _place(t: Array, f: Array) -> tuple[float, float]:
         raise MeasureError(
             f"the pulse is not wholly in the record: its {side} does not pass half its peak"
         )
+    # Other pulses before the mean falls to _APART of the top. Of two equal peaks `find_peaks`
+    # measures both from the foot, however small the dip between them is; a slight tilt makes one of
+    # them the higher, and the other one is measured from the dip.
     foot = np.flatnonzero(g < _APART * g[top])
     sides = np.split(foot, [np.searchsorted(foot, top)])
     low, high = max(sides[0], default=-1) + 1, min(sides[1], default=len(g))
-    tilted = g[low:high] + np.linspace(
-        0, _EQUAL * g[top], high - low
-    )  # no two peaks are equal
+    tilted = g[low:high] + np.linspace(0, _EQUAL * g[top], high - low)
     humps, _ = find_peaks(np.pad(tilted, 1), prominence=_HUMP * g[top])
     if len(humps) > 1:
         times = " and ".join(f"{t[low + hump - 1]:.4g}" for hump in humps[:2])

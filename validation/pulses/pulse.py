@@ -228,6 +228,7 @@ class _Grid:
 
     def _crest(self, low: float, high: float) -> tuple[float, float]:
         """Return the time and value of the signal's maximum between two times."""
+        # The signal is smooth between its times alone, and only there a polynomial follows it.
         inside = self.signal.times[
             (self.signal.times > low) & (self.signal.times < high)
         ]

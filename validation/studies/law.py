@@ -229,10 +229,14 @@ def speed_ratio(k: Any) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Medium:
-    """Mass, spacing and speed ratio R(k) of the chain in which pulses were measured."""
+    """Mass, spacing and speed ratio R(k) of the chain in which pulses were measured.
+
+    R(k) is the squared speed of the lattice's wave over that of the long-wave theory.
+    """
 
     mass: float  # m
     spacing: float  # D
+    # R as a function of k
     ratio: Callable[[Any], Array] = speed_ratio
     ratio_error: float = 1e-10  # relative, measured between the nodes
 
@@ -247,10 +251,19 @@ class Medium:
         return cls(float(cell.masses[0]), float(cell.spacing))
 
     def log_stiffness(self, slope: Any, constant: Any) -> Array:
-        """Return ln A of the power law with ``ln V = slope · ln F + constant``, F of contacts."""
+        """Return ln A of the contact law whose pulses have ``ln V = slope · ln F + constant``.
+
+        V is the speed and F the peak contact force of a pulse. The speed law of the module's
+        docstring, ``V²/D² = R(k) 2/((k+1) m) A^{1/k} F^{(k-1)/k}``, has the logarithm::
+
+            ln V = ln D + ln(R(k) 2/((k+1) m))/2 + ln A/(2k) + (k-1)/(2k) ln F,
+
+        where all but the last term is the constant. This is solved for ln A.
+        """
         k = _exponent(slope)
-        unit = np.log(2 * self.ratio(k) / ((k + 1) * self.mass)) / 2
-        return np.asarray(2 * k * (constant - math.log(self.spacing) - unit))
+        # ln(V/D) at A = F = 1
+        log_rate = np.log(2 * self.ratio(k) / ((k + 1) * self.mass)) / 2
+        return np.asarray(2 * k * (constant - math.log(self.spacing) - log_rate))
 
 
 def _exponent(slope: Any) -> Any:

@@ -122,7 +122,8 @@ def of_momentum(wave: CompactWave, momentum: float) -> PhysicalWave:
     """Return the theory's wave with a given momentum; `SceneError` unless it is positive."""
     of_unit_force = number(PhysicalWave(wave, sp.S.One).momentum)
     ratio = positive(momentum, "momentum") / of_unit_force
-    # The momentum is proportional to F^{(k + 1)/(2k)}.
+    # The momentum is proportional to F^{(k + 1)/(2k)}: F is the ratio to the inverse power, in
+    # floats, as the exponential of a logarithm.
     power = number(2 * wave.k / (wave.k + 1))
     return PhysicalWave(wave, math.exp(math.log(ratio) * power))
 
@@ -396,7 +397,11 @@ def stated_errors() -> list[dict[str, Any]]:
 
 
 def scaling(E: float, rtol: float = RTOL) -> list[dict[str, Any]]:
-    """Return the rows of figure 3a, by the keys of `_DROPS`, for a Young's modulus of PTFE."""
+    """Return the rows of figure 3a, by the keys of `_DROPS`, for a Young's modulus of PTFE.
+
+    Speeds and forces of the lattice are those of runs at ``rtol``; their errors are by the
+    differences to runs at a second tolerance (`tolerances`).
+    """
     ptfe = replace(PTFE_BEAD, material=replace(PTFE, E=E))
     scenes = []
     for height in HEIGHTS:

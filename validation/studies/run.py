@@ -205,7 +205,10 @@ def reading_tables(
 def _row(
     label: str, reading: Reading, more: Mapping[str, Any] | None = None
 ) -> dict[str, Any]:
-    """Return the cells of a reading by the keys of columns, and by the label of its name."""
+    """Return the cells of a reading, a row of a table, by the keys of the table's columns.
+
+    label : key of the column that holds the reading's name. more : further cells by key.
+    """
     places = ("number",) if len(reading.places) == 1 else ("from", "to")
     row: dict[str, Any] = dict(zip(places, reading.places, strict=True))
     row |= dict(reading.numbers) | dict(more or {})

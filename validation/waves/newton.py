@@ -231,8 +231,8 @@ class Problem:
         ``inverse`` holds 1/m1 and 1/m2.
         """
         force = scipy.fft.rfft(self._everywhere(z))
-        # Equal masses: F_a is even, O = 0, and its Fourier coefficients are real. Their imaginary
-        # part is rounding, which the 1/q² of `respond` would enlarge.
+        # Equal masses: F_a is even, its odd part O is 0, and its Fourier coefficients are real.
+        # Their imaginary part is rounding, which the 1/q² of `respond` would enlarge.
         if self.uniform:
             force = force.real.astype(complex)
         strain = respond(force, inverse, self.L)

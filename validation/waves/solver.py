@@ -77,8 +77,9 @@ class NoWave(InputError):
     more : str
         End of the message, behind the parameters.
     **change : object
-        Arguments by name that make the call valid, as of `lwa.InputError`, such as
-        ``masses=(1, 0.59)``; the message ends with them.
+        Arguments of the failed call, by name, with values that the message proposes in place of
+        the given ones, such as ``masses=(1, 0.59)``; the message ends with them, as that of
+        `lwa.InputError` does.
     """
 
     def __init__(

@@ -297,9 +297,11 @@ def resolved(
 def _root(c: Curve, x: float, side: float) -> float:
     """Return the root of p near an end x of an interval, on its outer side (±1); NaN without one.
 
-    x, and lengths below, are in units of the step. The root is the z of the substitution
-    ``x = z + (e - z) u^q`` by which `integrals` makes F smooth in u. It shapes the places of the
-    points alone, and need not be accurate: two steps of Newton's method are enough.
+    p is the compression along the curve c; x, and lengths below, are in units of the step. The root
+    is the z of the substitution ``x = z + (e - z) u^q``, e the far end of the interval, by which
+    `integrals` makes the contact's force F(p), not smooth at p = 0, smooth in u (q by `LAW`). It
+    shapes the places of the points alone, and need not be accurate: two steps of Newton's method
+    are enough.
     """
     p, slope = value_and_slope(c, x)
     # The tangent's root is at x - p/slope. None is looked for if this is farther than 1.5 steps (a

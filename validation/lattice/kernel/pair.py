@@ -481,16 +481,26 @@ def next_mark(marks: Array, i: int) -> int:
 def evaluate_stages(
     chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int
 ) -> None:
-    """Compute the accelerations at the stages of a step h of the beads 0 … hi-1 at time t."""
+    """Compute the accelerations of beads 0 … hi-1 at the stages of a step h that begins at time t.
+
+    Bead ``hi`` is the first one that does not move yet.
+    Stage 0 is the last stage of the step before (`begin_step`). The last stage is the step's end,
+    whose displacements and velocities stay in ``next_y`` and ``next_v``.
+    """
     pair = plan.scheme
     stages = len(plan.scheme.nodes)
     y = beads.y
     v = beads.v
     next_y = beads.next_y
     next_v = beads.next_v
+    # Row 0 of the forces, and entry 0 of ``beads.given`` below, hold the start of the step, which
+    # estimates of errors compare with its end; row 1, and entry 1, the stage computed last.
     force = beads.force[1]
     push = beads.push
     inverse = chain.inverse
+    # All stages go through a tile of beads while its memory is in the processor's cache. A force
+    # depends on the bead ahead, so that stage s can be computed up to s beads before the tile's end
+    # (`tile_bounds`): it lags by s beads, and ``hi + stages`` lets the last stage reach bead hi-1.
     for tile in range(0, hi + stages, TILE):
         for s in range(1, stages):
             lo, up, first, behind = tile_bounds(tile, s, hi)
@@ -499,8 +509,11 @@ def evaluate_stages(
             ch = pair.nodes[s] * h
             moments = pair.moments[s]
             _move(next_y, y, v, ch, h * h, moments, s, push, lo, up)
+            # Forces depend on velocities with damping alone; the step's end has them in any case.
             if chain.damped or s == stages - 1:
                 _move(next_v, v, v, 0.0, h, pair.impulses[s], s, push, lo, up)
+            # The motion of a driven bead is given. Steps end where intervals of the drive's file
+            # meet: the middle of the step, t + h/2, tells its interval, also for a stage at an end.
             if chain.drive.driven and lo == 0:
                 given = drive_motion(chain.drive, t + h / 2, t + ch)
                 next_y[0], next_v[0], beads.given[1] = given

@@ -154,7 +154,9 @@ def _add_rates(
 ) -> None:
     """Add the rate dF/dt of a contact's force to the jerks of its two beads, ``m y''' = ∓dF/dt``.
 
-    The contact is ahead of the bead of row q, which is row r of ``ends``.
+    The contact is ahead of the bead of row q, which is row r of ``ends``. The step h is from knot n
+    to knot n + 1. Column j of ``ends`` holds the j-th derivative times ``h^j``, the derivative by
+    the time in units of the step: the jerk is in column 3, with the factor h³.
     """
     i = knots.watched[q]
     scale = h * h * h * chain.A[i]
