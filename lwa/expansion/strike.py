@@ -97,7 +97,14 @@ class Strike(Value):
         # The square of the velocity may be beyond a double where its power is not.
         power = float(self.k / (self.k + 1))
         at_rest = share * particle / (2 * unit.estimate("energy").value)
-        return unit.at_force(at_rest**power * velocity ** (2 * power))
+        try:
+            force = at_rest**power * velocity ** (2 * power)
+        except OverflowError:
+            reason = (
+                f"velocity is {shorten(self.velocity)}: its force exceeds any float"
+            )
+            raise InputError(reason, velocity=1) from None
+        return unit.at_force(force)
 
     @property
     def force(self) -> Estimate:

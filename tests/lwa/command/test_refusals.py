@@ -127,6 +127,7 @@ def test_files_of_spheres_are_refused(capsys, tmp_path, old, new, words):
         ({}, "strike --velocity 1", "precompression is 2"),
         (FREE, "strike", "no striker that moves"),
         (FREE, "strike --velocity v", "velocity is v: a number is wanted"),
+        (FREE, "strike --velocity 1e300", "velocity is 1"),
         (FREE | {"cell": [1, 2]}, "strike --velocity 1", "lwa-validate run"),
         (
             {"law": "exponential:1", "k": None, "spacings": None},
