@@ -106,6 +106,8 @@ def test_small_jumps_are_those_of_kdv(law, ahead):
         ("2.38", "36.3", 1),
         ("4.99", "0.785", "0.1"),
         ("3.1085", "1.501", "0.738"),
+        # SymPy searched without end for the sign of the pulse's equation
+        (3, 2, "9/5"),
     ],
 )
 def test_long_decimals_are_floats_of_thirty_digits(k, behind, ahead):
