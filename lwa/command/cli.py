@@ -168,7 +168,7 @@ def next_step(
                 change[n] = refusal.change[known]
     change = change or _example(refusal.reason, options, line)
     # A file stands in place of the options of a chain: a wrong one is left out.
-    if "--spheres" in line and change.keys() & _CHAIN:
+    if "--spheres" in line and change.keys() & CHAIN:
         change = {n: None for n in change if f"--{n}" in line}
         if not change:
             return cut(f"{refusal.reason}; change it in the file{TRY}{KEYS}")
@@ -235,8 +235,8 @@ _SUBJECT = re.compile(r"(\w+) is |'(\w+)' has no value")
 """The option at the start of a reason, or the symbol for which a number is wanted."""
 
 
-_CHAIN = {"k", "law", "masses", "stiffnesses", "spacing"}
-"""Options of a chain."""
+CHAIN = ("k", "law", "masses", "stiffnesses", "spacing")
+"""Options of a chain, which a file replaces."""
 
 
 def _example(
