@@ -53,12 +53,11 @@ class Scale:
         """
         ones: dict[sp.Expr, int] = {}
         for symbol in value.free_symbols:
-            if symbol.name in _SIZES or symbol == self.spacing:
-                # B is negative in chains that soften.
-                ones[symbol] = -1 if symbol.is_negative else 1
-        # Substitution in an expression with other symbols would take long, for no number.
-        if not value.free_symbols <= ones.keys():
-            return None
+            # Substitution in an expression with other symbols would take long, for no number.
+            if symbol.name not in _SIZES and symbol != self.spacing:
+                return None
+            # B is negative in chains that soften.
+            ones[symbol] = -1 if symbol.is_negative else 1
         # Thirty digits, twice those of a float, so that the float is the nearest one.
         number = evaluated(value.subs(ones), 30)
         # Of numbers nearer to the ends of a float's range a product with a unit may be lost.
@@ -178,12 +177,9 @@ class Row:
         """The number of each value; [] if any value has none."""
         # A list with gaps would be read as if it were complete.
         found = []
-        for value in self.values:
-            number = self.estimate
-            if isinstance(value, Estimate):
-                number = value
-            elif number is None:
-                number = scale.number(value)
+        for number in self.values:
+            if not isinstance(number, Estimate):
+                number = self.estimate or scale.number(number)
             if number is None:
                 return []
             found.append(number)
@@ -225,16 +221,16 @@ class Row:
         self, value: sp.Expr | Estimate, number: Estimate | None, scale: Scale
     ) -> str:
         """A value as text: its formula, its digits, or both."""
+        unit = self.unit if scale.si else ""
         if isinstance(value, Estimate):
-            return scale.digits(value, self.unit)
+            return scale.digits(value, unit)
         formula = str(value)
         symbols = scale.symbols(value)
-        unit = "" if symbols == 1 else str(symbols).replace("**", "^")
-        if scale.si:
-            unit = f"{unit} {self.unit}".strip()
         # A number stands beside powers of symbols alone: D², not 1 + D.
         if number is None or symbols is None or value.is_Symbol:
-            return f"{formula} {self.unit if scale.si else ''}".rstrip()
+            return f"{formula} {unit}".rstrip()
+        if symbols != 1:
+            unit = f"{symbols} {unit}".rstrip().replace("**", "^")
         # Constants of materials have few digits, and results of numerics no more than these.
         if scale.si or value.has(sp.Float):
             return scale.digits(number, unit, TABLE_DIGITS)
