@@ -6,9 +6,11 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import sympy as sp
 
+import lwa  # its names are loaded when they are used: `lwa dispersion` spares NumPy
 from lwa.base.exact import InputError, positive
 from lwa.base.frozen import Shown
 from lwa.base.words import BRANCHES, BranchName, one_of
@@ -162,10 +164,9 @@ def _branch(text: str, name: str) -> BranchName | int:
 def envelope(
     chain: ChainInput,
     background: sp.Expr | None,
-    wavenumber: sp.Expr,
-    branch: BranchName | int | None,
     frequency: sp.Expr | None,
     detuning: sp.Expr | None,
+    **mode: Any,
 ) -> Answer:
     """Nonlinear Schrödinger equation of a mode of a loaded chain, and its breathers.
 
@@ -176,21 +177,18 @@ def envelope(
     frequencies are in Hz, displacements in m and forces in N. In JSON `amplitude` is the largest
     displacement of each bead, and `width` is 1/b of the envelope sech(bn) or tanh(bn).
     """
-    from lwa.envelopes import schrodinger  # here: `lwa dispersion` spares NumPy
-
     # Without a load nothing is linear, and no mode exists.
     if background is None and chain.precompression is None:
         raise InputError(
             "neither --background nor --precompression is given: a mode is that of a loaded chain",
             precompression=1,
         )
-    equation = schrodinger.envelope(
+    equation = lwa.envelope(
         chain.cell,
         law=chain.law,
         background=background,
         precompression=chain.precompression,
-        wavenumber=wavenumber,
-        branch=branch,
+        **mode,
     )
     # Theory has radians; sensors and the literature have Hz where there is a second.
     turn = sp.S.One

@@ -65,11 +65,6 @@ class Words(click.Choice[str]):
         """Return a word that is among the choices; see `lwa.base.words.one_of`."""
         return one_of(value, self.choices, called(param) if param else self.name)
 
-    @property
-    def example(self) -> str:
-        """A valid word, for the refusal of a word that is like none."""
-        return self.choices[0]
-
 
 def quantity(context: click.Context, option: click.Parameter, text: str | None) -> Any:
     """Read an integer, a decimal, a fraction or a plain name, as a callback of Click."""

@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Any
 import click
 import sympy as sp
 
+import lwa  # its names are loaded when they are used: waves under a load need NumPy
 from lwa.base import latex
 from lwa.base.exact import InputError, brief, number, read_exact
 from lwa.base.frozen import Estimate, NoSolitaryWave, Shown
 from lwa.base.words import EXTENTS, LANGUAGES, QUANTITIES, ExtentName
-from lwa.command.answer import LONG, Answer, Lines, Made, Row, Scale, rows_of
+from lwa.command.answer import LONG, Answer, Lines, Made, Row, Scale, attempt, rows_of
 from lwa.command.chain import ChainInput
 from lwa.command.derivation import closure_lines, depends_on_first, settings_json
 from lwa.command.options import (
@@ -78,8 +79,14 @@ def wave(
     style = click.get_current_context().params["style"]
     # Options of which one says the other are not given together.
     load = chain.precompression if background is None else background
-    # The wave under a load is of another class: that of any law, in numbers.
-    loaded = _is_loaded(chain, load, force)
+    # The compact wave is that of a power law. Under another law a load of zero is a load, too.
+    loaded = bool(load) or not chain.law.homogeneous
+    if loaded and load is None and force is None:
+        raise InputError(
+            f"law is {chain.law.text}: the compact wave is that of a power law; waves under a "
+            "load or of a force have any law",
+            background="1/10",
+        )
     if loaded:
         _take_canonical(options)
     if style in LANGUAGES and (loaded or force is not None):
@@ -99,22 +106,6 @@ def wave(
     if loaded:
         return under_load(chain, theory, force)
     return compact(chain, theory, force)
-
-
-def _is_loaded(chain: ChainInput, load: sp.Expr | None, force: sp.Expr | None) -> bool:
-    """True if the wave is that of a chain under a load, or of a law that is no power.
-
-    The compact wave is that of a power law. Under another law a load of zero is a load, too.
-    """
-    if chain.law.homogeneous:
-        return load is not None and not load.is_zero
-    if load is None and force is None:
-        raise InputError(
-            f"law is {chain.law.text}: the compact wave is that of a power law; waves under a "
-            "load or of a force have any law",
-            background="1/10",
-        )
-    return True
 
 
 def _take_canonical(options: dict[str, Any]) -> None:
@@ -273,8 +264,8 @@ def _put_lattice(rows: Lines, chain: ChainInput, force: sp.Expr | None) -> list[
         return [reason.reason]
     title = f"the lattice's own wave ({wave.theory})"
     part = _beside("lattice", title, wave, "scaled_speed", force, chain.scale)
-    estimates = [row.estimate for row in part.rows if isinstance(row, Row)]
-    if all(found and found.relative_error < _BEST for found in estimates):
+    width = attempt(wave.estimate, "fwhm")  # the least accurate of the numbers
+    if isinstance(width, Estimate) and width.relative_error < _BEST:
         rows[1:1] = [part, ""]
     else:
         rows.append(part)
@@ -332,10 +323,10 @@ _ERRORS = "bound of the difference to waves of the lattice, by those that were m
 
 def under_load(chain: ChainInput, theory: Theory, force: sp.Expr) -> Answer:
     """The wave of a peak contact force in a chain under a static force."""
-    from lwa.loaded.wave import loaded_wave  # here: it loads NumPy
-
     static = chain.precompression or sp.S.Zero
-    wave = loaded_wave(chain.cell, force=force, precompression=static, law=chain.law)
+    wave = lwa.loaded_wave(
+        chain.cell, force=force, precompression=static, law=chain.law
+    )
     rows: Lines = [
         chain.text,
         "the wave in a chain under load:",
@@ -358,9 +349,7 @@ def under_load(chain: ChainInput, theory: Theory, force: sp.Expr) -> Answer:
 
 def on_background(chain: ChainInput, theory: Theory, p0: sp.Expr) -> Answer:
     """The waves on the strain p0: V_s by the rise B of the strain, and the limit of small waves."""
-    from lwa.loaded.background import Background  # here: it loads NumPy
-
-    field = Background(chain.cell, chain.law, p0)
+    field = lwa.loaded_wave(chain.cell, background=p0, law=chain.law).field
     speed = field.speed(field.rise)
     head = settings_json(theory) | {"background": field.p0, "speed": speed}
     rows: Lines = [
@@ -387,8 +376,6 @@ def on_background(chain: ChainInput, theory: Theory, p0: sp.Expr) -> Answer:
 
 def _unit_rise(field: Background) -> Iterator[Row | str]:
     """Rows of the wave whose strain rises by 1; none with symbols, or if there is none."""
-    from lwa.loaded.wave import loaded_wave
-
     cell: Cell = field.cell
     place = "B = 1"
     # Errors are those of numbers: a spacing that is a symbol is the unit of length.
@@ -396,7 +383,7 @@ def _unit_rise(field: Background) -> Iterator[Row | str]:
         place += f", {cell.spacing} = 1"
         cell = cell.at(**{cell.spacing.name: 1})
     with suppress(NoSolitaryWave, InputError):
-        wave = loaded_wave(cell, rise=1, background=field.p0, law=field.law)
+        wave = lwa.loaded_wave(cell, rise=1, background=field.p0, law=field.law)
         speed = Estimate(number(wave.field.speed(wave.strain)), 0.0)
         # V_s is dx/dt over an exact factor: the relative errors are the same.
         speed = speed.widened(wave.estimate("speed").relative_error)
