@@ -250,7 +250,7 @@ def test_a_program_computes_the_wave(tmp_path, language, chain):
     calls, expected = [], []
     for k in exponents:
         known = {"F": 5, "k": sp.Rational(k), **values, "D": 0.5}
-        for function, call in RESULTS.items():
+        for call in RESULTS.values():
             name = "_".join(call)
             symbols = {str(symbol) for symbol in read(wave, call).free_symbols}
             # a function has the arguments that it depends on, in this order
