@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import json
 import math
-import operator
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -25,7 +24,7 @@ from validation.lattice.cost import RunProgress
 from validation.lattice.signal import RECORDS
 from validation.lattice.simulate import COMPILED
 from validation.lattice.steppers import METHODS
-from validation.pulses.readings import Reading, echoes
+from validation.pulses.readings import Reading
 from validation.pulses.sensors import TOLERANCE, Recording, enough_samples, record
 from validation.report.study import Report, option, output_option, replacing, study
 from validation.report.table import Column, Table, plain
@@ -55,8 +54,6 @@ def report(recording: Recording, every: bool = False) -> Report:
     Keys of the JSON document:
     ``sensors``: ``kind``, ``number``, with ``every`` ``pulse``, counted from 1, ``arrival_value``,
     ``peak_value`` (of the dynamic force), ``fwhm_value``, ``static_force_value``, ``missing``;
-    ``echoes`` of later pulses: ``kind``, ``number``, ``pulse``, ``reflected``, ``delay_value``
-    behind the first pulse and ``ratio_value`` of their peaks (`validation.pulses.readings.echoes`);
     ``speeds``: ``kind``, ``from``, ``to``, ``speed_sites_value``, ``speed_value`` (null without
     spacings), ``missing``; ``end`` of the bead sensors: ``bead``, ``velocity_value`` and
     ``displacement_value`` at the end; each value with its error, as ``arrival_error_value``, and
@@ -87,7 +84,6 @@ def report(recording: Recording, every: bool = False) -> Report:
         recording.speeds,
         "peak dynamic force" if any(scene.load) else "peak force",
         bool(scene.units),
-        operator.add,
         every,
     )
     columns = (
@@ -114,11 +110,9 @@ def reading_tables(
     speeds: Sequence[Reading],
     peak: str,
     si: bool,
-    total: Callable[[float, float], float],
     every: bool = False,
 ) -> tuple[tuple[Table, ...], str]:
-    """Return the tables ``sensors`` and ``speeds``, with later pulses also ``echoes``, and lines on
-    the numbers that are missing.
+    """Return the tables ``sensors`` and ``speeds``, and lines on the numbers that are missing.
 
     The table of the sensors, which is the CSV, also holds the speeds of the first pulses from the
     sensor before; they are not printed twice.
@@ -126,17 +120,15 @@ def reading_tables(
     Parameters
     ----------
     sensors : sequence of Reading
-        Pulses at the sensors; later pulses of a sensor behind its first one.
+        Pulses at the sensors.
     speeds : sequence of Reading
         Speeds between sensors.
     peak : str
         Label of the peaks.
     si : bool
         Whether results are in SI units.
-    total : callable
-        Error of a difference as a function of two errors.
     every : bool
-        True for later pulses in the table ``sensors``, too, in a column ``pulse``.
+        True if later pulses are among them: the table has their numbers in a column ``pulse``.
     """
     units = ("s", "m/s", " (s)") if si else ("time", "length/time", "")
     quantities = sorted({reading.quantity for reading in sensors})
@@ -144,13 +136,12 @@ def reading_tables(
         peak = f"{peak} ({', '.join(BASES[quantity] for quantity in quantities)})"
     kind = Column("kind")
     number = Column("number")
-    pulse = Column("pulse", "pulse")
     missing = Column("missing")
     columns = [Column("", "sensor"), kind, number]
     if "velocity" in quantities:
         columns.append(Column("signal"))
     if every:
-        columns.append(pulse)
+        columns.append(Column("pulse", "pulse"))
     columns += [
         Column("arrival", f"arrival{units[2]}", _digits(sensors), error=True),
         Column("peak", peak, error=True),
@@ -163,9 +154,10 @@ def reading_tables(
     arriving = {(leg.kind, leg.places[1]): leg.numbers for leg in speeds}
     rows = []
     for reading in sensors:
-        before = arriving.get((reading.kind, reading.places[0]), {})
-        if every or reading.pulse == 1:
-            rows.append(_row("sensor", reading, before if reading.pulse == 1 else {}))
+        row = _row("sensor", reading)
+        if reading.pulse == 1:
+            row |= arriving.get((reading.kind, reading.places[0]), {})
+        rows.append(row)
     legs = [
         Column("", "between"),
         kind,
@@ -179,40 +171,22 @@ def reading_tables(
         Table.of(columns, rows, "sensors"),
         Table.of(legs, [_row("between", leg) for leg in speeds], "speeds"),
     ]
-    later = [
-        _row("later pulse", reading, {"reflected": back})
-        for reading, back in echoes(sensors, total)
-    ]
-    if later:
-        echo = [
-            Column("", "later pulse"),
-            kind,
-            number,
-            pulse,
-            Column("reflected", "runs", lambda back: "back" if back else "on"),
-            Column("delay", f"delay{units[2]}", error=True),
-            Column("ratio", "peak/first", error=True),
-        ]
-        tables.append(Table.of(echo, later, "echoes"))
     lines = []
     for reading in (*sensors, *speeds):
         if reading.missing:
-            later_one = f", pulse {reading.pulse}" if reading.pulse > 1 else ""
-            lines.append(f"{reading.name}{later_one}: {reading.missing}")
+            lines.append(f"{reading.name}: {reading.missing}")
     return tuple(tables), "\n".join(lines)
 
 
-def _row(
-    label: str, reading: Reading, more: Mapping[str, Any] | None = None
-) -> dict[str, Any]:
+def _row(label: str, reading: Reading) -> dict[str, Any]:
     """Return the cells of a reading, a row of a table, by the keys of the table's columns.
 
-    label : key of the column that holds the reading's name. more : further cells by key.
+    label : key of the column that holds the reading's name.
     """
     places = ("number",) if len(reading.places) == 1 else ("from", "to")
     row: dict[str, Any] = dict(zip(places, reading.places, strict=True))
-    row |= dict(reading.numbers) | dict(more or {})
     return row | {
+        **reading.numbers,
         label: reading.name,
         "kind": reading.kind,
         "signal": reading.quantity,
