@@ -42,11 +42,6 @@ _SMOOTH = 0.01  # noise of the moving mean over the peak
 # Share of the peak below which a pulse has fallen. It is less than a half: with a half, noise on
 # the front, where the signal has just passed half its peak, would count as the end of the pulse.
 _LOW = 0.45
-# Share of the peak to which the signal falls between pulses that do not overlap.
-_APART = 0.2
-# Depth, over the peak, of the dip between two pulses; a smaller dip lies in one pulse. It is far
-# above `_SMOOTH`, the noise that is left.
-_HUMP = 0.25
 # Share of the record's range: samples that differ by less, as by the rounding of printed numbers,
 # are equal.
 _EQUAL = 1e-6
@@ -95,9 +90,9 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
     Raises
     ------
     MeasureError
-        For a record without a whole pulse, for a pulse that is clipped, inverted, overlaps another
-        one, or has fewer than 16 samples above half of its peak (6 in a record without noise), and
-        for noise above 5 % of the peak.
+        For a record without a whole pulse, for a pulse that is clipped, inverted, or has fewer
+        than 16 samples above half of its peak (6 in a record without noise), and for noise above
+        5 % of the peak.
 
     Examples
     --------
@@ -274,19 +269,6 @@ def _place(t: Array, f: Array) -> tuple[float, float]:
         side = "back" if after else "front"
         raise MeasureError(
             f"the pulse is not wholly in the record: its {side} does not pass half its peak"
-        )
-    # Other pulses before the mean falls to _APART of the top. Of two equal peaks `find_peaks`
-    # measures both from the foot, however small the dip between them is; a slight tilt makes one of
-    # them the higher, and the other one is measured from the dip.
-    foot = np.flatnonzero(g < _APART * g[top])
-    sides = np.split(foot, [np.searchsorted(foot, top)])
-    low, high = max(sides[0], default=-1) + 1, min(sides[1], default=len(g))
-    tilted = g[low:high] + np.linspace(0, _EQUAL * g[top], high - low)
-    humps, _ = find_peaks(np.pad(tilted, 1), prominence=_HUMP * g[top])
-    if len(humps) > 1:
-        times = " and ".join(f"{t[low + hump - 1]:.4g}" for hump in humps[:2])
-        raise MeasureError(
-            f"pulses overlap: peaks at {times} without a fall to {_APART:.0%}"
         )
     return float(t[below[after - 1]]), float(t[below[after]])
 
