@@ -198,25 +198,20 @@ class Scene:
         object.__setattr__(self, "law", alike(tuple(law for _, law in contacts)))
 
     def _check_start(self) -> None:
-        """Refuse a start inside the wall or inside a neighbour, where the spacings tell."""
+        """Refuse a start inside the wall or behind a neighbour, where the spacings tell."""
         if not (self.displacements and self.spacings):
             return
-        # Beads whose displacement is not given start at their places of rest.
-        y = np.zeros(self.size)
+        # The wall, and beads whose displacement is not given, start at their places of rest.
+        y = np.zeros(self.size + 1)
         y[: len(self.displacements)] = self.displacements
-        passed = y[:-1] - y[1:] > self.spacings
+        # A bead's radius, its distance from the wall, is half its distance from the bead before it.
+        distances = (*self.spacings, self.spacings[-1] / 2)[: self.contact_count]
+        passed = -np.diff(y)[: self.contact_count] > distances
         if passed.any():
             i = int(np.argmax(passed))
             raise SceneError(
-                f"displacements[{i}] is {y[i]:g}: bead {i + 1} would start behind bead {i + 2}, "
-                f"whose distance is {self.spacings[i]:g}"
-            )
-        last = float(y[-1])
-        # A bead's radius is half its distance from the bead before it.
-        if self.wall is not None and last > self.spacings[-1] / 2:
-            raise SceneError(
-                f"displacements[{self.size - 1}] is {last:g}: bead {self.size} would start inside "
-                f"the wall, towards which displacements are positive; in front of it is {-last:g}"
+                f"displacements[{i}] is {y[i]:g}, positive towards the wall: bead {i + 1} would "
+                f"start behind bead {i + 2}, or inside the wall, {distances[i]:g} from it"
             )
 
     def _check_damping(self) -> None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -44,7 +44,17 @@ _DYNAMIC = (
 
 def example(name: str) -> str:
     """Return the text of an example scene file."""
-    file = resources.files("validation.scenes") / "examples" / f"{name}.toml"
+    return _scene_text(f"examples/{name}.toml")
+
+
+def keys(wanted: bool = True) -> str:
+    """Return the list of the keys of a scene file, with examples."""
+    return _scene_text("keys.toml")
+
+
+def _scene_text(name: str) -> str:
+    """Return the text of a file of `validation.scenes`."""
+    file = resources.files("validation.scenes").joinpath(name)
     return file.read_text(encoding="utf-8")
 
 
@@ -208,21 +218,20 @@ def _digits(sensors: Sequence[Reading]) -> str:
     return str(max(6, math.ceil(math.log10(late)) + 4))
 
 
-def keys() -> str:
-    """Return the list of the keys of a scene file, with examples."""
-    return (resources.files("validation.scenes") / "keys.toml").read_text(
-        encoding="utf-8"
-    )
+def print_option(
+    name: str, text: Callable[[Any], str], says: str, **settings: Any
+) -> Any:
+    """Return an option that prints a text, a function of its value, and ends the command."""
+
+    def show(context: click.Context, given: click.Parameter, value: Any) -> None:
+        if value and not context.resilient_parsing:  # completion parses resiliently
+            click.echo(text(value), nl=False)
+            context.exit()
+
+    settings |= {"is_eager": True, "expose_value": False, "callback": show}
+    return option(name, says=says, **settings)
 
 
-def _print(context: click.Context, given: click.Parameter, name: Any) -> None:
-    """Print the file of an option, an example or the keys, and end the command."""
-    if name and not context.resilient_parsing:  # completion parses resiliently
-        click.echo(keys() if given.name == "keys" else example(name), nl=False)
-        context.exit()
-
-
-_PRINTED: dict[str, Any] = {"is_eager": True, "expose_value": False, "callback": _print}
 SUFFIXES = (".json", ".csv")
 
 _METHODS = Words((*COMPILED, *METHODS))
@@ -232,19 +241,19 @@ _RTOL = "Relative tolerance. Errors are differences to a more accurate run."
 
 @study(
     click.argument("scene", type=click.Path()),
-    option(
+    print_option(
         "--example",
+        example,
+        "Print an example of a scene file, by default the paper's chain.",
         type=Words(EXAMPLES),
         is_flag=False,
         flag_value=EXAMPLES[0],
-        **_PRINTED,
-        says="Print an example of a scene file, by default the paper's chain.",
     ),
-    option(
+    print_option(
         "--keys",
+        keys,
+        "Print all keys of a scene file, with examples.",
         is_flag=True,
-        **_PRINTED,
-        says="Print all keys of a scene file, with examples.",
     ),
     output_option(
         "--out",
