@@ -76,7 +76,7 @@ def optical(
 ) -> Solution:
     """Solve the paper's closure of a dimer's optical branch, to ``D^order`` in the ansatz.
 
-    Contacts also pull, by the odd law of δ^k. The strains of the contacts are
+    Contacts also pull, by the odd law of ``δ^k``. The strains of the contacts are
     ``w - u = -(u/m̂_1)(1 + Y)`` and ``u(x + 2D) - w = (u/m̂_1)(1 + Z)``. Forces are those of a
     `Force` with Y or Z for X.
     """
