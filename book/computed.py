@@ -1,13 +1,14 @@
 """Numbers in the sentences of the pages, computed when the book is built.
 
-In a page's text ``{{name}}`` stands for the number ``name`` of the function of this module that has
-the page's name; `_ext/filled.py` puts it there, in formulas and captions as well.
+In a page's text ``{{name}}`` stands for the number ``name`` of the page's function in `PAGES`;
+`_ext/filled.py` puts it there, in formulas and captions as well.
 """
 
 from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
@@ -26,6 +27,7 @@ from lwa import (
     Sphere,
     canonical_wave,
     envelope,
+    expand,
     homogenize,
     lattice_wave,
     pulse_of_strike,
@@ -49,8 +51,7 @@ beside = cache(trust)
 @cache
 def numbers(page: str) -> Numbers:
     """The numbers of a page; none of a page without a function here."""
-    function = globals().get(page)
-    return function() if function else {}
+    return PAGES[page]() if page in PAGES else {}
 
 
 def bound(share: float) -> str:
@@ -221,3 +222,33 @@ def calculator() -> Numbers:
         "mass": f"{mass:.3f}",
         "strike": f"{strike:.4f}",
     }
+
+
+def late_terms() -> Numbers:
+    """The best partial sum of c² of spheres."""
+    coefficients = np.array([float(c) for c in expand(UNIFORM, 60).c2.coefficients])
+    sums = np.cumsum(coefficients * 0.5 ** np.arange(len(coefficients)))
+    error = np.abs(sums - exact_wave([1], 1.5).c2).min()
+    return {"nearest": f"{1e9 * error:.0f}"}
+
+
+def experiment() -> Numbers:
+    """The glass that is read from an echo."""
+    return {"glass": f"{float(Material.named('glass').E) / 1e9:.1f}"}
+
+
+PAGES: dict[str, Callable[[], Numbers]] = {
+    "intro": intro,
+    "equal": equal,
+    "paper": paper,
+    "cells": cells,
+    "expansion": expansion,
+    "pressed": pressed,
+    "modes": modes,
+    "integration": integration,
+    "column": column,
+    "calculator": calculator,
+    "experiment": experiment,
+    "open": late_terms,
+}
+"""Functions of the pages' numbers."""

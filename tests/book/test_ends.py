@@ -33,7 +33,7 @@ from lwa import (
     piston,
 )
 from lwa.law import named
-from tests.book.hands import DESKTOP, PHONE, SHIFT, Browser, Page
+from tests.book.browser import DESKTOP, PHONE, SHIFT, Browser, Page
 from tests.book.prose import BOOK
 from tests.book.test_turn import bloch_error, mean_loss, numbers
 from validation import Scene, exact_wave, measure, simulate
