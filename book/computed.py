@@ -34,7 +34,7 @@ from lwa import (
 )
 from lwa.cell import k
 from lwa.expansion.dimers import exponent_of_light_beads
-from lwa.expansion.joined import TWO_BODIES, phi_series
+from lwa.expansion.joined import FORMS, phi_series
 from validation import exact_wave, simulate
 
 HALF = "3/2"
@@ -104,16 +104,16 @@ def cells() -> Numbers:
 
 def expansion() -> Numbers:
     """The approximant of the speed, slopes in ω, and the theories over the mass ratio."""
-    speed = phi_series("c", 2)
+    speed = phi_series("speed", 2)
     bottom = -speed[2] / speed[1]  # of the approximant [1/1]
     limit = lattice_wave(Dimer(1, sp.Rational(1, 10**9), spacing=1), k=HALF)
     slopes = {
         name: float(exponent_of_light_beads(name).subs(k, sp.Rational(3, 2)))
-        for name in ("c", "force")
+        for name in ("speed", "force")
     }
     # The width of the closed form whose φ is a number, the exercise's.
     rest = math.exp(-float(phi_series("force", 0)[0]) / 2)
-    two_bodies = float(TWO_BODIES["force"].subs(k, sp.Rational(3, 2)))
+    two_bodies = float(FORMS["force"].two_bodies.subs(k, sp.Rational(3, 2)))
     rough = math.sqrt(two_bodies**2 + 8 / 3 * math.log(2) * rest)
     lattice = exact_wave([1], 1.5).fwhm("force")
     known = [n for n in range(1, 100) if nearest(HALF, sp.Rational(n, 100))]
@@ -129,7 +129,7 @@ def expansion() -> Numbers:
         "rough": f"{rough:.4f}",
         "below": f"{100 * (1 - rough / lattice):.1f}",
         "square": f"{float(limit.speed) ** 2:.4f}",
-        "squareslope": f"{2 * slopes['c']:.2f}",
+        "squareslope": f"{2 * slopes['speed']:.2f}",
         "width": f"{2 * lattice:.4f}",
         "widthslope": f"{slopes['force']:.2f}",
         "light": f"{light / 100:.2f}",
