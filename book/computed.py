@@ -1,7 +1,8 @@
 """Numbers in the sentences of the pages, computed when the book is built.
 
 In a page's text ``{{name}}`` stands for the number ``name`` of the page's function in `PAGES`;
-`_ext/filled.py` puts it there, in formulas and captions as well.
+`_ext/filled.py` puts it there, in formulas as well. Captions are parts of cells, which are executed
+before: they have no such numbers.
 """
 
 from __future__ import annotations
@@ -178,7 +179,6 @@ def modes() -> Numbers:
     swing = (1 - math.sqrt(1 - 4 * mean)) / (2 * mean)  # 1 = s - mean s²: contacts open
     return {
         "edge": f"{edge:.3f}",
-        "shown": f"{edge * (1 - 1 / 250):.3f}",
         "opening": f"{swing**2 * 3 / 128:.4f}",
     }
 
