@@ -7,7 +7,7 @@ import sympy as sp
 from lwa import Cell, Dimer, NoSolitaryWave, lattice_wave
 from lwa.cell import k as symbol_k
 from lwa.expansion.dimers import exponent_of_light_beads
-from lwa.expansion.joined import TWO_BODIES, phi_series
+from lwa.expansion.joined import FORMS, phi_series
 from tests.lwa.expansion.test_exact_waves import lattice
 from tests.lwa.wave.test_source import answers, in_each_language
 from tests.test_errors import LOOSE, holds
@@ -17,12 +17,9 @@ from validation.pulses.steady import point
 from validation.scenes.chains import struck
 
 EQUAL = Cell([1], spacing=1)
-BOUNDS = dict.fromkeys(TWO_BODIES, 0.001) | {"c": 1e-5}
-RESULTS = {
-    "c": ("speed",),
-    "momentum": ("momentum",),
-    "energy": ("energy",),
-} | {name: ("fwhm", name) for name in ("strain", "force", "velocity")}
+BOUNDS = dict.fromkeys(FORMS, 0.001) | {"speed": 1e-5}
+RESULTS = {name: (name,) for name in ("speed", "momentum", "energy")}
+RESULTS |= {name: ("fwhm", name) for name in ("strain", "force", "velocity")}
 
 
 def test_closed_forms_are_the_lattices_at_every_k():
@@ -32,7 +29,7 @@ def test_closed_forms_are_the_lattices_at_every_k():
     ratios = {name: [] for name in RESULTS}
     for k in (1 + np.geomspace(0.01, 59, 30).round(3)).tolist():
         wave, exact = lattice_wave(EQUAL, k=k), lattice(k)[0]
-        assert float(wave.short_speed) == pytest.approx(exact["c"], rel=2e-3)
+        assert float(wave.short_speed) == pytest.approx(exact["speed"], rel=2e-3)
         for name, call in RESULTS.items():
             found = wave.estimate(*call)
             deviation = abs(found.value / exact[name] - 1)
@@ -53,14 +50,14 @@ def test_the_coefficients_are_exact():
     first = {
         "force": force,
         "strain": force - 1,
-        "c": -slope / (1 - sp.sqrt(8) / pi),
+        "speed": -slope / (1 - sp.sqrt(8) / pi),
     }
     for name, expected in first.items():
         found = sp.Float(phi_series(name, 0)[0], 30)
         assert abs(found - expected.n(30)) < 1e-27, name
     # Taylor's formula of the approximants in decimals: (1.539133 + 0.912775 ε)/(1 + 0.744386 ε)
     decimals = {
-        "c": (1.5391326, -0.232933, 0.173392),
+        "speed": (1.5391326, -0.232933, 0.173392),
         "force": (1.7466983, -0.103124, 0.063915),
     }
     for name, expected in decimals.items():
@@ -68,9 +65,7 @@ def test_the_coefficients_are_exact():
         assert found == pytest.approx(expected, abs=1e-6)
 
 
-@pytest.mark.parametrize(
-    "name", ["c", "force", "strain", "velocity", "momentum", "energy"]
-)
+@pytest.mark.parametrize("name", FORMS)
 def test_light_beads_that_follow_are_exact_to_first_order(name):
     """The exponent e of (1 + ω)^{-e} is the reduced chain's own, by its exact waves."""
     for k, bound in ((1.1, 1e-4), (1.5, 1e-3), (2.0, 4e-3), (3.0, 0.025)):
@@ -100,8 +95,8 @@ def test_relative_errors_of_composed_results_add_up():
     }
     for composed, parts in {
         ("effective_mass",): ("momentum", "momentum", "energy"),
-        ("fwhm", "force", "time"): ("force", "c"),
-        ("fwhm", "strain", "time"): ("strain", "c"),
+        ("fwhm", "force", "time"): ("force", "speed"),
+        ("fwhm", "strain", "time"): ("strain", "speed"),
     }.items():
         total = sum(errors[part] for part in parts)
         assert wave.estimate(*composed).relative_error == pytest.approx(total, rel=1e-2)
@@ -157,12 +152,12 @@ def test_the_error_of_a_dimers_wave(engine, k, omega):
     wave = lattice_wave(Dimer(1, omega, spacing=1), k=k)
     steady = point(k, omega, 4).numbers
     known = {
-        "c": steady["speed"].value,
+        "speed": steady["speed"].value,
         "force": steady["width"].value,
         "strain": steady["strain_width"].value,
     }
     strain = wave.estimate("fwhm", "strain").value
-    known |= passage(float(k), float(omega), known["c"], strain)
+    known |= passage(float(k), float(omega), known["speed"], strain)
     tight = 0
     for name, call in RESULTS.items():
         found = wave.estimate(*call)
@@ -255,8 +250,8 @@ def test_a_program_computes_the_wave(tmp_path, language, chain):
     calls, expected = [], []
     for k in exponents:
         known = {"F": 5, "k": sp.Rational(k), **values, "D": 0.5}
-        for function, call in RESULTS.items():
-            name = {"c": "speed"}.get(function, "_".join(call))
+        for call in RESULTS.values():
+            name = "_".join(call)
             symbols = {str(symbol) for symbol in read(wave, call).free_symbols}
             # a function has the arguments that it depends on, in this order
             used = [float(known[symbol]) for symbol in known if symbol in symbols]
