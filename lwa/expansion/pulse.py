@@ -127,8 +127,8 @@ def half_width(log: Series) -> Series:
 
     The full width at ``e^{-y²}`` of the peak is ``4y Σ h_n t^n``; in the h_n, polynomials in y², Z
     stands for y. Order by order the place becomes a function of a coordinate z in which the
-    exponent, counted from the peak, is ``-z²/4``. The pulse then falls to ``e^{-y²}`` at z = ±2y,
-    and the width is the difference of these two places, the odd part of the function.
+    exponent, counted from the peak, is ``-z²/4``. The pulse falls to ``e^{-y²}`` at
+    ``z = ±2y``, and the width is the difference of these two places.
     """
     Z = log[0].context().gen(0)
     exponent = [-(Z**2) / 4, *log[1:]]
