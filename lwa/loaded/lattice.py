@@ -129,15 +129,12 @@ class Equilibrium(NamedTuple):
 
     Parameters
     ----------
-    force : Expr
-        The mean force.
     strain : Expr
         The mean strain.
     compressions : tuple of Expr
         The compression δ of each link.
     """
 
-    force: sp.Expr
     strain: sp.Expr
     compressions: tuple[sp.Expr, ...]
 
@@ -270,14 +267,12 @@ class Lattice(Value):
             for link, delta in zip(self.links, compressions, strict=True):
                 length += delta / link.cosine
             strain = length / (self.size * self.spacing)
-            return Equilibrium(load, strain, compressions)
+            return Equilibrium(strain, compressions)
         demand_numbers(load.free_symbols, "numbers are wanted")
         # Without a force all links are open or slack, whatever their laws.
         e = self.statics.mean_compression(float(load)) if load else 0.0
         found = self.statics.compressions(np.array(e))
-        return Equilibrium(
-            load, sp.Float(e) / self.spacing, tuple(map(sp.Float, found))
-        )
+        return Equilibrium(sp.Float(e) / self.spacing, tuple(map(sp.Float, found)))
 
     def energy(self, state: Equilibrium) -> sp.Expr:
         """The energy per particle at rest."""
