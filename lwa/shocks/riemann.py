@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import math
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal, get_args
 
@@ -38,8 +38,8 @@ from lwa.base.exact import (
     one_of,
     read_exact,
 )
-from lwa.base.frozen import Estimate, Value
-from lwa.cell import Cell
+from lwa.base.frozen import Estimate
+from lwa.cell import Cell, Parametric
 from lwa.law import ContactLaw
 from lwa.loaded.background import Background
 from lwa.shocks.waves import (
@@ -71,7 +71,7 @@ A theorem for Toda's law (Venakides, Deift & Oba, Comm. Pure Appl. Math. 44, 117
 
 
 @dataclass(frozen=True, repr=False)
-class Shock(Value):
+class Shock(Parametric):
     """The front between two strains (see `shock`).
 
     Speeds are ``dx/dt`` in the units of the cell. `rise`, `peak` and `peak_force` are those of the
@@ -278,13 +278,7 @@ class Shock(Value):
         Raises `lwa.InputError` if other symbols are left.
         """
         demand_numbers(self._free, "errors are computed in numbers")
-        units = dict.fromkeys(self.cell.symbols, sp.S.One)
-        return replace(
-            self,
-            cell=self.cell.replaced(units),
-            behind=self.behind.xreplace(units),
-            ahead=self.ahead.xreplace(units),
-        )
+        return self.replaced(dict.fromkeys(self.cell.symbols, sp.S.One))
 
     def _relative_error(self, name: EstimatedName, rule: RuleName) -> float:
         """The relative error of a result of a shock."""
