@@ -123,7 +123,9 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
             f"{in_unit(wanted, unit)} are wanted for its base"
         )
     # Noise of half a level or more spreads the samples over the levels and tells their rounding.
-    rounding = step if base.best.variance < (step / 2) ** 2 else 0.0
+    rounding = 0.0
+    if base.best.variance < (step / 2) ** 2:
+        rounding = step
     _check_top(t, f, (rise, fall), _FEWEST, step)
     numbers = fitted(at, means - base.at(at), base, (rise, fall), rounding)
     if missing:
@@ -235,7 +237,10 @@ def _step(f: Array) -> float:
     # Printed levels are rounded, too: their distance is told best by all of them.
     step = np.ptp(f) / round(np.ptp(f) / least)
     levels = (f - f.min()) / step
-    return float(step) if np.abs(levels - levels.round()).max() < 0.25 else 0.0
+    off = np.abs(levels - levels.round())
+    if off.max() > 0.25:
+        return 0.0
+    return float(step)
 
 
 def _place(t: Array, f: Array) -> tuple[float, float]:

@@ -165,7 +165,9 @@ def leading_pulses(
     grid, quarter = _Grid(signal), 0.25**k
     start = int(np.argmax(grid.f > quarter * grid.f.max()))
     relieved = grid.f[start:] < quarter * np.maximum.accumulate(grid.f[start:])
-    stop = start + int(np.argmax(relieved)) + 1 if relieved.any() else len(grid.f)
+    stop = len(grid.f)
+    if relieved.any():
+        stop = start + int(np.argmax(relieved)) + 1
     return grid.highest(stop=stop, shares=shares)
 
 

@@ -9,7 +9,7 @@ tells its error (`validation.pulses.pulse.compared`).
 from __future__ import annotations
 
 import operator
-from collections.abc import Container, Mapping
+from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -149,9 +149,9 @@ def record(
     firsts: list[Reading] = []
     found: list[Reading] = []
     for track, other in zip(recorded, checks, strict=True):
-        firsts += _readings(track, other, every=False)
+        firsts += _readings(track, other, _first)
         if every:
-            found += _readings(track, other, every=True)
+            found += _readings(track, other, all_pulses)
 
     def doubt(first: Reading, second: Reading, sites: float) -> str:
         """Return why one pulse does not pass two sensors at a speed; "" if it may."""
@@ -227,14 +227,19 @@ def tracks(
     for kind, numbers in sensors_of(scene).items():
         for row, i in enumerate(numbers):
             name = f"{kind} {i + 1}"
-            quantity = "velocity" if name in velocities else "force"
+            quantity = "force"
+            static = levels[name]
+            if name in velocities:
+                quantity = "velocity"
+                static = 0.0
             if run.path is None:
                 samples = getattr(run, RECORDS[kind, quantity])[row]
                 signal: Signal = spline(run.time[::every], samples[::every])
             else:
                 signal = run.signal(kind, i, quantity)
-            static = levels[name] if quantity == "force" else 0.0
-            dynamic = _above(signal, static) if static else signal
+            dynamic = signal
+            if static:
+                dynamic = _above(signal, static)
             place = _place(scene, x, kind, i)
             found.append(Track(kind, i + 1, dynamic, place, static, quantity))
     return tuple(found)
@@ -291,15 +296,19 @@ def _at_sensors(scene: Scene, contact_forces: ArrayLike) -> dict[str, float]:
     return forces
 
 
-def _readings(track: Track, other: Track, every: bool) -> list[Reading]:
-    """Measure the first pulse at a sensor, or every pulse, with errors from another run."""
+def _first(signal: Signal) -> list[Pulse]:
+    """Measure the first pulse alone."""
+    return [first_pulse(signal)]
+
+
+def _readings(
+    track: Track, other: Track, pulses: Callable[[Signal], list[Pulse]]
+) -> list[Reading]:
+    """Measure pulses at a sensor, the first or all, with errors from another run."""
     place = (track.number,)
     blank = Reading(track.kind, place, {}, track.static, quantity=track.quantity)
     try:
-        measured, known = (
-            all_pulses(signal) if every else [first_pulse(signal)]
-            for signal in (track.force, other.force)
-        )
+        measured, known = map(pulses, (track.force, other.force))
     except MeasureError as error:
         return [replace(blank, missing=str(error))]
     found: list[Reading] = []

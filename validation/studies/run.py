@@ -71,9 +71,9 @@ def report(recording: Recording, every: bool = False) -> Report:
     with a wall; with damping the energy ``dissipated_value``, with a drive its ``work_value``.
     """
     run, scene = recording.run, recording.run.scene
-    momentum = (
-        "not conserved" if (p := run.momentum_drift) is None else f"drift {p:.0e}"
-    )
+    momentum = "not conserved"
+    if run.momentum_drift is not None:
+        momentum = f"drift {run.momentum_drift:.0e}"
     title = f"{scene}, energy drift {run.energy_drift:.0e}"
     data = {
         "energy_drift_value": run.energy_drift,
@@ -86,13 +86,15 @@ def report(recording: Recording, every: bool = False) -> Report:
         data["work_value"] = run.work
         title += f", work {run.work:.6g}"
     which = "All pulses" if every else _FIRST
-    note = _NOTE.format(which, scene.units or "the scene's own") + _DYNAMIC * any(
-        scene.load
-    )
+    note = _NOTE.format(which, scene.units or "the scene's own")
+    peak = "peak force"
+    if any(scene.load):
+        note += _DYNAMIC
+        peak = "peak dynamic force"
     tables, missing = reading_tables(
         recording.sensors,
         recording.speeds,
-        "peak dynamic force" if any(scene.load) else "peak force",
+        peak,
         bool(scene.units),
         every,
     )
