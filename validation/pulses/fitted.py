@@ -22,7 +22,7 @@ from scipy.signal import peak_widths
 from lwa.base.arrays import Array
 from lwa.base.frozen import Estimate
 from validation.pulses.base import Base
-from validation.pulses.signals import MeasureError
+from validation.pulses.pulse import MeasureError
 
 _BESIDE = 0.3  # widths in front of the rise and behind the fall that the fit takes in
 _READ = 0.1  # widths likewise in which the spline is read: its ends follow the noise

@@ -24,13 +24,18 @@ from validation.lattice.cost import RunProgress
 from validation.lattice.signal import RECORDS
 from validation.lattice.simulate import COMPILED
 from validation.lattice.steppers import METHODS
-from validation.pulses.readings import Reading
-from validation.pulses.sensors import TOLERANCE, Recording, enough_samples, record
+from validation.pulses.sensors import (
+    TOLERANCE,
+    Reading,
+    Recording,
+    enough_samples,
+    record,
+)
 from validation.report.study import Report, option, output_option, replacing, study
 from validation.report.table import Column, Table, plain
 from validation.scenes import scenefile
 from validation.scenes.checks import SceneError
-from validation.scenes.units import BASES
+from validation.scenes.columns import BASES
 
 EXAMPLES = ("paper", "vertical", "precompressed", "defect", "trimer", "striker")
 """Names of the examples of scene files."""
