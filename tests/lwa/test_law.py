@@ -2,17 +2,14 @@
 difference equation, expanded independently."""
 
 import pickle
-from math import factorial
 
 import numpy as np
 import pytest
 import sympy as sp
-from flint import fmpq, fmpq_poly
 
 from lwa import Cell, Dimer, Law, Power, general, homogenize, k
 from lwa.law import NAMES, named, phi_symbol, read_law
 from tests.identity import same
-from tests.lwa.fields import of_fields, rational, right_side
 
 x = sp.Symbol("x")
 y = sp.Symbol("y", positive=True)
@@ -47,33 +44,6 @@ def test_the_power_law_comes_back_at_every_order(cell, order, kind):
             for jet in {*old[n], *new[n]}:
                 again = sp.sympify(new[n].get(jet, 0)).xreplace(OF_POWER)
                 assert same(old[n].get(jet, 0), again)
-
-
-def force(law, strain):
-    """The law at a strain that is a polynomial in D, by Taylor's theorem."""
-    at = sp.Rational(int(strain[0].p), int(strain[0].q))
-    slopes = (rational(sp.Rational(law.at(at, m))) for m in range(strain.degree() + 1))
-    terms = [slope / factorial(m) for m, slope in enumerate(slopes)]
-    return fmpq_poly(terms)(strain - strain[0])
-
-
-@pytest.mark.parametrize(
-    "law", [named("hertz2", 2, "1/3"), Law(y**3 / (1 + y), y)], ids=str
-)
-def test_the_equal_chain_is_the_difference_of_shifted_fields(law):
-    """[F((u(x+D) - u)/D) - F((u - u(x-D))/D)]/D at x = 0, D only in the shifts, to D^4."""
-    order = 6
-    jets = [0, 4, 1, -2, 3, 1, -1, 2, 5]  # ∂^n u at 0; u_x = 4 has a rational root
-    ahead = fmpq_poly([fmpq(jets[n + 1], factorial(n + 1)) for n in range(order)])
-    behind = ahead(fmpq_poly([0, -1]))
-    expected = (force(law, ahead) - force(law, behind)).coeffs()[1:]
-    pde = homogenize(Cell([1], spacing=1), order, law=law).pde
-    u = sum(sp.Rational(c, sp.factorial(n)) * x**n for n, c in enumerate(jets))
-    orders = (of_fields(pde, pde.coefficients[n], u, x) for n in range(2, order))
-    found = [law.at(sp.S(4), 1) * jets[2], *(value.subs(x, 0) for value in orders)]
-    assert list(map(rational, found)) == expected[: len(found)]
-    assert sum(found) == right_side(pde, u, x).subs(x, 0)
-    assert any(found[2::2])
 
 
 def test_a_law_is_a_value():
