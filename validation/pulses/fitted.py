@@ -13,6 +13,7 @@ wanted coefficients, the error also holds the difference to a coarser spline.
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 from scipy.interpolate import BSpline, make_lsq_spline
@@ -73,12 +74,10 @@ def fitted(
     rounding = (np.finfo(float).eps * np.abs(f).max()) ** 2
     variance = base.best.variance + rounding
     most = min(_HIGHEST, int(_DENSEST * len(t)))
-    wanted, spline, left = _smoothed(t, f, variance, base.best.correlation_time, most)
+    smoothed = partial(_smoothed, t, f, base.best.correlation_time, most)
+    wanted, spline, left = smoothed(variance)
     if left > _MISFIT * variance:  # the noise during the pulse is larger
-        variance = left
-        wanted, spline, left = _smoothed(
-            t, f, variance, base.best.correlation_time, most
-        )
+        wanted, spline, variance = smoothed(left)
         variance = max(variance, left)
     share = math.sqrt(variance) / float(spline(t).max())
     if share > _LOUDEST:
@@ -100,12 +99,12 @@ def fitted(
 
 
 def _smoothed(
-    t: Array, f: Array, variance: float, correlation_time: float, most: int
+    t: Array, f: Array, correlation_time: float, most: int, variance: float
 ) -> tuple[int, BSpline, float]:
     """Return the wanted number of coefficients, the spline with at most ``most`` of them, and the
     variance of its residuals.
 
-    variance, correlation_time : of the noise, the time in samples.
+    correlation_time, variance : of the noise, the time in samples.
     """
     tries = math.ceil(math.log(most / _LOWEST) / math.log(_RATIO))
     counts = np.geomspace(_LOWEST, most, tries + 1).round().astype(int)

@@ -262,15 +262,13 @@ def derived(function: Callable[..., float], *numbers: Estimate) -> Estimate:
 
 def exponent(x: Sequence[Estimate], y: Sequence[Estimate]) -> Estimate:
     """Return the exponent p of ``y ~ x^p``, from a least-squares fit of the logarithms."""
-    log_x, log_y = (np.log([number.value for number in row]) for row in (x, y))
-    log_x -= log_x.mean()
-    weights = log_x / (log_x @ log_x)
-    p = float(weights @ log_y)
-    # Absolute errors are added: those of similar runs have a common sign and would cancel.
-    off = [
-        b.relative_error + abs(p) * a.relative_error for a, b in zip(x, y, strict=True)
-    ]
-    return Estimate(p, float(np.abs(weights) @ off))
+
+    def slope(*values: float) -> float:
+        log_x, log_y = np.split(np.log(values), 2)
+        return float(np.polyfit(log_x, log_y, 1)[0])
+
+    # Errors of similar runs have a common sign and might cancel: their absolute values are added.
+    return derived(slope, *x, *y)
 
 
 def tolerances(rtol: float, rounding: float = 0.0) -> tuple[float, float]:

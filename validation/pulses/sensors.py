@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lwa.base.arrays import Array
 from lwa.base.frozen import Estimate
 from validation.lattice.cost import RunProgress, silent
 from validation.lattice.equations import Motion
@@ -221,7 +222,7 @@ def tracks(
     """
     scene = run.scene
     levels = forces_at_start(scene)
-    places = _places(scene)
+    x = np.cumsum((0.0, *scene.spacings, *scene.spacings[-1:]))
     found = []
     for kind, numbers in sensors_of(scene).items():
         for row, i in enumerate(numbers):
@@ -234,28 +235,24 @@ def tracks(
                 signal = run.signal(kind, i, quantity)
             static = levels[name] if quantity == "force" else 0.0
             dynamic = _above(signal, static) if static else signal
-            place = places.get(name, {})
+            place = _place(scene, x, kind, i)
             found.append(Track(kind, i + 1, dynamic, place, static, quantity))
     return tuple(found)
 
 
-def _places(scene: Scene) -> dict[str, dict[str, float]]:
-    """Return the places of sensors, by names such as "bead 15", without beads with one contact."""
-    sites: dict[str, float] = {}
-    for i in scene.bead_sensors:
-        if 0 < i < scene.contact_count:
-            sites[f"bead {i + 1}"] = i
-    for i in scene.contact_sensors:
-        # A contact is midway between its beads, the wall's half a spacing behind the last bead.
-        sites[f"contact {i + 1}"] = i + 0.5
-    x = np.cumsum((0.0, *scene.spacings, *scene.spacings[-1:]))
-    beads = np.arange(len(x))
-    places = {}
-    for name, site in sites.items():
-        places[name] = {"speed_sites": site}
-        if scene.spacings:
-            places[name]["speed"] = float(np.interp(site, beads, x))
-    return places
+def _place(scene: Scene, x: Array, kind: str, i: int) -> dict[str, float]:
+    """Return the place of a sensor by the names `SPEEDS`; empty for a bead with one contact.
+
+    x : places of the beads, and of one behind the last.
+    """
+    if kind == "bead" and not 0 < i < scene.contact_count:
+        return {}
+    # A contact is midway between its beads, the wall's half a spacing behind the last bead.
+    site = i + 0.5 if kind == "contact" else float(i)
+    place = {"speed_sites": site}
+    if scene.spacings:
+        place["speed"] = float(np.interp(site, np.arange(len(x)), x))
+    return place
 
 
 def _above(force: Signal, static: float) -> Piecewise:

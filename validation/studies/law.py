@@ -15,7 +15,6 @@ of few pulses may be small by chance.
 
 from __future__ import annotations
 
-import copy
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -27,11 +26,13 @@ import numpy as np
 import scipy
 
 from lwa import Cell
+from lwa.base import files
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
 from lwa.base.files import entries, load
 from lwa.base.frozen import Estimate
 from lwa.command.options import quantities, quantity
+from lwa.spheres.beads import FILE, read_materials
 from lwa.spheres.beads import spheres as read_spheres
 from validation.pictures import Curve, Panel
 from validation.report.study import Report, option, study
@@ -186,23 +187,15 @@ def _pulses(file: MeasuredFile) -> tuple[Array, Array, Array | None]:
 
 def _modulus(content: dict[str, Any], material: str, stiffness: Estimate) -> Estimate:
     """Return E of a material in a file of equal spheres, from the stiffness A of their contacts."""
-
-    def contact(E: float) -> float:
-        """Return A at a given E."""
-        changed = copy.deepcopy(content)
-        given = changed.setdefault("materials", {}).setdefault(
-            material, {"like": material}
-        )
-        given["E"] = E
-        return float(Cell.of_spheres(read_spheres(changed)).stiffnesses[0])
-
-    unit = contact(1.0)
-    if not contact(2.0) > unit:
+    materials = read_materials(files.Table(content, "", FILE))
+    balls = read_spheres(content)
+    if any(ball.material != materials.get(material) for ball in balls):
         raise SceneError(
             f"material is {shorten(material)}: the spheres are not made of it"
         )
+    A = Cell.of_spheres(balls).stiffnesses[0]
     # Hertz: A = E √(2R)/(3 (1 - ν²)), proportional to E.
-    return stiffness * (1 / unit)
+    return stiffness * float(materials[material].E / A)
 
 
 @cache
