@@ -309,16 +309,15 @@ class Lattice(Value):
     def statics(self) -> Statics:
         """Static states in floats; raises `lwa.InputError` for symbols."""
         demand_numbers(self.symbols, "numbers are wanted")
-        laws = []
-        factors = []
-        bonds = []
-        for link in self.links:
-            laws.append(tuple(link.law.function(n) for n in range(3)))
-            factors.append(float(link.factor))
-            bonds.append(Bond(link.i, link.j, float(link.cosine)))
-        network = Network(self.size, tuple(bonds))
-        masses = np.array([float(m) for m in self.masses])
-        return Statics(network, masses, tuple(laws), np.array(factors))
+        links = self.links
+        bonds = [Bond(link.i, link.j, float(link.cosine)) for link in links]
+        laws = [tuple(link.law.function(n) for n in range(3)) for link in links]
+        return Statics(
+            Network(self.size, tuple(bonds)),
+            masses=np.array(self.masses, float),
+            laws=tuple(laws),
+            factors=np.array([float(link.factor) for link in links]),
+        )
 
     @cached_property
     def _network(self) -> Network:

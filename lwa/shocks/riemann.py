@@ -16,7 +16,16 @@ that the speeds are ``2/r - 1`` and ``√(r(r-1))/arcosh √r``.
 
 Doubling rule. The leading pulse is the solitary wave on p₊ whose beads move at 2 v_p at most; exact
 for Toda's law, small jumps (KdV) and hard spheres. `lwa.shocks.waves` has the closed forms of the
-canonical wave, and the errors of both rules.
+canonical wave.
+
+Errors were measured on driven chains of equal beads, until their pulses were steady: powers
+with a load, k from 0.3 to 7, and without, k from 1.05 to 10, and the laws hertz2, magnetic,
+polynomial and lennard-jones, c₋/c₊ up to 200. `tests/test_errors.py` drives some of them again,
+random ones among them. The measure is the pulse's steepness Δ, by its saturating form::
+
+    ρ = 1 - e^{-Δ} = 1 - V²/F′(p₊+B),
+
+which vanishes for small jumps, where every rule is exact, and tends to 1 for hard spheres.
 """
 
 from __future__ import annotations
@@ -47,7 +56,6 @@ from lwa.shocks.waves import (
     WORKING,
     Pulse,
     demand_one_sign,
-    speed_error,
     velocity,
 )
 
@@ -264,9 +272,8 @@ class Shock(Parametric):
             value = number(getattr(front, name))
         try:
             relative = front._relative_error(name, rule)
-        except (
-            InputError
-        ):  # a rarefaction, or an unknown pulse: errors are measured by the pulse
+        except InputError:
+            # Errors are measured by the pulse: a rarefaction has none.
             relative = math.nan
         return Estimate(value, abs(value) * relative)
 
@@ -283,7 +290,8 @@ class Shock(Parametric):
     def _relative_error(self, name: EstimatedName, rule: RuleName) -> float:
         """The relative error of a result of a shock."""
         rho = self._pulse.rho
-        doubling = speed_error(rho)
+        # The second term is the canonical wave's: 5 % too fast for cubic contacts without load.
+        doubling = 0.01 * rho + 0.08 * rho**3
         if name == "leading_speed" and rule == "doubling":
             return doubling
         if name in ("leading_speed", "trailing_speed"):
