@@ -45,9 +45,8 @@ from lwa.loaded.background import Background
 from validation.lattice.result import Run
 from validation.lattice.simulate import repeated, simulate
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import highest_pulse, leading_pulses
+from validation.pulses.pulse import Piecewise, highest_pulse, leading_pulses
 from validation.pulses.sensors import tracks
-from validation.pulses.signals import Piecewise
 from validation.report.study import EXPONENT, Report, option, study
 from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import numeric_cell, struck

@@ -75,17 +75,14 @@ class Partition(Value):
     @cached_property
     def rational(self) -> dict[sp.Expr, sp.Rational]:
         """Mapping from each weight to its fraction; {} unless all fractions are rational."""
-        # Ratios may be rational where weights are not, such as m and 2m.
-        first = self.distinct[0]
-        ratios = {}
-        for weight in self.distinct:
-            ratios[weight] = factored(weight / first)
-            if not ratios[weight].is_Rational:
-                return {}
-        total = sp.Add(*(ratios[weight] for weight in self.weights))
+        # Fractions may be rational where weights are not, such as m and 2m.
+        sum_of_weights = sp.Add(*self.weights)
         fractions = {}
-        for weight, ratio in ratios.items():
-            fractions[weight] = self.total * ratio / total
+        for weight in self.distinct:
+            fraction = factored(self.total * weight / sum_of_weights)
+            if not fraction.is_Rational:
+                return {}
+            fractions[weight] = fraction
         return fractions
 
     @property
@@ -183,15 +180,6 @@ class Model(Parametric):
         """Names of the ring's generators."""
         return (*self.parameters, *self.masses.names, *self.contacts.names)
 
-    def exponent(self, context: fmpq_mpoly_ctx) -> fmpq_mpoly:
-        """The exponent k as an element of a ring that has `names` among its generators."""
-        if self.highest:
-            # The local exponent d ln(δ F′)/d ln δ
-            return 1 + generator(context, "phi2")
-        if self.k.is_Rational:
-            return context.constant(to_flint(self.k))
-        return generator(context, "k")
-
     def phi(
         self,
         context: fmpq_mpoly_ctx,
@@ -217,7 +205,10 @@ class Model(Parametric):
                 found.append(generator(context, name))
             return found
         # Those of a power are (k-1) … (k-n+1).
-        k = self.exponent(context)
+        if self.k.is_Rational:
+            k = context.constant(to_flint(self.k))
+        else:
+            k = generator(context, "k")
         for n in range(1, most):
             found.append(found[n] * (k - n))
         return found

@@ -4,14 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import partial
-from typing import Any
 
 from lwa.base.words import QUANTITIES
 from lwa.cell import k
 from lwa.command.answer import Answer, Lines, Row, Values, attempt
-from lwa.command.chain import take_chain
-from lwa.command.options import command, series_options
-from lwa.expansion.expand import Expansion, expand
+from lwa.command.chain import ChainInput
+from lwa.command.options import (
+    MASSES,
+    STIFFNESSES,
+    command,
+    exponent_option,
+    order_option,
+)
+from lwa.expansion.expand import expand
 from lwa.expansion.series import EpsilonSeries
 
 _ORDER = 8
@@ -28,10 +33,11 @@ _ERRORS = "estimate of a sum's error, by its last terms and by radiation"
     "lwa expansion --k 11/10 --masses 1,0.7",
     page="expansion",
 )
-@series_options(
-    k.name, "Highest power of ε = k - 1; by default 8, or 4 with symbols.", None
-)
-def expansion(order: int | None, style: str, **options: Any) -> None:
+@exponent_option(k.name)
+@MASSES
+@STIFFNESSES
+@order_option("Highest power of ε = k - 1; by default 8, or 4 with symbols.", None)
+def expansion(chain: ChainInput, order: int | None) -> Answer:
     """Expand the lattice's own wave in ``ε = k - 1``, and sum the series.
 
     Each sum comes with an estimate of its absolute error, at the peak force 1 on the first contact
@@ -41,7 +47,6 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
     In JSON c² is the sum of ``c2[n] ε^n``. `fwhm` is that of the first contact, `fwhm_contact_2`
     that of the second where contacts are unlike, and so on.
     """
-    chain = take_chain(options)
     cell = chain.cell
     expanded = expand(cell, order or _SYMBOLIC_ORDER, law=chain.law)
     # Whether an expansion is one in numbers is known when it is made; four orders take no time.
@@ -57,14 +62,18 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
     }
     # Each series under its name in JSON, with its name in text.
     series = {"c2": ("c²", expanded.c2)}
-    for q in QUANTITIES:
-        series[f"fwhm.{q}"] = (f"FWHM of the {q}", expanded.fwhm(q))
     # Unlike contacts have unlike widths; series with symbols are long enough for one.
+    contacts = 1
     if expanded.numeric and len(set(cell.stiffnesses)) > 1:
-        for i in range(1, cell.size):
-            for q in QUANTITIES:
-                label = f"FWHM of the {q}, contact {i + 1}"
-                series[f"fwhm_contact_{i + 1}.{q}"] = (label, expanded.fwhm(q, i))
+        contacts = cell.size
+    for i in range(contacts):
+        for q in QUANTITIES:
+            key = f"fwhm.{q}"
+            label = f"FWHM of the {q}"
+            if i:
+                key = f"fwhm_contact_{i + 1}.{q}"
+                label += f", contact {i + 1}"
+            series[key] = (label, expanded.fwhm(q, i))
     series["momentum"] = ("momentum", expanded.momentum)
     series["energy"] = ("energy", expanded.energy)
     rows: Lines = [
@@ -73,24 +82,19 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
         "",
     ]
     if expanded.numeric:
-        rows += _sum_rows(expanded, series)
+        rows.append(f"at k = {expanded.k}, order {expanded.order}:")
+        for key, (label, part) in series.items():
+            rows.append(Row(key, label, attempt(part.at)))
+        # A mass of the pulse as a particle: what a striker meets.
+        mass = attempt(expanded.effective_mass.at)
+        rows.append(Row("effective_mass", "effective mass P²/2E", mass))
+        if cell.size == 2 and contacts == 1:
+            rows.append(
+                "  (of the mean of a dimer's two contacts, which differ behind a striker)"
+            )
+        rows.append("")
     rows.append(partial(_series_lines, series))
-    Answer(head, rows, shown=[expanded], errors=_ERRORS).print(style)
-
-
-def _sum_rows(
-    expanded: Expansion, series: Mapping[str, tuple[str, EpsilonSeries]]
-) -> Iterator[Row | str]:
-    """Rows of the sums at the expansion's k."""
-    yield f"at k = {expanded.k}, order {expanded.order}:"
-    for key, (label, part) in series.items():
-        yield Row(key, label, attempt(part.at))
-    # A mass of the pulse as a particle: what a striker meets.
-    mass = attempt(expanded.effective_mass.at)
-    yield Row("effective_mass", "effective mass P²/2E", mass)
-    if expanded.cell.size == 2 and len(set(expanded.cell.stiffnesses)) == 1:
-        yield "  (of the mean of a dimer's two contacts, which differ behind a striker)"
-    yield ""
+    return Answer(head, rows, shown=[expanded], errors=_ERRORS)
 
 
 def _series_lines(

@@ -3,22 +3,22 @@
 Forces are dynamic: they count from the start, as in a record. Beads that start in equilibrium carry
 the static force of gravity and precompression; beads that fall onto each other carry none. Every
 number of a recording is measured in a run and in a second, more accurate one, whose difference
-tells its error (`validation.pulses.pulse.compared`). Where a hump of about half the record's
-maximum precedes the first pulse, or is it, another run may take the other one: the error is then
-at least the distance between them (`first_numbers`).
+tells its error (`validation.pulses.pulse.compared`).
 """
 
 from __future__ import annotations
 
 import operator
-from collections.abc import Container, Mapping
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lwa.base.arrays import Array
 from lwa.base.frozen import Estimate
 from validation.lattice.cost import RunProgress, silent
 from validation.lattice.equations import Motion
@@ -27,23 +27,23 @@ from validation.lattice.signal import RECORDS, sensors_of
 from validation.lattice.simulate import COMPILED, repeated
 from validation.pulses.pulse import (
     MeasureError,
+    Piecewise,
     Pulse,
+    Signal,
     all_pulses,
     compared,
     first_pulse,
-    first_pulses,
     highest_pulse,
+    readings,
     speed,
+    spline,
     tolerances,
 )
-from validation.pulses.readings import Reading, readings, speeds_between
-from validation.pulses.signals import Piecewise, Signal, spline
 from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
 
 TOLERANCE = 1e-10  # default tolerance of the accurate run
 _ROUNDING = 10  # rounding of the static compression over rtol; with more, steps follow the noise
-_UNSURE = 1e-4  # of half the maximum; two of 9,936 arrivals under load depend on its sixth digit
 _QUICK = 0.9  # of the time of a small wave, of light beads: a pulse takes more
 # Samples in the shortest time √(m/spring) of a bead between two contacts. The force of two beads
 # that collide, or of a Hertz chain's wave, has 1.5 or 1.9 √(m/spring) of one contact above half.
@@ -51,6 +51,48 @@ _RESOLVED = 22.0
 _MOST_SAMPLES = 100_000  # spare memory
 _HIDDEN = 0.5  # relative error of the peak from which on rounding may make the pulse
 _LOOKS = 200  # times at which a sensor is searched for an earlier pulse
+
+
+SPEEDS = ("speed_sites", "speed")
+"""Names of its speeds between two sensors, in sites per time and in length per time."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Measured numbers of a pulse at a sensor, or its speeds between two sensors.
+
+    Parameters
+    ----------
+    kind : {"bead", "contact"}
+        Kind of the sensor.
+    places : tuple of int
+        Number of the sensor, or of both, counted from 1.
+    numbers : mapping of Estimate
+        Those of `READINGS` or of `SPEEDS` that are known, by name.
+    static : float
+        Force at the (first) sensor from which dynamic forces count: the one at the start.
+    missing : str, optional
+        Reason why numbers are missing.
+    pulse : int
+        Number of the pulse at the sensor, counted from 1.
+    quantity : {"force", "velocity"}
+        The measured signal.
+    """
+
+    kind: str
+    places: tuple[int, ...]
+    numbers: Mapping[str, Estimate]
+    static: float
+    missing: str | None = None
+    pulse: int = 1
+    quantity: str = "force"
+
+    @property
+    def name(self) -> str:
+        """Kind, places, and a quantity other than force, such as bead 15 → 34."""
+        places = " → ".join(map(str, self.places))
+        quantity = "" if self.quantity == "force" else f" {self.quantity}"
+        return f"{self.kind} {places}{quantity}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,9 +194,9 @@ def record(
     firsts: list[Reading] = []
     found: list[Reading] = []
     for track, other in zip(recorded, checks, strict=True):
-        firsts += _readings(track, other, every=False)
+        firsts += _readings(track, other, _first)
         if every:
-            found += _readings(track, other, every=True)
+            found += _readings(track, other, all_pulses)
 
     def doubt(first: Reading, second: Reading, sites: float) -> str:
         """Return why one pulse does not pass two sensors at a speed; "" if it may."""
@@ -225,41 +267,42 @@ def tracks(
     """
     scene = run.scene
     levels = forces_at_start(scene)
-    places = _places(scene)
+    x = np.cumsum((0.0, *scene.spacings, *scene.spacings[-1:]))
     found = []
     for kind, numbers in sensors_of(scene).items():
         for row, i in enumerate(numbers):
             name = f"{kind} {i + 1}"
-            quantity = "velocity" if name in velocities else "force"
+            quantity = "force"
+            static = levels[name]
+            if name in velocities:
+                quantity = "velocity"
+                static = 0.0
             if run.path is None:
                 samples = getattr(run, RECORDS[kind, quantity])[row]
                 signal: Signal = spline(run.time[::every], samples[::every])
             else:
                 signal = run.signal(kind, i, quantity)
-            static = levels[name] if quantity == "force" else 0.0
-            dynamic = _above(signal, static) if static else signal
-            place = places.get(name, {})
+            dynamic = signal
+            if static:
+                dynamic = _above(signal, static)
+            place = _place(scene, x, kind, i)
             found.append(Track(kind, i + 1, dynamic, place, static, quantity))
     return tuple(found)
 
 
-def _places(scene: Scene) -> dict[str, dict[str, float]]:
-    """Return the places of sensors, by names such as "bead 15", without beads with one contact."""
-    sites: dict[str, float] = {}
-    for i in scene.bead_sensors:
-        if 0 < i < scene.contact_count:
-            sites[f"bead {i + 1}"] = i
-    for i in scene.contact_sensors:
-        # A contact is midway between its beads, the wall's half a spacing behind the last bead.
-        sites[f"contact {i + 1}"] = i + 0.5
-    x = np.cumsum((0.0, *scene.spacings, *scene.spacings[-1:]))
-    beads = np.arange(len(x))
-    places = {}
-    for name, site in sites.items():
-        places[name] = {"speed_sites": site}
-        if scene.spacings:
-            places[name]["speed"] = float(np.interp(site, beads, x))
-    return places
+def _place(scene: Scene, x: Array, kind: str, i: int) -> dict[str, float]:
+    """Return the place of a sensor by the names `SPEEDS`; empty for a bead with one contact.
+
+    x : places of the beads, and of one behind the last.
+    """
+    if kind == "bead" and not 0 < i < scene.contact_count:
+        return {}
+    # A contact is midway between its beads, the wall's half a spacing behind the last bead.
+    site = i + 0.5 if kind == "contact" else float(i)
+    place = {"speed_sites": site}
+    if scene.spacings:
+        place["speed"] = float(np.interp(site, np.arange(len(x)), x))
+    return place
 
 
 def _above(force: Signal, static: float) -> Piecewise:
@@ -298,30 +341,32 @@ def _at_sensors(scene: Scene, contact_forces: ArrayLike) -> dict[str, float]:
     return forces
 
 
-def _readings(track: Track, other: Track, every: bool) -> list[Reading]:
-    """Measure the first pulse at a sensor, or every pulse, with errors from another run."""
+def _first(signal: Signal) -> list[Pulse]:
+    """Measure the first pulse alone."""
+    return [first_pulse(signal)]
+
+
+def _readings(
+    track: Track, other: Track, pulses: Callable[[Signal], list[Pulse]]
+) -> list[Reading]:
+    """Measure pulses at a sensor, the first or all, with errors from another run."""
     place = (track.number,)
     blank = Reading(track.kind, place, {}, track.static, quantity=track.quantity)
     try:
-        if every:
-            known = all_pulses(other.force)
-            found = []
-            for pulse in all_pulses(track.force):
-                # Another run may see a pulse less, or one more.
-                same = min(known, key=partial(_delay, pulse))
-                found.append(compared(readings, [pulse, same]))
-        else:
-            found = [first_numbers(track.force, other.force)]
+        measured, known = map(pulses, (track.force, other.force))
     except MeasureError as error:
         return [replace(blank, missing=str(error))]
-    found = [numbers for numbers in found if numbers["peak"].relative_error < _HIDDEN]
+    found: list[Reading] = []
+    for pulse in measured:
+        # Another run may see a pulse less, or one more.
+        same = min(known, key=partial(_delay, pulse))
+        numbers = compared(readings, [pulse, same])
+        if numbers["peak"].relative_error < _HIDDEN:
+            found.append(replace(blank, numbers=numbers, pulse=len(found) + 1))
     if not found:
         reason = "no pulse: the force is the static one, but for errors"
         return [replace(blank, missing=reason)]
-    return [
-        replace(blank, numbers=numbers, pulse=number)
-        for number, numbers in enumerate(found, start=1)
-    ]
+    return found
 
 
 def _delay(pulse: Pulse, other: Pulse) -> float:
@@ -329,32 +374,65 @@ def _delay(pulse: Pulse, other: Pulse) -> float:
     return abs(other.arrival - pulse.arrival)
 
 
-def first_numbers(force: Signal, other: Signal) -> dict[str, Estimate]:
-    """Return `READINGS` of the first pulse, with errors from another run's signal.
-
-    The first pulse is the first one above half the maximum. The other signal is also searched a
-    little below and above half, and the largest error counts.
+def speeds_between(
+    sensors: Sequence[Reading],
+    places: Sequence[Mapping[str, float]],
+    total: Callable[[float, float], float],
+    doubt: Callable[[Reading, Reading, float], str] = lambda *_: "",
+) -> tuple[Reading, ...]:
+    """Return the speeds of the pulse from each sensor to the next one of its kind.
 
     Parameters
     ----------
-    force : Signal
-        A signal.
-    other : Signal
-        The same signal of another run, see `validation.pulses.pulse.compared`.
-
-    Raises
-    ------
-    MeasureError
-        If one of the signals has no pulse.
+    sensors : sequence of Reading
+        First pulses.
+    places : sequence of mappings
+        Places of the sensors along the chain, by the names `SPEEDS`.
+    total : callable
+        Error of a time between two arrivals as a function of the errors of both.
+    doubt : callable
+        Reason, "" if there is none, why one pulse does not pass two sensors at a speed in sites.
     """
-    first = readings(first_pulse(force))
-    shares = [(1 + part) / 2 for part in (-_UNSURE, 0.0, _UNSURE)]
-    seen = [readings(pulse) for pulse in first_pulses(other, shares)]
-    farthest = {}
-    for name, value in first.items():
-        values = [numbers[name] for numbers in seen]
-        farthest[name] = max(values, key=lambda x: abs(x - value))
-    return compared(dict, [first, farthest])
+    legs = []
+    for (first, at), (second, there) in pairwise(zip(sensors, places, strict=True)):
+        if first.kind != second.kind:
+            continue
+        leg = replace(
+            first, places=first.places + second.places, numbers={}, missing=None
+        )
+        try:
+            time = _elapsed(first, second, total)
+            if not (at and there):
+                raise MeasureError(
+                    "a bead with one contact has a force of half a site away"
+                )
+            speeds = {name: abs(there[name] - at[name]) / time.value for name in at}
+            reason = doubt(first, second, speeds["speed_sites"])
+            if reason:
+                raise MeasureError(reason)
+        except MeasureError as reason:
+            legs.append(replace(leg, missing=str(reason)))
+            continue
+        error = time.relative_error
+        numbers = {name: Estimate(V, V * error) for name, V in speeds.items()}
+        legs.append(replace(leg, numbers=numbers))
+    return tuple(legs)
+
+
+def _elapsed(
+    first: Reading, second: Reading, total: Callable[[float, float], float]
+) -> Estimate:
+    """Return the time from one arrival to a later one; raises `MeasureError` if there is none."""
+    if "arrival" not in first.numbers or "arrival" not in second.numbers:
+        raise MeasureError("one of the two has no pulse")
+    start = first.numbers["arrival"]
+    end = second.numbers["arrival"]
+    time = Estimate(end.value - start.value, total(start.error, end.error))
+    if time.value <= 0:
+        raise MeasureError("a speed needs a later second arrival")
+    if time.value <= time.error:
+        raise MeasureError("the arrivals are equal but for their errors")
+    return time
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,6 @@ of few pulses may be small by chance.
 
 from __future__ import annotations
 
-import copy
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -27,11 +26,13 @@ import numpy as np
 import scipy
 
 from lwa import Cell
+from lwa.base import files
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
 from lwa.base.files import entries, load
 from lwa.base.frozen import Estimate
 from lwa.command.options import quantities, quantity
+from lwa.spheres.beads import FILE, read_materials
 from lwa.spheres.beads import spheres as read_spheres
 from validation.pictures import Curve, Panel
 from validation.report.study import Report, option, study
@@ -40,6 +41,7 @@ from validation.scenes.checks import SceneError
 from validation.scenes.columns import Stated
 from validation.scenes.measured import MeasuredFile
 from validation.studies.records import column_options
+from validation.studies.run import print_option
 from validation.waves.solver import exact_wave
 
 _DRAWS = 1000  # of the coefficients of ln V, for the errors
@@ -65,13 +67,6 @@ _EXAMPLE = """force (N),force_error (N),speed (m/s),speed_error (m/s)
 """
 
 
-def _print(context: click.Context, given: click.Parameter, wanted: bool) -> None:
-    """Print an example of data, and end the command."""
-    if wanted and not context.resilient_parsing:  # completion parses resiliently
-        click.echo(_EXAMPLE, nl=False)
-        context.exit()
-
-
 @study(
     click.argument("data", type=click.Path()),
     option("--masses", callback=quantities, says="Mass of a bead; by default 1."),
@@ -91,13 +86,11 @@ def _print(context: click.Context, given: click.Parameter, wanted: bool) -> None
         metavar="NAME",
         says="Material in this file whose modulus E is wanted.",
     ),
-    option(
+    print_option(
         "--example",
+        lambda _: _EXAMPLE,
+        "Print an example of DATA: blows on steel balls of 19.05 mm and 29 g.",
         is_flag=True,
-        is_eager=True,
-        expose_value=False,
-        callback=_print,
-        says="Print an example of DATA: blows on steel balls of 19.05 mm and 29 g.",
     ),
     column_options,
     page="experiment",
@@ -122,7 +115,7 @@ def law(
     Peak contact forces and speeds are in the units of the masses and the spacing, by default those
     of unit mass and spacing; with spheres they are in N and m/s. ``k_value``, ``A_value`` and, of
     an unknown material, ``E_value``, with their errors; ``correlation_value`` of k and ln A;
-    ``residual_value`` of ln V; ``one_power``.
+    ``one_power``.
     """
     file = MeasuredFile(data, **stated)
     force, speed, weight = _pulses(file)
@@ -158,7 +151,6 @@ def law(
     rows = []
     values = {
         "correlation_value": fit.correlation,
-        "residual_value": fit.residual,
         "one_power": fit.one_power,
     }
     for name, number in numbers.items():
@@ -195,23 +187,15 @@ def _pulses(file: MeasuredFile) -> tuple[Array, Array, Array | None]:
 
 def _modulus(content: dict[str, Any], material: str, stiffness: Estimate) -> Estimate:
     """Return E of a material in a file of equal spheres, from the stiffness A of their contacts."""
-
-    def contact(E: float) -> float:
-        """Return A at a given E."""
-        changed = copy.deepcopy(content)
-        given = changed.setdefault("materials", {}).setdefault(
-            material, {"like": material}
-        )
-        given["E"] = E
-        return float(Cell.of_spheres(read_spheres(changed)).stiffnesses[0])
-
-    unit = contact(1.0)
-    if not contact(2.0) > unit:
+    materials = read_materials(files.Table(content, "", FILE))
+    balls = read_spheres(content)
+    if any(ball.material != materials.get(material) for ball in balls):
         raise SceneError(
             f"material is {shorten(material)}: the spheres are not made of it"
         )
+    A = Cell.of_spheres(balls).stiffnesses[0]
     # Hertz: A = E √(2R)/(3 (1 - ν²)), proportional to E.
-    return stiffness * (1 / unit)
+    return stiffness * float(materials[material].E / A)
 
 
 @cache
@@ -288,7 +272,6 @@ class PowerFit:
     curvature: (
         Estimate  # coefficient of (ln F)² in a parabola for ln V; 0 for one power
     )
-    residual: float  # standard deviation of ln V from the fit
 
     @property
     def one_power(self) -> bool:
@@ -348,20 +331,22 @@ def fit_power(
         float(np.corrcoef(k, log_A)[0, 1]),
         stiffness(medium.log_stiffness(sixth, hertz), _HERTZ),
         _interval(curvature),
-        float(np.std(y - np.polyval((slope[0], constant[0]), x - middle))),
     )
 
 
 def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, float]:
     """Fit a polynomial in x - middle; return coefficients (degree + 1, 1 + draws) and middle."""
-    w = np.ones_like(x) if weight is None else weight
-    middle = float(
-        np.average(x, weights=w**2)
-    )  # slope and constant are uncorrelated about it
+    w = np.ones_like(x)
+    least = 0.0  # scatter of residuals over their known deviations
+    if weight is not None:
+        w = weight
+        least = 1.0
+    # Slope and constant are uncorrelated about it.
+    middle = float(np.average(x, weights=w**2))
     best, covariance = np.polyfit(x - middle, y, degree, w=w, cov="unscaled")
     freedom = len(x) - degree - 1
     scatter = np.sum((w * (y - np.polyval(best, x - middle))) ** 2) / freedom
-    covariance = covariance * (scatter if weight is None else max(scatter, 1.0))
+    covariance = covariance * max(scatter, least)
     # On data without scatter the rounding of ln F, of ln V and of the fit is left.
     rounding = 2 * np.finfo(float).eps * (1 + np.abs(x) + np.abs(y))
     change = np.linalg.pinv(w[:, np.newaxis] * np.vander(x - middle, degree + 1)) * w

@@ -106,7 +106,7 @@ def respond(force: Series, inverse: Pair, half_period: float) -> Series:
 
 
 def coefficients(force: Array) -> Series:
-    """Return f of ``F_a = Re Σ f_q e^{iqξ}``, q = 0 … πn/L, from F_a on a `periodic_grid`."""
+    """Return f of ``F_a = Re Σ f_q e^{iqξ}`` from F_a on a `periodic_grid`."""
     n = len(force) // 2
     series = scipy.fft.rfft(force) / n
     # The mean and the fastest cosine stand once in a Fourier sum, not twice.

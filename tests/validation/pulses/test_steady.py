@@ -6,12 +6,9 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from validation.lattice.simulate import simulate
 from validation.pulses import steady
-from validation.pulses.pulse import leading_pulses
-from validation.pulses.signals import spline
+from validation.pulses.pulse import leading_pulses, spline
 from validation.pulses.steady import LABELS, STRETCH, point
-from validation.scenes.scene import Scene
 from validation.waves.newton import SpecialRatio
 from validation.waves.solver import exact_wave, solve
 
@@ -46,21 +43,6 @@ def test_a_solitary_wave_agrees_with_newtons_method(k, omega):
         assert numbers[name].error < 1e-5
 
 
-def test_the_decay_is_per_site():
-    """Against the slope of the log of peak forces over the site, from one run read by hand."""
-    sites = tuple(range(30, 62, 2))
-    scene = Scene(
-        masses=(1.0, 0.75) * 50, stiffnesses=(1.0,) * 99, k=1.5, velocities=(1.0,),
-        contact_sensors=sites, duration=100.0, samples=4001,
-    )  # fmt: skip
-    run = simulate(scene, rtol=1e-7, method="symplectic")
-    slope = -np.polyfit(sites, np.log([force.max() for force in run.contact_force]), 1)[
-        0
-    ]
-    # The pulse is steady to some percent there.
-    assert at(HERTZ, "0.75")["decay"].value == pytest.approx(slope, rel=0.05)
-
-
 def agree(one, other, speed=1.0):
     """Hold two measurements to their errors; the other has so many times the speed."""
     for name in LABELS:
@@ -82,9 +64,7 @@ def test_the_errors_cover_other_distances():
 @pytest.mark.parametrize(
     ("k", "omega", "reason"),
     [
-        (HERTZ, R(1, 2), "not steady: a higher pulse follows; at 320 sites"),
-        # From 56 to 64 sites the force of the first pulse rises by a half.
-        (R(3), R(3, 5), "not steady: a higher pulse has overtaken; at 320 sites"),
+        (HERTZ, R(1, 2), "not steady: at 320 sites the highest pulse has 1"),
         (HERTZ, R(1, 10**40), "duration is "),  # longer than any run
     ],
 )
