@@ -26,6 +26,7 @@ def test_the_first_pages_ball_does_not_yield():
     assert pressure("0.005") < 1.6 * 1900e6 < pressure("0.1")
 
 
+@pytest.mark.slow
 def test_turning_points_of_the_light_bead():
     """Four at the largest special ratio, and two more at each further one."""
     xi = np.linspace(-9, 9, 9001)
