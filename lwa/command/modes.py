@@ -65,15 +65,14 @@ def dispersion(chain: ChainInput, order: int) -> Answer:
         chain = replace(chain, law=Power(EXPONENT))
     linear = Dispersion(chain.cell, chain.law.exponent)
     # null for a branch that has no series: readers find the same keys.
-    head: Values = {"acoustic": None, "optical": None}
+    series = linear.series(order)
+    head: Values = {"acoustic": None, "optical": None} | series
     rows: Lines = [
         chain.text,
         "Ω²(κ), κ = qD and Ω/D the frequency in τ",
         "",
+        partial(_series_lines, series),
     ]
-    series = linear.series(order)
-    head |= series
-    rows.append(partial(_series_lines, series))
     shown: list[Shown | Made] = [linear]
     if precompression is not None:
         loaded = LoadedChain(chain.cell, chain.law, precompression)
