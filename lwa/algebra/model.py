@@ -75,17 +75,14 @@ class Partition(Value):
     @cached_property
     def rational(self) -> dict[sp.Expr, sp.Rational]:
         """Mapping from each weight to its fraction; {} unless all fractions are rational."""
-        # Ratios may be rational where weights are not, such as m and 2m.
-        first = self.distinct[0]
-        ratios = {}
-        for weight in self.distinct:
-            ratios[weight] = factored(weight / first)
-            if not ratios[weight].is_Rational:
-                return {}
-        total = sp.Add(*(ratios[weight] for weight in self.weights))
+        # Fractions may be rational where weights are not, such as m and 2m.
+        sum_of_weights = sp.Add(*self.weights)
         fractions = {}
-        for weight, ratio in ratios.items():
-            fractions[weight] = self.total * ratio / total
+        for weight in self.distinct:
+            fraction = factored(self.total * weight / sum_of_weights)
+            if not fraction.is_Rational:
+                return {}
+            fractions[weight] = fraction
         return fractions
 
     @property

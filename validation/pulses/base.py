@@ -64,8 +64,10 @@ class Fit:
         samples does.
         """
         products = self.correlations
+        if not products[0]:
+            return 1.0
         # products[j]/products[0] = ρ_j, and ρ_0 = 1 counts once.
-        return float(2 * products.sum() / products[0] - 1) if products[0] else 1.0
+        return float(2 * products.sum() / products[0] - 1)
 
     @cached_property
     def correlations(self) -> Array:
@@ -106,8 +108,9 @@ class Base:
     @classmethod
     def before(cls, t: Array, f: Array, rise: float, width: float) -> Base | None:
         """Return the base before a pulse; None if the record begins too late."""
-        late = rise - t[0] < (_BEFORE + 2.5) * width
-        end = rise - (_CLOSE if late else _BEFORE) * width
+        end = rise - _BEFORE * width
+        if t[0] > end - 2.5 * width:
+            end = rise - _CLOSE * width
         calm = (t < end) & (t > end - _LONG * width)
         x = (t[calm] - rise) / width
         if len(x) < FEWEST or np.ptp(x) < 0.9:

@@ -22,7 +22,7 @@ from scipy.signal import peak_widths
 from lwa.base.arrays import Array
 from lwa.base.frozen import Estimate
 from validation.pulses.base import Base
-from validation.pulses.signals import MeasureError
+from validation.pulses.pulse import MeasureError
 
 _BESIDE = 0.3  # widths in front of the rise and behind the fall that the fit takes in
 _READ = 0.1  # widths likewise in which the spline is read: its ends follow the noise
@@ -137,7 +137,9 @@ def _read(splines: BSpline, ends: tuple[float, float]) -> Array:
         top = min(max(int(np.argmax(f)), 1), _GRID - 1)
         slope = (f[top + 1] - f[top - 1]) / 2
         bend = f[top - 1] - 2 * f[top] + f[top + 1]
-        shift = min(max(-slope / bend, -1.0), 1.0) if bend < 0 else 0.0
+        shift = 0.0
+        if bend < 0:
+            shift = min(max(-slope / bend, -1.0), 1.0)
         peak = f[top] + slope * shift / 2
         # SciPy measures the width at the height f[top] - prominence/2. The prominence
         # 2 f[top] - peak makes this peak/2, half of the vertex above the base, which is 0. Both

@@ -336,14 +336,17 @@ def fit_power(
 
 def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, float]:
     """Fit a polynomial in x - middle; return coefficients (degree + 1, 1 + draws) and middle."""
-    w = np.ones_like(x) if weight is None else weight
-    middle = float(
-        np.average(x, weights=w**2)
-    )  # slope and constant are uncorrelated about it
+    w = np.ones_like(x)
+    least = 0.0  # scatter of residuals over their known deviations
+    if weight is not None:
+        w = weight
+        least = 1.0
+    # Slope and constant are uncorrelated about it.
+    middle = float(np.average(x, weights=w**2))
     best, covariance = np.polyfit(x - middle, y, degree, w=w, cov="unscaled")
     freedom = len(x) - degree - 1
     scatter = np.sum((w * (y - np.polyval(best, x - middle))) ** 2) / freedom
-    covariance = covariance * (scatter if weight is None else max(scatter, 1.0))
+    covariance = covariance * max(scatter, least)
     # On data without scatter the rounding of ln F, of ln V and of the fit is left.
     rounding = 2 * np.finfo(float).eps * (1 + np.abs(x) + np.abs(y))
     change = np.linalg.pinv(w[:, np.newaxis] * np.vander(x - middle, degree + 1)) * w

@@ -23,8 +23,7 @@ from lwa.base.arrays import Array, finite
 from lwa.base.frozen import Estimate
 from lwa.base.words import QUANTITIES, QuantityName, one_of
 from validation.pictures import Curve, Panel, Pictured
-from validation.pulses.pulse import highest_pulse
-from validation.pulses.signals import Piecewise
+from validation.pulses.pulse import Piecewise, highest_pulse
 from validation.scenes.checks import between, integer
 from validation.waves import newton
 

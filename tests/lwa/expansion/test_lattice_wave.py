@@ -69,7 +69,7 @@ def test_relative_errors_of_composed_results_add_up():
         ("fwhm", "strain", "time"): ("strain", "speed"),
     }.items():
         total = sum(errors[part] for part in parts)
-        assert wave.estimate(*composed).relative_error == pytest.approx(total, rel=1e-2)
+        assert wave.estimate(*composed).relative_error == pytest.approx(total, rel=1e-9)
 
 
 def passage(k, omega, speed, length):

@@ -9,10 +9,8 @@ import scipy
 
 from validation import simulate
 from validation.pulses.base import Base
-from validation.pulses.discharge import corrected, suggested
-from validation.pulses.noisy import noisy_pulse
-from validation.pulses.pulse import MeasureError, first_pulse
-from validation.pulses.signals import spline
+from validation.pulses.noisy import corrected, noisy_pulse, suggested
+from validation.pulses.pulse import MeasureError, first_pulse, spline
 from validation.studies.paper import recorded_chain
 
 NUMBERS = ("arrival", "peak", "fwhm")

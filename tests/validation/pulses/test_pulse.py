@@ -13,6 +13,7 @@ from validation.pulses.pulse import (
     FEWEST,
     ROUNDING,
     MeasureError,
+    Piecewise,
     Pulse,
     compared,
     derived,
@@ -20,7 +21,6 @@ from validation.pulses.pulse import (
     speed,
     tolerances,
 )
-from validation.pulses.signals import Piecewise
 
 
 def arch(t, arrival=0.0, peak=1.0, beta=1.0):

@@ -11,13 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from validation.lattice.simulate import simulate
-from validation.pulses.pulse import MeasureError, all_pulses, first_pulse
+from validation.pulses.pulse import MeasureError, all_pulses, first_pulse, spline
 from validation.pulses.sensors import (
     enough_samples,
     record,
     tracks,
 )
-from validation.pulses.signals import spline
 from validation.scenes.chains import struck
 from validation.scenes.scenefile import scene
 from validation.studies.run import example

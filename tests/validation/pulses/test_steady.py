@@ -7,8 +7,7 @@ import pytest
 import sympy as sp
 
 from validation.pulses import steady
-from validation.pulses.pulse import leading_pulses
-from validation.pulses.signals import spline
+from validation.pulses.pulse import leading_pulses, spline
 from validation.pulses.steady import LABELS, STRETCH, point
 from validation.waves.newton import SpecialRatio
 from validation.waves.solver import exact_wave, solve

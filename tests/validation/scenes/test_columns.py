@@ -9,8 +9,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from lwa import InputError
+from validation.scenes.columns import in_si
 from validation.scenes.measured import MeasuredFile
-from validation.scenes.units import in_si
 
 
 def read(tmp_path, text, encoding="utf-8", **stated):
