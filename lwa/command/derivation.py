@@ -78,15 +78,16 @@ def derive(chain: ChainInput, **options: Any) -> Answer:
     """
     theory = homogenize(chain.cell, law=chain.law, **options)
     pde = theory.pde
-    head: Values = settings_json(theory)
-    # Names of the paper; λ is 1 on the acoustic branch.
-    head["lambda"] = theory.amplitude_ratio
-    head["ansatz"] = theory.ansatz
-    # null where the order or the branch has none: readers find the same keys.
-    head |= dict.fromkeys("GHI") | pde.third_order
-    head["terms"] = _terms_json(pde.coefficients)
-    head["defect"] = _terms_json(theory.defect)
-    head["conservative"] = pde.conservative
+    head = settings_json(theory) | {
+        "lambda": theory.amplitude_ratio,  # 1 on the acoustic branch
+        "ansatz": theory.ansatz,
+        # null where the order or the branch has none: readers find the same keys
+        **dict.fromkeys("GHI"),
+        **pde.third_order,
+        "terms": _terms_json(pde.coefficients),
+        "defect": _terms_json(theory.defect),
+        "conservative": pde.conservative,
+    }
     rows: Lines = [
         chain.text,
         *closure_lines(theory),
