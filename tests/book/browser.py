@@ -149,9 +149,12 @@ class Page:
 
     def loaded(self):
         """Wait for the page, its pictures and its mathematics."""
-        self.wait(
-            "document.readyState === 'complete' && location.protocol !== 'about:'"
-        )
+        there = "document.readyState === 'complete' && location.protocol !== 'about:'"
+        end = time.monotonic() + SECONDS
+        while not self.evaluate(there):
+            if time.monotonic() > end:
+                raise TimeoutError(f"a page is not there after {SECONDS} s")
+            time.sleep(0.05)
         self.evaluate("window.MathJax?.startup?.promise.then(() => 0)")
 
     def evaluate(self, expression):
@@ -165,14 +168,6 @@ class Page:
         if "exceptionDetails" in found:
             raise RuntimeError(f"{expression}: {found['exceptionDetails']['text']}")
         return found["result"].get("value")
-
-    def wait(self, condition):
-        """Wait until an expression is true."""
-        end = time.monotonic() + SECONDS
-        while not self.evaluate(condition):
-            if time.monotonic() > end:
-                raise TimeoutError(f"{condition} is not true after {SECONDS} s")
-            time.sleep(0.05)
 
     def place(self, selector, x=0.5, y=0.5):
         """A point of an element, in parts of its box, after it was scrolled into view."""

@@ -13,6 +13,7 @@ from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
+from itertools import zip_longest
 from unittest.mock import ANY
 
 import numpy as np
@@ -446,14 +447,10 @@ def turned():
                 hands = [Hand(page, name, way) for name, page in pages.items()]
                 for hand in hands:
                     hand.begin()
-                running = [(hand, hand.steps()) for hand in hands]
-                while running:
-                    stepped = [
-                        (hand, steps, next(steps, None)) for hand, steps in running
-                    ]
-                    running = [(hand, steps) for hand, steps, step in stepped if step]
-                    time.sleep(LIVE)  # for all things at once
-                    for hand, _, step in stepped:
+                # All things take a step, one after the other.
+                for steps in zip_longest(*(hand.steps() for hand in hands)):
+                    time.sleep(LIVE)
+                    for hand, step in zip(hands, steps, strict=True):
                         if step:
                             seen[hand.name].append(hand.read(*step))
             for hand in hands:
