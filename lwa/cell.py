@@ -339,6 +339,19 @@ def exponent(value: Any) -> sp.Expr:
     return result
 
 
+def by_name(symbols: Collection[sp.Symbol]) -> dict[str, sp.Symbol]:
+    """Symbols by their names; raises `lwa.InputError` for a name of two symbols."""
+    known: dict[str, sp.Symbol] = {}
+    # SymPy tells symbols of one name and different assumptions apart; a caller's keyword cannot.
+    for symbol in sorted(symbols, key=str):
+        if symbol.name in known:
+            raise InputError(
+                f"{symbol.name!r} names two symbols, with different assumptions: choose another"
+            )
+        known[symbol.name] = symbol
+    return known
+
+
 def substitution(
     values: Mapping[str, Any],
     symbols: Collection[sp.Symbol],
@@ -366,14 +379,7 @@ def substitution(
         For a name that does not occur or that two symbols have, and a value of the cell that is
         not positive.
     """
-    known: dict[str, sp.Symbol] = {}
-    # SymPy tells symbols of one name and different assumptions apart; a caller's keyword cannot.
-    for symbol in sorted(symbols, key=str):
-        if symbol.name in known:
-            raise InputError(
-                f"{symbol.name!r} names two symbols, with different assumptions: use one"
-            )
-        known[symbol.name] = symbol
+    known = by_name(symbols)
     # The values, by symbol
     new = {}
     for name, value in values.items():

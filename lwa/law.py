@@ -152,10 +152,6 @@ class ContactLaw(Value):
         delta = real(delta, "delta")
         if delta.is_negative and not self.pulls:
             return sp.S.Zero
-        return self._at(delta, n)
-
-    def _at(self, delta: sp.Expr, n: int) -> sp.Expr:
-        """The n-th derivative of F at the compression of a closed contact."""
         return self._put(self.slope(n), delta)
 
     def _put(self, value: sp.Expr, delta: sp.Expr) -> sp.Expr:
@@ -319,21 +315,16 @@ class Power(ContactLaw):
     def exponent(self) -> sp.Expr:
         return self.k
 
-    # SymPy integrates δ^k by cases of k.
-    @cached_property
-    def energy(self) -> sp.Expr:
-        return self.delta ** (self.k + 1) / (self.k + 1)
+    def slope(self, n: int = 1) -> sp.Expr:
+        n = integer(n, "n", 0)
+        return sp.ff(self.k, n) * self.delta ** (self.k - n)
 
     def phi(self, n: int) -> sp.Expr:
         return sp.ff(self.k - 1, integer(n, "n", 1) - 1)
 
-    def _at(self, delta: sp.Expr, n: int) -> sp.Expr:
-        return sp.ff(self.k, n) * power(delta, self.k - n)
-
     def of_strain(self, p: sp.Expr, D: sp.Expr, n: int = 0) -> sp.Expr:
-        n = integer(n, "n", -1)
-        # p^k/k derived n times; for n = -1 the falling factorial is 1/(k + 1).
-        return sp.ff(self.k, n) / self.k * power(real(p, "p"), self.k - n)
+        # The time of a power's wave equation holds the spacing, and the k of F′ as well.
+        return super().of_strain(p, sp.S.One, n) / self.k
 
     def inverse(self, force: sp.Expr) -> sp.Expr:
         return power(real(force, "force"), 1 / self.k)

@@ -15,7 +15,6 @@ Deng, Nasrollahi, Rizzo and Li 2016, Sensors 16, 5, test materials by this delay
 from __future__ import annotations
 
 import math
-import operator
 from collections.abc import Sequence
 from functools import cache
 from typing import Any
@@ -29,7 +28,6 @@ from lwa.command.options import quantities
 from lwa.spheres.hertz import stiffness
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import MeasureError
-from validation.pulses.readings import echoes
 from validation.pulses.sensors import record
 from validation.report.study import Report, option, study
 from validation.report.table import Column, Table
@@ -71,10 +69,13 @@ def echo(
         contact_sensors=(integer(sensor, "sensor", 2, beads - 2) - 1,),
         duration=2.5 * beads * float(2 * bead.radius / pulse.speed) + held,
     )
-    later = echoes(record(scene, every=True).sensors, operator.add)
-    if not later or not (numbers := later[0][0].numbers):
+    passed = record(scene, every=True).sensors
+    if len(passed) < 2:
         raise MeasureError(f"contact {sensor}: no pulse comes back from the wall")
-    return numbers["delay"], numbers["ratio"]
+    first, back = (pulse.numbers for pulse in passed[:2])
+    early, late = first["arrival"], back["arrival"]
+    delay = Estimate(late.value - early.value, late.error + early.error)
+    return delay, back["peak"] / first["peak"]
 
 
 def modulus(delay: Estimate, nu: float = 0.3, **chain: Any) -> Estimate:

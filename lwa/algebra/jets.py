@@ -101,10 +101,11 @@ class JetAlgebra:
         self.weight = weight
         self.zero = self.context.constant(0)
         self.one = self.context.constant(1)
-        self.k = model.exponent(self.context)
         self.mu = model.masses.elements(self.context)
         self.c = model.contacts.elements(self.context)
-        self.phi = model.phi(self.context, weight)
+        self.phi = model.phi(self.context, max(weight, 2))
+        # φ_2 of a power is k - 1; of another law 1 + φ_2 is the local exponent.
+        self.k = 1 + self.phi[2]
         self.half = (self.k + 1) / 2
         # The generators in their order: parameters of law and cell, r_1 …, s_0 ….
         generators = self.context.gens()

@@ -183,15 +183,6 @@ class Model(Parametric):
         """Names of the ring's generators."""
         return (*self.parameters, *self.masses.names, *self.contacts.names)
 
-    def exponent(self, context: fmpq_mpoly_ctx) -> fmpq_mpoly:
-        """The exponent k as an element of a ring that has `names` among its generators."""
-        if self.highest:
-            # The local exponent d ln(δ F′)/d ln δ
-            return 1 + generator(context, "phi2")
-        if self.k.is_Rational:
-            return context.constant(to_flint(self.k))
-        return generator(context, "k")
-
     def phi(
         self,
         context: fmpq_mpoly_ctx,
@@ -217,7 +208,10 @@ class Model(Parametric):
                 found.append(generator(context, name))
             return found
         # Those of a power are (k-1) … (k-n+1).
-        k = self.exponent(context)
+        if self.k.is_Rational:
+            k = context.constant(to_flint(self.k))
+        else:
+            k = generator(context, "k")
         for n in range(1, most):
             found.append(found[n] * (k - n))
         return found

@@ -12,7 +12,7 @@ from lwa.base.exact import rearranged
 
 
 def integral(F: sp.Expr, x: sp.Symbol) -> sp.Expr:
-    """The integral ``∫ F dx``; rational powers of linear functions by the power rule.
+    """The integral ``∫ F dx``; powers of linear functions by the power rule.
 
     SymPy multiplies these out: large powers take long, and the terms of a pole cancel next to it.
     """
@@ -22,7 +22,7 @@ def integral(F: sp.Expr, x: sp.Symbol) -> sp.Expr:
         factor, rest = term.as_independent(x, as_Add=False)
         base, e = rest.as_base_exp()
         slope = base.diff(x)
-        if e.is_Rational and e != -1 and base.has(x) and not slope.has(x):
+        if (e + 1).is_nonzero and base.has(x) and not slope.has(x):
             total += factor * base ** (e + 1) / (slope * (e + 1))
         else:
             total += sp.integrate(term, x, conds="none")

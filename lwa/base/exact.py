@@ -13,6 +13,7 @@ import operator
 import re
 from collections.abc import Callable, Collection, Mapping
 from fractions import Fraction
+from numbers import Rational, Real
 from typing import Any
 
 import sympy as sp
@@ -103,14 +104,10 @@ def read_exact(value: Any, name: str) -> sp.Expr:
 
 def _from_number(value: Any, name: str) -> sp.Rational:
     """Read a number of Python or NumPy."""
-    # The item of a masked scalar would be the number behind its mask.
-    scalar = hasattr(value, "item") and getattr(value, "size", 1) == 1
-    if scalar and not hasattr(value, "mask"):
-        value = value.item()
-    # True is an integer of Python.
-    if isinstance(value, bool) or not isinstance(value, int | float | Fraction):
+    # True is an integer of Python; numbers of one element, and masked ones, are arrays.
+    if isinstance(value, bool) or not isinstance(value, Real):
         raise InputError(f"{name} is {shorten(value)}: a number or a symbol is wanted")
-    if not isinstance(value, float):
+    if isinstance(value, Rational):
         return sp.Rational(value)
     if not math.isfinite(value):
         raise InputError(f"{name} is {value}: a finite number is wanted")
@@ -192,24 +189,6 @@ def demand_numbers(free: Collection[sp.Symbol], why: str) -> None:
     """Raise `InputError` if any symbol is left; ``why`` ends the message."""
     if free:
         raise InputError(f"{min(map(str, free))!r} has no value: {why}")
-
-
-def demand_distinct(**parts: Collection[sp.Symbol]) -> None:
-    """Raise `InputError` if quantities of two parts have symbols of one name.
-
-    >>> demand_distinct(cell=[sp.Symbol("q")], wavenumber=[sp.Symbol("q", real=True)])
-    Traceback (most recent call last):
-        ...
-    lwa.base.InputError: 'q' names a symbol of the cell and the wavenumber: choose another
-    """
-    owners: dict[str, str] = {}
-    for part, symbols in parts.items():
-        for symbol in symbols:
-            owner = owners.setdefault(symbol.name, part)
-            if owner != part:
-                raise InputError(
-                    f"{symbol.name!r} names a symbol of the {owner} and the {part}: choose another"
-                )
 
 
 def number(value: sp.Expr) -> float:

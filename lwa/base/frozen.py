@@ -191,9 +191,8 @@ class Estimate(Value):
 
     def latex(self) -> str:
         """The value and its error, if known, such as ``1.411928 ± 3 · 10^{-6}``."""
-        return re.sub(
-            r"e([+-])0*(\d+)", _power_of_ten, repr(self).partition(",")[0]
-        ).replace("±", r"\pm")
+        text = repr(self).partition(",")[0].replace("e+", "e").replace("±", r"\pm")
+        return re.sub(r"e(-?)0*(\d+)", r" \\cdot 10^{\1\2}", text)
 
     def _repr_latex_(self) -> str:
         return f"${self.latex()}$"
@@ -204,8 +203,3 @@ def _place(value: float) -> int:
     if not value:
         return 0
     return math.floor(math.log10(abs(value)))
-
-
-def _power_of_ten(found: re.Match[str]) -> str:
-    sign = found[1].replace("+", "")
-    return rf" \cdot 10^{{{sign}{found[2]}}}"

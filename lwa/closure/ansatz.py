@@ -10,34 +10,13 @@ equation; the difference between the two is the defect.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from flint import fmpq_mpoly
 
 from lwa.algebra.jets import GradedSeries, JetAlgebra, taylor
 from lwa.algebra.model import Model
 from lwa.base.progress import Progress
-from lwa.closure.slaving import (
-    Force,
-    Solution,
-    full,
-)
-
-
-def linear(
-    model: Model,
-    progress: Progress[int] = iter,
-) -> Solution:
-    """Solve the paper's closure to ``D^order`` in the ansatz, on the branch of the model.
-
-    The cell has two particles, or on the acoustic branch one, whose equation of motion is the wave
-    equation.
-    """
-    if model.branch == "optical":
-        return _optical(model, progress)
-    if model.cell.size == 1:
-        return full(model, progress=progress)
-    return _acoustic(model, progress)
+from lwa.closure.slaving import Force, Solution
 
 
 def _applied(
@@ -45,18 +24,18 @@ def _applied(
     f: GradedSeries,
     n: int,
 ) -> fmpq_mpoly:
-    """Term n of the ansatz applied to a series, ``Σ_{0<j<n} b_j ∂_x^j f_{n-j}``, without b_n."""
+    """Term n of the ansatz on a series, ``Σ_j b_j ∂_x^j f_{n-j}``, j > 0 up to the last b."""
     total = f.algebra.zero
-    for j in range(1, n):
+    for j in range(1, len(b)):
         total = total + b[j] * f.dx(n - j, j)
     return total
 
 
-def _acoustic(
+def acoustic(
     model: Model,
-    progress: Progress[int],
+    progress: Progress[int] = iter,
 ) -> Solution:
-    """The ansatz of a dimer's acoustic branch."""
+    """Solve the paper's closure of a dimer's acoustic branch, to ``D^order`` in the ansatz."""
     algebra = JetAlgebra(model, max(model.order - 1, 1))
     mu, c = algebra.mu, algebra.c  # mass fractions, strain shares
     right = Force(algebra)  # of the contact inside the cell
@@ -91,47 +70,40 @@ def _acoustic(
     return _solution(b, first, second)
 
 
-def _optical(
+def optical(
     model: Model,
-    progress: Progress[int],
+    progress: Progress[int] = iter,
 ) -> Solution:
-    """The ansatz of a dimer's optical branch; its contacts also pull, by the odd law of δ^k.
+    """Solve the paper's closure of a dimer's optical branch, to ``D^order`` in the ansatz.
 
-    The strains of the contacts are ``w - u = -(u/m̂_1)(1 + Y)`` and
-    ``u(x + 2D) - w = (u/m̂_1)(1 + Z)``. Forces are those of a `Force` with Y or Z for X, and the
-    series of both equations of motion are those of ε in ``u_ττ = -u^k (1 + kε)``.
+    Contacts also pull, by the odd law of ``δ^k``. The strains of the contacts are
+    ``w - u = -(u/m̂_1)(1 + Y)`` and ``u(x + 2D) - w = (u/m̂_1)(1 + Z)``. Forces are those of a
+    `Force` with Y or Z for X.
     """
     algebra = JetAlgebra(model, model.order)
-    k, mu, stiffness = algebra.k, algebra.mu, algebra.c
+    k = algebra.k
+    mu = algebra.mu  # mass fractions
+    stiffness = algebra.c  # shares of the stiffness
     right = Force(algebra)  # with Y
     left = Force(algebra)  # with Z
-    first = GradedSeries(algebra, k, [algebra.zero])
-    second = GradedSeries(algebra, k, [algebra.zero])
-    # ∂_x^n of -u^k, the leading order, begins at ∂_x u^k = k u^k r_1.
-    leading = GradedSeries(algebra, k, [algebra.r[1]])
+    first = GradedSeries(algebra, k, [algebra.one])  # E by equation 1
+    second = GradedSeries(algebra, k, [algebra.one])  # E by equation 2
     b = [algebra.one]
     for n in progress(range(1, model.order + 1)):
         r_n = algebra.r[n]
-        # At r_n the accelerations by the two equations differ by this sum and b_n.
-        shifted = stiffness[1] * left.increment(-2, n)
+        # The accelerations by the two equations agree at r_n; b_n brings ∂_x^n u^k = k u^k r_n + ….
+        shifted = k * stiffness[1] * left.increment(-2, n)
         lacking = shifted + _applied(b, first, n)
-        b.append(-algebra.slope(lacking, n))
+        b.append(-algebra.slope(lacking, n) / k)
         strain = mu[0] * b[n]
         right.append(strain * r_n)
         strain = strain + mu[1] * taylor(2, n)
         left.append(strain * r_n)
         force = stiffness[0] * right.Phi[n]
         force = force + stiffness[1] * left.Phi[n]
-        first.append(force + shifted)
-        inertia = b[n] * leading.dx(0, n - 1)
-        inertia = inertia + _applied(b, second, n)
-        second.append(force - inertia)
-    solution = _solution(b, first, second)
-    acceleration = [algebra.one]
-    for epsilon in solution.acceleration[1:]:
-        acceleration.append(k * epsilon)
-    defect = tuple(k * difference for difference in solution.defect)
-    return replace(solution, acceleration=tuple(acceleration), defect=defect)
+        first.append(k * force + shifted)
+        second.append(k * force - _applied(b, second, n))
+    return _solution(b, first, second)
 
 
 def _solution(

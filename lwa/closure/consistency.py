@@ -18,7 +18,7 @@ from lwa.base.exact import InputError
 from lwa.base.progress import shown
 from lwa.base.words import ClosureName, FieldName
 from lwa.cell import Cell, Parametric
-from lwa.closure.ansatz import linear
+from lwa.closure.ansatz import acoustic, optical
 from lwa.closure.slaving import Solution, full
 from lwa.law import ContactLaw
 
@@ -82,9 +82,12 @@ class Closure(Parametric):
     def solution(self) -> Solution:
         """Wave equation and fields as polynomials."""
         progress = iter if self.model.order < SLOW_ORDER else shown
-        if self.name == "full" and self.model.branch == "acoustic":
+        if self.model.branch == "optical":
+            return optical(self.model, progress)
+        # The equation of motion of a single particle is its wave equation.
+        if self.name == "full" or self.model.cell.size == 1:
             return full(self.model, self.field, progress)
-        return linear(self.model, progress)
+        return acoustic(self.model, progress)
 
     @property
     def ratio(self) -> sp.Expr:

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from itertools import repeat
 from typing import Any, Self
 
-import click
 import sympy as sp
 
 from lwa.base import latex
@@ -54,12 +53,11 @@ class Scale:
         """
         ones: dict[sp.Expr, int] = {}
         for symbol in value.free_symbols:
-            if symbol.name in _SIZES or symbol == self.spacing:
-                # B is negative in chains that soften.
-                ones[symbol] = -1 if symbol.is_negative else 1
-        # Substitution in an expression with other symbols would take long, for no number.
-        if not value.free_symbols <= ones.keys():
-            return None
+            # Substitution in an expression with other symbols would take long, for no number.
+            if symbol.name not in _SIZES and symbol != self.spacing:
+                return None
+            # B is negative in chains that soften.
+            ones[symbol] = -1 if symbol.is_negative else 1
         # Thirty digits, twice those of a float, so that the float is the nearest one.
         number = evaluated(value.subs(ones), 30)
         # Of numbers nearer to the ends of a float's range a product with a unit may be lost.
@@ -112,11 +110,10 @@ class Row:
     key : str
         Name in JSON; "fwhm.force" is the entry "force" of "fwhm". Not in JSON where empty.
     label : str
-        Name in text; not in text where empty.
+        Name in text, and in brackets the unit for a chain in SI: "speed (m/s)". Not in text where
+        empty.
     value : Expr, tuple of Expr, Estimate or InputError
         The value, or why there is none.
-    unit : str
-        Unit of the value for a chain in SI.
     symbol : str
         Name in LaTeX; not in LaTeX where empty.
     estimate : Estimate, optional
@@ -126,7 +123,6 @@ class Row:
     key: str
     label: str
     value: Any
-    unit: str = ""
     symbol: str = ""
     estimate: Estimate | None = None
 
@@ -136,7 +132,6 @@ class Row:
         result: Any,
         name: str,
         label: str,
-        unit: str = "",
         *arguments: Any,
         key: str = "",
         symbol: str = "",
@@ -149,8 +144,8 @@ class Row:
             The result, such as a wave.
         name : str
             Name of the attribute or method, and of the row in JSON unless there is a key.
-        label, unit : str
-            Those of the row.
+        label : str
+            Label of the row.
         *arguments
             Arguments of a method.
         key, symbol : str
@@ -166,7 +161,12 @@ class Row:
             # Numbers with symbols have no estimate, and some names have none.
             if isinstance(estimate, InputError):
                 estimate = None
-        return cls(key or name, label, value, unit, symbol, estimate)
+        return cls(key or name, label, value, symbol, estimate)
+
+    @property
+    def unit(self) -> str:
+        """The unit in the label; empty without one."""
+        return self.label.partition(" (")[2].removesuffix(")")
 
     @property
     def values(self) -> Sequence[Any]:
@@ -177,12 +177,9 @@ class Row:
         """The number of each value; [] if any value has none."""
         # A list with gaps would be read as if it were complete.
         found = []
-        for value in self.values:
-            number = self.estimate
-            if isinstance(value, Estimate):
-                number = value
-            elif number is None:
-                number = scale.number(value)
+        for number in self.values:
+            if not isinstance(number, Estimate):
+                number = self.estimate or scale.number(number)
             if number is None:
                 return []
             found.append(number)
@@ -209,30 +206,31 @@ class Row:
 
     def text(self, scale: Scale) -> str:
         """The row as a line of text; values that are all alike stand once."""
+        label, _, _ = self.label.partition(" (")
         if isinstance(self.value, InputError):
-            return f"{self.label}: {self.value}"
+            return f"{label}: {self.value}"
         numbers = self.numbers(scale) or repeat(None)
         texts = []
         for value, number in zip(self.values, numbers, strict=False):
             texts.append(self._text(value, number, scale))
         if len(set(texts)) == 1:  # as of contacts that are alike
             texts = texts[:1]
-        return f"{self.label} = {', '.join(texts)}"
+        return f"{label} = {', '.join(texts)}"
 
     def _text(
         self, value: sp.Expr | Estimate, number: Estimate | None, scale: Scale
     ) -> str:
         """A value as text: its formula, its digits, or both."""
+        unit = self.unit if scale.si else ""
         if isinstance(value, Estimate):
-            return scale.digits(value, self.unit)
+            return scale.digits(value, unit)
         formula = str(value)
         symbols = scale.symbols(value)
-        unit = "" if symbols == 1 else str(symbols).replace("**", "^")
-        if scale.si:
-            unit = f"{unit} {self.unit}".strip()
         # A number stands beside powers of symbols alone: D², not 1 + D.
         if number is None or symbols is None or value.is_Symbol:
-            return f"{formula} {self.unit if scale.si else ''}".rstrip()
+            return f"{formula} {unit}".rstrip()
+        if symbols != 1:
+            unit = f"{symbols} {unit}".rstrip().replace("**", "^")
         # Constants of materials have few digits, and results of numerics no more than these.
         if scale.si or value.has(sp.Float):
             return scale.digits(number, unit, TABLE_DIGITS)
@@ -256,6 +254,11 @@ class Row:
         if unit is None or unit == 1:
             return f"{self.symbol} = {digits}"
         return rf"{self.symbol} = \left({digits}\right) {sp.latex(unit)}"
+
+
+def rows_of(result: Any, labels: Mapping[str, str]) -> list[Row]:
+    """Make rows of several attributes of a result, whose labels are given by name."""
+    return [Row.of(result, name, label) for name, label in labels.items()]
 
 
 def attempt(read: Callable[..., Any], *arguments: Any) -> Any:
@@ -304,18 +307,13 @@ class Answer:
     notes: Sequence[str] = ()
     key: str = ""
 
-    def print(self, style: str) -> None:
-        """Print the answer as "text", "json" or "latex"."""
-        if style == "json":
-            # Expressions are printed so that SymPy reads them again.
-            click.echo(json.dumps(self.json(), indent=2, default=str))
-        elif style == "latex":
-            click.echo(self.latex())
-        else:
-            click.echo(self.text())
+    def json(self) -> str:
+        """The text that ``--format json`` prints."""
+        # Expressions are printed so that SymPy reads them again.
+        return json.dumps(self.document(), indent=2, default=str)
 
-    def json(self) -> Values:
-        """The object that ``--format json`` prints.
+    def document(self) -> Values:
+        """The answer as an object of JSON.
 
         Names ending in ``_value`` are floats. Where the spacing is a symbol, it is the unit of
         length of these floats. A symbol of the wave's size has the value 1 in them: ``V_s = 1``,
@@ -328,7 +326,7 @@ class Answer:
         notes = [*self.notes]
         for row in self.rows:
             if isinstance(row, Answer):
-                result[row.key] = row.json()
+                result[row.key] = row.document()
             elif isinstance(row, Row) and row.key:
                 if row.unit:
                     # One unit for a row: "_value" and "_error_value" have the same.

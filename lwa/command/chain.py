@@ -6,8 +6,8 @@ length, wall, defects and sensors do not enter the theory.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import sympy as sp
@@ -33,13 +33,8 @@ HERTZIAN = 0.01
 spheres is then a tenth of their radius R, ``a/R = √(δ/2R)``, where Hertz (1882) wants a ≪ R."""
 
 
-@dataclass(frozen=True)
-class Striker:
-    """The striker of a file: numbers that are not given there are None."""
-
-    velocity: sp.Expr | None = None
-    drop: sp.Expr | None = None
-    mass: sp.Expr | None = None
+STRIKER_FILE = "lwa-validate run --example striker > chain.toml"
+"""The line that writes a file of equal beads and a striker."""
 
 
 @dataclass(frozen=True)
@@ -52,21 +47,24 @@ class ChainInput:
         One period of the chain.
     law : ContactLaw
         The law of its contacts.
-    precompression : Expr
-        Static force of the chain, 0 for none.
+    precompression : Expr, optional
+        Static force of the chain, of an option or of the file.
     si : bool
         True if the numbers are in SI.
-    striker : Striker
-        The striker of a file.
+    file : str
+        Name of the file; empty for a chain of options.
+    striker : mapping
+        Numbers of a file's striker: "velocity" or "drop", and "mass", as far as they are given.
     gravity : float
         Acceleration along the chain, of a file; no theory here takes it into account.
     """
 
     cell: Cell
     law: ContactLaw
-    precompression: sp.Expr = sp.S.Zero
+    precompression: sp.Expr | None = None
     si: bool = False
-    striker: Striker = Striker()
+    file: str = ""
+    striker: Mapping[str, sp.Expr] = field(default_factory=dict)
     gravity: float = 0.0
 
     @property
@@ -83,37 +81,10 @@ class ChainInput:
         if self.law.homogeneous:
             force = f"A δ^k, k = {k}"
         scale = self.scale
-        masses = Row("", "masses", self.cell.masses, "kg").text(scale)
-        stiffnesses = Row("", "A", self.cell.stiffnesses, f"N/m^({k})").text(scale)
-        spacing = Row("", "spacing D", self.cell.spacing, "m").text(scale)
+        masses = Row("", "masses (kg)", self.cell.masses).text(scale)
+        stiffnesses = Row("", f"A (N/m^({k}))", self.cell.stiffnesses).text(scale)
+        spacing = Row("", "spacing D (m)", self.cell.spacing).text(scale)
         return f"{masses}; contact force {force}, {stiffnesses}; {spacing}"
-
-    def load(self, given: sp.Expr | None, background: sp.Expr | None) -> sp.Expr | None:
-        """The static force of the chain: the file's, else that of an option; None without both.
-
-        A ``background`` is a strain and never the result: it is only checked here, against a second
-        load in the file. With a background alone the result is None.
-
-        Parameters
-        ----------
-        given : Expr, optional
-            Value of ``--precompression``, a static force.
-        background : Expr, optional
-            Value of ``--background``, a static strain, which is another form of a load.
-
-        Raises
-        ------
-        lwa.InputError
-            For a file with a precompression, and a load by an option.
-        """
-        if self.precompression and not (given is None and background is None):
-            # The line to paste is the user's without both options: None leaves an option out.
-            raise InputError(
-                f"the file has a precompression of {self.precompression}: give no other load",
-                precompression=None,
-                background=None,
-            )
-        return self.precompression or given
 
     def hertz_notes(self, force: sp.Expr) -> list[str]:
         """A note on a force that presses spheres too much for Hertz's contact; [] for others."""
@@ -132,64 +103,81 @@ class ChainInput:
 def take_chain(options: dict[str, Any]) -> ChainInput:
     """Remove the options that describe a chain from a command's options and return the chain."""
     # What is left in the options belongs to the theory of the chain.
-    names = ("masses", "stiffnesses", "spacing", "k", "law")
-    chosen = {name: options.pop(name) for name in names if name in options}
+    names = ("masses", "stiffnesses", "spacing", "k", "law", "precompression")
+    chosen = {name: options.pop(name, None) for name in names}
+    load = chosen["precompression"]
     file = options.pop("spheres", None)
     if file is not None:
-        return read_chain(file)
-    cell = Cell(chosen["masses"], chosen["stiffnesses"] or (), chosen.get("spacing", D))
+        chain = read_chain(file)
+        if chain.precompression is None:
+            return replace(chain, precompression=load)
+        # A static strain is a load, too.
+        if load is None and options.get("background") is None:
+            return chain
+        # The line to paste is the user's without both options: None leaves an option out.
+        raise InputError(
+            f"the file has a precompression of {chain.precompression}: give no other load",
+            precompression=None,
+            background=None,
+        )
+    if chosen["masses"] is None:  # a command that reads files alone
+        raise InputError(
+            f"the chain is read from a file by --spheres; try: {STRIKER_FILE}"
+        )
+    cell = Cell(chosen["masses"], chosen["stiffnesses"] or (), chosen["spacing"] or D)
     # D = 1 would then set k, too.
     if cell.spacing.is_Symbol and chosen["k"] == cell.spacing:
         raise InputError(
             f"k is {cell.spacing}: the name is that of the spacing, a unit of length"
         )
-    return ChainInput(cell, for_cell(chosen.get("law"), cell, chosen["k"]))
+    return ChainInput(cell, for_cell(chosen["law"], cell, chosen["k"]), load)
 
 
-def read_chain(path: str | Path) -> ChainInput:
+def read_chain(path: str) -> ChainInput:
     """Read the chain of a file.
 
     Raises `lwa.InputError`, in one line that names file and key, for invalid content.
     """
-    return load(path, "a list of spheres", _chain)
+    return replace(load(path, "a list of spheres", _chain), file=path)
 
 
 def _chain(content: Any) -> ChainInput:
     file = Table(content, "", FILE)
     beads = read_beads(file, read_materials(file))
     row = read_row(file, beads)
-    force = _number(file, "precompression", finite) or sp.S.Zero
+    force = _numbers(file, {"precompression": finite}).get("precompression", sp.S.Zero)
     # Hertz contacts only push.
     if force < 0:
         raise InputError(f"precompression is {force}: it must not be negative")
-    # A striker of zero velocity is none; it may be given by an option then.
     described = file.read("striker", table(STRIKER), Table({}, "striker", STRIKER))
-    like = described.read("like", among(beads)) if "like" in described else None
-    striker = Striker(
-        velocity=_number(described, "velocity", finite) or None,
-        drop=_number(described, "drop", positive),
-        mass=like and like.mass,
-    )
-    gravity = file.read("gravity", finite, 0.0)
+    striker = _numbers(described, {"velocity": finite, "drop": positive})
+    if "like" in described:
+        striker["mass"] = described.read("like", among(beads)).mass
+    law: ContactLaw
+    si = True
     if row.spheres:  # beads with names are in Hertz contact, and in SI
         cell = Cell.of_spheres(row.spheres)
-        return ChainInput(cell, Power(EXPONENT), force, True, striker, gravity)
-    law: ContactLaw
-    # Masses have no material: their contacts need an exponent or a law.
-    if row.given.one("k", "law") == "law":
-        law = row.given.read("law", read_law)
+        law = Power(EXPONENT)
     else:
-        law = Power(row.given.read("k", finite))
-    # Numbers of masses have the units of the file, and SI only where the file says so.
-    si = file.read("units", among({"SI": True}), False)
-    return ChainInput(_cell_of_masses(row), law, force, si, striker, gravity)
+        cell = _cell_of_masses(row)
+        # Masses have no material: their contacts need an exponent or a law.
+        if row.given.one("k", "law") == "law":
+            law = row.given.read("law", read_law)
+        else:
+            law = Power(row.given.read("k", finite))
+        # Numbers of masses have the units of the file, and SI only where the file says so.
+        si = file.read("units", among({"SI": True}), False)
+    gravity = file.read("gravity", finite, 0.0)
+    return ChainInput(cell, law, force or None, si, striker=striker, gravity=gravity)
 
 
-def _number(entries: Table, key: str, reader: Reader) -> sp.Rational | None:
-    """Read an entry exactly, as the decimal that it prints as; None if it is absent."""
-    if key not in entries:
-        return None
-    return sp.Rational(str(entries.read(key, reader)))
+def _numbers(entries: Table, readers: Mapping[str, Reader]) -> dict[str, sp.Expr]:
+    """Read the entries that a table has exactly, as the decimals that they print as."""
+    found = {}
+    for key, reader in readers.items():
+        if key in entries:
+            found[key] = sp.Rational(str(entries.read(key, reader)))
+    return found
 
 
 def _cell_of_masses(row: Beads) -> Cell:

@@ -10,6 +10,7 @@ import shlex
 import sys
 from collections.abc import Mapping, Sequence
 from importlib import import_module
+from itertools import pairwise
 from typing import Any
 
 import click
@@ -115,8 +116,8 @@ def _status(command: click.Command, name: str, arguments: Sequence[str]) -> int:
             result = command.main(arguments, prog_name=name, standalone_mode=False)
         return result if isinstance(result, int) else 0
     except click.exceptions.NoArgsIsHelpError as help_text:
-        click.echo(help_text.format_message(), err=True)
-        return 2
+        help_text.show()
+        return status
     except click.ClickException as error:
         fault = error.format_message()
         context = getattr(error, "ctx", None)
@@ -156,25 +157,20 @@ def next_step(
     line: list[str] = []
     for word in arguments:  # --k=2 is --k 2
         line += word.split("=", 1) if word.startswith("--") else [word]
-    chosen: click.Command | None = command
+    chosen: Any = command
     if isinstance(command, click.Group):
         # Options of the group itself end it, so that the first word is a command.
         _, chosen, _ = command.resolve_command(click.Context(command), line)
-    options = {called(option): option for option in chosen.params} if chosen else {}
-    change = {}
-    for n, option in options.items():
-        for known in (n, option.name):  # on the command line and in Python
-            if known in refusal.change:
-                change[n] = refusal.change[known]
-    change = change or _example(refusal.reason, options, line)
+    change = _change(refusal, chosen.params, line)
     # A file stands in place of the options of a chain: a wrong one is left out.
-    if "--spheres" in line and change.keys() & _CHAIN:
-        change = {n: None for n in change if f"--{n}" in line}
+    if "--spheres" in line and change.keys() & CHAIN:
+        change = {name: None for name in change if f"--{name}" in line}
         if not change:
             return cut(f"{refusal.reason}; change it in the file{TRY}{KEYS}")
-    proposed = _examples(chosen, name)[-1]
+    examples = re.findall(rf"^  ({name} .*)", chosen.epilog or "", re.MULTILINE)
+    proposed = [f"{name} --help", *examples][-1]
     if change:
-        changes = _changed(line, change, options)
+        changes = _changed(line, change)
         whole = shlex.join([name, *line, *changes])
         # A message is cut in its middle: the whole line stands at its end, or is not there.
         if len(whole) < LONGEST_MESSAGE - _SHORTEST_REASON:
@@ -185,11 +181,7 @@ def next_step(
     return f"{cut(refusal.reason, room)}{TRY}{proposed}"
 
 
-def _changed(
-    line: list[str],
-    change: Mapping[str, object],
-    options: Mapping[str, click.Parameter],
-) -> list[str]:
+def _changed(line: list[str], change: Mapping[str, object]) -> list[str]:
     """Remove the options of a change from a line; return the words that take their place.
 
     A mapping is an option that is given several times, as ``--column force=2``; a sequence is
@@ -198,11 +190,9 @@ def _changed(
     words = []
     for name, value in change.items():
         flag = f"--{name}"
-        # A flag stands alone, another option before its value.
-        length = 1 if getattr(options[name], "is_flag", False) else 2
         while flag in line:
             at = line.index(flag)
-            del line[at : at + length]
+            del line[at : at + 2]  # the option and its value
         texts = [str(value)]
         if isinstance(value, Mapping):
             texts = [f"{key}={part}" for key, part in value.items()]
@@ -212,14 +202,6 @@ def _changed(
             if value not in (None, ()):
                 words += [flag, text]
     return words
-
-
-def _examples(command: click.Command | None, name: str) -> list[str]:
-    """The line that asks a program for help, and those at the end of a command's help."""
-    lines = []
-    if command:
-        lines = (command.epilog or "").splitlines()
-    return [f"{name} --help", *(x.strip() for x in lines if f" {name} " in x)]
 
 
 _SHORTEST_REASON = 100
@@ -235,37 +217,40 @@ _SUBJECT = re.compile(r"(\w+) is |'(\w+)' has no value")
 """The option at the start of a reason, or the symbol for which a number is wanted."""
 
 
-_CHAIN = {"k", "law", "masses", "stiffnesses", "spacing"}
-"""Options of a chain."""
+CHAIN = ("k", "law", "masses", "stiffnesses", "spacing")
+"""Options of a chain, which a file replaces."""
 
 
-def _example(
-    reason: str, options: Mapping[str, click.Parameter], line: Sequence[str]
+def _change(
+    refusal: Refusal, options: Sequence[click.Parameter], line: Sequence[str]
 ) -> dict[str, object]:
-    """The example of the option that a reason is about; {} for none, and if it is given.
+    """Values by option that the refused line shall have; None for an option to leave out.
 
-    An option without an example is left out: its value is None.
+    They are those of the refusal, else the example of the option that its reason is about.
     """
-    subject = _SUBJECT.match(reason)
-    if subject is None:
-        return {}
-    found: dict[str, object] = {}
-    near = re.search(r"did you mean ([\w-]+)", reason)
-    for name, option in options.items():
+    change: dict[str, object] = {}
+    for option in options:
+        for known in (called(option), option.name):  # on the command line and in Python
+            if known in refusal.change:
+                change[called(option)] = refusal.change[known]
+    subject = _SUBJECT.match(refusal.reason)
+    if change or subject is None:
+        return change
+    near = re.search(r"did you mean ([\w-]+)", refusal.reason)
+    values = dict(pairwise(line))
+    for option in options:
+        name = called(option)
         # Options of `lwa` have an example; the default of others is a valid text.
-        text = option.default if isinstance(option.default, str) else None
-        example = getattr(option.type, "example", text)
-        if f"--{name}" in line[:-1]:
-            text = line[line.index(f"--{name}") + 1]
-        if near:
-            example = near[1]
+        default = option.default if isinstance(option.default, str) else None
+        example = near[1] if near else getattr(option.type, "example", default)
+        text = values.get(f"--{name}", default)
         meant = name == subject[1] or subject[2] in re.split(r"\W", text or "")
         # A refusal of the example itself is about something else.
         if meant and example != text:
-            found[name] = example
-    if subject[2] == "F" and not found:  # the symbol of a force that is not given
-        found["force"] = "10"
-    return found
+            change[name] = example
+    if subject[2] == "F" and not change:  # the symbol of a force that is not given
+        change["force"] = "10"
+    return change
 
 
 COMMANDS = {

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 from functools import partial
 from typing import Any
 
-from lwa.command.answer import Answer, Lines, Row, Values
-from lwa.command.chain import take_chain
-from lwa.command.options import command, given, theory_options
+from lwa.command.answer import Answer, Lines, Values, rows_of
+from lwa.command.chain import ChainInput
+from lwa.command.options import THEORY, command, given
 from lwa.equation.terms import Terms, by_order, latex_by_order
 from lwa.theory import Theory, homogenize
 from lwa.wave.compact import canonical_wave
@@ -67,8 +67,8 @@ def depends_on_first(theory: Theory) -> bool:
     "lwa derive --law hertz2:1,2 --masses 1",
     page="closure",
 )
-@theory_options()
-def derive(style: str, **options: Any) -> None:
+@THEORY
+def derive(chain: ChainInput, **options: Any) -> Answer:
     """Derive the long-wave equation of a chain.
 
     Results are the ansatz, the wave equation ``u_ττ = u_x^(k-1) u_xx + …`` for the displacement u,
@@ -76,7 +76,6 @@ def derive(style: str, **options: Any) -> None:
 
     In JSON `terms` is the right-hand side of u_ττ after its leading term.
     """
-    chain = take_chain(options)
     theory = homogenize(chain.cell, law=chain.law, **options)
     pde = theory.pde
     head: Values = settings_json(theory)
@@ -102,10 +101,10 @@ def derive(style: str, **options: Any) -> None:
     # G, H and I are the coefficients at D^{k+3}, which an ansatz to D^4 has.
     if depends_on_first(theory) and theory.order >= 4:
         canonical = canonical_wave(theory.cell, theory.k)
-        letters = [Row.of(canonical, x, x) for x in "GHI"]
+        letters = rows_of(canonical, {"G": "G", "H": "H", "I": "I"})
         rows.append(Answer({}, ["", FIRST, *letters], key="canonical"))
     shown = theory, partial(_defect_latex, theory)
-    Answer(head, rows, shown=shown).print(style)
+    return Answer(head, rows, shown=shown)
 
 
 def _defect_latex(theory: Theory) -> Iterator[str]:

@@ -3,31 +3,28 @@
 from __future__ import annotations
 
 import shlex
-from typing import Any
 
 import sympy as sp
 
 from lwa.base import InputError
 from lwa.base.exact import positive
-from lwa.command.answer import Answer, Lines, Row, attempt
-from lwa.command.chain import take_chain
+from lwa.command.answer import Answer, Lines, Row, attempt, rows_of
+from lwa.command.chain import STRIKER_FILE, ChainInput
+from lwa.command.cli import KEYS
 from lwa.command.options import (
+    CELL,
     SPHERES,
-    cell_options,
     command,
     not_negative,
-    style_option,
     value,
 )
 from lwa.expansion.strike import pulse_of_strike
 from lwa.shocks import front as fronts
 from lwa.shocks.riemann import RULES
 
-_STRIKE_FILE = "lwa-validate run --example striker > chain.toml"
-
 
 @command(
-    _STRIKE_FILE,
+    STRIKER_FILE,
     "lwa strike --spheres chain.toml --drop 0.5",
     "lwa strike --spheres chain.toml --velocity 1 --mass 0.01",
     page="recipes",
@@ -51,65 +48,66 @@ _STRIKE_FILE = "lwa-validate run --example striker > chain.toml"
     "0.01",
     positive,
 )
-@style_option()
 def strike(
-    spheres: str | None,
+    chain: ChainInput,
     velocity: sp.Expr | None,
     drop: sp.Expr | None,
     mass: sp.Expr | None,
-    style: str,
-) -> None:
+) -> Answer:
     """Leading pulse of a chain of equal beads that a mass strikes: force, speed and width.
 
     Needs --spheres, and --velocity or --drop unless the file has a striker. Units are those of the
     file; the width is that of a contact's force. Gravity acts on the striker that falls, and is
     neglected in the chain.
     """
-    if spheres is None:
-        raise InputError(
-            f"the chain is read from a file by --spheres; try: {_STRIKE_FILE}"
-        )
-    chain = take_chain({"spheres": spheres})
-    cell, striker = chain.cell, chain.striker
-    file = shlex.quote(spheres)
+    cell = chain.cell
+    # Each refusal has its own line to paste: for a simulation, which has what the rule lacks.
+    simulation = f"try: lwa-validate run {shlex.quote(chain.file)}"
     # The relation of a strike rests on the wave without load, which scales with the force.
-    if chain.precompression:
+    if chain.precompression is not None:
         raise InputError(
-            f"precompression is {chain.precompression} in {spheres}: the pulse of a strike is that "
-            f"of a chain without load; leave the key out; try: lwa-validate run {file}"
+            f"precompression is {chain.precompression} in {chain.file}: the pulse of a strike is "
+            f"that of a chain without load; leave the key out; {simulation}"
         )
     # A closed form of unlike beads knows no striker.
     if not cell.uniform:
         raise InputError(
-            f"{spheres} has unlike beads or contacts: the pulse is that of equal ones, and a "
-            f"simulation takes any; try: lwa-validate run {file}"
+            f"{chain.file} has unlike beads or contacts: the pulse is that of equal ones, and a "
+            f"simulation takes any; {simulation}"
         )
     # Speed and width are lengths, which a file of masses may lack.
     if cell.spacing.is_Symbol:
         raise InputError(
-            f"{spheres} has no spacing: add spacings = 1.0 to [chain]; try: lwa-validate run --keys"
+            f"{chain.file} has no spacing: add spacings = 1.0 to [chain]; try: {KEYS}"
         )
-    # Options stand above the file.
+    # Options stand above the file, whose striker may have the velocity 0.
     if velocity is None and drop is None:
-        velocity, drop = striker.velocity, striker.drop
+        velocity = chain.striker.get("velocity") or None
+        drop = chain.striker.get("drop")
     if velocity is None and drop is None:
-        raise InputError(f"{spheres} has no striker that moves", velocity="1")
+        raise InputError(f"{chain.file} has no striker that moves", velocity="1")
     # A striker is one of the beads unless it is described.
     if mass is None:
-        mass = striker.mass or cell.masses[0]
+        mass = chain.striker.get("mass", cell.masses[0])
     pulse = pulse_of_strike(cell, mass, velocity, drop=drop, k=chain.law.exponent)
     # A mass in front of the wave's numbers: the striker decides how good they are.
     rows: Lines = [
         f"chain of equal beads; F = A δ^k, k = {chain.law.exponent}",
-        Row("", "mass of the beads", cell.masses[0], "kg"),
-        Row.of(pulse, "mass", "mass of the striker", "kg"),
-        Row.of(pulse, "velocity", "velocity of the striker", "m/s"),
+        Row("", "mass of the beads (kg)", cell.masses[0]),
+        *rows_of(
+            pulse,
+            {
+                "mass": "mass of the striker (kg)",
+                "velocity": "velocity of the striker (m/s)",
+            },
+        ),
         "",
         "leading pulse:",
-        Row.of(pulse, "force", "peak contact force", "N"),
-        Row.of(pulse, "speed", "speed dx/dt", "m/s"),
-        Row("fwhm.length", "FWHM of the force", pulse.fwhm("force", "length"), "m"),
-        Row("fwhm.time", "FWHM of the force in time", pulse.fwhm(), "s"),
+        *rows_of(
+            pulse, {"force": "peak contact force (N)", "speed": "speed dx/dt (m/s)"}
+        ),
+        Row("fwhm.length", "FWHM of the force (m)", pulse.fwhm("force", "length")),
+        Row("fwhm.time", "FWHM of the force in time (s)", pulse.fwhm()),
     ]
     # Limits of the model, each said where it is reached.
     notes = chain.hertz_notes(pulse.wave.force)
@@ -123,7 +121,7 @@ def strike(
             "a striker heavier than two beads sends further pulses behind this one"
         )
     errors = "bound of the difference to struck chains, as measured"
-    Answer({}, rows, chain.scale, [pulse], errors, notes).print(style)
+    return Answer({}, rows, chain.scale, [pulse], errors, notes)
 
 
 @command(
@@ -131,7 +129,7 @@ def strike(
     "lwa shock --k 3/2 --masses 1 --behind 1",
     page="shocks",
 )
-@cell_options()
+@CELL
 @SPHERES
 @value("--behind", "Strain behind the front, compression over D.", "2", not_negative)
 @value(
@@ -147,12 +145,11 @@ def strike(
     not_negative,
 )
 def shock(
-    style: str,
+    chain: ChainInput,
     behind: sp.Expr | None,
     piston: sp.Expr | None,
     ahead: sp.Expr | None,
-    **options: Any,
-) -> None:
+) -> Answer:
     """Shock, or rarefaction, of a chain that a wall drives.
 
     Needs --behind or --piston. Speeds are dx/dt, in m/s with --spheres.
@@ -163,12 +160,13 @@ def shock(
     """
     if behind is None and piston is None:
         raise InputError("neither --behind nor --piston is given", behind=1)
-    # The load of a file is a force, and the state ahead a strain.
-    chain = take_chain(options)
-    cell, law, static = chain.cell, chain.law, chain.precompression
-    # A load of the file is the state ahead of the front, as a strain.
+    cell = chain.cell
+    law = chain.law
     if ahead is None:
-        ahead = law.compression(cell, static) / cell.spacing if static else sp.S.Zero
+        ahead = sp.S.Zero
+        # A load of the file is a force, and the state ahead of the front a strain.
+        if chain.precompression is not None:
+            ahead = law.compression(cell, chain.precompression) / cell.spacing
     if behind is None:
         front = fronts.piston(cell, piston, ahead, law=law)
     else:
@@ -179,20 +177,27 @@ def shock(
     named = None if isinstance(kind, InputError) else kind
     rows: Lines = [
         chain.text,
-        Row.of(front, "behind", "strain behind"),
-        Row.of(front, "ahead", "strain ahead"),
+        *rows_of(front, {"behind": "strain behind", "ahead": "strain ahead"}),
         "",
         f"{named or 'front'}, speeds dx/dt:",
-        Row.of(front, "plateau", "velocity of the wall", "m/s"),
-        Row.of(front, "trailing_speed", "trailing edge", "m/s"),
+        *rows_of(
+            front,
+            {
+                "plateau": "velocity of the wall (m/s)",
+                "trailing_speed": "trailing edge (m/s)",
+            },
+        ),
     ]
     for rule in RULES:
-        label = f"leading edge, {rule}"
+        label = f"leading edge, {rule} (m/s)"
         key = f"leading_speed.{rule}"
-        rows.append(Row.of(front, "leading_speed", label, "m/s", rule, key=key))
+        rows.append(Row.of(front, "leading_speed", label, rule, key=key))
     if kind != "rarefaction":  # which has no leading pulse
-        rows.append(Row.of(front, "peak", "peak strain, doubling"))
-        rows.append(Row.of(front, "peak_force", "peak force, doubling", "N"))
+        peak = {
+            "peak": "peak strain, doubling",
+            "peak_force": "peak force, doubling (N)",
+        }
+        rows += rows_of(front, peak)
     # The closed form takes the strain behind for constant.
     notes = []
     if front.oscillates:
@@ -201,4 +206,4 @@ def shock(
             "wall at rest beside its neighbours, v_p = ∫ c dp; the mean strain is below it."
         )
     errors = "bound of the difference to driven chains, as measured"
-    Answer({"kind": named}, rows, chain.scale, [front], errors, notes).print(style)
+    return Answer({"kind": named}, rows, chain.scale, [front], errors, notes)

@@ -10,21 +10,25 @@ from typing import Any
 
 import sympy as sp
 
+import lwa  # its names are loaded when they are used: `lwa dispersion` spares NumPy
 from lwa.base.exact import InputError, positive
 from lwa.base.frozen import Shown
 from lwa.base.words import BRANCHES, BranchName, one_of
-from lwa.command.answer import Answer, Lines, Made, Row, Values, attempt
-from lwa.command.chain import take_chain
+from lwa.command.answer import Answer, Lines, Made, Row, Values, attempt, rows_of
+from lwa.command.chain import ChainInput
 from lwa.command.options import (
     BACKGROUND,
+    CELL,
+    MASSES,
     PRECOMPRESSION,
     SPACING,
     SPHERES,
+    STIFFNESSES,
     angle,
-    cell_options,
     command,
+    exponent_option,
     given,
-    series_options,
+    order_option,
     value,
 )
 from lwa.law import Power
@@ -37,13 +41,14 @@ from lwa.spheres.hertz import EXPONENT
     "lwa dispersion --masses 1,2 --precompression 1 --spacing 1",
     page="pressed",
 )
-@series_options("1", "Highest power of κ in Ω², an integer.")
+@exponent_option("1")
+@MASSES
+@STIFFNESSES
+@order_option("Highest power of κ in Ω², an integer.")
 @PRECOMPRESSION
 @SPACING
 @SPHERES
-def dispersion(
-    order: int, style: str, precompression: sp.Expr | None, **options: Any
-) -> None:
+def dispersion(chain: ChainInput, order: int) -> Answer:
     """Expand the squared frequency Ω² of linear waves in the wavenumber κ.
 
     Ω is the frequency in the time τ of `lwa derive`, and κ the wavenumber, both times D. The
@@ -54,12 +59,9 @@ def dispersion(
     the frequencies (from, to) of each band, and `band_edges_frequency_value` these over 2π (Hz in
     SI).
     """
-    # Options of the chain are taken out first: a file stands in their place.
-    spheres = options["spheres"] is not None
-    chain = take_chain(options)
-    precompression = chain.load(precompression, None)
+    precompression = chain.precompression
     # The series of equal contacts is that of any k; the bands are those of spheres then.
-    if precompression is not None and not (spheres or given("k")):
+    if precompression is not None and not (chain.file or given("k")):
         chain = replace(chain, law=Power(EXPONENT))
     linear = Dispersion(chain.cell, chain.law.exponent)
     # null for a branch that has no series: readers find the same keys.
@@ -80,9 +82,14 @@ def dispersion(
         rows += [
             "",
             "about the load:",
-            Row("", "static force F0", precompression, "N"),
-            Row.of(loaded, "spring_constants", "spring constants", "N/m"),
-            Row.of(loaded, "sound_speed", "sound speed dx/dt", "m/s"),
+            Row("", "static force F0 (N)", precompression),
+            *rows_of(
+                loaded,
+                {
+                    "spring_constants": "spring constants (N/m)",
+                    "sound_speed": "sound speed dx/dt (m/s)",
+                },
+            ),
         ]
         # Edges are roots, which have no closed form beyond two masses.
         numbers = (*chain.cell.masses, *loaded.spring_constants)
@@ -93,11 +100,11 @@ def dispersion(
             head["band_edges_frequency_value"] = frequencies.tolist()
             # Text has Hz for a chain in SI. Other chains have no unit of time, and rad.
             shown_edges = frequencies if chain.si else edges
-            unit = "" if chain.si else ", in rad per unit of time"
+            unit = " (Hz)" if chain.si else ", in rad per unit of time"
             for i, band in enumerate(shown_edges, start=1):
                 ends = tuple(sp.Float(float(x)) for x in band)
-                rows.append(Row("", f"band {i}{unit}", ends, "Hz"))
-    Answer(head, rows, chain.scale, shown).print(style)
+                rows.append(Row("", f"band {i}{unit}", ends))
+    return Answer(head, rows, chain.scale, shown)
 
 
 def _series_lines(
@@ -124,7 +131,7 @@ def _branch(text: str, name: str) -> BranchName | int:
     "lwa envelope --masses 1 --k 2 --background 1 --wavenumber pi/3",
     page="modes",
 )
-@cell_options()
+@CELL
 @SPHERES
 @BACKGROUND
 @PRECOMPRESSION
@@ -155,15 +162,12 @@ def _branch(text: str, name: str) -> BranchName | int:
     "1/1000",
 )
 def envelope(
-    style: str,
+    chain: ChainInput,
     background: sp.Expr | None,
-    precompression: sp.Expr | None,
-    wavenumber: sp.Expr,
-    branch: BranchName | int | None,
     frequency: sp.Expr | None,
     detuning: sp.Expr | None,
-    **options: Any,
-) -> None:
+    **mode: Any,
+) -> Answer:
     """Nonlinear Schrödinger equation of a mode of a loaded chain, and its breathers.
 
     Needs --background or --precompression. With --frequency or --detuning also the breather of
@@ -173,30 +177,25 @@ def envelope(
     frequencies are in Hz, displacements in m and forces in N. In JSON `amplitude` is the largest
     displacement of each bead, and `width` is 1/b of the envelope sech(bn) or tanh(bn).
     """
-    from lwa.envelopes import schrodinger  # here: `lwa dispersion` spares NumPy
-
-    chain = take_chain(options)
-    load = chain.load(precompression, background)
     # Without a load nothing is linear, and no mode exists.
-    if background is None and load is None:
+    if background is None and chain.precompression is None:
         raise InputError(
             "neither --background nor --precompression is given: a mode is that of a loaded chain",
             precompression=1,
         )
-    equation = schrodinger.envelope(
+    equation = lwa.envelope(
         chain.cell,
         law=chain.law,
         background=background,
-        precompression=load,
-        wavenumber=wavenumber,
-        branch=branch,
+        precompression=chain.precompression,
+        **mode,
     )
     # Theory has radians; sensors and the literature have Hz where there is a second.
     turn = sp.S.One
-    name = "ω"
-    if chain.si:  # Hz
+    frequency_label = "frequency ω"
+    if chain.si:
         turn = 2 * sp.pi
-        name = "ω/(2π)"
+        frequency_label = "frequency ω/(2π) (Hz)"
     # Whether envelopes are bright depends on the values of symbols.
     kind = attempt(getattr, equation, "kind")
     head: dict[str, str | None] = {"branch": str(equation.branch), "kind": None}
@@ -210,10 +209,15 @@ def envelope(
         "i Ψ_T + ½ ω'' Ψ_XX = χ |Ψ|² Ψ",
         "",
         Row.of(equation, "wavenumber", "κ"),
-        Row("frequency", f"frequency {name}", equation.frequency / turn, "Hz"),
-        Row.of(equation, "group_velocity", "dω/dκ", "cells/s"),
-        Row.of(equation, "dispersion", "ω''", "cells²/s"),
-        Row.of(equation, "nonlinearity", "χ", "1/(s kg m²)"),
+        Row("frequency", frequency_label, equation.frequency / turn),
+        *rows_of(
+            equation,
+            {
+                "group_velocity": "dω/dκ (cells/s)",
+                "dispersion": "ω'' (cells²/s)",
+                "nonlinearity": "χ (1/(s kg m²))",
+            },
+        ),
         described,
     ]
     shown: list[Shown | Made] = [equation]
@@ -228,9 +232,14 @@ def envelope(
         rows += [
             "",
             f"{breather.kind} breather, |Ψ| = a {shape}(b n):",
-            Row("breather_frequency", f"frequency {name}", own, "Hz"),
-            Row.of(breather, "detuning", "detuning Δ = 1 - f/f0"),
-            Row.of(breather, "amplitude", "largest displacement by bead", "m"),
-            Row.of(breather, "width", "width 1/b in cells"),
+            Row("breather_frequency", frequency_label, own),
+            *rows_of(
+                breather,
+                {
+                    "detuning": "detuning Δ = 1 - f/f0",
+                    "amplitude": "largest displacement by bead (m)",
+                    "width": "width 1/b in cells",
+                },
+            ),
         ]
-    Answer(head, rows, chain.scale, shown).print(style)
+    return Answer(head, rows, chain.scale, shown)

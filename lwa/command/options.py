@@ -15,10 +15,12 @@ from click.core import ParameterSource
 from lwa.base.exact import InputError, integer, positive, read_exact
 from lwa.base.words import BRANCHES, CLOSURES, FIELDS, one_of
 from lwa.cell import D, exponent, k
-from lwa.command.cli import called, help_end
+from lwa.command.answer import Answer
+from lwa.command.chain import take_chain
+from lwa.command.cli import CHAIN, called, help_end
 from lwa.law import NAMES, read_law
 
-Function = Callable[..., None]
+Function = Callable[..., Answer | str]
 Option = Callable[[Any], Any]
 Reader = Callable[[str, str], Any]
 """Function of a text and of the option's name in messages."""
@@ -62,11 +64,6 @@ class Words(click.Choice[str]):
     ) -> str:
         """Return a word that is among the choices; see `lwa.base.words.one_of`."""
         return one_of(value, self.choices, called(param) if param else self.name)
-
-    @property
-    def example(self) -> str:
-        """A valid word, for the refusal of a word that is like none."""
-        return self.choices[0]
 
 
 def quantity(context: click.Context, option: click.Parameter, text: str | None) -> Any:
@@ -121,20 +118,16 @@ def count(text: str, name: str) -> int:
 
 # --- commands ---
 
-ALTERNATIVES = (
-    ("law", "k"),
-    ("spheres", "k"),
-    ("spheres", "law"),
-    ("spheres", "masses"),
-    ("spheres", "stiffnesses"),
-    ("spheres", "spacing"),
-    ("precompression", "background"),
-    ("background", "force"),
-    ("behind", "piston"),
-    ("velocity", "drop"),
-    ("frequency", "detuning"),
-)
-"""Options of which one says the other."""
+ALTERNATIVES: dict[str, Sequence[str]] = {
+    "law": ["k"],
+    "spheres": CHAIN,
+    "precompression": ["background"],
+    "background": ["force"],
+    "behind": ["piston"],
+    "velocity": ["drop"],
+    "frequency": ["detuning"],
+}
+"""Options that another one replaces, by that option."""
 
 
 def given(option: str) -> bool:
@@ -144,8 +137,13 @@ def given(option: str) -> bool:
     return source is ParameterSource.COMMANDLINE
 
 
-def command(*examples: str, page: str) -> Callable[[Function], click.Command]:
-    """Make a decorator that turns a function into a command, whose help is its docstring.
+def command(
+    *examples: str, page: str, languages: Sequence[str] = ()
+) -> Callable[[Function], click.Command]:
+    """Make a decorator that turns a function of a chain into a command.
+
+    The function takes the chain of the options (`lwa.command.chain`), and the further options as
+    keywords; it returns the answer. Its docstring is the help of the command.
 
     Parameters
     ----------
@@ -153,24 +151,37 @@ def command(*examples: str, page: str) -> Callable[[Function], click.Command]:
         Lines that run one after another in an empty folder, shown at the end of the help.
     page : str
         Page of the book on the command.
+    languages : sequence of str
+        Values of ``--format`` beside `STYLES`.
     """
 
     def decorate(function: Function) -> click.Command:
         # Literals of reStructuredText have no marks on a terminal.
         says = inspect.cleandoc(function.__doc__ or "").replace("``", "")
 
-        # Click has no options that exclude each other; a refusal names the one to leave out.
+        @click.option(
+            "--format",
+            "style",
+            type=Words([*STYLES, *languages]),
+            default=STYLES[0],
+            show_default=True,
+            help="Form of the result.",
+        )
         @wraps(function)
-        def checked(**options: Any) -> None:
-            for one, other in ALTERNATIVES:
-                if given(one) and given(other):
-                    raise InputError(
-                        f"--{one} and --{other} are both given: one says the other",
-                        **{other: None},
-                    )
-            function(**options)
+        def answer(style: str, **options: Any) -> None:
+            # Click has no options that exclude each other; a refusal names the one to leave out.
+            for one, others in ALTERNATIVES.items():
+                for other in filter(given, others):
+                    if given(one):
+                        raise InputError(
+                            f"--{one} and --{other} are both given: one says the other",
+                            **{other: None},
+                        )
+            made = function(take_chain(options), **options)
+            # The source code of a wave is a text already.
+            click.echo(made if isinstance(made, str) else getattr(made, style)())
 
-        return click.command(help=says, epilog=help_end(examples, page))(checked)
+        return click.command(help=says, epilog=help_end(examples, page))(answer)
 
     return decorate
 
@@ -238,19 +249,6 @@ def law_option(says: str) -> Option:
     return value("--law", says, "hertz2:1,2", read_law, None, "NAME[:PARAM,…]")
 
 
-def style_option(languages: Sequence[str] = ()) -> Option:
-    """Make the option ``--format``, the argument ``style`` of a command."""
-    # Languages are those of `wave` alone.
-    return click.option(
-        "--format",
-        "style",
-        type=Words([*STYLES, *languages]),
-        default=STYLES[0],
-        show_default=True,
-        help="Form of the result.",
-    )
-
-
 # The file is read by the command, whose refusals have the line to paste.
 SPHERES = click.option(
     "--spheres",
@@ -305,54 +303,42 @@ PRECOMPRESSION = value(
 )
 
 
-def cell_options(languages: Sequence[str] = ()) -> Option:
-    """Make the options that describe a chain and its contact law."""
-    # Names alone: what their parameters mean stands in the book.
-    law = "Contact force A F(δ) by the name and the parameters of F, in place of --k: "
-    return together(
-        exponent_option(k.name),
-        law_option(f"{law}{', '.join(NAMES)}."),
-        MASSES,
-        STIFFNESSES,
-        SPACING,
-        style_option(languages),
-    )
+# Names alone: what their parameters mean stands in the book.
+CELL = together(
+    exponent_option(k.name),
+    law_option(
+        "Contact force A F(δ) by the name and the parameters of F, in place of --k: "
+        f"{', '.join(NAMES)}."
+    ),
+    MASSES,
+    STIFFNESSES,
+    SPACING,
+)
+"""Options of a chain and its contact law."""
 
-
-def theory_options(languages: Sequence[str] = ()) -> Option:
-    """Make the options that describe a chain and its long-wave theory."""
-    return together(
-        cell_options(languages),
-        order_option("Highest power of D in the ansatz, an integer."),
-        click.option(
-            "--closure",
-            type=Words(CLOSURES),
-            help="How the motion of the other beads follows from that of the first: linear, the "
-            "paper's ansatz, or full, which satisfies the equation of motion of every bead.  "
-            "[default: linear for one or two masses, else full]",
-        ),
-        click.option(
-            "--field",
-            type=Words(FIELDS),
-            help="Unknown u of the wave equation: displacement of the first bead, or the "
-            "mass-weighted mean of all beads.  [default: first with --closure linear, else "
-            "center]",
-        ),
-        click.option(
-            "--branch",
-            type=Words(BRANCHES),
-            # The branch of compact waves; the optical one is an oscillation in place.
-            default=BRANCHES[0],
-            show_default=True,
-            help="Neighbours move together (acoustic) or against each other.",
-        ),
-    )
-
-
-def series_options(exponent: str, order: str, default: str | None = "4") -> Option:
-    """Make the options of a command on a series, with the defaults of ``--k`` and ``--order``."""
-    # Series need no spacing: lengths are in D.
-    highest = order_option(order, default)
-    return together(
-        exponent_option(exponent), MASSES, STIFFNESSES, highest, style_option()
-    )
+THEORY = together(
+    CELL,
+    order_option("Highest power of D in the ansatz, an integer."),
+    click.option(
+        "--closure",
+        type=Words(CLOSURES),
+        help="How the motion of the other beads follows from that of the first: linear, the "
+        "paper's ansatz, or full, which satisfies the equation of motion of every bead.  "
+        "[default: linear for one or two masses, else full]",
+    ),
+    click.option(
+        "--field",
+        type=Words(FIELDS),
+        help="Unknown u of the wave equation: displacement of the first bead, or the "
+        "mass-weighted mean of all beads.  [default: first with --closure linear, else center]",
+    ),
+    click.option(
+        "--branch",
+        type=Words(BRANCHES),
+        # The branch of compact waves; the optical one is an oscillation in place.
+        default=BRANCHES[0],
+        show_default=True,
+        help="Neighbours move together (acoustic) or against each other.",
+    ),
+)
+"""Options of a chain and its long-wave theory."""

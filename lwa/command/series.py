@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import partial
-from typing import Any
 
 from lwa.base.words import QUANTITIES
 from lwa.cell import k
 from lwa.command.answer import Answer, Lines, Row, Values, attempt
-from lwa.command.chain import take_chain
-from lwa.command.options import command, series_options
+from lwa.command.chain import ChainInput
+from lwa.command.options import (
+    MASSES,
+    STIFFNESSES,
+    command,
+    exponent_option,
+    order_option,
+)
 from lwa.expansion.expand import Expansion, expand
 from lwa.expansion.series import EpsilonSeries
 
@@ -28,10 +33,11 @@ _ERRORS = "estimate of a sum's error, by its last terms and by radiation"
     "lwa expansion --k 11/10 --masses 1,0.7",
     page="expansion",
 )
-@series_options(
-    k.name, "Highest power of ε = k - 1; by default 8, or 4 with symbols.", None
-)
-def expansion(order: int | None, style: str, **options: Any) -> None:
+@exponent_option(k.name)
+@MASSES
+@STIFFNESSES
+@order_option("Highest power of ε = k - 1; by default 8, or 4 with symbols.", None)
+def expansion(chain: ChainInput, order: int | None) -> Answer:
     """Expand the lattice's own wave in ``ε = k - 1``, and sum the series.
 
     Each sum comes with an estimate of its absolute error, at the peak force 1 on the first contact
@@ -41,7 +47,6 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
     In JSON c² is the sum of ``c2[n] ε^n``. `fwhm` is that of the first contact, `fwhm_contact_2`
     that of the second where contacts are unlike, and so on.
     """
-    chain = take_chain(options)
     cell = chain.cell
     expanded = expand(cell, order or _SYMBOLIC_ORDER, law=chain.law)
     # Whether an expansion is one in numbers is known when it is made; four orders take no time.
@@ -75,7 +80,7 @@ def expansion(order: int | None, style: str, **options: Any) -> None:
     if expanded.numeric:
         rows += _sum_rows(expanded, series)
     rows.append(partial(_series_lines, series))
-    Answer(head, rows, shown=[expanded], errors=_ERRORS).print(style)
+    return Answer(head, rows, shown=[expanded], errors=_ERRORS)
 
 
 def _sum_rows(

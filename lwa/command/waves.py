@@ -10,21 +10,22 @@ from typing import TYPE_CHECKING, Any
 import click
 import sympy as sp
 
+import lwa  # its names are loaded when they are used: waves under a load need NumPy
 from lwa.base import latex
-from lwa.base.exact import InputError, number, read_exact
+from lwa.base.exact import InputError, brief, number, read_exact
 from lwa.base.frozen import Estimate, NoSolitaryWave, Shown
 from lwa.base.words import EXTENTS, LANGUAGES, QUANTITIES, ExtentName
-from lwa.command.answer import LONG, Answer, Lines, Made, Row, Scale
-from lwa.command.chain import ChainInput, take_chain
+from lwa.command.answer import LONG, Answer, Lines, Made, Row, Scale, attempt, rows_of
+from lwa.command.chain import ChainInput
 from lwa.command.derivation import closure_lines, depends_on_first, settings_json
 from lwa.command.options import (
     BACKGROUND,
     FORCE,
     PRECOMPRESSION,
     SPHERES,
+    THEORY,
     command,
     given,
-    theory_options,
 )
 from lwa.expansion.lattice_wave import LatticeWave, lattice_wave
 from lwa.theory import Theory, homogenize
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
 
 CANONICAL = "the canonical field, whichever bead is the first"
 
-SPEED = "speed dx/dt"
+SPEED = "speed dx/dt (m/s)"
 """Label of a speed in space and time, beside V_s in the time τ of the wave equation."""
 
 
@@ -46,19 +47,19 @@ SPEED = "speed dx/dt"
     "lwa wave --masses 1 --k 5/2 --spacing 1 --force 8 --precompression 1",
     "lwa wave --masses 1,2,3 --format latex",
     page="paper",
+    languages=LANGUAGES,
 )
-@theory_options(LANGUAGES)
+@THEORY
 @FORCE
 @SPHERES
 @BACKGROUND
 @PRECOMPRESSION
 def wave(
-    style: str,
+    chain: ChainInput,
     force: sp.Expr | None,
     background: sp.Expr | None,
-    precompression: sp.Expr | None,
     **options: Any,
-) -> None:
+) -> Answer | str:
     """Compact traveling wave: β, width, FWHM, amplitude and speed.
 
     Beside it stands the lattice's own wave, for equal beads, light beads between heavy ones and
@@ -75,13 +76,17 @@ def wave(
     with --spheres at ``F = 1``, and D is the unit of length if D is a symbol. `speed` is ``V_s =
     dx/dτ``, and dx/dt with --force.
     """
-    spheres = options["spheres"] is not None
-    chain = take_chain(options)
-    static = chain.load(precompression, background)
+    style = click.get_current_context().params["style"]
     # Options of which one says the other are not given together.
-    load = static if background is None else background
-    # The wave under a load is of another class: that of any law, in numbers.
-    loaded = _is_loaded(chain, load, force)
+    load = chain.precompression if background is None else background
+    # The compact wave is that of a power law. Under another law a load of zero is a load, too.
+    loaded = bool(load) or not chain.law.homogeneous
+    if loaded and load is None and force is None:
+        raise InputError(
+            f"law is {chain.law.text}: the compact wave is that of a power law; waves under a "
+            "load or of a force have any law",
+            background="1/10",
+        )
     if loaded:
         _take_canonical(options)
     if style in LANGUAGES and (loaded or force is not None):
@@ -92,50 +97,28 @@ def wave(
     # The equation is derived for every answer: closure and settings stand in its head.
     theory = homogenize(chain.cell, law=chain.law, **options)
     if style in LANGUAGES:
-        click.echo(_compact(theory).code(style))
-        return
-    if force is None and (spheres or loaded):
+        return _compact(theory).code(style)
+    if force is None and (chain.file or loaded):
         # Numbers in SI are those of a force, and so are those under a load.
         force = read_exact("F", "force")
     if loaded and background is not None:
-        answer = on_background(chain, theory, background)
-    elif loaded:
-        answer = under_load(chain, theory, force, static or sp.S.Zero)
-    else:
-        answer = compact(chain, theory, force)
-    answer.print(style)
-
-
-def _is_loaded(chain: ChainInput, load: sp.Expr | None, force: sp.Expr | None) -> bool:
-    """True if the wave is that of a chain under a load, or of a law that is no power.
-
-    The compact wave is that of a power law. Under another law a load of zero is a load, too.
-    """
-    if chain.law.homogeneous:
-        return load is not None and not load.is_zero
-    if load is None and force is None:
-        raise InputError(
-            f"law is {chain.law.text}: the compact wave is that of a power law; waves under a "
-            "load or of a force have any law",
-            background="1/10",
-        )
-    return True
+        return on_background(chain, theory, background)
+    if loaded:
+        return under_load(chain, theory, force)
+    return compact(chain, theory, force)
 
 
 def _take_canonical(options: dict[str, Any]) -> None:
     """Set the closure, the field and the branch of waves under load; refuse others."""
-    for name, wanted in (
-        ("closure", "full"),
-        ("field", "center"),
-        ("branch", "acoustic"),
-    ):
+    canonical = {"closure": "full", "field": "center", "branch": "acoustic"}
+    for name, wanted in canonical.items():
         # A default is no wish.
         if given(name) and options[name] != wanted:
             raise InputError(
                 f"{name} is {options[name]!r}: under load the wave is that of the canonical field",
                 **{name: wanted},
             )
-        options[name] = wanted
+    options |= canonical
 
 
 def _compact(theory: Theory) -> CompactWave:
@@ -146,16 +129,12 @@ def _compact(theory: Theory) -> CompactWave:
         # Below order 4 there is no dispersion, and no wave in any field.
         if not depends_on_first(theory) or theory.order < 4:
             raise
-        wave = canonical_wave(theory.cell, theory.k)
-        scale = Scale(spacing=wave.D)
-        speed = scale.number(wave.speed(1))
-        width = scale.number(wave.fwhm("force"))
-        if speed is None or width is None:  # symbols
-            raise
+        # Lengths in D, whatever the spacing is.
+        wave = canonical_wave(replace(theory.cell, spacing=sp.S.One), theory.k)
         # Short enough to stand in one message with the line to paste.
         raise NoSolitaryWave(
-            f"{refusal.reason}; in the canonical field V_s = {speed.value:.6g} at B = 1, and the "
-            f"FWHM of the force is {width.value:.6g} D",
+            f"{refusal.reason}; in the canonical field V_s = {brief(wave.speed(1))} at B = 1, and "
+            f"the FWHM of the force is {brief(wave.fwhm('force'))} D",
             closure="full",
             field="center",
         ) from None
@@ -168,19 +147,17 @@ def width_rows(wave: Any, extents: Sequence[ExtentName] = ("length",)) -> Iterat
     """Rows of the widths of a wave; none under a load with symbols, where widths are numbers."""
     for extent in extents:
         for q in QUANTITIES:
-            label = f"FWHM of the {q}"
-            symbol = latex.fwhm(q)
             # A wave of any amplitude has no width in time, and its method no extent.
-            if extent == "length":
-                place = f"fwhm.{q}"
-                row = Row.of(wave, "fwhm", label, "m", q, key=place, symbol=symbol)
-            else:
-                label += " in time"
+            arguments: list[str] = [q]
+            key = f"fwhm.{q}"
+            label = f"FWHM of the {q} (m)"
+            symbol = latex.fwhm(q)
+            if extent == "time":
+                arguments.append(extent)
+                key = f"fwhm_time.{q}"
+                label = f"FWHM of the {q} in time (s)"
                 symbol += "^{(t)}"
-                place = f"fwhm_time.{q}"
-                row = Row.of(
-                    wave, "fwhm", label, "s", q, extent, key=place, symbol=symbol
-                )
+            row = Row.of(wave, "fwhm", label, *arguments, key=key, symbol=symbol)
             if isinstance(row.value, InputError):
                 return
             yield row
@@ -196,12 +173,15 @@ def pulse_rows(wave: Any, rise: str) -> Iterator[Row]:
     rise : str
         What its strain is called: "peak", or "rise of the" static strain.
     """
-    yield Row.of(wave, "force", "peak contact force F", "N")
+    yield Row.of(wave, "force", "peak contact force F (N)")
     # B is the paper's letter of the peak strain.
     yield Row.of(wave, "strain", f"{rise} strain B", key="B")
-    yield Row.of(wave, "compression", f"{rise} compression", "m")
-    yield Row.of(wave, "speed", SPEED, "m/s")
-    yield Row.of(wave, "bead_velocity", "peak velocity of the beads", "m/s")
+    labels = {
+        "compression": f"{rise} compression (m)",
+        "speed": SPEED,
+        "bead_velocity": "peak velocity of the beads (m/s)",
+    }
+    yield from rows_of(wave, labels)
     yield from width_rows(wave, EXTENTS)
 
 
@@ -217,8 +197,7 @@ def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
         *closure_lines(theory),
         f"v = u_x = B cos^({wave.m})(β ξ), ξ = x - V_s τ, on |ξ| ≤ π/(2β)",
         "",
-        Row.of(wave, "beta", "β", "1/m"),
-        Row.of(wave, "width", "width π/β", "m", symbol=r"\frac{\pi}{\beta}"),
+        *rows_of(wave, {"beta": "β (1/m)", "width": "width π/β (m)"}),
     ]
     shown: list[Shown | Made] = [theory.pde, wave]
     notes = []
@@ -285,8 +264,8 @@ def _put_lattice(rows: Lines, chain: ChainInput, force: sp.Expr | None) -> list[
         return [reason.reason]
     title = f"the lattice's own wave ({wave.theory})"
     part = _beside("lattice", title, wave, "scaled_speed", force, chain.scale)
-    estimates = [row.estimate for row in part.rows if isinstance(row, Row)]
-    if all(found and found.relative_error < _BEST for found in estimates):
+    width = attempt(wave.estimate, "fwhm")  # the least accurate of the numbers
+    if isinstance(width, Estimate) and width.relative_error < _BEST:
         rows[1:1] = [part, ""]
     else:
         rows.append(part)
@@ -319,16 +298,16 @@ def _beside(
     # A time of passage is that of a force.
     if force is None:
         symbol = "V_{s}"
-        first = Row.of(wave, speed, "V_s at B = 1", "", 1, key="speed", symbol=symbol)
+        first = Row.of(wave, speed, "V_s at B = 1", 1, key="speed", symbol=symbol)
         rows = [first, *width_rows(wave)]
     else:
         moving = wave.at_force(force)
-        first = Row.of(moving, "speed", SPEED, "m/s", symbol=latex.SPEED)
+        first = Row.of(moving, "speed", SPEED, symbol=latex.SPEED)
         rows = [first, *width_rows(moving, EXTENTS)]
         # The compact wave has no energy that its equation conserves in every field.
         if isinstance(moving, LatticeWave):
-            momentum = Row.of(moving, "momentum", "momentum", "N s", symbol=r"\sum m v")
-            rows += [momentum, Row.of(moving, "energy", "energy", "J", symbol="E")]
+            momentum = Row.of(moving, "momentum", "momentum (N s)", symbol=r"\sum m v")
+            rows += [momentum, Row.of(moving, "energy", "energy (J)", symbol="E")]
     lines: Lines = ["", f"{title}:"]
     for row in rows:
         # LaTeX has the compact wave's quantities of the same names, too.
@@ -342,23 +321,27 @@ def _beside(
 _ERRORS = "bound of the difference to waves of the lattice, by those that were measured"
 
 
-def under_load(
-    chain: ChainInput, theory: Theory, force: sp.Expr, static: sp.Expr
-) -> Answer:
+def under_load(chain: ChainInput, theory: Theory, force: sp.Expr) -> Answer:
     """The wave of a peak contact force in a chain under a static force."""
-    from lwa.loaded.wave import loaded_wave  # here: it loads NumPy
-
-    wave = loaded_wave(chain.cell, force=force, precompression=static, law=chain.law)
+    static = chain.precompression or sp.S.Zero
+    wave = lwa.loaded_wave(
+        chain.cell, force=force, precompression=static, law=chain.law
+    )
     rows: Lines = [
         chain.text,
         "the wave in a chain under load:",
         *closure_lines(theory),
         "",
         *pulse_rows(wave, "rise of the"),
-        Row.of(wave, "precompression", "static force F0", "N"),
-        Row.of(wave, "background", "static strain p0"),
-        Row.of(wave, "static_compression", "static compression", "m"),
-        Row.of(wave, "sound_speed", "speed of sound dx/dt", "m/s"),
+        *rows_of(
+            wave,
+            {
+                "precompression": "static force F0 (N)",
+                "background": "static strain p0",
+                "static_compression": "static compression (m)",
+                "sound_speed": "speed of sound dx/dt (m/s)",
+            },
+        ),
     ]
     notes = chain.hertz_notes(wave.force)
     return Answer(settings_json(theory), rows, chain.scale, [wave], _ERRORS, notes)
@@ -366,9 +349,7 @@ def under_load(
 
 def on_background(chain: ChainInput, theory: Theory, p0: sp.Expr) -> Answer:
     """The waves on the strain p0: V_s by the rise B of the strain, and the limit of small waves."""
-    from lwa.loaded.background import Background  # here: it loads NumPy
-
-    field = Background(chain.cell, chain.law, p0)
+    field = lwa.loaded_wave(chain.cell, background=p0, law=chain.law).field
     speed = field.speed(field.rise)
     head = settings_json(theory) | {"background": field.p0, "speed": speed}
     rows: Lines = [
@@ -393,10 +374,8 @@ def on_background(chain: ChainInput, theory: Theory, p0: sp.Expr) -> Answer:
     return Answer(head, rows, chain.scale, shown, _ERRORS)
 
 
-def _unit_rise(field: Background) -> Iterator[Row]:
+def _unit_rise(field: Background) -> Iterator[Row | str]:
     """Rows of the wave whose strain rises by 1; none with symbols, or if there is none."""
-    from lwa.loaded.wave import loaded_wave
-
     cell: Cell = field.cell
     place = "B = 1"
     # Errors are those of numbers: a spacing that is a symbol is the unit of length.
@@ -404,13 +383,15 @@ def _unit_rise(field: Background) -> Iterator[Row]:
         place += f", {cell.spacing} = 1"
         cell = cell.at(**{cell.spacing.name: 1})
     with suppress(NoSolitaryWave, InputError):
-        wave = loaded_wave(cell, rise=1, background=field.p0, law=field.law)
+        wave = lwa.loaded_wave(cell, rise=1, background=field.p0, law=field.law)
         speed = Estimate(number(wave.field.speed(wave.strain)), 0.0)
         # V_s is dx/dt over an exact factor: the relative errors are the same.
         speed = speed.widened(wave.estimate("speed").relative_error)
-        yield Row("speed", f"V_s at {place}", speed)
+        yield f"at {place}:"
+        yield Row("speed", "V_s", speed)
         for row in width_rows(wave):
-            yield replace(row, label=f"{row.label} at {place}", symbol="")
+            # LaTeX has the waves of any rise alone.
+            yield replace(row, symbol="")
 
 
 def _small_waves(kdv: KdV) -> Lines:

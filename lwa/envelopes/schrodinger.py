@@ -37,7 +37,6 @@ from lwa.base.arrays import Array
 from lwa.base.exact import (
     InputError,
     brief,
-    demand_distinct,
     demand_numbers,
     factored,
     integer,
@@ -47,7 +46,7 @@ from lwa.base.exact import (
 )
 from lwa.base.frozen import Value
 from lwa.base.words import BRANCHES, BranchName, one_of
-from lwa.cell import Cell, Parametric
+from lwa.cell import Cell, Parametric, by_name
 from lwa.cell import k as symbol_k
 from lwa.envelopes.modes import Mode, cell_mode
 from lwa.law import ContactLaw, for_cell
@@ -433,12 +432,7 @@ def envelope(
     kappa = signed(wavenumber, "wavenumber")
     if kappa.is_number and not 0 <= kappa <= sp.pi:
         raise InputError(f"wavenumber is {shorten(kappa)}: 0 … pi per cell is wanted")
-    demand_distinct(
-        cell=cell.symbols,
-        law=law.symbols,
-        load=load.free_symbols,
-        wavenumber=kappa.free_symbols,
-    )
+    by_name({*cell.symbols, *law.symbols, *load.free_symbols, *kappa.free_symbols})
     number = _branch_number(branch, cell)
     # A bead between equal contacts swings alone there; other modes are floats.
     edge = cell.size == 2 and kappa == sp.pi and cell.equal_contacts

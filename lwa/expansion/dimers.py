@@ -41,7 +41,7 @@ from lwa.base.arrays import Array
 from lwa.cell import Cell, k
 from lwa.expansion.joined import (
     EPSILON,
-    TWO_BODIES,
+    FORMS,
     decimals,
     pade,
     power_series,
@@ -57,7 +57,7 @@ LIGHT = sp.Rational(1, 10**14)
 """A mass ratio near 0, at which e is a quotient of differences with an error as small."""
 
 # At k = 1, c² goes as 1/(1 + ω), and I as (1 + ω)^{-3}.
-_LEADING = {"c": 0.5, "momentum": 1.0}
+_LEADING = {"speed": 0.5, "momentum": 1.0}
 """e in the limit of k to 1; a quantity that is not named goes as ``√I``."""
 
 
@@ -132,7 +132,7 @@ from 12 to 55, half of them by errors up to 1.6 times the deviation.
 def _deviations() -> Array:
     """The file ``dimers.csv``: the closed forms' relative deviations from struck lattices.
 
-    A row holds k, ``ω = m2/m1`` and six deviations, in the order of `TWO_BODIES`: of the speed, the
+    A row holds k, ``ω = m2/m1`` and six deviations, in the order of `FORMS`: of the speed, the
     widths of strain and force, the velocity, the momentum and the energy of the leading pulse. Each
     is ``Q_lattice/Q_form - 1``, where ``Q_form`` is the closed form of a
     `lwa.expansion.lattice_wave.LatticeWave`: that of light beads that follow for ω below `ALIKE`,
@@ -165,7 +165,7 @@ def dimer_error(
     if k_value > rows[-1, 0]:
         return math.nan
     # Interpolated are the points with a steady pulse; what these weigh is divided out.
-    own = np.nan_to_num(rows[:, 2 + list(TWO_BODIES).index(quantity)])
+    own = np.nan_to_num(rows[:, 2 + list(FORMS).index(quantity)])
     weight = steadiness(k_value, ratio)
     mean = _mean(own, k_value, ratio) / weight
     square = _mean(own**2, k_value, ratio) / weight

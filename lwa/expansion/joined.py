@@ -30,6 +30,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache, partial
+from typing import NamedTuple
 
 import mpmath
 import sympy as sp
@@ -58,33 +59,62 @@ _SPEED = sp.gamma(sp.S.Half + 1 / (k + 1)) / sp.gamma(1 + 1 / (k + 1))
 _STRAIN = 2 ** (-(k + 1))
 _FORCE = 2 ** (-(k + 1) / k)
 
-TWO_BODIES: dict[str, sp.Expr] = {
-    "c": 2 * _SPEED / sp.sqrt(sp.pi * (k + 1)),
-    "strain": _width(_STRAIN),
-    "force": _width(_FORCE),
-    "velocity": sp.S.One,
-    "momentum": 2 / sp.sqrt(k + 1),
-    "energy": 2 / (k + 1),
-}
-"""Quantities of the wave in the limit of large k, functions of k."""
+
+class Form(NamedTuple):
+    """How the two limits of a quantity are joined, and the error that is left.
+
+    Attributes
+    ----------
+    two_bodies : sympy.Expr
+        The quantity in the limit of large k, a function of k.
+    growth : sympy.Expr or None
+        The q of a quantity that grows as ``√(q/ε)`` near k of 1; None for the speed, which is
+        finite in both limits.
+    defect : float
+        Size of the first term that εφ leaves out, over its power of ε: 1.1 times the least that
+        covers the difference to exact waves at 66 values of k from 1.01 to 60.
+    order : int
+        Highest power of ε from which φ is made.
+    damping : int
+        The power of 1/(1 + ε) by which that term is less at large k.
+    most : float
+        Largest relative error at any k > 1.
+    """
+
+    two_bodies: sp.Expr
+    growth: sp.Expr | None
+    defect: float
+    order: int = 2
+    damping: int = 2
+    most: float = 1e-3
+
 
 # Widths of the Gaussian e^{-Z²/4} are 4 √(I ln 2/ε), its momentum 2 √(πI/ε), its energy √(2πI/ε);
 # I = 1/12.
 _GAUSSIAN = sp.log(2) * 4 / 3
-_SQUARED = {
-    "strain": _GAUSSIAN,
-    "force": _GAUSSIAN,
-    "velocity": _GAUSSIAN,
-    "momentum": sp.pi / 3,
-    "energy": sp.pi / 6,
+
+FORMS = {
+    "speed": Form(
+        2 * _SPEED / sp.sqrt(sp.pi * (k + 1)),
+        growth=None,
+        defect=0.0046,
+        most=1e-5,
+    ),
+    # The strain's φ hardly changes: [0/1] is within 1e-3, [1/1] within 3e-3 (a pole at k of 10).
+    # The errors of strain and velocity fall as 2^{-k}, all others as 4^{-k}.
+    "strain": Form(
+        _width(_STRAIN),
+        _GAUSSIAN,
+        defect=0.0135,
+        order=1,
+        damping=1,
+    ),
+    "force": Form(_width(_FORCE), _GAUSSIAN, defect=0.072),
+    "velocity": Form(sp.S.One, _GAUSSIAN, defect=0.003, damping=1),
+    "momentum": Form(2 / sp.sqrt(k + 1), sp.pi / 3, defect=0.0115),
+    "energy": Form(2 / (k + 1), sp.pi / 6, defect=0.008),
 }
-"""The q of the quantities that grow as ``√(q/ε)``."""
-
-ORDERS = {"strain": 1}
-"""Highest power of ε from which φ is made, 2 unless it stands here.
-
-The strain's φ hardly changes: [0/1] is within 1e-3, [1/1] within 3e-3 (a pole at k of 10).
-"""
+"""The quantities of the wave, each with its closed form and the error of this form."""
 
 _REGULARIZED = {"betainc_regularized": partial(mpmath.betainc, regularized=True)}
 """I_x(a, b) for `sympy.lambdify`, which takes the integral that is not divided by B(a, b)."""
@@ -92,15 +122,15 @@ _REGULARIZED = {"betainc_regularized": partial(mpmath.betainc, regularized=True)
 
 @cache
 def joined(quantity: str) -> sp.Expr:
-    """The closed form of a quantity of `TWO_BODIES` as a function of the symbol k."""
-    limit = TWO_BODIES[quantity]
+    """The closed form of a quantity of `FORMS` as a function of the symbol k."""
+    form = FORMS[quantity]
+    limit = form.two_bodies
     epsilon = k - 1
-    phi = pade(phi_series(quantity, ORDERS.get(quantity, 2)), 1)
+    phi = pade(phi_series(quantity, form.order), 1)
     rest = sp.exp(-epsilon * phi.subs(EPSILON, epsilon))
-    # The speed is finite in both limits, where the others grow as 1/√ε.
-    if quantity == "c":
+    if form.growth is None:
         return limit * (1 + (1 / limit.subs(k, 1) - 1) * rest)
-    return sp.sqrt(limit**2 + _SQUARED[quantity] * rest / epsilon)
+    return sp.sqrt(limit**2 + form.growth * rest / epsilon)
 
 
 def phi_series(
@@ -112,13 +142,14 @@ def phi_series(
     >>> [round(float(term), 6) for term in phi_series("momentum", 1)]
     [1.259859, -0.0647]
     """
-    limit = TWO_BODIES[quantity]
+    form = FORMS[quantity]
+    limit = form.two_bodies
     # The quantity over its leading term, √(q/ε) or 1
     whole = sp.Symbol("whole")
-    if quantity == "c":
+    if form.growth is None:
         rest = (whole / limit - 1) / (1 / limit.subs(k, 1) - 1)
     else:
-        rest = whole**2 - (k - 1) * limit**2 / _SQUARED[quantity]
+        rest = whole**2 - (k - 1) * limit**2 / form.growth
     numeric = sp.lambdify((k, whole), rest, [_REGULARIZED, "mpmath"])
     series = decimals(equal_beads(quantity, order + 1))
 
@@ -175,25 +206,6 @@ def pade(
 
 # --- errors -------------------------------------------------------------------------------------
 
-DEFECTS = {
-    "c": 0.0046,
-    "strain": 0.0135,
-    "force": 0.072,
-    "velocity": 0.003,
-    "momentum": 0.0115,
-    "energy": 0.008,
-}
-"""Size of the first term that εφ leaves out, over its power of ε.
-
-1.1 times the least that covers the difference to exact waves at 66 values of k from 1.01 to 60.
-"""
-
-MOST = {"c": 1e-5}
-"""Largest relative error at any k > 1; 1e-3 unless it stands here."""
-
-SLOW = ("strain", "velocity")
-"""Quantities whose error falls as ``2^{-k}``, not as ``4^{-k}``."""
-
 
 def joined_error(
     quantity: str,
@@ -201,24 +213,20 @@ def joined_error(
 ) -> float:
     """Relative error of a quantity of equal beads, for every k > 1.
 
-    The first term that the exponent εφ leaves out, divided by (1 + ε)² as the approximant goes on
-    (1 + ε for those that fall slower), times the share of the exponential in the quantity.
+    The first term that the exponent εφ leaves out, divided by a power of 1 + ε as the approximant
+    goes on, times the share of the exponential in the quantity.
     """
+    form = FORMS[quantity]
     epsilon = float(k_value - 1)
     # how much of the quantity, or of its square, the exponential makes
     whole = float(joined(quantity).subs(k, k_value))
-    limit = float(TWO_BODIES[quantity].subs(k, k_value))
-    power = 2
-    if quantity == "c":
-        power = 1
+    limit = float(form.two_bodies.subs(k, k_value))
+    power = 1 if form.growth is None else 2
     share = abs(1 - (limit / whole) ** power) / power
-    order = ORDERS.get(quantity, 2) + 2
-    damping = 2
-    if quantity in SLOW:
-        damping = 1
-    left_out = DEFECTS[quantity] * epsilon**order / (1 + epsilon) ** damping
+    left_out = form.defect * epsilon ** (form.order + 2)
+    left_out /= (1 + epsilon) ** form.damping
     # The last digit of a float is rounded.
-    return min(share * left_out, MOST.get(quantity, 1e-3)) + 2**-52
+    return min(share * left_out, form.most) + 2**-52
 
 
 # --- in elementary functions, for source code ---------------------------------------------------

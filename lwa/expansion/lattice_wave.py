@@ -46,13 +46,13 @@ from lwa.expansion.dimers import (
     exponent_of_light_beads,
     steadiness,
 )
-from lwa.expansion.joined import TWO_BODIES, elementary, joined, joined_error
+from lwa.expansion.joined import FORMS, elementary, joined, joined_error
 from lwa.law import ContactLaw, Power, power_exponent
 from lwa.wave.source import Functions, module
 
 _PARTS = {
-    "speed": ("c",),
-    "scaled_speed": ("c",),
+    "speed": ("speed",),
+    "scaled_speed": ("speed",),
     "momentum": ("momentum",),
     "energy": ("energy",),
     "effective_mass": ("momentum", "momentum", "energy"),
@@ -156,10 +156,10 @@ class LatticeWave(Parametric):
         value = joined(quantity)
         if self.follows:
             # From the units of heavy beads to the module's: m1 = 2m/(1 + ω), D and δ are doubled.
-            shift = {"c": sp.S.Half, "momentum": -sp.S.Half}.get(quantity, 0)
+            shift = {"speed": sp.S.Half, "momentum": -sp.S.Half}.get(quantity, 0)
             exponent = shift - exponent_of_light_beads(quantity)
             value = value * (1 + self.mass_ratio) ** exponent
-            if quantity != "c":
+            if quantity != "speed":
                 value = 2 * value
         return value.subs(symbol_k, self.k)
 
@@ -175,7 +175,8 @@ class LatticeWave(Parametric):
         mass = self.cell.mass / self.cell.size
         work = self.force * self.compression
         units = {
-            "c": self.cell.spacing * sp.sqrt(self.force / (mass * self.compression)),
+            "speed": self.cell.spacing
+            * sp.sqrt(self.force / (mass * self.compression)),
             "momentum": sp.sqrt(mass * work),
             "energy": work,
         }
@@ -201,21 +202,21 @@ class LatticeWave(Parametric):
     @cached_property
     def speed(self) -> sp.Expr:
         """The speed dx/dt."""
-        return self._result("c")
+        return self._result("speed")
 
     def scaled_speed(self, B: Any = RISE) -> sp.Expr:
         """The speed ``V_s = dx/dτ`` of the wave whose strain peaks at B, as `CompactWave.speed`."""
         scale = power(positive(B, "B"), (self.k - 1) / 2)
         # τ/t = √(k A D^{k+1}/m)
-        return self._value("c") * scale / sp.sqrt(self.k)
+        return self._value("speed") * scale / sp.sqrt(self.k)
 
     @property
     def short_speed(self) -> sp.Expr:
         """The `speed` of equal beads by ``c = c₂ [1 + (π/√8 - 1) 4^{1-k}]``, to 0.2 %."""
         # e^{-εφ} with ln 4 for φ, which is 1.539 at k = 1 and 1.226 in the limit of large k
         rest = (sp.pi / sp.sqrt(8) - 1) * 4 ** (1 - self.k)
-        c = TWO_BODIES["c"].subs(symbol_k, self.k) * (1 + rest)
-        return self.speed * c / self._value("c")
+        c = FORMS["speed"].two_bodies.subs(symbol_k, self.k) * (1 + rest)
+        return self.speed * c / self._value("speed")
 
     @property
     def momentum(self) -> sp.Expr:
@@ -288,7 +289,7 @@ class LatticeWave(Parametric):
             parts.append(quantity)
             # A time is a length over the speed.
             if "time" in extent:
-                parts.append("c")
+                parts.append("speed")
         result = Estimate(number(value), 0.0)
         for part in parts:
             result = result.widened(self._error(part))
@@ -302,8 +303,7 @@ class LatticeWave(Parametric):
         """LaTeX of speed and widths at the peak force."""
         rows = {latex.SPEED: self.speed}
         for quantity in QUANTITIES:
-            name = rf"\mathrm{{FWHM}}_\mathrm{{{quantity}}}"
-            rows[name] = self.fwhm(quantity)
+            rows[latex.fwhm(quantity)] = self.fwhm(quantity)
         return latex.rows(rows)
 
     def code(self, language: LanguageName) -> str:

@@ -53,7 +53,7 @@ class Observables:
         return self.wave.gamma[: 2 * self.order + 1]
 
     @cached_property
-    def c(self) -> Series:
+    def speed(self) -> Series:
         """The speed c, divided by its leading term."""
         return power(self.c2, fmpq(1, 2))
 
@@ -82,7 +82,7 @@ class Observables:
     def momentum(self) -> Series:
         """Momentum, mean mass · c · displacement behind the wave, divided by its leading term."""
         # e^{-Z²/4} is a normal distribution of variance 2.
-        return product(self.c, moments(self.wave.mean, 2))
+        return product(self.speed, moments(self.wave.mean, 2))
 
     @cached_property
     def energy(self) -> Series:

@@ -6,7 +6,6 @@ generator is Z; t is its small parameter. The waves of `lwa.expansion.expand` ar
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 from flint import fmpq, fmpq_mpoly
@@ -124,88 +123,45 @@ def moments(
 
 
 def half_width(log: Series) -> Series:
-    """Coefficients h_n of the width of a pulse ``e^{-Z²/4 + Σ log_n t^n}``.
+    """Coefficients h_n of the width of a pulse ``e^{-Z²/4 + Σ log_n t^n}``, where log_0 is 0.
 
     The full width at ``e^{-y²}`` of the peak is ``4y Σ h_n t^n``; in the h_n, polynomials in y², Z
-    stands for y. Counted from the peak the exponent is ``-Z²/4 + p(Z)``, p small with t, and the
-    equation ``Z²/4 = y² + p(Z)`` is solved by Lagrange's series::
-
-        Z/2 = y + Σ_{m≥1} 1/m! (d/dy²)^{m-1} p(2y)^m/(2y),
-
-    whose odd part in y is a quarter of the width.
+    stands for y. Order by order the place becomes a function of a coordinate z in which the
+    exponent, counted from the peak, is ``-z²/4``. The pulse falls to ``e^{-y²}`` at
+    ``z = ±2y``, and the width is the difference of these two places.
     """
-    # p(2y): the coefficient of Z^d is multiplied by 2^d
-    p = [_reweighted(term, lambda d: fmpq(2) ** d) for term in _from_peak(log)]
-    y = p[0].context().gen(0)
-    powers = [p]
-    while any(powers[-1]):
-        powers.append(product(powers[-1], p))
-    # The sum over m by Horner's rule, times y, so that no odd powers of 1/y appear.
-    total = powers[-1]
-    for m in range(len(powers) - 1, 0, -1):
-        following = []
-        for term, own in zip(total, powers[m - 1], strict=True):
-            # d/dy² of a/y is (y a' - a)/(2 y³)
-            slope = _over_square(y * term.derivative(0) - term, y)
-            following.append(own / 2 + slope / (2 * m + 2))
-        total = following
-    even = [_reweighted(term, lambda d: fmpq(1 - d % 2)) for term in total]
-    width = [_over_square(term, y) for term in even]
-    width[0] = width[0] + 1
+    Z = log[0].context().gen(0)
+    exponent = [-(Z**2) / 4, *log[1:]]
+    place = [Z, *(0 * Z for _ in log[1:])]
+    for n in range(1, len(log)):
+        # python-flint divides no zero polynomial.
+        if not exponent[n]:
+            continue
+        # z → z + a t^n adds -z a/2 at t^n; what does not vanish at z = 0 is the height of the peak.
+        a = 2 * (exponent[n] // Z)
+        exponent = _moved(exponent, a, n)
+        place = _moved(place, a, n)
+    width = []
+    for term in place:
+        total = 0 * Z
+        for d, coefficient in by_degree(term).items():
+            # (2y)^d - (-2y)^d over 4y
+            if d % 2:
+                total = total + coefficient * (2 * Z) ** (d - 1)
+        width.append(total)
     return width
 
 
-def _from_peak(log: Series) -> Series:
-    """Shift -Z²/4 + Σ log_n t^n to its maximum; without -Z²/4 and the value there.
-
-    The place of the maximum is moved to 0 order by order, Z → Z + z_n t^n.
-    """
-    Z = log[0].context().gen(0)
-    phi = [log[0] - Z**2 / 4, *log[1:]]
-    for n in range(1, len(phi)):
-        # -Z²/4 + a Z t^n has its maximum at Z = 2a t^n, to this order.
-        place = 2 * by_degree(phi[n]).get(1, 0 * Z)
-        if place:
-            phi = _shifted(phi, place, n)
-    if phi[0] != -(Z**2) / 4:
-        raise ArithmeticError("the pulse has no quadratic maximum")
-    # The constants of Z^0 are the logarithm of the peak.
-    return [0 * Z, *(_reweighted(term, lambda d: fmpq(min(d, 1))) for term in phi[1:])]
-
-
-def _shifted(
-    phi: Series,
-    place: fmpq_mpoly,
+def _moved(
+    S: Series,
+    a: fmpq_mpoly,
     n: int,
 ) -> Series:
-    """The series of φ(Z + place · t^n), by Taylor's formula."""
-    moved = list(phi)
-    derivatives = phi
-    for j in range(1, (len(phi) - 1) // n + 1):
-        derivatives = [place * term.derivative(0) / j for term in derivatives]
-        for m in range(j * n, len(phi)):
-            moved[m] = moved[m] + derivatives[m - j * n]
+    """The series at Z + a t^n in place of Z, a a polynomial in Z, by Taylor's formula."""
+    moved = list(S)
+    derivatives = S
+    for j in range(1, (len(S) - 1) // n + 1):
+        derivatives = [term.derivative(0) / j for term in derivatives]
+        for m in range(j * n, len(S)):
+            moved[m] = moved[m] + a**j * derivatives[m - j * n]
     return moved
-
-
-def _over_square(
-    polynomial: fmpq_mpoly,
-    y: fmpq_mpoly,
-) -> fmpq_mpoly:
-    """The quotient by y²; python-flint divides no zero polynomial."""
-    if not polynomial:
-        return polynomial
-    return polynomial // y**2
-
-
-def _reweighted(
-    polynomial: fmpq_mpoly,
-    weight: Callable[[int], fmpq],
-) -> fmpq_mpoly:
-    """Multiply each term c Z^d of a polynomial by weight(d)."""
-    terms = {}
-    for exponents, coefficient in polynomial.terms():
-        factor = weight(int(exponents[0]))
-        if factor:
-            terms[exponents] = factor * coefficient
-    return polynomial.context().from_dict(terms)

@@ -89,13 +89,11 @@ TERM_DIGITS = 60
 
 _LETTERS = {
     "c2": "c^2",
-    "strain": r"\mathrm{FWHM}_\mathrm{strain}",
-    "force": r"\mathrm{FWHM}_\mathrm{force}",
-    "velocity": r"\mathrm{FWHM}_\mathrm{velocity}",
     "momentum": r"\sum m v",
     "energy": "E",
     "effective_mass": r"m_\mathrm{eff}",
 }
+"""Names of quantities in LaTeX; any other quantity is a width."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -177,12 +175,21 @@ class EpsilonSeries(Value):
         """The sum of a series of numbers, whatever its error."""
         epsilon = self.k - 1
         unit = self.prefactor * epsilon**self.power
-        if self.cell.uniform:
-            return resum(self.coefficients, epsilon, unit)
-        # Large terms of both cancel in the difference to equal beads.
-        base = equal_beads(self.quantity, self.order)
-        radiation = radiated(self.cell, self.k)
-        return resum(self.coefficients, epsilon, unit, base, radiation)
+        relative = 2**-52  # the sum leaves as a float, whose last digit is rounded
+        with mpmath.workdps(TERM_DIGITS):
+            x, scale = decimals([epsilon / self.k, unit], TERM_DIGITS)
+            whole = _transformed(self.coefficients)
+            if self.cell.uniform:
+                parts = [_sum(whole, x)]
+            else:
+                # Large terms of both cancel in the difference to equal beads.
+                equal = _transformed(equal_beads(self.quantity, self.order))
+                rest = [a - b for a, b in zip(whole, equal, strict=True)]
+                parts = [_sum(equal, x), _truncated(rest, x)]
+                relative += radiated(self.cell, self.k)
+            value = scale * mpmath.fsum(part.value for part in parts)
+            error = abs(scale) * mpmath.fsum(part.error for part in parts)
+            return Estimate(float(value), float(error)).widened(relative)
 
     def _for(
         self,
@@ -226,44 +233,8 @@ class EpsilonSeries(Value):
         unit = self.prefactor * epsilon**self.power
         if unit != 1:
             value = rf"{sp.latex(unit)} \Bigl({value}\Bigr)"
-        return [f"{_LETTERS[self.quantity]} = {value}"]
-
-
-def resum(
-    coefficients: Sequence[sp.Expr],
-    epsilon: sp.Expr,
-    unit: sp.Expr = sp.S.One,
-    base: Sequence[sp.Expr] = (),
-    relative: float = 0.0,
-) -> Estimate:
-    """Sum ``unit · Σ coefficients[n] ε^n``, all numbers, with an estimate of the error.
-
-    Parameters
-    ----------
-    coefficients, epsilon, unit : sequence of sympy.Expr, sympy.Expr, sympy.Expr
-        The series.
-    base : sequence of sympy.Expr
-        The series of equal beads, if it is another one. The difference of the two is summed apart.
-    relative : float
-        A further error, relative to the sum.
-
-    Returns
-    -------
-    Estimate
-    """
-    with mpmath.workdps(TERM_DIGITS):
-        x, scale = decimals([epsilon / (1 + epsilon), unit], TERM_DIGITS)
-        whole = _transformed(coefficients)
-        if base:
-            equal = _transformed(base)
-            rest = [a - b for a, b in zip(whole, equal, strict=True)]
-            parts = [_sum(equal, x), _truncated(rest, x)]
-        else:
-            parts = [_sum(whole, x)]
-        value = scale * mpmath.fsum(part.value for part in parts)
-        error = abs(scale) * mpmath.fsum(part.error for part in parts)
-        # The sum leaves as a float, whose last digit is rounded.
-        return Estimate(float(value), float(error)).widened(relative + 2**-52)
+        name = _LETTERS.get(self.quantity) or latex.fwhm(self.quantity)
+        return [f"{name} = {value}"]
 
 
 def _transformed(coefficients: Sequence[sp.Expr]) -> list[mpmath.mpf]:

@@ -156,7 +156,7 @@ class Strike(Value):
         return [
             f"F = {self.force.latex()}",
             f"{latex.SPEED} = {self.speed.latex()}",
-            rf"\mathrm{{FWHM}}_{{\mathrm{{force}}}} = {width.latex()}",
+            f"{latex.fwhm('force')} = {width.latex()}",
         ]
 
     @property

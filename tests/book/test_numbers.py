@@ -21,7 +21,7 @@ from lwa import (
     lattice_wave,
     loaded_wave,
 )
-from lwa.expansion.joined import TWO_BODIES, joined
+from lwa.expansion.joined import FORMS, joined
 from lwa.law import NAMES, named
 from tests.book.prose import BOOK, limited, said, told
 from validation import Damping, MeasureError, exact_wave, measure, simulate
@@ -195,8 +195,8 @@ def test_the_closed_form_by_hand():
     k = lwa.cell.k
     words = "\\frac{# + #\\,\\varepsilon}{1 + #\\,\\varepsilon}"
     a, b, c = map(float, said("expansion", words))
-    limit = TWO_BODIES["c"]
-    rest = (joined("c") / limit - 1) / (1 / limit.subs(k, 1) - 1)
+    limit = FORMS["speed"].two_bodies
+    rest = (joined("speed") / limit - 1) / (1 / limit.subs(k, 1) - 1)
     for value in (0.1, 0.5, 3):
         number = -math.log(rest.subs(k, 1 + value).evalf(30)) / value
         assert number == pytest.approx((a + b * value) / (1 + c * value), abs=2e-6)

@@ -57,12 +57,9 @@ def force(law, strain):
     return fmpq_poly(terms)(strain - strain[0])
 
 
-@pytest.mark.parametrize(
-    "law", [named("hertz2", 2, "1/3"), Law(y**3 / (1 + y), y)], ids=str
-)
-def test_the_equal_chain_is_the_difference_of_shifted_fields(law):
+def test_the_equal_chain_is_the_difference_of_shifted_fields():
     """[F((u(x+D) - u)/D) - F((u - u(x-D))/D)]/D at x = 0, D only in the shifts, to D^4."""
-    order = 6
+    law, order = named("hertz2", 2, "1/3"), 6
     jets = [0, 4, 1, -2, 3, 1, -1, 2, 5]  # ∂^n u at 0; u_x = 4 has a rational root
     ahead = fmpq_poly([fmpq(jets[n + 1], factorial(n + 1)) for n in range(order)])
     behind = ahead(fmpq_poly([0, -1]))
@@ -83,14 +80,11 @@ def test_a_law_is_a_value():
     assert theory.at(a=2, m1=1, m2=3) == numbers
     assert theory != homogenize(dimer, law=general())
     assert theory.law.phi(3) == (law.symbols[0] * law.delta) ** 2
-    assert homogenize(dimer, law=Power("k")) == homogenize(dimer)
-    assert theory.pde.at(a=1).law == named("exponential", 1)
     softer = homogenize(dimer, law=named("polynomial", "a", 1)).at(a=-2)
     assert softer.law == named("polynomial", -2, 1)
     kept = pickle.loads(pickle.dumps(theory.at(a="1/2").law))
     assert (kept.text, repr(kept)) == ("exponential:1/2", "named('exponential', 1/2)")
     assert kept == Law(kept.F)
-    assert not Law(kept.F).name
 
 
 @pytest.mark.parametrize("name", NAMES)

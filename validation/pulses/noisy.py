@@ -1,4 +1,4 @@
-"""Pulses of measured records, one after the other.
+"""The first pulse of a measured record.
 
 A pulse is located in a moving mean. The record before the first pulse gives the base and the noise
 (`validation.pulses.base`); arrival, peak and FWHM are those of a spline fitted to the samples
@@ -12,7 +12,7 @@ spline through every other sample.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,10 +27,10 @@ from validation.pulses.fitted import fitted
 from validation.pulses.pulse import (
     MeasureError,
     Pulse,
-    all_pulses,
     first_pulse,
     highest_pulse,
 )
+from validation.pulses.readings import READINGS
 from validation.pulses.signals import Piecewise, checked, spline
 from validation.scenes.cells import longest
 
@@ -42,12 +42,6 @@ _SMOOTH = 0.01  # noise of the moving mean over the peak
 # Share of the peak below which a pulse has fallen. It is less than a half: with a half, noise on
 # the front, where the signal has just passed half its peak, would count as the end of the pulse.
 _LOW = 0.45
-# Share of the peak to which the signal falls between pulses that do not overlap.
-_APART = 0.2
-# Depth, over the peak, of the dip between two pulses; a smaller dip lies in one pulse. It is far
-# above `_SMOOTH`, the noise that is left.
-_HUMP = 0.25
-_LATER = 0.1  # smallest peak of a later pulse over the first
 # Share of the record's range: samples that differ by less, as by the rounding of printed numbers,
 # are equal.
 _EQUAL = 1e-6
@@ -96,9 +90,9 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
     Raises
     ------
     MeasureError
-        For a record without a whole pulse, for a pulse that is clipped, inverted, overlaps another
-        one, or has fewer than 16 samples above half of its peak (6 in a record without noise), and
-        for noise above 5 % of the peak.
+        For a record without a whole pulse, for a pulse that is clipped, inverted, or has fewer
+        than 16 samples above half of its peak (6 in a record without noise), and for noise above
+        5 % of the peak.
 
     Examples
     --------
@@ -107,17 +101,6 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
     >>> print(noisy_pulse(t, np.exp(-9 * t**2) + noise).numbers["fwhm"])  # √(4 ln 2)/3
     0.557 ± 0.003
     """
-    return next(noisy_pulses(time, values, unit))
-
-
-def noisy_pulses(
-    time: ArrayLike, values: ArrayLike, unit: str = ""
-) -> Iterator[NoisyPulse]:
-    """Measure the pulses of a record one after the other, as `noisy_pulse` does the first.
-
-    All have the base and the noise of the record before the first pulse. Raises `MeasureError`
-    where the next pulse, of a tenth of the first one's peak or more, cannot be measured.
-    """
     t, f = checked(time, values)
     size = float(np.abs(f).max()) or 1.0  # so that squares neither over- nor underflow
     f = f / size
@@ -125,8 +108,7 @@ def noisy_pulses(
     if np.ptp(f) < _CONSTANT:
         raise MeasureError("no pulse is in the record: its signal is constant")
     if _is_exact(f) and step < _EXACT * np.ptp(f):
-        yield from _exact(t, f, size)
-        return
+        return _exact(t, f, size)
     rise, fall = _place(t, f - f[:_EARLY].mean())
     block = max(1, int(np.count_nonzero((t > rise) & (t < fall))) // _MOST)
     whole = len(t) // block * block
@@ -142,23 +124,15 @@ def noisy_pulses(
         )
     # Noise of half a level or more spreads the samples over the levels and tells their rounding.
     rounding = step if base.best.variance < (step / 2) ** 2 else 0.0
-    highest = 0.0
-    while True:
-        _check_top(t, f, (rise, fall), _FEWEST, step)
-        numbers = fitted(at, means - base.at(at), base, (rise, fall), rounding)
-        highest = highest or numbers["peak"].value
-        if missing:
-            del numbers["peak"]
-        else:
-            numbers["peak"] *= size
-        (level,) = base.at(np.array([rise])).tolist()
-        noise = math.sqrt(base.best.variance) * size
-        yield NoisyPulse(numbers, level * size, missing, noise)
-        behind = at > 2 * fall - rise
-        later = means[behind] - base.at(at[behind])
-        if not later.max(initial=0.0) > _LATER * highest:
-            return
-        rise, fall = _place(at[behind], later)
+    _check_top(t, f, (rise, fall), _FEWEST, step)
+    numbers = fitted(at, means - base.at(at), base, (rise, fall), rounding)
+    if missing:
+        del numbers["peak"]
+    else:
+        numbers["peak"] *= size
+    (level,) = base.at(np.array([rise])).tolist()
+    noise = math.sqrt(base.best.variance) * size
+    return NoisyPulse(numbers, level * size, missing, noise)
 
 
 def _is_exact(f: Array) -> bool:
@@ -173,52 +147,46 @@ def _is_exact(f: Array) -> bool:
     return len(before) > 0 and bool(falls < _EXACT * np.ptp(f))
 
 
-def _exact(t: Array, f: Array, size: float) -> Iterator[NoisyPulse]:
-    """Measure the pulses of a record without noise, whose base is its first sample."""
+def _exact(t: Array, f: Array, size: float) -> NoisyPulse:
+    """Measure the first pulse of a record without noise, whose base is its first sample."""
     level = float(f[0])
     signal = spline(t, f - level)
     coarse = [spline(t[start::2], f[start::2] - level) for start in (0, 1)]
-    first = first_pulse(signal)
-    doubt = _front(f, first.fwhm / float(t[1] - t[0]))
-    later = [
-        pulse
-        for pulse in all_pulses(signal)
-        if pulse.arrival > first.arrival and pulse.peak > _LATER * first.peak
-    ]
-    for pulse in (first, *later):
-        _check_top(t, f, (pulse.rise, pulse.fall), _FEWEST_EXACT)
-        beside = pulse.fwhm / 2
-        start = max(pulse.rise - beside, t[1])
-        end = min(pulse.fall + beside, t[-2])
-        rough = []
-        for other in coarse:
-            inside = other.times[(other.times > start) & (other.times < end)]
-            around = Piecewise(np.array((start, *inside, end)), other)
-            rough.append(highest_pulse(around))
-        numbers = {}
-        for name in ("arrival", "peak", "fwhm"):
-            value = getattr(pulse, name)
-            error = max(abs(value - getattr(other, name)) for other in rough)
-            numbers[name] = Estimate(value, error)
-        # Which of two humps is the higher is unsure within the error of the peak.
-        peak = numbers["peak"]
-        apart = 0.0
-        for other in (signal, *coarse):
-            tops = _tops(other, pulse, pulse.peak - peak.error)
-            apart = max(apart, np.abs(tops - pulse.arrival).max(initial=0.0))
-        if apart > _SAME * pulse.fwhm:
-            late = numbers["arrival"]
-            error = max(late.error, apart + _SAME * pulse.fwhm)
-            numbers["arrival"] = Estimate(late.value, error)
-        # Both differences of the width may vanish by chance.
-        least = _LEAST_OF_WIDTH * peak.relative_error * pulse.fwhm
-        width = numbers["fwhm"]
-        numbers["fwhm"] = Estimate(width.value, max(width.error, least))
-        # A base that is off by this much moves the peak as much, and both flanks at its half.
-        for name in ("peak", "fwhm"):
-            numbers[name] = numbers[name].widened(doubt / pulse.peak)
-        numbers["peak"] *= size
-        yield NoisyPulse(numbers, level * size)
+    pulse = first_pulse(signal)
+    _check_top(t, f, (pulse.rise, pulse.fall), _FEWEST_EXACT)
+    beside = pulse.fwhm / 2
+    start = max(pulse.rise - beside, t[1])
+    end = min(pulse.fall + beside, t[-2])
+    rough = []
+    for other in coarse:
+        inside = other.times[(other.times > start) & (other.times < end)]
+        around = Piecewise(np.array((start, *inside, end)), other)
+        rough.append(highest_pulse(around))
+    numbers = {}
+    for name in READINGS:
+        value = getattr(pulse, name)
+        error = max(abs(value - getattr(other, name)) for other in rough)
+        numbers[name] = Estimate(value, error)
+    # Which of two humps is the higher is unsure within the error of the peak.
+    peak = numbers["peak"]
+    apart = 0.0
+    for other in (signal, *coarse):
+        tops = _tops(other, pulse, pulse.peak - peak.error)
+        apart = max(apart, np.abs(tops - pulse.arrival).max(initial=0.0))
+    if apart > _SAME * pulse.fwhm:
+        late = numbers["arrival"]
+        error = max(late.error, apart + _SAME * pulse.fwhm)
+        numbers["arrival"] = Estimate(late.value, error)
+    # Both differences of the width may vanish by chance.
+    least = _LEAST_OF_WIDTH * peak.relative_error * pulse.fwhm
+    width = numbers["fwhm"]
+    numbers["fwhm"] = Estimate(width.value, max(width.error, least))
+    # A base that is off by this much moves the peak as much, and both flanks at its half.
+    doubt = _front(f, pulse.fwhm / float(t[1] - t[0]))
+    for name in ("peak", "fwhm"):
+        numbers[name] = numbers[name].widened(doubt / pulse.peak)
+    numbers["peak"] *= size
+    return NoisyPulse(numbers, level * size)
 
 
 def _tops(signal: Piecewise, pulse: Pulse, least: float) -> Array:
@@ -301,19 +269,6 @@ def _place(t: Array, f: Array) -> tuple[float, float]:
         side = "back" if after else "front"
         raise MeasureError(
             f"the pulse is not wholly in the record: its {side} does not pass half its peak"
-        )
-    # Other pulses before the mean falls to _APART of the top. Of two equal peaks `find_peaks`
-    # measures both from the foot, however small the dip between them is; a slight tilt makes one of
-    # them the higher, and the other one is measured from the dip.
-    foot = np.flatnonzero(g < _APART * g[top])
-    sides = np.split(foot, [np.searchsorted(foot, top)])
-    low, high = max(sides[0], default=-1) + 1, min(sides[1], default=len(g))
-    tilted = g[low:high] + np.linspace(0, _EQUAL * g[top], high - low)
-    humps, _ = find_peaks(np.pad(tilted, 1), prominence=_HUMP * g[top])
-    if len(humps) > 1:
-        times = " and ".join(f"{t[low + hump - 1]:.4g}" for hump in humps[:2])
-        raise MeasureError(
-            f"pulses overlap: peaks at {times} without a fall to {_APART:.0%}"
         )
     return float(t[below[after - 1]]), float(t[below[after]])
 

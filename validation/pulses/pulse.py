@@ -130,23 +130,15 @@ def highest_pulse(signal: Signal, end: float = math.inf) -> Pulse:
 
 def first_pulse(signal: Signal) -> Pulse:
     """Measure the pulse in the first time interval in which a signal exceeds half its maximum."""
-    (pulse,) = first_pulses(signal)
-    return pulse
-
-
-def first_pulses(signal: Signal, shares: Sequence[float] = (0.5,)) -> list[Pulse]:
-    """Measure the first pulses that exceed given fractions of a signal's maximum."""
-    grid, found = _Grid(signal), dict[tuple[int, int], Pulse]()
+    grid = _Grid(signal)
     f = grid.f
-    for share in shares:
-        above = f > share * f.max()
-        start = int(np.argmax(above))
-        stop = start + int(np.argmin(np.append(above[start:], False)))
-        if (start, stop) not in found:
-            # The pulse may end later, but before the signal is as high again: an echo may be.
-            again = np.append(f[stop:] >= f[start:stop].max(initial=0.0), True)
-            (found[start, stop],) = grid.highest(stop=stop + int(np.argmax(again)))
-    return [*found.values()]
+    above = f > f.max() / 2
+    start = int(np.argmax(above))
+    stop = start + int(np.argmin(np.append(above[start:], False)))
+    # The pulse may end later, but before the signal is as high again: an echo may be.
+    again = np.append(f[stop:] >= f[start:stop].max(), True)
+    (pulse,) = grid.highest(stop=stop + int(np.argmax(again)))
+    return pulse
 
 
 def leading_pulses(

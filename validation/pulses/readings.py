@@ -1,4 +1,4 @@
-"""Measured numbers of pulses at sensors, the speeds between them, and later pulses.
+"""Measured numbers of pulses at sensors, and the speeds between them.
 
 A number is an `Estimate`, of a run or of a record.
 """
@@ -121,48 +121,3 @@ def _elapsed(
     if time.value <= time.error:
         raise MeasureError("the arrivals are equal but for their errors")
     return time
-
-
-def echoes(
-    sensors: Sequence[Reading], total: Callable[[float, float], float]
-) -> list[tuple[Reading, bool]]:
-    """Return the later pulses at sensors: delay behind the first pulse, and peak over its peak.
-
-    Parameters
-    ----------
-    sensors : sequence of Reading
-        First pulses, and later ones.
-    total : callable
-        Error of a delay or a ratio as a function of the errors of both pulses.
-
-    Returns
-    -------
-    list of (Reading, bool)
-        Later pulses, and whether each is reflected: whether it reaches this sensor and another one
-        of the kind in the reverse order of the first pulse, or no other sensor tells.
-    """
-    firsts = {(r.kind, r.places): r.numbers for r in sensors if r.pulse == 1}
-    later = []
-    for r in sensors:
-        if r.pulse == 1 or not r.numbers:
-            continue
-        first = firsts[r.kind, r.places]
-        arrival = r.numbers["arrival"]
-        delay = arrival.value - first["arrival"].value
-        error = total(arrival.error, first["arrival"].error)
-        numbers = {"delay": Estimate(delay, error)}
-        if "peak" in r.numbers:
-            peaks = (r.numbers["peak"], first["peak"])
-            ratio = peaks[0].value / peaks[1].value
-            error = total(*(peak.relative_error for peak in peaks))
-            numbers["ratio"] = Estimate(ratio, ratio * error)
-        reflected = True
-        for other in sensors:
-            same = (other.kind, other.pulse) == (r.kind, r.pulse)
-            if same and other.places != r.places and other.numbers:
-                start = firsts[other.kind, other.places]["arrival"].value
-                ahead = start - first["arrival"].value
-                behind = other.numbers["arrival"].value - arrival.value
-                reflected = ahead * behind < 0
-        later.append((replace(r, numbers=numbers), reflected))
-    return later

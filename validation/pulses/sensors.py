@@ -3,9 +3,7 @@
 Forces are dynamic: they count from the start, as in a record. Beads that start in equilibrium carry
 the static force of gravity and precompression; beads that fall onto each other carry none. Every
 number of a recording is measured in a run and in a second, more accurate one, whose difference
-tells its error (`validation.pulses.pulse.compared`). Where a hump of about half the record's
-maximum precedes the first pulse, or is it, another run may take the other one: the error is then
-at least the distance between them (`first_numbers`).
+tells its error (`validation.pulses.pulse.compared`).
 """
 
 from __future__ import annotations
@@ -31,7 +29,6 @@ from validation.pulses.pulse import (
     all_pulses,
     compared,
     first_pulse,
-    first_pulses,
     highest_pulse,
     speed,
     tolerances,
@@ -43,7 +40,6 @@ from validation.scenes.scene import Scene
 
 TOLERANCE = 1e-10  # default tolerance of the accurate run
 _ROUNDING = 10  # rounding of the static compression over rtol; with more, steps follow the noise
-_UNSURE = 1e-4  # of half the maximum; two of 9,936 arrivals under load depend on its sixth digit
 _QUICK = 0.9  # of the time of a small wave, of light beads: a pulse takes more
 # Samples in the shortest time √(m/spring) of a bead between two contacts. The force of two beads
 # that collide, or of a Hertz chain's wave, has 1.5 or 1.9 √(m/spring) of one contact above half.
@@ -303,58 +299,28 @@ def _readings(track: Track, other: Track, every: bool) -> list[Reading]:
     place = (track.number,)
     blank = Reading(track.kind, place, {}, track.static, quantity=track.quantity)
     try:
-        if every:
-            known = all_pulses(other.force)
-            found = []
-            for pulse in all_pulses(track.force):
-                # Another run may see a pulse less, or one more.
-                same = min(known, key=partial(_delay, pulse))
-                found.append(compared(readings, [pulse, same]))
-        else:
-            found = [first_numbers(track.force, other.force)]
+        measured, known = (
+            all_pulses(signal) if every else [first_pulse(signal)]
+            for signal in (track.force, other.force)
+        )
     except MeasureError as error:
         return [replace(blank, missing=str(error))]
-    found = [numbers for numbers in found if numbers["peak"].relative_error < _HIDDEN]
+    found: list[Reading] = []
+    for pulse in measured:
+        # Another run may see a pulse less, or one more.
+        same = min(known, key=partial(_delay, pulse))
+        numbers = compared(readings, [pulse, same])
+        if numbers["peak"].relative_error < _HIDDEN:
+            found.append(replace(blank, numbers=numbers, pulse=len(found) + 1))
     if not found:
         reason = "no pulse: the force is the static one, but for errors"
         return [replace(blank, missing=reason)]
-    return [
-        replace(blank, numbers=numbers, pulse=number)
-        for number, numbers in enumerate(found, start=1)
-    ]
+    return found
 
 
 def _delay(pulse: Pulse, other: Pulse) -> float:
     """Return the time between the arrivals of two pulses."""
     return abs(other.arrival - pulse.arrival)
-
-
-def first_numbers(force: Signal, other: Signal) -> dict[str, Estimate]:
-    """Return `READINGS` of the first pulse, with errors from another run's signal.
-
-    The first pulse is the first one above half the maximum. The other signal is also searched a
-    little below and above half, and the largest error counts.
-
-    Parameters
-    ----------
-    force : Signal
-        A signal.
-    other : Signal
-        The same signal of another run, see `validation.pulses.pulse.compared`.
-
-    Raises
-    ------
-    MeasureError
-        If one of the signals has no pulse.
-    """
-    first = readings(first_pulse(force))
-    shares = [(1 + part) / 2 for part in (-_UNSURE, 0.0, _UNSURE)]
-    seen = [readings(pulse) for pulse in first_pulses(other, shares)]
-    farthest = {}
-    for name, value in first.items():
-        values = [numbers[name] for numbers in seen]
-        farthest[name] = max(values, key=lambda x: abs(x - value))
-    return compared(dict, [first, farthest])
 
 
 @dataclass(frozen=True)

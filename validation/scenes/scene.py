@@ -11,11 +11,11 @@ Any consistent units will do (``m1 = A = D = 1``, say); scenes of real beads are
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, partial
 from itertools import accumulate, pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -45,8 +45,11 @@ from validation.scenes.forcing import Damping, Drive
 
 __all__ = ["Scene", "SceneError"]
 
-Number = float | str
-"""A number of a scene: a float, or a text such as "3/2" for the exponent."""
+Row = tuple[float, ...] | Any
+"""Any sequence of numbers, which a scene keeps as a tuple of floats."""
+
+Places = tuple[int, ...] | Any
+"""Any sequence of numbers of beads or contacts, which a scene keeps as a tuple."""
 
 _LONGEST = 100  # times the duration that a drive's record may last: longer, its unit is another
 
@@ -122,47 +125,23 @@ class Scene:
     (0.1, 0.1)
     """
 
-    masses: tuple[float, ...]
-    stiffnesses: tuple[float, ...]
-    k: float | tuple[float, ...] = MISSING
+    masses: Row
+    stiffnesses: Row
+    k: float | Row = MISSING
     duration: float
     wall: float | None = None
     gravity: float = 0.0
-    displacements: tuple[float, ...] = ()
-    velocities: tuple[float, ...] = ()
-    contact_sensors: tuple[int, ...] = ()
-    bead_sensors: tuple[int, ...] = ()
+    displacements: Row = ()
+    velocities: Row = ()
+    contact_sensors: Places = ()
+    bead_sensors: Places = ()
     samples: int = 1001
     precompression: float = 0.0
-    spacings: tuple[float, ...] = ()
+    spacings: Row = ()
     units: str = ""
-    law: ContactLaw | tuple[ContactLaw | None, ...] | None = None
+    law: ContactLaw | tuple[ContactLaw | None, ...] | Any = None
     damping: Damping | None = None
     drive: Drive | None = None
-
-    if TYPE_CHECKING:  # the types that are read, beside those that are kept
-
-        def __init__(
-            self,
-            *,
-            masses: Iterable[Number],
-            stiffnesses: Iterable[Number],
-            k: Number | Iterable[Number] = MISSING,
-            duration: Number,
-            wall: Number | None = None,
-            gravity: Number = 0.0,
-            displacements: Iterable[Number] = (),
-            velocities: Iterable[Number] = (),
-            contact_sensors: Iterable[int] = (),
-            bead_sensors: Iterable[int] = (),
-            samples: int = 1001,
-            precompression: Number = 0.0,
-            spacings: Iterable[Number] = (),
-            units: str = "",
-            law: ContactLaw | Iterable[ContactLaw | None] | None = None,
-            damping: Damping | None = None,
-            drive: Drive | None = None,
-        ) -> None: ...
 
     def __post_init__(self) -> None:
         for name, read in _READERS.items():
@@ -219,25 +198,20 @@ class Scene:
         object.__setattr__(self, "law", alike(tuple(law for _, law in contacts)))
 
     def _check_start(self) -> None:
-        """Refuse a start inside the wall or inside a neighbour, where the spacings tell."""
+        """Refuse a start inside the wall or behind a neighbour, where the spacings tell."""
         if not (self.displacements and self.spacings):
             return
-        # Beads whose displacement is not given start at their places of rest.
-        y = np.zeros(self.size)
+        # The wall, and beads whose displacement is not given, start at their places of rest.
+        y = np.zeros(self.size + 1)
         y[: len(self.displacements)] = self.displacements
-        passed = y[:-1] - y[1:] > self.spacings
+        # A bead's radius, its distance from the wall, is half its distance from the bead before it.
+        distances = (*self.spacings, self.spacings[-1] / 2)[: self.contact_count]
+        passed = -np.diff(y)[: self.contact_count] > distances
         if passed.any():
             i = int(np.argmax(passed))
             raise SceneError(
-                f"displacements[{i}] is {y[i]:g}: bead {i + 1} would start behind bead {i + 2}, "
-                f"whose distance is {self.spacings[i]:g}"
-            )
-        last = float(y[-1])
-        # A bead's radius is half its distance from the bead before it.
-        if self.wall is not None and last > self.spacings[-1] / 2:
-            raise SceneError(
-                f"displacements[{self.size - 1}] is {last:g}: bead {self.size} would start inside "
-                f"the wall, towards which displacements are positive; in front of it is {-last:g}"
+                f"displacements[{i}] is {y[i]:g}, positive towards the wall: bead {i + 1} would "
+                f"start behind bead {i + 2}, or inside the wall, {distances[i]:g} from it"
             )
 
     def _check_damping(self) -> None:

@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -161,7 +162,7 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     # A law of another form, or a list of exponents, has no passage in closed form.
     passage = None
     if "striker" in file and isinstance(fields.get("k"), float):
-        passage = _passage(**{key: fields[key] for key in _STRUCK})
+        passage = _passage(fields)
     return Scene(
         **fields,
         duration=file.read("duration", positive, passage),
@@ -172,26 +173,19 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     )
 
 
-_STRUCK = ("masses", "stiffnesses", "k", "velocities")
-"""Fields of a scene that set the time of passage of a striker's pulse."""
-
-
-def _passage(
-    masses: Sequence[float],
-    stiffnesses: Sequence[float],
-    k: float,
-    velocities: Sequence[float],
-) -> float:
+def _passage(fields: Mapping[str, Any]) -> float:
     """About twice the time in which the pulse of a striker runs through a chain.
 
     A contact takes the time in which a bead at the striker's velocity covers the compression that
     holds its energy, ``A δ^{k+1}/(k+1) = m v²/2``: of equal spheres 0.9 of the pulse's time.
     """
-    total = 0.0
+    masses = fields["masses"]
+    k = fields["k"]
+    (velocity,) = fields["velocities"]
     # A heavy bead is as fast as the momentum of a light striker makes it.
-    speed = abs(velocities[0]) * masses[0] / max(masses)
-    pairs = zip(masses, masses[1:], stiffnesses, strict=False)
-    for first, second, A in pairs:
+    speed = abs(velocity) * masses[0] / max(masses)
+    total = 0.0
+    for (first, second), A in zip(pairwise(masses), fields["stiffnesses"], strict=True):
         energy = max(first, second) * speed**2 / 2
         total += (energy * (k + 1) / A) ** (1 / (k + 1)) / speed
     return 2 * total

@@ -40,6 +40,7 @@ from validation.scenes.checks import SceneError
 from validation.scenes.columns import Stated
 from validation.scenes.measured import MeasuredFile
 from validation.studies.records import column_options
+from validation.studies.run import print_option
 from validation.waves.solver import exact_wave
 
 _DRAWS = 1000  # of the coefficients of ln V, for the errors
@@ -65,13 +66,6 @@ _EXAMPLE = """force (N),force_error (N),speed (m/s),speed_error (m/s)
 """
 
 
-def _print(context: click.Context, given: click.Parameter, wanted: bool) -> None:
-    """Print an example of data, and end the command."""
-    if wanted and not context.resilient_parsing:  # completion parses resiliently
-        click.echo(_EXAMPLE, nl=False)
-        context.exit()
-
-
 @study(
     click.argument("data", type=click.Path()),
     option("--masses", callback=quantities, says="Mass of a bead; by default 1."),
@@ -91,13 +85,11 @@ def _print(context: click.Context, given: click.Parameter, wanted: bool) -> None
         metavar="NAME",
         says="Material in this file whose modulus E is wanted.",
     ),
-    option(
+    print_option(
         "--example",
+        lambda _: _EXAMPLE,
+        "Print an example of DATA: blows on steel balls of 19.05 mm and 29 g.",
         is_flag=True,
-        is_eager=True,
-        expose_value=False,
-        callback=_print,
-        says="Print an example of DATA: blows on steel balls of 19.05 mm and 29 g.",
     ),
     column_options,
     page="experiment",
@@ -122,7 +114,7 @@ def law(
     Peak contact forces and speeds are in the units of the masses and the spacing, by default those
     of unit mass and spacing; with spheres they are in N and m/s. ``k_value``, ``A_value`` and, of
     an unknown material, ``E_value``, with their errors; ``correlation_value`` of k and ln A;
-    ``residual_value`` of ln V; ``one_power``.
+    ``one_power``.
     """
     file = MeasuredFile(data, **stated)
     force, speed, weight = _pulses(file)
@@ -158,7 +150,6 @@ def law(
     rows = []
     values = {
         "correlation_value": fit.correlation,
-        "residual_value": fit.residual,
         "one_power": fit.one_power,
     }
     for name, number in numbers.items():
@@ -288,7 +279,6 @@ class PowerFit:
     curvature: (
         Estimate  # coefficient of (ln F)² in a parabola for ln V; 0 for one power
     )
-    residual: float  # standard deviation of ln V from the fit
 
     @property
     def one_power(self) -> bool:
@@ -348,7 +338,6 @@ def fit_power(
         float(np.corrcoef(k, log_A)[0, 1]),
         stiffness(medium.log_stiffness(sixth, hertz), _HERTZ),
         _interval(curvature),
-        float(np.std(y - np.polyval((slope[0], constant[0]), x - middle))),
     )
 
 

@@ -17,7 +17,7 @@ from lwa.command.options import Words
 from validation.lattice.cost import RunProgress, silent
 from validation.pictures import Curve, Panel
 from validation.pulses.discharge import corrected, suggested
-from validation.pulses.noisy import InvertedError, noisy_pulse, noisy_pulses
+from validation.pulses.noisy import InvertedError, noisy_pulse
 from validation.pulses.pulse import MeasureError
 from validation.pulses.readings import Reading, speeds_between
 from validation.pulses.sensors import forces_at_start, record
@@ -203,7 +203,7 @@ def pulses(
     distance; without any they are in the file's own units. One column time serves all sensors; or
     the first serves the first one, the next the next.
 
-    ``sensors``, ``speeds`` and ``echoes`` as of `validation.studies.run`, the static force from the
+    ``sensors`` and ``speeds`` as of `validation.studies.run`, the static force from the
     record. A sensor has the speeds from the sensor before as well, so that the CSV holds them all.
 
     Raises `MeasureError` where no sensor has a pulse.
@@ -223,31 +223,29 @@ def pulses(
         places.append({"speed_sites": float(site)})
         if apart is not None:
             places[-1]["speed"] = apart * site
-        place = 1
         try:
-            for pulse in noisy_pulses(signal.time, signal.values, read.unit):
-                reading = replace(blank, numbers=pulse.numbers, missing=pulse.missing)
-                found.append(replace(reading, static=pulse.base, pulse=place))
-                hint = suggested(signal.time, signal.values, pulse, read.unit)
-                if place == 1 and hint and not time_constant:
-                    notes.append(f"{blank.name}: {hint}")
-                place += 1
+            pulse = noisy_pulse(signal.time, signal.values, read.unit)
         except MeasureError as error:
-            found.append(replace(blank, missing=str(error), pulse=place))
+            found.append(replace(blank, missing=str(error)))
             if isinstance(error, InvertedError):
                 turned[signal.key] = signal.inverted
                 notes.append(
                     f"{blank.name}: --unit '{signal.key}={signal.inverted}' turns it."
                 )
-    firsts = [reading for reading in found if reading.pulse == 1]
-    if not any(first.numbers for first in firsts):
+            continue
+        reading = replace(blank, numbers=pulse.numbers, missing=pulse.missing)
+        found.append(replace(reading, static=pulse.base))
+        hint = suggested(signal.time, signal.values, pulse, read.unit)
+        if hint and not time_constant:
+            notes.append(f"{blank.name}: {hint}")
+    if not any(reading.numbers for reading in found):
         raise MeasureError(
             f"no sensor has a pulse: {found[0].name}: {found[0].missing}",
             **_units(stated, turned),
         )
     # The noise of two sensors is independent.
-    speeds = speeds_between(firsts, places, math.hypot)
-    tables, missing = reading_tables(found, speeds, "peak", read.si, math.hypot)
+    speeds = speeds_between(found, places, math.hypot)
+    tables, missing = reading_tables(found, speeds, "peak", read.si)
     units = "SI" if read.si else "the file's own"
     return Report(
         ", ".join(map(str, [records] if isinstance(records, str | Path) else records)),

@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import json
 import math
-import operator
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -25,7 +24,7 @@ from validation.lattice.cost import RunProgress
 from validation.lattice.signal import RECORDS
 from validation.lattice.simulate import COMPILED
 from validation.lattice.steppers import METHODS
-from validation.pulses.readings import Reading, echoes
+from validation.pulses.readings import Reading
 from validation.pulses.sensors import TOLERANCE, Recording, enough_samples, record
 from validation.report.study import Report, option, output_option, replacing, study
 from validation.report.table import Column, Table, plain
@@ -45,7 +44,17 @@ _DYNAMIC = (
 
 def example(name: str) -> str:
     """Return the text of an example scene file."""
-    file = resources.files("validation.scenes") / "examples" / f"{name}.toml"
+    return _scene_text(f"examples/{name}.toml")
+
+
+def keys(wanted: bool = True) -> str:
+    """Return the list of the keys of a scene file, with examples."""
+    return _scene_text("keys.toml")
+
+
+def _scene_text(name: str) -> str:
+    """Return the text of a file of `validation.scenes`."""
+    file = resources.files("validation.scenes").joinpath(name)
     return file.read_text(encoding="utf-8")
 
 
@@ -55,8 +64,6 @@ def report(recording: Recording, every: bool = False) -> Report:
     Keys of the JSON document:
     ``sensors``: ``kind``, ``number``, with ``every`` ``pulse``, counted from 1, ``arrival_value``,
     ``peak_value`` (of the dynamic force), ``fwhm_value``, ``static_force_value``, ``missing``;
-    ``echoes`` of later pulses: ``kind``, ``number``, ``pulse``, ``reflected``, ``delay_value``
-    behind the first pulse and ``ratio_value`` of their peaks (`validation.pulses.readings.echoes`);
     ``speeds``: ``kind``, ``from``, ``to``, ``speed_sites_value``, ``speed_value`` (null without
     spacings), ``missing``; ``end`` of the bead sensors: ``bead``, ``velocity_value`` and
     ``displacement_value`` at the end; each value with its error, as ``arrival_error_value``, and
@@ -87,7 +94,6 @@ def report(recording: Recording, every: bool = False) -> Report:
         recording.speeds,
         "peak dynamic force" if any(scene.load) else "peak force",
         bool(scene.units),
-        operator.add,
         every,
     )
     columns = (
@@ -114,11 +120,9 @@ def reading_tables(
     speeds: Sequence[Reading],
     peak: str,
     si: bool,
-    total: Callable[[float, float], float],
     every: bool = False,
 ) -> tuple[tuple[Table, ...], str]:
-    """Return the tables ``sensors`` and ``speeds``, with later pulses also ``echoes``, and lines on
-    the numbers that are missing.
+    """Return the tables ``sensors`` and ``speeds``, and lines on the numbers that are missing.
 
     The table of the sensors, which is the CSV, also holds the speeds of the first pulses from the
     sensor before; they are not printed twice.
@@ -126,17 +130,15 @@ def reading_tables(
     Parameters
     ----------
     sensors : sequence of Reading
-        Pulses at the sensors; later pulses of a sensor behind its first one.
+        Pulses at the sensors.
     speeds : sequence of Reading
         Speeds between sensors.
     peak : str
         Label of the peaks.
     si : bool
         Whether results are in SI units.
-    total : callable
-        Error of a difference as a function of two errors.
     every : bool
-        True for later pulses in the table ``sensors``, too, in a column ``pulse``.
+        True if later pulses are among them: the table has their numbers in a column ``pulse``.
     """
     units = ("s", "m/s", " (s)") if si else ("time", "length/time", "")
     quantities = sorted({reading.quantity for reading in sensors})
@@ -144,13 +146,12 @@ def reading_tables(
         peak = f"{peak} ({', '.join(BASES[quantity] for quantity in quantities)})"
     kind = Column("kind")
     number = Column("number")
-    pulse = Column("pulse", "pulse")
     missing = Column("missing")
     columns = [Column("", "sensor"), kind, number]
     if "velocity" in quantities:
         columns.append(Column("signal"))
     if every:
-        columns.append(pulse)
+        columns.append(Column("pulse", "pulse"))
     columns += [
         Column("arrival", f"arrival{units[2]}", _digits(sensors), error=True),
         Column("peak", peak, error=True),
@@ -163,9 +164,10 @@ def reading_tables(
     arriving = {(leg.kind, leg.places[1]): leg.numbers for leg in speeds}
     rows = []
     for reading in sensors:
-        before = arriving.get((reading.kind, reading.places[0]), {})
-        if every or reading.pulse == 1:
-            rows.append(_row("sensor", reading, before if reading.pulse == 1 else {}))
+        row = _row("sensor", reading)
+        if reading.pulse == 1:
+            row |= arriving.get((reading.kind, reading.places[0]), {})
+        rows.append(row)
     legs = [
         Column("", "between"),
         kind,
@@ -179,40 +181,22 @@ def reading_tables(
         Table.of(columns, rows, "sensors"),
         Table.of(legs, [_row("between", leg) for leg in speeds], "speeds"),
     ]
-    later = [
-        _row("later pulse", reading, {"reflected": back})
-        for reading, back in echoes(sensors, total)
-    ]
-    if later:
-        echo = [
-            Column("", "later pulse"),
-            kind,
-            number,
-            pulse,
-            Column("reflected", "runs", lambda back: "back" if back else "on"),
-            Column("delay", f"delay{units[2]}", error=True),
-            Column("ratio", "peak/first", error=True),
-        ]
-        tables.append(Table.of(echo, later, "echoes"))
     lines = []
     for reading in (*sensors, *speeds):
         if reading.missing:
-            later_one = f", pulse {reading.pulse}" if reading.pulse > 1 else ""
-            lines.append(f"{reading.name}{later_one}: {reading.missing}")
+            lines.append(f"{reading.name}: {reading.missing}")
     return tuple(tables), "\n".join(lines)
 
 
-def _row(
-    label: str, reading: Reading, more: Mapping[str, Any] | None = None
-) -> dict[str, Any]:
+def _row(label: str, reading: Reading) -> dict[str, Any]:
     """Return the cells of a reading, a row of a table, by the keys of the table's columns.
 
-    label : key of the column that holds the reading's name. more : further cells by key.
+    label : key of the column that holds the reading's name.
     """
     places = ("number",) if len(reading.places) == 1 else ("from", "to")
     row: dict[str, Any] = dict(zip(places, reading.places, strict=True))
-    row |= dict(reading.numbers) | dict(more or {})
     return row | {
+        **reading.numbers,
         label: reading.name,
         "kind": reading.kind,
         "signal": reading.quantity,
@@ -234,21 +218,20 @@ def _digits(sensors: Sequence[Reading]) -> str:
     return str(max(6, math.ceil(math.log10(late)) + 4))
 
 
-def keys() -> str:
-    """Return the list of the keys of a scene file, with examples."""
-    return (resources.files("validation.scenes") / "keys.toml").read_text(
-        encoding="utf-8"
-    )
+def print_option(
+    name: str, text: Callable[[Any], str], says: str, **settings: Any
+) -> Any:
+    """Return an option that prints a text, a function of its value, and ends the command."""
+
+    def show(context: click.Context, given: click.Parameter, value: Any) -> None:
+        if value and not context.resilient_parsing:  # completion parses resiliently
+            click.echo(text(value), nl=False)
+            context.exit()
+
+    settings |= {"is_eager": True, "expose_value": False, "callback": show}
+    return option(name, says=says, **settings)
 
 
-def _print(context: click.Context, given: click.Parameter, name: Any) -> None:
-    """Print the file of an option, an example or the keys, and end the command."""
-    if name and not context.resilient_parsing:  # completion parses resiliently
-        click.echo(keys() if given.name == "keys" else example(name), nl=False)
-        context.exit()
-
-
-_PRINTED: dict[str, Any] = {"is_eager": True, "expose_value": False, "callback": _print}
 SUFFIXES = (".json", ".csv")
 
 _METHODS = Words((*COMPILED, *METHODS))
@@ -258,19 +241,19 @@ _RTOL = "Relative tolerance. Errors are differences to a more accurate run."
 
 @study(
     click.argument("scene", type=click.Path()),
-    option(
+    print_option(
         "--example",
+        example,
+        "Print an example of a scene file, by default the paper's chain.",
         type=Words(EXAMPLES),
         is_flag=False,
         flag_value=EXAMPLES[0],
-        **_PRINTED,
-        says="Print an example of a scene file, by default the paper's chain.",
     ),
-    option(
+    print_option(
         "--keys",
+        keys,
+        "Print all keys of a scene file, with examples.",
         is_flag=True,
-        **_PRINTED,
-        says="Print all keys of a scene file, with examples.",
     ),
     output_option(
         "--out",

@@ -171,9 +171,9 @@ TEXTS = {
     "derive --law exponential --format latex": (r"F' u_{xx} + G F' u_{x}^{-2} u_{xx}^{3}",),
     "wave --k 3/2 --masses m --force f": ("peak contact force F = f\n",),
     "wave --k 3/2 --masses 1,3 --background 1/10": (
-        "FWHM of the strain at B = 1, D = 1 = 2.672, error unknown\n",
+        "at B = 1, D = 1:\n", "FWHM of the strain = 2.672, error unknown\n",
     ),
-    "wave --k 3/2 --masses 1 --background 1": ("V_s at B = 1, D = 1 = 1.0725 ± 0", "±: bound"),
+    "wave --k 3/2 --masses 1 --background 1": ("V_s = 1.0725 ± 0", "±: bound"),
     "wave --masses 1 --background p0 --format latex": (
         r"V_{s} &= ", r"c_{0} &= ", "p_{0} &= p_{0}",
     ),

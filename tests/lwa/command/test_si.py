@@ -65,7 +65,7 @@ def test_the_cell_is_the_smallest_one_and_lengths_may_have_no_unit(file):
     found = read_chain(file(MASSES | {"chain": chain}))
     assert (found.cell.masses, found.cell.stiffnesses) == ((1, 2), (3, 4))
     found = read_chain(file({"chain": {"cell": [1, 2, 1], "k": 2}}))
-    assert (found.cell.masses, found.precompression) == ((1, 2), 0)
+    assert (found.cell.masses, found.precompression) == ((1, 2), None)
     assert found.cell.spacing.is_Symbol
 
 

@@ -62,7 +62,7 @@ def lattice(k, omega=0.0, points=300):
     kinetic = elastic * (k + 1) / 2  # the virial theorem
     values = {
         "c2": c2,
-        "c": np.sqrt(c2),
+        "speed": np.sqrt(c2),
         "momentum": (1 + omega) * integral(velocity),
         "energy": kinetic + elastic,
     }

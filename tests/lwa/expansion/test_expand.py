@@ -11,7 +11,6 @@ from lwa import Cell, Dimer, canonical_wave
 from lwa.expansion.expand import expand
 from lwa.expansion.observables import Observables, shares_model
 from lwa.expansion.recursion import Recursion
-from lwa.expansion.series import radiated
 from tests.identity import same
 from tests.lwa.expansion.test_exact_waves import series
 
@@ -31,19 +30,23 @@ def wave(name, order=4):
     return expand(CELLS[name], order, k=3 if name == "contacts" else "k")
 
 
-def contact(fields, I, i, order, epsilon):
-    """Strain of contact i, over its share, as a function of ξ: the series cut after ε^order."""
-    log = fields.force[i].log[: 2 * order + 1]
+def contact(log, I, epsilon):
+    """Strain of a contact, over its share, as a function of ξ: the given terms of log f in t."""
 
     def strain(xi):
         Z, t = mpmath.sqrt(epsilon / I) * xi, mpmath.sqrt(epsilon / I**3)
         total = -(Z**2) / 4
         for n, polynomial in enumerate(log):
             for (d,), c in polynomial.terms():
-                total += mpmath.mpf(int(c.p)) / int(c.q) * Z ** int(d) * t**n
+                total += exact(c) * Z ** int(d) * t**n
         return mpmath.exp(total / (1 + epsilon))
 
     return strain
+
+
+def exact(value):
+    """A rational of FLINT or SymPy in mpmath's precision."""
+    return mpmath.mpf(int(value.p)) / int(value.q)
 
 
 @pytest.mark.parametrize("name", ["equal", "dimer", "three"])
@@ -53,14 +56,14 @@ def test_residual_of_newtons_equations_falls_as_the_order_promises(name):
     expansion, P = wave(name), cell.size
     fields = Recursion(shares_model(cell, sp.S.One), order + 1)
     assert expansion.c2.prefactor == P / (cell.mass * expansion.compliance)
-    for epsilon in (sp.Rational(1, n) for n in (400, 800, 1600)):
-        coefficients = enumerate(expansion.c2.coefficients[: order + 1])
-        c2 = sp.N(sum(a * epsilon**n for n, a in coefficients), 50)
-        with mpmath.workdps(50):
-            c2, small = mpmath.mpmathify(c2), mpmath.mpf(1) / epsilon.q
-            mu = [mpmath.mpmathify(sp.N(m / cell.mass, 50)) for m in cell.masses]
-            I = mpmath.mpmathify(Observables(fields).I)
-            strains = [contact(fields, I, i, order, small) for i in range(P)]
+    with mpmath.workdps(50):
+        mu = [exact(m / cell.mass) for m in cell.masses]
+        I = exact(Observables(fields).I)
+        gamma = [exact(a) for a in expansion.c2.coefficients[: order + 1]]
+        for small in (mpmath.mpf(1) / n for n in (400, 800, 1600)):
+            c2 = mpmath.polyval(gamma[::-1], small)
+            logs = (pulse.log[: 2 * order + 1] for pulse in fields.force)
+            strains = [contact(log, I, small) for log in logs]
             worst = mpmath.mpf(0)
             for at in (-1.5, -0.3, 0.4, 1.1):
                 xi = mpmath.mpf(at) / mpmath.sqrt(small)
@@ -74,11 +77,11 @@ def test_residual_of_newtons_equations_falls_as_the_order_promises(name):
                     left = c2 * mpmath.diff(strains[i], xi, 2)
                     worst = max(worst, abs(left - ahead + behind))
             residuals.append(worst)
-    slopes = [mpmath.log(a / b, 2) for a, b in pairwise(residuals)]
+        slopes = [mpmath.log(a / b, 2) for a, b in pairwise(residuals)]
     # What is missing is ε^{order+1/2} of the wave, and beads of unlike mass feel it at once; where
     # the wave is even it is ε^{order+1}, in terms of the size ε. Next orders shift slopes by O(ε).
     expected = order + (2 if name == "equal" else 0.5)
-    assert all(abs(s - expected) < 0.05 for s in slopes), slopes
+    assert slopes == pytest.approx([expected] * 2, abs=0.05)
 
 
 @pytest.mark.parametrize("name", ["equal", "dimer"])
@@ -108,24 +111,11 @@ def test_first_correction_of_a_dimer_is_a_closed_form():
     w_1 = expand(Dimer(1, OMEGA), 1).fwhm("force").coefficients[1]
     top = (6 - sp.log(2)) * (OMEGA**4 + 34 * OMEGA**3 - 69 * OMEGA**2 + 34 * OMEGA + 1)
     assert same(w_1, top / (60 * (OMEGA**2 - OMEGA + 1) ** 2))
-    uniform = wave("equal").fwhm("force").coefficients[1]
-    assert same(w_1.subs(OMEGA, 1), uniform)
-    assert same(w_1.subs(OMEGA, 1 / OMEGA), w_1)
 
 
 def test_unlike_contacts_have_unlike_widths():
     """The widths of both contacts of a struck chain, contacts 1 and 6/25 at k = 11/10."""
-    wave = expand(Cell([1, 1], [1, "6/25"]), 8, k="11/10")
+    wave = expand(Cell([1, 1], [1, "6/25"]), 6, k="11/10")
     for contact, width in enumerate((5.035, 4.549)):
         found = wave.fwhm("force", contact).at()
         assert abs(found.value - width) <= found.error < (5.035 - 4.549) / 10
-
-
-def test_radiation_vanishes_for_equal_beads_and_near_k_of_1():
-    contrasts = [
-        radiated(Dimer(1, omega), sp.Rational(6, 5)) for omega in ("1/2", "9/10", 1)
-    ]
-    assert contrasts == sorted(contrasts, reverse=True)
-    assert contrasts[-1] == 0
-    losses = [radiated(CELLS["three"], 1 + sp.Rational(1, n)) for n in (2, 8, 32)]
-    assert losses[0] > 2 * losses[1] > 6 * losses[2] > 0

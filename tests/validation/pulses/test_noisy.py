@@ -10,7 +10,7 @@ import scipy
 from validation import simulate
 from validation.pulses.base import Base
 from validation.pulses.discharge import corrected, suggested
-from validation.pulses.noisy import noisy_pulse, noisy_pulses
+from validation.pulses.noisy import noisy_pulse
 from validation.pulses.pulse import MeasureError, first_pulse
 from validation.pulses.signals import spline
 from validation.studies.paper import recorded_chain
@@ -203,19 +203,6 @@ def test_a_record_may_begin_in_the_front_of_its_pulse(at):
         assert abs(number.value - true) < number.error < 30 * abs(number.value - true)
 
 
-def test_pulses_come_one_after_the_other():
-    t = np.arange(0, 25, 0.01)
-    f = 0.7 - 0.01 * t + 0.005 * np.random.default_rng(0).normal(size=len(t))
-    pulses = {8: 1, 14: 0.5, 20: 1}
-    for at, peak in pulses.items():
-        f += peak * np.exp(-((t - at) ** 2))
-    found = [pulse.numbers for pulse in noisy_pulses(t, f)]
-    width = 2 * np.sqrt(np.log(2))
-    for numbers, (at, peak) in zip(found, pulses.items(), strict=True):
-        for name, value in (("arrival", at), ("peak", peak), ("fwhm", width)):
-            assert abs(numbers[name].value - value) < 4 * numbers[name].error < 0.1
-
-
 def test_many_samples_are_averaged():
     """Thirty thousand samples a width: the errors are those of the samples themselves."""
     t = np.linspace(-6, 3, 270_001)
@@ -271,10 +258,6 @@ WHITE = np.random.default_rng(2).normal(size=400)
         # square: all samples inside are equal
         (np.where(abs(N - 300) < 20, 1, 0.003 * WHITE), "clipped from 281 to 319"),
         (2 - PULSE + 0.01 * WHITE, "is inverted"),
-        (
-            PULSE + np.exp(-(((N - 345) / 20) ** 2)) + 0.001 * WHITE,
-            "pulses overlap: peaks at 30[01] and 34[45]",
-        ),
     ],
 )
 def test_records_without_a_measurable_pulse_are_refused(f, named):
