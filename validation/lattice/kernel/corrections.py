@@ -30,7 +30,7 @@ from validation.lattice.kernel.arrays import (
     Pair,
     Plan,
 )
-from validation.lattice.kernel.compiled import FIRST, ONE, index, inlined, part
+from validation.lattice.kernel.compiled import FIRST, ONE, alone, index, inlined, part
 from validation.lattice.kernel.force import (
     drag,
     drive_motion,
@@ -56,6 +56,8 @@ _NEAR, _VERY_NEAR, _NEAR_DAMPED, _STRONG = 0.3, 0.03, 0.6, 1e3
 _MISFIT = 0.15
 # Greatest distance of the quintic from a p whose second derivative jumps by 1.
 _UNBENT = 0.014
+# Force of a law where its contact opens: more is a jump. A power has 1e-100 at most.
+_NO_JUMP = 1e-50
 # Share of a neighbour's correction that counts as error.
 _SECOND = 0.5
 
@@ -191,40 +193,70 @@ def _drive_curve(beads: Beads, h: float) -> kinks.Curve:
 
 
 @inlined
-def _stage_forces(
-    chain: Chain,
-    beads: Beads,
-    pair: Pair,
-    p: kinks.Curve,
-    t: float,
-    h: float,
-    i: int,
-    jumps: bool,
+def _follow_curve(
+    law: Any, r: float, p: kinks.Curve, pair: Pair, h: float, points: Array
 ) -> None:
-    """Compute a contact's compression, slope and force at the stages; they go to ``beads.points``.
+    """Compute a contact's δ, δ' and force at the stages; they go to ``points``.
 
-    On the curve p the pair's quadrature and the integral err alike, by the error of p. But the
-    stages after a jump of the force are so far off p that their own motion is taken.
+    On the curve p the pair's quadrature and the integral err alike, by the error of p.
     """
-    law = chain.laws[chain.law[i]]
-    points = beads.points
     for s in range(len(pair.nodes)):
         d, slope = kinks.value_and_slope(p, pair.nodes[s])
-        if jumps:
-            ch = pair.nodes[s] * h
-            y = beads.y[i] + ch * beads.v[i]
-            rate = beads.v[i]
-            if i == 0 and chain.drive.driven:
-                y, rate, _ = drive_motion(chain.drive, t + h / 2, t + ch)
-            d = chain.rest[i] + y - beads.y[i + 1] - ch * beads.v[i + 1]
-            slope = h * (rate - beads.v[i + 1])
-            for j in range(s):
-                bend = h * h * (beads.push[j, i] - beads.push[j, i + 1])
-                d += pair.moments[s, j] * bend
-                slope += pair.impulses[s, j] * bend
         points[0, s] = d
         points[1, s] = slope
-        points[2, s] = push(law, chain.r[i], d, slope / h)
+        points[2, s] = push(law, r, d, slope / h)
+
+
+@alone
+def _follow_stages(
+    chain: Chain, beads: Beads, pair: Pair, t: float, h: float, i: int
+) -> None:
+    """Compute a contact's δ, δ' and force by the stages' own motion; they go to ``beads.points``.
+
+    The stages after a jump of the force are far off the curve of the contact.
+    """
+    points = beads.points
+    for s in range(len(pair.nodes)):
+        ch = pair.nodes[s] * h
+        rate = beads.v[i]
+        y = beads.y[i] + ch * rate
+        if i == 0 and chain.drive.driven:
+            y, rate, _ = drive_motion(chain.drive, t + h / 2, t + ch)
+        d = chain.rest[i] + y - beads.y[i + 1] - ch * beads.v[i + 1]
+        slope = h * (rate - beads.v[i + 1])
+        for j in range(s):
+            bend = h * h * (beads.push[j, i] - beads.push[j, i + 1])
+            d += pair.moments[s, j] * bend
+            slope += pair.impulses[s, j] * bend
+        points[0, s] = d
+        points[1, s] = slope
+        points[2, s] = push(chain.laws[chain.law[i]], chain.r[i], d, slope / h)
+
+
+@inlined
+def _clipped(
+    chain: Chain, beads: Beads, pair: Pair, t: float, h: float, n: int
+) -> float:
+    """Return the impulse that contact n misses, as a force beside it jumps and damping cannot pull.
+
+    The stages after the jump have velocities so far off that the contact may push at some of them
+    although it does not push in the step, or the reverse. Elsewhere its force is linear in the
+    velocity, and the errors of the stages cancel.
+    """
+    law = chain.laws[chain.law[n]]
+    last = len(pair.nodes) - 1
+    _follow_stages(chain, beads, pair, t, h, n)
+    d, slope, force = beads.points
+    missed = 0.0
+    if not d[0] > 0.0:
+        return missed
+    for s in range(last + 1):
+        wanted = 0.0
+        if force[0] > 0.0 and d[s] > 0.0:
+            wanted = elastic(law, d[s])
+            wanted += chain.r[n] * drag(law, d[s]) * slope[s] / h
+        missed += pair.impulses[last, s] * (force[s] - wanted)
+    return h * chain.A[n] * missed
 
 
 @part
@@ -290,6 +322,7 @@ def _correct_neighbour(
     chain: Chain,
     beads: Beads,
     plan: Plan,
+    t: float,
     h: float,
     n: int,
     share: float,
@@ -315,6 +348,11 @@ def _correct_neighbour(
         own = A * push(law, r, kinks.OPENS, fast)
         shift = _UNBENT * h * h * abs(jump * share)
         missed = own * min(shift / max(fast, kinks.OPENS), h)
+        _count_error(beads.books, missed / plan.v, near, far)
+    elif jump != 0.0 and r > 0.0 and not law.sticks:
+        missed = _clipped(chain, beads, plan.scheme, t, h, n)
+        heated = missed * (beads.v[n] - beads.v[n + 1]) / plan.energy
+        beads.books[SQUARES] += heated * heated
         _count_error(beads.books, missed / plan.v, near, far)
     pushes = d > 0.0 and beads.force[1, n + 1] + chain.load[n] > 0.0
     if pushes or law.pulls:
@@ -361,13 +399,16 @@ def correct_contact(
         sums = kinks.integrals(
             law, r, found, h, 1.0, bend, beads.points, beads.edges, driven, drive
         )
-        _stage_forces(chain, beads, pair, found.curve, t, h, i, found.jump != 0.0)
+        if found.jump == 0.0:
+            _follow_curve(law, r, found.curve, pair, h, beads.points)
+        else:
+            _follow_stages(chain, beads, pair, t, h, i)
         before = impulse
         impulse = h * A * (sums.impulse - integral(pair.impulses[last], force))
         moment = h * h * A * (sums.moment - integral(pair.moments[last], force))
         steepness = _steepness(law, r, found.top, h)
         change = impulse - before
-        if r > 0.0 and elastic(law, kinks.OPENS) == 0.0:
+        if r > 0.0 and abs(elastic(law, kinks.OPENS)) < _NO_JUMP:
             # The next round changes the correction by about this share of the change.
             change *= min(1.0, abs(bend) * steepness)
         elif found.jump == 0.0:
@@ -401,4 +442,4 @@ def correct_contact(
     jump = A * found.jump
     for n, share in ((i - 1, -near), (i + 1, -far)):
         if n >= 0:
-            _correct_neighbour(chain, beads, plan, h, n, share, moment, third, jump)
+            _correct_neighbour(chain, beads, plan, t, h, n, share, moment, third, jump)

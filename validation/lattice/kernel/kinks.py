@@ -51,7 +51,7 @@ class Kinks(NamedTuple):
     ----------
     curve : Curve
         The compression p.
-    count : int
+    intervals : int
         Number of the intervals in which the force is smooth; their ends are in `Beads.edges`.
     top : float
         Greatest compression.
@@ -60,7 +60,7 @@ class Kinks(NamedTuple):
     """
 
     curve: Curve
-    count: int
+    intervals: int
     top: float
     jump: float
 
@@ -430,7 +430,7 @@ def integrals(
     x = points[0]
     w = points[1]
     once = twice = third = work = given = rough = 0.0
-    for n in range(found.count):
+    for n in range(found.intervals):
         a = edges[n]
         b = edges[n + 1]
         p, slope = value_and_slope(c, 0.5 * (a + b))
