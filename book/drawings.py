@@ -360,7 +360,7 @@ def forms(
             errors.append(max(error, 1e-13))  # rounding
         axes.loglog([k - 1 for k in exponents], errors, marker=marker, label=name)
     axes.axvline(0.5, color="0.6", lw=0.8, ls="-")
-    axes.text(0.52, 3e-12, "spheres", fontsize=10, color="0.3")
+    axes.text(0.47, 3e-12, "spheres", fontsize=10, color="0.3", ha="right")
     axes.set_xlabel(r"$\varepsilon = k - 1$")
     axes.set(ylabel="relative error of the FWHM", ylim=(1e-13, 2))
     axes.legend(loc="lower center", bbox_to_anchor=(0.62, 0))  # beside the curves

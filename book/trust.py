@@ -23,6 +23,11 @@ from lwa import (
     lattice_wave,
 )
 
+# Mass ratios of the map of the theories.
+STRIP = (
+    "1/100", "1/30", "1/10", "1/5", "3/10", "2/5", "1/2", "7/10", "4/5", "9/10", "1",
+)  # fmt: skip
+
 THEORIES = ("paper's closure", "canonical wave", "closed form")
 
 

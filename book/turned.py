@@ -33,12 +33,19 @@ BEADS = (
 )
 
 
-def script(name: str, value: Any) -> str:
+class Script(str):
+    """A script element, which a notebook runs."""
+
+    def _repr_html_(self) -> str:
+        return self
+
+
+def script(name: str, value: Any) -> Script:
     """A script element that defines a constant; NaN stands for what is refused."""
-    return f"<script>const {name} = {json.dumps(value)};</script>"
+    return Script(f"<script>const {name} = {json.dumps(value)};</script>")
 
 
-def sums() -> str:
+def sums() -> Script:
     """``lwaSums``: errors of the partial sums of c² over their order, for some k."""
     series = expand(Cell([1]), ORDERS).c2
     coefficients = np.array([float(c) for c in series.coefficients])
@@ -54,7 +61,7 @@ def sums() -> str:
     return script("lwaSums", found)
 
 
-def breathers() -> str:
+def breathers() -> Script:
     """``lwaBreathers``: orbits of a dimer under load, and amplitude and width of the envelope."""
     cell = Dimer(1, "1/2", spacing=1)
     edge = envelope(cell, law=Power("3/2"), precompression=1)
@@ -73,12 +80,12 @@ def breathers() -> str:
     return script("lwaBreathers", found)
 
 
-def losses() -> str:
+def losses() -> Script:
     """``lwaLosses``: coefficients of the loss at a heavier and at a lighter bead."""
     return script("lwaLosses", LOSSES)
 
 
-def closed_forms() -> str:
+def closed_forms() -> Script:
     """``lwaForms``: ln ω, speed and width of spheres at unit force, and their relative errors."""
     rows = []
     for omega in np.geomspace(0.01, 1, 41):

@@ -22,11 +22,7 @@ from lwa.base.words import (
     FieldName,
     one_of,
 )
-from lwa.cell import (
-    Cell,
-    exponent,
-    read_cell,
-)
+from lwa.cell import Cell, read_cell
 from lwa.cell import k as symbol_k
 from lwa.closure.consistency import Closure, OfClosure
 from lwa.equation.pde import PDE
@@ -214,7 +210,7 @@ def homogenize(
     D**2*(k - 1)*(2*m1 - m2)/(3*(m1 + m2))
     """
     read_cell(cell)
-    law = for_cell(law, cell, exponent(k) if law is None else k)
+    law = for_cell(law, cell, k)
     one_of(branch, BRANCHES, "branch")
     # The paper's ansatz covers one or two particles, and is the only one of optical modes.
     if closure is None:

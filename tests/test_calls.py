@@ -15,16 +15,15 @@ import validation
 from lwa import (
     Cell,
     Dimer,
-    Dispersion,
     Link,
     Material,
     Power,
     Sphere,
-    expand,
     homogenize,
 )
 from lwa.base import LONGEST_MESSAGE
-from lwa.law import general, named
+from lwa.law import named
+from tests.lwa.test_values import MADE
 
 TEXT = "__import__('os').system('true')"
 STEEL = Sphere(1, 1, Material(1, "0.3", 1))
@@ -86,21 +85,26 @@ WRONG = {
 }  # fmt: skip
 
 
+SYMBOLIC = (
+    "linear",
+    "pde",
+    "closure",
+    "wave",
+    "dispersion",
+    "law",
+    "power",
+    "cell",
+    "shock",
+)
+
+
 def samples():
-    """An object of each class whose methods take values."""
-    theory = homogenize(Dimer("m1", "m2"))
+    """An object of each class whose methods take values: with symbols, and in numbers."""
+    yield from (MADE[name]() for name in SYMBOLIC)
     dimer = homogenize(Dimer(1, 2, spacing=1), k="3/2").pde.traveling_wave()
-    yield from (theory, theory.pde, theory.closure, theory.pde.traveling_wave())
-    yield from (dimer, dimer.at_force(1), STEEL, STEEL.material, Link(0, 1, HERTZ))
-    yield from (
-        HERTZ,
-        general(),
-        named("hertz2"),
-        named("polynomial"),
-        Cell(["m1", "m2"]),
-    )
-    yield from (Dispersion(Dimer("m1", "m2")), expand(Cell([1]), 3, k="3/2"))
-    yield lwa.shock(Cell([1]), law=HERTZ, behind=2, ahead=1)
+    yield from (dimer, dimer.at_force(1), lwa.expand(Cell([1]), 3, k="3/2"), HERTZ)
+    yield from (named("hertz2"), named("polynomial"))
+    yield from (STEEL, STEEL.material, Link(0, 1, HERTZ))
     yield lwa.envelope(Cell([1]), law=HERTZ, background=1, wavenumber=1)
     yield validation.exact_wave([1], 1.5)
 

@@ -64,7 +64,8 @@ def modules(package: str) -> Iterator[str]:
         module = import_module(info.name)
         if "\n" in (inspect.getdoc(module) or ""):
             entry = f"automodule:: {info.name}"
-            yield folded(info.name, first_line(module), entry, "no-members", "no-index")
+            options = "no-members", "no-inherited-members", "no-index"
+            yield folded(info.name, first_line(module), entry, *options)
 
 
 class Folded(SphinxDirective):

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib import import_module
@@ -60,6 +60,7 @@ class Book:
     titles : page → title.
     equations, figures : label → number, as in "3.4".
     sources : key → authors and year of a cited work.
+    fill : the text of a page with its numbers, from both.
     """
 
     folder: Path
@@ -67,6 +68,7 @@ class Book:
     equations: Mapping[str, str] = field(default_factory=dict)
     figures: Mapping[str, str] = field(default_factory=dict)
     sources: Mapping[str, str] = field(default_factory=dict)
+    fill: Callable[[str, str], str] = lambda page, text: text
 
 
 @cache
@@ -85,6 +87,7 @@ def sources(bibliography: Path) -> dict[str, str]:
 def notebook(page: str, book: Book) -> nbformat.NotebookNode:
     """The notebook of a page of the book."""
     text = Path(book.folder, f"{page}.md").read_text(encoding="utf-8")
+    text = book.fill(page, text)
     found = read_myst_markdown_notebook(text, MdParserConfig())
     cells = [nbformat.v4.new_markdown_cell(INSTALL)]
     code = "\n".join(cell.source for cell in found.cells if cell.cell_type == "code")
@@ -193,6 +196,7 @@ def offer(
         _numbers(app, "displaymath"),
         _numbers(app, "figure"),
         sources(folder / "references.bib"),
+        import_module("computed").fill,
     )
     target = Path(app.outdir, "_sources", f"{page}.ipynb")
     target.parent.mkdir(parents=True, exist_ok=True)

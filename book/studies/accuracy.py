@@ -27,8 +27,13 @@ from lwa.base.progress import Progress
 from validation.lattice.result import Run
 from validation.lattice.simulate import COMPILED, simulate
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import MeasureError, Pulse, highest_pulse
-from validation.pulses.readings import READINGS, readings
+from validation.pulses.pulse import (
+    READINGS,
+    MeasureError,
+    Pulse,
+    highest_pulse,
+    readings,
+)
 from validation.pulses.sensors import tracks
 from validation.report.study import Report, option, study
 from validation.report.table import Column, Table

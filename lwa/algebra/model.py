@@ -41,7 +41,10 @@ def to_sympy(value: fmpq) -> sp.Rational:
     return sp.Rational(int(value.p), int(value.q))
 
 
-def generator(context: fmpq_mpoly_ctx, name: str) -> fmpq_mpoly:
+def generator(
+    context: fmpq_mpoly_ctx,
+    name: str,
+) -> fmpq_mpoly:
     """The generator of a ring that has this name."""
     return context.gen(context.variable_to_index(name))
 
@@ -75,17 +78,14 @@ class Partition(Value):
     @cached_property
     def rational(self) -> dict[sp.Expr, sp.Rational]:
         """Mapping from each weight to its fraction; {} unless all fractions are rational."""
-        # Ratios may be rational where weights are not, such as m and 2m.
-        first = self.distinct[0]
-        ratios = {}
-        for weight in self.distinct:
-            ratios[weight] = factored(weight / first)
-            if not ratios[weight].is_Rational:
-                return {}
-        total = sp.Add(*(ratios[weight] for weight in self.weights))
+        # Fractions may be rational where weights are not, such as m and 2m.
+        sum_of_weights = sp.Add(*self.weights)
         fractions = {}
-        for weight, ratio in ratios.items():
-            fractions[weight] = self.total * ratio / total
+        for weight in self.distinct:
+            fraction = factored(self.total * weight / sum_of_weights)
+            if not fraction.is_Rational:
+                return {}
+            fractions[weight] = fraction
         return fractions
 
     @property
@@ -96,7 +96,10 @@ class Partition(Value):
             return ()
         return tuple(f"{self.letter}{i}" for i in range(len(self.distinct) - 1))
 
-    def elements(self, context: fmpq_mpoly_ctx) -> list[fmpq_mpoly]:
+    def elements(
+        self,
+        context: fmpq_mpoly_ctx,
+    ) -> list[fmpq_mpoly]:
         """The fractions ``f_0, f_1, …`` in a ring that has `names` among its generators."""
         fractions = {}
         for weight, value in self.rational.items():
@@ -241,7 +244,10 @@ class Conversion:
     model : Model
     """
 
-    def __init__(self, model: Model) -> None:
+    def __init__(
+        self,
+        model: Model,
+    ) -> None:
         partitions = [p for p in (model.masses, model.contacts) if p.names]
         # Values of the ring's generators, in the caller's symbols
         values = list(model.parameters.values())
@@ -277,14 +283,20 @@ class Conversion:
             self._sums.append(total)
         self._source = _context(len(self._images) + len(self._sums))
 
-    def _element(self, value: sp.Expr) -> fmpq_mpoly:
+    def _element(
+        self,
+        value: sp.Expr,
+    ) -> fmpq_mpoly:
         """The polynomial of an expression in the generators."""
         letter = self._letters.get(value, value)
         polynomial = sp.Poly(letter, *self._generators, domain="QQ")
         terms = {e: to_flint(c) for e, c in polynomial.terms()}
         return self._context.from_dict(terms)
 
-    def __call__(self, terms: Sequence[Term]) -> sp.Expr:
+    def __call__(
+        self,
+        terms: Sequence[Term],
+    ) -> sp.Expr:
         """Convert the polynomial that has these terms in the ring's generators."""
         # Degrees in the fractions of each partition
         degrees = []
@@ -316,7 +328,10 @@ class Conversion:
         # One product: a number times a lone sum would be multiplied out.
         return sp.Mul(to_sympy(above / below), *powers)
 
-    def _sum(self, polynomial: fmpq_mpoly) -> sp.Expr:
+    def _sum(
+        self,
+        polynomial: fmpq_mpoly,
+    ) -> sp.Expr:
         """Convert a polynomial to a sum of products of the caller's expressions."""
         products = []
         for exponents, coefficient in polynomial.terms():

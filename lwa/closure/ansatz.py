@@ -37,7 +37,8 @@ def acoustic(
 ) -> Solution:
     """Solve the paper's closure of a dimer's acoustic branch, to ``D^order`` in the ansatz."""
     algebra = JetAlgebra(model, max(model.order - 1, 1))
-    mu, c = algebra.mu, algebra.c  # mass fractions, strain shares
+    mu = algebra.mu  # mass fractions
+    c = algebra.c  # strain shares
     right = Force(algebra)  # of the contact inside the cell
     left = Force(algebra)  # of the contact to the next cell
     first = GradedSeries(algebra, algebra.k, [algebra.zero])  # E by equation 1
@@ -53,17 +54,20 @@ def acoustic(
         force_2 = -difference
         # u_ττ is the same at r_n, m̂_0 + m̂_1 = 1, and b_n cancels:
         # m̂_1 (force_1 + ξ r_n) = m̂_0 (force_2 - ξ r_n - 2 m̂_1 applied).
-        condition = mu[1] * force_1 - mu[0] * force_2
+        condition = mu[1] * force_1
+        condition = condition - mu[0] * force_2
         inertia = mu[0] * mu[1] * _applied(b, first, n)
         xi = -algebra.slope(condition + 2 * inertia, n)
         mean = algebra.one * taylor(2, n + 1) / 2
         strain = mean + c[1] * xi / 2
         right.append(strain * r_n)
-        left.append((mean - c[0] * xi / 2) * r_n)
+        other = mean - c[0] * xi / 2
+        left.append(other * r_n)
         # The divisions by the masses leave no remainder.
         force_1 = force_1 + xi * r_n
         force_2 = force_2 - xi * r_n
-        first.append(force_1 / (2 * mu[0]))
+        of_first = force_1 / (2 * mu[0])
+        first.append(of_first)
         of_second = force_2 / (2 * mu[1])  # acceleration of w
         second.append(of_second - _applied(b, second, n))
         b.append(c[0] * strain)

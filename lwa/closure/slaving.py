@@ -50,7 +50,10 @@ class Force:
         F(p (1 + X)) = F(p) + p F'(p) Φ,    Φ = Σ_{m≥1} φ_m X^m/m! = Σ_{n≥1} D^n Φ_n.
     """
 
-    def __init__(self, algebra: JetAlgebra) -> None:
+    def __init__(
+        self,
+        algebra: JetAlgebra,
+    ) -> None:
         self.algebra = algebra
         self.X = [algebra.zero]
         self.Phi = GradedSeries(algebra, algebra.k, [algebra.zero])
@@ -65,7 +68,10 @@ class Force:
         """The nonlinear part ``Φ_n - X_n`` of the next order n, known from ``X_1 … X_{n-1}``."""
         return self._nonlinear(len(self.X))
 
-    def _nonlinear_term(self, n: int) -> fmpq_mpoly:
+    def _nonlinear_term(
+        self,
+        n: int,
+    ) -> fmpq_mpoly:
         """The coefficient of ``D^n`` in ``Σ_{m≥2} φ_m X^m/m!``."""
         total = self.algebra.zero
         # X begins at D: the power X^m reaches D^n for m ≤ n.
@@ -86,7 +92,10 @@ class Force:
             total = total + self.X[j] * self._power(m - 1, n - j)
         return total / m
 
-    def append(self, X_n: fmpq_mpoly) -> None:
+    def append(
+        self,
+        X_n: fmpq_mpoly,
+    ) -> None:
         """Append the next term ``X_n`` to X, and ``Φ_n`` to Φ."""
         self.Phi.append(X_n + self.nonlinear)
         self.X.append(X_n)
@@ -101,7 +110,10 @@ class Force:
         of_strain = self._slope.dx(0, n - 1) * taylor(h, n)
         return self.Phi.increment(h, n) + of_strain
 
-    def work(self, n: int) -> fmpq_mpoly:
+    def work(
+        self,
+        n: int,
+    ) -> fmpq_mpoly:
         """Coefficient of ``D^n`` in the integral of Φ over X.
 
         With the energy W of the contact it is ``[W(p (1 + X)) - W(p) - p F(p) X] / (p² F')``.
@@ -209,7 +221,10 @@ class _Slaving:
             self.rates.append(GradedSeries(algebra, algebra.half, [algebra.zero]))
             self.forces.append(Force(algebra))
 
-    def extend(self, n: int) -> None:
+    def extend(
+        self,
+        n: int,
+    ) -> None:
         """Append the terms in ``D^n`` of wave equation E, strains X, forces Φ and fields S.
 
         Let ``a_i`` be the term of ``∂_ττ (D φ_x S_i)``, which is known from lower orders. At
@@ -261,7 +276,10 @@ class _Slaving:
         for force, difference in zip(self.forces, differences, strict=True):
             force.append(total / P + difference)
 
-    def _append_fields(self, n: int) -> None:
+    def _append_fields(
+        self,
+        n: int,
+    ) -> None:
         """Append ``S_n`` of each particle.
 
         Neighbours differ by a strain, ``S_{i+1} - S_i = C_i (1 + X_i)``. The term ``origin`` of the

@@ -80,10 +80,14 @@ class ChainInput:
         force = f"A F, F = {self.law.F}"
         if self.law.homogeneous:
             force = f"A δ^k, k = {k}"
-        scale = self.scale
-        masses = Row("", "masses (kg)", self.cell.masses).text(scale)
-        stiffnesses = Row("", f"A (N/m^({k}))", self.cell.stiffnesses).text(scale)
-        spacing = Row("", "spacing D (m)", self.cell.spacing).text(scale)
+        parts = []
+        for label, value in {
+            "masses (kg)": self.cell.masses,
+            f"A (N/m^({k}))": self.cell.stiffnesses,
+            "spacing D (m)": self.cell.spacing,
+        }.items():
+            parts.append(Row("", label, value).text(self.scale))
+        masses, stiffnesses, spacing = parts
         return f"{masses}; contact force {force}, {stiffnesses}; {spacing}"
 
     def hertz_notes(self, force: sp.Expr) -> list[str]:

@@ -28,9 +28,10 @@ version = click.version_option(package_name="lwa", message="%(prog)s %(version)s
 """The option ``--version`` of a command."""
 
 
-def called(option: click.Parameter) -> str:
+def called(option: click.Parameter | None) -> str:
     """Name of an option in messages, without its dashes."""
-    return option.opts[0].lstrip("-")
+    # Click's own types allow a value without an option.
+    return option.opts[0].lstrip("-") if option else "value"
 
 
 def help_end(examples: Sequence[str], page: str) -> str:
@@ -68,9 +69,10 @@ class Commands(click.Group):
         self, package: str, table: Mapping[str, tuple[str, str]], **settings: Any
     ) -> None:
         # Click lists these placeholders, and suggests their names for a mistyped one.
-        commands = {}
-        for name, (_, summary) in table.items():
-            commands[name] = click.Command(name, short_help=summary)
+        commands = {
+            name: click.Command(name, short_help=summary)
+            for name, (_, summary) in table.items()
+        }
         super().__init__(commands=commands, **settings)
         self.package = package
         self.table = table

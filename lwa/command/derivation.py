@@ -78,25 +78,21 @@ def derive(chain: ChainInput, **options: Any) -> Answer:
     """
     theory = homogenize(chain.cell, law=chain.law, **options)
     pde = theory.pde
-    head: Values = settings_json(theory)
-    # Names of the paper; λ is 1 on the acoustic branch.
-    head["lambda"] = theory.amplitude_ratio
-    head["ansatz"] = theory.ansatz
-    # null where the order or the branch has none: readers find the same keys.
-    head |= dict.fromkeys("GHI") | pde.third_order
-    head["terms"] = _terms_json(pde.coefficients)
-    head["defect"] = _terms_json(theory.defect)
-    head["conservative"] = pde.conservative
+    head = settings_json(theory) | {
+        "lambda": theory.amplitude_ratio,  # 1 on the acoustic branch
+        "ansatz": theory.ansatz,
+        # null where the order or the branch has none: readers find the same keys
+        **dict.fromkeys("GHI"),
+        **pde.third_order,
+        "terms": _terms_json(pde.coefficients),
+        "defect": _terms_json(theory.defect),
+        "conservative": pde.conservative,
+    }
     rows: Lines = [
         chain.text,
         *closure_lines(theory),
         f"{theory.closure.model.branch} branch, to D^{theory.order}; τ = t·{pde.time_scale}",
-        *_law_lines(theory),
-        "",
-        partial(_ansatz_lines, theory),
-        partial(_field_lines, theory),
-        lambda: [str(pde), ""],
-        partial(_defect_lines, theory),
+        partial(_lines, theory),
     ]
     # G, H and I are the coefficients at D^{k+3}, which an ansatz to D^4 has.
     if depends_on_first(theory) and theory.order >= 4:
@@ -114,33 +110,24 @@ def _defect_latex(theory: Theory) -> Iterator[str]:
         yield rf"{{u_{{\tau\tau}}^{{(1)}} - u_{{\tau\tau}}^{{(2)}}}} = {defect}"
 
 
-def _law_lines(theory: Theory) -> list[str]:
-    """Lines of text with the φ_n of a law that is no power."""
+def _lines(theory: Theory) -> Iterator[str]:
+    """Lines of text with the law, the particles' fields, the equation and the defect."""
+    pde = theory.pde
     law = theory.law
-    if law.homogeneous:
-        return []
-    # The coefficients hold the φ_n, whose values by δ stand here once.
-    delta = law.delta
-    lines = [f"phi_n = {delta}^(n-1) F^(n)/F', at {delta} = D u_x; F' is taken there"]
-    return lines + [f"  phi{n} = {value}" for n, value in theory.phi.items()]
-
-
-def _ansatz_lines(theory: Theory) -> list[str]:
-    """Lines of text with λ and the b_n; [] for a cell of one particle."""
-    if not theory.ansatz:
-        return []
-    return [
-        "w = λ (u + Σ b_n D^n ∂_x^n u), the linear part of the second particle's field",
-        f"  λ = {theory.amplitude_ratio}",
-        *(f"  b{n} = {b}" for n, b in theory.ansatz.items()),
-        "",
-    ]
-
-
-def _field_lines(theory: Theory) -> list[str]:
-    """Lines of text with what the full closure adds to the fields of the particles."""
-    # The canonical field is no particle's: every particle has a field of its own then.
-    lines = []
+    if not law.homogeneous:
+        # The coefficients hold the φ_n, whose values by δ stand here once.
+        delta = law.delta
+        yield f"phi_n = {delta}^(n-1) F^(n)/F', at {delta} = D u_x; F' is taken there"
+        for n, value in theory.phi.items():
+            yield f"  phi{n} = {value}"
+    yield ""
+    if theory.ansatz:  # a cell of one particle has none
+        yield "w = λ (u + Σ b_n D^n ∂_x^n u), the linear part of the second particle's field"
+        yield f"  λ = {theory.amplitude_ratio}"
+        for n, b in theory.ansatz.items():
+            yield f"  b{n} = {b}"
+        yield ""
+    # What the full closure adds. The canonical field is no particle's: every particle has one.
     for i, orders in theory.slaved.items():
         title = f"field of particle {i + 1}, less u"
         if i == 1:  # its linear part is the ansatz
@@ -148,29 +135,22 @@ def _field_lines(theory: Theory) -> list[str]:
             orders = {n: found.nonlinear for n, found in orders.items()}
         terms = by_order(orders, "D^{}")
         if terms:
-            lines += [f"{title}:", *terms, ""]
-    return lines
-
-
-def _defect_lines(theory: Theory) -> list[str]:
-    """Lines of text with the defect, and whether momentum is conserved."""
-    pde = theory.pde
-    lines = ["all equations of motion are satisfied at every order shown"]
+            yield from [f"{title}:", *terms, ""]
+    yield from [str(pde), ""]
     if theory.defect:
-        lines = [
-            "defect: u_ττ by the first equation of motion minus u_ττ by the second",
-            *by_order(theory.defect, pde.heading),
-        ]
-    # Each way out has its own words: another closure, or another field.
+        yield "defect: u_ττ by the first equation of motion minus u_ττ by the second"
+        yield from by_order(theory.defect, pde.heading)
+    else:
+        yield "all equations of motion are satisfied at every order shown"
     if pde.acoustic and not pde.conservative:
+        # Each way out has its own words: another closure, or another field.
+        way_out = " in this field; see --field center"
         if theory.closure.name == "linear":
-            lines.append(
-                "not in conservation form: the linear closure of unequal particles does not "
-                "conserve momentum; see --closure full"
+            way_out = (
+                ": the linear closure of unequal particles does not conserve momentum; see "
+                "--closure full"
             )
-        else:
-            lines.append("not in conservation form in this field; see --field center")
-    return lines
+        yield f"not in conservation form{way_out}"
 
 
 def _terms_json(coefficients: Mapping[int, Terms]) -> list[Values]:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import shlex
+from contextlib import suppress
 
 import sympy as sp
 
 from lwa.base import InputError
 from lwa.base.exact import positive
-from lwa.command.answer import Answer, Lines, Row, attempt, rows_of
+from lwa.command.answer import Answer, Lines, Row, rows_of
 from lwa.command.chain import STRIKER_FILE, ChainInput
 from lwa.command.cli import KEYS
 from lwa.command.options import (
@@ -172,14 +173,14 @@ def shock(
     else:
         front = fronts.shock(cell, behind, ahead, law=law)
 
-    # With symbols nobody knows whether the front is a shock.
-    kind = attempt(getattr, front, "kind")
-    named = None if isinstance(kind, InputError) else kind
+    kind: str | None = None
+    with suppress(InputError):  # with symbols nobody knows whether the front is a shock
+        kind = front.kind
     rows: Lines = [
         chain.text,
         *rows_of(front, {"behind": "strain behind", "ahead": "strain ahead"}),
         "",
-        f"{named or 'front'}, speeds dx/dt:",
+        f"{kind or 'front'}, speeds dx/dt:",
         *rows_of(
             front,
             {
@@ -206,4 +207,4 @@ def shock(
             "wall at rest beside its neighbours, v_p = ∫ c dp; the mean strain is below it."
         )
     errors = "bound of the difference to driven chains, as measured"
-    return Answer({"kind": named}, rows, chain.scale, [front], errors, notes)
+    return Answer({"kind": kind}, rows, chain.scale, [front], errors, notes)

@@ -14,7 +14,7 @@ import lwa  # its names are loaded when they are used: `lwa dispersion` spares N
 from lwa.base.exact import InputError, positive
 from lwa.base.frozen import Shown
 from lwa.base.words import BRANCHES, BranchName, one_of
-from lwa.command.answer import Answer, Lines, Made, Row, Values, attempt, rows_of
+from lwa.command.answer import Answer, Lines, Made, Row, Values, rows_of
 from lwa.command.chain import ChainInput
 from lwa.command.options import (
     BACKGROUND,
@@ -65,15 +65,14 @@ def dispersion(chain: ChainInput, order: int) -> Answer:
         chain = replace(chain, law=Power(EXPONENT))
     linear = Dispersion(chain.cell, chain.law.exponent)
     # null for a branch that has no series: readers find the same keys.
-    head: Values = {"acoustic": None, "optical": None}
+    series = linear.series(order)
+    head: Values = {"acoustic": None, "optical": None} | series
     rows: Lines = [
         chain.text,
         "Ω²(κ), κ = qD and Ω/D the frequency in τ",
         "",
+        partial(_series_lines, series),
     ]
-    series = linear.series(order)
-    head |= series
-    rows.append(partial(_series_lines, series))
     shown: list[Shown | Made] = [linear]
     if precompression is not None:
         loaded = LoadedChain(chain.cell, chain.law, precompression)
@@ -196,13 +195,12 @@ def envelope(
     if chain.si:
         turn = 2 * sp.pi
         frequency_label = "frequency ω/(2π) (Hz)"
-    # Whether envelopes are bright depends on the values of symbols.
-    kind = attempt(getattr, equation, "kind")
-    head: dict[str, str | None] = {"branch": str(equation.branch), "kind": None}
-    described = f"  bright or dark: {kind}"
-    if not isinstance(kind, InputError):
-        head["kind"] = kind
-        described = f"  {kind} envelopes"
+    head: Values = {"branch": str(equation.branch), "kind": None}
+    try:
+        head["kind"] = equation.kind
+        described = f"  {equation.kind} envelopes"
+    except InputError as unknown:  # it depends on the values of symbols
+        described = f"  bright or dark: {unknown}"
     rows: Lines = [
         chain.text,
         "u = Ψ(X, T) U e^{i(κ n - ω t)} + c.c., Σ m |U|² = 1, n and κ per cell",

@@ -53,7 +53,7 @@ class Read(click.ParamType[Any]):
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> Any:
         """Read the text of an option."""
-        return self.read(value, called(param) if param else self.name)
+        return self.read(value, called(param))
 
 
 class Words(click.Choice[str]):
@@ -63,7 +63,7 @@ class Words(click.Choice[str]):
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> str:
         """Return a word that is among the choices; see `lwa.base.words.one_of`."""
-        return one_of(value, self.choices, called(param) if param else self.name)
+        return one_of(value, self.choices, called(param))
 
 
 def quantity(context: click.Context, option: click.Parameter, text: str | None) -> Any:

@@ -16,7 +16,7 @@ from lwa.command.options import (
     exponent_option,
     order_option,
 )
-from lwa.expansion.expand import Expansion, expand
+from lwa.expansion.expand import expand
 from lwa.expansion.series import EpsilonSeries
 
 _ORDER = 8
@@ -62,14 +62,18 @@ def expansion(chain: ChainInput, order: int | None) -> Answer:
     }
     # Each series under its name in JSON, with its name in text.
     series = {"c2": ("c²", expanded.c2)}
-    for q in QUANTITIES:
-        series[f"fwhm.{q}"] = (f"FWHM of the {q}", expanded.fwhm(q))
     # Unlike contacts have unlike widths; series with symbols are long enough for one.
+    contacts = 1
     if expanded.numeric and len(set(cell.stiffnesses)) > 1:
-        for i in range(1, cell.size):
-            for q in QUANTITIES:
-                label = f"FWHM of the {q}, contact {i + 1}"
-                series[f"fwhm_contact_{i + 1}.{q}"] = (label, expanded.fwhm(q, i))
+        contacts = cell.size
+    for i in range(contacts):
+        for q in QUANTITIES:
+            key = f"fwhm.{q}"
+            label = f"FWHM of the {q}"
+            if i:
+                key = f"fwhm_contact_{i + 1}.{q}"
+                label += f", contact {i + 1}"
+            series[key] = (label, expanded.fwhm(q, i))
     series["momentum"] = ("momentum", expanded.momentum)
     series["energy"] = ("energy", expanded.energy)
     rows: Lines = [
@@ -78,24 +82,19 @@ def expansion(chain: ChainInput, order: int | None) -> Answer:
         "",
     ]
     if expanded.numeric:
-        rows += _sum_rows(expanded, series)
+        rows.append(f"at k = {expanded.k}, order {expanded.order}:")
+        for key, (label, part) in series.items():
+            rows.append(Row(key, label, attempt(part.at)))
+        # A mass of the pulse as a particle: what a striker meets.
+        mass = attempt(expanded.effective_mass.at)
+        rows.append(Row("effective_mass", "effective mass P²/2E", mass))
+        if cell.size == 2 and contacts == 1:
+            rows.append(
+                "  (of the mean of a dimer's two contacts, which differ behind a striker)"
+            )
+        rows.append("")
     rows.append(partial(_series_lines, series))
     return Answer(head, rows, shown=[expanded], errors=_ERRORS)
-
-
-def _sum_rows(
-    expanded: Expansion, series: Mapping[str, tuple[str, EpsilonSeries]]
-) -> Iterator[Row | str]:
-    """Rows of the sums at the expansion's k."""
-    yield f"at k = {expanded.k}, order {expanded.order}:"
-    for key, (label, part) in series.items():
-        yield Row(key, label, attempt(part.at))
-    # A mass of the pulse as a particle: what a striker meets.
-    mass = attempt(expanded.effective_mass.at)
-    yield Row("effective_mass", "effective mass P²/2E", mass)
-    if expanded.cell.size == 2 and len(set(expanded.cell.stiffnesses)) == 1:
-        yield "  (of the mean of a dimer's two contacts, which differ behind a striker)"
-    yield ""
 
 
 def _series_lines(

@@ -29,7 +29,6 @@ from lwa.command.options import (
 )
 from lwa.expansion.lattice_wave import LatticeWave, lattice_wave
 from lwa.theory import Theory, homogenize
-from lwa.wave.arch import Reduction
 from lwa.wave.compact import CompactWave, canonical_wave
 
 if TYPE_CHECKING:
@@ -215,31 +214,22 @@ def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
             Row.of(wave, "speed", "V_s"),
             f"  F_m ∝ V_s^({wave.force_exponent});  dx/dt = V_s · {wave.time_scale}",
             "",
-            *_oscillator(reduction),
+            "v = z^p, integrating factor z^a: z'' = μ z^η - σ z, s = 2/(1 - η)",
         ]
-        if _is_short(reduction):
+        # The root p of a symbolic dimer takes a page, and everything else is made of p.
+        short = len(str(reduction.p)) <= LONG
+        if short:
             shown.append(reduction)
+        else:
+            rows.append("  p, a, μ, η, σ and s are long: --format json has them")
+        for name in ("p", "a", "mu", "eta", "sigma", "s"):
+            rows.append(Row.of(reduction, name, name if short else ""))
     if depends_on_first(theory):
         canonical = canonical_wave(theory.cell, theory.k)
         part = _beside("canonical", CANONICAL, canonical, "speed", force, chain.scale)
         rows.append(part)
     notes += _put_lattice(rows, chain, force)
     return Answer(settings_json(theory), rows, chain.scale, shown, notes=notes)
-
-
-def _oscillator(reduction: Reduction) -> Iterator[Row | str]:
-    """Rows of the oscillator z'' = μ z^η - σ z; JSON alone has long ones."""
-    # The root p of a symbolic dimer takes a page, and everything else is made of p.
-    short = _is_short(reduction)
-    yield "v = z^p, integrating factor z^a: z'' = μ z^η - σ z, s = 2/(1 - η)"
-    if not short:
-        yield "  p, a, μ, η, σ and s are long: --format json has them"
-    for name in ("p", "a", "mu", "eta", "sigma", "s"):
-        yield Row.of(reduction, name, name if short else "")
-
-
-def _is_short(reduction: Reduction) -> bool:
-    return len(str(reduction.p)) <= LONG
 
 
 _BEST = 0.25

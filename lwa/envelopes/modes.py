@@ -27,6 +27,7 @@ The frequencies are the roots ``x = ω²`` of ``T(x) = 2 cos κ``, where
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -34,7 +35,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from lwa.base.exact import InputError, demand_numbers
-from lwa.cell import Cell
+from lwa.cell import Cell, Parametric
 from lwa.law import ContactLaw
 from lwa.linear.springs import compressions
 
@@ -268,15 +269,9 @@ K2, K3, K4 = sp.symbols("K2 K3 K4", positive=True)
 """Coefficients of the force ``K2 δ + K3 δ² + K4 δ³`` on top of the load, under `lwa.general`."""
 
 
-def cell_mode(
-    cell: Cell,
-    law: ContactLaw,
-    compression: sp.Expr,
-    wavenumber: sp.Expr,
-    branch: int,
-    floats: bool,
-) -> Mode:
-    """Return the mode of a branch of a loaded cell.
+@dataclass(frozen=True, repr=False)
+class LoadedMode(Parametric):
+    """A mode of a loaded chain, exact or in floats.
 
     Parameters
     ----------
@@ -289,59 +284,72 @@ def cell_mode(
     wavenumber : Expr
         κ per cell.
     branch : int
-        Number of the branch, from 0.
+        Number of the branch, from 0, the acoustic one.
     floats : bool
-        True for floats, False for exact numbers.
-
-    Raises
-    ------
-    InputError
-        Where branches touch, for sound, and where the mode drives a mode of twice its frequency.
+        True for results in floats.
     """
-    # The force on top of the load is F′ (δ + s δ²/δ0 + t δ³/δ0²). The units are F′ of the first
-    # contact, and its static compression δ0 where there is one: expressions stay short.
-    static = compression * cell.shares(law.exponent)[0]
-    unit = sp.S.One
-    if law.formless:
-        slope = K2
-        s = K3 / K2
-        t = K4 / K2
-    else:
-        slope = law.at(static, 1)
-        if static.is_zero:
-            s = law.at(static, 2) / slope / 2
-            t = law.at(static, 3) / slope / 6
+
+    cell: Cell
+    law: ContactLaw
+    compression: sp.Expr
+    wavenumber: sp.Expr
+    branch: int
+    floats: bool = False
+
+    @property
+    def static_compressions(self) -> tuple[sp.Expr, ...]:
+        """Static compression of each contact."""
+        return tuple(c * self.compression for c in self.cell.shares(self.law.exponent))
+
+    @cached_property
+    def _mode(self) -> Mode:
+        """The Bloch mode and its nonlinear response, in the units of the cell.
+
+        Raises
+        ------
+        InputError
+            Where branches touch, for sound, and where the mode drives a mode of twice its
+            frequency.
+        """
+        # The force on top of the load is F′ (δ + s δ²/δ0 + t δ³/δ0²). The units are F′ of the first
+        # contact, and its static compression δ0 where there is one: a spacing D cancels in s and t.
+        law = self.law
+        static = self.static_compressions[0]
+        unit = sp.S.One if static.is_zero or law.formless else static
+        if law.formless:
+            slope = K2
+            s = K3 / K2
+            t = K4 / K2
         else:
-            unit = static
-            s = law.phi(2).subs(law.delta, static) / 2
-            t = law.phi(3).subs(law.delta, static) / 6
-    # Unlike contacts have a power law, under which δ0, K2, K3 and K4 are powers of c.
-    compliances = np.array(cell.compliances(law.exponent))
-    c = compliances / compliances[0]
-    masses = np.array(cell.masses)
-    contacts = Contacts(masses, K2=1 / c, K3=s / c**2, K4=t / c**3)
-    mode = _mode(contacts, wavenumber, branch, floats)
-    rate = sp.powsimp(cell.stiffnesses[0] * slope)
-    return replace(
-        mode,
-        square=mode.square * rate,
-        slope=mode.slope * rate,
-        curvature=mode.curvature * rate,
-        cubic=mode.cubic * rate / unit**2,
-        mean=[strain / unit for strain in mode.mean],
-    )
+            slope = law.at(static, 1)
+            s = law.at(static, 2) * unit / slope / 2
+            t = law.at(static, 3) * unit**2 / slope / 6
+        # Unlike contacts have a power law, under which δ0, K2, K3 and K4 are powers of c.
+        compliances = np.array(self.cell.compliances(law.exponent))
+        c = compliances / compliances[0]
+        masses = np.array(self.cell.masses)
+        contacts = Contacts(masses, K2=1 / c, K3=s / c**2, K4=t / c**3)
+        mode = self._scaled(contacts)
+        rate = sp.powsimp(self.cell.stiffnesses[0] * slope)
+        return replace(
+            mode,
+            square=mode.square * rate,
+            slope=mode.slope * rate,
+            curvature=mode.curvature * rate,
+            cubic=mode.cubic * rate / unit**2,
+            mean=[strain / unit for strain in mode.mean],
+        )
 
-
-def _mode(contacts: Contacts, wavenumber: sp.Expr, branch: int, floats: bool) -> Mode:
-    """The mode of a branch, in floats or in closed form."""
-    if floats:
-        rows = (contacts.masses, contacts.K2, contacts.K3, contacts.K4)
-        for value in (*np.concatenate(rows), wavenumber):
-            demand_numbers(value.free_symbols, "floats need numbers")
-        numbers = Contacts(*(row.astype(float) for row in rows))
-        return numbers.mode(float(wavenumber), branch)
-    if len(contacts.masses) == 1:
-        if wavenumber.is_zero:
+    def _scaled(self, contacts: Contacts) -> Mode:
+        """The mode by contacts in units of their own."""
+        if self.floats:
+            rows = (contacts.masses, contacts.K2, contacts.K3, contacts.K4)
+            for value in (*np.concatenate(rows), self.wavenumber):
+                demand_numbers(value.free_symbols, "floats need numbers")
+            numbers = Contacts(*(row.astype(float) for row in rows))
+            return numbers.mode(float(self.wavenumber), self.branch)
+        if self.cell.size > 1:
+            return lone_bead(contacts, self.branch)
+        if self.wavenumber.is_zero:
             raise InputError(SOUND)
-        return equal_beads(contacts, wavenumber)
-    return lone_bead(contacts, branch)
+        return equal_beads(contacts, self.wavenumber)

@@ -46,9 +46,9 @@ from lwa.base.exact import (
 )
 from lwa.base.frozen import Value
 from lwa.base.words import BRANCHES, BranchName, one_of
-from lwa.cell import Cell, Parametric, by_name
+from lwa.cell import Cell, by_name
 from lwa.cell import k as symbol_k
-from lwa.envelopes.modes import Mode, cell_mode
+from lwa.envelopes.modes import LoadedMode
 from lwa.law import ContactLaw, for_cell
 
 KindName = Literal["bright", "dark"]
@@ -58,33 +58,13 @@ KINDS: tuple[KindName, ...] = get_args(KindName)
 
 
 @dataclass(frozen=True, repr=False)
-class Envelope(Parametric):
+class Envelope(LoadedMode):
     """The envelope's equation of one mode (see `envelope`), exact or in floats.
 
     Units are those of the cell; frequencies are in radians per unit of time.
 
-    Parameters
-    ----------
-    cell : Cell
-        The chain.
-    law : ContactLaw
-        The law of its contacts.
-    compression : Expr
-        Mean static compression of the contacts.
-    wavenumber : Expr
-        κ per cell.
-    branch : int
-        0 is the acoustic branch, 1 the lowest optical one.
-    floats : bool
-        True for results in floats.
+    Parameters are those of `lwa.envelopes.modes.LoadedMode`.
     """
-
-    cell: Cell
-    law: ContactLaw
-    compression: sp.Expr
-    wavenumber: sp.Expr
-    branch: int
-    floats: bool = False
 
     def __repr__(self) -> str:
         shown = f"{self.cell!r}, κ={self.wavenumber}, branch={self.branch}"
@@ -203,11 +183,6 @@ class Envelope(Parametric):
         return Breather(self, signed(detuning, "detuning"), kind or self.kind)
 
     @property
-    def static_compressions(self) -> tuple[sp.Expr, ...]:
-        """Static compression of each contact."""
-        return tuple(c * self.compression for c in self.cell.shares(self.law.exponent))
-
-    @property
     def opening(self) -> sp.Expr:
         """The ``|Ψ|²`` at which a contact's compression reaches its static one; ∞ if it pulls."""
         if self.law.pulls or self.law.formless:
@@ -219,18 +194,6 @@ class Envelope(Parametric):
                 # 2|Ψ||d| is the largest change of the compression.
                 smallest = sp.Min(smallest, static**2 / (4 * strain))
         return sp.N(smallest) if self.floats else smallest
-
-    @cached_property
-    def _mode(self) -> Mode:
-        """The Bloch mode and its nonlinear response, exact or in floats."""
-        return cell_mode(
-            self.cell,
-            self.law,
-            self.compression,
-            self.wavenumber,
-            self.branch,
-            self.floats,
-        )
 
     def _each(self, values: Iterable[sp.Expr]) -> tuple[sp.Expr, ...]:
         """The values in their shortest forms."""

@@ -36,7 +36,10 @@ class BasePower(NamedTuple):
     a: Fraction | int
     b: Fraction | int
 
-    def beside(self, jet: Jet) -> BasePower:
+    def beside(
+        self,
+        jet: Jet,
+    ) -> BasePower:
         """The power of the base beside a jet that is written with bare derivatives."""
         # Each factor of the jet has one base, or base^{(k+1)/2}, below it.
         strains = sum(e for _, e in jet.x)
@@ -68,7 +71,10 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
     raw: dict[Jet, list[Term]]
     power: BasePower = FORCE
 
-    def __getitem__(self, jet: Jet | Powers) -> sp.Expr:
+    def __getitem__(
+        self,
+        jet: Jet | Powers,
+    ) -> sp.Expr:
         jet = jet if isinstance(jet, Jet) else Jet(jet)
         if jet not in self._converted:
             self._converted[jet] = self.model.expression(self.raw[jet])
@@ -85,7 +91,10 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
     def __len__(self) -> int:
         return len(self.raw)
 
-    def __eq__(self, other: object) -> bool:
+    def __eq__(
+        self,
+        other: object,
+    ) -> bool:
         # Equal polynomials of one model need no conversion.
         if isinstance(other, Terms) and self.__getstate__() == other.__getstate__():
             return True
@@ -106,7 +115,10 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
             rows.append(f"{more} more" if rows else f"{more} terms")
         return f"{{{', '.join(rows)}}}"
 
-    def text(self, jet: Jet) -> str:
+    def text(
+        self,
+        jet: Jet,
+    ) -> str:
         """The jet as text with its power of the base, such as ``u_x^(k-3) u_xx^3``."""
         factors = []
         for name, exponent in self._factors(jet):
@@ -118,7 +130,10 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
             factors.append(name if power == "1" else f"{name}^{power}")
         return " ".join(factors) or "1"
 
-    def latex(self, jet: Jet) -> str:
+    def latex(
+        self,
+        jet: Jet,
+    ) -> str:
         """The jet in the paper's notation, such as ``u_x^{k-3} u_{xx}^{3}``."""
         factors = []
         for name, exponent in self._factors(jet):
@@ -128,7 +143,10 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
             factors.append(name if power == "1" else f"{name}^{{{power}}}")
         return " ".join(factors) or "1"
 
-    def _factors(self, jet: Jet) -> list[tuple[str, sp.Expr]]:
+    def _factors(
+        self,
+        jet: Jet,
+    ) -> list[tuple[str, sp.Expr]]:
         """Names, in LaTeX, and exponents of the factors: F′, the base, the derivatives."""
         # A jet is a quotient by powers of the base. Printed with bare derivatives it leaves them to
         # the base, whose power here is base^{a + bk}.

@@ -109,10 +109,27 @@ FORMS = {
         order=1,
         damping=1,
     ),
-    "force": Form(_width(_FORCE), _GAUSSIAN, defect=0.072),
-    "velocity": Form(sp.S.One, _GAUSSIAN, defect=0.003, damping=1),
-    "momentum": Form(2 / sp.sqrt(k + 1), sp.pi / 3, defect=0.0115),
-    "energy": Form(2 / (k + 1), sp.pi / 6, defect=0.008),
+    "force": Form(
+        _width(_FORCE),
+        _GAUSSIAN,
+        defect=0.072,
+    ),
+    "velocity": Form(
+        sp.S.One,
+        _GAUSSIAN,
+        defect=0.003,
+        damping=1,
+    ),
+    "momentum": Form(
+        2 / sp.sqrt(k + 1),
+        sp.pi / 3,
+        defect=0.0115,
+    ),
+    "energy": Form(
+        2 / (k + 1),
+        sp.pi / 6,
+        defect=0.008,
+    ),
 }
 """The quantities of the wave, each with its closed form and the error of this form."""
 
@@ -221,7 +238,9 @@ def joined_error(
     # how much of the quantity, or of its square, the exponential makes
     whole = float(joined(quantity).subs(k, k_value))
     limit = float(form.two_bodies.subs(k, k_value))
-    power = 1 if form.growth is None else 2
+    power = 2
+    if form.growth is None:
+        power = 1
     share = abs(1 - (limit / whole) ** power) / power
     left_out = form.defect * epsilon ** (form.order + 2)
     left_out /= (1 + epsilon) ** form.damping
@@ -257,13 +276,18 @@ def _beta(
     total = sp.S.Zero
     for j in range(TERMS):
         total += sp.binomial(2 * j, j) * (x / 4) ** j / (a + j)
-    return x**a * total * sp.gamma(a + b) / (sp.gamma(a) * sp.gamma(b))
+    inverse = sp.gamma(a + b) / sp.gamma(a)  # 1/B(a, b)
+    inverse /= sp.gamma(b)
+    return x**a * total * inverse
 
 
 def _gamma(z: sp.Expr) -> sp.Expr:
     """Γ(z) by Stirling's series at z + `STEPS`."""
     w = z + STEPS
-    log = w * (sp.log(w) - 1) + 1 / (12 * w) - 1 / (360 * w**3) + 1 / (1260 * w**5)
+    log = w * (sp.log(w) - 1)
+    log += 1 / (12 * w)
+    log -= 1 / (360 * w**3)
+    log += 1 / (1260 * w**5)
     value = sp.sqrt(2 * sp.pi / w) * sp.exp(log)
     # Γ(z) = Γ(z + 1)/z, step by step
     for j in range(STEPS):

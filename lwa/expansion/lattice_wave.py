@@ -67,13 +67,10 @@ _TITLE = (
 
 _MEANINGS = {
     "speed": "dx/dt",
-    "fwhm_strain": "Full width at half maximum of the strain",
-    "fwhm_force": "Full width at half maximum of the force",
-    "fwhm_velocity": "Full width at half maximum of the velocity",
     "momentum": "Momentum of the chain",
     "energy": "Kinetic and elastic energy of the chain",
 }
-"""Functions of a program, and their comments."""
+"""Functions of a program besides the widths, and their comments."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -127,13 +124,10 @@ class LatticeWave(Parametric):
     @property
     def mass_ratio(self) -> sp.Expr:
         """The lesser of two beads' masses over the other; of symbols, the second over the first."""
-        first = self.cell.masses[0]
-        # One bead, for a cell of equal beads
-        second = self.cell.masses[-1]
+        # A cell of equal beads has one.
+        ratio = self.cell.masses[-1] / self.cell.masses[0]
         # Which of two symbols is less is not known.
-        if first.is_number and second.is_number and second > first:
-            return first / second
-        return second / first
+        return 1 / ratio if ratio.is_number and ratio > 1 else ratio
 
     @property
     def follows(self) -> bool:
@@ -319,15 +313,16 @@ class LatticeWave(Parametric):
         lwa.InputError
             For another language, and for symbols that are no names of variables.
         """
-        values = {"speed": self.speed, "momentum": self.momentum, "energy": self.energy}
-        for quantity in QUANTITIES:
-            values[f"fwhm_{quantity}"] = self.fwhm(quantity)
         cell = self.cell
         functions = Functions(
             self.force, self.k, *cell.masses, *cell.stiffnesses, cell.spacing
         )
-        for name, value in values.items():
-            functions.define(name, _MEANINGS[name], elementary(value))
+        for name, meaning in _MEANINGS.items():
+            functions.define(name, meaning, elementary(getattr(self, name)))
+        for quantity in QUANTITIES:
+            meaning = f"Full width at half maximum of the {quantity}"
+            width = elementary(self.fwhm(quantity))
+            functions.define(f"fwhm_{quantity}", meaning, width)
         return module([*functions.values()], language, _TITLE)
 
 

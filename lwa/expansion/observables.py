@@ -124,8 +124,8 @@ class Observables:
             parts = []
             # Widths are polynomials in y², which is log 2 at half of the peak.
             for d, coefficient in by_degree(terms[2 * n]).items():
-                # t² = ε/I³
-                part = self._over_I(coefficient, 3 * n)
+                # t² = ε/I³; SymPy cancels the factors I of the numerator.
+                part = self._expression(coefficient) / self.I ** (3 * n)
                 parts.append(part * sp.log(2) ** (d // 2))
             # SymPy sorts a sum anew for each term that is added.
             result.append(sp.Add(*parts))
@@ -135,21 +135,6 @@ class Observables:
     def I(self) -> sp.Expr:
         """Coefficient I in the linear chain's dispersion ``Ω² = κ² - I κ⁴ + …``, in units of D²."""
         return self._expression(self.wave.I)
-
-    def _over_I(
-        self,
-        numerator: fmpq_mpoly,
-        e: int,
-    ) -> sp.Expr:
-        """The quotient numerator / I^e, in the caller's symbols."""
-        # Lowest terms: factors I cancel as long as they divide without remainder.
-        while e and numerator:
-            quotient, remainder = divmod(numerator, self.wave.I)
-            if remainder:
-                break
-            numerator = quotient
-            e -= 1
-        return self._expression(numerator) / self.I**e
 
     def _expression(
         self,

@@ -25,7 +25,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, positive, shorten
+from lwa.base.exact import InputError, demand_numbers, positive, shorten
 from lwa.base.frozen import Estimate, Value
 from lwa.base.words import ExtentName, QuantityName
 from lwa.cell import Cell, exponent
@@ -199,16 +199,10 @@ def pulse_of_strike(
     # In free fall m g h becomes ½ m v².
     if velocity is None:
         velocity = sp.sqrt(2 * GRAVITY * positive(drop, "drop"))
-    given = {
-        "mass": positive(mass, "mass"),
-        "velocity": positive(velocity, "velocity"),
-        "k": exponent(k),
-        "mass of a bead": chain.masses[0],
-        "stiffness": chain.stiffnesses[0],
-        "spacing": chain.spacing,
-    }
+    striker = positive(mass, "mass")
+    velocity = positive(velocity, "velocity")
+    k = exponent(k)
+    symbols = sp.Tuple(striker, velocity, k).free_symbols
     # The rules are numbers that were measured.
-    for name, value in given.items():
-        if value.free_symbols:
-            raise InputError(f"{name} is {shorten(value)}: a number is wanted")
-    return Strike(chain, given["mass"], given["velocity"], given["k"])
+    demand_numbers(symbols.union(chain.symbols), "a strike needs numbers")
+    return Strike(chain, striker, velocity, k)

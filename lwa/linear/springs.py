@@ -167,10 +167,7 @@ class Network(NamedTuple):
     @property
     def spans(self) -> Array:
         """Compression of each link per mean compression of a spacing: cosine · (j - i)."""
-        spans = []
-        for bond in self.links:
-            spans.append(bond.cosine * (bond.j - bond.i))
-        return np.array(spans)
+        return np.array([bond.cosine * (bond.j - bond.i) for bond in self.links])
 
     @property
     def incidence(self) -> Array:
@@ -282,16 +279,12 @@ def solved(
     # Elimination adds products of entries: near the largest float they overflow, and below the
     # least normal one they lose digits. With entries up to 1 they do neither.
     largest = np.abs(matrix).max(axis=(-2, -1), keepdims=True)
-    usable = np.isfinite(largest) & (largest > 0)
-    scale = np.where(usable, largest, 1)
-    # NumPy refuses all systems if one is singular: the identity stands in for such matrices.
-    identity = np.eye(matrix.shape[-1])
-    scaled = np.where(usable, matrix, identity) / scale
-    # The sign is 0 for a singular matrix alone; the determinant itself may underflow to 0.
-    sign, _ = np.linalg.slogdet(scaled)
-    usable &= (sign != 0)[..., None, None]
-    scaled = np.where(usable, scaled, identity)
-    column = right[..., None] / scale
-    found = np.linalg.solve(scaled, column)
-    found = np.where(usable, found, np.nan)
+    with np.errstate(all="ignore"):  # 0/0 and ∞/∞ are NaN
+        scaled = matrix / largest
+        column = right[..., None] / largest
+        # The sign is 0 for a singular matrix alone; the determinant itself may underflow to 0.
+        sign, _ = np.linalg.slogdet(scaled)
+    # NumPy refuses all systems if one is singular, but none for a NaN.
+    singular = (sign == 0)[..., None, None]
+    found = np.linalg.solve(np.where(singular, np.nan, scaled), column)
     return np.asarray(found[..., 0])

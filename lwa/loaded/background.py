@@ -135,12 +135,11 @@ class Background(Value):
         """Squared speed Q(B) of the wave that rises by B, whether it exists or not."""
         at_rest = self.force(self.p0, -1)
         at_peak = self.force(sp.expand(self.p0 + B), -1)
-        square = squared_speed(at_peak - at_rest, self.force(self.p0), B)
-        return sp.powsimp(square)
+        return squared_speed(at_peak - at_rest, self.force(self.p0), B)
 
     def speed(self, B: sp.Expr) -> sp.Expr:
         """Speed ``V = √Q(B)`` of the wave that rises by B, whether it exists or not."""
-        square = self.squared_speed(B)
+        square = sp.powsimp(self.squared_speed(B))
         if self.law.homogeneous and self.law.exponent.is_Integer:
             square = sp.expand(sp.cancel(square))  # a polynomial in p0 and B
         return power(square, sp.S.Half)

@@ -18,7 +18,7 @@ equal beads without load. An unknown bound is NaN.
 
 from __future__ import annotations
 
-from math import exp, log, nan
+from math import log, nan
 from typing import NamedTuple
 
 from lwa.loaded.lattice import Lattice
@@ -63,30 +63,34 @@ class Bounds(NamedTuple):
     width: float
 
 
-def steepness(slope_at_peak: float, square: float) -> float:
-    """The steepness ``Δ = ln(F′(p0+B)/V²)`` of a wave: how much the law stiffens along the wave."""
-    return log(slope_at_peak / square)
-
-
-def bounds(lattice: Lattice, delta: float, added: float, rises: bool) -> Bounds:
+def bounds(
+    lattice: Lattice,
+    slope_at_rest: float,
+    slope_at_peak: float,
+    square: float,
+    rises: bool,
+) -> Bounds:
     """Return the bounds for a wave.
 
     Parameters
     ----------
     lattice : Lattice
         The lattice.
-    delta : float
-        The wave's steepness.
-    added : float
-        The part 1 - c0²/V² of V² that the wave adds to the squared speed of sound.
+    slope_at_rest, slope_at_peak : float
+        The slopes ``F′(p0)`` and ``F′(p0+B)``.
+    square : float
+        The squared speed ``V̂²``, in the unit of the slopes.
     rises : bool
         False for a rarefaction.
     """
+    # Part of V² that the wave adds to the sound's
+    added = 1 - slope_at_rest / square
     rule = _rule(lattice, bare=added > _BARE)
+    delta = log(slope_at_peak / square)
     if not rises or delta > rule.largest:
         rule = UNKNOWN
-    # [F′(p0+B) - F′(p0)]/V²: the rules' unit of an error of V², relative. That of V is half of it.
-    stiffening = exp(delta) - (1 - added)
+    # The rules' unit of an error of V², relative. That of V is half of it.
+    stiffening = (slope_at_peak - slope_at_rest) / square
     return Bounds(speed=rule.square * delta * stiffening / 2, width=rule.width * delta)
 
 

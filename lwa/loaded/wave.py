@@ -61,7 +61,7 @@ from lwa.cell import Cell
 from lwa.cell import k as symbol_k
 from lwa.law import ContactLaw, for_cell
 from lwa.loaded.background import Background, KdV, demand_sound, squared_speed
-from lwa.loaded.errors import Bounds, bounds, steepness
+from lwa.loaded.errors import Bounds, bounds
 from lwa.loaded.lattice import Lattice
 from lwa.loaded.quadrature import Quadrature
 from lwa.loaded.states import States
@@ -283,11 +283,13 @@ class LoadedWave(States):
     def _bounds(self) -> Bounds:
         """Bounds on the relative errors of the speed and of widths."""
         wave = self._quadrature
-        slope_at_rest = float(wave.at(_FOOT).slope)
-        slope_at_peak = float(wave.at(1).slope)
-        added = 1 - slope_at_rest / wave.square
-        delta = steepness(slope_at_peak, wave.square)
-        return bounds(self.lattice, delta, added, rises=wave.B > 0)
+        return bounds(
+            self.lattice,
+            slope_at_rest=float(wave.at(_FOOT).slope),
+            slope_at_peak=float(wave.at(1).slope),
+            square=wave.square,
+            rises=wave.B > 0,
+        )
 
     @cached_property
     def _quadrature(self) -> Quadrature:

@@ -34,7 +34,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from math import expm1
 
 import mpmath
 import sympy as sp
@@ -43,7 +42,6 @@ from lwa.base.calculus import growing_root, real_function
 from lwa.base.exact import InputError, demand_numbers
 from lwa.base.frozen import Value
 from lwa.loaded.background import Background
-from lwa.loaded.errors import steepness
 
 WORKING = 60
 """Digits of floats in place of exact numbers that would be long."""
@@ -224,8 +222,7 @@ class Pulse(Value):
     def rho(self) -> float:
         """The steepness Δ of the wave (`lwa.loaded.errors`) by its saturating form ρ."""
         slope = self.field.force(self.field.p0 + self.rise, 1)
-        delta = steepness(float(slope), float(self.speed**2))
-        return -expm1(-delta)
+        return float(1 - self.speed**2 / slope)
 
     @cached_property
     def contact_rise(self) -> sp.Expr:
@@ -249,25 +246,3 @@ def speed_error(rho: float) -> float:
     """Relative error of the doubling rule's speed on the canonical wave of the steepness ρ."""
     # The second term is the canonical wave's: 5 % too fast for cubic contacts without load.
     return 0.01 * rho + 0.08 * rho**3
-
-
-def rise_error(rho: float) -> float:
-    """Error of the doubling rule's peak strain on the canonical wave, over the rise."""
-    # The first term is the canonical wave's, the second the rule's own: the lattice's peak is 1.3 %
-    # higher for powers without load, k from 1.02 to 1.1. For small jumps it is less.
-    return 0.065 * rho**2 + 0.015
-
-
-def leading_error(difference: float, rho: float) -> float:
-    """Relative error of the speed of El's leading edge.
-
-    The ``difference`` is that of the leading speeds by the two rules, relative to El's.
-    """
-    # The doubling rule stands between: its own error is known.
-    return difference + (1 + difference) * speed_error(rho)
-
-
-def trailing_error(difference: float) -> float:
-    """Error of the speed of El's trailing edge in c₋, by the difference at the leading edge."""
-    # measured up to 5.3 times the difference at the leading edge; 2 % is what the runs resolve
-    return 0.02 + 6 * difference

@@ -35,7 +35,10 @@ class Unit:
     size: float = 1.0
 
 
-def fitting(unit: str, magnitude: float) -> Unit:
+def fitting(
+    unit: str,
+    magnitude: float,
+) -> Unit:
     """Return a unit in which a magnitude has one to three digits before the decimal point.
 
     Parameters
@@ -59,7 +62,10 @@ def fitting(unit: str, magnitude: float) -> Unit:
     return Unit(PREFIXES[place] + unit, 10.0**power * own)
 
 
-def labelled(label: str, magnitude: float) -> Unit:
+def labelled(
+    label: str,
+    magnitude: float,
+) -> Unit:
     """Return the label of a column or an axis with its unit fitted to a magnitude.
 
     >>> labelled("arrival (s)", 2e-4), labelled("peak", 2e-4)

@@ -250,11 +250,9 @@ class PhysicalWave(Parametric):
         exponent = 2 * strain_power(quantity, k) / (k - 1)
 
         def arch(x: Array) -> Array:
-            phase = beta * x
-            inside = np.abs(phase) < np.pi / 2
-            # The cosine of a phase outside is negative: its power would be NaN.
-            cosine = np.where(inside, np.cos(phase), 0.0)
-            return np.asarray(cosine**exponent)
+            # cos(βx) on the support, and 0 outside of it
+            inside = np.maximum(np.pi / 2 - np.abs(beta * x), 0.0)
+            return np.asarray(np.sin(inside) ** exponent)
 
         # Strain and force are those of contacts; a bead has a velocity of its own.
         if bearer == "bead" and quantity != "velocity":

@@ -16,7 +16,7 @@ import pytest
 from book.studies.accuracy import timed
 from validation.lattice.schemes import BLANES_MOAN
 from validation.lattice.simulate import COMPILED, simulate
-from validation.scenes.scene import Scene
+from validation.scenes.chains import struck
 
 
 @numba.njit(fastmath={"nsz", "arcp", "contract"}, error_model="numpy")
@@ -38,13 +38,7 @@ def splitting(start, kicks, drifts, h, steps):
 @pytest.mark.parametrize(("n", "duration"), [(20_000, 10.0), (200_000, 3.0)])
 def test_a_maxwellian_start(n, duration):
     start = np.random.default_rng(0).normal(size=n)
-    scene = Scene(
-        masses=(1,) * n,
-        stiffnesses=(1,) * (n - 1),
-        k=1.5,
-        velocities=start,
-        duration=duration,
-    )
+    scene = struck((1,), n, velocities=start, duration=duration)
     exact = simulate(scene, rtol=1e-11).displacements
     runs = {
         ("bare loop", steps): partial(

@@ -1,28 +1,20 @@
-"""Every page of a folder, opened in Chromium from a server of this machine.
+"""A browser that is turned by hand: real events of a mouse, a keyboard and a finger.
 
-The server adds a script to each page. It waits until the page and its mathematics are there, sends
-back what it sees, and goes on to the next page. No other name than 127.0.0.1 resolves, and what a
-page requests from elsewhere violates the policy that the server sends with it. The pages are opened
-in a frame, as a window cannot be as narrow as a phone.
+Chromium is driven by its DevTools protocol over two pipes: a message is a line of JSON that ends in
+a zero byte. Such events go the way of a reader's own, through the browser's hit test, focus and
+gestures; events that a script makes do not.
 """
 
 import json
+import os
+import select
 import shutil
 import subprocess
-import sys
 import tempfile
-import threading
-import zipfile
-from dataclasses import dataclass, field
-from functools import partial
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+import time
 from pathlib import Path
-from urllib.parse import urlsplit
 
-SECONDS_PER_PAGE = 180  # axe reads the page of the packages, with all entries open
-
-FRAME = "/frame-of-width/"
-"""Of the address WIDTH/PAGE that shows a page in a frame of that width."""
+SECONDS = 180  # for any answer: axe reads the page of the packages, on a busy machine
 
 FLAGS = (
     "--headless",
@@ -33,208 +25,188 @@ FLAGS = (
     "--disable-background-networking",
     "--disable-component-update",
     "--disable-sync",
-    "--remote-debugging-port=0",  # keeps it open until it is ended
-    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
+    "--remote-debugging-pipe",
+    # no page needs a network
+    "--host-resolver-rules=MAP * ~NOTFOUND",
 )
 
-POLICY = "default-src 'self' 'unsafe-inline' 'unsafe-eval' data: blob:"
-EVENTS = """
-[window.faults, window.foreign] = [[], []];
-addEventListener("error", e => faults.push(e.message));
-for (const kind of ["warn", "error"]) console[kind] = (...words) => faults.push(words.join(" "));
-addEventListener("securitypolicyviolation", e => foreign.push(e.blockedURI));
-"""
+DESKTOP = {"width": 1280, "height": 800, "deviceScaleFactor": 1, "mobile": False}
+PHONE = {"width": 390, "height": 844, "deviceScaleFactor": 2, "mobile": True}
 
-AXE = '<script src="/axe.min.js"></script>'
-PACKAGE = "axe-playwright-python==0.1.8"
-WHEEL = "axe_playwright_python-0.1.8-py3-none-any.whl"
-SHA256 = "fdd263c998388f1a8e67cad02677e612d946248bd44d163be5e8650ea31f95f8"
-"""The package with axe 4.12, which finds what hinders readers without a mouse or without sight."""
+KEYS = {"Tab": 9, "Enter": 13, "End": 35, "Home": 36}
+"""Keys without a letter, with the codes that Chromium knows them by."""
+SHIFT = 8
 
-PROBE = r"""<script>
-window.addEventListener("load", async () => {
-  const errors = [...window.faults];
-  const typeset = window.MathJax && MathJax.startup ? MathJax.startup.promise : null;
-  if (typeset) await typeset.catch(error => errors.push(String(error)));
-  await new Promise(done => setTimeout(done, 50)); // for events on their way
-  for (const image of document.images) image.loading = "eager";
-  await Promise.all([...document.images].map(image => image.decode().catch(() => 0)));
-  const body = document.querySelector("article") || document.body;
-  // What axe finds, in a window of full width.
-  const rules = async () => !window.axe ? [] : (await axe.run(document, {preload: false}))
-    .violations
-    .flatMap(({id, nodes}) => nodes.slice(0, 3).map(({html}) => `${id}: ${html.slice(0, 120)}`));
-  const asked = document.querySelectorAll(".lwa-answers");
-  const early = [...document.querySelectorAll(".lwa-below")].filter(e => e.clientWidth).length;
-  asked.forEach(row => row.firstChild.click());
-  const axeFound = await rules(); // before the many entries of the packages unfold
-  // What a screen reader says while a hand moves a control.
-  const live = body.querySelector(".lwa-chain output");
-  const spoken = [];
-  if (live) {
-    new MutationObserver(() => spoken.push(live.textContent)).observe(live, {childList: true});
-    for (let i = 0; i < 50; i++) {
-      body.querySelector(".lwa-chain input").dispatchEvent(new Event("input", {bubbles: true}));
-      await new Promise(done => setTimeout(done, 50));
-    }
-  }
-  for (const details of document.querySelectorAll("details")) details.open = true;
-  const math = [...document.querySelectorAll(".math")];
-  const text = body.cloneNode(true);
-  const texts = kind => [...document.querySelectorAll(kind)].map(e => e.textContent);
-  const overflow = e => getComputedStyle(e).overflowX;
-  const scrolls = e => /auto|scroll/.test(overflow(e));
-  const hides = e => /hidden|clip/.test(overflow(e));
-  const edge = e => e.getBoundingClientRect().right;
-  const spill = e => overflow(e) === "visible" ? Math.max(e.scrollWidth - e.clientWidth, 0) : 0;
-  const right = e => edge(e) + (e.clientWidth ? spill(e) : 0);
-  const cut = (e, a = e.parentElement) =>
-    a === body.parentElement || !a ? right(e) > innerWidth + 1
-    : scrolls(a) ? false : hides(a) && right(e) > edge(a) + 1 || cut(e, a.parentElement);
-  const clipped = e => e.tagName === "PRE" && hides(e) && e.scrollWidth > e.clientWidth + 1;
-  const parts = [...body.querySelectorAll("pre, table, img, svg, input, mjx-math, dt, h1, h2, p")];
-  const apart = "pre, code, script, style, mjx-container";
-  for (const element of text.querySelectorAll(apart)) element.remove();
-  const report = {
-    mathjax: typeset !== null,
-    math: math.length,
-    rendered: document.querySelectorAll("mjx-container").length,
-    unrendered: math.filter(m => !m.querySelector("mjx-container")).map(m => m.textContent),
-    merrors: [...document.querySelectorAll("mjx-merror, [data-mjx-error]")].map(m => m.textContent),
-    raw: text.textContent.match(/\\\(|\\\[|\$\$|\\begin\{|\\frac/g) || [],
-    images: document.images.length,
-    broken: [...document.images].filter(i => !i.naturalWidth || !i.naturalHeight).map(i => i.src),
-    unshown: texts("pre").filter(t => t.includes("<Figure size")),
-    cut: parts.filter(e => cut(e) || clipped(e)).map(e => e.textContent.trim().slice(0, 80)),
-    crumbled: [...body.querySelectorAll("td span.pre")]
-      .filter(e => e.getClientRects().length > 2).map(e => e.textContent),
-    wider: document.scrollingElement.scrollWidth > innerWidth + 1,
-    axe: axeFound,
-    spoken: spoken.length > 4 ? spoken : [],
-    // What scrolls has to be reached by the keyboard.
-    stops: [...document.querySelectorAll("mjx-container, mjx-container *")]
-      .filter(e => e.tabIndex >= 0 && !e.closest("a") && e.scrollWidth <= e.clientWidth + 1)
-      .map(e => e.textContent),
-    asked: asked.length,
-    early,
-    errors: errors,
-    foreign: window.foreign,
-  };
-  const answer = await fetch("/probe", {method: "POST", body: JSON.stringify(report)});
-  const next = await answer.text();
-  if (next) location.href = next;
-});
-</script>
-"""
+FAULT = {"warning", "error", "assert"}
+"""Kinds of messages of the console that are faults; the theme also says how it begins."""
 
 
-@dataclass
-class Visit:
-    """Reports of the pages, by their paths, and paths that the server does not have."""
+class Browser:
+    """Chromium with pages that are opened beside each other."""
 
-    pages: dict = field(default_factory=dict)
-    missing: list = field(default_factory=list)
-
-
-class _Server(ThreadingHTTPServer):
-    daemon_threads = True
-
-    def __init__(self, folder, left, visit, mode, axe):
-        self.left, self.visit, self.mode, self.axe = left, visit, mode, axe
-        self.progress = threading.Event()
-        super().__init__(("127.0.0.1", 0), partial(_Handler, directory=str(folder)))
-
-
-class _Handler(SimpleHTTPRequestHandler):
-    def do_GET(self):
-        path = Path(self.translate_path(self.path))
-        if self.path.startswith(FRAME):
-            width, page = self.path.removeprefix(FRAME).split("/", 1)
-            frame = f'<iframe src="/{page}" width="{width}" height="900"></iframe>'
-            self._send(f'<link rel="icon" href="data:,">{frame}')
-        elif path.suffix == ".html" and path.is_file():
-            # A page in light mode is a first visit: nothing is stored.
-            modes = ""
-            if self.server.mode == "dark":
-                modes = "localStorage.mode = localStorage.theme = 'dark';"
-            head = f"<head><script>{EVENTS}{modes}</script>"
-            text = path.read_text().replace("<head>", head, 1)
-            probe = (AXE if self.server.axe else "") + PROBE
-            self._send(text.replace("</body>", probe + "</body>"))
-        elif self.path == "/axe.min.js":
-            self._send(self.server.axe)
-        else:
-            super().do_GET()
-
-    def do_POST(self):
-        report = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
-        self.server.visit.pages[urlsplit(self.headers["Referer"]).path.lstrip("/")] = (
-            report
+    def __enter__(self):
+        chromium = shutil.which("chromium")
+        if chromium is None:
+            raise FileNotFoundError(
+                "chromium is not installed: apt-get install chromium"
+            )
+        self.home = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+        to_browser, self.sending = os.pipe()
+        self.receiving, from_browser = os.pipe()
+        # Chromium reads the protocol from 3 and writes it to 4.
+        plumbing = f'exec "$@" 3<&{to_browser} 4>&{from_browser}'
+        flags = [*FLAGS, f"--user-data-dir={self.home.name}"]
+        self.process = subprocess.Popen(
+            ["bash", "-c", plumbing, "bash", chromium, *flags, "about:blank"],
+            pass_fds=(to_browser, from_browser),
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
         )
-        self._send(self.server.left.pop(0) if self.server.left else "")
-        self.server.progress.set()
+        os.close(to_browser)
+        os.close(from_browser)
+        self.rest = b""
+        self.count = 0
+        self.pages = {}
+        return self
 
-    def _send(self, text):
-        page = text.encode()
-        self.send_response(200)
-        self.send_header("Content-Type", "text/html; charset=utf-8")
-        self.send_header("Content-Length", str(len(page)))
-        self.send_header("Content-Security-Policy", POLICY)
-        self.end_headers()
-        self.wfile.write(page)
+    def __exit__(self, *error):
+        self.process.terminate()
+        self.process.wait(SECONDS)
+        os.close(self.sending)
+        os.close(self.receiving)
+        self.home.cleanup()
 
-    def send_error(self, code, *rest, **more):
-        self.server.visit.missing.append(self.path)
-        super().send_error(code)
+    def call(self, method, session=None, **parameters):
+        """Send a command and return its result; what else the browser says is noted on the way."""
+        self.count += 1
+        message = {"id": self.count, "method": method, "params": parameters}
+        if session:
+            message["sessionId"] = session
+        os.write(self.sending, json.dumps(message).encode() + b"\0")
+        end = time.monotonic() + SECONDS
+        while (answer := self._receive(end)).get("id") != self.count:
+            page = self.pages.get(answer.get("sessionId"))
+            if page:
+                page.notice(answer)
+        if "error" in answer:
+            raise RuntimeError(f"{method}: {answer['error']['message']}")
+        return answer["result"]
 
-    def log_message(self, *rest):
-        pass
+    def _receive(self, end):
+        while b"\0" not in self.rest:
+            ready, _, _ = select.select(
+                [self.receiving], [], [], end - time.monotonic()
+            )
+            if not ready:
+                raise TimeoutError(f"Chromium did not answer in {SECONDS} s")
+            self.rest += os.read(self.receiving, 1 << 20)
+        message, _, self.rest = self.rest.partition(b"\0")
+        return json.loads(message)
+
+    def open(self, file, screen=DESKTOP, script=""):
+        """A page of a file, on a desktop or a phone, that begins to load after a script."""
+        target = self.call("Target.createTarget", url="about:blank", newWindow=True)[
+            "targetId"
+        ]
+        found = self.call("Target.attachToTarget", targetId=target, flatten=True)
+        page = Page(self, found["sessionId"], target)
+        self.pages[page.session] = page
+        for domain in ("Page", "Runtime", "Log"):
+            page.call(f"{domain}.enable")
+        page.call("Page.addScriptToEvaluateOnNewDocument", source=script)
+        page.call("Emulation.setDeviceMetricsOverride", **screen)
+        page.call("Emulation.setTouchEmulationEnabled", enabled=screen["mobile"])
+        page.call("Emulation.setFocusEmulationEnabled", enabled=True)
+        page.call("Page.navigate", url=Path(file).as_uri())
+        return page
 
 
-def axe(folder):
-    """The source of axe, fetched once and kept in the folder."""
-    # The book's extension needs Sphinx, which the tests without the book have not.
-    sys.path.append(str(Path(__file__).parents[2] / "book" / "_ext"))
-    from local_mathjax import fetched
+class Page:
+    """A page, with what its console said."""
 
-    folder.mkdir(exist_ok=True)
-    with zipfile.ZipFile(fetched(folder, PACKAGE, WHEEL, SHA256)) as wheel:
-        return wheel.read("axe_playwright_python/axe.min.js").decode()
+    def __init__(self, browser, session, target):
+        self.browser = browser
+        self.session = session
+        self.target = target
+        self.faults = []
 
+    def call(self, method, **parameters):
+        return self.browser.call(method, self.session, **parameters)
 
-def visited(folder, pages, width, mode="light", axe=""):
-    """Reports of the pages, opened one after another in a frame of this width in CSS pixels.
+    def close(self):
+        self.browser.call("Target.closeTarget", targetId=self.target)
 
-    mode : "light" or "dark". axe : its source, if each page is to be judged by it.
+    def notice(self, event):
+        """Keep a warning or an error of the console, of the browser, of a script."""
+        told = event["params"]
+        if event["method"] == "Runtime.consoleAPICalled" and told["type"] in FAULT:
+            self.faults.append([part.get("value") for part in told["args"]])
+        elif event["method"] == "Log.entryAdded" and told["entry"]["level"] in FAULT:
+            entry = told["entry"]
+            self.faults.append(f"{entry['text']}: {entry.get('url')}")
+        elif event["method"] == "Runtime.exceptionThrown":
+            self.faults.append(told["exceptionDetails"]["exception"]["description"])
 
-    Raises `FileNotFoundError` without Chromium and `TimeoutError` when a page does not report.
-    """
-    chromium = shutil.which("chromium")
-    if chromium is None:
-        raise FileNotFoundError("chromium is not installed: apt-get install chromium")
-    visit = Visit()
-    first, *rest = ("/" + page for page in pages)
-    with (
-        tempfile.TemporaryDirectory() as home,
-        _Server(folder, rest, visit, mode, axe) as server,
-    ):
-        threading.Thread(target=server.serve_forever, daemon=True).start()
-        address = f"http://127.0.0.1:{server.server_address[1]}{FRAME}{width}{first}"
-        command, silent = (
-            [chromium, *FLAGS, f"--user-data-dir={home}", address],
-            subprocess.DEVNULL,
+    def loaded(self):
+        """Wait for the page, its pictures and its mathematics."""
+        there = "document.readyState === 'complete' && location.protocol !== 'about:'"
+        end = time.monotonic() + SECONDS
+        while not self.evaluate(there):
+            if time.monotonic() > end:
+                raise TimeoutError(f"a page is not there after {SECONDS} s")
+            time.sleep(0.05)
+        self.evaluate("window.MathJax?.startup?.promise.then(() => 0)")
+
+    def evaluate(self, expression):
+        """The value of an expression of JavaScript, after its promise."""
+        found = self.call(
+            "Runtime.evaluate",
+            expression=expression,
+            returnByValue=True,
+            awaitPromise=True,
         )
-        browser = subprocess.Popen(command, stdout=silent, stderr=silent)
-        try:
-            while len(visit.pages) < len(pages):
-                server.progress.clear()
-                if not server.progress.wait(SECONDS_PER_PAGE):
-                    todo = [page for page in pages if page not in visit.pages]
-                    raise TimeoutError(
-                        f"{todo[0]} did not report in {SECONDS_PER_PAGE} s"
-                    )
-        finally:
-            browser.terminate()
-            browser.wait(30)
-            server.shutdown()
-    return visit
+        if "exceptionDetails" in found:
+            raise RuntimeError(f"{expression}: {found['exceptionDetails']['text']}")
+        return found["result"].get("value")
+
+    def place(self, selector, x=0.5, y=0.5):
+        """A point of an element, in parts of its box, after it was scrolled into view."""
+        box = self.evaluate(f"""(() => {{
+          const element = document.querySelector({json.dumps(selector)});
+          element.scrollIntoView({{block: "center", behavior: "instant"}});
+          const {{left, top, width, height}} = element.getBoundingClientRect();
+          return [left, top, width, height];
+        }})()""")
+        left, top, width, height = box
+        return left + x * width, top + y * height
+
+    def mouse(self, *points):
+        """Press at the first point, move over the others, release at the last one."""
+        (x, y), *others = points
+        self.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)
+        button = {"button": "left", "buttons": 1}
+        pressed = {"type": "mousePressed", "clickCount": 1}
+        self.call("Input.dispatchMouseEvent", **pressed, x=x, y=y, **button)
+        for x, y in others:
+            self.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y, **button)
+        released = {"type": "mouseReleased", "clickCount": 1, "button": "left"}
+        self.call("Input.dispatchMouseEvent", **released, x=x, y=y)
+
+    def finger(self, *points):
+        """The same with a finger."""
+        kinds = ["touchStart"] + ["touchMove"] * (len(points) - 1)
+        for kind, (x, y) in zip(kinds, points, strict=True):
+            self.call(
+                "Input.dispatchTouchEvent", type=kind, touchPoints=[dict(x=x, y=y)]
+            )
+        self.call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+
+    def key(self, name, modifiers=0):
+        """Press a key: one of `KEYS` or a letter."""
+        known = {"key": name, "modifiers": modifiers}
+        if name in KEYS:
+            known |= {"code": name, "windowsVirtualKeyCode": KEYS[name]}
+        text = {"Enter": "\r"}.get(name, "" if name in KEYS else name)
+        down = {"type": "keyDown", "text": text} if text else {"type": "rawKeyDown"}
+        self.call("Input.dispatchKeyEvent", **down, **known)
+        self.call("Input.dispatchKeyEvent", type="keyUp", **known)

@@ -6,6 +6,7 @@ from collections import Counter
 import pytest
 
 from lwa import hertz
+from lwa.law import NAMES
 from tests.book.prose import BOOK, CELL
 
 SOURCES = [*BOOK.glob("*.md"), *BOOK.glob("paper/*.md")]
@@ -95,6 +96,8 @@ def test_names_on_the_pages():
     assert not every(r"^:::\{admonition\} (?!Theorem|Rule|Conjecture)(.*)$")
     (listed,) = every(r"`Material.named` knows (.*?) \|")
     assert re.split(r", | and ", listed) == list(hertz.MATERIALS)
+    laws = re.findall(r"^\| `([\w-]+)` \|", PROSE["laws"], re.MULTILINE)
+    assert {*laws, "general"} == {*NAMES}
     rows = re.findall(r"^\| (\$.*?) \|", PROSE["symbols"], re.MULTILINE)
     letters = [x.strip(" $") for row in rows for x in re.split("[,;]", row)]
     labels = every(r"^(?:\$\$ \(|    name: (?=fig-))([\w-]+)", TEXTS)

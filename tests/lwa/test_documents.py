@@ -7,9 +7,9 @@ import pytest
 from lwa import Cell, Dimer, homogenize
 from lwa.base import latex
 from lwa.law import named
+from tests.lwa.command.answers import said
+from tests.lwa.command.test_answers import ANSWERS
 from tests.lwa.test_values import MADE
-
-HEAD = r"\documentclass{article}\usepackage{amsmath}\begin{document}"
 
 
 def test_a_theory_has_its_time_its_exponents_and_all_its_fields():
@@ -39,18 +39,18 @@ def test_a_theory_has_its_time_its_exponents_and_all_its_fields():
 
 @pytest.mark.slow
 @pytest.mark.optional("pdflatex")
-def test_a_document_of_all_results_compiles(folder):
+def test_a_document_of_all_results_and_answers_compiles(capsys, folder):
     results = [make() for name, make in MADE.items() if name != "numeric"]
     for cell in (Cell(["a", "b", "c"]), Cell(["a", "b"], ["A", "B"])):
         results.append(homogenize(cell, 5, closure="full"))
     results.append(homogenize(Cell([1, 2, 3]), 5, law=named("hertz2")))
-    rows = [result.latex_rows() for result in results]
-    body = [latex.align(lines) for lines in rows if lines]
-    assert len(body) >= 20
-    text = "\n".join([HEAD, *body, r"\end{document}"])
-    (folder / "results.tex").write_text(text)
+    body = [latex.align(rows) for rows in (x.latex_rows() for x in results) if rows]
+    for line in ANSWERS:
+        body.append(said(capsys, *line.split(), "--format", "latex"))
+    assert len(body) >= 40
+    head = r"\documentclass{article}\usepackage{amsmath}\begin{document}"
+    (folder / "results.tex").write_text("\n".join([head, *body, r"\end{document}"]))
     command = ["pdflatex", "-halt-on-error", "-interaction=batchmode", "results.tex"]
     subprocess.run(command, check=True, capture_output=True, timeout=120)
-    log = (folder / "results.log").read_text(errors="replace")
-    assert "Undefined" not in log
-    assert (folder / "results.pdf").stat().st_size > 20_000
+    assert "Undefined" not in (folder / "results.log").read_text(errors="replace")
+    assert (folder / "results.pdf").stat().st_size > 40_000

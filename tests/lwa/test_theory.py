@@ -51,12 +51,6 @@ def test_derivations_are_refused_by_an_estimate_of_their_terms():
         homogenize(cell, 11)
 
 
-def test_floats_enter_as_their_decimals():
-    own = homogenize(Dimer("9/20", "123/1000"), k="3/2").pde.I
-    assert own == homogenize(Dimer(0.45, 0.123), k=1.5).pde.I
-    assert not homogenize(Dimer(0.1, 0.7), k=1.1).pde.G.has(sp.Float)
-
-
 def test_high_orders_show_their_progress_on_a_terminal(capsys):
     # One that says no size, as that of `docker exec`.
     with terminal(0, 0) as shown:

@@ -9,14 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lwa.base.arrays import Array
 from validation.lattice.equations import Motion
-from validation.scenes.checks import SceneError, one_of
 from validation.scenes.scene import Scene
 
 # Iterations that leave less than 1e-12 of a step of the integrator.
@@ -61,7 +60,7 @@ def sensors_of(scene: Scene) -> dict[str, tuple[int, ...]]:
 
 
 def beads_at(
-    motion: Motion, contacts: Sequence[int], beads: Sequence[int]
+    motion: Motion, contacts: Sequence[int] = (), beads: Sequence[int] = ()
 ) -> NDArray[np.int_]:
     """Return increasing numbers of the beads on which sensors depend; bead n is the wall."""
     needed = {*beads}
@@ -72,25 +71,19 @@ def beads_at(
     return np.array(sorted(needed), int)
 
 
-def _compressions(motion: Motion, beads: NDArray[np.int_], y: Array) -> Array:
-    """Return compressions (B - 1, S) between ``beads``, (B,), from displacements y, (B, S).
-
-    Rows between beads that are no neighbours in the chain mean nothing.
-    """
-    compressions = y[:-1] - y[1:]
-    compressions += motion.rest[beads[:-1], None]
-    return compressions
-
-
-def _quantities(
+def quantities(
     motion: Motion, beads: NDArray[np.int_], y: Array, v: Array
 ) -> dict[str, Array]:
     """Return all records by name, at ``beads``, (B, S), and between them, (B - 1, S).
 
-    The force of a bead is the mean of its two contacts; an end without a contact counts as 0.
+    The force of a bead is the mean of its two contacts; an end without a contact counts as 0. Rows
+    between beads that are no neighbours in the chain mean nothing. The forces of all contacts are
+    computed at once: of 76 sensors, one after the other, they took ten times as long as the
+    integration.
     """
     contacts = beads[:-1]
-    compressions = _compressions(motion, beads, y)
+    compressions = y[:-1] - y[1:]
+    compressions += motion.rest[contacts, None]
     elastic = motion.force(compressions, contacts)
     forces = motion.damped_force(elastic, compressions, v[:-1] - v[1:], contacts)
     # Half of the contact behind, and half of the contact ahead of each bead.
@@ -105,32 +98,6 @@ def _quantities(
         "contact_force": forces,
         "compression": compressions,
     }
-
-
-def recorded(
-    motion: Motion, beads: NDArray[np.int_], y: Array, v: Array
-) -> dict[str, Array]:
-    """Return the records of all sensors by name, from the motion y, v, (B, S), of `sensed_beads`.
-
-    The forces of all contacts are computed at once: of 76 sensors, one after the other, they took
-    ten times as long as the integration.
-    """
-    if not len(beads):
-        return dict.fromkeys(RECORDS.values(), y)
-    found = _quantities(motion, beads, y, v)
-    records = {}
-    for kind, numbers in sensors_of(motion.scene).items():
-        first = numbers[0] if numbers else 0
-        rows: Any = beads.searchsorted(first)
-        # Neighbours are a slice, without a copy, of which large records gain an eighth.
-        if numbers == tuple(range(first, first + len(numbers))):
-            rows = slice(rows, rows + len(numbers))
-        else:
-            rows = beads.searchsorted(numbers)
-        for (own, _), name in RECORDS.items():
-            if own == kind:
-                records[name] = found[name][rows]
-    return records
 
 
 def sensed_beads(motion: Motion) -> NDArray[np.int_]:
@@ -174,31 +141,12 @@ class SensorSignal:
         inside = (t >= 0) & (t <= self.times[-1])
         values = np.full(t.shape, np.nan)
         y, v = self.path(self.beads, t[inside])
-        rows = _quantities(self.path.motion, self.beads, y, v)[self.record]
+        rows = quantities(self.path.motion, self.beads, y, v)[self.record]
         values[inside] = rows[self.number - self.beads[0]]
         return values
 
 
-def signal(path: Path, kind: str, number: int, quantity: str) -> SensorSignal:
-    """Return the signal of a quantity at a sensor of a run, as `Run.signal` describes it."""
-    motion = path.motion
-    sensors = sensors_of(motion.scene)
-    one_of(kind, tuple(sensors), "kind")
-    one_of(quantity, tuple(q for own, q in RECORDS if own == kind), "quantity")
-    if number not in sensors[kind]:
-        raise SceneError(
-            f"number is {number!r}: the scene has no sensor at this {kind}"
-        )
-    if kind == "contact":
-        beads = beads_at(motion, [number], [])
-    else:
-        beads = beads_at(motion, [], [number])
-    changes = [_changes(path, int(contact)) for contact in beads[:-1]]
-    times = np.unique(np.concatenate((path.time, *changes)))
-    return SensorSignal(times, path, beads, RECORDS[kind, quantity], number)
-
-
-def _changes(path: Path, contact: int) -> Array:
+def contact_changes(path: Path, contact: int) -> Array:
     """Return the times within steps at which a contact opens or closes.
 
     A contact that does both within a step changes twice, unseen: the signal is less smooth there.
@@ -208,7 +156,7 @@ def _changes(path: Path, contact: int) -> Array:
 
     def compression(t: Array) -> Array:
         y, _ = path(beads, t)
-        return np.asarray(_compressions(path.motion, beads, y)[0])
+        return np.asarray(path.motion.rest[contact] + y[0] - y[1])
 
     d = compression(time)
     # By signs, as products of compressions over- or underflow.

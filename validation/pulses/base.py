@@ -64,8 +64,10 @@ class Fit:
         samples does.
         """
         products = self.correlations
+        if not products[0]:
+            return 1.0
         # products[j]/products[0] = ρ_j, and ρ_0 = 1 counts once.
-        return float(2 * products.sum() / products[0] - 1) if products[0] else 1.0
+        return float(2 * products.sum() / products[0] - 1)
 
     @cached_property
     def correlations(self) -> Array:
@@ -73,7 +75,9 @@ class Fit:
         count = len(self.noise)
         spectrum = np.abs(np.fft.rfft(self.noise, 2 * count)) ** 2
         products = np.fft.irfft(spectrum)[:count] / count
-        return products[: max(1, int(np.argmax(np.append(products, 0.0) <= 0)))]
+        unlike = np.append(products, 0.0) <= 0
+        first = int(np.argmax(unlike))
+        return np.asarray(products[: max(1, first)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,13 +108,16 @@ class Base:
     @classmethod
     def before(cls, t: Array, f: Array, rise: float, width: float) -> Base | None:
         """Return the base before a pulse; None if the record begins too late."""
-        late = rise - t[0] < (_BEFORE + 2.5) * width
-        end = rise - (_CLOSE if late else _BEFORE) * width
+        end = rise - _BEFORE * width
+        if t[0] > end - 2.5 * width:
+            end = rise - _CLOSE * width
         calm = (t < end) & (t > end - _LONG * width)
         x = (t[calm] - rise) / width
         if len(x) < FEWEST or np.ptp(x) < 0.9:
             return None
-        counts = _BASES if np.ptp(x) > _SLOW else _BASES[:1]
+        counts: Sequence[int] = _BASES
+        if np.ptp(x) < _SLOW:
+            counts = (_LINE,)
         fits = [Fit.of(x, f[calm], count) for count in counts]
         # Akaike's criterion, for the independent among the samples, with the noise that the base
         # with all terms leaves.
@@ -118,7 +125,8 @@ class Base:
         scale = full.variance * full.correlation_time or 1.0
         criteria = [np.sum(fit.noise**2) / scale + 2 * len(fit.sizes) for fit in fits]
         weights = scipy.special.softmax(-np.array(criteria) / 2)
-        return cls(rise, width, x, fits, weights, fits[int(np.argmax(weights))])
+        best = fits[int(np.argmax(weights))]
+        return cls(rise, width, x, fits, weights, best)
 
     @classmethod
     def guessed(cls, f: Array, noise: float) -> Base:
@@ -161,21 +169,25 @@ class Base:
         rng = np.random.default_rng(0)
         count = len(self.x)
         noise = self._noise(rng, count + len(t))
-        noise[:count] *= self.best.noise.std()
-        noise[count:] *= math.sqrt(max(0.0, variance - step**2 / 12))
-        if step:
-            # Base and pulse lie anywhere between two levels.
-            exact = np.append(np.zeros(count), pulse)[:, np.newaxis]
-            offsets = step * rng.uniform(-0.5, 0.5, (2, DRAWS))
-            exact = exact + np.repeat(offsets, (count, len(t)), axis=0)
-            noise = step * np.round((exact + noise) / step) - exact
         calm, added = noise[:count], noise[count:]
+        calm *= self.best.noise.std()
+        # Rounding has the variance step²/12.
+        added *= math.sqrt(max(0.0, variance - step**2 / 12))
+        if step:
+            for part, exact in (
+                (calm, np.zeros((1, 1))),
+                (added, pulse[:, np.newaxis]),
+            ):
+                # Base and pulse lie anywhere between two levels.
+                true = exact + step * rng.uniform(-0.5, 0.5, DRAWS)
+                part[:] = step * np.round((true + part) / step) - true
         x = (t - self.rise) / self.width
         chosen = rng.choice(len(self.fits), DRAWS, p=self.weights)
         for i, fit in enumerate(self.fits):
             draws = chosen == i
-            added[:, draws] -= Fit.of(self.x, calm[:, draws], len(fit.sizes)).at(x)
-            added[:, draws] += (self.at(t) - fit.at(x))[:, np.newaxis]
+            drawn = Fit.of(self.x, calm[:, draws], len(fit.sizes))
+            apart = self.at(t) - fit.at(x)
+            added[:, draws] += apart[:, np.newaxis] - drawn.at(x)
         return added
 
     def _noise(self, rng: np.random.Generator, count: int) -> Array:

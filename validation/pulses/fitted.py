@@ -13,6 +13,7 @@ wanted coefficients, the error also holds the difference to a coarser spline.
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 from scipy.interpolate import BSpline, make_lsq_spline
@@ -21,7 +22,7 @@ from scipy.signal import peak_widths
 from lwa.base.arrays import Array
 from lwa.base.frozen import Estimate
 from validation.pulses.base import Base
-from validation.pulses.signals import MeasureError
+from validation.pulses.pulse import MeasureError
 
 _BESIDE = 0.3  # widths in front of the rise and behind the fall that the fit takes in
 _READ = 0.1  # widths likewise in which the spline is read: its ends follow the noise
@@ -73,12 +74,10 @@ def fitted(
     rounding = (np.finfo(float).eps * np.abs(f).max()) ** 2
     variance = base.best.variance + rounding
     most = min(_HIGHEST, int(_DENSEST * len(t)))
-    wanted, spline, left = _smoothed(t, f, variance, base.best.correlation_time, most)
+    smoothed = partial(_smoothed, t, f, base.best.correlation_time, most)
+    wanted, spline, left = smoothed(variance)
     if left > _MISFIT * variance:  # the noise during the pulse is larger
-        variance = left
-        wanted, spline, left = _smoothed(
-            t, f, variance, base.best.correlation_time, most
-        )
+        wanted, spline, variance = smoothed(left)
         variance = max(variance, left)
     share = math.sqrt(variance) / float(spline(t).max())
     if share > _LOUDEST:
@@ -100,12 +99,12 @@ def fitted(
 
 
 def _smoothed(
-    t: Array, f: Array, variance: float, correlation_time: float, most: int
+    t: Array, f: Array, correlation_time: float, most: int, variance: float
 ) -> tuple[int, BSpline, float]:
     """Return the wanted number of coefficients, the spline with at most ``most`` of them, and the
     variance of its residuals.
 
-    variance, correlation_time : of the noise, the time in samples.
+    correlation_time, variance : of the noise, the time in samples.
     """
     tries = math.ceil(math.log(most / _LOWEST) / math.log(_RATIO))
     counts = np.geomspace(_LOWEST, most, tries + 1).round().astype(int)
@@ -138,7 +137,9 @@ def _read(splines: BSpline, ends: tuple[float, float]) -> Array:
         top = min(max(int(np.argmax(f)), 1), _GRID - 1)
         slope = (f[top + 1] - f[top - 1]) / 2
         bend = f[top - 1] - 2 * f[top] + f[top + 1]
-        shift = min(max(-slope / bend, -1.0), 1.0) if bend < 0 else 0.0
+        shift = 0.0
+        if bend < 0:
+            shift = min(max(-slope / bend, -1.0), 1.0)
         peak = f[top] + slope * shift / 2
         # SciPy measures the width at the height f[top] - prominence/2. The prominence
         # 2 f[top] - peak makes this peak/2, half of the vertex above the base, which is 0. Both

@@ -7,6 +7,10 @@ recorder err alike if their noise is below half the distance of the levels: draw
 rounded to the levels. A record whose noise is below `_EXACT` of the peak is that of a program: its
 pulses are those of the cubic spline through all samples, and the errors the differences to the
 spline through every other sample.
+
+Behind a piezoelectric sensor and its amplifier, which lose their charge, a force f gives a signal v
+with ``v' = f' - v/T``, T the time constant. So ``f = v + ∫ v dt/T``, and v swings below its base
+behind a pulse.
 """
 
 from __future__ import annotations
@@ -14,9 +18,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.integrate import cumulative_trapezoid
 from scipy.signal import find_peaks
 
 from lwa.base.arrays import Array
@@ -25,13 +31,15 @@ from lwa.spheres.units import fitting
 from validation.pulses.base import FEWEST, Base
 from validation.pulses.fitted import fitted
 from validation.pulses.pulse import (
+    READINGS,
     MeasureError,
+    Piecewise,
     Pulse,
+    checked,
     first_pulse,
     highest_pulse,
+    spline,
 )
-from validation.pulses.readings import READINGS
-from validation.pulses.signals import Piecewise, checked, spline
 from validation.scenes.cells import longest
 
 _EARLY = 5  # samples at the start of the record that locate its base
@@ -51,6 +59,11 @@ _GRID = 400  # intervals in which the maxima of a pulse are looked for
 _SAME = 0.01  # distance, over the width, of two readings of one maximum
 _LEAST_OF_WIDTH = 0.1  # relative error of a width over that of the peak, at least
 _EXACT = 1e-4  # noise over the peak of a record without noise
+# Widths behind the arrival: ends of two stretches that are searched for an undershoot
+_BEHIND = (1.5, 2.5, 3.5)
+_SURE = 4.0  # mean of a stretch below the base, in its standard deviations, at least
+_SHALLOWEST = 0.002  # likewise over the peak
+_ALIKE = 1.5  # ratio of the constants that two stretches tell, at most
 
 
 class InvertedError(MeasureError):
@@ -123,7 +136,9 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
             f"{in_unit(wanted, unit)} are wanted for its base"
         )
     # Noise of half a level or more spreads the samples over the levels and tells their rounding.
-    rounding = step if base.best.variance < (step / 2) ** 2 else 0.0
+    rounding = 0.0
+    if base.best.variance < (step / 2) ** 2:
+        rounding = step
     _check_top(t, f, (rise, fall), _FEWEST, step)
     numbers = fitted(at, means - base.at(at), base, (rise, fall), rounding)
     if missing:
@@ -235,7 +250,10 @@ def _step(f: Array) -> float:
     # Printed levels are rounded, too: their distance is told best by all of them.
     step = np.ptp(f) / round(np.ptp(f) / least)
     levels = (f - f.min()) / step
-    return float(step) if np.abs(levels - levels.round()).max() < 0.25 else 0.0
+    off = np.abs(levels - levels.round())
+    if off.max() > 0.25:
+        return 0.0
+    return float(step)
 
 
 def _place(t: Array, f: Array) -> tuple[float, float]:
@@ -300,3 +318,40 @@ def _check_top(
         raise MeasureError(
             f"the record is clipped from {times}: a larger range of the recorder is wanted"
         )
+
+
+def corrected(t: Array, signal: Array, constant: float) -> Array:
+    """Return the force behind the signal of a sensor with a time constant.
+
+    An error of the base makes a slope, which the base of a pulse takes out.
+    """
+    swing = signal - signal[:_EARLY].mean()
+    return np.asarray(signal + cumulative_trapezoid(swing, t, initial=0) / constant)
+
+
+def suggested(t: Array, signal: Array, pulse: NoisyPulse, unit: str) -> str:
+    """Return a line on an undershoot behind a pulse, with the time constant; "" without any.
+
+    Waves behind a pulse rarely swing alike in both stretches. unit : of the times.
+    """
+    arrival = pulse.numbers["arrival"].value
+    width = pulse.numbers["fwhm"].value
+    swing = signal - pulse.base
+    charge = cumulative_trapezoid(swing, t, initial=0)
+    constants = []
+    for start, end in pairwise(_BEHIND):
+        inside = (t > arrival + start * width) & (t < arrival + end * width)
+        below = -swing[inside]
+        if len(below) < _EARLY:
+            return ""
+        error = pulse.noise / math.sqrt(len(below))
+        if not 0 < _SURE * error < below.mean() > _SHALLOWEST * swing.max():
+            return ""
+        constants.append(float(charge[inside].mean() / below.mean()))
+    near, far = constants
+    if not 1 / _ALIKE < near / far < _ALIKE:
+        return ""
+    return (
+        "the signal falls below its base behind the pulse, as that of a sensor that loses its "
+        f"charge: --time-constant '{in_unit(near, unit)}' corrects it"
+    )

@@ -1,8 +1,10 @@
 """Pulses of a signal: arrival, peak, width, and the speed between two sensors.
 
-A pulse of a signal (`validation.pulses.signals`) is found on a grid of `_POINTS` points in each
-smooth interval. The pulse's arrival is the maximum of a Chebyshev interpolant around the highest
-grid point; its flanks are the roots of signal - peak/2. So a pulse is as accurate as the signal.
+A signal is a function of time that is smooth on each interval between given times: the dense output
+of a run (`validation.lattice.result.Run.signal`), or the cubic spline through samples. A pulse of a
+signal is found on a grid of `_POINTS` points in each smooth interval. Its arrival is the maximum of
+a Chebyshev interpolant around the highest grid point; its flanks are the roots of signal - peak/2.
+So a pulse is as accurate as the signal.
 """
 
 from __future__ import annotations
@@ -12,16 +14,16 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TypeVar, cast
+from typing import Protocol, TypeVar, cast
 
 import numpy as np
 import scipy
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
+from lwa.base.arrays import Array
+from lwa.base.exact import InputError
 from lwa.base.frozen import Estimate
-from validation.pulses.signals import MeasureError as MeasureError
-from validation.pulses.signals import Signal, spline
 
 Source = TypeVar("Source")
 
@@ -44,6 +46,63 @@ ROUNDING = 1e-13  # relative error of a number, at least
 _PARTLY = "the pulse is not wholly in the record:"
 
 
+class MeasureError(InputError):
+    """A record without the wanted pulse; the message says what is missing."""
+
+
+class Signal(Protocol):
+    """A function of time, called with times of any shape."""
+
+    @property
+    def times(self) -> Array:
+        """Increasing times; the signal is smooth between neighbouring times."""
+        ...
+
+    def __call__(self, time: ArrayLike, /) -> Array: ...
+
+
+def checked(time: ArrayLike, values: ArrayLike) -> tuple[Array, Array]:
+    """Return sample times and values as arrays (S,), at least four; `MeasureError` for others."""
+    try:
+        t, f = np.asarray(time, float), np.asarray(values, float)
+        if f.size < 4 or not f.shape == t.shape == (f.size,):
+            raise ValueError(f"the shapes are {t.shape} and {f.shape}")
+    except (TypeError, ValueError, OverflowError) as reason:
+        wanted = "time and signal must be equally long rows of at least 4 numbers"
+        raise MeasureError(f"{wanted}: {reason}") from None
+    if not np.isfinite((t, f)).all():
+        raise MeasureError("time and signal must be finite")
+    if np.any(np.diff(t) <= 0):
+        raise MeasureError("time must increase")
+    return t, f
+
+
+@dataclass(frozen=True)
+class Piecewise:
+    """A function that is smooth between increasing ``times``, as a `Signal`."""
+
+    times: Array
+    function: Callable[[ArrayLike], Array]
+
+    def __call__(self, time: ArrayLike, /) -> Array:
+        """Return the function's values."""
+        return self.function(time)
+
+
+def spline(time: ArrayLike, values: ArrayLike) -> Piecewise:
+    """Return the cubic spline through samples; `MeasureError` for others than `checked` takes."""
+    t, f = checked(time, values)
+    try:
+        with np.errstate(all="ignore"):
+            return Piecewise(t, scipy.interpolate.CubicSpline(t, f))
+    except ValueError:  # the slopes, value over time, are beyond the floats
+        raise MeasureError("the signal is too steep, or too long, for floats") from None
+
+
+READINGS = ("arrival", "peak", "fwhm")
+"""Names of the numbers of a pulse."""
+
+
 @dataclass(frozen=True)
 class Pulse:
     """A pulse in the units of its record."""
@@ -57,6 +116,11 @@ class Pulse:
     def fwhm(self) -> float:
         """Full width at half maximum, a time."""
         return self.fall - self.rise
+
+
+def readings(pulse: Pulse) -> dict[str, float]:
+    """Return the numbers of a pulse by the names `READINGS`."""
+    return {name: getattr(pulse, name) for name in READINGS}
 
 
 def measure(time: ArrayLike | Signal, values: ArrayLike | None = None) -> Pulse:
@@ -165,7 +229,9 @@ def leading_pulses(
     grid, quarter = _Grid(signal), 0.25**k
     start = int(np.argmax(grid.f > quarter * grid.f.max()))
     relieved = grid.f[start:] < quarter * np.maximum.accumulate(grid.f[start:])
-    stop = start + int(np.argmax(relieved)) + 1 if relieved.any() else len(grid.f)
+    stop = len(grid.f)
+    if relieved.any():
+        stop = start + int(np.argmax(relieved)) + 1
     return grid.highest(stop=stop, shares=shares)
 
 
@@ -262,15 +328,13 @@ def derived(function: Callable[..., float], *numbers: Estimate) -> Estimate:
 
 def exponent(x: Sequence[Estimate], y: Sequence[Estimate]) -> Estimate:
     """Return the exponent p of ``y ~ x^p``, from a least-squares fit of the logarithms."""
-    log_x, log_y = (np.log([number.value for number in row]) for row in (x, y))
-    log_x -= log_x.mean()
-    weights = log_x / (log_x @ log_x)
-    p = float(weights @ log_y)
-    # Absolute errors are added: those of similar runs have a common sign and would cancel.
-    off = [
-        b.relative_error + abs(p) * a.relative_error for a, b in zip(x, y, strict=True)
-    ]
-    return Estimate(p, float(np.abs(weights) @ off))
+
+    def slope(*values: float) -> float:
+        log_x, log_y = np.split(np.log(values), 2)
+        return float(np.polyfit(log_x, log_y, 1)[0])
+
+    # Errors of similar runs have a common sign and might cancel: their absolute values are added.
+    return derived(slope, *x, *y)
 
 
 def tolerances(rtol: float, rounding: float = 0.0) -> tuple[float, float]:

@@ -9,14 +9,16 @@ tells its error (`validation.pulses.pulse.compared`).
 from __future__ import annotations
 
 import operator
-from collections.abc import Container, Mapping
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lwa.base.arrays import Array
 from lwa.base.frozen import Estimate
 from validation.lattice.cost import RunProgress, silent
 from validation.lattice.equations import Motion
@@ -25,16 +27,18 @@ from validation.lattice.signal import RECORDS, sensors_of
 from validation.lattice.simulate import COMPILED, repeated
 from validation.pulses.pulse import (
     MeasureError,
+    Piecewise,
     Pulse,
+    Signal,
     all_pulses,
     compared,
     first_pulse,
     highest_pulse,
+    readings,
     speed,
+    spline,
     tolerances,
 )
-from validation.pulses.readings import Reading, readings, speeds_between
-from validation.pulses.signals import Piecewise, Signal, spline
 from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
 
@@ -47,6 +51,48 @@ _RESOLVED = 22.0
 _MOST_SAMPLES = 100_000  # spare memory
 _HIDDEN = 0.5  # relative error of the peak from which on rounding may make the pulse
 _LOOKS = 200  # times at which a sensor is searched for an earlier pulse
+
+
+SPEEDS = ("speed_sites", "speed")
+"""Names of its speeds between two sensors, in sites per time and in length per time."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Measured numbers of a pulse at a sensor, or its speeds between two sensors.
+
+    Parameters
+    ----------
+    kind : {"bead", "contact"}
+        Kind of the sensor.
+    places : tuple of int
+        Number of the sensor, or of both, counted from 1.
+    numbers : mapping of Estimate
+        Those of `READINGS` or of `SPEEDS` that are known, by name.
+    static : float
+        Force at the (first) sensor from which dynamic forces count: the one at the start.
+    missing : str, optional
+        Reason why numbers are missing.
+    pulse : int
+        Number of the pulse at the sensor, counted from 1.
+    quantity : {"force", "velocity"}
+        The measured signal.
+    """
+
+    kind: str
+    places: tuple[int, ...]
+    numbers: Mapping[str, Estimate]
+    static: float
+    missing: str | None = None
+    pulse: int = 1
+    quantity: str = "force"
+
+    @property
+    def name(self) -> str:
+        """Kind, places, and a quantity other than force, such as bead 15 → 34."""
+        places = " → ".join(map(str, self.places))
+        quantity = "" if self.quantity == "force" else f" {self.quantity}"
+        return f"{self.kind} {places}{quantity}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,9 +194,9 @@ def record(
     firsts: list[Reading] = []
     found: list[Reading] = []
     for track, other in zip(recorded, checks, strict=True):
-        firsts += _readings(track, other, every=False)
+        firsts += _readings(track, other, _first)
         if every:
-            found += _readings(track, other, every=True)
+            found += _readings(track, other, all_pulses)
 
     def doubt(first: Reading, second: Reading, sites: float) -> str:
         """Return why one pulse does not pass two sensors at a speed; "" if it may."""
@@ -221,41 +267,42 @@ def tracks(
     """
     scene = run.scene
     levels = forces_at_start(scene)
-    places = _places(scene)
+    x = np.cumsum((0.0, *scene.spacings, *scene.spacings[-1:]))
     found = []
     for kind, numbers in sensors_of(scene).items():
         for row, i in enumerate(numbers):
             name = f"{kind} {i + 1}"
-            quantity = "velocity" if name in velocities else "force"
+            quantity = "force"
+            static = levels[name]
+            if name in velocities:
+                quantity = "velocity"
+                static = 0.0
             if run.path is None:
                 samples = getattr(run, RECORDS[kind, quantity])[row]
                 signal: Signal = spline(run.time[::every], samples[::every])
             else:
                 signal = run.signal(kind, i, quantity)
-            static = levels[name] if quantity == "force" else 0.0
-            dynamic = _above(signal, static) if static else signal
-            place = places.get(name, {})
+            dynamic = signal
+            if static:
+                dynamic = _above(signal, static)
+            place = _place(scene, x, kind, i)
             found.append(Track(kind, i + 1, dynamic, place, static, quantity))
     return tuple(found)
 
 
-def _places(scene: Scene) -> dict[str, dict[str, float]]:
-    """Return the places of sensors, by names such as "bead 15", without beads with one contact."""
-    sites: dict[str, float] = {}
-    for i in scene.bead_sensors:
-        if 0 < i < scene.contact_count:
-            sites[f"bead {i + 1}"] = i
-    for i in scene.contact_sensors:
-        # A contact is midway between its beads, the wall's half a spacing behind the last bead.
-        sites[f"contact {i + 1}"] = i + 0.5
-    x = np.cumsum((0.0, *scene.spacings, *scene.spacings[-1:]))
-    beads = np.arange(len(x))
-    places = {}
-    for name, site in sites.items():
-        places[name] = {"speed_sites": site}
-        if scene.spacings:
-            places[name]["speed"] = float(np.interp(site, beads, x))
-    return places
+def _place(scene: Scene, x: Array, kind: str, i: int) -> dict[str, float]:
+    """Return the place of a sensor by the names `SPEEDS`; empty for a bead with one contact.
+
+    x : places of the beads, and of one behind the last.
+    """
+    if kind == "bead" and not 0 < i < scene.contact_count:
+        return {}
+    # A contact is midway between its beads, the wall's half a spacing behind the last bead.
+    site = i + 0.5 if kind == "contact" else float(i)
+    place = {"speed_sites": site}
+    if scene.spacings:
+        place["speed"] = float(np.interp(site, np.arange(len(x)), x))
+    return place
 
 
 def _above(force: Signal, static: float) -> Piecewise:
@@ -294,15 +341,19 @@ def _at_sensors(scene: Scene, contact_forces: ArrayLike) -> dict[str, float]:
     return forces
 
 
-def _readings(track: Track, other: Track, every: bool) -> list[Reading]:
-    """Measure the first pulse at a sensor, or every pulse, with errors from another run."""
+def _first(signal: Signal) -> list[Pulse]:
+    """Measure the first pulse alone."""
+    return [first_pulse(signal)]
+
+
+def _readings(
+    track: Track, other: Track, pulses: Callable[[Signal], list[Pulse]]
+) -> list[Reading]:
+    """Measure pulses at a sensor, the first or all, with errors from another run."""
     place = (track.number,)
     blank = Reading(track.kind, place, {}, track.static, quantity=track.quantity)
     try:
-        measured, known = (
-            all_pulses(signal) if every else [first_pulse(signal)]
-            for signal in (track.force, other.force)
-        )
+        measured, known = map(pulses, (track.force, other.force))
     except MeasureError as error:
         return [replace(blank, missing=str(error))]
     found: list[Reading] = []
@@ -321,6 +372,67 @@ def _readings(track: Track, other: Track, every: bool) -> list[Reading]:
 def _delay(pulse: Pulse, other: Pulse) -> float:
     """Return the time between the arrivals of two pulses."""
     return abs(other.arrival - pulse.arrival)
+
+
+def speeds_between(
+    sensors: Sequence[Reading],
+    places: Sequence[Mapping[str, float]],
+    total: Callable[[float, float], float],
+    doubt: Callable[[Reading, Reading, float], str] = lambda *_: "",
+) -> tuple[Reading, ...]:
+    """Return the speeds of the pulse from each sensor to the next one of its kind.
+
+    Parameters
+    ----------
+    sensors : sequence of Reading
+        First pulses.
+    places : sequence of mappings
+        Places of the sensors along the chain, by the names `SPEEDS`.
+    total : callable
+        Error of a time between two arrivals as a function of the errors of both.
+    doubt : callable
+        Reason, "" if there is none, why one pulse does not pass two sensors at a speed in sites.
+    """
+    legs = []
+    for (first, at), (second, there) in pairwise(zip(sensors, places, strict=True)):
+        if first.kind != second.kind:
+            continue
+        leg = replace(
+            first, places=first.places + second.places, numbers={}, missing=None
+        )
+        try:
+            time = _elapsed(first, second, total)
+            if not (at and there):
+                raise MeasureError(
+                    "a bead with one contact has a force of half a site away"
+                )
+            speeds = {name: abs(there[name] - at[name]) / time.value for name in at}
+            reason = doubt(first, second, speeds["speed_sites"])
+            if reason:
+                raise MeasureError(reason)
+        except MeasureError as reason:
+            legs.append(replace(leg, missing=str(reason)))
+            continue
+        error = time.relative_error
+        numbers = {name: Estimate(V, V * error) for name, V in speeds.items()}
+        legs.append(replace(leg, numbers=numbers))
+    return tuple(legs)
+
+
+def _elapsed(
+    first: Reading, second: Reading, total: Callable[[float, float], float]
+) -> Estimate:
+    """Return the time from one arrival to a later one; raises `MeasureError` if there is none."""
+    if "arrival" not in first.numbers or "arrival" not in second.numbers:
+        raise MeasureError("one of the two has no pulse")
+    start = first.numbers["arrival"]
+    end = second.numbers["arrival"]
+    time = Estimate(end.value - start.value, total(start.error, end.error))
+    if time.value <= 0:
+        raise MeasureError("a speed needs a later second arrival")
+    if time.value <= time.error:
+        raise MeasureError("the arrivals are equal but for their errors")
+    return time
 
 
 @dataclass(frozen=True)

@@ -124,7 +124,9 @@ def _measured(
         error = np.abs(differences).max(axis=0)
         errors[name] = error
         # The decay's error is that of the force after a stretch.
-        scale = 1 / chain.sites if name == "decay" else values[1:]
+        scale = values[1:]
+        if name == "decay":
+            scale = np.full_like(scale, 1 / chain.sites)
         relative.append(error / scale)
     worst = np.max(relative, axis=0)
     if np.isnan(worst).all():

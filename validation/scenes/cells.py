@@ -20,7 +20,6 @@ from lwa.base import files
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
 from validation.scenes.checks import SceneError
-from validation.scenes.units import name_of
 
 _LINE = re.compile(r"[^\r\n]*\S[^\r\n]*")  # a line that is not blank
 # Signs with several codes, and the sign of recorders for a value beyond their range
@@ -33,7 +32,13 @@ _COMMA = re.compile(r'"([-+]?\d+),(\d+(?:[eE][-+]?\d+)?)"')  # a number in quote
 # Signs that NumPy's reader does not take, as it takes them, and the separator beside which they
 # stay: Fortran writes 1.5D-3; decimal commas; some loggers write + 1.5.
 _PLAIN = (("D", "e", ""), (",", ".", ","), ("+ ", "+", " "), ("- ", "-", " "))
-_NUMBER = r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|inf)"
+UNSIGNED = r"(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+"""Pattern of a number without a sign."""
+
+_NUMBER = rf"[-+]?(?:{UNSIGNED}|inf)"
+HEADER = re.compile(r"^(.*?) ?(?:(?:[([] ?|\bin )([^][()\s]+) ?[])]?)?$")
+"""Pattern of the name and the unit of a column: "Force (N)", "Force [N]", "Force in N"."""
+
 _FEW = 0.1  # rows of numbers outside of the record, at most, over those of the record
 _SETTINGS = 20  # lines in whose first columns recorders write settings
 
@@ -214,6 +219,15 @@ def runs(flags: ArrayLike) -> list[tuple[int, int]]:
         np.diff(np.asarray(flags, bool), prepend=False, append=False)
     )
     return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+
+
+def name_of(header: str) -> str:
+    """Return a header without its unit, as it is compared.
+
+    >>> name_of("# Time [ms]"), name_of("bead 8 Dynamic force (N)")
+    ('time', 'bead 8 force')
+    """
+    return HEADER.sub(r"\1", header).lower().replace("dynamic ", "").strip("#% ")
 
 
 def _plain(text: str, mark: str) -> str:

@@ -19,7 +19,7 @@ from lwa.base.arrays import Array
 from lwa.base.exact import shorten
 from lwa.base.files import reason
 from lwa.base.words import similar
-from validation.scenes.cells import Cells
+from validation.scenes.cells import Cells, name_of
 from validation.scenes.checks import SceneError
 from validation.scenes.columns import (
     NAME,
@@ -28,9 +28,9 @@ from validation.scenes.columns import (
     Column,
     Columns,
     Stated,
+    read_time,
     refusal,
 )
-from validation.scenes.units import name_of, read_time
 
 
 @dataclass(frozen=True, eq=False)

@@ -190,8 +190,9 @@ class Scene:
         law = one_or_each(read_contact_law)(self.law, "law")
         check_count(k, "k", self.contact_count)
         check_count(law, "law", self.contact_count)
-        differ = isinstance(k, tuple) or isinstance(law, tuple)
-        count = self.contact_count if differ else 1
+        count = 1
+        if isinstance(k, tuple) or isinstance(law, tuple):
+            count = self.contact_count
         read = cache(contact_law)  # a chain has few kinds of contacts
         contacts = [*map(read, _row(k, count), _row(law, count))]
         object.__setattr__(self, "k", alike(tuple(k for k, _ in contacts)))
@@ -247,7 +248,9 @@ class Scene:
                     "drive moves bead 1, which has a velocity or displacement of its own"
                 )
         # Only a record ends; a piston and an oscillation go on.
-        end = drive.time[-1] if drive.time else self.duration
+        end = self.duration
+        if drive.time:
+            end = drive.time[-1]
         if not self.duration <= end < _LONGEST * self.duration:
             wanted = (
                 f"one to {_LONGEST} times the duration, {self.duration:g}, is wanted"
@@ -312,10 +315,10 @@ class Scene:
         repeats = integer(repeats, "repeats", 1)
         masses = tuple(numeric(m, "mass") for m in cell.masses) * repeats
         stiffnesses = tuple(numeric(A, "stiffness") for A in cell.stiffnesses) * repeats
+        spacings: Row = ()
         # Without a number for the spacing speeds are in sites alone.
-        spacings = (
-            (float(cell.spacing),) * (len(masses) - 1) if cell.spacing.is_number else ()
-        )
+        if cell.spacing.is_number:
+            spacings = (float(cell.spacing),) * (len(masses) - 1)
         return cls(
             # The cell's last contact would join the next cell.
             masses=masses,

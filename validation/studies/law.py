@@ -15,7 +15,6 @@ of few pulses may be small by chance.
 
 from __future__ import annotations
 
-import copy
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -27,11 +26,13 @@ import numpy as np
 import scipy
 
 from lwa import Cell
+from lwa.base import files
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
 from lwa.base.files import entries, load
 from lwa.base.frozen import Estimate
 from lwa.command.options import quantities, quantity
+from lwa.spheres.beads import FILE, read_materials
 from lwa.spheres.beads import spheres as read_spheres
 from validation.pictures import Curve, Panel
 from validation.report.study import Report, option, study
@@ -186,23 +187,15 @@ def _pulses(file: MeasuredFile) -> tuple[Array, Array, Array | None]:
 
 def _modulus(content: dict[str, Any], material: str, stiffness: Estimate) -> Estimate:
     """Return E of a material in a file of equal spheres, from the stiffness A of their contacts."""
-
-    def contact(E: float) -> float:
-        """Return A at a given E."""
-        changed = copy.deepcopy(content)
-        given = changed.setdefault("materials", {}).setdefault(
-            material, {"like": material}
-        )
-        given["E"] = E
-        return float(Cell.of_spheres(read_spheres(changed)).stiffnesses[0])
-
-    unit = contact(1.0)
-    if not contact(2.0) > unit:
+    materials = read_materials(files.Table(content, "", FILE))
+    balls = read_spheres(content)
+    if any(ball.material != materials.get(material) for ball in balls):
         raise SceneError(
             f"material is {shorten(material)}: the spheres are not made of it"
         )
+    A = Cell.of_spheres(balls).stiffnesses[0]
     # Hertz: A = E √(2R)/(3 (1 - ν²)), proportional to E.
-    return stiffness * (1 / unit)
+    return stiffness * float(materials[material].E / A)
 
 
 @cache
@@ -343,14 +336,17 @@ def fit_power(
 
 def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, float]:
     """Fit a polynomial in x - middle; return coefficients (degree + 1, 1 + draws) and middle."""
-    w = np.ones_like(x) if weight is None else weight
-    middle = float(
-        np.average(x, weights=w**2)
-    )  # slope and constant are uncorrelated about it
+    w = np.ones_like(x)
+    least = 0.0  # scatter of residuals over their known deviations
+    if weight is not None:
+        w = weight
+        least = 1.0
+    # Slope and constant are uncorrelated about it.
+    middle = float(np.average(x, weights=w**2))
     best, covariance = np.polyfit(x - middle, y, degree, w=w, cov="unscaled")
     freedom = len(x) - degree - 1
     scatter = np.sum((w * (y - np.polyval(best, x - middle))) ** 2) / freedom
-    covariance = covariance * (scatter if weight is None else max(scatter, 1.0))
+    covariance = covariance * max(scatter, least)
     # On data without scatter the rounding of ln F, of ln V and of the fit is left.
     rounding = 2 * np.finfo(float).eps * (1 + np.abs(x) + np.abs(y))
     change = np.linalg.pinv(w[:, np.newaxis] * np.vander(x - middle, degree + 1)) * w

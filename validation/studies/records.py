@@ -16,18 +16,15 @@ from lwa.command.cli import called
 from lwa.command.options import Words
 from validation.lattice.cost import RunProgress, silent
 from validation.pictures import Curve, Panel
-from validation.pulses.discharge import corrected, suggested
-from validation.pulses.noisy import InvertedError, noisy_pulse
+from validation.pulses.noisy import InvertedError, corrected, noisy_pulse, suggested
 from validation.pulses.pulse import MeasureError
-from validation.pulses.readings import Reading, speeds_between
-from validation.pulses.sensors import forces_at_start, record
+from validation.pulses.sensors import Reading, forces_at_start, record, speeds_between
 from validation.report.study import Report, number, option, study
 from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError, one_of, positive
-from validation.scenes.columns import Stated
+from validation.scenes.columns import BASES, Stated, read_time
 from validation.scenes.measured import MeasuredFile, Record
 from validation.scenes.scenefile import check_units, read_scene
-from validation.scenes.units import BASES, read_time
 from validation.studies.run import reading_tables
 
 Paths = str | Path | Sequence[str | Path]

@@ -24,13 +24,18 @@ from validation.lattice.cost import RunProgress
 from validation.lattice.signal import RECORDS
 from validation.lattice.simulate import COMPILED
 from validation.lattice.steppers import METHODS
-from validation.pulses.readings import Reading
-from validation.pulses.sensors import TOLERANCE, Recording, enough_samples, record
+from validation.pulses.sensors import (
+    TOLERANCE,
+    Reading,
+    Recording,
+    enough_samples,
+    record,
+)
 from validation.report.study import Report, option, output_option, replacing, study
 from validation.report.table import Column, Table, plain
 from validation.scenes import scenefile
 from validation.scenes.checks import SceneError
-from validation.scenes.units import BASES
+from validation.scenes.columns import BASES
 
 EXAMPLES = ("paper", "vertical", "precompressed", "defect", "trimer", "striker")
 """Names of the examples of scene files."""
@@ -71,9 +76,9 @@ def report(recording: Recording, every: bool = False) -> Report:
     with a wall; with damping the energy ``dissipated_value``, with a drive its ``work_value``.
     """
     run, scene = recording.run, recording.run.scene
-    momentum = (
-        "not conserved" if (p := run.momentum_drift) is None else f"drift {p:.0e}"
-    )
+    momentum = "not conserved"
+    if run.momentum_drift is not None:
+        momentum = f"drift {run.momentum_drift:.0e}"
     title = f"{scene}, energy drift {run.energy_drift:.0e}"
     data = {
         "energy_drift_value": run.energy_drift,
@@ -86,13 +91,15 @@ def report(recording: Recording, every: bool = False) -> Report:
         data["work_value"] = run.work
         title += f", work {run.work:.6g}"
     which = "All pulses" if every else _FIRST
-    note = _NOTE.format(which, scene.units or "the scene's own") + _DYNAMIC * any(
-        scene.load
-    )
+    note = _NOTE.format(which, scene.units or "the scene's own")
+    peak = "peak force"
+    if any(scene.load):
+        note += _DYNAMIC
+        peak = "peak dynamic force"
     tables, missing = reading_tables(
         recording.sensors,
         recording.speeds,
-        "peak dynamic force" if any(scene.load) else "peak force",
+        peak,
         bool(scene.units),
         every,
     )

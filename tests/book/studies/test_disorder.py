@@ -1,9 +1,15 @@
 """Chains of random masses: without disorder nothing decays, with it as a power of the spread."""
 
+import sys
+
 import numpy as np
 import pytest
 
-from book.studies.disorder import disorder
+from book.studies.disorder import disorder, single_losses
+from tests.book.prose import BOOK
+
+sys.path.append(str(BOOK))  # the pages' own modules
+from turned import LOSSES
 
 
 def test_equal_beads_keep_their_pulse():
@@ -30,6 +36,19 @@ def test_the_theory_is_the_mean_loss_at_single_beads():
     mean = sum(side.integ(lbnd=0)(spread) for side in sides) / (2 * spread)
     assert found["theory_value"] == pytest.approx(mean, rel=1e-6)
     assert last["theory_value"] == pytest.approx(line, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("side", "sign", "bound"), [("heavier", 1, 0.0015), ("lighter", -1, 0.017)]
+)
+def test_losses_at_single_beads(side, sign, bound):
+    """The formula of `book/column.md` by the digits that it prints."""
+    excess = np.array([0.0025, 0.005, 0.01, 0.02])
+    known = LOSSES[side]
+    formula = known["square"] * excess**2 + known["power"] * excess**2.5
+    losses = [loss.value for loss in single_losses(sign * excess)]
+    off = np.abs(formula / losses - 1).max()
+    assert 0.8 * bound < off < bound
 
 
 def test_a_decay_that_changes_along_the_chain_fails():

@@ -87,3 +87,30 @@ def test_a_packing_across_its_rows_is_a_chain():
         known.c * math.sqrt(A) * seen.peak**0.25, rel=1e-4
     )
     assert seen.fwhm == pytest.approx(known.fwhm("strain"), rel=1e-4)
+
+
+@pytest.mark.parametrize("case", exactly.CASES)
+def test_stated_errors_cover_exact_waves(case):
+    report = exactly.links(case)
+    assert report.ok
+    rows = report.document()["rows"]
+    for chain, row in zip(exactly.CASES[case](), rows, strict=True):
+        wave = loaded_wave(chain.lattice, force=chain.force, precompression=chain.load)
+        speed, width = wave.estimate("speed"), wave.estimate("fwhm", row["of"])
+        assert abs(math.sqrt(row["square_value"]) - speed.value) < speed.error
+        assert abs(row["fwhm_value"] - width.value) < width.error
+
+
+def test_a_pulse_leaves_tuned_resonators_quiet():
+    """By a factor of four; below 1.2 · 2πV_s no theory takes them."""
+    report = blows.struck()
+    assert report.ok
+    rows = [r for r in report.document()["rows"] if r["case"] == "resonators"]
+    for row in rows:
+        assert (row["speed_error_value"] is None) == (row["tuning_value"] < 1.2)
+    tuned, *beside = sorted(
+        (abs(row["tuning_value"] - 1), row["ringing_value"])
+        for row in rows
+        if row["chain"] == "m_r = 3/10"
+    )
+    assert min(ringing for _, ringing in beside[:2]) > 4 * tuned[1]

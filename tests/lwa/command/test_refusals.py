@@ -6,9 +6,11 @@ import random
 import re
 import shlex
 
+import click
 import pytest
 
 from lwa.base import LONGEST_MESSAGE
+from lwa.command.cli import COMMANDS, lwa
 from tests.lwa.command.answers import STEEL_AND_PTFE, run
 
 FREE = {"k": 1.5}  # without a load
@@ -158,47 +160,10 @@ def test_unreadable_files_are_refused(capsys, tmp_path):
         refused(capsys, words, "wave", "--spheres", str(tmp_path / name))
 
 
-NUMBERS = (
-    "1",
-    "2",
-    "1/2",
-    "3/2",
-    "0.45",
-    "1e-3",
-    "7",
-    "m",
-    "0",
-    "-1",
-    "nan",
-    "1e400",
-    "x y",
-    "é",
-)
-LAWS = (
-    "hertz2:1,2",
-    "exponential",
-    "magnetic:4,1",
-    "polynomial:-1/2,0",
-    "general",
-    "toda",
-)
-OPTIONS = {
-    "derive": ("law", "closure", "field", "order"),
-    "wave": ("law", "spacing", "force", "background", "precompression"),
-    "dispersion": ("spacing", "precompression", "order"),
-    "expansion": ("order",),
-    "envelope": ("law", "background", "precompression", "wavenumber", "detuning"),
-    "shock": ("law", "behind", "ahead", "piston"),
-}
-WORDS = {
-    "law": LAWS,
-    "closure": ("full", "linear", "half"),
-    "field": ("first", "center"),
-    "order": ("1", "2", "4", "0", "2.5"),
-    "masses": ("1", "1,1/2", "3,1", "m1,m2", "1,2,3", "1,0", "1,x y"),
-    "wavenumber": ("pi", "pi/3", "0", "1e-6", "4", "q", "2"),
-    "detuning": ("1/1000", "-1/100", "1", "nu"),
-}
+ODD = (
+    "1", "7", "1/2", "m", "0", "-1", "nan", "1e400", "2.5", "x y", "é", "1,2,3", "general",
+)  # fmt: skip
+"""Texts beside the examples of options: values of some, and refused by others."""
 
 
 @pytest.mark.parametrize(
@@ -208,12 +173,18 @@ def test_random_lines_answer_or_are_refused(capsys, seed):
     """No traceback, no NaN and no complex number; JSON is JSON."""
     draw = random.Random(seed)
     for _ in range(15):
-        command = draw.choice([*OPTIONS])
+        name = draw.choice([*COMMANDS])
+        _, command, _ = lwa.resolve_command(click.Context(lwa), [name])
         style = draw.choice(("json", "text", "latex"))
-        arguments = [command, "--format", style]
-        for name in ("k", "masses", *OPTIONS[command]):
-            if draw.random() < 0.4:
-                arguments += [f"--{name}", draw.choice(WORDS.get(name, NUMBERS))]
+        arguments = [name, "--format", style]
+        for option in command.params:
+            # Every second text is a valid one: a line of odd ones is refused at its start.
+            valid = getattr(
+                option.type, "choices", [getattr(option.type, "example", "")]
+            )
+            if option.name != "style" and draw.random() < 0.3:
+                text = draw.choice((draw.choice(valid), draw.choice(ODD)))
+                arguments += [option.opts[0], text]
         status, out, err = run(capsys, *arguments)
         if status:
             assert (status, out, err.count("\n")) == (2, "", 1), arguments

@@ -69,13 +69,3 @@ def test_a_law_that_is_no_power_has_waves_without_a_load(cell):
     light = loaded_wave(cell, force="1e-30", law=law)
     width = canonical_wave(cell, "3/2").fwhm()
     assert float(light.fwhm("strain") / width) == pytest.approx(1, rel=1e-12)
-
-
-def test_symbols_take_their_numbers():
-    symbolic = canonical_wave(Cell(["m"], ["A"]), "3/2").at_force(
-        "F", precompression="F0"
-    )
-    numbers = symbolic.at(m=2, A=3, F=7, F0=2, D=1)
-    assert numbers == canonical_wave(Cell([2], [3], 1), "3/2").at_force(
-        7, precompression=2
-    )

@@ -98,16 +98,6 @@ def test_ratios_of_load_and_wave_that_no_difference_survives(ratio):
     assert float(wave.fwhm("strain")) == pytest.approx(width, rel=1e-13)
 
 
-def test_the_pole_of_a_magnet():
-    """The compression is found up to it."""
-    for n in (3, 4):
-        law = named("magnetic", n, 1)
-        for force in ("1e3", "6.1e4", "1e8", "1e30"):
-            delta = law.compression(CHAIN, sp.Rational(force))
-            exact = 1 - (1 + sp.Rational(force)) ** sp.Rational(-1, n)
-            assert abs(delta / exact.n(45) - 1) < 1e-33
-
-
 def test_a_weak_link_in_series_next_to_its_pole():
     """V² = 2W/B² by the energies of both links.
 

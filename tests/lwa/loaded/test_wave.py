@@ -32,7 +32,7 @@ def random_chain(seed):
     P = int(draw.integers(1, 5))
     masses, A = np.exp(draw.uniform(-1.5, 1.5, (2, P))).round(3)
     F = sp.Rational(str(round(draw.uniform(0.5, 3), 2)))
-    law, loads = Power(str(round(draw.uniform(1.05, 5), 2))), ["0", "1/100", "1/2"]
+    law, loads = Power(str(round(draw.uniform(1.1, 5), 1))), ["0", "1/100", "1/2"]
     if seed % 3 == 0:  # unlike contacts have powers
         A, law, loads = [2] * P, LAWS[seed // 3 % 3], ["1/10", "1/2"]
     return Cell(masses, A, "3/2"), law, F, F * sp.Rational(str(draw.choice(loads)))
@@ -80,17 +80,19 @@ def test_a_profile_has_its_own_width():
 
 def test_the_width_with_resonators_obeys_its_integral():
     """(F′I + R V⁴) v′² = m̄V² v² - 2W of F = δ²: ξ = ∫ √(J/(Q(1) - Q(v))) dv/v by mpmath."""
-    lattice = Lattice([1], [Link(0, 1, Power(2))], [Resonator(0, "1/2", 20)])
-    square = 2 / mpmath.mpf(3)  # m̄V² = 2W/B², W = δ³/3
-    R = mpmath.mpf(1) / 80
-    J = lambda v: 2 * v / 12 + R * (square / 1.5) ** 2  # noqa: E731
-    # v = 1 - t² takes the root out of the peak
-    rate = lambda t: 2 * mpmath.sqrt(J(1 - t * t) / square) / (1 - t * t)  # noqa: E731
+    square = mpmath.mpf(2) / 3  # m̄V² = 2W/B², W = δ³/3, and m̄ = 3/2
+
+    def rate(t):  # v = 1 - t² takes the root out of the peak
+        v = 1 - t * t
+        J = v / 6 + (square / 1.5) ** 2 / 80  # R = (1/2)²/20
+        return 2 * mpmath.sqrt(J / square) / v
+
     width = 2 * mpmath.quad(rate, [0, mpmath.sqrt(0.5)])
-    double = Lattice([1, 1], [Link(n, n + 1, Power(2)) for n in (0, 1)],
-                     [Resonator(n, "1/2", 20) for n in (0, 1)])  # fmt: skip
-    for wave in (loaded_wave(lattice, force=1), loaded_wave(double, force=1)):
-        assert float(wave.speed) == pytest.approx(2 / 3, rel=1e-14)  # m̄ = 3/2
+    for P in (1, 2):
+        links = [Link(n, n + 1, Power(2)) for n in range(P)]
+        resonators = [Resonator(n, "1/2", 20) for n in range(P)]
+        wave = loaded_wave(Lattice([1] * P, links, resonators), force=1)
+        assert float(wave.speed) == pytest.approx(2 / 3, rel=1e-14)
         assert float(wave.fwhm("strain")) == pytest.approx(float(width), rel=1e-12)
 
 
@@ -109,20 +111,18 @@ def test_slow_resonators_are_refused():
 
 def test_plane_waves_of_hexagonal_packings():
     """Across: A_eff = 2A(√3/2)^{k+1}, a√3/2 apart. Along: 2A(½)^{k+1}, and A of range 2."""
-    a, load = math.sqrt(3) / 2, {"force": 2, "precompression": 1}
+    a = math.sqrt(3) / 2
     near, far = Link(0, 1, HERTZ, str(2 * 0.5**2.5)), Link(0, 2, HERTZ)
     chains = {
         "across": Lattice([1], [Link(0, 1, HERTZ, str(2 * a**2.5))], spacing=str(a)),
         "along": Lattice([1], [near, far], spacing="1/2"),
     }
     for direction, chain in chains.items():
-        ours = loaded_wave(hexagonal(HERTZ, direction), **load)
-        known = loaded_wave(chain, **load)
-        for name in ("speed", "sound_speed"):
-            assert float(getattr(ours, name)) == pytest.approx(
-                float(getattr(known, name)), rel=1e-12
-            )
-        assert float(ours.fwhm()) == pytest.approx(float(known.fwhm()), rel=1e-12)
+        rows = []
+        for lattice in (hexagonal(HERTZ, direction), chain):
+            wave = loaded_wave(lattice, force=2, precompression=1)
+            rows.append(list(map(float, (wave.speed, wave.sound_speed, wave.fwhm()))))
+        assert rows[0] == pytest.approx(rows[1], rel=1e-12)
     other = hexagonal(2, "across", mass=2, diameter=3)
     assert other.equilibrium(1).compressions[0] ** 2 * sp.sqrt(3) == 1
     assert (other.mass, other.spacing) == (2, 3 * sp.sqrt(3) / 2)
@@ -136,20 +136,22 @@ SOFT = Lattice([1], [Link(0, 1, Power("1/2"))])
 
 
 @pytest.mark.parametrize(
-    ("lattice", "force", "load", "unknown"),
+    ("lattice", "force", "load"),
     [
-        (THREE, 2, 1, {"speed", "fwhm"}),
-        (HARD, 9, 1, {"speed", "fwhm"}),
-        (HEARD, 2, 1, {"speed", "fwhm"}),
-        (RADIATING, 1, 0, {"speed", "fwhm"}),
-        (SOFT, "1/2", 1, {"speed", "fwhm"}),
-        (HARD, 1, 0, {"fwhm"}),
+        (THREE, 2, 1),
+        (HARD, 9, 1),
+        (HEARD, 2, 1),
+        (RADIATING, 1, 0),
+        (SOFT, "1/2", 1),
+        (HARD, 1, 0),
     ],
 )
-def test_errors_are_nan_where_nothing_was_measured(lattice, force, load, unknown):
+def test_errors_are_nan_where_nothing_was_measured(lattice, force, load):
     wave = loaded_wave(lattice, force=force, precompression=load)
-    for name in ("speed", "fwhm"):
-        assert math.isnan(wave.estimate(name).error) == (name in unknown)
+    assert math.isnan(wave.estimate("fwhm").error)
+    # Only the speed of a pair of equal masses without load is known.
+    bare_pair = lattice == HARD and not load
+    assert math.isnan(wave.estimate("speed").error) != bare_pair
 
 
 CUBIC = Power(3)

@@ -19,15 +19,11 @@ def test_edges_of_equal_beads_solve_els_equations():
     # ∫ (1 - f′)/f = -2 ln cos κ/4 of f = 2 sin κ/2, ∫ (f̃′ - 1)/f̃ = 2 ln cosh q/4 of 2 sinh q/2
     for r in map(sp.Rational, ("11/10", "5/4")):
         front = shock(EQUAL, r, 1, k=3)
+        trailing = front.trailing_speed / front.sound(r)
+        leading = front.leading_speed("dispersion") / front.sound(1)
         kappa, q = 4 * sp.acos(1 / sp.sqrt(r)), 4 * sp.acosh(sp.sqrt(r))
-        for ours, known in (
-            (front.trailing_speed / front.sound(r), sp.cos(kappa / 2)),
-            (
-                front.leading_speed("dispersion") / front.sound(1),
-                2 * sp.sinh(q / 2) / q,
-            ),
-        ):
-            assert abs((ours - known).n(30)) < 1e-25
+        assert same(trailing, sp.cos(kappa / 2))
+        assert same(leading, 2 * sp.sinh(q / 2) / q)
 
 
 def test_a_toda_soliton_on_els_edge_moves_its_beads_at_twice_the_wall():
@@ -36,39 +32,28 @@ def test_a_toda_soliton_on_els_edge_moves_its_beads_at_twice_the_wall():
     El's edge has the speed of κ = 2 arcosh √r, and v_p = 2 c₊ (r - 1) under F = e^δ - 1.
     """
     kappa = 2 * sp.acosh(sp.sqrt(sp.Rational(5, 4)))
-    for D in (1, sp.Rational(1, 2)):
-        found = shock(
-            Cell([1], spacing=D), sp.log(sp.Rational(25, 16)) / D, 0, law=TODA
-        )
-        assert same(found.ratio, sp.Rational(5, 4))
-        assert same(found.plateau, sp.S.Half)
-        true = D * sp.sinh(kappa) / kappa
-        assert abs((found.leading_speed("dispersion") - true).n(30)) < 1e-25
-        soliton = sp.log(1 + sp.sinh(kappa) ** 2) / D  # at its middle
-        for name, known in (("leading_speed", true), ("peak", soliton)):
-            ours = found.estimate(name)
-            assert abs(ours.value - known) < ours.error
+    D = sp.S.Half
+    found = shock(Cell([1], spacing=D), 2 * sp.log(sp.Rational(25, 16)), 0, law=TODA)
+    assert same(found.ratio, sp.Rational(5, 4))
+    assert same(found.plateau, D)  # c₊ is D
+    true = D * sp.sinh(kappa) / kappa
+    assert same(found.leading_speed("dispersion"), true)
+    soliton = sp.log(1 + sp.sinh(kappa) ** 2) / D  # at its middle
+    for name, known in (("leading_speed", true), ("peak", soliton)):
+        ours = found.estimate(name)
+        assert abs(ours.value - known) < ours.error
 
 
 def test_plateau_and_rule_under_a_power_without_load():
     """B/p₋ = (8k/(k+1))^{1/(k+1)} and s₊/c₋ = 4/(k+1) (8k/(k+1))^{-1/(k+1)}; a contact's strain
     is B (1 - (k-1)/(2k(k+1)))."""
-    k = sp.Symbol("k", positive=True)
-    found = shock(EQUAL, "p", 0, law=Power("k"))
-    p = sp.Symbol("p", positive=True)
+    k, p = sp.symbols("k p", positive=True)
+    found = shock(EQUAL, p, 0, k=k)
     rise = (8 * k / (k + 1)) ** (1 / (k + 1))
-    for value in (sp.Rational(3, 2), 2, 5):
-        numbers = {k: value, p: sp.Rational(1, 3)}
-        speed, contact = (
-            found.leading_speed() / found.sound(p),
-            1 - (k - 1) / (2 * k * (k + 1)),
-        )
-        for ratio in (
-            found.rise / p / rise,
-            speed * rise * (k + 1) / 4,
-            found.peak / p / rise / contact,
-        ):
-            assert float(ratio.subs(numbers)) == pytest.approx(1, rel=1e-12)
+    assert same(found.rise / p, rise)
+    speed = found.leading_speed() / found.sound(p)
+    assert same(speed, 4 / (k + 1) / rise)
+    assert same(found.peak / found.rise, 1 - (k - 1) / (2 * k * (k + 1)))
 
 
 @pytest.mark.parametrize(
@@ -89,11 +74,12 @@ def test_small_jumps_are_those_of_kdv(law, ahead):
         found = shock(EQUAL, ahead + jump, ahead, law=law)
         c = sp.N(found.sound(ahead), 50)
         sound = sp.N(found.sound(ahead + jump), 50) / c - 1
-        for speed, part in (
-            (found.leading_speed(), sp.Rational(2, 3)),
-            (found.leading_speed("dispersion"), sp.Rational(2, 3)),
-            (found.trailing_speed, -1),
-        ):
+        parts = {
+            found.leading_speed(): sp.Rational(2, 3),
+            found.leading_speed("dispersion"): sp.Rational(2, 3),
+            found.trailing_speed: -1,
+        }
+        for speed, part in parts.items():
             assert abs(sp.N(speed, 60) / c - 1 - part * sound) < abs(sound) ** 2 + 1e-26
         assert found.rise == pytest.approx(2 * jump, rel=1e-5)
         assert found.peak - ahead == pytest.approx(2 * jump, rel=1e-5)
@@ -106,6 +92,8 @@ def test_small_jumps_are_those_of_kdv(law, ahead):
         ("2.38", "36.3", 1),
         ("4.99", "0.785", "0.1"),
         ("3.1085", "1.501", "0.738"),
+        # SymPy searched without end for the sign of the pulse's equation
+        (3, 2, "9/5"),
     ],
 )
 def test_long_decimals_are_floats_of_thirty_digits(k, behind, ahead):
@@ -145,8 +133,7 @@ def test_laws_without_closed_forms(law, behind, ahead, kind):
         edge = found.estimate("leading_speed", "dispersion")
         pulse = found.estimate("leading_speed")
         # covers what the doubling rule's error covers
-        least = abs(edge.value - pulse.value) + pulse.error
-        assert edge.error == pytest.approx(least, rel=1e-9) or edge.error > least
+        assert edge.error > 0.999 * (abs(edge.value - pulse.value) + pulse.error)
         W, B, p = sp.lambdify(law.delta, law.energy), float(found.rise), float(ahead)
         work = W(p + B) - W(p) - float(law.at(sp.Rational(ahead))) * B
         assert work == pytest.approx(2 * area**2, rel=1e-10)  # the rule's equation
@@ -157,9 +144,6 @@ def test_the_opposite_jump_is_a_rarefaction(cell):
     found = shock(cell, 1, 2, law=HERTZ)
     assert found.kind == "rarefaction"
     assert found.trailing_speed == found.sound(found.behind)
-    assert (
-        found.leading_speed()
-        == found.leading_speed("dispersion")
-        == found.sound(found.ahead)
-    )
+    ahead = found.sound(found.ahead)
+    assert found.leading_speed() == found.leading_speed("dispersion") == ahead
     assert found.plateau.subs({"m": 1, "D": 1}) < 0

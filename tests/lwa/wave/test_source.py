@@ -2,6 +2,7 @@
 
 import ctypes
 import json
+import shlex
 import subprocess
 from functools import cache
 from itertools import product
@@ -19,16 +20,7 @@ from tests.lwa.command.answers import run
 PROGRAMS = {"c": "cc", "javascript": "node"}
 """Programs that run or compile the generated languages."""
 
-STRICT = (
-    "-std=c99",
-    "-O2",
-    "-Wall",
-    "-Wextra",
-    "-pedantic",
-    "-Werror",
-    "-shared",
-    "-fPIC",
-)
+STRICT = shlex.split("-std=c99 -O2 -Wall -Wextra -pedantic -Werror -shared -fPIC")
 ANSWER = """
 const calls = JSON.parse(require("fs").readFileSync(0));
 console.log(JSON.stringify(calls.map(([name, ...values]) => eval(name)(...values))));
@@ -42,25 +34,25 @@ def answers(language, source, calls, folder):
         exec(source, found)  # our own output
         return [float(found[name](*values)) for name, *values in calls]
     if language == "javascript":
-        program, options = ["node", "--eval", source + ANSWER], {"capture_output": True}
         ended = subprocess.run(
-            program,
+            ["node", "--eval", source + ANSWER],
             input=json.dumps(calls),
+            capture_output=True,
             check=True,
             text=True,
             timeout=120,
-            **options,
         )
         return json.loads(ended.stdout)
     file, library = folder / "lwa_wave.c", folder / "lwa_wave.so"
     file.write_text(source + "\n", encoding="utf-8")
     subprocess.run(["cc", *STRICT, "-o", library, file, "-lm"], check=True, timeout=120)
     loaded = ctypes.CDLL(str(library))
-    for name, *_ in calls:
-        getattr(loaded, name).restype = ctypes.c_double
-    return [
-        getattr(loaded, name)(*map(ctypes.c_double, values)) for name, *values in calls
-    ]
+    found = []
+    for name, *values in calls:
+        function = getattr(loaded, name)
+        function.restype = ctypes.c_double
+        found.append(function(*map(ctypes.c_double, values)))
+    return found
 
 
 RATIOS = (1e-3, 0.2733, 1.0, 3.0, 99.0)
@@ -152,18 +144,15 @@ def expected(name):
     return rows
 
 
-in_each_language = pytest.mark.parametrize(
-    "language",
-    [
-        pytest.param(name, marks=pytest.mark.optional(PROGRAMS[name]))
-        if name in PROGRAMS
-        else name
-        for name in LANGUAGES
-    ],
-)
+LANGUAGE = [
+    pytest.param(name, marks=pytest.mark.optional(PROGRAMS[name]))
+    if name in PROGRAMS
+    else name
+    for name in LANGUAGES
+]
 
 
-@in_each_language
+@pytest.mark.parametrize("language", LANGUAGE)
 @pytest.mark.parametrize("name", WAVES)
 def test_closed_forms_and_profiles_are_good_to_1e14(tmp_path, language, name):
     functions, rows = wave_functions(WAVES[name][0]), expected(name)

@@ -29,6 +29,16 @@ LAWS = (
 )
 
 
+def chain(masses, **fields):
+    """A scene of beads, a number of equal ones or their masses, with unit contacts; Hertz's, unless
+    k or a law is given."""
+    if isinstance(masses, int):
+        masses = (1,) * masses
+    if "law" not in fields:
+        fields = {"k": 1.5} | fields
+    return Scene(masses=masses, **{"stiffnesses": (1,) * (len(masses) - 1)} | fields)
+
+
 def law_of(random, kind, loaded):
     """A law of a contact that allows a damping, and carries any load."""
     if kind in ("none", "contact") and random.random() < 0.3:

@@ -5,17 +5,17 @@ import math
 import numpy as np
 import pytest
 
+from tests.validation.lattice.scenes import chain
 from validation.lattice.simulate import simulate
 from validation.scenes.forcing import Damping, Drive, damping_ratio, restitution
-from validation.scenes.scene import Scene
 
 
 @pytest.mark.parametrize(
     ("k", "v", "share"), [(1, 1, 0.3), (1.5, 1, 0.9), (1.5, 10, 0.05), (3, 0.2, 0.3)]
 )
 def test_beads_part_with_a_share_of_their_speed(k, v, share):
-    scene = Scene(
-        masses=(1.0, 3.0), stiffnesses=(2.0,), k=k, velocities=(v,), contact_sensors=(0,),
+    scene = chain(
+        (1, 3), stiffnesses=(2,), k=k, velocities=(v,), contact_sensors=(0,),
         duration=12 * v ** (2 / (k + 1) - 1), damping=Damping("restitution", share),
     )  # fmt: skip
     run = simulate(scene, rtol=1e-12)
@@ -28,10 +28,8 @@ def test_beads_part_with_a_share_of_their_speed(k, v, share):
 
 def test_a_bead_leaves_a_wall_with_a_share_of_its_speed():
     """A wall has infinite mass."""
-    scene = Scene(
-        masses=(3,), stiffnesses=(), wall=2, k=1.5, velocities=(1,), duration=30,
-        damping=Damping("restitution", 0.4),
-    )  # fmt: skip
+    damping = Damping("restitution", 0.4)
+    scene = chain((3,), wall=2, velocities=(1,), duration=30, damping=damping)
     assert simulate(scene).velocities == pytest.approx([-0.4], abs=1e-8)
 
 
@@ -46,11 +44,8 @@ def test_the_damping_ratio_of_a_share():
     "drive", [None, Drive(amplitude=0.0, frequency=1.0), Drive(velocity=0.0)]
 )
 def test_a_scene_at_rest_stays_at_rest(drive):
-    scene = Scene(
-        masses=(1, 1), stiffnesses=(1,), k=1.5, duration=3, drive=drive,
-        damping=Damping("kuwabara_kono", 0.1),
-    )  # fmt: skip
-    run = simulate(scene)
+    damping = Damping("kuwabara_kono", 0.1)
+    run = simulate(chain(2, duration=3, drive=drive, damping=damping))
     assert not np.any((run.velocities, run.displacements))
     assert run.energy_drift == run.dissipated == run.work == 0
 
@@ -59,9 +54,8 @@ def test_a_shaken_linear_bead_oscillates_with_the_exact_amplitude():
     """One free bead between the driven bead and a wall, k = 1: y = a κ/(2κ - w²) sin(wt), in steady
     motion, with a resonant part that a long ramp does not excite."""
     w, a = 0.5, 0.01
-    scene = Scene(
-        masses=(1, 1), stiffnesses=(1,), wall=1, k=1, precompression=1, bead_sensors=(0, 1),
-        duration=400, samples=4001,
+    scene = chain(
+        2, wall=1, k=1, precompression=1, bead_sensors=(0, 1), duration=400, samples=4001,
         drive=Drive(amplitude=a, frequency=w / (2 * math.pi), ramp=300),
     )  # fmt: skip
     run = simulate(scene)
@@ -73,19 +67,16 @@ def test_a_shaken_linear_bead_oscillates_with_the_exact_amplitude():
 
 def test_a_drive_from_rows_is_the_motion_that_they_sample():
     t = np.linspace(0, 20, 400)
-    scene = Scene(
-        masses=(1, 1, 1), stiffnesses=(1, 1), k=1.5, duration=20, bead_sensors=(0,),
-        drive=Drive(time=t, displacement=0.1 * t**3 / 400),
-    )  # fmt: skip
-    run = simulate(scene)
+    drive = Drive(time=t, displacement=0.1 * t**3 / 400)
+    run = simulate(chain(3, duration=20, bead_sensors=(0,), drive=drive))
     assert run.bead_displacement[0] == pytest.approx(0.1 * run.time**3 / 400, abs=1e-13)
     assert run.momentum_drift is None
 
 
 def test_scipys_methods_are_references_of_forced_scenes():
     """A chain under load, whose damped contacts stay closed: motion, work and dissipated energy."""
-    scene = Scene(
-        masses=(1, 0.5, 1), stiffnesses=(1, 2), wall=1, k=1.5, precompression=1, duration=10,
+    scene = chain(
+        (1, 0.5, 1), stiffnesses=(1, 2), wall=1, precompression=1, duration=10,
         damping=Damping("contact", 0.1), drive=Drive(amplitude=0.1, frequency=0.2, ramp=3),
     )  # fmt: skip
     ours, theirs = (simulate(scene, method=m, rtol=1e-10) for m in ("RKN86", "DOP853"))
@@ -93,19 +84,3 @@ def test_scipys_methods_are_references_of_forced_scenes():
         expected = getattr(ours, name)
         np.testing.assert_allclose(getattr(theirs, name), expected, atol=3e-9)
     assert min(ours.dissipated, ours.work) > 1e-3
-
-
-@pytest.mark.parametrize("short", [0.1, 1e-4])
-def test_a_thrown_bead_meets_a_plate_near_the_apex_of_its_flight(short):
-    """Against gravity 1 a velocity of 10 reaches 50; the plate is ``short`` before the apex."""
-    plate = Drive(time=(0, 6, 13, 20), displacement=(short - 50,) * 4)
-    scene = Scene(
-        masses=(1e-6, 1), stiffnesses=(1e6,), wall=1e4, k=1.5, gravity=1, duration=15,
-        velocities=(0, -10), drive=plate,
-    )  # fmt: skip
-    exact = simulate(scene, rtol=1e-13, step=1e-3).velocities[1]
-    # 5 without a collision, 5 + 2 √(2 short) at a hard plate
-    assert exact > 5 + np.sqrt(2 * short)
-    for rtol in (1e-11, 1e-8, 1e-5):
-        velocity = simulate(scene, rtol=rtol).velocities[1]
-        assert velocity == pytest.approx(exact, abs=100 * rtol * 10), rtol

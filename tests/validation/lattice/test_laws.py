@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from lwa.law import named
+from tests.validation.lattice.scenes import chain
 from validation.lattice.laws import Contact
 from validation.lattice.simulate import simulate
+from validation.scenes.chains import carrying
 from validation.scenes.forcing import Drive
-from validation.scenes.scene import Scene
 
 
 def test_todas_soliton_runs_through_200_beads_at_its_own_speed():
@@ -21,12 +22,10 @@ def test_todas_soliton_runs_through_200_beads_at_its_own_speed():
     def compression(i, t):
         return np.log1p((c / np.cosh(kappa * (i - first) - c * t)) ** 2)
 
-    beads = np.arange(n)
-    y = np.append(np.cumsum(compression(beads[:-1], 0)[::-1])[::-1], 0)
     v = c * np.diff(np.tanh(kappa * (np.arange(-1, n) - first)))
-    scene = Scene(
-        masses=[1] * n, stiffnesses=[1] * (n - 1), law=named("exponential", 1), displacements=y,
-        velocities=v, duration=140 * kappa / c, contact_sensors=(90, 150), samples=501,
+    scene = carrying(
+        (1,) * n, compression(np.arange(n - 1), 0), v, law=named("exponential", 1),
+        duration=140 * kappa / c, contact_sensors=(90, 150), samples=501,
     )  # fmt: skip
     run = simulate(scene, rtol=1e-12)
     for i, row in zip(scene.contact_sensors, run.compression, strict=True):
@@ -36,9 +35,9 @@ def test_todas_soliton_runs_through_200_beads_at_its_own_speed():
 
 def test_a_wall_recedes_from_a_chain_that_softens():
     """δ - δ² reaches its greatest force at δ = ½, which no energy of the scene may pass."""
-    scene = Scene(
-        masses=[1] * 80, stiffnesses=[1] * 79, wall=1.0, law=named("polynomial", -1, 0),
-        precompression=0.24, drive=Drive(velocity=-0.2087), duration=55.0,
+    scene = chain(
+        80, wall=1, law=named("polynomial", -1, 0), precompression=0.24, duration=55,
+        drive=Drive(velocity=-0.2087),
     )  # fmt: skip
     fast, other = simulate(scene), simulate(scene, method="DOP853")
     assert np.abs(fast.displacements - other.displacements).max() < 1e-7

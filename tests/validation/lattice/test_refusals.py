@@ -7,12 +7,13 @@ import pytest
 import sympy as sp
 
 from lwa.law import Law, named
+from tests.validation.lattice.scenes import chain
 from validation.lattice import cost
 from validation.lattice.simulate import simulate, simulate_many
 from validation.pulses.sensors import record
 from validation.scenes.chains import struck
 from validation.scenes.forcing import Damping
-from validation.scenes.scene import Scene, SceneError
+from validation.scenes.scene import SceneError
 
 CHAIN = struck((1,), 20, duration=25)
 DAMPED = replace(CHAIN, damping=Damping("contact", 1))
@@ -20,9 +21,7 @@ X = sp.Symbol("x", positive=True)
 
 
 def pressed(law):
-    return Scene(
-        masses=(1,), stiffnesses=(), wall=1, law=law, precompression=2, duration=1
-    )
+    return chain(1, wall=1, law=law, precompression=2, duration=1)
 
 
 REFUSED = [

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from tests.validation.lattice.reference import follow
-from tests.validation.lattice.scenes import errors
+from tests.validation.lattice.scenes import chain, errors
 from validation.scenes.forcing import Damping, Drive
-from validation.scenes.scene import Scene
 
 STRUCK = {"displacements": (-1, 0), "velocities": (1, 0)}
 
@@ -24,7 +23,7 @@ STRUCK = {"displacements": (-1, 0), "velocities": (1, 0)}
     ],
 )
 def test_the_reference_locates_closings_and_openings(k, rest, velocity):
-    scene = Scene(masses=(1, 1), stiffnesses=(1,), k=k, duration=30, **rest)
+    scene = chain(2, k=k, duration=30, **rest)
     found = follow(scene, np.array([0.0, 30.0]), 1e-13, (1.0, 1.0, 1.0))
     assert found.v[-1, 1] == pytest.approx(velocity, abs=1e-12)
 

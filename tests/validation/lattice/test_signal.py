@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 
 from lwa.law import named
+from tests.validation.lattice.scenes import chain
 from validation.lattice.laws import Contact
+from validation.lattice.signal import RECORDS, sensors_of
 from validation.lattice.simulate import simulate
-from validation.scenes.scene import Scene, SceneError
+from validation.scenes.scene import SceneError
 
-LINEAR = Scene(
-    masses=(1, 1), stiffnesses=(1,), k=1, velocities=(1,), duration=17.58, samples=1759,
-    bead_sensors=(0,), contact_sensors=(0,),
+LINEAR = chain(
+    2, k=1, velocities=(1,), duration=17.58, samples=1759, bead_sensors=(0,), contact_sensors=(0,)
 )  # fmt: skip
 
 
@@ -31,28 +32,18 @@ def test_a_contact_that_touches_and_closes_and_one_that_opens(rtol):
 @pytest.mark.parametrize("method", ["RKN86", "symplectic", "LSODA"])
 def test_samples_are_values_of_the_signals(method):
     """Every quantity, at times of any shape; the last bead touches a wall under a load."""
-    scene = Scene(
-        masses=(1, 0.4, 2, 1), stiffnesses=(1, 3, 1), wall=2, k=1.5, precompression=0.3,
+    scene = chain(
+        (1, 0.4, 2, 1), stiffnesses=(1, 3, 1), wall=2, precompression=0.3,
         gravity=0.1, velocities=(1.5,), duration=9, samples=501,
         contact_sensors=(0, 3), bead_sensors=(3, 1),
     )  # fmt: skip
     run = simulate(scene, method=method, rtol=1e-6)
-    records = {
-        ("contact", "force"): run.contact_force,
-        ("contact", "compression"): run.compression,
-        ("bead", "force"): run.bead_force,
-        ("bead", "displacement"): run.bead_displacement,
-        ("bead", "velocity"): run.bead_velocity,
-    }
-    for (kind, quantity), rows in records.items():
-        numbers = scene.contact_sensors if kind == "contact" else scene.bead_sensors
-        for number, row in zip(numbers, rows, strict=True):
+    table = np.arange(500)[::-1].reshape(5, 100)  # in any order
+    for (kind, quantity), name in RECORDS.items():
+        numbers = sensors_of(scene)[kind]
+        for number, row in zip(numbers, getattr(run, name), strict=True):
             signal = run.signal(kind, number, quantity)
-            np.testing.assert_allclose(signal(run.time), row, atol=1e-14)
-            table = run.time[::-1][:500].reshape(5, 100)  # in any order
-            np.testing.assert_allclose(
-                signal(table), row[::-1][:500].reshape(5, 100), atol=1e-14
-            )
+            np.testing.assert_allclose(signal(run.time[table]), row[table], atol=1e-14)
             assert np.isnan(signal([-1e-9, 9.0001])).all()
             assert (np.diff(signal.times) > 0).all()
 
@@ -63,10 +54,8 @@ TODA = replace(LINEAR, law=named("exponential", 1), samples=3)
 def test_the_law_of_a_pickled_run_is_at_its_new_address(monkeypatch):
     """A law's machine code lies elsewhere in another process."""
     run = simulate(TODA)
-    stored, elsewhere = (
-        pickle.dumps(run),
-        {**run.path.motion.laws[0].addresses, "force": 7},
-    )
+    stored = pickle.dumps(run)
+    elsewhere = {**run.path.motion.laws[0].addresses, "force": 7}
     monkeypatch.setattr(Contact, "addresses", elsewhere)
     assert pickle.loads(stored).path.chain.laws["force"][0] == 7
     monkeypatch.undo()

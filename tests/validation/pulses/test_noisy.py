@@ -9,10 +9,8 @@ import scipy
 
 from validation import simulate
 from validation.pulses.base import Base
-from validation.pulses.discharge import corrected, suggested
-from validation.pulses.noisy import noisy_pulse
-from validation.pulses.pulse import MeasureError, first_pulse
-from validation.pulses.signals import spline
+from validation.pulses.noisy import corrected, noisy_pulse, suggested
+from validation.pulses.pulse import MeasureError, first_pulse, spline
 from validation.studies.paper import recorded_chain
 
 NUMBERS = ("arrival", "peak", "fwhm")
@@ -76,6 +74,7 @@ LEVELS = {
     "8 bits": 0.5,
     "8 bits, little noise": 0.05,
 }  # noise over the levels' distance
+KINDS = (*NOISE, *SHAPES, *LEVELS)
 
 
 def forerunner(x):
@@ -126,23 +125,21 @@ def coverage(pulses, kind, copies, samples=WIDTH):
     )
 
 
-@pytest.mark.parametrize("kind", ["low-passed", "8 bits, little noise"])
-def test_errors_are_one_standard_deviation(signals, kind):
-    """Shares of 60 … 80 %, and two spreads of 50 copies more; half of them are no smaller."""
-    bias, errors, within = coverage([at_widths(signals[1, 24])], kind, 50)
-    assert np.all(errors > 0.6), errors
-    assert np.all(bias < 1 / 3 + 2 / np.sqrt(50)), bias
-    assert np.all((within > 0.47) & (within < 0.93)), within
+SOME = ("low-passed", "8 bits, little noise")
+EVERY = [pytest.param(kind, 200, marks=pytest.mark.slow) for kind in KINDS]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", [*NOISE, *SHAPES, *LEVELS])
-def test_errors_are_one_standard_deviation_of_every_kind_of_noise(signals, kind):
-    """Of 200 copies of two pulses, 60 … 80 % lie within their errors; bias: half the scatter."""
+@pytest.mark.parametrize(("kind", "copies"), [*((kind, 50) for kind in SOME), *EVERY])
+def test_errors_are_one_standard_deviation(signals, kind, copies):
+    """60 … 80 % of 200 copies of two pulses lie within their errors; bias: half the scatter.
+
+    Two spreads more of 50 copies.
+    """
     pulses = [at_widths(signals[1, 24]), at_widths(signals[2, 8])]
-    bias, _, within = coverage(pulses, kind, 200)
-    assert np.all(bias < 1 / 2), bias
-    assert np.all((within >= 0.6) & (within <= 0.8)), within
+    bias, _, within = coverage(pulses, kind, copies)
+    spread = 0.0 if copies == 200 else 0.13
+    assert np.all(bias < 1 / 2 + spread), bias
+    assert np.all((within >= 0.6 - spread) & (within <= 0.8 + spread)), within
 
 
 def test_too_few_samples_make_errors_larger(signals):

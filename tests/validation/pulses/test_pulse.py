@@ -13,6 +13,7 @@ from validation.pulses.pulse import (
     FEWEST,
     ROUNDING,
     MeasureError,
+    Piecewise,
     Pulse,
     compared,
     derived,
@@ -20,7 +21,6 @@ from validation.pulses.pulse import (
     speed,
     tolerances,
 )
-from validation.pulses.signals import Piecewise
 
 
 def arch(t, arrival=0.0, peak=1.0, beta=1.0):
@@ -40,22 +40,6 @@ def test_an_arch(arrival, peak, beta):
     assert pulse.peak == pytest.approx(peak, rel=1e-7)
     assert pulse.fwhm == pytest.approx(WIDTH / beta, rel=1e-7)
     assert (pulse.rise + pulse.fall) / 2 == pytest.approx(arrival, abs=1e-6)
-
-
-def test_the_error_falls_with_the_fourth_power_of_the_step():
-    """A cubic spline. The error depends on where the peak falls between samples: the worst."""
-    counts = np.array([40, 80, 160, 320])
-    errors = []
-    for n in counts:
-        t = np.linspace(-2, 2, n)
-        pulses = [
-            measure(t, arch(t, shift * 4 / (n - 1))) for shift in np.linspace(0, 1, 9)
-        ]
-        errors.append(
-            np.abs([(p.peak - 1, p.fwhm - WIDTH) for p in pulses]).max(axis=0)
-        )
-    slopes, _ = np.polyfit(np.log(counts), np.log(errors), 1)
-    assert slopes == pytest.approx([-4, -4], abs=0.2)
 
 
 def test_a_pulse_may_end_in_a_jump():

@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 
 from lwa import Cell, Dimer
 from lwa.law import Law, named
-from lwa.spheres.hertz import stiffness
-from validation.scenes.chains import PTFE_BEAD, STEEL, STEEL_BEAD
+from validation.scenes.chains import STEEL_BEAD
 from validation.scenes.forcing import Damping, Drive
 from validation.scenes.scene import Scene, SceneError
 
@@ -126,12 +125,6 @@ def test_of_cell_repeats_the_theorys_cell():
         Scene.of_cell(Dimer("m1", 1), 2, 2, duration=1)
 
 
-def test_of_beads():
-    scene = Scene.of_beads([STEEL_BEAD, PTFE_BEAD, PTFE_BEAD], wall=STEEL, duration=1)
-    assert (scene.masses, scene.k) == ((0.45e-3, 0.123e-3, 0.123e-3), 1.5)
-    pairs = (STEEL_BEAD, PTFE_BEAD), (PTFE_BEAD, PTFE_BEAD), (PTFE_BEAD, STEEL)
-    assert (*scene.stiffnesses, scene.wall) == tuple(
-        float(stiffness(*pair)) for pair in pairs
-    )
+def test_beads_that_are_no_spheres_are_refused():
     with pytest.raises(SceneError, match=r"^bead"):
         Scene.of_beads([STEEL_BEAD, "bead"], duration=1)

@@ -11,10 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lwa import Cell
 from lwa.base import files
 from lwa.law import named
-from lwa.spheres import beads
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from tests.validation.scenes.test_scene import anything
 from validation.lattice.simulate import simulate
@@ -83,31 +81,32 @@ def test_the_list_of_keys_holds_every_key():
     assert scene(content).spacings == (1.0,) * 37
 
 
-def test_a_defect_may_be_a_bead_of_the_file_or_a_mass():
-    big = Sphere(mass=1e-3, radius=5e-3, material=Material(72e9, 0.17))
-    text = (
-        PAPER
-        + "[materials.glass]\nE = 72e9\nnu = 0.17\n[beads.big]\nmass = 1e-3\nradius = 5e-3\n"
-        + 'material = "glass"\n[[defects]]\nbead = 4\nlike = "big"\n[[defects]]\nbead = 7\nmass = 9'
-    )
-    changed, plain = scene(tomllib.loads(text)), scene(tomllib.loads(PAPER))
+BIG = """
+[materials.glass]
+E = 72e9
+nu = 0.17
+[beads.big]
+mass = 1e-3
+radius = 5e-3
+material = "glass"
+[[defects]]
+bead = 4
+like = "big"
+"""
+
+
+def test_a_defect_may_be_another_bead_of_the_file():
+    """The contacts beside it are those of its radius and its material."""
+    plain = scene(tomllib.loads(PAPER))
     steel = Sphere(mass=0.45e-3, radius=2.38e-3, material=STEEL)
-    assert changed.stiffnesses[2:4] == (float(stiffness(steel, big)),) * 2
-    assert changed.spacings[2:4] == (7.38e-3,) * 2
-    assert (changed.masses[3], changed.masses[6]) == (1e-3, 9)
-    same = [i for i in range(38) if i not in (3, 6)]
-    assert all(changed.masses[i] == plain.masses[i] for i in same)
-    assert changed.stiffnesses[4:] == plain.stiffnesses[4:]
-
-
-def test_the_cell_of_a_scene_is_read_by_the_theory():
-    content = tomllib.loads(PAPER)
-    cell, chain = Cell.of_spheres(beads.spheres(content)), scene(content)
-    assert chain.masses[:2] == tuple(map(float, cell.masses))
-    assert chain.stiffnesses[:2] == pytest.approx(
-        [float(A) for A in cell.stiffnesses], rel=1e-15
+    big = Sphere(mass=1e-3, radius=5e-3, material=Material(72e9, 0.17))
+    beside = (float(stiffness(steel, big)),) * 2
+    assert scene(tomllib.loads(PAPER + BIG)) == dataclasses.replace(
+        plain,
+        masses=(*plain.masses[:3], 1e-3, *plain.masses[4:]),
+        stiffnesses=(*plain.stiffnesses[:2], *beside, *plain.stiffnesses[4:]),
+        spacings=(*plain.spacings[:2], 7.38e-3, 7.38e-3, *plain.spacings[4:]),
     )
-    assert chain.spacings[:2] == (float(cell.spacing),) * 2
 
 
 @pytest.mark.parametrize(("cell", "k"), [([1], 1.2), ([2, 2, 1], 1.5), ([1, 3], 4.0)])

@@ -1,13 +1,11 @@
 """Measured records against their scene: shifts, scales and pulses that are known."""
 
-import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tests.commands import ended
-from validation import cli, simulate
+from validation import simulate
 from validation.scenes.scene import SceneError
 from validation.scenes.scenefile import read_scene
 from validation.studies.records import compare
@@ -26,33 +24,22 @@ HEADER = "time,contact 12 force,contact 18 dynamic force"
 
 
 @pytest.fixture
-def files(folder):
+def rows(folder):
+    """Times and forces of the scene, whose file is in the folder; one of them is stronger."""
     Path("scene.toml").write_text(SCENE)
     run = simulate(read_scene("scene.toml"), rtol=1e-10)
     first, second = run.contact_force
-    save(np.column_stack((run.time - LATE, first, STRONGER * (second - 0.1))))
-    return "scene.toml", "measured.csv"
+    return np.array((run.time - LATE, first, STRONGER * (second - 0.1)))
 
 
-def save(rows, header=HEADER):
-    np.savetxt("measured.csv", rows, delimiter=",", header=header, comments="")
-
-
-def saved():
-    return np.loadtxt("measured.csv", delimiter=",", skiprows=1)
-
-
-def test_a_shift_and_a_scale_come_back(capsys, files):
-    options = ("--format", "json", "--plot", "p.svg")
-    status, out, err = ended(capsys, cli.main, "compare", *files, *options)
-    assert (status, err) == (0, "")
-    found = json.loads(out)
+def test_a_shift_and_a_scale_come_back(document, rows, saved):
+    found = document(f"compare scene.toml {saved(rows, HEADER)} --plot p.svg")
     assert found["shift_value"] == pytest.approx(LATE, abs=1e-6)
-    rows = {(row["number"], row["quantity"]): row for row in found["rows"]}
-    assert list(rows) == [
+    by_name = {(row["number"], row["quantity"]): row for row in found["rows"]}
+    assert list(by_name) == [
         (i, name) for i in (12, 18) for name in ("arrival", "peak", "fwhm")
     ]
-    for (number, quantity), row in rows.items():
+    for (number, quantity), row in by_name.items():
         scale = STRONGER if (number, quantity) == (18, "peak") else 1.0
         errors = [row[f"{name}_error_value"] for name in ("simulated", "measured")]
         assert row["difference_error_value"] == pytest.approx(sum(errors), rel=1e-12)
@@ -64,27 +51,24 @@ def test_a_shift_and_a_scale_come_back(capsys, files):
     assert "contact 12, simulated" in Path("p.svg").read_text()
 
 
-def test_a_single_sensor_needs_no_name_and_the_clock_starts_anywhere(files):
+def test_a_single_sensor_needs_no_name_and_the_clock_starts_anywhere(rows, saved):
     Path("scene.toml").write_text(SCENE.replace("[12, 18]", "[12]"))
-    rows, named = saved(), compare(*files).document()
-    save(rows[:, :2], "time,force")
-    assert compare(*files).document() == named
-    save(np.add(rows, (5000, 0, 0)))
-    assert compare(*files).document()["shift_value"] == pytest.approx(
-        LATE - 5000, abs=1e-6
-    )
+    named = compare("scene.toml", saved(rows, HEADER)).document()
+    assert compare("scene.toml", saved(rows[:2], "time,force")).document() == named
+    rows[0] += 5000
+    late = compare("scene.toml", saved(rows, HEADER)).document()
+    assert late["shift_value"] == pytest.approx(LATE - 5000, abs=1e-6)
 
 
-def test_the_error_of_a_later_arrival_holds_that_of_the_shift(files):
+def test_the_error_of_a_later_arrival_holds_that_of_the_shift(rows, saved):
     """Without the first sensor's column the second is the one by which records are shifted."""
-    rows, errors = saved(), []
-    rows[:, 1:] += 0.005 * np.random.default_rng(7).normal(size=rows[:, 1:].shape)
+    rows[1:] += 0.005 * np.random.default_rng(7).normal(size=rows[1:].shape)
+    errors = []
     for columns, header in (
-        ([0, 1, 2], HEADER),
-        ([0, 2], HEADER.replace("contact 12 force,", "")),
+        (rows, HEADER),
+        (rows[::2], HEADER.replace("contact 12 force,", "")),
     ):
-        save(rows[:, columns], header)
-        found = compare(*files).document()["rows"]
+        found = compare("scene.toml", saved(columns, header)).document()["rows"]
         errors += [
             row["measured_error_value"] for row in found if row["quantity"] == "arrival"
         ]
@@ -93,53 +77,16 @@ def test_the_error_of_a_later_arrival_holds_that_of_the_shift(files):
     assert second > 1.05 * alone
 
 
-FALL = """
-duration = 4
-samples = 4001
-gravity = 9.81
-wall = {stiffness = 1000}
-chain = {cell = [1], repeat = 5, k = 1, stiffnesses = 1000}
-start = {displacements = [-5.5, -4.5, -3.5, -2.5, -1.5]}
-sensors = {beads = [1, 2, 3, 4, 5]}
-"""
-
-
-def test_forces_of_a_fall_count_from_the_start(capsys, folder):
-    """Beads above a floor carry no weight before they meet: the record begins without any."""
-    Path("scene.toml").write_text(FALL)
-    _, pulses, compared = (
-        json.loads(ended(capsys, cli.main, *line.split(), "--format", "json")[1])
-        for line in (
-            "run scene.toml --out measured.csv",
-            "pulses measured.csv",
-            "compare scene.toml measured.csv",
-        )
-    )
-    peaks = {}
-    assert len(compared["rows"]) == 15
-    for row in compared["rows"]:
-        assert abs(row["difference_value"]) <= row["difference_error_value"]
-        if row["quantity"] == "peak":
-            peaks[row["number"]] = row["simulated_value"], row["simulated_error_value"]
-    for sensor in pulses["sensors"]:
-        peak, error = peaks[sensor["number"]]
-        assert sensor["static_force_value"] == 0
-        assert abs(sensor["peak_value"] - peak) <= error + sensor["peak_error_value"]
-
-
 UNITS = {"time": "s", "contact 12 force": "N", "contact 18 force": "N"}
-RECORD = "".join(f"{t},1\n" for t in range(9))
 
 
 @pytest.mark.parametrize(
-    ("text", "options", "named"),
+    ("header", "options", "named"),
     [
-        (None, {"units": UNITS}, "units = 'SI'"),
-        (f"time,force\n{RECORD}", {}, "is contact 12 or contact 18; try columns="),
+        (HEADER, {"units": UNITS}, "units = 'SI'"),
+        ("time,force,x", {}, "is contact 12 or contact 18; try columns="),
     ],
 )
-def test_bad_records_and_options_are_refused(files, text, options, named):
-    if text is not None:
-        Path(files[1]).write_text(text)
+def test_bad_records_and_options_are_refused(rows, saved, header, options, named):
     with pytest.raises(SceneError, match=named):
-        compare(*files, **options)
+        compare("scene.toml", saved(rows, header), **options)
