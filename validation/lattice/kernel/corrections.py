@@ -256,7 +256,7 @@ def _clipped(
             wanted = elastic(law, d[s])
             wanted += chain.r[n] * drag(law, d[s]) * slope[s] / h
         missed += pair.impulses[last, s] * (force[s] - wanted)
-    return h * chain.A[n] * missed
+    return float(h * chain.A[n] * missed)
 
 
 @part
