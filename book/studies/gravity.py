@@ -35,7 +35,6 @@ from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
-import scipy
 
 from lwa import Cell, Power, loaded_wave
 from lwa.base.arrays import Array
@@ -46,14 +45,13 @@ from lwa.loaded.background import Background
 from validation.lattice.result import Run
 from validation.lattice.simulate import repeated, simulate
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import highest_pulse, leading_pulses
+from validation.pulses.pulse import Piecewise, highest_pulse, leading_pulses
 from validation.pulses.sensors import tracks
 from validation.report.study import EXPONENT, Report, option, study
 from validation.report.table import Column, Finding, Table, percent
 from validation.scenes.chains import numeric_cell, struck
 from validation.scenes.checks import between, integer
 from validation.scenes.scene import Scene
-from validation.waves.profile import summit
 
 CHAINS = ((1,), (1, "1/2"))  # masses of the default cells
 WEAK, STRONG = 1e-4, (10.0, 100.0, 1000.0)  # velocities of the struck bead
@@ -76,16 +74,13 @@ def front_width(k: float) -> float:
     y, weight = np.polynomial.legendre.leggauss(200)
     s, ds = turn * (y + 1) ** 3, 3 * turn * (y + 1) ** 2 * weight  # smooth at 0
 
-    def front(z: float, less: float = 0.0) -> float:
+    def front(z: float) -> float:
         wave = s**mu * np.exp(1j * (s**3 / 3 + z * s - np.pi * mu / 2))
-        return float((wave @ ds).real) - less
+        return float((wave @ ds).real)
 
-    top, peak = summit(np.vectorize(front), np.linspace(-2.0, 0.0, 41))
-    before, behind = (  # places beyond half of the top, on both sides of it
-        scipy.optimize.brentq(front, top, other, (peak / 2,), xtol=1e-11)
-        for other in (top - 1.6, top + 4)
-    )
-    return float(behind - before)
+    # From the first zero behind the lobe to where the front has faded.
+    places = np.linspace(-3.0, 4.0, 141)
+    return highest_pulse(Piecewise(places, np.vectorize(front))).fwhm
 
 
 @dataclass(frozen=True)

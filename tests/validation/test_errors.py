@@ -151,7 +151,7 @@ def test_exact():
     largest = []
     for masses, k in (([1], 1.5), ([1, 0.3428457811], 1.5), ([1], 5)):
         wave = exact_wave(masses, k)
-        points = int(2.7 * len(wave.even))
+        points = int(2.7 * len(wave.series))
         kind = Problem if len(masses) == 1 else SpecialRatio
         finer = solve(kind(wave.masses, k, wave.half_period, points), wave)
         largest.append(held(numbers(wave), numbers(finer)))
@@ -162,7 +162,7 @@ def test_exact():
 def test_exact_on_a_background(k, load):
     """The wave is a small part of the strain, whose rounding is that of the whole."""
     wave = exact_wave([1], k, background=load)
-    points = int(1.3 * len(wave.even))
+    points = int(1.3 * len(wave.series))
     finer = solve(Problem((1.0, 1.0), k, 1.05 * wave.half_period, points, load), wave)
     assert held(numbers(wave), numbers(finer)) >= 1 / LARGEST
 

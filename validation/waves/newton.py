@@ -29,6 +29,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy
@@ -42,6 +43,7 @@ _LONGEST_STEP = 0.3  # share of an unknown's size; with full steps a far start i
 _CONVERGED = 1e-12  # step over the unknowns' sizes; Newton's next one would be rounding
 _STALLED = 1e-9  # step below which a fall of less than four means rounding
 Pair = tuple[float, float]  # m1 and m2, or their inverses
+Series = NDArray[np.complex128]  # coefficients of e^{iqξ}, q = 0, π/L, …, πn/L
 
 
 def widening(masses: Pair) -> float:
@@ -82,9 +84,7 @@ def rise(strain: Array, k: float, p0: float) -> Array:
     return np.asarray(p0**k * growth)
 
 
-def respond(
-    force: NDArray[np.complex128], inverse: Pair, half_period: float
-) -> NDArray[np.complex128]:
+def respond(force: Series, inverse: Pair, half_period: float) -> Series:
     """Return the Fourier coefficients (…, n + 1) of c² a from those of F_a, both of ``e^{iqξ}``.
 
     With the coefficients a_q of the strain, f of F_a, and f* (conjugate) of ``F_b(ξ) = F_a(-ξ)``,
@@ -105,16 +105,13 @@ def respond(
     return np.asarray(strain / q**2)
 
 
-def coefficients(force: Array) -> tuple[Array, Array]:
-    """Return the coefficients of cos qξ in E and of sin qξ in O, from F_a on a `periodic_grid`."""
+def coefficients(force: Array) -> Series:
+    """Return f of ``F_a = Re Σ f_q e^{iqξ}`` from F_a on a `periodic_grid`."""
     n = len(force) // 2
     series = scipy.fft.rfft(force) / n
-    ends = [
-        0,
-        n,
-    ]  # the mean and the fastest cosine stand once in a Fourier sum, not twice
-    series[ends] /= 2
-    return series.real, -series.imag
+    # The mean and the fastest cosine stand once in a Fourier sum, not twice.
+    series[[0, n]] /= 2
+    return np.asarray(series)
 
 
 def periodic_grid(half_period: float, n: int) -> Array:
@@ -133,14 +130,13 @@ class Found:
     masses: Pair
 
 
-@dataclass(eq=False)
-class Border:
-    """Conditions on a wave beside its equation, and the unknowns beside the forces."""
+@dataclass(frozen=True, eq=False)
+class Condition:
+    """An equation besides those of the forces: by how much it is missed, and its derivatives."""
 
-    faults: list[float]  # by how much each condition is missed
-    rows: list[Array]  # derivatives of each condition by the forces
-    columns: list[Array]  # derivatives of the equation by each further unknown
-    corner: Array  # derivatives of the conditions by the further unknowns
+    fault: float
+    by_forces: Array
+    by_inverse: float  # by 1/m2
 
 
 class Problem:
@@ -162,8 +158,9 @@ class Problem:
         Background strain.
     """
 
-    # F_a(0) = 1 - p0^k fixes c². The unknowns are c² and the forces F_a at ``count`` grid points:
-    # at all of them, or for equal masses, where o = 0, at 0 … L.
+    # The unknowns are the forces F_a at ``count`` grid points (at all of them, or for equal masses,
+    # where o = 0, at 0 … L), c² and 1/m2, in which equations (1) are linear. As many equations:
+    # F_a is the rise of a at each point, F_a(0) = 1 - p0^k fixes c², and `_closing` 1/m2.
 
     def __init__(
         self,
@@ -173,10 +170,8 @@ class Problem:
         points: int | None = None,
         p0: float = 0.0,
     ) -> None:
-        m1, m2 = masses
         self.masses = masses
-        self.inverse = (1 / m1, 1 / m2)
-        self.uniform = m1 == m2
+        self.uniform = masses[0] == masses[1]
         self.k = k
         self.p0 = p0
         self.height = 1.0  # F_a(0), 1 - p0^k
@@ -194,122 +189,82 @@ class Problem:
 
         Raises `numpy.linalg.LinAlgError` if Newton's method does not converge.
         """
+        m1, m2 = self.masses
         scaled = force[: self.count] * (self.height / force[0])
-        further = np.array([c2, *self._further()])
+        start = np.append(scaled, [c2, 1 / m2])
         # Forces have the size of twice their peak; c² and 1/m2 their own, but c² may be 0 at a bad
         # start.
-        force_sizes = np.full(self.count, 2 * self.height)
-        own_sizes = np.where(further == 0, 1.0, np.abs(further))
-        start = np.append(scaled, further)
-        x = newton(self._step, start, np.append(force_sizes, own_sizes))
-        m2 = 1 / self._inverse(x)[1]
-        return Found(
-            self._everywhere(x[: self.count]),
-            float(x[self.count]),
-            (self.masses[0], m2),
-        )
+        sizes = np.where(start == 0, 1.0, np.abs(start))
+        sizes[: self.count] = 2 * self.height
+        x = newton(self._step, start, sizes)
+        return Found(self._everywhere(x[:-2]), float(x[-2]), (m1, float(1 / x[-1])))
 
-    def _further(self) -> list[float]:
-        """Start values of the unknowns behind the forces and c² in x."""
-        return []
-
-    def _inverse(self, x: Array) -> Pair:
-        """1/m1 and 1/m2 at the unknowns x."""
-        return self.inverse
-
-    def _everywhere(self, z: Array) -> Array:
-        """F_a at all grid points, (…, 2n), from the unknown forces z, (…, count)."""
+    def _everywhere(self, forces: Array) -> Array:
+        """F_a at all grid points, (…, 2n), from the unknown forces, (…, count)."""
         if not self.uniform:
-            return z
-        mirrored = z[..., self.n - 1 : 0 : -1]
-        return np.concatenate((z, mirrored), axis=-1)
+            return forces
+        mirrored = forces[..., self.n - 1 : 0 : -1]
+        return np.concatenate((forces, mirrored), axis=-1)
 
-    def strains(self, z: Array, inverse: Pair) -> Array:
-        """Return c² a, shifted to 0 at L, at the first ``count`` grid points, from the forces z.
-
-        The strains are linear in the forces; z is one row of forces, or an array of rows.
-        ``inverse`` holds 1/m1 and 1/m2.
-        """
-        force = scipy.fft.rfft(self._everywhere(z))
+    def _strains(self, forces: Array, inverse: Pair) -> Array:
+        """Return c² a, shifted to 0 at L, from the unknown forces, one row or an array of rows."""
+        force = scipy.fft.rfft(self._everywhere(forces))
         # Equal masses: F_a is even, its odd part O is 0, and its Fourier coefficients are real.
         # Their imaginary part is rounding, which the 1/q² of `respond` would enlarge.
         if self.uniform:
             force = force.real.astype(complex)
-        strain = respond(force, inverse, self.L)
-        a = scipy.fft.irfft(strain, 2 * self.n)
-        at_end = a[..., [self.n]]
-        return np.asarray(a - at_end)[..., : self.count]
+        strain = scipy.fft.irfft(respond(force, inverse, self.L), 2 * self.n)
+        at_end = strain[..., [self.n]]
+        return np.asarray(strain - at_end)[..., : self.count]
 
-    def _border(self, z: Array, slope: Array, a: Array, inverse: Pair) -> Border:
-        """The condition of the peak force, and the derivative by c²."""
+    @cached_property
+    def _responses(self) -> tuple[Array, Array]:
+        """Matrices of the strains c² a, linear in the forces, by 1/m1 and by 1/m2."""
+        unit_forces = np.eye(self.count)  # of the columns, at a grid point each
+        by_first = self._strains(unit_forces, (1, 0)).T
+        by_second = self._strains(unit_forces, (0, 1)).T
+        return by_first, by_second
+
+    def _closing(self, force: Array, inverse: float) -> Condition:
+        """The equation that determines 1/m2: it is given."""
+        fault = inverse - 1 / self.masses[1]
+        return Condition(fault, np.zeros(self.count), 1.0)
+
+    def _step(self, unknowns: Array) -> Array:
+        """Return the Newton step to be subtracted from the unknowns."""
+        force = unknowns[:-2]
+        c2, inverse = unknowns[-2:]
+        # Not by the matrices below, whose rounding shows in long waves on a background.
+        a = self._strains(force, (1 / self.masses[0], inverse)) / c2
+        slope = self.k * np.maximum(self.p0 + a, 0) ** (self.k - 1) / c2
+        by_first, by_second = self._responses
+        response = by_first / self.masses[0] + by_second * inverse
+        closing = self._closing(force, inverse)
         at_peak = np.zeros(self.count)
         at_peak[0] = 1
-        return Border(
-            faults=[z[0] - self.height],
-            rows=[at_peak],
-            columns=[slope * a],
-            corner=np.zeros((1, 1)),
-        )
-
-    def _step(self, x: Array) -> Array:
-        """Return the Newton step to be subtracted from the unknowns x."""
-        z = x[: self.count]
-        c2 = x[self.count]
-        inverse = self._inverse(x)
-        a = self.strains(z, inverse) / c2
-        total = np.maximum(self.p0 + a, 0)
-        slope = self.k * total ** (self.k - 1) / c2
-        fault = z - rise(a, self.k, self.p0)
-        border = self._border(z, slope, a, inverse)
-        # The force of an open contact is known: it leaves the linear system.
-        on = slope != 0
-        known = np.where(on, 0, fault)
-        right = (fault + slope * self.strains(known, inverse))[on]
-        at = np.flatnonzero(on)
-        # Strains due to a unit force at each grid point in turn are the columns of the Jacobian.
-        unit_forces = np.eye(self.count)[at]
-        jacobian = self.strains(unit_forces, inverse)[:, at].T
-        matrix = np.eye(len(at)) - slope[at][:, np.newaxis] * jacobian
-        rows = np.array(border.rows)
-        columns = np.array(border.columns).T
-        blocks = [
-            [matrix, columns[on]],
-            [rows[:, on], border.corner],
-        ]
-        faults = border.faults - rows @ known
-        solved = np.linalg.solve(np.block(blocks), np.append(right, faults))
-        forces, others = np.split(solved, [len(at)])
-        known[on] = forces
-        return np.append(known, others)
+        conditions = [force[0] - self.height, closing.fault]
+        faults = np.append(force - rise(a, self.k, self.p0), conditions)
+        by_forces = np.eye(self.count) - slope[:, np.newaxis] * response
+        by_others = np.column_stack((slope * a, -slope * (by_second @ force)))
+        of_conditions = np.stack((at_peak, closing.by_forces))
+        corner = np.diag((0, closing.by_inverse))
+        jacobian = np.block([[by_forces, by_others], [of_conditions, corner]])
+        return np.linalg.solve(jacobian, faults)
 
 
 class SpecialRatio(Problem):
     """The wave equations with m2 as one more unknown, and the condition ``T = 0``."""
 
-    def _further(self) -> list[float]:
-        """The start value of 1/m2: of the inverse, in which equations (1) are linear."""
-        return [self.inverse[1]]
-
-    def _inverse(self, x: Array) -> Pair:
-        """1/m1, which is given, and 1/m2, the last of the unknowns x."""
-        return (self.inverse[0], float(x[-1]))
-
-    def _border(self, z: Array, slope: Array, a: Array, inverse: Pair) -> Border:
-        """Both conditions, and the derivatives by c² and by 1/m2."""
-        border = super()._border(z, slope, a, inverse)
-        # c² T = Δ ∫_0^∞ E dξ + 2Σ ∫_0^∞ ξ O dξ = ∫ [(ξ - 1/2)/m1 + (ξ + 1/2)/m2] F_a dξ, and
-        # its derivative by 1/m2. The force at the grid's end ξ = L is 0.
+    def _closing(self, force: Array, inverse: float) -> Condition:
+        """The equation that determines 1/m2: no strain is left behind."""
+        # c² T = Δ ∫_0^∞ E dξ + 2Σ ∫_0^∞ ξ O dξ = ∫ [(ξ - 1/2)/m1 + (ξ + 1/2)/m2] F_a dξ.
+        # The force at the grid's end ξ = L is 0.
         places = np.where(self.xi < self.L, self.xi, 0)
         step = self.L / self.n
         by_first = step * (places - 1 / 2)
         by_second = step * (places + 1 / 2)
-        tail = inverse[0] * by_first + inverse[1] * by_second
-        border.faults.append(float(tail @ z))
-        border.rows.append(tail)
-        border.columns.append(-slope * self.strains(z, (0, 1)))
-        border.corner = np.zeros((2, 2))
-        border.corner[1, 1] = by_second @ z
-        return border
+        tail = by_first / self.masses[0] + by_second * inverse
+        return Condition(float(tail @ force), tail, float(by_second @ force))
 
 
 @np.errstate(all="ignore")  # an overflow or c² < 0 does not converge

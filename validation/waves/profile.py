@@ -16,14 +16,13 @@ from functools import cached_property
 from typing import Any, Literal, get_args
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from lwa.base.arrays import Array, finite
 from lwa.base.frozen import Estimate
 from lwa.base.words import QUANTITIES, QuantityName, one_of
 from validation.pictures import Curve, Panel, Pictured
-from validation.pulses.pulse import Piecewise, highest_pulse
+from validation.pulses.pulse import Piecewise, Pulse, highest_pulse
 from validation.scenes.checks import between, integer
 from validation.waves import newton
 
@@ -57,8 +56,8 @@ class ExactWave(Pictured):
         c², the square of the speed dx/dt.
     half_period : float
         L; profiles have the period 2L, and a solitary wave ends before L.
-    even, odd : ndarray, shape (n + 1,)
-        Coefficients of cos(πjξ/L) in E, the even part of F_a, and of sin(πjξ/L) in O, its odd part.
+    series : ndarray of complex, shape (n + 1,)
+        Coefficients ``f_j`` of the force of contact 0, ``F_a = Re Σ f_j exp(iπjξ/L)``.
     tail : float
         Largest ``|o|``, the odd part of a, outside the pulse, divided by the peak strain.
     residual : float
@@ -72,8 +71,7 @@ class ExactWave(Pictured):
     k: float
     c2: float
     half_period: float
-    even: Array
-    odd: Array
+    series: newton.Series
     tail: float
     residual: float
     background: float = 0.0
@@ -132,8 +130,7 @@ class ExactWave(Pictured):
         return replace(
             self,
             c2=self.c2 * stiffness,
-            even=self.even * force,
-            odd=self.odd * force,
+            series=self.series * force,
             background=self.background * s,
         )
 
@@ -142,22 +139,24 @@ class ExactWave(Pictured):
         at = finite(xi, "xi")
         if integer(contact, "contact", 0) % 2:
             at = -at  # b is the mirror image of a
-        even, odd = self._strains
-        return np.where(self._ended(at), 0.0, self._sum(at, even, odd))
+        return np.where(self._ended(at), 0.0, self._sum(at, self._strains))
 
     def force(self, xi: ArrayLike, contact: int = 0) -> Array:
         """Force F_a(ξ) or F_b(ξ) of a contact, above the static force."""
         return newton.rise(self.strain(xi, contact), self.k, self.background)
 
     def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
-        """Velocity of beads m1 (bead 0) or m2 (bead 1) at ξ; a cell far away has no momentum."""
+        """Velocity of beads m1 (bead 0) or m2 (bead 1) at ξ, 0 at the end of the period."""
+        kind = integer(bead, "bead", 0) % 2
         at = finite(xi, "xi")
-        bead = integer(bead, "bead", 0)
-        momentum = 0.0  # of a cell at the end of the period
-        for place, mass in enumerate(self.masses):
-            momentum += mass * float(self._velocity(self.half_period, place))
-        drift = momentum / sum(self.masses)
-        moving = self._velocity(at, bead) - drift
+        # Of the contacts behind beads m1, or of the others.
+        behind = self.series.conj() if kind else self.series
+        q = self._wavenumbers[1:]
+        # m c v' is the force behind less the force ahead, its mirror image, a sum of sin qξ.
+        push = 2 * (behind[1:].conj() * np.exp(-0.5j * q)).imag
+        velocities = np.append(0.0, -push / q) / (self.masses[kind] * self.c)
+        # The integral's constant: a bead is at rest far away.
+        moving = self._sum(at, velocities) - self._sum(self.half_period, velocities)
         return np.where(self._ended(at), 0.0, moving)
 
     def peak(self, quantity: QuantityName) -> float:
@@ -165,16 +164,16 @@ class ExactWave(Pictured):
 
         Strain and force are those of contact 0, the velocity is that of bead 0.
         """
-        _, peak = summit(self._profile(quantity), self._points)
-        return peak
+        # The interpolant of the crest loses some ulp, the place of the crest nothing that shows.
+        crest = self._hump(quantity).arrival
+        return float(self._profile(quantity)(crest))
 
     def fwhm(self, quantity: QuantityName = "strain") -> float:
         """Full width at half maximum of a quantity's highest hump, a length; see `peak`.
 
         Raises `MeasureError` for a hump that does not fall to half its peak.
         """
-        profile = Piecewise(self._points, self._profile(quantity))
-        return highest_pulse(profile).fwhm
+        return self._hump(quantity).fwhm
 
     def pictured(self) -> list[Panel]:
         """Panel of strain, force and velocity as functions of ξ, each divided by its peak."""
@@ -185,10 +184,11 @@ class ExactWave(Pictured):
             curves.append(Curve(name, xi, share, style))
         return [Panel("ξ / D", "over its peak", tuple(curves))]
 
-    @property
-    def _points(self) -> Array:
-        """Points of a period, half as many as the solution has, for a search."""
-        return np.linspace(-self.half_period, self.half_period, len(self.even) + 1)
+    def _hump(self, quantity: QuantityName) -> Pulse:
+        """The highest hump of a quantity, over ξ in place of time."""
+        # Half as many points as the solution has are enough for a search.
+        points = np.linspace(-self.half_period, self.half_period, len(self.series) + 1)
+        return highest_pulse(Piecewise(points, self._profile(quantity)))
 
     def _profile(self, quantity: QuantityName) -> Callable[[ArrayLike], Array]:
         """The method of a quantity."""
@@ -197,39 +197,30 @@ class ExactWave(Pictured):
         return profile
 
     @cached_property
-    def _strains(self) -> tuple[Array, Array]:
-        """Fourier coefficients of e and o."""
+    def _strains(self) -> newton.Series:
+        """The series of a, as ``series`` is that of F_a."""
         m1, m2 = self.masses
-        force = self.even - 1j * self.odd
+        force = self.series
         if m1 == m2:  # the odd part is rounding, which 1/q² would enlarge
-            force = self.even.astype(complex)
-        response = newton.respond(force, (1 / m1, 1 / m2), self.half_period)
-        strain = response / self.c2
-        even = strain.real
-        even[0] = even[1::2].sum() - even[2::2].sum()  # the strain is 0 at L
-        odd = -strain.imag
-        odd[-1] = 0  # a sine that is 0 at every point of the grid
-        return even, odd
+            force = force.real.astype(complex)
+        strain = newton.respond(force, (1 / m1, 1 / m2), self.half_period) / self.c2
+        # A sine that is 0 at every point of the grid.
+        strain[-1] = strain[-1].real
+        # The strain is 0 at L, where e^{iqξ} is 1 and -1 in turn.
+        strain[0] = strain[1::2].real.sum() - strain[2::2].real.sum()
+        return strain
 
-    def _velocity(self, xi: ArrayLike, bead: int) -> Array:
-        """Velocity up to a constant: the integral of v' = (force ahead - force behind)/(m c)."""
-        kind = bead % 2
-        q = np.pi / self.half_period * np.arange(1, len(self.even))
-        # The force ahead less the force behind, a sum of sin qξ.
-        push = -2 * np.sin(q / 2) * self.even[1:]
-        uneven = 2 * np.cos(q / 2) * self.odd[1:]
-        if kind == 0:
-            push += uneven
-        else:
-            push -= uneven
-        row = np.append(0.0, -push / q) / (self.masses[kind] * self.c)
-        return self._sum(xi, row, np.zeros_like(row))
+    @property
+    def _wavenumbers(self) -> Array:
+        """The wavenumbers q of the coefficients."""
+        wavenumbers = np.pi / self.half_period * np.arange(len(self.series))
+        return np.asarray(wavenumbers)
 
-    def _sum(self, xi: ArrayLike, even: Array, odd: Array) -> Array:
-        """Evaluate the Fourier sum Σ even_j cos(q_j ξ) + odd_j sin(q_j ξ) at any ξ."""
-        q = np.pi / self.half_period * np.arange(len(even))
-        phase = np.multiply.outer(xi, q)
-        return np.asarray(np.cos(phase) @ even + np.sin(phase) @ odd)
+    def _sum(self, xi: ArrayLike, series: Any) -> Array:
+        """Evaluate the Fourier sum ``Re Σ c_j e^{i q_j ξ}`` of a series c at any ξ."""
+        phase = np.multiply.outer(xi, self._wavenumbers)
+        waves = np.cos(phase) @ series.real - np.sin(phase) @ series.imag
+        return np.asarray(waves, float)
 
     def _ended(self, xi: ArrayLike) -> NDArray[np.bool_]:
         """True beyond L for a solitary wave: there the wave is 0, the Fourier sum periodic."""
@@ -238,9 +229,9 @@ class ExactWave(Pictured):
 
 def at_unit_force(problem: newton.Problem, found: newton.Found) -> ExactWave:
     """Return the wave of a solution, scaled to peak contact force 1, with tail and residual."""
-    even, odd = newton.coefficients(found.force)
+    series = newton.coefficients(found.force)
     wave = ExactWave(
-        found.masses, problem.k, found.c2, problem.L, even, odd, 0.0, 0.0, problem.p0
+        found.masses, problem.k, found.c2, problem.L, series, 0.0, 0.0, problem.p0
     )
     wave = wave.times(1 / (problem.p0 + wave.peak("strain")))
     # Of equal masses the odd part is rounding.
@@ -250,36 +241,18 @@ def at_unit_force(problem: newton.Problem, found: newton.Found) -> ExactWave:
 
 def _tail(wave: ExactWave) -> float:
     """The largest odd part of the strain outside the pulse, see `ExactWave.tail`."""
-
-    def odd_part(x: Any) -> Array:
-        return np.abs(wave.strain(x) - wave.strain(-x)) / 2
-
     L = wave.half_period
-    # Two points for each of the solution's: between two of them the odd part has one maximum.
-    outside = np.linspace(OUTSIDE * L, L, 2 * len(wave.even))
-    _, largest = summit(odd_part, outside)
-    return largest
+    # Some twenty points for each oscillation of the tail.
+    outside = np.linspace(OUTSIDE * L, L, 4 * len(wave.series))
+    odd = 1j * wave._strains.imag
+    return float(np.abs(wave._sum(outside, odd)).max())
 
 
 def _residual(wave: ExactWave) -> float:
     """The error in the equations of motion, see `ExactWave.residual`."""
     # Strains that follow from the forces of the strains: of a solution the same ones.
-    n = len(wave.even) - 1
-    xi = newton.periodic_grid(wave.half_period, 2 * n)
-    even, odd = newton.coefficients(wave.force(xi))
-    response = replace(wave, even=even, odd=odd)
+    xi = newton.periodic_grid(wave.half_period, 2 * len(wave.series) - 2)
+    series = newton.coefficients(wave.force(xi))
+    response = replace(wave, series=series)
     off = float(np.abs(response.strain(xi) - wave.strain(xi)).max())
     return off / (1 - wave.background)
-
-
-def summit(f: Callable[[Any], Array], xi: Array) -> tuple[float, float]:
-    """Return the place (to 1e-8) and value of f's maximum near its largest value on the grid xi."""
-    value = f(xi)
-    i = int(np.argmax(value))
-    bounds = xi[max(i - 1, 0)], xi[min(i + 1, len(xi) - 1)]
-    top = scipy.optimize.minimize_scalar(
-        lambda x: -float(f(x)), bounds=bounds, method="bounded", options={"xatol": 1e-9}
-    )
-    if -top.fun > value[i]:
-        return float(top.x), float(-top.fun)
-    return float(xi[i]), float(value[i])

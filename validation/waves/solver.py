@@ -58,42 +58,20 @@ FOLLOWED = (1.15, 1.2, 1.25, 1.3)
 ratio from its neighbours is lost in rounding."""
 HERTZ = 1.5
 PUBLISHED = (0.3428, 0.1548)  # the first ratios at k = 3/2, by Jayaprakash et al.
-# Change of √(m1/m2) in one step along k; neighbours differ by 0.2 or more.
-_CHANGE = 0.15
+# Difference of √(m1/m2) from its extrapolation, in one step along k: less than half of that of
+# neighbours, 0.28 or more.
+_NEARER = 0.1
 _EQUAL = (1.0, 1.0)
 
 
 class NoWave(InputError):
-    """Failure to find a wave; the message names the wave's parameters.
+    """Failure to find a wave; the message names the wave's parameters."""
 
-    Parameters
-    ----------
-    text : str
-        Beginning of the message, up to the parameters.
-    masses : (float, float)
-        m1 and m2.
-    k : float
-        Exponent.
-    more : str
-        End of the message, behind the parameters.
-    **change : object
-        Arguments of the failed call, by name, with values that the message proposes in place of
-        the given ones, such as ``masses=(1, 0.59)``; the message ends with them, as that of
-        `lwa.InputError` does.
-    """
 
-    def __init__(
-        self,
-        text: str,
-        masses: newton.Pair,
-        k: float,
-        more: str = "",
-        /,  # so that a changed argument may be named masses or k
-        **change: object,
-    ) -> None:
-        m1, m2 = masses
-        where = f"at k = {k:g}, masses {m1:.10g}, {m2:.10g}"
-        super().__init__(f"{text} {where}{more}", **change)
+def _parameters(masses: newton.Pair, k: float) -> str:
+    """The parameters of a wave in a message."""
+    m1, m2 = masses
+    return f"at k = {k:g}, masses {m1:.10g}, {m2:.10g}"
 
 
 def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWave:
@@ -154,7 +132,9 @@ def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWa
         return replace(wave, masses=(heavy, heavy * wave.omega), c2=wave.c2 / heavy)
     # The mirror image, with b(ξ) for a(ξ): F_a = E + O and F_b = E - O.
     mirrored = (light, light / wave.omega)
-    return replace(wave, masses=mirrored, c2=wave.c2 / mirrored[1], odd=-wave.odd)
+    return replace(
+        wave, masses=mirrored, c2=wave.c2 / mirrored[1], series=wave.series.conj()
+    )
 
 
 def _background(value: Any) -> float:
@@ -208,13 +188,15 @@ def _dimer(pair: newton.Pair, k: float) -> ExactWave:
     near = min(special, key=lambda wave: abs(wave.omega / ratio - 1))
     if abs(near.omega / ratio - 1) < NEAR:
         return near
-    struck = f"lwa-validate sweep --k {k:.10g} --omega {ratio:.10g} measures a pulse"
-    more = f": the nearest ratio with one is {near.omega:.9g} (resonances); {struck}"
-    heavy = max(pair)
-    masses = [mass if mass == heavy else heavy * near.omega for mass in pair]
     # Nine digits are enough for `NEAR`.
-    nearest = tuple(float(f"{mass:.9g}") for mass in masses)
-    raise NoWave("no solitary wave", pair, k, more, masses=nearest)
+    nearest = float(f"{near.omega:.9g}")
+    heavy = max(pair)
+    masses = tuple(mass if mass == heavy else heavy * nearest for mass in pair)
+    raise NoWave(
+        f"no solitary wave {_parameters(pair, k)}: the nearest ratio with one is {nearest:g} "
+        f"(resonances); lwa-validate sweep --k {k:.10g} --omega {ratio:.10g} measures a pulse",
+        masses=masses,
+    )
 
 
 def solve(problem: newton.Problem, start: ExactWave | None = None) -> ExactWave:
@@ -254,9 +236,9 @@ def _converged(problem: newton.Problem, force: Any, c2: float) -> ExactWave:
     try:
         found = problem.wave(force, c2)
     except np.linalg.LinAlgError:
-        on = f" on {problem.p0:g}" if problem.p0 else ""
-        text = f"Newton's method finds no wave{on}"
-        raise NoWave(text, problem.masses, problem.k) from None
+        wave = _parameters(problem.masses, problem.k)
+        on = f"background {problem.p0:g}"
+        raise NoWave(f"Newton's method finds no wave {wave}, {on}") from None
     return at_unit_force(problem, found)
 
 
@@ -335,22 +317,17 @@ def _following(path: Sequence[ExactWave], k: float) -> ExactWave:
 
     Raises `NoWave` if √(m1/m2) is far from extrapolated: the wave is that of another ratio.
     """
+    before = path[0]
     last = path[-1]
-    expected = 0.0
-    bound = _CHANGE
+    expected = _root(last)
     if len(path) > 1:
-        before, here, there = (math.log(x - 1) for x in (path[0].k, last.k, k))
-        slope = (_root(last) - _root(path[0])) / (here - before)
-        expected = slope * (there - here)
-        # A fifth of the change, and 0.02 where it is small.
-        bound = 0.02 + 0.2 * abs(expected)
-    ratio = (_root(last) + expected) ** -2
-    following = solve(SpecialRatio((1.0, ratio), k), last)
-    change = _root(following) - _root(last)
-    is_near = abs(change) < _CHANGE and abs(change - expected) < bound
-    if following.solitary and is_near:
+        start, here, there = (math.log(x - 1) for x in (before.k, last.k, k))
+        slope = (_root(last) - _root(before)) / (here - start)
+        expected += slope * (there - here)
+    following = solve(SpecialRatio((1.0, expected**-2), k), last)
+    if following.solitary and abs(_root(following) - expected) < _NEARER:
         return following
-    raise NoWave("the special ratio is lost", last.masses, k)
+    raise NoWave(f"the special ratio is lost {_parameters(last.masses, k)}")
 
 
 def _next(before: ExactWave, last: ExactWave) -> ExactWave:
@@ -365,6 +342,4 @@ def _next(before: ExactWave, last: ExactWave) -> ExactWave:
             following = solve(SpecialRatio((1.0, root**-2), last.k))
             if following.solitary and first < _root(following) < end:
                 return following
-    limits = f"from {first**-2:.4g} down to {end**-2:.4g}"
-    text = f"{limits} the next special mass ratio is not found"
-    raise NoWave(text, last.masses, last.k)
+    raise NoWave(f"no next special ratio is found {_parameters(last.masses, last.k)}")

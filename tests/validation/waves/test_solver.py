@@ -91,7 +91,7 @@ def test_the_residual_under_load_is_a_share_of_the_waves_own_peak():
     residuals = []
     for load in (0.9, 0.99):
         wave = exact_wave([1], 1.5, background=load)
-        points = int(0.35 * len(wave.even))
+        points = int(0.35 * len(wave.series))
         coarse = Problem((1.0, 1.0), 1.5, wave.half_period, points, load)
         residuals.append(solve(coarse, wave).residual)
     assert residuals[0] == pytest.approx(residuals[1], rel=0.5)
