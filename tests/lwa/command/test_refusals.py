@@ -128,7 +128,7 @@ def test_files_of_spheres_are_refused(capsys, tmp_path, old, new, words):
         ({}, "wave --precompression 1", "the file has a precompression of 2"),
         ({}, "strike --velocity 1", "precompression is 2"),
         (FREE, "strike", "no striker that moves"),
-        (FREE, "strike --velocity v", "velocity is v: a number is wanted"),
+        (FREE, "strike --velocity v", "'v' has no value"),
         (FREE, "strike --velocity 1e300", "velocity is 1"),
         (FREE | {"cell": [1, 2]}, "strike --velocity 1", "lwa-validate run"),
         (

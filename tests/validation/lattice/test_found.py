@@ -47,7 +47,7 @@ KEEP_ENERGY = [
     # The wall's contact expands without a force, when the drive hits the bead in front of it.
     shaken((1, 1), 1.5, ("restitution", 0.5), 0.5, 0.2, 0),
     shaken((0.409, 1.455), 2.5, ("restitution", 0.589), 0.344, 0.446, -1.643),
-    shaken((1.104, 1.106), 2.0, ("kuwabara_kono", 0.55), 0.225, 0.402, -0.04),
+    shaken((1.104, 1.106), 2.0, ("kuwabara_kono", 0.55), 0.225, 0.402, -0.0401),
     shaken((0.715, 1.488), 1.5, ("kuwabara_kono", 0.378), 0.91, 0.315, 0.039),
     # The wall's contact, idle as damping may not pull, seems to push at some stages.
     shaken((1.361, 0.578), 3.0, ("contact", 0.395), 0.824, 0.592, -1.128),
