@@ -338,10 +338,10 @@ def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
     if isinstance(scheme, Pair):
         estimates = len(scheme.errors)
         stages = len(scheme.nodes)
-    rows = _lines(8 + estimates + ROOM, padded + 2)
+    rows = _lines(7 + estimates + ROOM, padded + 2)
     # Two rows, one place ahead of the others: lines begin at column 1, the force of contact 0.
     ahead = rows.reshape(-1)[-2 * rows.shape[1] - 1 : -1]
-    y, v, next_y, next_v, still, marks = rows[:6]
+    y, v, next_y, next_v, marks = rows[:5]
     y[:n] = next_y[:n] = motion.start[:n]
     v[:n] = next_v[:n] = motion.start[n : 2 * n]
     given = np.zeros(2)
@@ -352,11 +352,10 @@ def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
         v=v,
         next_y=next_y,
         next_v=next_v,
-        still=still,
         force=ahead.reshape(2, -1),
         border=np.zeros(stages),
-        push=rows[6 + estimates : -2],
-        errors=rows[6 : 6 + estimates],
+        push=rows[5 + estimates : -2],
+        errors=rows[5 : 5 + estimates],
         marks=marks,
         power=np.zeros((2, ROOM)),
         given=given,

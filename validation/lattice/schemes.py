@@ -82,7 +82,7 @@ def _pair(
 
 
 def _padded(exact: Array) -> Array:
-    """Return weights as floats, with zeros for stages up to `ROOM`, which `pair._move` reads."""
+    """Return weights as floats, with zeros up to `ROOM` stages, which `pair` reads in groups."""
     weights = exact.astype(float)
     # A decimal that was rounded leaves 1e-31 in place of 0.
     weights[np.abs(weights) < _ROUNDING] = 0.0

@@ -37,7 +37,6 @@ from validation.pulses.pulse import (
     Pulse,
     checked,
     first_pulse,
-    highest_pulse,
     spline,
 )
 from validation.scenes.cells import longest
@@ -169,14 +168,7 @@ def _exact(t: Array, f: Array, size: float) -> NoisyPulse:
     coarse = [spline(t[start::2], f[start::2] - level) for start in (0, 1)]
     pulse = first_pulse(signal)
     _check_top(t, f, (pulse.rise, pulse.fall), _FEWEST_EXACT)
-    beside = pulse.fwhm / 2
-    start = max(pulse.rise - beside, t[1])
-    end = min(pulse.fall + beside, t[-2])
-    rough = []
-    for other in coarse:
-        inside = other.times[(other.times > start) & (other.times < end)]
-        around = Piecewise(np.array((start, *inside, end)), other)
-        rough.append(highest_pulse(around))
+    rough = [first_pulse(other) for other in coarse]
     numbers = {}
     for name in READINGS:
         value = getattr(pulse, name)

@@ -1,4 +1,4 @@
-"""Pulses of a signal: arrival, peak, width, and the speed between two sensors.
+"""Pulses of a signal: arrival, peak and width.
 
 A signal is a function of time that is smooth on each interval between given times: the dense output
 of a run (`validation.lattice.result.Run.signal`), or the cubic spline through samples. A pulse of a
@@ -299,19 +299,6 @@ class _Grid:
             tops.append(max(zip(series(times).tolist(), times.tolist(), strict=True)))
         peak, arrival = max(tops)
         return arrival, peak
-
-
-def speed(first: Pulse, second: Pulse, distance: float) -> float:
-    """Return the distance divided by the time between two arrivals.
-
-    Raises `MeasureError` unless the second pulse arrives later.
-    """
-    if not second.arrival > first.arrival:
-        arrivals = (
-            f"the pulse arrives at {first.arrival:g} and then at {second.arrival:g}"
-        )
-        raise MeasureError(f"{arrivals}: a speed needs a later second arrival")
-    return float(distance) / (second.arrival - first.arrival)
 
 
 def derived(function: Callable[..., float], *numbers: Estimate) -> Estimate:

@@ -35,7 +35,6 @@ from validation.pulses.pulse import (
     first_pulse,
     highest_pulse,
     readings,
-    speed,
     spline,
     tolerances,
 )
@@ -470,9 +469,10 @@ class Train:
     def speed(self) -> float:
         """Speed of the pulse from the first sensor to the last, a length per time."""
         first, last = min(self.pulses), max(self.pulses)
-        return speed(
-            self.pulses[first], self.pulses[last], (last - first) * self.spacing
-        )
+        time = self.pulses[last].arrival - self.pulses[first].arrival
+        if time <= 0:
+            raise MeasureError("the pulse does not arrive later at the last sensor")
+        return (last - first) * self.spacing / time
 
     @property
     def peak(self) -> float:

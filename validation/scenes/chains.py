@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from lwa import Cell
 from lwa.spheres.hertz import Material, Sphere
-from validation.scenes.checks import SceneError
+from validation.scenes.checks import numeric
 from validation.scenes.scene import Scene
 
 STEEL, PTFE = Material.named("steel 316"), Material.named("PTFE")
@@ -51,8 +51,7 @@ def numeric_cell(masses: Sequence[Any]) -> Cell:
     """Return the unit cell of masses that are numbers, with spacing 1; `SceneError` for symbols."""
     cell = Cell(tuple(masses), spacing=1)
     for mass in cell.masses:
-        if not mass.is_number:
-            raise SceneError(f"mass is {mass}: a number is wanted")
+        numeric(mass, "mass")
     return cell
 
 

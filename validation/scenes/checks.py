@@ -134,7 +134,5 @@ def contact_law(k: float, law: ContactLaw | None) -> tuple[float, ContactLaw | N
 def numeric(value: sp.Expr, name: str) -> float:
     """Return an exact number as a float; `SceneError` for an expression with symbols."""
     if not value.is_number:
-        raise SceneError(
-            f"{name} is {value}: the lattice needs numbers in place of symbols"
-        )
+        raise SceneError(f"{name} is {value}: a number is wanted in place of symbols")
     return float(value)

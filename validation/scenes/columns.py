@@ -69,7 +69,8 @@ NAMES = ("time", "bead 8 force", "bead 8 velocity", "contact 8 force", "speed")
 STEP = "1 us"
 """An example of a time: a usual step of recorders."""
 
-_LISTED = 4  # columns in a message
+# Columns in a message, which is to have 300 characters at most
+_LISTED = 4
 _UNLIKE = 2  # least rank of a column that does not behave like a quantity
 
 

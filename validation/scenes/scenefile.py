@@ -30,7 +30,6 @@ from lwa.base.files import (
     load,
     place,
     places,
-    table,
 )
 from lwa.law import read_law
 from lwa.spheres.beads import (
@@ -104,11 +103,14 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
         Folder of the measured files that the content names.
     """
     file = Table(content, "", FILE)
-    tables = {
-        name: file.read(name, table(keys), Table({}, name, keys))
-        for name, keys in _TABLES.items()
-    }
-    start, sensors, striker = (tables[n] for n in ("start", "sensors", "striker"))
+
+    def part(name: str) -> Table:
+        """Return a table of the file, an empty one if it is left out."""
+        return Table(file.entries.get(name, {}), name, _TABLES[name])
+
+    start = part("start")
+    sensors = part("sensors")
+    striker = part("striker")
     materials = read_materials(file)
     beads = read_beads(file, materials)
     row = read_row(file, beads)
@@ -132,7 +134,7 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     _change_contacts(fields, defects)
     contacts = row.size - 1
     if "wall" in file:
-        fields["wall"] = _wall(tables["wall"], spheres, materials)
+        fields["wall"] = _wall(part("wall"), spheres, materials)
         # The wall's contact is the last.
         contacts += 1
     own = partial(_own, period=len(row.spheres or row.masses), contacts=contacts)
@@ -141,8 +143,9 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
         key = row.given.one("k", "law")
         fields[key] = row.given.read(key, own(finite if key == "k" else read_law))
     if "damping" in file:
-        kind = tables["damping"].one(*DAMPINGS)
-        value = tables["damping"].read(kind, own(finite))
+        damping = part("damping")
+        kind = damping.one(*DAMPINGS)
+        value = damping.read(kind, own(finite))
         fields["damping"] = Damping(kind, value)
     fields["velocities"] = start.read("velocities", each(finite), ())
     if "striker" in file:
@@ -154,7 +157,7 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     # Materials are in SI.
     units = file.read("units", among({"SI": "SI"}), "SI" if spheres else "")
     if "drive" in file:
-        fields["drive"] = _drive(tables["drive"], units, folder)
+        fields["drive"] = _drive(part("drive"), units, folder)
     # The scene checks these; a key that is left out keeps the scene's default.
     for key in ("gravity", "precompression", "samples"):
         if key in file:

@@ -37,7 +37,7 @@ from lwa.spheres.beads import spheres as read_spheres
 from validation.pictures import Curve, Panel
 from validation.report.study import Report, option, study
 from validation.report.table import Column, Table
-from validation.scenes.checks import SceneError
+from validation.scenes.checks import SceneError, numeric
 from validation.scenes.columns import Stated
 from validation.scenes.measured import MeasuredFile
 from validation.studies.records import column_options
@@ -229,10 +229,7 @@ class Medium:
         """Make the medium of a chain whose cell is one bead, all numbers."""
         if cell.size > 1:
             raise SceneError(f"the cell has {cell.size} beads: equal beads are wanted")
-        for name, value in (("spacing", cell.spacing), ("mass", cell.masses[0])):
-            if not value.is_number:
-                raise SceneError(f"{name} is {value}: a number is wanted")
-        return cls(float(cell.masses[0]), float(cell.spacing))
+        return cls(numeric(cell.masses[0], "mass"), numeric(cell.spacing, "spacing"))
 
     def log_stiffness(self, slope: Any, constant: Any) -> Array:
         """Return ln A of the contact law whose pulses have ``ln V = slope · ln F + constant``.

@@ -14,11 +14,9 @@ from validation.pulses.pulse import (
     ROUNDING,
     MeasureError,
     Piecewise,
-    Pulse,
     compared,
     derived,
     measure,
-    speed,
     tolerances,
 )
 
@@ -72,13 +70,6 @@ def test_records_without_a_whole_pulse(time, signal, message):
     with pytest.raises(MeasureError, match=f"^{message}") as caught:
         measure(time, signal)
     assert isinstance(caught.value, InputError)
-
-
-def test_speed():
-    first, second = Pulse(1.0, 1, 0, 2), Pulse(3.0, 1, 2, 4)
-    assert speed(first, second, 5.0) == 2.5
-    with pytest.raises(MeasureError, match=r"needs a later second arrival"):
-        speed(second, first, 5.0)
 
 
 def test_a_measured_number_carries_its_error():

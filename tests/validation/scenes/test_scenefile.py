@@ -133,8 +133,6 @@ GOOD = {
 BALLS, WALL = {"chain": {"cell": ["ball", "ball"]}}, {"wall": {"stiffness": 1}}
 MOTION = {"time": [0.0, 0.3, 0.6, 1.0], "displacement": [0.0, 1.0, 0.0, 0.0]}
 ALL = {"sensors": {"beads": "all", "contacts": "all"}}
-BALL = GOOD["beads"]["ball"]
-NAN = float("nan")
 
 # A row for each kind of fault
 REFUSED = [

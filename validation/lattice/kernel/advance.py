@@ -14,16 +14,19 @@ from validation.lattice.kernel.arrays import (
     Plan,
 )
 from validation.lattice.kernel.compiled import cached, inlined
-from validation.lattice.kernel.pair import (
-    begin_step,
+from validation.lattice.kernel.corrections import (
     correct_contact,
-    end_step,
-    evaluate_end,
-    evaluate_stages,
     mark_kinks,
     next_mark,
-    step_error,
     watch_drive,
+)
+from validation.lattice.kernel.pair import (
+    begin_step,
+    end_step,
+    estimate_errors,
+    evaluate_end,
+    evaluate_stages,
+    step_error,
 )
 from validation.lattice.kernel.samples import store_knot
 
@@ -77,6 +80,7 @@ def advance(
         hi = moving(now)
         now.tries += 1
         evaluate_stages(chain, beads, plan, now.t, h, hi)
+        estimate_errors(beads, plan, h, hi)
         beads.books[:] = 0.0
         marks = mark_kinks(chain, beads, plan, h, hi)
         i = -1

@@ -18,7 +18,10 @@ BLOCK = 8  # doubles in the widest vector register; the number of moved beads is
 # Beads whose memory stays in the processor's cache throughout a step. Measured for 20,000 beads:
 # 128 and 256 take the same time, 512 a tenth more, 1,024 a fifth more.
 TILE = 256
-ROOM = 13  # most stages of a pair; `pair` adds up so many
+GROUP = 4  # stages that `pair` adds up at a time
+ROOM = 4 * GROUP  # most stages of a pair
+# Entries of `Beads.books`; rows of `Beads.power` are HEAT and WORK.
+HEAT, WORK, HEAT_ERROR, WORK_ERROR, SQUARES = range(5)
 
 
 class Drive(NamedTuple):
@@ -118,8 +121,6 @@ class Beads(NamedTuple):
         Displacements and velocities.
     next_y, next_v : array, (padded + 1,)
         Those after the step that is tried.
-    still : array, (padded + 1,)
-        Zeros.
     force : array, (2, padded + 1)
         Force on each bead from behind, less the static force, at the start of the step and at the
         stage that was computed last.
@@ -132,13 +133,13 @@ class Beads(NamedTuple):
         tolerance.
     marks : array, (padded + 1,)
         1 for each contact with a kink.
-    power : array, (2, stages)
-        Power that all contacts dissipate, and power of the drive.
+    power : array, (2, `ROOM`)
+        Power that all contacts dissipate, and power of the drive, by stage.
     given : array, (2,)
         Accelerations of a driven bead at the step's ends.
     books : array, (5,)
-        Corrections at kinks: heat and its error, work of the drive and its error, and the sum of
-        the squared errors of the corrections themselves, in units of the tolerance.
+        Corrections at kinks: heat, work of the drive, errors of both, and the sum of the squared
+        errors of the corrections themselves, in units of the tolerance.
     points : array, (3, `ROOM`)
         Places in a step, their weights, and the forces there.
     edges : array, (`kinks.EDGES`,)
@@ -149,7 +150,6 @@ class Beads(NamedTuple):
     v: Array
     next_y: Array
     next_v: Array
-    still: Array
     force: Array
     border: Array
     push: Array

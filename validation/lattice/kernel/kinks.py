@@ -14,7 +14,7 @@ A damped contact that is pulled open can stop pushing before it parts: the force
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,6 +22,8 @@ from lwa.base.arrays import Array
 from validation.lattice.kernel.compiled import FIRST, alone, call, index, part
 from validation.lattice.kernel.force import drag, elastic, power, push
 
+State = tuple[float, float, float]
+"""A contact's p, p' and p''."""
 Bend = tuple[float, float, float]
 """Numbers e, s and b of a part of p whose second derivative is ``s [x - e]_+^b``, ``0 ≤ b < 1``."""
 Curve = tuple[float, float, float, float, float, float, Bend]
@@ -40,6 +42,49 @@ EDGES = 4 * _PLACES + 2
 # 1e-11.
 _CLOSE = 1e-13
 OPENS = 1e-100  # a compression at which a contact is about to open, in any units
+
+
+class Kinks(NamedTuple):
+    """A contact's motion over a step, and where its force is not smooth.
+
+    Parameters
+    ----------
+    curve : Curve
+        The compression p.
+    intervals : int
+        Number of the intervals in which the force is smooth; their ends are in `Beads.edges`.
+    top : float
+        Greatest compression.
+    jump : float
+        Jump of the force for unit stiffness, or 0.
+    """
+
+    curve: Curve
+    intervals: int
+    top: float
+    jump: float
+
+
+class Integrals(NamedTuple):
+    """Integrals over x of a contact's force F, for unit stiffness.
+
+    Parameters
+    ----------
+    impulse, moment, third : float
+        Those of ``F``, ``(1 - x) F`` and ``(1 - x)²/2 F``.
+    work, driven : float
+        Those of ``F p'``, and of ``F b'`` for the motion b of a driven bead.
+    rough : float
+        For a damped contact, that of p'' by the force, less that of the curve, times Legendre's
+        polynomial of degree 4: 0 for a force that the second derivative of a quintic follows.
+    """
+
+    impulse: float
+    moment: float
+    third: float
+    work: float
+    driven: float
+    rough: float
 
 
 @part
@@ -75,8 +120,8 @@ def value_and_slope(c: Curve, x: float) -> tuple[float, float]:
 
 @part
 def fitted_curve(
-    start: tuple[float, float, float],
-    end: tuple[float, float, float],
+    start: State,
+    end: State,
     bend: Bend,
 ) -> Curve:
     """Return the quintic with p, p' and p'' at both ends of the step, with a bend."""
@@ -254,14 +299,14 @@ def _find_jump(
 def resolved(
     law: Any,
     r: float,
-    start: tuple[float, float, float],
-    end: tuple[float, float, float],
+    start: State,
+    end: State,
     h: float,
     bend: float,
     guess: Bend,
     edges: Array,
-) -> tuple[Curve, int, float, float]:
-    """Return a contact's curve over a step, the results of `find_edges`, and a jump of the force.
+) -> Kinks:
+    """Return a contact's motion over a step, with the places at which its force is not smooth.
 
     A jump bends the curve where it is, and where it is depends on the curve: a second call with the
     bend that the first one found leaves no more than the quintic's own error.
@@ -287,10 +332,10 @@ def resolved(
     count, top = find_edges(law, r, c, h, edges)
     place, jump, b = _find_jump(law, r, c, h, edges, count)
     if abs(bend * jump) < 1e-12 * abs(start[1]):
-        return c, count, top, 0.0
+        return Kinks(c, count, top, 0.0)
     c = fitted_curve(start, end, (place, bend * jump, b))
     count, top = find_edges(law, r, c, h, edges)
-    return c, count, top, jump
+    return Kinks(c, count, top, jump)
 
 
 @part
@@ -349,28 +394,43 @@ def _fourth(x: float) -> float:
 def integrals(
     law: Any,
     r: float,
-    c: Curve,
+    found: Kinks,
     h: float,
     until: float,
+    bend: float,
     points: Array,
     edges: Array,
-    count: int,
     driven: bool,
     bead: Curve,
-    bend: float,
-) -> tuple[float, float, float, float, float, float]:
-    """Return six integrals over a step up to ``x = until``.
+) -> Integrals:
+    """Return the integrals of a contact's force over a step up to ``x = until``.
 
-    Those of ``F``, ``(1 - x) F``, ``(1 - x)²/2 F`` and ``F p'``, in the ``count`` intervals between
-    the places ``edges``; that of ``F b'`` for the motion b of a driven bead, else 0; and, for a
-    damped contact, that of ``bend F``, less the bend of c, times Legendre's polynomial of degree 4:
-    0 for a force that the second derivative of a quintic follows. A force of 1 changes ``p''`` by
-    ``bend``.
+    Parameters
+    ----------
+    law : record
+        The law, a record of `LAW`.
+    r : float
+        Damping coefficient over stiffness.
+    found : Kinks
+        The contact's motion.
+    h : float
+        The step.
+    until : float
+        End of the integrals.
+    bend : float
+        Change of p'' by a force of 1.
+    points, edges : array
+        Working memory, and the places that belong to ``found``.
+    driven : bool
+        True for the contact of a driven bead.
+    bead : Curve
+        The motion of the driven bead.
     """
+    c = found.curve
     x = points[0]
     w = points[1]
     once = twice = third = work = given = rough = 0.0
-    for n in range(count):
+    for n in range(found.intervals):
         a = edges[n]
         b = edges[n + 1]
         p, slope = value_and_slope(c, 0.5 * (a + b))
@@ -405,4 +465,4 @@ def integrals(
                     rough += _fourth(x[m]) * (bend * force - w[m] * known)
                 if driven:
                     given += value_and_slope(bead, x[m])[1] * force
-    return once, twice, third, work, given, rough
+    return Integrals(once, twice, third, work, given, rough)

@@ -13,12 +13,17 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from lwa.base.arrays import Array
 from validation.lattice.kernel import kinks
 from validation.lattice.kernel.arrays import Beads, Chain, Knots, Numbers
-from validation.lattice.kernel.compiled import FIRST, cached, part
+from validation.lattice.kernel.compiled import FIRST, cached, inlined, part
 from validation.lattice.kernel.force import drag, elastic, push, stiffness
 from validation.lattice.kernel.kinks import Curve, value_and_slope
+
+# A plain False is a type of its own, for which numba would compile `kinks.integrals` once more.
+NOT_DRIVEN: Any = np.bool_(False)
 
 
 @part
@@ -65,7 +70,7 @@ def _rate(law: Any, r: float, d: float, v: float, a: float) -> float:
     return rate
 
 
-@part
+@inlined
 def _septic(a: Array, b: Array) -> tuple[Curve, float, float]:
     """Return the coefficients c0 … c5, c6 and c7 of y from y … y''' at x = 0 (a) and at x = 1 (b).
 
@@ -85,7 +90,7 @@ def _septic(a: Array, b: Array) -> tuple[Curve, float, float]:
     return (a[0], a[1], c2, c3, c4, c5, kinks.STRAIGHT), c6, c7
 
 
-@part
+@inlined
 def _take_kink_away(
     chain: Chain,
     knots: Knots,
@@ -116,21 +121,21 @@ def _take_kink_away(
     far = scale * chain.inverse[i + 1]
     d, u, a = _compression(knots, n, q, chain.rest[i])
     end, end_u, end_a = _compression(knots, n + 1, q, chain.rest[i])
+    bend = -near - far
     begin = (d, h * u, h * h * a)
     over = (end, h * end_u, h * h * end_a)
-    p, count, _, _ = kinks.resolved(
-        law, ratio, begin, over, h, -near - far, kinks.STRAIGHT, edges
-    )
+    found = kinks.resolved(law, ratio, begin, over, h, bend, kinks.STRAIGHT, edges)
+    p = found.curve
     if p[6][1] != 0.0:
-        p, count, _, _ = kinks.resolved(
-            law, ratio, begin, over, h, -near - far, p[6], edges
-        )
+        found = kinks.resolved(law, ratio, begin, over, h, bend, p[6], edges)
+        p = found.curve
     for s in range(first, last + 1):
         x = (time[s] - knots.time[n]) / h if s < last else 1.0
-        once, twice, _, _, _, _ = kinks.integrals(
-            law, ratio, p, h, x, points, edges, count, False, p, -near - far
+        sums = kinks.integrals(
+            law, ratio, found, h, x, bend, points, edges, NOT_DRIVEN, p
         )
-        moment = twice - (1.0 - x) * once  # ∫ (x - s) F(s) ds
+        once = sums.impulse
+        moment = sums.moment - (1.0 - x) * once  # ∫ (x - s) F(s) ds
         if s < last:
             y[r, s] -= near * moment
             y[r + 1, s] += far * moment
@@ -148,7 +153,7 @@ def _take_kink_away(
         ends[end, r + 1, 2] -= far * force
 
 
-@part
+@inlined
 def _add_rates(
     chain: Chain, knots: Knots, n: int, q: int, r: int, h: float, ends: Array
 ) -> None:

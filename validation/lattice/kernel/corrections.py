@@ -1,0 +1,445 @@
+"""Corrections of a step at the contacts that open or close in it.
+
+h is the step, and x, from 0 to 1, the time within the step. The impulse of a contact in a step is
+``h ∫ F dx``, its moment ``h² ∫ (1 - x) F dx``: they change the velocities and the displacements of
+its two beads. At a contact that opens or closes, the pair's quadratures of ``F(p, p'/h)``, with a
+quintic p close to the contact's compression, are replaced by accurate integrals
+(`validation.lattice.kernel.kinks`).
+
+The stages lack these corrections: the forces of the contact and its neighbours are computed at
+displacements that err by the moment so far, and at velocities that err by the impulse. Over a step
+this changes their impulses by stiffness × ``h³ ∫ (1 - x)²/2 F dx``, and by damping × moment. The
+neighbours are corrected for it once more, and this second correction counts as error.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from lwa.base.arrays import Array
+from validation.lattice.kernel import kinks
+from validation.lattice.kernel.arrays import (
+    HEAT,
+    HEAT_ERROR,
+    SQUARES,
+    WORK,
+    WORK_ERROR,
+    Beads,
+    Chain,
+    Pair,
+    Plan,
+)
+from validation.lattice.kernel.compiled import FIRST, ONE, alone, index, inlined, part
+from validation.lattice.kernel.force import (
+    drag,
+    drive_motion,
+    elastic,
+    push,
+    stiffness,
+)
+from validation.lattice.kernel.pair import error_scale, integral
+
+_SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the tolerance
+# A contact is corrected so often, or until the correction changes by less than _SETTLED times the
+# tolerance. Measured: without the rounds damped gases err by up to ten times as much.
+_ROUNDS, _SETTLED = 4, 0.02
+# A contact is nearly open at a step's one end if δ there is less than _NEAR times δ at the other. A
+# weak contact, whose force is less than _STRONG times the least that counts, is nearly open below
+# _VERY_NEAR, as the pair's own error is smaller there. Measured: _NEAR for all takes a tenth more
+# time for equal beads, _VERY_NEAR for all a quarter more for dimers at small tolerances.
+# The singularity of damping, δ^{1/4} say, is felt farther away: at δ halved within a step, and a
+# tolerance of 1e-10, the energy was off by 18 tolerances.
+_NEAR, _VERY_NEAR, _NEAR_DAMPED, _STRONG = 0.3, 0.03, 0.6, 1e3
+# Mean distance of the quintic from a p with ``p'' = 9 P₄(x)``, Legendre's polynomial: the distance
+# is ``9 · 0.0365 (1 - (2x - 1)²)³``.
+_MISFIT = 0.15
+# Greatest distance of the quintic from a p whose second derivative jumps by 1.
+_UNBENT = 0.014
+# Force of a law where its contact opens: more is a jump. A power has 1e-100 at most.
+_NO_JUMP = 1e-50
+# Share of a neighbour's correction that counts as error.
+_SECOND = 0.5
+
+
+@inlined
+def _ends(
+    chain: Chain, beads: Beads, h: float, i: int
+) -> tuple[kinks.State, kinks.State]:
+    """Return δ, δ' and δ'' of contact i at both ends of a step, in units of the step."""
+    last = len(beads.border) - 1
+    a = beads.push[0, i] - beads.push[0, i + 1]
+    end_a = beads.push[last, i] - beads.push[last, i + 1]
+    if i == 0:
+        a += beads.given[0]
+        end_a += beads.given[1]
+    start = (
+        chain.rest[i] + (beads.y[i] - beads.y[i + 1]),
+        h * (beads.v[i] - beads.v[i + 1]),
+        h * h * a,
+    )
+    end = (
+        chain.rest[i] + (beads.next_y[i] - beads.next_y[i + 1]),
+        h * (beads.next_v[i] - beads.next_v[i + 1]),
+        h * h * end_a,
+    )
+    return start, end
+
+
+@inlined
+def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int:
+    """Mark the contacts with kinks within a step, and with a force that matters.
+
+    Returns the number of marks, which are in ``beads.marks``.
+    """
+    y = beads.y
+    v = beads.v
+    next_y = beads.next_y
+    next_v = beads.next_v
+    rest = chain.rest
+    load = chain.load
+    opens = chain.opens
+    marks = beads.marks
+    start = beads.force[0]
+    end = beads.force[1]
+    # A force F changes a velocity by h F/m; the errors of all beads add up.
+    least = _SLIGHT * plan.v * plan.lightest / (h * math.sqrt(hi))
+    count = 0
+    near = _NEAR
+    very_near = _VERY_NEAR
+    if chain.damped:
+        near = _NEAR_DAMPED
+        very_near = _NEAR
+    for i in range(index(hi)):
+        before = rest[i] + y[i] - y[i + ONE]
+        after = rest[i] + next_y[i] - next_y[i + ONE]
+        rise = h * (v[i] - v[i + ONE])
+        end_rise = h * (next_v[i] - next_v[i + ONE])
+        first = abs(start[i + ONE] + load[i])
+        then = abs(end[i + ONE] + load[i])
+        force = max(first, then)
+        most = max(before, after)
+        share = near if force > _STRONG * least else very_near
+        nearly_open = (most > 0.0) & (min(before, after) < share * most)
+        parted = chain.damped & ((before > 0.0) != (after > 0.0))
+        changed = chain.damped & ((first > 0.0) != (then > 0.0))
+        # A contact that is open at both ends can close in between if the tangent at an end comes to
+        # δ > 0 within the step. Where the tangents meet does not tell, as δ may have an inflection.
+        reach = max(before + rise, after - end_rise)
+        unseen = (most <= 0.0) & (reach > 0.0)
+        seen = ((force > least) | parted) & (nearly_open | changed)
+        mark = (seen | unseen) & (opens[i] > 0.0)
+        marks[i] = mark
+        count += mark
+    return count
+
+
+@inlined
+def watch_drive(chain: Chain, beads: Beads, plan: Plan, t: float, h: float) -> int:
+    """Mark the contact of a driven bead if it closes or opens anywhere within a step.
+
+    Returns the number of new marks. The acceleration of the bead is given, so that δ can rise,
+    fall and rise again. The difference between its motion and the quintic counts as error.
+    """
+    law = chain.laws[chain.law[0]]
+    A = chain.A[0]
+    r = chain.r[0]
+    start, end = _ends(chain, beads, h, FIRST)
+    # Within the step δ changes by less than this from either end.
+    reach = abs(start[1]) + abs(end[1]) + abs(start[2]) + abs(end[2])
+    far = not chain.damped and min(start[0], end[0]) > reach
+    if far or not chain.opens[0] > 0.0:
+        return 0
+    p = kinks.fitted_curve(start, end, kinks.STRAIGHT)
+    count, top = kinks.find_edges(law, r, p, h, beads.edges)
+    # The quintic's middle by the values at both ends: half their sum, 5/32 of the difference of the
+    # slopes, 1/64 of the sum of the second derivatives.
+    middle = (beads.y[0] + beads.next_y[0]) / 2
+    middle += 5 * h * (beads.v[0] - beads.next_v[0]) / 32
+    middle += h * h * (beads.given[0] + beads.given[1]) / 64
+    given, _, _ = drive_motion(chain.drive, t + h / 2, t + h / 2)
+    missed = abs(given - middle)
+    marked = beads.marks[0] > 0.0
+    if count > 1 or marked or abs(top) < missed:
+        force = elastic(law, max(top, 0.0) + missed) - elastic(law, top)
+        impulse = h * A * force
+        if r > 0.0:
+            # Damping c δ^p brakes a graze by the impulse c δ^p times the depth.
+            impulse += A * r * drag(law, max(top, 0.0) + missed) * missed
+        moved = impulse * chain.inverse[1] / plan.v
+        work = impulse * beads.v[0] / plan.energy
+        beads.books[SQUARES] += moved * moved + work * work
+    if count > 1 and not marked:
+        beads.marks[0] = 1.0
+        return 1
+    return 0
+
+
+@inlined
+def next_mark(marks: Array, i: int) -> int:
+    """Return the first marked contact from contact i on; there is one."""
+    while not marks[index(i)] > 0.0:
+        i += 1
+    return i
+
+
+@inlined
+def _drive_curve(beads: Beads, h: float) -> kinks.Curve:
+    """Return the motion of the driven bead over a step, from where it is."""
+    start = 0.0, h * beads.v[0], h * h * beads.given[0]
+    moved = beads.next_y[0] - beads.y[0]
+    end = moved, h * beads.next_v[0], h * h * beads.given[1]
+    return kinks.fitted_curve(start, end, kinks.STRAIGHT)
+
+
+@inlined
+def _follow_curve(
+    law: Any, r: float, p: kinks.Curve, pair: Pair, h: float, points: Array
+) -> None:
+    """Compute a contact's δ, δ' and force at the stages; they go to ``points``.
+
+    On the curve p the pair's quadrature and the integral err alike, by the error of p.
+    """
+    for s in range(len(pair.nodes)):
+        d, slope = kinks.value_and_slope(p, pair.nodes[s])
+        points[0, s] = d
+        points[1, s] = slope
+        points[2, s] = push(law, r, d, slope / h)
+
+
+@alone
+def _follow_stages(
+    chain: Chain, beads: Beads, pair: Pair, t: float, h: float, i: int
+) -> None:
+    """Compute a contact's δ, δ' and force by the stages' own motion; they go to ``beads.points``.
+
+    The stages after a jump of the force are far off the curve of the contact.
+    """
+    points = beads.points
+    for s in range(len(pair.nodes)):
+        ch = pair.nodes[s] * h
+        rate = beads.v[i]
+        y = beads.y[i] + ch * rate
+        if i == 0 and chain.drive.driven:
+            y, rate, _ = drive_motion(chain.drive, t + h / 2, t + ch)
+        d = chain.rest[i] + y - beads.y[i + 1] - ch * beads.v[i + 1]
+        slope = h * (rate - beads.v[i + 1])
+        for j in range(s):
+            bend = h * h * (beads.push[j, i] - beads.push[j, i + 1])
+            d += pair.moments[s, j] * bend
+            slope += pair.impulses[s, j] * bend
+        points[0, s] = d
+        points[1, s] = slope
+        points[2, s] = push(chain.laws[chain.law[i]], chain.r[i], d, slope / h)
+
+
+@inlined
+def _clipped(
+    chain: Chain, beads: Beads, pair: Pair, t: float, h: float, n: int
+) -> float:
+    """Return the impulse that contact n misses, as a force beside it jumps and damping cannot pull.
+
+    The stages after the jump have velocities so far off that the contact may push at some of them
+    although it does not push in the step, or the reverse. Elsewhere its force is linear in the
+    velocity, and the errors of the stages cancel.
+    """
+    law = chain.laws[chain.law[n]]
+    last = len(pair.nodes) - 1
+    _follow_stages(chain, beads, pair, t, h, n)
+    d, slope, force = beads.points
+    missed = 0.0
+    if not d[0] > 0.0:
+        return missed
+    for s in range(last + 1):
+        wanted = 0.0
+        if force[0] > 0.0 and d[s] > 0.0:
+            wanted = elastic(law, d[s])
+            wanted += chain.r[n] * drag(law, d[s]) * slope[s] / h
+        missed += pair.impulses[last, s] * (force[s] - wanted)
+    return float(h * chain.A[n] * missed)
+
+
+@part
+def _steepness(law: Any, r: float, d: float, h: float) -> float:
+    """Return the derivative of a contact's force by its compression over a step of length h."""
+    return r * drag(law, max(d, 0.0)) / h + stiffness(law, d)
+
+
+@inlined
+def _replace_estimates(
+    chain: Chain, beads: Beads, plan: Plan, h: float, i: int
+) -> None:
+    """Take a contact's share away from the pair's estimates of errors: it is corrected."""
+    for q in range(len(plan.scheme.errors)):
+        seen = integral(plan.scheme.errors[q], beads.points[2])
+        seen *= chain.A[i] * error_scale(plan, h, q)
+        beads.errors[q, i] += seen * chain.inverse[i]
+        beads.errors[q, i + 1] -= seen * chain.inverse[i + 1]
+
+
+@inlined
+def _correct_heat(
+    chain: Chain, beads: Beads, pair: Pair, i: int, work: float, stored: float
+) -> None:
+    """Correct the heat of a step: the work of a contact's force, less the energy it stores."""
+    law = chain.laws[chain.law[i]]
+    last = len(pair.nodes) - 1
+    heat = work - stored
+    d, slope, force = beads.points
+    for s in range(last + 1):
+        lost = (force[s] - elastic(law, d[s])) * slope[s]
+        heat -= pair.impulses[last, s] * lost
+        beads.books[HEAT_ERROR] += chain.A[i] * pair.errors[1, s] * lost
+    beads.books[HEAT] += chain.A[i] * heat
+
+
+@inlined
+def _correct_work(
+    chain: Chain, beads: Beads, pair: Pair, drive: kinks.Curve, work: float
+) -> None:
+    """Correct the work of the drive, which moves the first bead along a curve, in a step."""
+    last = len(pair.nodes) - 1
+    A = chain.A[0]
+    beads.books[WORK] = A * work
+    for s in range(last + 1):
+        _, speed = kinks.value_and_slope(drive, pair.nodes[s])
+        power = A * beads.points[2, s] * speed
+        beads.books[WORK] -= pair.impulses[last, s] * power
+        beads.books[WORK_ERROR] += pair.errors[1, s] * power
+
+
+@part
+def _count_error(books: Array, missed: float, near: float, far: float) -> None:
+    """Count an error of a contact's impulse, over the tolerance of velocities, for both beads.
+
+    near, far : inverse masses of the two beads.
+    """
+    books[SQUARES] += missed * missed * (near * near + far * far)
+
+
+@inlined
+def _correct_neighbour(
+    chain: Chain,
+    beads: Beads,
+    plan: Plan,
+    t: float,
+    h: float,
+    n: int,
+    share: float,
+    moment: float,
+    third: float,
+    jump: float,
+) -> None:
+    """Correct the impulse of contact n by the moments of a corrected contact beside it.
+
+    share : δ of contact n is moved by this times a moment. jump : of the force of the corrected
+    contact, per unit of share.
+    """
+    law = chain.laws[chain.law[n]]
+    A = chain.A[n]
+    r = chain.r[n]
+    near = chain.inverse[n]
+    far = chain.inverse[n + 1]
+    d = chain.rest[n] + beads.next_y[n] - beads.next_y[n + 1]
+    rate = beads.next_v[n] - beads.next_v[n + 1]
+    if jump != 0.0 and beads.marks[n] > 0.0:
+        # The jump bends the neighbour's curve, too, and shifts the place of its own jump.
+        fast = abs(rate)
+        own = A * push(law, r, kinks.OPENS, fast)
+        shift = _UNBENT * h * h * abs(jump * share)
+        missed = own * min(shift / max(fast, kinks.OPENS), h)
+        _count_error(beads.books, missed / plan.v, near, far)
+    elif jump != 0.0 and r > 0.0 and not law.sticks:
+        missed = _clipped(chain, beads, plan.scheme, t, h, n)
+        heated = missed * (beads.v[n] - beads.v[n + 1]) / plan.energy
+        beads.books[SQUARES] += heated * heated
+        _count_error(beads.books, missed / plan.v, near, far)
+    pushes = d > 0.0 and beads.force[1, n + 1] + chain.load[n] > 0.0
+    if pushes or law.pulls:
+        resisted = -A * r * drag(law, d) * moment * share
+        more = resisted - A * stiffness(law, d) * third * share
+        beads.next_v[n] -= more * near
+        beads.next_v[n + 1] += more * far
+        _count_error(beads.books, _SECOND * more / plan.v, near, far)
+        # Heat c v² of a neighbour, whose velocity v changes by the correction.
+        beads.books[HEAT] += 2.0 * resisted * rate
+    elif r > 0.0 and not law.sticks:
+        # The neighbour has stopped pushing: its elastic energy turns into heat.
+        beads.books[HEAT] += A * max(elastic(law, d), 0.0) * moment * share
+
+
+@inlined
+def correct_contact(
+    chain: Chain, beads: Beads, plan: Plan, t: float, h: float, i: int
+) -> None:
+    """Correct a step for the pair's error at contact i, which opens or closes."""
+    pair = plan.scheme
+    last = len(pair.nodes) - 1
+    law = chain.laws[chain.law[i]]
+    A = chain.A[i]
+    r = chain.r[i]
+    near = chain.inverse[i]
+    far = chain.inverse[i + 1]
+    both = near + far
+    bend = -A * h * h * both  # of the curve by a force of 1
+    start, end = _ends(chain, beads, h, i)
+    driven = i == 0 and chain.drive.driven
+    drive = _drive_curve(beads, h)
+    force = beads.points[2]
+    impulse = moment = change = steepness = 0.0
+    known = kinks.STRAIGHT
+    # The force also depends on the corrected end, all the more the later it jumps.
+    for _ in range(_ROUNDS):
+        d = end[0] - both * moment
+        rise = end[1] - both * h * impulse
+        own = push(law, r, d, rise / h) - push(law, r, end[0], end[1] / h)
+        corrected = d, rise, end[2] + bend * own
+        found = kinks.resolved(law, r, start, corrected, h, bend, known, beads.edges)
+        known = found.curve[6]
+        sums = kinks.integrals(
+            law, r, found, h, 1.0, bend, beads.points, beads.edges, driven, drive
+        )
+        if found.jump == 0.0:
+            _follow_curve(law, r, found.curve, pair, h, beads.points)
+        else:
+            _follow_stages(chain, beads, pair, t, h, i)
+        before = impulse
+        impulse = h * A * (sums.impulse - integral(pair.impulses[last], force))
+        moment = h * h * A * (sums.moment - integral(pair.moments[last], force))
+        steepness = _steepness(law, r, found.top, h)
+        change = impulse - before
+        if r > 0.0 and abs(elastic(law, kinks.OPENS)) < _NO_JUMP:
+            # The next round changes the correction by about this share of the change.
+            change *= min(1.0, abs(bend) * steepness)
+        elif found.jump == 0.0:
+            change = 0.0  # an elastic force hardly depends on the correction
+        if abs(change) * both < _SETTLED * plan.v:
+            break
+    third = h * h * h * A * (sums.third - integral(pair.thirds, force))
+    _replace_estimates(chain, beads, plan, h, i)
+    beads.next_v[i] -= impulse * near
+    beads.next_v[i + 1] += impulse * far
+    beads.next_y[i] -= moment * near
+    beads.next_y[i + 1] += moment * far
+    if chain.damped:
+        stored = kinks.stored(law, corrected[0]) - kinks.stored(law, start[0])
+        _correct_heat(chain, beads, pair, i, sums.work, stored)
+    if driven:
+        _correct_work(chain, beads, pair, drive, sums.driven)
+    if r > 0.0:
+        # ∫ (1 - x) F dx and the heat ∫ r δ^p (dδ/dt)² dt are as wrong as p is, the impulse is not.
+        missed = _MISFIT * abs(sums.rough) * A * r * drag(law, max(found.top, 0.0))
+        heated = 2.0 * missed * abs(start[1]) / h / plan.energy
+        beads.books[SQUARES] += heated * heated
+        _count_error(beads.books, h * missed / plan.y, near, far)
+    _count_error(beads.books, change / plan.v, near, far)
+    if found.top > 0.0:
+        resisted = r * drag(law, found.top) * moment
+        more = A * both * (stiffness(law, found.top) * third + resisted)
+        if found.jump != 0.0:
+            more *= bend * steepness
+        _count_error(beads.books, _SECOND * more / plan.v, near, far)
+    jump = A * found.jump
+    for n, share in ((i - 1, -near), (i + 1, -far)):
+        if n >= 0:
+            _correct_neighbour(chain, beads, plan, t, h, n, share, moment, third, jump)
