@@ -129,6 +129,7 @@ def test_files_of_spheres_are_refused(capsys, tmp_path, old, new, words):
         ({"stiffnesses": [1, 2, 3]}, "wave", "chain.stiffnesses holds 3"),
         ({"law": "hertz2"}, "wave", "chain has both k and law"),
         ({}, "wave --precompression 1", "the file has a precompression of 2"),
+        ({}, "wave --background 1", "the file has a precompression of 2"),
         ({}, "strike --velocity 1", "precompression is 2"),
         (FREE, "strike", "no striker that moves"),
         (FREE, "strike --velocity v", "'v' has no value"),
