@@ -165,8 +165,8 @@ class Pictured(ABC):
         return panels
 
     def _repr_html_(self) -> str:
-        """The one-line description and the picture, for a notebook."""
-        return f"<p>{escape(repr(self))}</p>{svg(self.pictured())}"
+        """The description and the picture, for a notebook."""
+        return f"<pre>{escape(repr(self))}</pre>{svg(self.pictured())}"
 
 
 def svg(panels: Sequence[Panel]) -> str:

@@ -66,10 +66,7 @@ class Bloch:
         # The columns of the matrix
         a, _ = self._carried(one, none)
         _, f = self._carried(none, one)
-        trace = []
-        for a_m, f_m in zip(a, f, strict=True):
-            trace.append(a_m + f_m)
-        return trace
+        return [a_m + f_m for a_m, f_m in zip(a, f, strict=True)]
 
     def _carried(
         self,

@@ -47,14 +47,6 @@ def squared_speed(work: sp.Expr, force: sp.Expr, rise: sp.Expr) -> sp.Expr:
     return 2 * (work - force * rise) / rise**2
 
 
-def demand_sound(c0: sp.Expr) -> None:
-    """Raise `lwa.NoSolitaryWave` unless sound runs at the static strain."""
-    if c0.is_zero or c0.is_finite is False:
-        raise NoSolitaryWave(
-            "no sound runs at the static strain, so that no wave is small"
-        )
-
-
 @dataclass(frozen=True)
 class Background(Value):
     """The canonical field of a chain on a static strain.
@@ -154,7 +146,6 @@ class Background(Value):
             Where no sound runs (``p0 = 0`` under most laws), and at ``F″ = 0`` as for ``k = 1``,
             where small waves of any amplitude run at one speed.
         """
-        demand_sound(self.sound_speed)
         return KdV.of_slopes(
             self.sound_speed, self.force(self.p0, 1), self.force(self.p0, 2), self.I
         )
@@ -195,8 +186,12 @@ class KdV(Value):
     def of_slopes(cls, c0: sp.Expr, F1: sp.Expr, F2: sp.Expr, I: sp.Expr) -> Self:
         """Return the equation of a lattice with the slopes ``F′`` and ``F″`` at its static strain.
 
-        Raises `lwa.NoSolitaryWave` where small waves disperse.
+        Raises `lwa.NoSolitaryWave` where no sound runs, and where small waves disperse.
         """
+        if c0.is_zero or c0.is_finite is False:
+            raise NoSolitaryWave(
+                "no sound runs at the static strain, so that no wave is small"
+            )
         if F2.has(sp.nan, sp.oo, sp.zoo):
             raise NoSolitaryWave(
                 "F″ is not finite at the static strain, so that no wave is small"

@@ -129,15 +129,12 @@ class Equilibrium(NamedTuple):
 
     Parameters
     ----------
-    force : Expr
-        The mean force.
     strain : Expr
         The mean strain.
     compressions : tuple of Expr
         The compression δ of each link.
     """
 
-    force: sp.Expr
     strain: sp.Expr
     compressions: tuple[sp.Expr, ...]
 
@@ -270,14 +267,12 @@ class Lattice(Value):
             for link, delta in zip(self.links, compressions, strict=True):
                 length += delta / link.cosine
             strain = length / (self.size * self.spacing)
-            return Equilibrium(load, strain, compressions)
+            return Equilibrium(strain, compressions)
         demand_numbers(load.free_symbols, "numbers are wanted")
         # Without a force all links are open or slack, whatever their laws.
         e = self.statics.mean_compression(float(load)) if load else 0.0
         found = self.statics.compressions(np.array(e))
-        return Equilibrium(
-            load, sp.Float(e) / self.spacing, tuple(map(sp.Float, found))
-        )
+        return Equilibrium(sp.Float(e) / self.spacing, tuple(map(sp.Float, found)))
 
     def energy(self, state: Equilibrium) -> sp.Expr:
         """The energy per particle at rest."""
@@ -314,16 +309,15 @@ class Lattice(Value):
     def statics(self) -> Statics:
         """Static states in floats; raises `lwa.InputError` for symbols."""
         demand_numbers(self.symbols, "numbers are wanted")
-        laws = []
-        factors = []
-        bonds = []
-        for link in self.links:
-            laws.append(tuple(link.law.function(n) for n in range(3)))
-            factors.append(float(link.factor))
-            bonds.append(Bond(link.i, link.j, float(link.cosine)))
-        network = Network(self.size, tuple(bonds))
-        masses = np.array([float(m) for m in self.masses])
-        return Statics(network, masses, tuple(laws), np.array(factors))
+        links = self.links
+        bonds = [Bond(link.i, link.j, float(link.cosine)) for link in links]
+        laws = [tuple(link.law.function(n) for n in range(3)) for link in links]
+        return Statics(
+            Network(self.size, tuple(bonds)),
+            masses=np.array(self.masses, float),
+            laws=tuple(laws),
+            factors=np.array([float(link.factor) for link in links]),
+        )
 
     @cached_property
     def _network(self) -> Network:

@@ -72,11 +72,6 @@ class Grid:
     kernel: Array
     length: Array
 
-    @property
-    def middle(self) -> int:
-        """The row of the node ``s = 1/2``, which is the middle one of all nodes."""
-        return len(self.s) // 2 - int(self.rows.start)
-
     def strains(self, p0: float, B: float) -> Array:
         """The strains at the nodes."""
         # From p0 or p0 + B, whichever is nearer: p has its digits next to a pole at either.
@@ -341,18 +336,20 @@ class Nodes:
         root_of_gap = np.sqrt(above_smaller) * np.sqrt(abs(B))
         return np.asarray(self.grid.length * np.sqrt(J) / root_of_gap)
 
-    @property
-    def _to_places(self) -> Array:
-        """Matrix from the distances dξ between rows to the places ξ of the rows.
+    @cached_property
+    def places(self) -> Array:
+        """The distances ξ of the rows from the peak, from the peak on.
 
-        It has the columns of `Grid.to_peak` that belong to rows: a row's ξ is the sum from there to
-        the peak.
+        A row's ξ is the sum of the distances dξ between rows from there to the peak.
         """
-        return self.grid.to_peak[:, self.grid.rows]
+        g = self.grid
+        between_rows = g.to_peak[:, g.rows]
+        return g.peak_first(between_rows @ self.distances)
 
     def half_width(self) -> Array:
         """The distance from the peak at which the strain has half of its rise."""
-        return np.asarray(self._to_places[self.grid.middle] @ self.distances)
+        # There s is 1/2, at the middle one of all nodes.
+        return np.asarray(self.places[len(self.grid.s) // 2])
 
     def half_width_of_force(self) -> Array:
         """The distance from the peak at which the force has half of its rise."""
@@ -362,18 +359,15 @@ class Nodes:
         # By how much the force is less than at the peak, in parts of its rise, from 0 at the peak
         # on: `to_peak` sums dF from each row's node to the peak.
         fall = g.peak_first(g.to_peak @ dF) / dF.sum()
-        # The distances ξ of the same rows from the peak
-        xi = g.peak_first(self._to_places @ self.distances)
         # ξ as a function of the fall, at one half
-        return _interpolated(fall, xi, np.array([0.5]))
+        return _interpolated(fall, self.places, np.array([0.5]))
 
     def profile(self, places: Array) -> Array:
         """The ratio v/B at distances from the peak."""
         g = self.grid
         # ln s is interpolated instead of s = v/B: the tail, an exponential, is a line in ξ.
-        xi = g.peak_first(self._to_places @ self.distances)
         logs = g.peak_first(g.logs[g.rows])
-        last = xi[-1]
-        inside = _interpolated(xi, logs, np.minimum(places, last))
+        last = self.places[-1]
+        inside = _interpolated(self.places, logs, np.minimum(places, last))
         # Behind the last node v is below what grids may differ by, or they are refined.
         return np.where(places > last, 0.0, np.exp(inside))

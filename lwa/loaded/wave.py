@@ -27,7 +27,6 @@ errors.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
@@ -60,7 +59,7 @@ from lwa.base.words import ExtentName, QuantityName, one_of
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
 from lwa.law import ContactLaw, for_cell
-from lwa.loaded.background import Background, KdV, demand_sound, squared_speed
+from lwa.loaded.background import Background, KdV, squared_speed
 from lwa.loaded.errors import Bounds, bounds
 from lwa.loaded.lattice import Lattice
 from lwa.loaded.quadrature import Quadrature
@@ -90,7 +89,6 @@ class LoadedWave(States):
     """
 
     def __post_init__(self) -> None:
-        super().__post_init__()
         if self.law is not None and self.law.homogeneous:
             reason = _refusal_under_power(
                 self.law.exponent - 1, self.background, self.strain
@@ -176,7 +174,6 @@ class LoadedWave(States):
         NoSolitaryWave
             Where no sound runs, and where small waves disperse.
         """
-        demand_sound(self.sound_speed)
         D = self.chain.spacing
         if isinstance(self.chain, Cell):
             slope = self.law.at(self.exact_static_compression, 1)
@@ -297,21 +294,15 @@ class LoadedWave(States):
         p0 = self.exact_static_compression
         B = self.exact_compression
         if self.law is None:
-            resonance = self.lattice.resonance_sum / self.lattice.mass**2
-            return Quadrature(self._samples, number(p0), number(B), number(resonance))
+            lattice = self.lattice
+            resonance = number(lattice.resonance_sum / lattice.mass**2)
+            return Quadrature(lattice.statics.samples, number(p0), number(B), resonance)
         if self.law.homogeneous:
             # A power has no length of its own: the unit is the larger compression, at the peak,
             # or for k < 1, where waves lower it, ahead.
             unit = p0 + B if (self.law.exponent - 1).is_positive else p0
             p0 = p0 / unit
             B = B / unit
-        return Quadrature(self._samples, number(p0), number(B))
-
-    @cached_property
-    def _samples(self) -> Callable[[Array], Samples]:
-        """The function of mean compressions that gives F′, F″ and I."""
-        if self.law is None:
-            return self.lattice.statics.samples
         slope = self.law.function(1)
         bend = self.law.function(2)
         # All contacts of a cell share one law up to a factor, so that I is one number.
@@ -321,7 +312,7 @@ class LoadedWave(States):
             dispersion = np.full(e.shape, I)
             return Samples(slope(e), bend(e), dispersion)
 
-        return samples
+        return Quadrature(samples, number(p0), number(B))
 
 
 def _refusal_under_power(excess: sp.Expr, p0: sp.Expr, B: sp.Expr) -> str:

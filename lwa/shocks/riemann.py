@@ -16,14 +16,23 @@ that the speeds are ``2/r - 1`` and ``√(r(r-1))/arcosh √r``.
 
 Doubling rule. The leading pulse is the solitary wave on p₊ whose beads move at 2 v_p at most; exact
 for Toda's law, small jumps (KdV) and hard spheres. `lwa.shocks.waves` has the closed forms of the
-canonical wave, and the errors of both rules.
+canonical wave.
+
+Errors were measured on driven chains of equal beads, until their pulses were steady: powers
+with a load, k from 0.3 to 7, and without, k from 1.05 to 10, and the laws hertz2, magnetic,
+polynomial and lennard-jones, c₋/c₊ up to 200. `tests/test_errors.py` drives some of them again,
+random ones among them. The measure is the pulse's steepness Δ, by its saturating form::
+
+    ρ = 1 - e^{-Δ} = 1 - V²/F′(p₊+B),
+
+which vanishes for small jumps, where every rule is exact, and tends to 1 for hard spheres.
 """
 
 from __future__ import annotations
 
 import math
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal, get_args
 
@@ -38,8 +47,8 @@ from lwa.base.exact import (
     one_of,
     read_exact,
 )
-from lwa.base.frozen import Estimate, Value
-from lwa.cell import Cell
+from lwa.base.frozen import Estimate
+from lwa.cell import Cell, Parametric
 from lwa.law import ContactLaw
 from lwa.loaded.background import Background
 from lwa.shocks.waves import (
@@ -47,7 +56,6 @@ from lwa.shocks.waves import (
     WORKING,
     Pulse,
     demand_one_sign,
-    speed_error,
     velocity,
 )
 
@@ -71,7 +79,7 @@ A theorem for Toda's law (Venakides, Deift & Oba, Comm. Pure Appl. Math. 44, 117
 
 
 @dataclass(frozen=True, repr=False)
-class Shock(Value):
+class Shock(Parametric):
     """The front between two strains (see `shock`).
 
     Speeds are ``dx/dt`` in the units of the cell. `rise`, `peak` and `peak_force` are those of the
@@ -264,9 +272,8 @@ class Shock(Value):
             value = number(getattr(front, name))
         try:
             relative = front._relative_error(name, rule)
-        except (
-            InputError
-        ):  # a rarefaction, or an unknown pulse: errors are measured by the pulse
+        except InputError:
+            # Errors are measured by the pulse: a rarefaction has none.
             relative = math.nan
         return Estimate(value, abs(value) * relative)
 
@@ -278,18 +285,13 @@ class Shock(Value):
         Raises `lwa.InputError` if other symbols are left.
         """
         demand_numbers(self._free, "errors are computed in numbers")
-        units = dict.fromkeys(self.cell.symbols, sp.S.One)
-        return replace(
-            self,
-            cell=self.cell.replaced(units),
-            behind=self.behind.xreplace(units),
-            ahead=self.ahead.xreplace(units),
-        )
+        return self.replaced(dict.fromkeys(self.cell.symbols, sp.S.One))
 
     def _relative_error(self, name: EstimatedName, rule: RuleName) -> float:
         """The relative error of a result of a shock."""
         rho = self._pulse.rho
-        doubling = speed_error(rho)
+        # The second term is the canonical wave's: 5 % too fast for cubic contacts without load.
+        doubling = 0.01 * rho + 0.08 * rho**3
         if name == "leading_speed" and rule == "doubling":
             return doubling
         if name in ("leading_speed", "trailing_speed"):

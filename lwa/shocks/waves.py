@@ -18,15 +18,6 @@ A contact's strain is the mean of ``u_x`` over a site, ``u_x + D² u_xxx/24`` to
 wave. With ``u_xxx`` at the peak from the wave's equation, ``I = D²/12``, it rises by::
 
     B - [F(p0+B) - F(p0) - V² B]/(2 F′(p0+B)).
-
-**Errors** were measured on driven chains of equal beads, until their pulses were steady: powers
-with a load, k from 0.3 to 7, and without, k from 1.05 to 10, and the laws hertz2, magnetic,
-polynomial and lennard-jones, c₋/c₊ up to 200. `tests/test_errors.py` drives some of them again,
-random ones among them. The measure is the pulse's steepness Δ, by its saturating form::
-
-    ρ = 1 - e^{-Δ} = 1 - V²/F′(p₊+B),
-
-which vanishes for small jumps, where every rule is exact, and tends to 1 for hard spheres.
 """
 
 from __future__ import annotations
@@ -220,7 +211,7 @@ class Pulse(Value):
 
     @property
     def rho(self) -> float:
-        """The steepness Δ of the wave (`lwa.loaded.errors`) by its saturating form ρ."""
+        """The steepness Δ of the wave (`lwa.loaded.errors`) by its form ``ρ = 1 - e^{-Δ}``."""
         slope = self.field.force(self.field.p0 + self.rise, 1)
         return float(1 - self.speed**2 / slope)
 
@@ -240,9 +231,3 @@ class Pulse(Value):
     def _bare(self) -> bool:
         """True for a power law without load."""
         return self.field.law.homogeneous and bool(self.field.p0.is_zero)
-
-
-def speed_error(rho: float) -> float:
-    """Relative error of the doubling rule's speed on the canonical wave of the steepness ρ."""
-    # The second term is the canonical wave's: 5 % too fast for cubic contacts without load.
-    return 0.01 * rho + 0.08 * rho**3

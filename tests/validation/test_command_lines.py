@@ -61,7 +61,7 @@ def pulses(draw, size):
     return text
 
 
-@pytest.mark.parametrize("count", [80, pytest.param(400, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [40, pytest.param(400, marks=pytest.mark.slow)])
 @pytest.mark.filterwarnings("error")
 def test_a_random_line_gives_numbers_or_one_line_of_refusal(capsys, folder, count):
     draw = random.Random(count)

@@ -110,8 +110,8 @@ def test_the_error_of_an_exponent_is_the_worst_of_all_signs():
 
 
 def test_paper():
-    """The ± of 91 numbers, over blows of hardly any and of much force."""
-    for velocity in (0.001, 0.03, 0.3, 1.37, 5, 20, 60):
+    """The ± of 39 numbers, over blows of hardly any and of much force."""
+    for velocity in (0.001, 1.37, 60):
         found, finer = (
             {row[0]: row[2] for row in paper.paper(velocity, rtol=rtol).tables[0].rows}
             for rtol in (1e-9, FINER)

@@ -17,7 +17,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import update_wrapper
-from html import escape
 from pathlib import Path
 from typing import Any, Generic, ParamSpec, TypeVar
 
@@ -29,7 +28,7 @@ from lwa.base.progress import bar, shown
 from lwa.command.cli import HELP, called, help_end
 from lwa.command.cli import run as run_command
 from lwa.command.options import Words, quantities, quantity
-from validation.pictures import SUFFIXES, Panel, Pictured, svg
+from validation.pictures import SUFFIXES, Panel, Pictured
 from validation.report.table import WIDTH, Finding, Table, findings_table, plain, wrap
 from validation.scenes.checks import Failure, SceneError
 
@@ -122,10 +121,6 @@ class Report(Pictured):
         parts += [wrap(note, width) for note in self.notes]
         parts.append(self.verdict)
         return "\n\n".join(filter(None, parts))
-
-    def _repr_html_(self) -> str:
-        """The text and the picture, for a notebook."""
-        return f"<pre>{escape(self.text())}</pre>{svg(self.panels)}"
 
     def document(self) -> dict[str, Any]:
         """The report for JSON: ``data``, the tables, and the findings.

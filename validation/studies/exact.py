@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from lwa import Estimate
 from lwa.base.words import QUANTITIES
 from lwa.command.options import quantities
 from validation.pictures import Curve, Panel
@@ -61,20 +62,17 @@ def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
         "residual_value": wave.residual,
         "solitary": wave.solitary,
     }
-    # Numbers of the wave as a whole; the others are those of a quantity.
-    numbers: tuple[Number, ...] = ("c2", "c", "tail")
-    for name in numbers:
-        number = wave.estimate(name)
-        data |= {f"{name}_value": number.value, f"{name}_error_value": number.error}
     rows: list[dict[str, Any]] = []
+    # The numbers of the wave as a whole, then the same ones as in the rows, by quantity.
+    numbers: tuple[Number, ...] = ("c2", "c", "tail")
+    found: dict[str, Estimate] = {name: wave.estimate(name) for name in numbers}
     for quantity in QUANTITIES:
         amplitude = wave.estimate("peak", quantity)
         fwhm = wave.estimate("fwhm", quantity)
         rows.append({"of": quantity, "amplitude": amplitude, "fwhm": fwhm})
-    # The same numbers by quantity, besides the rows of the printed table.
-    for key in ("amplitude", "fwhm"):
-        data[f"{key}_value"] = {row["of"]: row[key].value for row in rows}
-        data[f"{key}_error_value"] = {row["of"]: row[key].error for row in rows}
+        found |= {f"amplitude.{quantity}": amplitude, f"fwhm.{quantity}": fwhm}
+    columns = [Column(name, error=True) for name in found]
+    data |= Table.of(columns, [found]).document()[0]
     table = Table.of(_COLUMNS, rows, "rows", note=_NOTE, errors=_ERRORS)
     # The wave's own masses: a ratio that was given in seven digits is a special one.
     return Report(

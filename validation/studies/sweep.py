@@ -9,9 +9,9 @@ with contact force 1 at its peak, in the paper's closure and for the full closur
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager
 from itertools import islice, product
 from pathlib import Path
 from queue import SimpleQueue
@@ -44,6 +44,9 @@ CLOSURES = {"linear": "paper's closure", "canonical": "full closure, canonical f
 """Theories beside the lattice, with their labels."""
 
 _MOST = 1000  # values of an axis; a grid of 10⁶ points takes days
+MEMORY = Path(":memory:")
+"""SQLite's name of a database that is not kept, of a sweep without a file."""
+
 AHEAD = 1000  # points that wait for a worker, whatever the size of the grid
 Axis = Sequence[Rational]
 Grids = Mapping[str, Array]  # quantity → (len(ks), len(omegas)); NaN where missing
@@ -225,13 +228,12 @@ def _values(given: str | Iterable[Any], name: str) -> tuple[Rational, ...]:
 def measured(
     ks: Axis,
     omegas: Axis,
-    stretch: int,
-    file: PointFile | None,
+    file: PointFile,
     workers: AbstractContextManager[Executor],
     progress: Progress[Key],
 ) -> list[Point]:
     """Measure the points of a grid that are not yet in the file, by the executor of ``workers``."""
-    with workers as executor, file.opened() if file else _memory() as (points, keep):
+    with workers as executor, file.opened() as (points, keep):
         # Points of an earlier sweep with this file are not computed again.
         missing = [key for key in product(ks, omegas) if key not in points]
         waiting = iter(missing)
@@ -241,7 +243,7 @@ def measured(
             for _ in progress(missing):
                 # As many new points as are done: an executor keeps all that it is given.
                 for key in islice(waiting, AHEAD - len(ahead)):
-                    future = executor.submit(point, *key, stretch)
+                    future = executor.submit(point, *key, file.stretch)
                     ahead.add(future)
                     future.add_done_callback(done.put)
                 # The first that is done, whatever its place in the grid.
@@ -254,23 +256,15 @@ def measured(
             gone = "the workers are gone before the sweep is done: killed, or out of memory?"
             raise Failure(gone) from error
         except KeyboardInterrupt:
-            kept = f"the same line goes on from {file.path}" if file else _LOST
+            kept = f"the same line goes on from {file.path}"
+            if file.path == MEMORY:
+                kept = "--file points.sqlite keeps finished points for the same line"
             raise KeyboardInterrupt(kept) from None
         finally:
             # After a failure the points that no worker has begun would still be computed.
             for future in ahead:
                 future.cancel()
     return [points[key] for key in product(ks, omegas)]
-
-
-_LOST = "--file points.sqlite keeps finished points, from which the same line goes on"
-
-
-def _memory() -> AbstractContextManager[
-    tuple[dict[Key, Point], Callable[[Point], None]]
-]:
-    """Open a sweep without a file, as `PointFile.opened` opens one with a file."""
-    return nullcontext(({}, lambda point: None))
 
 
 _RANGES = "values and ranges start:stop:count, separated by commas."
@@ -354,8 +348,9 @@ def sweep(
     # Before the file: a refusal leaves none behind.
     if address is not None and jobs is not None:
         raise InputError(f"jobs is {jobs}: a cluster has its own workers", jobs=None)
-    points = None
+    path = MEMORY
     if file is not None:
-        points = PointFile(output_file("file", str(file), (".sqlite",)), stretch)
+        path = output_file("file", str(file), (".sqlite",))
     workers = threads(jobs, "jobs") if address is None else cluster(address)
-    return report(*grid, measured(*grid, stretch, points, workers, progress), stretch)
+    points = measured(*grid, PointFile(path, stretch), workers, progress)
+    return report(*grid, points, stretch)

@@ -118,7 +118,7 @@ def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWa
     wanted = f"exact waves are found for k from 1.01 to {most:g}"
     k = between(k, "k", 1.01, most, f"{wanted} on a background" if p0 else wanted)
     if given[0] == given[-1]:
-        wave = _pressed(k, p0) if p0 else _uniform(k)
+        wave = _equal(k, p0)
         return replace(wave, masses=(given[0], given[0]), c2=wave.c2 / given[0])
     if p0:
         raise SceneError(
@@ -146,14 +146,11 @@ def _background(value: Any) -> float:
     return p0
 
 
-def _uniform(k: float) -> ExactWave:
-    """Return the solitary wave of masses 1, 1 without a background."""
-    wave = solve(newton.Problem(_EQUAL, min(k, STEEP)))
-    return solve(newton.Problem(_EQUAL, k), wave) if k > STEEP else wave
-
-
-def _pressed(k: float, p0: float) -> ExactWave:
-    """Return the wave of equal masses on a background."""
+def _equal(k: float, p0: float) -> ExactWave:
+    """Return the wave of masses 1, 1 on a background, or on none."""
+    if not p0:
+        wave = solve(newton.Problem(_EQUAL, min(k, STEEP)))
+        return solve(newton.Problem(_EQUAL, k), wave) if k > STEEP else wave
     chain = Cell((1,), spacing=1)
     theory = loaded_wave(chain, rise=1 - p0, background=p0, k=k)
     # The wave ends as e^{-κ|ξ|} with (c/c0)² = (sinh(κ/2)/(κ/2))².
@@ -171,7 +168,7 @@ def _pressed(k: float, p0: float) -> ExactWave:
     problem = newton.Problem(_EQUAL, k, L, max(80, math.ceil(points)), p0)
     if k > STEEP and p0 < 0.5:
         # The theory's wave is too wide: from the wave on a lower background.
-        lower = _pressed(k, p0 - LESS) if p0 > LESS else _uniform(k)
+        lower = _equal(k, max(p0 - LESS, 0))
         return _converged(problem, lower.force(problem.xi), lower.c2)
     force = newton.rise(theory.along(problem.xi, "strain"), k, p0)
     return _converged(problem, force, float(theory.speed) ** 2)

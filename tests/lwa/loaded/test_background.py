@@ -69,3 +69,9 @@ def test_a_law_that_is_no_power_has_waves_without_a_load(cell):
     light = loaded_wave(cell, force="1e-30", law=law)
     width = canonical_wave(cell, "3/2").fwhm()
     assert float(light.fwhm("strain") / width) == pytest.approx(1, rel=1e-12)
+
+
+def test_symbols_take_their_numbers():
+    wave = canonical_wave(Cell(["m"]), "3/2").at_force("F", precompression="F0")
+    known = loaded_wave(Cell([2], spacing=1), force=7, precompression=2, k="3/2")
+    assert wave.at(m=2, F=7, F0=2, D=1) == known

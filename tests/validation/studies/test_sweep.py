@@ -22,7 +22,7 @@ from validation.lattice.threads import cluster, threads
 from validation.pulses.steady import LABELS, Point, PointFile
 from validation.report import study
 from validation.scenes.checks import Failure
-from validation.studies.sweep import AHEAD, measured, report, sweep, theory
+from validation.studies.sweep import AHEAD, MEMORY, measured, report, sweep, theory
 
 R = sp.Rational
 QUICK = {"stretch": 2, "jobs": 1}  # the shortest chains, one after another
@@ -31,7 +31,7 @@ KS, OMEGAS = (R(3),), (R(1, 4), R(1, 2), R(3, 4), R(1))
 
 @pytest.fixture(scope="module")
 def reference():
-    return measured(KS, OMEGAS, 2, None, threads(1), iter)
+    return measured(KS, OMEGAS, PointFile(MEMORY, 2), threads(1), iter)
 
 
 def numbers(found):
@@ -141,7 +141,7 @@ def test_few_points_wait_for_a_worker():
             todo.append(key)
             yield key
 
-    found = measured(*grid, 2, None, Counting(2), progress)
+    found = measured(*grid, PointFile(MEMORY, 2), Counting(2), progress)
     assert [(p.k, p.omega) for p in found] == [*product(*grid)]
     assert most <= AHEAD
 
