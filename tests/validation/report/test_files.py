@@ -25,9 +25,14 @@ def test_a_place_that_cannot_take_a_file(tmp_path, name, message):
 def test_an_interrupt_while_writing_leaves_the_old_file(tmp_path):
     file = tmp_path / ("a" * 251 + ".svg")  # the longest name that a disk takes
     file.write_text("old")
-    with pytest.raises(KeyboardInterrupt), replacing(file) as new:
-        new.write_text("half")
-        raise KeyboardInterrupt
+
+    def stop():
+        with replacing(file) as new:
+            new.write_text("half")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        stop()
     assert file.read_text() == "old"
     assert list(tmp_path.iterdir()) == [file]
 
