@@ -101,6 +101,7 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
         return Mapping.__eq__(self, other)
 
     def __hash__(self) -> int:
+        # The jets alone: to convert all coefficients takes long.
         return hash(frozenset(self.raw))
 
     def __repr__(self) -> str:
@@ -248,6 +249,7 @@ def latex_by_order(
     """
     summands = [(sp.S.One, summand) for summand in leading]
     for n, of_order in orders.items():
+        # An order that vanishes is left out.
         if not of_order:
             continue
         if most is not None and n > most:

@@ -127,7 +127,9 @@ class LatticeWave(Parametric):
         # A cell of equal beads has one.
         ratio = self.cell.masses[-1] / self.cell.masses[0]
         # Which of two symbols is less is not known.
-        return 1 / ratio if ratio.is_number and ratio > 1 else ratio
+        if ratio.is_number and ratio > 1:
+            return 1 / ratio
+        return ratio
 
     @property
     def follows(self) -> bool:
@@ -160,6 +162,7 @@ class LatticeWave(Parametric):
     def _error(self, quantity: str) -> float:
         """The relative error of a quantity; NaN if unknown."""
         error = joined_error(quantity, self.k)
+        # Each is a bound of its own part of the deviation.
         if self.mass_ratio != 1:
             error += dimer_error(quantity, self.k, self.mass_ratio)
         return error
@@ -314,6 +317,7 @@ class LatticeWave(Parametric):
             For another language, and for symbols that are no names of variables.
         """
         cell = self.cell
+        # Each function has those of these arguments that it depends on, in this order.
         functions = Functions(
             self.force, self.k, *cell.masses, *cell.stiffnesses, cell.spacing
         )

@@ -160,6 +160,7 @@ def _moved(
     """The series at Z + a t^n in place of Z, a a polynomial in Z, by Taylor's formula."""
     moved = list(S)
     derivatives = S
+    # The j-th derivative stands at t^{jn}; powers beyond the series are left out.
     for j in range(1, (len(S) - 1) // n + 1):
         derivatives = [term.derivative(0) / j for term in derivatives]
         for m in range(j * n, len(S)):

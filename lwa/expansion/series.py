@@ -176,6 +176,7 @@ class EpsilonSeries(Value):
         epsilon = self.k - 1
         unit = self.prefactor * epsilon**self.power
         relative = 2**-52  # the sum leaves as a float, whose last digit is rounded
+        # Terms of both signs cancel: they are summed with more digits than a float has.
         with mpmath.workdps(TERM_DIGITS):
             x, scale = decimals([epsilon / self.k, unit], TERM_DIGITS)
             whole = _transformed(self.coefficients)

@@ -96,6 +96,7 @@ class Strike(Value):
         velocity = 2 * float(self.mass * self.velocity) / (float(self.mass) + particle)
         # The square of the velocity may be beyond a double where its power is not.
         power = float(self.k / (self.k + 1))
+        # The energy of the wave of force 1 times F^{(k+1)/k} is the share of ½ M w².
         at_rest = share * particle / (2 * unit.estimate("energy").value)
         try:
             force = at_rest**power * velocity ** (2 * power)

@@ -7,7 +7,7 @@ import pytest
 
 from tests.validation.lattice.scenes import chain
 from validation.lattice.simulate import simulate
-from validation.scenes.forcing import Damping, Drive, damping_ratio, restitution
+from validation.scenes.forcing import Damping, Drive
 
 
 @pytest.mark.parametrize(
@@ -31,13 +31,6 @@ def test_a_bead_leaves_a_wall_with_a_share_of_its_speed():
     damping = Damping("restitution", 0.4)
     scene = chain((3,), wall=2, velocities=(1,), duration=30, damping=damping)
     assert simulate(scene).velocities == pytest.approx([-0.4], abs=1e-8)
-
-
-def test_the_damping_ratio_of_a_share():
-    """The share is 1 - πζ + O(ζ²) of a nearly elastic contact, and e^{-2} at ζ = 1."""
-    assert damping_ratio(1 - 1e-7) == pytest.approx(1e-7 / math.pi, rel=2e-7)
-    assert damping_ratio(math.exp(-2)) == pytest.approx(1, abs=1e-8)
-    assert restitution(damping_ratio(0.01)) == pytest.approx(0.01, rel=1e-14)
 
 
 @pytest.mark.parametrize(

@@ -161,23 +161,11 @@ def test_sensors_change_nothing(method, damping):
     """Forces and motion, with damped contacts, too."""
     damped = Damping("kuwabara_kono", damping) if damping else None
     bare = struck((1, 0.5), 12, duration=9, damping=damped)
-    beads, contacts = [0, 3, 11], [7, 2, 3]
-    some = replace(bare, contact_sensors=contacts, bead_sensors=beads)
-    every = replace(bare, contact_sensors=range(11), bead_sensors=range(12))
-    plain, seen, all_seen = (simulate(s, method=method) for s in (bare, some, every))
-    np.testing.assert_array_equal(seen.displacements, plain.displacements)
-    assert seen.dissipated == plain.dissipated
+    some = replace(bare, contact_sensors=(7, 2, 3), bead_sensors=(0, 3, 11))
+    plain, seen = (simulate(scene, method=method) for scene in (bare, some))
+    np.testing.assert_array_equal(seen.end, plain.end)
     assert plain.contact_force.shape == plain.bead_velocity.shape == (0, 1001)
-    forces = all_seen.contact_force
-    np.testing.assert_allclose(seen.contact_force, forces[contacts], atol=1e-14)
-    around = np.pad(forces, ((1, 1), (0, 0)))  # no contact beyond the ends
-    means = (around[1:] + around[:-1]) / 2
-    np.testing.assert_allclose(seen.bead_force, means[beads], atol=1e-14)
     assert seen.time[[0, -1]].tolist() == [0, 9]
-    # the record ends with the final state, up to the interpolant's last digits
-    ends = seen.bead_velocity[:, -1], seen.bead_displacement[:, -1]
-    final = seen.velocities[beads], seen.displacements[beads]
-    np.testing.assert_allclose(ends, final, atol=1e-12)
     with pytest.raises(ValueError, match="read-only"):
         seen.time[0] = 1
 

@@ -79,7 +79,7 @@ def _add_stages(
 
 @summed
 def integral(row: Array, values: Array) -> float:
-    """Return Σ row[s] values[s] over the stages s."""
+    """Return ``Σ row[s] values[s]`` over the stages s."""
     total = 0.0
     for s in range(index(len(row))):
         total += row[s] * values[s]
