@@ -27,6 +27,7 @@ from lwa.base.exact import (
     InputError,
     demand_numbers,
     integer,
+    number,
     positive,
     shorten,
 )
@@ -278,10 +279,4 @@ class LoadedChain(Value):
         rate = self.sound_speed / D  # ω/Ω, in 1/s for a cell in SI
         # A symbol is the unit of length.
         length = sp.S.One if D.is_Symbol else D
-        free = rate.free_symbols | length.free_symbols
-        demand_numbers(free, "bands want numbers")
-        return replace(
-            self.springs.bands,
-            rate=float(rate),
-            length=float(length),
-        )
+        return replace(self.springs.bands, rate=number(rate), length=number(length))

@@ -142,11 +142,17 @@ def _front(cell: Cell, law: ContactLaw, behind: sp.Expr, ahead: sp.Expr) -> Shoc
             raise InputError(
                 f"{name} is 0 and k {law.exponent}: a front without load wants k > 1"
             )
-    _demand_resolved(behind, ahead)
+    # Equal strains are refused below, with the words for equal speeds of sound. Of springs the jump
+    # may be a number where the strains are not.
+    jump = abs(behind - ahead)
+    numbers = not sp.Tuple(behind, ahead).free_symbols
+    if numbers and 0 < jump < SMALLEST * max(abs(behind), abs(ahead)):
+        raise InputError(
+            f"the jump of the strain is {sp.N(jump, 3)}: 1e-15 of it at least is wanted"
+        )
     strains = _floats(law, behind, ahead)
     # The spacing only scales the results of numbers under a power law. Elsewhere it stands in
     # sums with floats, whose sign is not known.
-    numbers = not any(p.free_symbols for p in strains)
     in_sums = cell.spacing.is_Symbol and not (law.homogeneous and numbers)
     if in_sums and any(p.has(sp.Float) for p in strains):
         raise InputError(
@@ -161,19 +167,6 @@ def _front(cell: Cell, law: ContactLaw, behind: sp.Expr, ahead: sp.Expr) -> Shoc
             "sound is as fast behind as ahead: there is no shock and no rarefaction"
         )
     return front
-
-
-def _demand_resolved(behind: sp.Expr, ahead: sp.Expr) -> None:
-    """Raise `lwa.InputError` for a jump that is too small for results of 30 digits."""
-    jump = abs(behind - ahead)
-    # Equal strains are refused later, with the words for equal speeds of sound. Of springs the
-    # jump may be a number where the strains are not.
-    if jump.is_zero or sp.Tuple(behind, ahead).free_symbols:
-        return
-    if jump < SMALLEST * max(abs(behind), abs(ahead)):
-        raise InputError(
-            f"the jump of the strain is {sp.N(jump, 3)}: 1e-15 of it at least is wanted"
-        )
 
 
 def _floats(law: ContactLaw, *values: sp.Expr) -> tuple[sp.Expr, ...]:

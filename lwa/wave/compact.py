@@ -56,14 +56,15 @@ class CompactWave(Arch):
 
     def latex_rows(self) -> list[str]:
         arch = rf"\cos^{{{latex.expression(self.m)}}}(\beta \xi)"
-        return [
-            rf"v = u_{{x}} = B {arch}, \quad |\xi| \leq \frac{{\pi}}{{2\beta}}",
-            latex.row(r"\beta", self.beta),
-            latex.row(r"\frac{\pi}{\beta}", self.width),
-            latex.row(latex.fwhm("strain"), self.fwhm("strain")),
-            latex.row(latex.fwhm("force"), self.fwhm("force")),
-            latex.row("V_{s}", self.speed()),
-        ]
+        wave = rf"v = u_{{x}} = B {arch}, \quad |\xi| \leq \frac{{\pi}}{{2\beta}}"
+        values = {
+            r"\beta": self.beta,
+            r"\frac{\pi}{\beta}": self.width,
+            latex.fwhm("strain"): self.fwhm("strain"),
+            latex.fwhm("force"): self.fwhm("force"),
+            "V_{s}": self.speed(),
+        }
+        return [wave, *latex.rows(values)]
 
     @overload
     def at_force(self, F: Any = "F", of: BearerName = "contact") -> PhysicalWave: ...

@@ -104,7 +104,7 @@ class PhysicalWave(Parametric):
         # βD/2. `Arch.beta` is the same number, but takes the roots of the numerator and of the
         # denominator of S apart: with symbols √S in one root is shorter.
         angle = (k - 1) / (4 * sp.sqrt(self.wave.coefficient_sum))
-        exponent = 2 * k / (k - 1)  # mk
+        exponent = k * self.wave.m
         # At ξ = 0 the mean of cos^{mk}(βξ ± angle) over both contacts has its maximum only where it
         # is concave: its second derivative has the sign of mk sin² angle - 1.
         if angle.is_number and not (

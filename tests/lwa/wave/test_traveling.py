@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from lwa import Cell, Dimer, canonical_wave, homogenize
+from lwa import Dimer, homogenize
 from tests.identity import same
 
 
@@ -12,18 +12,6 @@ def test_complex_roots_do_occur_and_leave_beta_real():
     assert wave.beta.is_real
     # here H = 0 as well, so that a = (3 - k + H/I) p - 2 does not depend on p
     assert wave.reduction().a == -2
-
-
-def test_compression_and_speeds_are_those_of_the_force():
-    """The strain is the mean of the contacts under F."""
-    stiffnesses, k, F = (3, "1/2", 7), sp.Rational(7, 4), sp.Rational(11, 3)
-    wave = canonical_wave(Cell([1, 2, 5], stiffnesses, "3/2"), k)
-    found = wave.at_force(F)
-    compressions = [(F / sp.Rational(A)) ** (1 / k) for A in stiffnesses]
-    assert same(found.compression, sum(compressions) / 3)
-    assert same(found.strain, found.compression * sp.Rational(2, 3))
-    assert same(found.speed, wave.speed(found.strain) * wave.time_scale)
-    assert same(found.bead_velocity, found.speed * wave.profile(0, found.strain))
 
 
 def test_masses_over_the_whole_range_of_floats():
