@@ -32,10 +32,8 @@ SUFFIXES = (".pdf", ".png", ".svg")
 _STYLES = ("o-", "s--", "^:", "D-.", "v-", "x--", "P:", "*-.")
 _FEW = 40  # points of a curve; markers at more of them would cover the curve
 _ACROSS = 3  # names in a row of a legend above the panel
-_SIZE = (
-    6.0,
-    4.2,
-)  # inches of a panel, with text that a page at full width keeps readable
+# Inches of a panel, with text that a page at full width keeps readable.
+_SIZE = (6.2, 4.2)
 # Six digits of a tick's label do not tell two ticks apart on an axis that is shorter, relative to
 # its largest value. Matplotlib then prints an offset, which needs the data's own unit.
 _SHORTEST = 1e-3
@@ -188,9 +186,7 @@ def figure(panels: Sequence[Panel]) -> Figure:
     columns = min(2, len(panels))
     rows = math.ceil(len(panels) / columns)
     width, height = _SIZE
-    margin = 0.5 if columns == 1 else 0.0  # labels take more of a single panel's width
-    size = (width * columns + margin, height * rows)
-    picture = Figure(figsize=size, layout="constrained")
+    picture = Figure(figsize=(width * columns, height * rows), layout="constrained")
     plots = picture.subplots(rows, columns, squeeze=False).ravel()
     for plot, panel in zip(plots, panels, strict=False):
         draw(plot, panel)
@@ -215,12 +211,12 @@ def draw(plot: Axes, panel: Panel) -> None:
     if not any(curve.label for curve in panel.curves):
         return
     if panel.legend_above:
-        corner = (0, 1)  # the upper left one
+        # Its lower left corner upon the panel's upper left one.
         plot.legend(
             fontsize="small",
             frameon=False,
             loc="lower left",
-            bbox_to_anchor=corner,
+            bbox_to_anchor=(0, 1),
             ncols=_ACROSS,
         )
     else:
@@ -229,9 +225,9 @@ def draw(plot: Axes, panel: Panel) -> None:
 
 def _draw_curve(plot: Axes, curve: Curve, number: int) -> None:
     """Draw the curve of a number in its panel, from 0, which chooses its style."""
+    # Floats: Matplotlib does not draw SymPy's numbers.
     x = np.asarray(curve.x, float)
     y = np.asarray(curve.y, float)
-    error = None if curve.error is None else np.asarray(curve.error, float)
     style = curve.style
     if not style:
         style = _STYLES[number % len(_STYLES)]
@@ -240,7 +236,7 @@ def _draw_curve(plot: Axes, curve: Curve, number: int) -> None:
         style = f"C{number}{style}"
     name = curve.label or None
     # Hollow marks show the curves below.
-    plot.errorbar(x, y, error, fmt=style, ms=4, mfc="none", label=name)
+    plot.errorbar(x, y, curve.error, fmt=style, ms=4, mfc="none", label=name)
 
 
 def _draw_map(plot: Axes, colours: Map) -> None:

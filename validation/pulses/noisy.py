@@ -122,9 +122,11 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
     if _is_exact(f) and step < _EXACT * np.ptp(f):
         return _exact(t, f, size)
     rise, fall = _place(t, f - f[:_EARLY].mean())
-    block = max(1, int(np.count_nonzero((t > rise) & (t < fall))) // _MOST)
+    inside = int(np.count_nonzero((t > rise) & (t < fall)))
+    block = max(1, inside // _MOST)
     whole = len(t) // block * block
-    at, means = np.array((t, f))[:, :whole].reshape(2, -1, block).mean(axis=2)
+    blocks = np.array((t, f))[:, :whole].reshape(2, -1, block)
+    at, means = blocks.mean(axis=2)
     base = Base.before(at, means, rise, fall - rise)
     missing = None
     if base is None:
@@ -230,7 +232,9 @@ def _noise_by_neighbours(f: Array) -> float:
     # A quarter of them lies below 0.3186 of their standard deviation, where the record is calm.
     if len(f) < 5:
         return 0.0
-    return float(np.quantile(np.abs(np.diff(f, 4)), 0.25)) / (0.3186 * math.sqrt(70))
+    differences = np.abs(np.diff(f, 4))
+    calm = float(np.quantile(differences, 0.25))
+    return calm / (0.3186 * math.sqrt(70))
 
 
 def _step(f: Array) -> float:
@@ -270,7 +274,8 @@ def _place(t: Array, f: Array) -> tuple[float, float]:
     # The first pulse: from where the mean first exceeds half of its maximum to where it next falls
     # below _LOW of the maximum.
     start = int(np.argmax(g > g.max() / 2))
-    end = start + int(np.argmax(np.append(g[start:] < _LOW * g.max(), True)))
+    fallen = np.append(g[start:] < _LOW * g.max(), True)
+    end = start + int(np.argmax(fallen))
     top = start + int(np.argmax(g[start:end]))
     # The sides of the pulse, now by its own top: another pulse may be higher.
     below = np.flatnonzero(g < _LOW * g[top])

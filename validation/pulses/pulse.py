@@ -198,7 +198,8 @@ def first_pulse(signal: Signal) -> Pulse:
     f = grid.f
     above = f > f.max() / 2
     start = int(np.argmax(above))
-    stop = start + int(np.argmin(np.append(above[start:], False)))
+    further = np.append(above[start:], False)
+    stop = start + int(np.argmin(further))
     # The pulse may end later, but before the signal is as high again: an echo may be.
     again = np.append(f[stop:] >= f[start:stop].max(), True)
     (pulse,) = grid.highest(stop=stop + int(np.argmax(again)))
@@ -240,10 +241,11 @@ class _Grid:
 
     def __init__(self, signal: Signal, end: float = math.inf) -> None:
         times = signal.times[: np.searchsorted(signal.times, end, side="right")]
-        between = times[:-1, None] + np.diff(times)[:, None] * (
-            np.arange(_POINTS) / _POINTS
-        )
-        self.signal, self.t = signal, np.append(between.ravel(), times[-1])
+        parts = np.arange(_POINTS) / _POINTS
+        steps = np.diff(times)
+        between = times[:-1, None] + steps[:, None] * parts
+        self.signal = signal
+        self.t = np.append(between.ravel(), times[-1])
         self.f = signal(self.t)
         if not self.f.max() > _NOISE * np.abs(self.f).max():
             raise MeasureError(

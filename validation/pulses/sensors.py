@@ -427,10 +427,10 @@ def _elapsed(
     start = first.numbers["arrival"]
     end = second.numbers["arrival"]
     time = Estimate(end.value - start.value, total(start.error, end.error))
-    if time.value <= 0:
-        raise MeasureError("a speed needs a later second arrival")
     if time.value <= time.error:
-        raise MeasureError("the arrivals are equal but for their errors")
+        raise MeasureError(
+            "a speed needs a later second arrival, by more than its error"
+        )
     return time
 
 

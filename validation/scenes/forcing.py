@@ -47,6 +47,7 @@ class Damping:
         value = one_or_each(finite)(self.value, self.kind)
         for number in {*np.atleast_1d(value).tolist()}:
             if self.kind == "restitution":
+                # At 0.01 the damping ratio ζ is 4.8: hardly any rebound is left.
                 wanted = "a coefficient from 0.01 to 1 is wanted"
                 between(number, self.kind, 0.01, 1, wanted)
             elif number or isinstance(value, float):
@@ -106,7 +107,8 @@ def damping_ratio(share: float) -> float:
     """Return the damping ratio of a coefficient of restitution, the inverse of `restitution`."""
     from scipy.optimize import brentq  # start-up
 
-    # all digits of a small ratio as well: near ζ = 0 the share is 1 - πζ
+    # All digits of a small ratio as well: near ζ = 0 the share is 1 - πζ. At ζ = 1000 the share is
+    # 2.5e-7, far below the least that is read.
     return float(
         brentq(lambda ratio: restitution(ratio) - share, 0, 1e3, xtol=1e-20, rtol=1e-15)
     )

@@ -64,6 +64,9 @@ LINES = [
     ("derive --law toda", "one of power"),
     ("derive --law hertz2:1+1", "hertz2's a"),
     ("derive --law general --k 2", "--law and --k are both given"),
+    ("wave --background 1 --force 2", "try: lwa wave --background 1\n"),
+    # The example of the option is what was refused.
+    ("expansion --masses a,b,c,d,e,f,g,h --order 4", "try: lwa expansion --k 11/10"),
     ("derive --law hertz2:delta,1", "'delta': the name means the compression"),
     ("wave --k D --masses 3,1", "k is D: the name is that of the spacing"),
     ("wave --k 29000", "exponents from 1/100 to 1000"),
@@ -126,6 +129,7 @@ def test_files_of_spheres_are_refused(capsys, tmp_path, old, new, words):
         ({"stiffnesses": [1, 2, 3]}, "wave", "chain.stiffnesses holds 3"),
         ({"law": "hertz2"}, "wave", "chain has both k and law"),
         ({}, "wave --precompression 1", "the file has a precompression of 2"),
+        ({}, "wave --background 1", "the file has a precompression of 2"),
         ({}, "strike --velocity 1", "precompression is 2"),
         (FREE, "strike", "no striker that moves"),
         (FREE, "strike --velocity v", "'v' has no value"),

@@ -150,6 +150,8 @@ def test_the_nearest_theory_has_a_name():
         wave = lattice_wave(Cell(masses, spacing=1), k=k)
         assert theory in wave.theory
         assert np.isfinite(wave.estimate("fwhm", "strain", "time").error)
+    m = sp.Symbol("m", positive=True)  # the lighter is known, though the masses are not
+    assert lattice_wave(Cell([m, 2 * m]), k="1.1").mass_ratio == sp.S.Half
     # on the grid of measured ratios, and between two of them, one of which decays
     for ratio, k in (("3/5", 2), ("13/100", 40)):
         with pytest.raises(NoSolitaryWave, match=ratio):

@@ -1,6 +1,6 @@
 """Files as recorders and programs write them, read to the pulses they hold.
 
-Two contacts of a chain, in N or in volts of 12.5 N, each microsecond, with noise of half a percent.
+Pulses at two contacts, in N or in volts of 12.5 N, each microsecond, with noise of half a percent.
 """
 
 import json
@@ -14,34 +14,29 @@ import pytest
 from scipy.signal import lfilter
 
 from tests.commands import ended
-from validation import Scene, cli, simulate
-from validation.pulses.pulse import first_pulse
+from validation import cli
 from validation.scenes.checks import SceneError
 from validation.studies.records import pulses
 
-CONTACTS = (8, 14)
+ARRIVALS = {8: 2.5e-4, 14: 4.3e-4}  # in s, from the blow
+PEAKS = {8: 41.2, 14: 40.9}  # in N
+WIDTH = 55e-6  # FWHM in s
 SPACING = 19.05e-3
 TRIGGER = 1.9e-4  # time at which the clock of the recorder is 0
 CONSTANT = 1e-3  # of a sensor that loses its charge
 
 
 @pytest.fixture(scope="module")
-def chain():
-    """Times and noisy forces at both contacts, and the pulses without noise."""
-    scene = Scene(
-        masses=(29e-3,) * 24,
-        stiffnesses=(9.4e9,) * 23,
-        k=1.5,
-        duration=7e-4,
-        velocities=(0.5,),
-        contact_sensors=tuple(i - 1 for i in CONTACTS),
-    )
-    run = simulate(scene)
-    signals = [run.signal("contact", i) for i in scene.contact_sensors]
-    t = np.linspace(0, scene.duration, 701)
-    forces = np.array([signal(t) for signal in signals])
-    noise = 0.005 * forces.max() * np.random.default_rng(2).normal(size=forces.shape)
-    return t - TRIGGER, forces + noise, [first_pulse(signal) for signal in signals]
+def record():
+    """Times by the recorder's clock, and noisy forces at both contacts: Gaussian pulses."""
+    rng = np.random.default_rng(2)
+    t = np.linspace(0, 7e-4, 701)
+    forces = []
+    for contact, peak in PEAKS.items():
+        x = (t - ARRIVALS[contact]) / WIDTH
+        noise = 0.005 * peak * rng.normal(size=len(t))
+        forces.append(peak * np.exp(-4 * math.log(2) * x**2) + noise)
+    return t - TRIGGER, np.array(forces)
 
 
 # Head of a file; forms of its rows, of which the last is that of all further rows (i the number, t
@@ -243,9 +238,9 @@ LAYOUTS = {
 }
 
 
-def written(layout, chain):
-    """Write the chain's record in a layout to the folder; return the file's name."""
-    time, forces, _ = chain
+def written(layout, record):
+    """Write the record in a layout to the folder; return the file's name."""
+    time, forces = record
     head, *forms, _ = LAYOUTS[layout]
     kept = math.exp(-1e-6 / CONSTANT)
     lost = lfilter(math.sqrt(kept) * np.array([1, -1]), [1, -kept], forces[0])
@@ -269,10 +264,9 @@ def written(layout, chain):
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
-def test_pulses_are_read_within_three_errors(capsys, chain, folder, layout):
+def test_pulses_are_read_within_three_errors(capsys, record, folder, layout):
     """A column without a kind is of the kind that is given; by a step the clock starts at 0."""
-    *_, true = chain
-    file = written(layout, chain)
+    file = written(layout, record)
     head, *_, stated = LAYOUTS[layout]
     options = ["--of", "bead", "--distance", str(SPACING), "--format", "json"]
     options += shlex.split(stated)
@@ -285,23 +279,24 @@ def test_pulses_are_read_within_three_errors(capsys, chain, folder, layout):
     if "--step" in stated:
         start = 0.0
     for row in found["sensors"]:
-        pulse = true[CONTACTS.index(row["number"])]
-        wanted = (pulse.arrival - start, pulse.peak, pulse.fwhm)
-        sizes = (pulse.fwhm, pulse.peak, pulse.fwhm)
-        names = ("arrival", "peak", "fwhm")
-        for name, value, size in zip(names, wanted, sizes, strict=True):
+        arrival, peak = ARRIVALS[row["number"]] - start, PEAKS[row["number"]]
+        for name, value, size in (
+            ("arrival", arrival, WIDTH),
+            ("peak", peak, peak),
+            ("fwhm", WIDTH, WIDTH),
+        ):
             off = row[f"{name}_value"] - value
             assert abs(off) < 3 * row[f"{name}_error_value"] < 0.03 * size, name
     for row in found["speeds"]:
-        speed = 6 * SPACING / (true[1].arrival - true[0].arrival)
+        speed = 6 * SPACING / (ARRIVALS[14] - ARRIVALS[8])
         error = row["speed_error_value"]
         assert abs(row["speed_value"] - speed) < 3 * error < 0.02 * speed
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
-def test_a_refusal_ends_in_the_line_that_reads_the_file(chain, folder, capsys, layout):
+def test_a_refusal_ends_in_the_line_that_reads_the_file(record, folder, capsys, layout):
     """At most two lines are pasted; a gap or a name that is not there needs the user's own word."""
-    line = ["pulses", written(layout, chain)]
+    line = ["pulses", written(layout, record)]
     refused = []
     status = 2
     while status == 2 and len(refused) < 3:
@@ -315,9 +310,9 @@ def test_a_refusal_ends_in_the_line_that_reads_the_file(chain, folder, capsys, l
     assert status == 0, refused
 
 
-def test_one_file_a_channel(chain, tmp_path):
+def test_one_file_a_channel(record, tmp_path):
     """Sensors without a number are numbered in the order of the files."""
-    time, forces, true = chain
+    time, forces = record
     files = []
     for name, force in zip(("F0CH1.CSV", "F0CH2.CSV"), forces, strict=True):
         files.append(tmp_path / name)
@@ -326,6 +321,6 @@ def test_one_file_a_channel(chain, tmp_path):
     found = pulses(files, **stated).document()
     assert [row["number"] for row in found["sensors"]] == [1, 2]
     peaks = [row["peak_value"] for row in found["sensors"]]
-    assert peaks == pytest.approx([pulse.peak for pulse in true], rel=0.01)
+    assert peaks == pytest.approx([*PEAKS.values()], rel=0.01)
     with pytest.raises(SceneError, match="bead 3 is there twice"):
         pulses(files, columns={"time": "1", "bead 3 force": "2"})

@@ -221,7 +221,7 @@ texts = st.builds(
 )
 
 
-@settings(max_examples=100)
+@settings(max_examples=40)
 @given(texts | st.text(max_size=80), st.sampled_from(["utf-8", "utf-16", "latin-1"]))
 @example('"\n1', "utf-8")
 def test_any_text_is_read_or_refused(tmp_path_factory, text, encoding):
