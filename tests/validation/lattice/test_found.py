@@ -100,6 +100,12 @@ INFLECTION = chain(
 )  # fmt: skip
 
 
+INFLECTED = chain(
+    2, stiffnesses=(907.2998957572929,), displacements=(0, 3.1287034930842177),
+    velocities=(0, -0.9959307251569779), duration=4.65237375443861,
+    damping=Damping("kuwabara_kono", 0.9200695416030286),
+    drive=Drive(amplitude=1, frequency=1 / (2 * np.pi)),
+)  # fmt: skip
 GRAZE = chain(
     2, stiffnesses=(224.74561040028715,), k=2, displacements=(0, 0.24763140564507657),
     velocities=(0, 0.5956896767371712), duration=6.821425172704302,
@@ -118,6 +124,8 @@ GRAZE = chain(
         (INFLECTION, 0, -1, 2e3),
         # A graze that is 1e-9 deep: damping alone is felt.
         (GRAZE, 1, 0.595, 10),
+        # Near an inflection of the drive
+        (INFLECTED, 1, -0.1, 10),
     ],
 )
 def test_a_contact_that_touches_between_two_steps_is_seen(

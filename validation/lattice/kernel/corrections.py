@@ -58,6 +58,9 @@ _MISFIT = 0.15
 _UNBENT = 0.014
 # Force of a law where its contact opens: more is a jump. A power has 1e-100 at most.
 _NO_JUMP = 1e-50
+# Place in a step at which the motion of a driven bead is compared with its quintic, whose error is
+# nearly odd about the middle where the drive has an inflection.
+_OFF_MIDDLE = 0.3
 # Share of a neighbour's correction that counts as error.
 _SECOND = 0.5
 
@@ -152,13 +155,9 @@ def watch_drive(chain: Chain, beads: Beads, plan: Plan, t: float, h: float) -> i
         return 0
     p = kinks.fitted_curve(start, end, kinks.STRAIGHT)
     count, top = kinks.find_edges(law, r, p, h, beads.edges)
-    # The quintic's middle by the values at both ends: half their sum, 5/32 of the difference of the
-    # slopes, 1/64 of the sum of the second derivatives.
-    middle = (beads.y[0] + beads.next_y[0]) / 2
-    middle += 5 * h * (beads.v[0] - beads.next_v[0]) / 32
-    middle += h * h * (beads.given[0] + beads.given[1]) / 64
-    given, _, _ = drive_motion(chain.drive, t + h / 2, t + h / 2)
-    missed = abs(given - middle)
+    curved, _ = kinks.value_and_slope(_drive_curve(beads, h), _OFF_MIDDLE)
+    given, _, _ = drive_motion(chain.drive, t + h / 2, t + _OFF_MIDDLE * h)
+    missed = abs(given - beads.y[0] - curved)
     marked = beads.marks[0] > 0.0
     if count > 1 or marked or abs(top) < missed:
         force = elastic(law, max(top, 0.0) + missed) - elastic(law, top)
