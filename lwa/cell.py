@@ -92,7 +92,7 @@ class Cell(Value):
             raise InputError(
                 f"{len(stiffnesses)} stiffnesses for {len(masses)} masses: a periodic cell has as "
                 "many contacts as particles",
-                stiffnesses=(),
+                stiffnesses=(),  # the call that the message proposes: without them
             )
         # A frozen dataclass sets its own fields in this way.
         object.__setattr__(self, "masses", masses)

@@ -42,14 +42,18 @@ from lwa.closure.slaving import Solution, full
 
 
 def conservative(closure: Closure) -> bool:
-    """True if every order ``n ≥ 2`` has a flux ``F_n`` with ``u_x^k E_n = ∂_x (u_x^k F_n)``."""
+    """True if momentum is conserved: every order has a flux, ``u_x^k E_n = ∂_x (u_x^k F_n)``."""
+    # By parts the flux leaves, and nothing is left of E_n. ``E_1 = r_1`` has the flux 1/k.
     algebra = closure.solution.algebra
     orders = closure.solution.acceleration[2:]
     return all(algebra.by_parts(E, algebra.k).is_zero() for E in orders)
 
 
 def energy(closure: Closure) -> list[fmpq_mpoly]:
-    """The terms of ``(e - W(u_x)) / (u_x² F′(u_x))`` to ``D^{order-2}``.
+    """The energy density e of the chain, up to derivatives, to ``D^{order-2}``.
+
+    Returns the terms of ``(e - W(u_x)) / (u_x² F′(u_x))``; under a power ``u_x² F′`` is
+    ``u_x^{k+1}``.
 
     Raises
     ------
@@ -68,7 +72,8 @@ def energy(closure: Closure) -> list[fmpq_mpoly]:
         )
     solution = closure.solution
     if not solution.forces:
-        # A closure without a defect is the full closure: the fields are determined.
+        # The linear closure keeps no forces. Without a defect its fields are those of the full
+        # closure, which keeps them.
         solution = full(closure.model, closure.field)
     algebra = solution.algebra
     # The density is known to the order to which the velocities are.

@@ -40,8 +40,11 @@ class BasePower(NamedTuple):
         self,
         jet: Jet,
     ) -> BasePower:
-        """The power of the base beside a jet that is written with bare derivatives."""
-        # Each factor of the jet has one base, or base^{(k+1)/2}, below it.
+        """The power of the base beside a jet that is written with bare derivatives.
+
+        As in ``u_x^k · (u_xx/u_x)² = u_x^{k-2} u_xx²``.
+        """
+        # A factor ∂_x^i u is divided by the base, a factor ∂_x^i u_τ by base^{(k+1)/2}.
         strains = sum(e for _, e in jet.x)
         halves = Fraction(sum(e for _, e in jet.t), 2)
         return BasePower(self.a - strains - halves, self.b - halves)

@@ -194,7 +194,8 @@ class Recursion:
     ) -> None:
         """Put q in the place of zero for q_n, and delete the terms of the fields beyond t^n."""
         self._truncate(n + 1)
-        # To this order all forces and strains are alike, and so are their logarithms and slopes.
+        # A change of q_n adds q_n to the term at t^n of every field, strain, force and logarithm:
+        # they differ by derivatives, which stand at higher powers of t.
         for row in self._rows():
             row[n] = row[n] + q
 

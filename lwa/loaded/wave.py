@@ -60,7 +60,7 @@ from lwa.cell import Cell
 from lwa.cell import k as symbol_k
 from lwa.law import ContactLaw, for_cell
 from lwa.loaded.background import Background, KdV, squared_speed
-from lwa.loaded.errors import Bounds, bounds
+from lwa.loaded.errors import bounds
 from lwa.loaded.lattice import Lattice
 from lwa.loaded.quadrature import Quadrature
 from lwa.loaded.states import States
@@ -266,27 +266,23 @@ class LoadedWave(States):
         spacing = self.chain.spacing
         if spacing.is_Symbol and not self.exact_compression.has(spacing):
             return self.at(**{spacing.name: 1}).estimate(name, quantity, extent)
-        if name == "speed":
-            value = number(self.speed)
-            relative = self._bounds.speed
-        else:
-            value = number(self.fwhm(quantity, extent))
-            relative = self._bounds.width
-            if extent == "time":  # the width divided by the speed
-                relative += self._bounds.speed
-        return Estimate(value, value * relative)
-
-    @cached_property
-    def _bounds(self) -> Bounds:
-        """Bounds on the relative errors of the speed and of widths."""
         wave = self._quadrature
-        return bounds(
+        known = bounds(
             self.lattice,
             slope_at_rest=float(wave.at(_FOOT).slope),
             slope_at_peak=float(wave.at(1).slope),
             square=wave.square,
             rises=wave.B > 0,
         )
+        if name == "speed":
+            value = number(self.speed)
+            relative = known.speed
+        else:
+            value = number(self.fwhm(quantity, extent))
+            relative = known.width
+            if extent == "time":  # the width divided by the speed
+                relative += known.speed
+        return Estimate(value, value * relative)
 
     @cached_property
     def _quadrature(self) -> Quadrature:

@@ -197,6 +197,7 @@ class MeasuredFile:
             records.append(self._signal(time, signal, of))
         # One sensor may be any one; of several the file must tell which is which.
         if len(records) > 1 and None in [record.number for record in records]:
+            # Proposed are the numbers 1, 2, … in the order of the columns.
             headers = dict(self.columns.headers)
             for number, column in enumerate(sensors, start=1):
                 headers.pop(column.name, None)

@@ -138,7 +138,9 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
         fields["wall"] = _wall(part("wall"), spheres, materials)
         # The wall's contact is the last.
         contacts += 1
-    own = partial(_own, period=len(row.spheres or row.masses), contacts=contacts)
+    own = partial(
+        _per_contact, period=len(row.spheres or row.masses), contacts=contacts
+    )
     # Spheres have the law of Hertz.
     if not spheres:
         key = row.given.one("k", "law")
@@ -202,8 +204,11 @@ def _sensors(count: int) -> Reader:
     )
 
 
-def _own(reader: Reader, period: int, contacts: int) -> Reader:
-    """Return a reader of one value for all contacts, or of one for each of a cell or a chain."""
+def _per_contact(reader: Reader, period: int, contacts: int) -> Reader:
+    """Return a reader of one value, which stays one, or of a list, which becomes one a contact.
+
+    The list is that of a cell, which repeats, or of the whole chain.
+    """
 
     def read(value: Any, name: str) -> Any:
         if not isinstance(value, list):
@@ -214,7 +219,6 @@ def _own(reader: Reader, period: int, contacts: int) -> Reader:
                 f"{name} holds {len(values)}: {period}, one for each bead of the cell, or "
                 f"{contacts}, one for each contact, are wanted, or one for all"
             )
-        # The values of a cell repeat along the chain.
         return (values * (contacts // len(values) + 1))[:contacts]
 
     return read
