@@ -156,8 +156,7 @@ class Contact:
         if self.law is None:
             # δ^{k+1}/(k+1) = energy, without the factor k + 1, which no scale needs
             return float(energy ** (1 / (self.k + 1)))
-        # The first of many places, 1 % apart, at which the energy is reached, or a pole, in the units
-        # of the law's δ.
+        # The first of many places, 1 % apart, at which the energy is reached, or a pole.
         change = np.geomspace(1e-15, 1e15, 7000)
         work = self.energy_above(np.full(change.shape, start), change)
         # Not `work >= energy`: beyond a pole the work is NaN, and the energy is reached there.
