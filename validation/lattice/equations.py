@@ -96,6 +96,7 @@ class Motion:
         self.loaded = bool(scene.gravity or scene.precompression)
         if self.loaded:
             forces = np.array(scene.load) / self.stiffnesses
+            # `_check_range` refuses an overflow below. The index `...` means all contacts.
             with np.errstate(over="ignore", invalid="ignore"):
                 self.rest = self._each(..., Contact.compressed_by, forces)
                 # The load from the rest compressions, so that equilibrium is an exact zero.
@@ -137,7 +138,11 @@ class Motion:
     def _each(
         self, contacts: Any, evaluate: Callable[..., Array], *rows: Array
     ) -> Array:
-        """Evaluate a method of `Contact` for the rows of some contacts, law by law."""
+        """Evaluate a method of `Contact` for some contacts, law by law.
+
+        contacts : index of the contacts, ``...`` for all.
+        rows : arguments of the method, arrays with an entry, or a row, for each of the contacts.
+        """
         if len(self.laws) == 1:
             return evaluate(self.laws[0], *rows)
         result = np.empty(rows[0].shape)

@@ -150,8 +150,8 @@ class Contact:
     def reached_by(self, energy: float, start: float) -> float:
         """Return a scale of the compression that an energy reaches from ``start``.
 
-        That of a power is the compression from 0, whatever the start: `Motion.scales` takes the
-        greater of both.
+        The scale of a power is the compression that the energy reaches from 0, whatever the start:
+        `Motion.scales` takes the greater one of this scale and the start.
         """
         if self.law is None:
             # δ^{k+1}/(k+1) = energy, without the factor k + 1, which no scale needs
@@ -169,7 +169,7 @@ class Contact:
     def steepest(self, start: float, depth: float) -> float:
         """Return the greater one of the stiffnesses at two compressions, ``start ≤ depth``.
 
-        Both stiffnesses are divided by k, which is 1 for a law that is no power.
+        The stiffness of a power is given without its factor k, which no scale needs.
         """
         if self.law is None:
             # δ^{k-1} does not fall, as scenes have k ≥ 1: it is greatest at the greater depth. A

@@ -218,6 +218,17 @@ def test_a_record_within_steps_of_1e_8_is_that_of_an_earlier_time():
     assert np.abs(forces[1] - forces[0]).max() < 2e-8 * forces[0].max()
 
 
+def test_a_response_that_is_stronger_than_guessed_is_recorded():
+    """A piston leaves two beads, which gravity moves: all within a few steps."""
+    scene = chain(
+        (0.6, 0.3), wall=1, k=2, gravity=0.077, duration=11.5, samples=13, bead_sensors=(1,),
+        damping=Damping("kuwabara_kono", 0.063), drive=Drive(velocity=-0.055),
+    )  # fmt: skip
+    run = simulate(scene, rtol=1e-6)
+    exact = simulate(scene, rtol=1e-11, step=0.01)
+    np.testing.assert_allclose(run.bead_velocity, exact.bead_velocity, atol=1e-6)
+
+
 @pytest.mark.parametrize(
     ("scene", "most"),
     [

@@ -91,7 +91,11 @@ def _ends(
 
 @inlined
 def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int:
-    """Mark the contacts with kinks within a step, and with a force that matters.
+    """Mark the contacts of beads 0 … hi-1 that open or close within a step, or nearly do.
+
+    There F(δ) has no smooth derivatives (a kink), and the pair's quadrature errs. A contact whose
+    force is too weak to matter is left out. ``plan.v`` is the error of a velocity that is allowed
+    in a step.
 
     Returns the number of marks, which are in ``beads.marks``.
     """
@@ -105,7 +109,8 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
     marks = beads.marks
     start = beads.force[0]
     end = beads.force[1]
-    # A force F changes a velocity by h F/m; the errors of all beads add up.
+    # A force F changes a velocity by h F/m. The error of a step is the root of the sum of the
+    # squared errors of all beads, so that each contact may have a share of 1/√hi.
     least = _SLIGHT * plan.v * plan.lightest / (h * math.sqrt(hi))
     count = 0
     near = _NEAR
@@ -122,12 +127,16 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
         then = abs(end[i + ONE] + load[i])
         force = max(first, then)
         most = max(before, after)
+        # The error of a kink grows with the force: a strong contact is corrected from farther away.
         share = near if force > _STRONG * least else very_near
         nearly_open = (most > 0.0) & (min(before, after) < share * most)
+        # A damping force can begin or end with a jump, which matters however weak the force is at
+        # the step's ends, and while δ > 0, as damping may not pull.
         parted = chain.damped & ((before > 0.0) != (after > 0.0))
         changed = chain.damped & ((first > 0.0) != (then > 0.0))
-        # A contact that is open at both ends can close in between if the tangent at an end comes to
-        # δ > 0 within the step. Where the tangents meet does not tell, as δ may have an inflection.
+        # A contact that is open at both ends can close in between if the tangent of δ at an end
+        # comes to δ > 0 within the step. That both tangents meet at δ > 0 is not asked for: they
+        # need not where δ has an inflection.
         reach = max(before + rise, after - end_rise)
         unseen = (most <= 0.0) & (reach > 0.0)
         seen = ((force > least) | parted) & (nearly_open | changed)

@@ -248,6 +248,8 @@ def drive_motion(drive: Drive, middle: float, t: float) -> tuple[float, float, f
         The drive.
     middle : float
         A time inside the interval of the drive's file that holds t; bisection finds the interval.
+        At a knot of the file, the end of two intervals, t alone would not tell which one is meant;
+        their accelerations differ there. Without a file one interval of zeros holds all times.
     t : float
         The time.
     """
