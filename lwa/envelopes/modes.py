@@ -216,12 +216,12 @@ def lone_bead(contacts: Contacts, branch: int) -> Mode:
 
     Every second bead, of the mass m, swings alone: on the optical branch the light one, on the
     acoustic one the heavy one. Both its contacts are always compressed by opposite amounts, so that
-    no force drives the second harmonic, and ``c_g = 0`` leaves no lasting force. With M for the
-    mass of the beads at rest the relation of the branches::
+    no force drives the second harmonic, and ``c_g = 0`` leaves no lasting force, ``f = 0``. With M
+    for the mass of the beads at rest the relation of the branches::
 
         m M x² - 2 K2 (m + M) x + 2 K2² (1 - cos κ) = 0
 
-    at ``x = 2 K2/m``, differentiated twice by κ, gives ``ω ω″``.
+    at ``x = 2 K2/m``, differentiated twice by κ, gives the curvature ``ω ω″ = K2/(2 (M - m))``.
 
     Parameters
     ----------
@@ -245,8 +245,9 @@ def lone_bead(contacts: Contacts, branch: int) -> Mode:
     K2 = contacts.K2[0]
     K3 = contacts.K3[0]
     K4 = contacts.K4[0]
-    size = 1 / m
-    mean = -2 * K3 * size / K2
+    size = 1 / m  # |d|² of both contacts, as m |φ|² = 1
+    mean = -2 * K3 * size / K2  # e0
+    # a contact's part of 2ω χ, with e2 = 0
     of_contact = 3 * K4 * size**2 + 2 * K3 * size * mean
     phi = [sp.S.Zero, sp.S.Zero]
     phi[bead] = 1 / sp.sqrt(m)

@@ -104,12 +104,12 @@ class Arch(Parametric):
 
     @cached_property
     def roots(self) -> tuple[sp.Expr, sp.Expr]:
-        """The two p for which ``v = z^p`` removes ``z_ξ³``; the paper's is the first."""
-        # A p² - B p + 2 = 0
+        """The two p for which ``v = z^p`` removes ``z_ξ³``; in numbers the paper's is the first."""
+        # The equation of p over I is A p² - B p + 2 = 0.
         A = factored(self.coefficient_sum * self.D**2 / self.I)
         B = factored(self._ratios[1] + 3)
         root = square_root(factored(B**2 - 8 * A))
-        # Any sign of the root will do, as both are returned.
+        # With symbols √x² is x, whatever its sign: the order may be the other one, as at k = 2.
         root = root.replace(sp.Abs, lambda x: x)
         first = (B - root) / (2 * A)
         second = (B + root) / (2 * A)
@@ -121,7 +121,7 @@ class Arch(Parametric):
         Parameters
         ----------
         root : {0, 1}
-            Index of the root; the paper has the first.
+            Index of the root; in numbers the paper has the first.
         V : number or str
             Speed dx/dτ of the wave.
         """

@@ -135,7 +135,7 @@ def module(
 ) -> str:
     """Write the source text of functions.
 
-    Symbols keep their names, with underscores behind those that have another meaning.
+    Symbols keep their names, with underscores behind those that are words of the language.
 
     Parameters
     ----------
@@ -151,12 +151,12 @@ def module(
     InputError
         For other languages, and for symbols that are no names.
     """
-    words = LANGUAGES[one_of(language, LANGUAGES, "language")]
+    syntax = LANGUAGES[one_of(language, LANGUAGES, "language")]
     # The functions call each other by their own names, which the printer must not translate.
     calls = {f.name: f.name for f in functions}
-    known = words.settings.get("user_functions", {})
-    printer = words.printer({**words.settings, "user_functions": {**known, **calls}})
-    taken = {*calls, *words.reserved, *printer.reserved_words}
+    known = syntax.settings.get("user_functions", {})
+    printer = syntax.printer({**syntax.settings, "user_functions": {**known, **calls}})
+    taken = {*calls, *syntax.reserved, *printer.reserved_words}
     names = _names(functions, taken)
 
     def text(value: sp.Basic) -> str:
@@ -169,14 +169,14 @@ def module(
         # SymPy's printer writes the module's full name.
         return written.replace("numpy.", "np.")
 
-    lines = [f"{words.comment} {line}" for line in title]
-    if words.head:
-        lines += ["", *words.head]
+    lines = [f"{syntax.comment} {line}" for line in title]
+    if syntax.head:
+        lines += ["", *syntax.head]
     for f in functions:
-        listed = ", ".join(words.argument.format(names[s]) for s in f.arguments)
-        # The line would name no argument.
-        entry = words.entry.format(arguments=listed) if listed else ""
-        written = words.function.format(
+        listed = ", ".join(syntax.argument.format(names[s]) for s in f.arguments)
+        # Without arguments there is nothing to convert to doubles.
+        entry = syntax.entry.format(arguments=listed) if listed else ""
+        written = syntax.function.format(
             name=f.name, doc=f.doc, arguments=listed, entry=entry, value=text(f.value)
         )
         lines.append(written)
