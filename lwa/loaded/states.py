@@ -13,7 +13,7 @@ from typing import Any, Self
 
 import sympy as sp
 
-from lwa.base.exact import InputError, evaluated, number, read_exact
+from lwa.base.exact import InputError, evaluated, number, read_exact, real
 from lwa.base.frozen import NoSolitaryWave
 from lwa.cell import Cell, Parametric
 from lwa.law import ContactLaw
@@ -50,6 +50,13 @@ class States(Parametric):
     exact_static_compression: sp.Expr
     exact_compression: sp.Expr
     closed_form: bool = True
+
+    def __post_init__(self) -> None:
+        # Text would be evaluated in a sum.
+        real(self.precompression, "precompression")
+        real(self.force, "force")
+        real(self.exact_static_compression, "static compression")
+        real(self.exact_compression, "compression")
 
     @classmethod
     def of_forces(

@@ -89,6 +89,7 @@ class LoadedWave(States):
     """
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         if self.law is not None and self.law.homogeneous:
             reason = _refusal_under_power(
                 self.law.exponent - 1, self.background, self.strain
