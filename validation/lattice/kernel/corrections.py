@@ -434,12 +434,15 @@ def correct_contact(
         _correct_heat(chain, beads, pair, i, sums.work, stored)
     if driven:
         _correct_work(chain, beads, pair, drive, sums.driven)
-    if r > 0.0:
-        # ∫ (1 - x) F dx and the heat ∫ r δ^p (dδ/dt)² dt are as wrong as p is, the impulse is not.
-        missed = _MISFIT * abs(sums.rough) * A * r * drag(law, max(found.top, 0.0))
-        heated = 2.0 * missed * abs(start[1]) / h / plan.energy
-        beads.books[SQUARES] += heated * heated
-        _count_error(beads.books, h * missed / plan.y, near, far)
+    # The moment ∫ (1 - x) F dx and heat ∫ r δ^p (dδ/dt)² dt of damping are as wrong as p is, and the
+    # impulse of an elastic force.
+    misfit = _MISFIT * abs(sums.rough)
+    missed = misfit * A * r * drag(law, max(found.top, 0.0))
+    heated = 2.0 * missed * abs(start[1]) / h / plan.energy
+    beads.books[SQUARES] += heated * heated
+    _count_error(beads.books, h * missed / plan.y, near, far)
+    missed = misfit * h * A * stiffness(law, found.top)
+    _count_error(beads.books, missed / plan.v, near, far)
     _count_error(beads.books, change / plan.v, near, far)
     if found.top > 0.0:
         resisted = r * drag(law, found.top) * moment
