@@ -434,8 +434,8 @@ def correct_contact(
         _correct_heat(chain, beads, pair, i, sums.work, stored)
     if driven:
         _correct_work(chain, beads, pair, drive, sums.driven)
-    # The moment ∫ (1 - x) F dx and heat ∫ r δ^p (dδ/dt)² dt of damping are as wrong as p is, and the
-    # impulse of an elastic force.
+    # The moment ∫ (1 - x) F dx and the heat ∫ r δ^p (dδ/dt)² dt of damping are as wrong as p is, and
+    # so is the impulse of an elastic force.
     misfit = _MISFIT * abs(sums.rough)
     missed = misfit * A * r * drag(law, max(found.top, 0.0))
     heated = 2.0 * missed * abs(start[1]) / h / plan.energy
