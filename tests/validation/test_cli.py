@@ -183,7 +183,10 @@ BAD = [
     ("exact --masses 1,x", "masses is x: a number is wanted"),
     ("resonances --k 1", "k is 1: special mass ratios are found for k from 1.1"),
     ("resonances --k 1.14 --count 3", "count is 3: at k = 1.14 the 2 largest"),
-    ("resonances --count x", "count is x: an integer from 1 on is wanted; try: lwa-validate res"),
+    (
+        "resonances --count x",
+        "count is x: an integer from 1 on is wanted; try: lwa-validate res",
+    ),
     ("resonances --count 5/2", "count is 5/2: an integer"),
     ("run s.toml --method DOP8", "method is 'DOP8': did you mean DOP853?; try: "),
     ("sweep --k 1", "k is 1:"),
