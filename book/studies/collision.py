@@ -68,7 +68,7 @@ Records = tuple[
     option(
         "--k",
         "exponents",
-        callback=quantities,
+        read=quantities,
         default="11/10,3/2",
         says="Exponents of F = δ^k.",
     ),
