@@ -169,6 +169,7 @@ def test_a_result_that_cannot_be_written_leaves_the_old_one(capsys, folder, name
 
 NO_FILE = "it cannot be written, No such file or directory; try: lwa-validate"
 BAD = [
+    ("pulses forces.csv --distance 4.76e-3", "forces.csv: No such file or"),
     ("run s.toml --out o.csv", "out is o.csv, but the scene names no s"),
     ("paper --velocity __import__('os')", "velocity is "),
     ("paper --velocity 0", "velocity is 0: "),
