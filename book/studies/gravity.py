@@ -223,7 +223,7 @@ class Upright:
     EXPONENT,
     option(
         "--masses",
-        callback=quantities,
+        read=quantities,
         says="Masses of a cell, such as 1,1/2; by default two chains.",
     ),
     option("--beads", default=3000, says="Number of beads."),

@@ -152,7 +152,8 @@ def next_step(
     """The reason of a refusal and, behind "; try:", a whole line to paste.
 
     The line is the user's own with the arguments of `Refusal.change`, or with the example of the
-    option that the reason names; else the last example of the command's help.
+    option that the reason names; else the last example of the command's help, or of those before
+    the refused one.
     """
     if TRY in refusal.reason:  # the reason has a line of its own, on a file
         return refusal.reason
@@ -170,6 +171,10 @@ def next_step(
         if not change:
             return cut(f"{refusal.reason}; change it in the file{TRY}{KEYS}")
     examples = re.findall(rf"^  ({name} .*)", chosen.epilog or "", re.MULTILINE)
+    refused = shlex.join([name, *arguments])
+    if refused in examples:
+        # The example before it writes its file.
+        examples = examples[: examples.index(refused)]
     proposed = [f"{name} --help", *examples][-1]
     if change:
         changes = _changed(line, change)

@@ -162,7 +162,9 @@ class Cells:
         if mark == " ":  # several blanks and tabs are one separator
             between, other = "[ \t]+", r"[^ \t]+"
         count = places[-1] + 1
-        forms = [f'"?{_NUMBER}"?' if i in places else other for i in range(count)]
+        forms = [
+            f'(?:{_NUMBER}|"{_NUMBER}")' if i in places else other for i in range(count)
+        ]
         row = re.compile(rf" *{between.join(forms)} *(?:{mark}.*)?")
         for line in _LINE.finditer(self._text):
             text = line[0]

@@ -362,8 +362,12 @@ def _correct_neighbour(
         heated = missed * (beads.v[n] - beads.v[n + 1]) / plan.energy
         beads.books[SQUARES] += heated * heated
         _count_error(beads.books, missed / plan.v, near, far)
-    pushes = d > 0.0 and beads.force[1, n + 1] + chain.load[n] > 0.0
-    if pushes or law.pulls:
+    pressed = beads.force[1, n + 1] + chain.load[n]
+    if beads.marks[n] == 0.0 and (d > 0.0) != (pressed > 0.0):
+        # The correction closes, or opens, a neighbour that just touches, at any time of the step.
+        missed = h * (A * push(law, r, d, rate) - pressed)
+        _count_error(beads.books, missed / plan.v, near, far)
+    if law.pulls or (d > 0.0 and pressed > 0.0):
         resisted = -A * r * drag(law, d) * moment * share
         more = resisted - A * stiffness(law, d) * third * share
         beads.next_v[n] -= more * near
