@@ -446,6 +446,13 @@ def correct_contact(
     _count_error(beads.books, h * missed / plan.y, near, far)
     # So is the impulse of an elastic force, less so where the contact is hardly closed: half of it.
     missed = 0.5 * misfit * h * A * stiffness(law, found.top)
+    if found.jump != 0.0:
+        # The jump comes too early or too late by the misfit there over the slope.
+        place = known[0]
+        _, slope = kinks.value_and_slope(found.curve, place)
+        arch = 4.0 * place * (1.0 - place)
+        shift = 2.2 * misfit * arch * arch * arch / max(abs(slope), kinks.OPENS)
+        missed += h * A * abs(found.jump) * min(shift, 1.0)
     _count_error(beads.books, missed / plan.v, near, far)
     _count_error(beads.books, change / plan.v, near, far)
     if found.top > 0.0:

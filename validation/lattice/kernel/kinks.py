@@ -461,7 +461,7 @@ def integrals(
                 twice += left * force
                 third += 0.5 * left * left * force
                 work += slope * force
-                if r > 0.0 or driven:
+                if r > 0.0 or driven or found.jump != 0.0:
                     _, _, known = bent(c[6], x[m])
                     rough += _fourth(x[m]) * (bend * force - w[m] * known)
                 if driven:
