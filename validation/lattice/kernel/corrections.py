@@ -453,8 +453,11 @@ def correct_contact(
         arch = 4.0 * place * (1.0 - place)
         shift = 2.2 * misfit * arch * arch * arch / max(abs(slope), kinks.OPENS)
         missed += h * A * abs(found.jump) * min(shift, 1.0)
+    missed = math.hypot(missed, change)
     _count_error(beads.books, missed / plan.v, near, far)
-    _count_error(beads.books, change / plan.v, near, far)
+    if driven:
+        work = missed * beads.v[0] / plan.energy
+        beads.books[SQUARES] += work * work
     if found.top > 0.0:
         resisted = r * drag(law, found.top) * moment
         more = A * both * (stiffness(law, found.top) * third + resisted)
