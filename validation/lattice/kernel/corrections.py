@@ -434,7 +434,7 @@ def correct_contact(
         _correct_heat(chain, beads, pair, i, sums.work, stored)
     if driven:
         _correct_work(chain, beads, pair, drive, sums.driven)
-    misfit = _MISFIT * abs(sums.rough)
+    misfit = _MISFIT * sums.rough
     if driven:
         misfit += _drive_misfit(chain, beads, t, h)
     depth = max(found.top, 0.0) + misfit
