@@ -302,8 +302,8 @@ def _drive(given: Table, units: str, folder: Path) -> Drive:
         name = motion.pop("file")
         if not isinstance(name, str):
             raise SceneError(f"drive.file is {shorten(name)}: a file's name is wanted")
-        file = MeasuredFile(folder / name, **stated)
-        check_units(file.columns.si, units, file.path)
+        file = MeasuredFile.read(folder / name, **stated)
+        check_units(file.si, units, file.path)
         motion["time"], motion["displacement"] = file.rows("time", "displacement").T
     return Drive(**motion)
 
