@@ -28,10 +28,10 @@ import scipy
 from lwa import Cell
 from lwa.base import files
 from lwa.base.arrays import Array
-from lwa.base.exact import shorten
+from lwa.base.exact import read_exact, shorten
 from lwa.base.files import entries, load
 from lwa.base.frozen import Estimate
-from lwa.command.options import quantities, quantity
+from lwa.command.options import quantities
 from lwa.spheres.beads import FILE, read_materials
 from lwa.spheres.beads import spheres as read_spheres
 from validation.pictures import Curve, Panel
@@ -69,10 +69,10 @@ _EXAMPLE = """force (N),force_error (N),speed (m/s),speed_error (m/s)
 
 @study(
     click.argument("data", type=click.Path()),
-    option("--masses", callback=quantities, says="Mass of a bead; by default 1."),
+    option("--masses", read=quantities, says="Mass of a bead; by default 1."),
     option(
         "--spacing",
-        callback=quantity,
+        read=read_exact,
         says="Distance between bead centers; by default 1.",
     ),
     option(

@@ -79,8 +79,10 @@ def column_options(function: Any) -> Any:
         ("--unit", "units", "NAME=UNIT", _UNIT),
         ("--column", "columns", "NAME=HEADER|NUMBER", _COLUMN),
     ):
-        settings = {"callback": read, "multiple": True, "metavar": metavar}
-        function = option(name, parameter, says=says, **settings)(function)
+        added = option(
+            name, parameter, callback=read, multiple=True, metavar=metavar, says=says
+        )
+        function = added(function)
     return function
 
 
@@ -188,7 +190,7 @@ class Measured:
     click.argument("records", type=click.Path(), nargs=-1, required=True),
     option(
         "--distance",
-        callback=number,
+        read=number,
         says="Distance of neighbouring beads: in m, or in the unit of a file without units.",
     ),
     option(

@@ -26,11 +26,11 @@ from lwa import Dimer, Estimate, canonical_wave, homogenize
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError, read_exact, shorten
 from lwa.base.progress import Progress
+from lwa.command.options import count
 from validation.lattice.threads import cluster, threads
 from validation.pictures import Curve, Panel
 from validation.pulses.steady import LABELS, STRETCH, Key, Point, PointFile, point
 from validation.report.study import Report, option, output_file, study
-from validation.report.study import integer as whole
 from validation.report.table import Column, Table, percent
 from validation.scenes.checks import Failure, SceneError, integer, items
 
@@ -288,7 +288,7 @@ _RANGES = "values and ranges start:stop:count, separated by commas."
     ),
     option(
         "--jobs",
-        callback=whole,
+        read=count,
         says="Number of threads; by default one a processor.",
     ),
     option(

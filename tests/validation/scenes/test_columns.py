@@ -50,7 +50,7 @@ def test_rows_of_numbers_above_a_record_belong_to_the_preamble(tmp_path):
     file = read(tmp_path, f"Range,5\nOffset,0\nt,CH1\n{record}", **stated)
     assert file.rows("force").ravel().tolist() == list(range(0, 80, 2))
     columns = {"time": "1", "force": "2"}
-    for rest in (f"7,\n{record}", f"x,y\n{record}", "7,\n8,9\n"):
+    for rest in (f"7,\n{record}", f'"1,300.5",7\n{record}', "7,\n8,9\n"):
         file = read(tmp_path, f"t,CH1\n{record}{rest}", columns=columns)
         with pytest.raises(InputError, match="line 42 is a gap"):
             file.rows("time", "force")
