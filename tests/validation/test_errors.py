@@ -155,7 +155,7 @@ def test_exact():
         kind = Problem if len(masses) == 1 else SpecialRatio
         finer = solve(kind(wave.masses, k, wave.half_period, points), wave)
         largest.append(held(numbers(wave), numbers(finer)))
-    # Rounding of a few ulp; the ± is that of the worst exponents, at k = 60 four times the deviation.
+    # Rounding of a few ulp: the ± is that of the worst exponents, k = 60 among them.
     assert max(largest) >= 1 / 100
 
 
