@@ -87,14 +87,12 @@ def front_width(k: float) -> float:
 class Upright:
     """A chain under its own weight, of ``beads`` beads that repeat the cell.
 
-    weak: velocity of the struck bead that counts as weak.
     tolerances: of the run that is read and of the less accurate run.
     """
 
     cell: Cell
     k: float
     beads: int
-    weak: float = WEAK
     tolerances: tuple[float, float] = (1e-5, 1e-4)
 
     @cached_property
@@ -154,7 +152,7 @@ class Upright:
             times = [highest_pulse(velocity).fwhm for velocity in moving]
             return np.asarray((np.reshape(times, x.shape) * self.sound(x)).mean(axis=1))
 
-        scene = self.blown(self.weak, bead_sensors=beads.ravel().tolist())
+        scene = self.blown(WEAK, bead_sensors=beads.ravel().tolist())
         fine, coarse = map(widths, repeated(scene, self.tolerances))
         return x.mean(axis=1), fine, coarse
 

@@ -153,7 +153,9 @@ def shock(
 ) -> Answer:
     """Shock, or rarefaction, of a chain that a wall drives.
 
-    Needs --behind or --piston. Speeds are dx/dt, in m/s with --spheres.
+    Needs --behind or --piston. Speeds are dx/dt, in m/s with --spheres. Two rules give the leading
+    edge: El's conditions for dispersive shocks (dispersion), and the solitary wave whose beads
+    reach twice the velocity of the wall (doubling).
 
     In JSON `plateau` is the velocity of the wall, and `peak` the strain of the leading pulse by the
     doubling rule. Errors were measured on driven chains; closed forms without an error are exact

@@ -69,7 +69,7 @@ def dispersion(chain: ChainInput, order: int) -> Answer:
     head: Values = {"acoustic": None, "optical": None} | series
     rows: Lines = [
         chain.text,
-        "Ω²(κ), κ = qD and Ω/D the frequency in τ",
+        "coefficients of Ω²(κ), κ = qD and Ω/D the frequency in τ",
         "",
         partial(_series_lines, series),
     ]

@@ -38,7 +38,7 @@ _ERRORS = "estimate of a sum's error, by its last terms and by radiation"
 @STIFFNESSES
 @order_option("Highest power of ε = k - 1; by default 8, or 4 with symbols.", None)
 def expansion(chain: ChainInput, order: int | None) -> Answer:
-    """Expand the lattice's own wave in ``ε = k - 1``, and sum the series.
+    """Expand the solitary wave of the beads themselves in ``ε = k - 1``, and sum the series.
 
     Each sum comes with an estimate of its absolute error, at the peak force 1 on the first contact
     and with lengths in D; k and the cell must be numbers. `lwa wave` has the closed form of the
