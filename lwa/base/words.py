@@ -88,7 +88,7 @@ def suggestion(value: Any, known: Collection[str]) -> str:
         return f"did you mean {' or '.join(near)}?"
     if not known:
         return "none is defined"
-    first = list(known)[:_LISTED]
+    first = [*filter(None, known)][:_LISTED]
     if len(known) <= 2:
         return f"{' or '.join(first)} is wanted"
     return f"one of {', '.join(first)} is wanted"
