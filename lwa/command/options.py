@@ -264,11 +264,7 @@ STIFFNESSES = value(
 )
 # A symbol by default: results are then in units of D.
 SPACING = value(
-    "--spacing",
-    "Distance D between neighbouring beads at rest.",
-    "1",
-    positive,
-    D.name,
+    "--spacing", "Distance D between neighbouring beads at rest.", "1", positive, D.name
 )
 # Forces are those of contacts, which sensors between beads measure.
 FORCE = value(

@@ -76,7 +76,7 @@ class NoisyPulse:
     numbers : arrival, peak above the base, fwhm, by these names; without the peak if the record
     begins too late for a base. base : value below the pulse, at the time rise. missing : words on
     the number that is missing. slope : growth of the base in time. noise : standard deviation,
-    times √n, of the mean noise of n samples; 0 in a record without noise.
+    times ``√n``, of the mean noise of n samples; 0 in a record without noise.
     """
 
     numbers: Mapping[str, Estimate]

@@ -43,13 +43,14 @@ from lwa.base.progress import Progress
 from lwa.spheres.beads import GRAVITY
 from validation.lattice.cost import RunProgress, silent
 from validation.lattice.result import Run
+from validation.lattice.signal import sensors_of
 from validation.lattice.simulate import repeated, simulate, simulate_many
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import (
     Pulse,
     compared,
     exponent,
-    highest_pulse,
+    first_pulse,
     tolerances,
 )
 from validation.report.study import Report, option, study
@@ -95,8 +96,7 @@ def recorded_chain(
     Parameters
     ----------
     sensors : sequence of int
-        Beads, counted from 1; the two contacts of each of them and the contact of the steel wall
-        behind the chain are recorded too.
+        Beads, counted from 1; the two contacts of each of them are recorded too.
     velocity : float
         Velocity of the striker, in m/s.
     N : int
@@ -115,7 +115,7 @@ def recorded_chain(
         wall=STEEL,
         velocities=(velocity,),
         bead_sensors=[bead - 1 for bead in sensors],
-        contact_sensors=[*sorted(contacts), BEADS - 1],
+        contact_sensors=sorted(contacts),
         # A pulse with all of the striker's momentum needs two thirds of this time to the wall.
         duration=1.6 * BEADS * DIAMETER / float(pulse.speed),
         # Some hundred of them in a pulse's FWHM of 2.5 sites.
@@ -144,14 +144,10 @@ def bead_fwhm(wave: PhysicalWave) -> float:
 
 
 def passing(run: Run, kind: str = "bead") -> dict[int, Pulse]:
-    """Measure the pulses at the "bead" or "contact" sensors of a run, before the wall's echo.
-
-    Returns the pulses by the number of the bead or contact, from 1, without the wall's contact.
-    """
-    *contacts, _ = run.scene.contact_sensors
-    sensors = {"bead": run.scene.bead_sensors, "contact": contacts}
-    end = float(run.time[np.argmax(run.contact_force[-1])])
-    return {i + 1: highest_pulse(run.signal(kind, i), end) for i in sensors[kind]}
+    """Measure the first pulses at the "bead" or "contact" sensors of a run, by number from 1."""
+    return {
+        i + 1: first_pulse(run.signal(kind, i)) for i in sensors_of(run.scene)[kind]
+    }
 
 
 def speed(pulses: Mapping[int, Pulse], first: int, last: int) -> float:
