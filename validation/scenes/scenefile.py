@@ -309,8 +309,8 @@ def _drive(given: Table, units: str, folder: Path) -> Drive:
         if not isinstance(name, str):
             raise SceneError(f"drive.file is {shorten(name)}: a file's name is wanted")
         try:
-            file = MeasuredFile(folder / name, **stated)
-            check_units(file.columns.si, units, file.path)
+            file = MeasuredFile.read(folder / name, **stated)
+            check_units(file.si, units, file.path)
             motion["time"], motion["displacement"] = file.rows("time", "displacement").T
         except SceneError as error:
             # A dictionary of Python is a table of TOML but for its colons.
