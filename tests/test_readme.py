@@ -54,12 +54,6 @@ def test_the_commands_run_one_after_the_other(capsys, folder, engine, programs):
             Path(file).write_text(out)
 
 
-def test_the_files_that_are_named_exist():
-    named = re.findall(r"`(?:pytest )?((?:tests|book|lwa|validation)/[\w/.]*)`", README)
-    assert [name for name in named if not (ROOT / name).exists()] == []
-    assert len(named) > 5
-
-
 def test_every_command_and_demonstration_is_listed():
     studies = [file.stem for file in (ROOT / "book" / "studies").glob("[!_]*.py")]
     known = {"lwa": COMMANDS, "lwa-validate": STUDIES, "python": studies}

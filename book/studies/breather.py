@@ -76,14 +76,14 @@ _FEWER = 0.75  # beads of the chain that gives the errors, over those of the cha
 @study(
     option(
         "--masses",
-        callback=quantities,
+        read=quantities,
         default="1,1/2",
         says="Masses of a cell, one or two.",
     ),
     EXPONENT,
     option(
         "--detunings",
-        callback=quantities,
+        read=quantities,
         default=DETUNINGS,
         says="Detunings 1 - f/f0, f0 the frequency of the band's edge.",
     ),

@@ -68,7 +68,7 @@ Records = tuple[
     option(
         "--k",
         "exponents",
-        callback=quantities,
+        read=quantities,
         default="11/10,3/2",
         says="Exponents of F = δ^k.",
     ),
@@ -116,8 +116,8 @@ class Continuum:
     bound; this one is well posed. Its wave of the strain B has the canonical wave's speed.
 
     In the strain p = u_x and the velocity v = u_τ the equation is p_τ = v_x,
-    (1 - I ∂_x²) v_τ = ∂_x F(p), of the energy ∫ [½ v² + ½ I v_x² + W(p)] dx. A power law has no
-    tension: F(p) = 0 at p < 0. The cell and the law have numbers only.
+    (1 - I ∂_x²) v_τ = ∂_x F(p), of the energy ∫ [½ v² + ½ I v_x² + W(p)] dx. Contacts of a power
+    law only push: F(p) = 0 at p < 0. The cell and the law have numbers only.
     """
 
     equation: Background
@@ -135,9 +135,7 @@ class Continuum:
 
     def _of_strain(self, p: Array, n: int) -> Array:
         """The force F(p) for n = 0, its potential W(p) for n = -1."""
-        return np.asarray(
-            self._laws[n](np.maximum(p, 0) if self.equation.law.homogeneous else p)
-        )
+        return np.asarray(self._laws[n](np.maximum(p, 0)))
 
     @cached_property
     def _laws(self) -> dict[int, Any]:
@@ -227,13 +225,13 @@ def in_equation(k: sp.Expr, second: float, rtol: float, samples: int) -> Records
     strain, velocity = interval.evolved(
         one + two, other * two - V * one, pace * time, rtol
     )
-    energy = interval.energy(strain[[0, -1]], velocity[[0, -1]])
+    energy = interval.energy(strain, velocity)
     strains = strain[:, [half * _DENSE, (half + d) * _DENSE]].T
     numbers = _numbers(time, strains, V * pace, d)
     numbers |= {
         "speed": V * pace,
         "fwhm": width,
-        "drift": float(energy[1] / energy[0] - 1),
+        "drift": float(np.ptp(energy) / energy[0]),
     }
     return time, strains, numbers
 

@@ -34,7 +34,7 @@ from lwa.base.exact import InputError, read_exact
 from lwa.base.frozen import Estimate
 from lwa.base.progress import Progress
 from lwa.command.answer import attempt
-from lwa.command.options import quantities, quantity
+from lwa.command.options import quantities
 from lwa.law import ContactLaw, named
 from validation.lattice.result import Run
 from validation.lattice.simulate import simulate, simulate_many
@@ -61,18 +61,16 @@ Pair = tuple[float | None, float | None]  # speed and peak strain of the leading
 @study(
     option(
         "--k",
-        callback=quantity,
+        read=read_exact,
         says="Exponent of F = δ^k; by default Toda, 3/2 and 2.",
     ),
     option(
         "--jumps",
-        callback=quantities,
+        read=quantities,
         default=",".join(map(str, JUMPS)),
         says="Strains behind the front over that ahead; if that is 0, strains behind.",
     ),
-    option(
-        "--ahead", callback=quantity, default="1", says="Strain ahead of the front."
-    ),
+    option("--ahead", read=read_exact, default="1", says="Strain ahead of the front."),
     option("--duration", default=2500.0, says="Time for which the piston moves."),
 )
 def shock(

@@ -115,7 +115,7 @@ _ROWS = (
 @study(
     option(
         "--moduli",
-        callback=quantities,
+        read=quantities,
         default="1e9,3e9,10e9,30e9,70e9,200e9",
         says="In Pa.",
     ),

@@ -71,10 +71,10 @@ def row(name: str, value: sp.Expr) -> str:
     >>> row("x", sp.sqrt(2)), row("y", sp.Rational(1, 2))
     ('x = \\\\sqrt{2} \\\\approx 1.41421', 'y = \\\\frac{1}{2}')
     """
-    text = expression(value)
+    value = _short(value)
+    text = _formula(value)
     # Digits stand behind a formula, not behind the digits of a long one.
-    irrational = value.is_number and not value.is_Rational and not value.has(sp.Float)
-    if irrational and text == _formula(value):
+    if value.is_number and not value.is_Rational and not value.has(sp.Float):
         text += rf" \approx {sp.latex(evaluated(value, DIGITS))}"
     return f"{name} = {text}"
 
@@ -86,10 +86,14 @@ def expression(value: sp.Expr) -> str:
     >>> expression((x + y) / 2)
     '\\\\frac{x}{2} + \\\\frac{y}{2}'
     """
-    formula = _formula(value)
-    if not value.free_symbols and width(formula) > NUMBER:
-        return str(sp.latex(evaluated(value, 15)))
-    return formula
+    return _formula(_short(value))
+
+
+def _short(value: sp.Expr) -> sp.Expr:
+    """The value, or the digits of a number whose formula is long."""
+    if not value.free_symbols and width(_formula(value)) > NUMBER:
+        return evaluated(value, 15)
+    return value
 
 
 def _formula(value: sp.Expr) -> str:
@@ -116,10 +120,10 @@ def rows(values: Mapping[str, sp.Expr]) -> list[str]:
     return [text for name, text in written.items() if text != f"{name} = {name}"]
 
 
-def power(symbol: sp.Expr, n: int) -> str:
-    """The power ``symbol^n`` in LaTeX."""
-    base = str(sp.latex(symbol))
-    return f"{base}^{{{n}}}" if n > 1 else base
+def power(base: sp.Expr, n: int) -> str:
+    """The factor ``base^n`` in LaTeX; empty where it is 1."""
+    value = base**n
+    return "" if value == 1 else str(sp.latex(value))
 
 
 def derivative(n: int, mark: str = "") -> str:
@@ -141,14 +145,17 @@ def total(terms: Iterable[tuple[sp.Expr, str]]) -> str:
     """
     parts: list[str] = []
     for coefficient, factor in terms:
+        # The sign of digits is that of the number; of a formula the first term decides.
+        coefficient = _short(coefficient)
         sign = "+" if parts else ""
         if coefficient.could_extract_minus_sign():
             sign = "-"
             coefficient = -coefficient
-        value = expression(coefficient)
+        value = _formula(coefficient)
         if coefficient.is_Add:
             value = rf"\left({value}\right)"
         if value == "1" and factor:
             value = ""
         parts += [sign, value, factor]
-    return " ".join(filter(None, parts)) or "0"
+    # Factors of 1 leave blanks beside each other.
+    return " ".join(" ".join(parts).split()) or "0"

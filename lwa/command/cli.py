@@ -152,7 +152,8 @@ def next_step(
     """The reason of a refusal and, behind "; try:", a whole line to paste.
 
     The line is the user's own with the arguments of `Refusal.change`, or with the example of the
-    option that the reason names; else the last example of the command's help.
+    option that the reason names; else the last example of the command's help, or of those before
+    the refused one.
     """
     if TRY in refusal.reason:  # the reason has a line of its own, on a file
         return refusal.reason
@@ -170,6 +171,10 @@ def next_step(
         if not change:
             return cut(f"{refusal.reason}; change it in the file{TRY}{KEYS}")
     examples = re.findall(rf"^  ({name} .*)", chosen.epilog or "", re.MULTILINE)
+    refused = shlex.join([name, *arguments])
+    if refused in examples:
+        # The example before it writes its file.
+        examples = examples[: examples.index(refused)]
     proposed = [f"{name} --help", *examples][-1]
     if change:
         changes = _changed(line, change)
@@ -257,9 +262,9 @@ def _change(
 
 COMMANDS = {
     "derive": ("derivation", "Derive the long-wave equation of a chain."),
-    "dispersion": ("modes", "Series of Ω²(κ), and the bands of a loaded chain."),
+    "dispersion": ("modes", "Frequencies of linear waves, and bands under a load."),
     "envelope": ("modes", "Nonlinear Schrödinger equation of a mode, and breathers."),
-    "expansion": ("series", "Series in k - 1 of the lattice's own wave, summed."),
+    "expansion": ("series", "The beads' own solitary wave, as a series in k - 1."),
     "shock": ("driven", "Shock, or rarefaction, of a chain that a wall drives."),
     "strike": ("driven", "Leading pulse of equal beads that a mass strikes."),
     "wave": ("waves", "Compact traveling wave: β, width, FWHM, amplitude and speed."),

@@ -38,13 +38,13 @@ class Read(click.ParamType[Any]):
     ----------
     read : callable
         Function of the text and of the option's name; raises `lwa.InputError` for other texts.
-    example : str
+    example : str, optional
         A valid text, which the refusal of another one proposes.
     """
 
     name = "value"
 
-    def __init__(self, read: Reader, example: str) -> None:
+    def __init__(self, read: Reader, example: str | None) -> None:
         self.read = read
         self.example = example
 
@@ -66,26 +66,14 @@ class Words(click.Choice[str]):
         return one_of(value, self.choices, called(param))
 
 
-def quantity(context: click.Context, option: click.Parameter, text: str | None) -> Any:
-    """Read an integer, a decimal, a fraction or a plain name, as a callback of Click."""
-    # An option without a default may be absent.
-    if text is None:
-        return None
-    return read_exact(text, called(option))
-
-
-def quantities(
-    context: click.Context, option: click.Parameter, text: str | None
-) -> tuple[sp.Expr, ...]:
-    """Read quantities separated by commas, as a callback of Click; () when absent."""
+def row(read: Reader) -> Reader:
+    """Make the reader of several texts that are separated by commas."""
     # No brackets and no blanks: a shell passes such a list without quotes.
-    parts = text.split(",") if text else []
-    return tuple(read_exact(part, called(option)) for part in parts)
+    return lambda text, name: tuple(read(part, name) for part in text.split(","))
 
 
-def positive_row(text: str, name: str) -> tuple[sp.Expr, ...]:
-    """Read positive quantities separated by commas."""
-    return tuple(positive(part, name) for part in text.split(","))
+quantities = row(read_exact)
+"""Reader of quantities that are separated by commas."""
 
 
 def _exponent(text: str, name: str) -> sp.Expr:
@@ -262,7 +250,7 @@ MASSES = value(
     "--masses",
     "Masses of the beads in one period of the chain.",
     "0.45,0.123",
-    positive_row,
+    row(positive),
     "m1,m2",
     "M1,M2,…",
 )
@@ -271,16 +259,12 @@ STIFFNESSES = value(
     "Stiffness A of each contact in the period, the first between beads 1 and 2.  "
     "[default: all 1]",
     "1,1",
-    positive_row,
+    row(positive),
     metavar="A1,A2,…",
 )
 # A symbol by default: results are then in units of D.
 SPACING = value(
-    "--spacing",
-    "Distance D between neighbouring beads at rest.",
-    "1",
-    positive,
-    D.name,
+    "--spacing", "Distance D between neighbouring beads at rest.", "1", positive, D.name
 )
 # Forces are those of contacts, which sensors between beads measure.
 FORCE = value(

@@ -54,15 +54,12 @@ SPEED = "speed dx/dt (m/s)"
 @BACKGROUND
 @PRECOMPRESSION
 def wave(
-    chain: ChainInput,
-    force: sp.Expr | None,
-    background: sp.Expr | None,
-    **options: Any,
+    chain: ChainInput, force: sp.Expr | None, background: sp.Expr | None, **options: Any
 ) -> Answer | str:
     """Compact traveling wave: β, width, FWHM, amplitude and speed.
 
-    Beside it stands the lattice's own wave, for equal beads, light beads between heavy ones and
-    beads nearly alike: in JSON `lattice`.
+    Beside it stands the lattice's own wave, the solitary wave of the beads' equations of motion,
+    for equal beads, light beads between heavy ones and beads nearly alike: in JSON `lattice`.
 
     With --force the wave of this peak contact force, in space and time; with --spheres in m, s, kg
     and N. With --background or --precompression the wave in a chain under load, in the canonical
@@ -199,13 +196,11 @@ def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
         *rows_of(wave, {"beta": "β (1/m)", "width": "width π/β (m)"}),
     ]
     shown: list[Shown | Made] = [theory.pde, wave]
-    notes = []
     # A number of the size turns V_s and B into speed and strain in space and time.
     if force is not None:
         physical = wave.at_force(force)
         rows += pulse_rows(physical, "peak")
         shown = [wave, physical]
-        notes = chain.hertz_notes(force)
     else:
         reduction = wave.reduction()
         rows += [
@@ -228,7 +223,7 @@ def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
         canonical = canonical_wave(theory.cell, theory.k)
         part = _beside("canonical", CANONICAL, canonical, "speed", force, chain.scale)
         rows.append(part)
-    notes += _put_lattice(rows, chain, force)
+    notes = _put_lattice(rows, chain, force)
     return Answer(settings_json(theory), rows, chain.scale, shown, notes=notes)
 
 
@@ -333,8 +328,7 @@ def under_load(chain: ChainInput, theory: Theory, force: sp.Expr) -> Answer:
             },
         ),
     ]
-    notes = chain.hertz_notes(wave.force)
-    return Answer(settings_json(theory), rows, chain.scale, [wave], _ERRORS, notes)
+    return Answer(settings_json(theory), rows, chain.scale, [wave], _ERRORS)
 
 
 def on_background(chain: ChainInput, theory: Theory, p0: sp.Expr) -> Answer:

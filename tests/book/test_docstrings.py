@@ -30,22 +30,18 @@ UNTYPED = re.compile(r"^(\w[\w, ]*) : .*(\.|\. .*)$", re.MULTILINE)
 
 
 def docstrings(path):
-    """Names, nodes and docstrings of a file: of the module, classes, functions and attributes."""
+    """Names and docstrings of a file: of the module, classes, functions and attributes."""
 
     def walk(node, name):
         if text := ast.get_docstring(node):
-            yield name, node, text
+            yield name, text
         before = None
         for child in node.body:
             if isinstance(child, DOCUMENTED):
                 yield from walk(child, f"{name}.{child.name}")
             described = isinstance(before, ASSIGNED) and isinstance(child, ast.Expr)
             if described and isinstance(child.value, ast.Constant):
-                yield (
-                    f"{name}:{child.lineno}",
-                    child,
-                    inspect.cleandoc(child.value.value),
-                )
+                yield f"{name}:{child.lineno}", inspect.cleandoc(child.value.value)
             before = child
 
     yield from walk(ast.parse((ROOT / path).read_text(encoding="utf-8")), path)
@@ -102,7 +98,7 @@ def public(name):
 @pytest.mark.parametrize("path", FILES)
 def test_docstrings_are_valid(path):
     shown, hidden = [], []
-    for name, _, text in docstrings(path):
+    for name, text in docstrings(path):
         (shown if public(name) else hidden).append(text)
     _, faults = parsed(hidden)
     document, messages = parsed(shown)
@@ -113,30 +109,6 @@ def test_docstrings_are_valid(path):
     for entry in UNTYPED.finditer("\n".join(shown)):
         faults.append(f"a type follows `name :`, the text below: {entry[0]!r}")
     assert not faults, "\n".join(faults)
-
-
-@pytest.mark.parametrize("path", FILES)
-def test_documented_parameters_are_those_of_the_signature(path):
-    """A section "Parameters" of a function, public or not, names its parameters in their order."""
-    wrong = []
-    for name, node, text in docstrings(path):
-        documented = re.search(
-            r"^Parameters\n-+\n(.*?)(?:\n\n\S+\n--|\Z)", text, re.DOTALL | re.MULTILINE
-        )
-        if documented and isinstance(node, ast.FunctionDef):
-            listed = re.findall(
-                r"^\*{0,2}(\w[\w, *]*?)(?: :.*)?$", documented[1], re.MULTILINE
-            )
-            listed = [x.strip(" *") for line in listed for x in line.split(",")]
-            a = node.args
-            own = [
-                x.arg
-                for x in (*a.posonlyargs, *a.args, a.vararg, *a.kwonlyargs, a.kwarg)
-                if x
-            ]
-            if listed != [x for x in own if x in listed]:
-                wrong.append(f"{name}: {listed} of {own}")
-    assert not wrong, "\n".join(wrong)
 
 
 @pytest.mark.parametrize("package", ["lwa", "validation"])

@@ -70,15 +70,3 @@ def test_the_form_of_the_journal():
     assert {"authors", "affiliations", "date", "history"} <= set(
         re.findall(r"\w+", open_)
     )
-
-
-def test_every_program_of_the_readme_is_named():
-    readme = (
-        (BOOK.parent / "README.md")
-        .read_text()
-        .partition("## What else")[2]
-        .partition("##")[0]
-    )
-    programs = re.findall(r"^\| \[(\S+)\]", readme, re.MULTILINE)
-    assert len(programs) > 4
-    assert not [name for name in programs if name not in TEXT]

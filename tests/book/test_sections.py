@@ -75,23 +75,11 @@ def test_cells_and_exercises(page):
     assert all(re.search("hide-cell|} Solution", text) for text in exercises)
 
 
-def test_simulated_records_are_called_so():
-    captions = every(r"^    caption: \|\n +(.*)", {"": TEXTS["experiment"]})
-    assert sum("simulated" in caption for caption in captions) > 1
-    assert not [caption for caption in captions if "measured" in caption]
-
-
-def test_light_beads_oscillate_on_the_page_of_the_lattices_own_wave():
-    """A sentence that says so links to the page that shows it."""
-    sentences = every(r"[^.]*light beads?[^.]* oscillates?\b[^.]*\{doc\}[^.]*")
-    assert sentences
-    assert not [sentence for sentence in sentences if "{doc}`exact`" not in sentence]
-
-
 def test_names_on_the_pages():
     """Files that are there, kinds of statements, the materials, letters and labels that are one."""
-    files = every(r"`((?:tests|book)/[\w/.]+)`")
-    assert len(files) > 3
+    texts = PROSE | {"README": (BOOK.parent / "README.md").read_text()}
+    files = every(r"`(?:pytest )?((?:tests|book|lwa|validation)/[\w/.]*)`", texts)
+    assert len(files) > 8
     assert not [name for name in files if not (BOOK.parent / name).exists()]
     assert not every(r"^:::\{admonition\} (?!Theorem|Rule|Conjecture)(.*)$")
     (listed,) = every(r"`Material.named` knows (.*?) \|")

@@ -35,6 +35,8 @@ def test_a_theory_has_its_time_its_exponents_and_all_its_fields():
     assert r"\lambda = 1" in paper.latex_rows()
     assert paper.latex_rows(3)[5].startswith("b_{4} = ")  # the ansatz of D^{k+3}
     assert paper._repr_latex_().count(r"\cdots") == 2
+    optical = homogenize(Dimer("m1", "m2"), branch="optical").pde._repr_latex_()
+    assert r"u_{\tau\tau} &= -u^{k} + D^{2} \Bigl(" in optical
 
 
 @pytest.mark.slow

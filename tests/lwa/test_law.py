@@ -113,26 +113,3 @@ def test_long_powers_of_a_law_are_not_written_out():
     law = named("magnetic", "1234/99991", d)
     expected = n * (n + 1) / d**2 * (1 - 1.7 / d) ** (-n - 2)
     assert float(law.at(1.7, 2)) == pytest.approx(expected, rel=1e-14)
-
-
-@pytest.mark.parametrize(
-    "law",
-    [
-        Power("5/2"),
-        named("hertz2", 1, 2),
-        named("magnetic", 3, "1/4"),
-        Law(sp.sinh(y), y),
-    ],
-    ids=str,
-)
-def test_force_and_energy_of_a_strain_are_derivatives_of_each_other(law):
-    """W′ = F and F′ = dF/dp at any spacing, F′(D p) of the law in its own variable."""
-    D = sp.Rational(3, 2)
-    p = sp.Rational(1, 10)
-    for n in (-1, 0, 1):
-        slope = law.of_strain(y, D, n).diff(y).subs(y, p)
-        assert float(slope) == pytest.approx(
-            float(law.of_strain(p, D, n + 1)), rel=1e-12
-        )
-    if not law.homogeneous:
-        assert law.of_strain(p, D, 1) == law.at(D * p, 1)

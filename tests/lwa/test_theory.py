@@ -7,16 +7,6 @@ from hypothesis import strategies as st
 
 from lwa import Cell, Dimer, InputError, homogenize
 from tests.commands import terminal
-from tests.identity import same
-
-
-def test_shares_make_all_contact_forces_equal():
-    A1, A2, A3, k = sp.symbols("A1 A2 A3 k", positive=True)
-    cell = Cell([1, 1, 1], stiffnesses=[A1, A2, A3])
-    shares = cell.shares(k)
-    assert same(sum(shares), 3)
-    for A, c in zip(cell.stiffnesses, shares, strict=True):
-        assert same(A * c**k, cell.stiffness(k))  # A_i c_i^k = A_eff
 
 
 def test_cells_of_two_masses():

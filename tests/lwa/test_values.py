@@ -104,19 +104,6 @@ def test_repr_is_one_short_line(order):
     assert repr(theory().pde.coefficients[2]) == "{}"
 
 
-def test_latex_is_the_papers_equation_at_any_order():
-    equation = (
-        r"u_{\tau\tau} &= u_{x}^{k-1} u_{xx} + G u_{x}^{k-3} u_{xx}^{3} "
-        r"+ H u_{x}^{k-2} u_{xx} u_{xxx} + I u_{x}^{k-1} u_{4x}"
-    )
-    for order, end in ((4, r" \\"), (8, r" + \cdots \\")):
-        for piece in (theory(order), theory(order).pde):
-            assert equation + end in piece._repr_latex_()
-            assert len(piece._repr_latex_()) < 2000
-    optical = theory(branch="optical").pde._repr_latex_()
-    assert r"u_{\tau\tau} &= -u^{k} + D^{2} \Bigl(" in optical
-
-
 def test_at_substitutes_everywhere():
     """Specialised afterwards and derived for the numbers are the same."""
     values, cell = {"k": "3/2", "m1": 2, "m2": 3}, Dimer(2, 3)

@@ -169,6 +169,7 @@ def test_a_result_that_cannot_be_written_leaves_the_old_one(capsys, folder, name
 
 NO_FILE = "it cannot be written, No such file or directory; try: lwa-validate"
 BAD = [
+    ("pulses forces.csv --distance 4.76e-3", "forces.csv: No such file or"),
     ("run s.toml --out o.csv", "out is o.csv, but the scene names no s"),
     ("paper --velocity __import__('os')", "velocity is "),
     ("paper --velocity 0", "velocity is 0: "),
@@ -183,21 +184,23 @@ BAD = [
     ("exact --masses 1,x", "masses is x: a number is wanted"),
     ("resonances --k 1", "k is 1: special mass ratios are found for k from 1.1"),
     ("resonances --k 1.14 --count 3", "count is 3: at k = 1.14 the 2 largest"),
-    ("resonances --count x", "count is x: a number is wanted; try: lwa-validate res"),
+    (
+        "resonances --count x",
+        "count is x: an integer from 1 on is wanted; try: lwa-validate res",
+    ),
     ("resonances --count 5/2", "count is 5/2: an integer"),
     ("run s.toml --method DOP8", "method is 'DOP8': did you mean DOP853?; try: "),
     ("sweep --k 1", "k is 1:"),
     ("sweep --k 1:2", "k is '1:2':"),
     ("sweep --k 1:2:1001", "k is '1:2:1001': the count of a range is an integer"),
     ("sweep --k 1.1:1.9:600,2:3:600", "k is '1.1:1.9:600,2:3:600': it has 1200 values"),
-    ("sweep --jobs 5/2", "jobs is 5/2: an integer is wanted; try: lwa-validate sweep"),
     ("sweep --file x/y.sqlite", f"file is x/y.sqlite: {NO_FILE} sweep --file y.sqlite"),
     ("sweep --file s.toml --k 3", "file is s.toml: a file ending in .sqlite is wanted"),
     # without Dask the refusal says how to install it
     ("sweep --cluster a", "cluster "),
     (
-        "sweep --jobs 0 --file s.sqlite",
-        "jobs is 0: an integer from 1 to 1024 is wanted; try: lwa-validate sweep --file",
+        "sweep --jobs 2000 --file s.sqlite",
+        "jobs is 2000: an integer from 1 to 1024 is wanted; try: lwa-validate sweep --file",
     ),
     ("sweep --jobs 2 --cluster tcp://a:1", "jobs is 2:"),
 ]

@@ -24,6 +24,7 @@ from validation.scenes.checks import SceneError
 # The energy of a smaller change, in units of the rest compression, is integrated: its digits cancel
 # in the difference of two energies. Eight points integrate powers up to 20 to 1e-16 up to here.
 _SMALL = 0.05
+_TRIED = 7000  # compressions at which an energy is looked for
 _OPENS = 1e-100  # a compression at which a contact is about to open, in any units
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 _NODES, _WEIGHTS = (1 + _NODES) / 2, _WEIGHTS / 2  # of an integral from 0 to 1
@@ -156,15 +157,23 @@ class Contact:
         if self.law is None:
             # δ^{k+1}/(k+1) = energy, without the factor k + 1, which no scale needs
             return float(energy ** (1 / (self.k + 1)))
-        # The first of many places, 1 % apart, at which the energy is reached, or a pole.
-        change = np.geomspace(1e-15, 1e15, 7000)
-        work = self.energy_above(np.full(change.shape, start), change)
-        # Not `work >= energy`: beyond a pole the work is NaN, and the energy is reached there.
-        reached = ~(work < energy)
-        if not reached.any():
-            # The greatest work is less: the energy overcomes a barrier, whose top is the scale.
-            reached = work == work.max()
-        return float(start + change[np.argmax(reached)])
+        # The first of many places at which the energy is reached, or a pole: 1 % apart, then 1e-6,
+        # as the motion near a pole is the faster the nearer it comes.
+        low = 1e-15
+        high = 1e15
+        for _ in range(2):
+            change = np.geomspace(low, high, _TRIED)
+            work = self.energy_above(np.full(_TRIED, start), change)
+            # Not `work >= energy`: beyond a pole the work is NaN, and the energy is reached there.
+            reached = ~(work < energy)
+            if not reached.any():
+                # The greatest work is less: the energy overcomes a barrier, whose top is the scale.
+                reached = work == work.max()
+            first = int(np.argmax(reached))
+            # The top of a barrier, and a pole with a fall behind it, may lie on either side.
+            low = change[max(first - 1, 0)]
+            high = change[min(first + 1, _TRIED - 1)]
+        return float(start + change[first])
 
     def steepest(self, start: float, depth: float) -> float:
         """Return the greater one of the stiffnesses at two compressions, ``start ≤ depth``.

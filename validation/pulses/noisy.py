@@ -74,13 +74,16 @@ class NoisyPulse:
     """A pulse of a record.
 
     numbers : arrival, peak above the base, fwhm, by these names; without the peak if the record
-    begins too late for a base. base : value below the pulse. missing : words on the number that is
-    missing. noise : standard deviation of the noise of a sample, 0 in a record without.
+    begins too late for a base. base : value below the pulse, at the time rise. missing : words on
+    the number that is missing. slope : growth of the base in time. noise : standard deviation,
+    times ``√n``, of the mean noise of n samples; 0 in a record without noise.
     """
 
     numbers: Mapping[str, Estimate]
     base: float
     missing: str | None = None
+    rise: float = 0.0
+    slope: float = 0.0
     noise: float = 0.0
 
 
@@ -146,14 +149,16 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
         del numbers["peak"]
     else:
         numbers["peak"] *= size
-    (level,) = base.at(np.array([rise])).tolist()
-    noise = math.sqrt(base.best.variance) * size
-    return NoisyPulse(numbers, level * size, missing, noise)
+    level, later = base.at(np.array([rise, fall])).tolist()
+    slope = (later - level) / (fall - rise)
+    # Samples of correlated noise count as fewer; each of ``means`` counts as the block's.
+    noise = math.sqrt(base.best.variance * base.best.correlation_time * block)
+    return NoisyPulse(numbers, level * size, missing, rise, slope * size, noise * size)
 
 
 def _is_exact(f: Array) -> bool:
-    """Whether a record is without noise before it first exceeds half of its maximum."""
-    swing = f - f[0]
+    """Whether a record is without noise before it first exceeds half of its greatest swing."""
+    swing = np.abs(f - f[0])  # of an inverted record the pulse, not the noise
     before = f[: int(np.argmax(swing > swing.max() / 2))]
     early = before[: len(before) // 4]
     if len(early) >= _EARLY and np.ptp(early) < _EXACT * np.ptp(f):
@@ -333,7 +338,8 @@ def suggested(t: Array, signal: Array, pulse: NoisyPulse, unit: str) -> str:
     """
     arrival = pulse.numbers["arrival"].value
     width = pulse.numbers["fwhm"].value
-    swing = signal - pulse.base
+    # A base that falls is no undershoot.
+    swing = signal - pulse.base - min(pulse.slope, 0.0) * (t - pulse.rise)
     charge = cumulative_trapezoid(swing, t, initial=0)
     constants = []
     for start, end in pairwise(_BEHIND):

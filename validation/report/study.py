@@ -22,12 +22,12 @@ from typing import Any, Generic, ParamSpec, TypeVar
 
 import click
 
-from lwa.base.exact import InputError
+from lwa.base.exact import InputError, read_exact
 from lwa.base.files import reason
 from lwa.base.progress import bar, shown
 from lwa.command.cli import HELP, called, help_end
 from lwa.command.cli import run as run_command
-from lwa.command.options import Words, quantities, quantity
+from lwa.command.options import Read, Reader, Words, count, quantities
 from validation.pictures import SUFFIXES, Panel, Pictured
 from validation.report.table import WIDTH, Finding, Table, findings_table, plain, wrap
 from validation.scenes.checks import Failure, SceneError
@@ -286,7 +286,13 @@ def printed_as(style: str, report: Report) -> str:
 # --- options and files ---
 
 
-def option(*names: str, default: Any = None, says: str = "", **settings: Any) -> Any:
+def option(
+    *names: str,
+    default: Any = None,
+    says: str = "",
+    read: Reader | None = None,
+    **settings: Any,
+) -> Any:
     """Return a Click option.
 
     Parameters
@@ -294,19 +300,22 @@ def option(*names: str, default: Any = None, says: str = "", **settings: Any) ->
     *names : str
         Its flags, and the parameter's name where it differs from them.
     default : object
-        Default value, shown in the help; an option whose default is a float reads a `number`, and
-        an `integer` where the default is one.
+        Default value, shown in the help.
     says : str
         Help text.
+    read : callable, optional
+        Reader of the text, a key of `READERS`. An option whose default is a float reads a `number`,
+        and a `count` where the default is an integer.
     **settings : object
         Further settings of `click.option`.
     """
     settings.setdefault("show_default", default is not None and default is not False)
-    if type(default) in _READERS:  # a flag's False is no integer here
-        settings.setdefault("callback", _READERS[type(default)])
-        # As a text, which the callback reads, and which a refusal proposes.
-        default = str(default)
-    settings.setdefault("metavar", _METAVARS.get(settings.get("callback")))
+    # A flag's False is no integer here.
+    read = {float: number, int: count}.get(type(default), read)
+    if read:
+        # As a text, which the reader takes, and which a refusal proposes.
+        default = default and str(default)
+        settings |= {"type": Read(read, default), "metavar": READERS[read]}
     return click.option(*names, default=default, help=says, **settings)
 
 
@@ -379,39 +388,24 @@ def output_option(name: str, suffixes: Sequence[str], says: str) -> Any:
     return option(name, callback=read, metavar="FILE", type=click.Path(), says=says)
 
 
-def number(
-    context: click.Context, given: click.Parameter, value: str | None
-) -> float | None:
-    """Read an option that is an integer, a decimal or a fraction."""
-    exact = quantity(context, given, value)
-    if exact is None:
-        return None
+def number(text: str, name: str) -> float:
+    """Read an integer, a decimal or a fraction."""
+    exact = read_exact(text, name)
     if not exact.is_number:
-        raise SceneError(f"{called(given)} is {exact}: a number is wanted")
+        raise SceneError(f"{name} is {exact}: a number is wanted")
     return float(exact)
 
 
-def integer(
-    context: click.Context, given: click.Parameter, value: str | None
-) -> int | None:
-    """Read an option that is an integer."""
-    found = number(context, given, value)
-    if found is None:
-        return None
-    if not found.is_integer():
-        raise SceneError(f"{called(given)} is {value}: an integer is wanted")
-    return int(found)
-
-
-_READERS = {float: number, int: integer}
-_METAVARS: dict[Any, str] = {
+READERS: dict[Any, str] = {
     number: "NUMBER",
-    integer: "INTEGER",
-    quantity: "NUMBER",
+    count: "INTEGER",
+    read_exact: "NUMBER",
     quantities: "NUMBERS",
 }
+"""Readers of options, with the words for their texts in the help."""
+
 EXPONENT = option(
-    "--k", callback=number, default="3/2", says="Exponent k of the force F = A δ^k."
+    "--k", read=number, default="3/2", says="Exponent k of the force F = A δ^k."
 )
 
 

@@ -29,7 +29,6 @@ from lwa.base.files import (
     entries,
     load,
     place,
-    places,
 )
 from lwa.law import read_law
 from lwa.spheres.beads import (
@@ -180,27 +179,34 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
 
 
 def _passage(fields: Mapping[str, Any]) -> float:
-    """About twice the time in which the pulse of a striker runs through a chain.
+    """About twice the time in which the pulse of a striker runs through a chain and leaves it.
 
-    A contact takes the time in which a bead at the striker's velocity covers the compression that
-    holds its energy, ``A δ^{k+1}/(k+1) = m v²/2``: of equal spheres 0.9 of the pulse's time.
+    A contact, the last one twice, takes the time in which a bead at the striker's velocity covers
+    the compression that holds its energy, ``A δ^{k+1}/(k+1) = m v²/2``: of equal spheres 0.9 of
+    the pulse's time.
     """
     masses = fields["masses"]
+    stiffnesses = [*fields["stiffnesses"]]
+    if "wall" in fields:
+        stiffnesses.append(fields["wall"])
     k = fields["k"]
     (velocity,) = fields["velocities"]
     # A heavy bead is as fast as the momentum of a light striker makes it.
     speed = abs(velocity) * masses[0] / max(masses)
-    total = 0.0
-    for (first, second), A in zip(pairwise(masses), fields["stiffnesses"], strict=True):
+    # At the wall the last bead moves alone.
+    beads = pairwise([*masses, masses[-1]])
+    total = last = 0.0
+    for (first, second), A in zip(beads, stiffnesses, strict=False):
         energy = max(first, second) * speed**2 / 2
-        total += (energy * (k + 1) / A) ** (1 / (k + 1)) / speed
-    return 2 * total
+        last = (energy * (k + 1) / A) ** (1 / (k + 1)) / speed
+        total += last
+    return 2 * (total + last)
 
 
 def _sensors(count: int) -> Reader:
     """Return a reader of sensors: a list of numbers from 1 to ``count``, or "all"."""
     return lambda value, name: (
-        range(count) if value == "all" else places(count)(value, name)
+        range(count) if value == "all" else each(place(count))(value, name)
     )
 
 
@@ -302,9 +308,13 @@ def _drive(given: Table, units: str, folder: Path) -> Drive:
         name = motion.pop("file")
         if not isinstance(name, str):
             raise SceneError(f"drive.file is {shorten(name)}: a file's name is wanted")
-        file = MeasuredFile(folder / name, **stated)
-        check_units(file.columns.si, units, file.path)
-        motion["time"], motion["displacement"] = file.rows("time", "displacement").T
+        try:
+            file = MeasuredFile.read(folder / name, **stated)
+            check_units(file.si, units, file.path)
+            motion["time"], motion["displacement"] = file.rows("time", "displacement").T
+        except SceneError as error:
+            # A dictionary of Python is a table of TOML but for its colons.
+            raise SceneError(str(error).replace("': '", "' = '")) from None
     return Drive(**motion)
 
 

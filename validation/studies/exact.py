@@ -33,7 +33,7 @@ _ERRORS = "residual, tail and rounding"
     EXPONENT,
     option(
         "--masses",
-        callback=quantities,
+        read=quantities,
         default="1",
         says="Mass of all beads, or two in turn.",
     ),

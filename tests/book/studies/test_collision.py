@@ -6,7 +6,6 @@ import sympy as sp
 
 from book.studies.collision import Continuum, collision
 from lwa import Cell, Dimer, Power
-from lwa.law import named as law
 from lwa.loaded.background import Background
 
 ONE = Cell((1,), spacing=1)
@@ -65,26 +64,3 @@ def test_a_solitary_wave_goes_round_and_comes_back(cell, k):
     assert p[-1] == pytest.approx(pulse, abs=1e-7)
     energy = interval.energy(p, v)
     assert energy[1] == pytest.approx(energy[0], rel=1e-7)
-
-
-@pytest.mark.parametrize("n", [1, 5, 60])
-def test_small_waves_have_the_frequency_of_the_equation_down_to_the_grid(n):
-    """cos(Ωτ) on a strain 1; short waves do not grow."""
-    equation = Background(ONE, Power("3/2"), 0)
-    interval = Continuum(equation, 20.0, 128)
-    q = 2 * np.pi * n / 20.0
-    wave = 1e-6 * np.cos(q * interval.x)
-    tau = 7.0
-    p, _ = interval.evolved(1 + wave, 0 * wave, [0, tau], rtol=1e-12)
-    omega = q * float(sp.sqrt(equation.force(sp.S.One, 1) / (1 + equation.I * q**2)))
-    assert (p[-1] - 1) == pytest.approx(wave * np.cos(omega * tau), abs=1e-10)
-
-
-def test_a_law_with_tension_is_not_cut():
-    """Toda's contacts pull: a wave of both signs keeps its energy."""
-    interval = Continuum(Background(ONE, law("exponential", 1), 0), 20.0, 128)
-    wave = 0.1 * np.sin(2 * np.pi * interval.x / 20)
-    p, v = interval.evolved(wave, 0 * wave, [0, 30])
-    energy = interval.energy(p, v)
-    assert energy[1] == pytest.approx(energy[0], rel=1e-8)
-    assert p[-1].min() < -0.01

@@ -77,18 +77,6 @@ def test_a_struck_chain(lattice, mass, speeds, widths, rest):
     assert abs(seen.decay if seen.ringing is None else seen.ringing) < rest
 
 
-def test_a_packing_across_its_rows_is_a_chain():
-    """Small strains: the speed of a chain of 2 (√3/2)^{5/2} times the stiffness, in layers."""
-    known, strain = exact_wave([1], 1.5), 1e-4
-    A = 2 * math.sqrt(0.75) ** 2.5
-    pace = known.c * math.sqrt(A) * (strain * math.sqrt(0.75)) ** 0.25
-    seen = blows.packing("across", strain * math.sqrt(0.75) * pace / blows.STRIKE, pace)
-    assert seen.speed == pytest.approx(
-        known.c * math.sqrt(A) * seen.peak**0.25, rel=1e-4
-    )
-    assert seen.fwhm == pytest.approx(known.fwhm("strain"), rel=1e-4)
-
-
 @pytest.mark.parametrize("case", exactly.CASES)
 def test_stated_errors_cover_exact_waves(case):
     report = exactly.links(case)

@@ -36,3 +36,16 @@ def test_a_power_with_a_symbol_in_its_exponent_is_printed_without_a_search(monke
     monkeypatch.setattr(sp.Expr, "is_constant", None)
     assert latex.expression(value) == known
     assert latex.total([(value + b, "u")]) == rf"\left({known} + b\right) u"
+
+
+def test_digits_in_a_sum_have_the_sign_of_the_number():
+    long = sum(sp.sqrt(p) / p for p in (101, 103, 107)) - 1
+    for value in (long, -long):
+        sign = "+" if value > 0 else "-"
+        found = latex.total([(sp.S.One, "u"), (value, "v")])
+        assert found == f"u {sign} {sp.latex(sp.N(abs(long), 15))} v"
+
+
+def test_powers_of_numbers_are_numbers_and_factors_of_1_are_left_out():
+    half, one = latex.power(sp.S.Half, 3), latex.power(sp.S.One, 3)
+    assert latex.total([(a, half), (b, one)]) == r"a \frac{1}{8} + b"

@@ -41,8 +41,6 @@ light = {mass = 9.75e-3, radius = 9.525e-3, material = "aluminium"}
 cell = ["heavy", "light"]
 """
 ONE_KIND = STEEL_AND_PTFE.replace('"heavy", "light"', '"heavy"')
-A, D = 193e9 / (1 - 0.3**2) / 3 * math.sqrt(2 * 2.38e-3), 2 * 2.38e-3
-"""Hertz's A and the diameter of its beads."""
 
 
 @pytest.fixture
@@ -198,17 +196,6 @@ def test_the_striker_of_a_file_is_the_default(capsys, file):
         options = ("--velocity", "1.25", "--mass", "0.123e-3", *given)
         plain = result(capsys, "strike", "--spheres", file(ONE_KIND), *options)
         assert named["force_value"] == plain["force_value"]
-
-
-def test_a_blow_beyond_hertzs_contact_has_a_note(capsys, file):
-    """a/R = √(δ/2R) is 1/10 where the compression is 1/100 of the spacing."""
-    for share, noted in ((0.009, False), (0.011, True)):
-        force = ("--force", f"{A * (share * D) ** 1.5:.10g}")
-        assert (
-            "notes" in result(capsys, "wave", "--spheres", file(ONE_KIND), *force)
-        ) == noted
-    fast = result(capsys, "strike", "--spheres", file(ONE_KIND), "--velocity", "1e6")
-    assert "Hertz's contact is that of elastic spheres" in fast["notes"][0]
 
 
 def test_an_error_that_was_not_measured_is_null(capsys, file):

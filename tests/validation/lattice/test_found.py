@@ -240,6 +240,14 @@ def test_a_response_that_is_stronger_than_guessed_is_recorded():
             ),
             20,
         ),
+        # A bead that touches a wall is hit: both contacts close at once.
+        (
+            chain(
+                (0.14, 0.95), wall=1, law=JUMPS, displacements=(-0.05,), velocities=(0.3,),
+                duration=0.6,
+            ),
+            1,
+        ),
         # A jump whose place is not settled counts as error, the less damping the more.
         *(
             (
@@ -263,7 +271,7 @@ def test_a_response_that_is_stronger_than_guessed_is_recorded():
     ],
 )  # fmt: skip
 def test_forces_that_jump(scene, most):
-    """The motion erred by up to 31,000, 401, 51 and 4 times the tolerance."""
+    """The motion erred by up to 31,000, 26,000, 401, 51 and 4 times the tolerance."""
     true = follow(scene, [scene.duration], 1e-13, (0.1, 0.1, 0.1)).v[0]
     for rtol in (1e-6, 1e-7, 1e-10):
         off = np.abs(simulate(scene, rtol=rtol).velocities - true).max()

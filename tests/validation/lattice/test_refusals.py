@@ -12,7 +12,7 @@ from validation.lattice import cost
 from validation.lattice.simulate import simulate, simulate_many
 from validation.pulses.sensors import record
 from validation.scenes.chains import struck
-from validation.scenes.forcing import Damping
+from validation.scenes.forcing import Damping, Drive
 from validation.scenes.scene import SceneError
 
 CHAIN = struck((1,), 20, duration=25)
@@ -39,6 +39,14 @@ REFUSED = [
     (struck((1, 1e-300), 20, duration=25), {}, "duration is 25"),
     (replace(CHAIN, duration=1e300), {"method": "DOP853"}, r"duration is 1e\+300"),
     (CHAIN, {"method": "symplectic", "step": 1e-12}, "duration is 25: .* 2e.13 steps"),
+    # a drive that presses its contact into a pole of the law
+    (
+        chain(
+            1, wall=1, law=named("magnetic", 4, 2), drive=Drive(velocity=1), duration=5
+        ),
+        {},
+        "duration is 5",
+    ),
     (replace(CHAIN, bead_sensors=range(20), samples=3 * 10**6), {}, "samples is"),
     (struck((1,), 20_000, duration=25), {"method": "LSODA"}, "samples is .* 13 GB"),
 ]

@@ -232,7 +232,9 @@ def test_a_sensor_that_loses_its_charge_is_told_by_its_undershoot(constant):
     hint = suggested(x, f, noisy_pulse(x, f), "")
     told = float(hint.split("--time-constant '")[1].split("'")[0])
     assert told == pytest.approx(constant, rel=0.1)
-    assert suggested(x, pulse + noise, noisy_pulse(x, pulse + noise), "") == ""
+    for slope in (0.0, -0.02):
+        f = pulse + noise + slope * x
+        assert suggested(x, f, noisy_pulse(x, f), "") == "", slope
 
 
 N = np.arange(400.0)
@@ -255,6 +257,8 @@ WHITE = np.random.default_rng(2).normal(size=400)
         # square: all samples inside are equal
         (np.where(abs(N - 300) < 20, 1, 0.003 * WHITE), "clipped from 281 to 319"),
         (2 - PULSE + 0.01 * WHITE, "is inverted"),
+        # the second sample is the highest
+        (np.where(N == 1, 0.05, 0.01 * WHITE) - PULSE, "is inverted"),
     ],
 )
 def test_records_without_a_measurable_pulse_are_refused(f, named):

@@ -362,8 +362,12 @@ def _correct_neighbour(
         heated = missed * (beads.v[n] - beads.v[n + 1]) / plan.energy
         beads.books[SQUARES] += heated * heated
         _count_error(beads.books, missed / plan.v, near, far)
-    pushes = d > 0.0 and beads.force[1, n + 1] + chain.load[n] > 0.0
-    if pushes or law.pulls:
+    pressed = beads.force[1, n + 1] + chain.load[n]
+    if beads.marks[n] == 0.0 and (d > 0.0) != (pressed > 0.0):
+        # The correction closes, or opens, a neighbour that just touches, at any time of the step.
+        missed = h * (A * push(law, r, d, rate) - pressed)
+        _count_error(beads.books, missed / plan.v, near, far)
+    if law.pulls or (d > 0.0 and pressed > 0.0):
         resisted = -A * r * drag(law, d) * moment * share
         more = resisted - A * stiffness(law, d) * third * share
         beads.next_v[n] -= more * near
@@ -434,12 +438,15 @@ def correct_contact(
         _correct_heat(chain, beads, pair, i, sums.work, stored)
     if driven:
         _correct_work(chain, beads, pair, drive, sums.driven)
-    if r > 0.0:
-        # ∫ (1 - x) F dx and the heat ∫ r δ^p (dδ/dt)² dt are as wrong as p is, the impulse is not.
-        missed = _MISFIT * abs(sums.rough) * A * r * drag(law, max(found.top, 0.0))
-        heated = 2.0 * missed * abs(start[1]) / h / plan.energy
-        beads.books[SQUARES] += heated * heated
-        _count_error(beads.books, h * missed / plan.y, near, far)
+    # The moment ∫ (1 - x) F dx and the heat ∫ r δ^p (dδ/dt)² dt of damping are as wrong as p is.
+    misfit = _MISFIT * abs(sums.rough)
+    missed = misfit * A * r * drag(law, max(found.top, 0.0))
+    heated = 2.0 * missed * abs(start[1]) / h / plan.energy
+    beads.books[SQUARES] += heated * heated
+    _count_error(beads.books, h * missed / plan.y, near, far)
+    # So is the impulse of an elastic force, less so where the contact is hardly closed: half of it.
+    missed = 0.5 * misfit * h * A * stiffness(law, found.top)
+    _count_error(beads.books, missed / plan.v, near, far)
     _count_error(beads.books, change / plan.v, near, far)
     if found.top > 0.0:
         resisted = r * drag(law, found.top) * moment

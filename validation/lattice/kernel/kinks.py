@@ -75,8 +75,9 @@ class Integrals(NamedTuple):
     work, driven : float
         Those of ``F p'``, and of ``F b'`` for the motion b of a driven bead.
     rough : float
-        For a damped contact, that of p'' by the force, less that of the curve, times Legendre's
-        polynomial of degree 4: 0 for a force that the second derivative of a quintic follows.
+        For a damped or driven contact, that of p'' by the force, less that of the curve, times
+        Legendre's polynomial of degree 4: 0 for a force that the second derivative of a quintic
+        follows.
     """
 
     impulse: float
@@ -460,7 +461,7 @@ def integrals(
                 twice += left * force
                 third += 0.5 * left * left * force
                 work += slope * force
-                if r > 0.0:
+                if r > 0.0 or driven:
                     _, _, known = bent(c[6], x[m])
                     rough += _fourth(x[m]) * (bend * force - w[m] * known)
                 if driven:
