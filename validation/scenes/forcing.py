@@ -193,20 +193,14 @@ class Drive:
         elif harmonic:
             finite(self.amplitude, "drive.amplitude")
             positive(self.frequency, "drive.frequency")
-        amplitude, w = self.oscillation
-        pace = 1 / self.ramp if self.ramp else 0.0
-        # Bounds of the derivatives of the sine and of the ramp's polynomial.
-        acceleration = abs(amplitude) * (w * w + 60 * pace * pace)
         if self.time:
             try:
                 with np.errstate(all="ignore"):
-                    acceleration = float(np.abs(self._spline.c).max())
+                    self.at(0.0)
             except ValueError:  # SciPy's, of slopes that overflow
-                acceleration = math.inf
-        if not math.isfinite(acceleration):
-            raise SceneError(
-                "the drive's acceleration comes out as inf: choose other units"
-            )
+                raise SceneError(
+                    "drive.displacement changes too fast for floats: choose other units"
+                ) from None
 
     @cached_property
     def _spline(self) -> Any:
