@@ -150,10 +150,7 @@ def joined(quantity: str) -> sp.Expr:
     return sp.sqrt(limit**2 + form.growth * rest / epsilon)
 
 
-def phi_series(
-    quantity: str,
-    order: int,
-) -> list[mpmath.mpf]:
+def phi_series(quantity: str, order: int) -> list[mpmath.mpf]:
     """Coefficients of the powers of ε in φ, up to this order, to `DIGITS` digits.
 
     >>> [round(float(term), 6) for term in phi_series("momentum", 1)]
@@ -178,26 +175,19 @@ def phi_series(
     return taylor(exponent, order + 1)[1:]
 
 
-def decimals(
-    values: Iterable[sp.Expr],
-    digits: int = DIGITS,
-) -> list[mpmath.mpf]:
+def decimals(values: Iterable[sp.Expr], digits: int = DIGITS) -> list[mpmath.mpf]:
     """Exact numbers to this many digits."""
     return [mpmath.mpmathify(sp.N(value, digits)) for value in values]
 
 
-def power_series(
-    coefficients: Sequence[mpmath.mpf],
-    x: mpmath.mpf,
-) -> mpmath.mpf:
+def power_series(coefficients: Sequence[mpmath.mpf], x: mpmath.mpf) -> mpmath.mpf:
     """The polynomial in x with these coefficients, that of ``x⁰`` first."""
     # mpmath's polynomials begin with the highest power.
     return mpmath.polyval(coefficients[::-1], x)
 
 
 def taylor(
-    function: Callable[[mpmath.mpf], mpmath.mpf],
-    order: int,
+    function: Callable[[mpmath.mpf], mpmath.mpf], order: int
 ) -> list[mpmath.mpf]:
     """Taylor coefficients of a function at 0, to `DIGITS` digits."""
     # SymPy's derivatives of these functions take a hundred times as long.
@@ -205,10 +195,7 @@ def taylor(
         return list(mpmath.taylor(function, 0, order))
 
 
-def pade(
-    terms: Sequence[mpmath.mpf],
-    n: int,
-) -> sp.Expr:
+def pade(terms: Sequence[mpmath.mpf], n: int) -> sp.Expr:
     """The Padé approximant of a series with n powers of `EPSILON` in its denominator."""
     with mpmath.workdps(DIGITS):
         # numerator and denominator
@@ -224,10 +211,7 @@ def pade(
 # --- errors -------------------------------------------------------------------------------------
 
 
-def joined_error(
-    quantity: str,
-    k_value: sp.Expr,
-) -> float:
+def joined_error(quantity: str, k_value: sp.Expr) -> float:
     """Relative error of a quantity of equal beads, for every k > 1.
 
     The exponent εφ errs by at most ``defect ε^{order+2} / (1 + ε)^damping`` (measured, see

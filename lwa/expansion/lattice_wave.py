@@ -23,36 +23,12 @@ from typing import Any, Self
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import (
-    InputError,
-    demand_numbers,
-    number,
-    positive,
-    power,
-    shorten,
-)
-from lwa.base.frozen import (
-    RISE,
-    Estimate,
-    NoSolitaryWave,
-    known_extent,
-    known_quantity,
-)
-from lwa.base.words import (
-    QUANTITIES,
-    ExtentName,
-    LanguageName,
-    QuantityName,
-    one_of,
-)
+from lwa.base.exact import InputError, demand_numbers, number, positive, power, shorten
+from lwa.base.frozen import RISE, Estimate, NoSolitaryWave, known_extent, known_quantity
+from lwa.base.words import QUANTITIES, ExtentName, LanguageName, QuantityName, one_of
 from lwa.cell import Cell, Parametric, exponent, read_cell
 from lwa.cell import k as symbol_k
-from lwa.expansion.dimers import (
-    ALIKE,
-    dimer_error,
-    exponent_of_light_beads,
-    steadiness,
-)
+from lwa.expansion.dimers import ALIKE, dimer_error, exponent_of_light_beads, steadiness
 from lwa.expansion.joined import FORMS, joined, joined_error
 from lwa.law import ContactLaw, Power, power_exponent
 from lwa.wave.source import Functions, module
@@ -342,11 +318,7 @@ class LatticeWave(Parametric):
 
 
 def lattice_wave(
-    cell: Cell,
-    *,
-    k: Any = symbol_k,
-    force: Any = 1,
-    law: ContactLaw | None = None,
+    cell: Cell, *, k: Any = symbol_k, force: Any = 1, law: ContactLaw | None = None
 ) -> LatticeWave:
     """The lattice's own solitary wave in closed form.
 
