@@ -27,7 +27,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from lwa.base import latex
-from lwa.base.calculus import growing_root, integral, ratio
+from lwa.base.calculus import growing_root, integral
 from lwa.base.exact import (
     InputError,
     demand_numbers,
@@ -36,6 +36,7 @@ from lwa.base.exact import (
     power,
     read_exact,
     real,
+    rearranged,
     replaced,
     signed,
 )
@@ -109,7 +110,8 @@ class ContactLaw(Value):
         """The parameter ``φ_n = δ^{n-1} F^{(n)}/F′`` as an expression in δ."""
         # φ_0 has no meaning.
         order = integer(n, "n", 1) - 1
-        return ratio(self.delta**order * self.slope(n), self.slope())
+        value = self.delta**order * self.slope(n) / self.slope()
+        return rearranged(sp.cancel, sp.powsimp(value))
 
     @property
     def pulls(self) -> bool:

@@ -45,7 +45,7 @@ from lwa.loaded.background import Background
 from validation.lattice.result import Run
 from validation.lattice.simulate import repeated, simulate
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Piecewise, highest_pulse, leading_pulses
+from validation.pulses.pulse import Piecewise, first_pulse, highest_pulse
 from validation.pulses.sensors import tracks
 from validation.report.study import EXPONENT, Report, option, study
 from validation.report.table import Column, Finding, Table, percent
@@ -193,7 +193,7 @@ class Upright:
         scene = self.blown(velocity, contact_sensors=np.unique(contacts).tolist())
         run, by_contact = simulate(scene, rtol=self.tolerances[0]), {}
         for track in tracks(run):
-            (pulse,) = leading_pulses(track.force, self.k)
+            pulse = first_pulse(track.force, 0.25**self.k)
             by_contact[track.number - 1] = pulse.arrival, pulse.peak, pulse.fwhm
         rows = []
         for cell in contacts:

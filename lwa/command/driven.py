@@ -12,13 +12,7 @@ from lwa.base.exact import positive
 from lwa.command.answer import Answer, Lines, Row, rows_of
 from lwa.command.chain import STRIKER_FILE, ChainInput
 from lwa.command.cli import KEYS
-from lwa.command.options import (
-    CELL,
-    SPHERES,
-    command,
-    not_negative,
-    value,
-)
+from lwa.command.options import CELL, SPHERES, command, not_negative, value
 from lwa.expansion.strike import pulse_of_strike
 from lwa.shocks import front as fronts
 from lwa.shocks.riemann import RULES
@@ -111,7 +105,7 @@ def strike(
         Row("fwhm.time", "FWHM of the force in time (s)", pulse.fwhm()),
     ]
     # Limits of the model, each said where it is reached.
-    notes = chain.hertz_notes(pulse.wave.force)
+    notes = []
     if chain.gravity:
         notes.append(
             f"gravity {chain.gravity:g} is neglected: the weight of the beads is taken for small "

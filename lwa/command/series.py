@@ -64,7 +64,7 @@ def expansion(chain: ChainInput, order: int | None) -> Answer:
     series = {"c2": ("c²", expanded.c2)}
     # Unlike contacts have unlike widths; series with symbols are long enough for one.
     contacts = 1
-    if expanded.numeric and len(set(cell.stiffnesses)) > 1:
+    if expanded.numeric and not cell.equal_contacts:
         contacts = cell.size
     for i in range(contacts):
         for q in QUANTITIES:
@@ -88,18 +88,12 @@ def expansion(chain: ChainInput, order: int | None) -> Answer:
         # A mass of the pulse as a particle: what a striker meets.
         mass = attempt(expanded.effective_mass.at)
         rows.append(Row("effective_mass", "effective mass P²/2E", mass))
-        if cell.size == 2 and contacts == 1:
-            rows.append(
-                "  (of the mean of a dimer's two contacts, which differ behind a striker)"
-            )
         rows.append("")
     rows.append(partial(_series_lines, series))
     return Answer(head, rows, shown=[expanded], errors=_ERRORS)
 
 
-def _series_lines(
-    series: Mapping[str, tuple[str, EpsilonSeries]],
-) -> Iterator[str]:
+def _series_lines(series: Mapping[str, tuple[str, EpsilonSeries]]) -> Iterator[str]:
     """Lines of text with the coefficients of each series."""
     for label, part in series.values():
         factors = []  # of the whole series

@@ -54,10 +54,7 @@ SPEED = "speed dx/dt (m/s)"
 @BACKGROUND
 @PRECOMPRESSION
 def wave(
-    chain: ChainInput,
-    force: sp.Expr | None,
-    background: sp.Expr | None,
-    **options: Any,
+    chain: ChainInput, force: sp.Expr | None, background: sp.Expr | None, **options: Any
 ) -> Answer | str:
     """Compact traveling wave: β, width, FWHM, amplitude and speed.
 
@@ -162,21 +159,21 @@ def width_rows(wave: Any, extents: Sequence[ExtentName] = ("length",)) -> Iterat
             yield row
 
 
-def pulse_rows(wave: Any, rise: str) -> Iterator[Row]:
+def pulse_rows(wave: Any, prefix: str) -> Iterator[Row]:
     """Rows of the size, the speed and the widths of a wave.
 
     Parameters
     ----------
     wave : PhysicalWave or LoadedWave
         The wave of a peak force.
-    rise : str
-        What its strain is called: "peak", or "rise of the" static strain.
+    prefix : str
+        Words in front of "strain" and "compression": "peak", or under load "rise of the".
     """
     yield Row.of(wave, "force", "peak contact force F (N)")
     # B is the paper's letter of the peak strain.
-    yield Row.of(wave, "strain", f"{rise} strain B", key="B")
+    yield Row.of(wave, "strain", f"{prefix} strain B", key="B")
     labels = {
-        "compression": f"{rise} compression (m)",
+        "compression": f"{prefix} compression (m)",
         "speed": SPEED,
         "bead_velocity": "peak velocity of the beads (m/s)",
     }
@@ -199,13 +196,11 @@ def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
         *rows_of(wave, {"beta": "β (1/m)", "width": "width π/β (m)"}),
     ]
     shown: list[Shown | Made] = [theory.pde, wave]
-    notes = []
     # A number of the size turns V_s and B into speed and strain in space and time.
     if force is not None:
         physical = wave.at_force(force)
         rows += pulse_rows(physical, "peak")
         shown = [wave, physical]
-        notes = chain.hertz_notes(force)
     else:
         reduction = wave.reduction()
         rows += [
@@ -228,7 +223,7 @@ def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
         canonical = canonical_wave(theory.cell, theory.k)
         part = _beside("canonical", CANONICAL, canonical, "speed", force, chain.scale)
         rows.append(part)
-    notes += _put_lattice(rows, chain, force)
+    notes = _put_lattice(rows, chain, force)
     return Answer(settings_json(theory), rows, chain.scale, shown, notes=notes)
 
 
@@ -333,8 +328,7 @@ def under_load(chain: ChainInput, theory: Theory, force: sp.Expr) -> Answer:
             },
         ),
     ]
-    notes = chain.hertz_notes(wave.force)
-    return Answer(settings_json(theory), rows, chain.scale, [wave], _ERRORS, notes)
+    return Answer(settings_json(theory), rows, chain.scale, [wave], _ERRORS)
 
 
 def on_background(chain: ChainInput, theory: Theory, p0: sp.Expr) -> Answer:

@@ -225,11 +225,10 @@ class EpsilonSeries(Value):
     def latex_rows(self) -> list[str]:
         """The series as a paper prints it: its name, its first `SHOWN` terms and dots."""
         epsilon = sp.Symbol(r"\varepsilon")
-        # The constant has no factor.
-        terms = [(self.coefficients[0], "")]
-        for n in range(1, min(SHOWN, len(self.coefficients))):
-            if self.coefficients[n]:
-                terms.append((self.coefficients[n], latex.power(epsilon, n)))
+        terms = []
+        for n, coefficient in enumerate(self.coefficients[:SHOWN]):
+            if coefficient:
+                terms.append((coefficient, latex.power(epsilon, n)))
         value = latex.total(terms) + r" + \dots"
         unit = self.prefactor * epsilon**self.power
         if unit != 1:

@@ -155,7 +155,8 @@ def test_exact():
         kind = Problem if len(masses) == 1 else SpecialRatio
         finer = solve(kind(wave.masses, k, wave.half_period, points), wave)
         largest.append(held(numbers(wave), numbers(finer)))
-    assert max(largest) >= 1 / LARGEST
+    # Rounding of a few ulp: the ± is that of the worst exponents, k = 60 among them.
+    assert max(largest) >= 1 / 100
 
 
 @pytest.mark.parametrize(("k", "load"), [(1.1, 0.99), (1.5, 0.9999)])

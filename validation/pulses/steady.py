@@ -35,7 +35,7 @@ from lwa.base.frozen import Estimate
 from validation.lattice.cost import IntegrationError
 from validation.lattice.result import Run
 from validation.lattice.simulate import simulate
-from validation.pulses.pulse import MeasureError, leading_pulses
+from validation.pulses.pulse import MeasureError, first_pulse
 from validation.scenes.chains import struck
 
 LABELS = {  # measured numbers and their labels
@@ -176,12 +176,13 @@ class StruckDimer:
         Names are arrival, peak, width of the force, strain_width, end, and highest, the peak of the
         highest pulse. Raises `MeasureError` if a pulse does not pass all places in time.
         """
-        shares = (0.5, 0.5**self.k)  # half of the force, and half of the compression
+        low = 0.25**self.k  # a quarter of the compression
         sensors = run.scene.contact_sensors
         found: dict[str, list[float]] = {}
         for force in (run.signal("contact", i) for i in sensors):
             try:
-                pulse, strain = leading_pulses(force, self.k, shares)
+                pulse = first_pulse(force, low)
+                strain = first_pulse(force, low, 0.5**self.k)
             except MeasureError:
                 end = run.scene.duration
                 missing = (

@@ -29,7 +29,6 @@ from lwa.base.files import (
     entries,
     load,
     place,
-    places,
 )
 from lwa.law import read_law
 from lwa.spheres.beads import (
@@ -207,7 +206,7 @@ def _passage(fields: Mapping[str, Any]) -> float:
 def _sensors(count: int) -> Reader:
     """Return a reader of sensors: a list of numbers from 1 to ``count``, or "all"."""
     return lambda value, name: (
-        range(count) if value == "all" else places(count)(value, name)
+        range(count) if value == "all" else each(place(count))(value, name)
     )
 
 
@@ -310,8 +309,8 @@ def _drive(given: Table, units: str, folder: Path) -> Drive:
         if not isinstance(name, str):
             raise SceneError(f"drive.file is {shorten(name)}: a file's name is wanted")
         try:
-            file = MeasuredFile(folder / name, **stated)
-            check_units(file.columns.si, units, file.path)
+            file = MeasuredFile.read(folder / name, **stated)
+            check_units(file.si, units, file.path)
             motion["time"], motion["displacement"] = file.rows("time", "displacement").T
         except SceneError as error:
             # A dictionary of Python is a table of TOML but for its colons.
