@@ -276,6 +276,8 @@ class LoadedWave(States):
         else:
             value = number(self.fwhm(quantity, extent))
             relative = known.width
+            if quantity == "velocity":
+                relative = known.velocity
             if extent == "time":  # the width divided by the speed
                 relative += known.speed
         return Estimate(value, value * relative)
