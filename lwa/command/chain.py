@@ -171,7 +171,7 @@ def _numbers(entries: Table, readers: Mapping[str, Reader]) -> dict[str, sp.Expr
 
 def _cell_of_masses(row: Beads) -> Cell:
     """The smallest periodic cell of a chain of masses."""
-    # Two cells show a period that is longer than one half of a cell.
+    # Two cells in a row show how a cell that repeats goes on: 1, 2, 1 has the period 3, not 2.
     masses = row.masses * min(row.repeat, 2)
     stiffnesses = row.stiffnesses or [1.0]
     P = period(masses, stiffnesses)

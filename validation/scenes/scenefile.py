@@ -29,7 +29,6 @@ from lwa.base.files import (
     entries,
     load,
     place,
-    places,
 )
 from lwa.law import read_law
 from lwa.spheres.beads import (
@@ -194,7 +193,7 @@ def _passage(fields: Mapping[str, Any]) -> float:
 def _sensors(count: int) -> Reader:
     """Return a reader of sensors: a list of numbers from 1 to ``count``, or "all"."""
     return lambda value, name: (
-        range(count) if value == "all" else places(count)(value, name)
+        range(count) if value == "all" else each(place(count))(value, name)
     )
 
 

@@ -38,6 +38,7 @@ def test_the_top_takes_part_of_airys_front(k):
 
 @pytest.fixture(scope="module")
 def found():
+    """The study's document on equal beads."""
     return gravity(masses=(1,), beads=1500).document()
 
 
