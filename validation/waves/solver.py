@@ -36,6 +36,7 @@ from typing import Any
 import numpy as np
 
 from lwa import Cell, loaded_wave
+from lwa.base.arrays import Array
 from lwa.base.exact import InputError
 from validation.scenes.checks import SceneError, between, integer, items
 from validation.waves import newton
@@ -193,7 +194,11 @@ def _dimer(pair: newton.Pair, k: float) -> ExactWave:
     )
 
 
-def solve(problem: newton.Problem, start: ExactWave | None = None) -> ExactWave:
+def solve(
+    problem: newton.Problem,
+    start: ExactWave | None = None,
+    change: float | Array = 0.0,
+) -> ExactWave:
     """Return a wave of peak force 1, on whatever branch Newton's method reaches.
 
     Parameters
@@ -202,6 +207,8 @@ def solve(problem: newton.Problem, start: ExactWave | None = None) -> ExactWave:
         Masses, exponent and grid; of a `newton.SpecialRatio` m2 is solved for.
     start : ExactWave, optional
         A near wave; by default the theory's.
+    change : float or Array
+        Added to the forces of the near wave at the grid points.
 
     Raises
     ------
@@ -211,7 +218,7 @@ def solve(problem: newton.Problem, start: ExactWave | None = None) -> ExactWave:
     k = problem.k
     m1, m2 = problem.masses
     if start is not None:
-        force = start.force(problem.xi)
+        force = start.force(problem.xi) + change
         c2 = start.c2 * sum(start.masses) / (m1 + m2)
     else:
         # The force cos^{2k/(k-1)}(βξ), and c² = 4/((k+1)(m1+m2)). The two contacts' forces are
@@ -313,12 +320,18 @@ def _following(path: Sequence[ExactWave], k: float) -> ExactWave:
     """
     before = path[0]
     last = path[-1]
-    expected = _root(last)
-    if len(path) > 1:
+    farther = 0.0  # length of the step over that of the path's last one
+    if before is not last:
         start, here, there = (math.log(x - 1) for x in (before.k, last.k, k))
-        slope = (_root(last) - _root(before)) / (here - start)
-        expected += slope * (there - here)
-    following = solve(SpecialRatio((1.0, expected**-2), k), last)
+        farther = (there - here) / (here - start)
+    expected = _root(last) + farther * (_root(last) - _root(before))
+    problem = SpecialRatio((1.0, expected**-2), k)
+    xi = problem.xi
+    change: float | Array = 0.0
+    # Towards k = 1 the profile goes on as before; at large k its flanks are too steep for that.
+    if k < HERTZ:
+        change = farther * (last.force(xi) - before.force(xi))
+    following = solve(problem, last, change)
     if following.solitary and abs(_root(following) - expected) < _NEARER:
         return following
     raise NoWave(f"the special ratio is lost {_parameters(last.masses, k)}")
