@@ -196,11 +196,13 @@ def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
         *rows_of(wave, {"beta": "β (1/m)", "width": "width π/β (m)"}),
     ]
     shown: list[Shown | Made] = [theory.pde, wave]
+    notes = []
     # A number of the size turns V_s and B into speed and strain in space and time.
     if force is not None:
         physical = wave.at_force(force)
         rows += pulse_rows(physical, "peak")
         shown = [wave, physical]
+        notes = chain.hertz_notes(force)
     else:
         reduction = wave.reduction()
         rows += [
@@ -223,7 +225,7 @@ def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
         canonical = canonical_wave(theory.cell, theory.k)
         part = _beside("canonical", CANONICAL, canonical, "speed", force, chain.scale)
         rows.append(part)
-    notes = _put_lattice(rows, chain, force)
+    notes += _put_lattice(rows, chain, force)
     return Answer(settings_json(theory), rows, chain.scale, shown, notes=notes)
 
 
@@ -328,7 +330,8 @@ def under_load(chain: ChainInput, theory: Theory, force: sp.Expr) -> Answer:
             },
         ),
     ]
-    return Answer(settings_json(theory), rows, chain.scale, [wave], _ERRORS)
+    notes = chain.hertz_notes(wave.force)
+    return Answer(settings_json(theory), rows, chain.scale, [wave], _ERRORS, notes)
 
 
 def on_background(chain: ChainInput, theory: Theory, p0: sp.Expr) -> Answer:
