@@ -179,7 +179,11 @@ class Row:
         found = []
         for number in self.values:
             if not isinstance(number, Estimate):
-                number = self.estimate or scale.number(number)
+                estimate = self.estimate
+                if scale.symbols(number) is None:
+                    # An estimate stands beside powers of symbols, and not for √(m1 + m2).
+                    estimate = None
+                number = estimate or scale.number(number)
             if number is None:
                 return []
             found.append(number)

@@ -155,7 +155,7 @@ def _lines(theory: Theory) -> Iterator[str]:
 
 def _terms_json(coefficients: Mapping[int, Terms]) -> list[Values]:
     """JSON of the terms by their orders."""
-    # Jets are lists of [derivative, power]: JSON has no tuples as keys.
+    # A row a term, whose jet is a list of [derivative, power]: JSON has no jets as keys.
     rows: list[Values] = []
     for n, terms in coefficients.items():
         for jet, coefficient in terms.items():

@@ -69,7 +69,7 @@ def dispersion(chain: ChainInput, order: int) -> Answer:
     head: Values = {"acoustic": None, "optical": None} | series
     rows: Lines = [
         chain.text,
-        "Ω²(κ), κ = qD and Ω/D the frequency in τ",
+        "coefficients of Ω²(κ), κ = qD and Ω/D the frequency in τ",
         "",
         partial(_series_lines, series),
     ]
@@ -91,8 +91,8 @@ def dispersion(chain: ChainInput, order: int) -> Answer:
             ),
         ]
         # Edges are roots, which have no closed form beyond two masses.
-        numbers = (*chain.cell.masses, *loaded.spring_constants)
-        if not any(x.free_symbols for x in numbers):
+        numbers = sp.Tuple(*chain.cell.masses, *loaded.spring_constants)
+        if not numbers.free_symbols:
             edges = loaded.bands.edges()
             frequencies = edges / (2 * math.pi)
             head["band_edges_value"] = edges.tolist()
@@ -101,14 +101,11 @@ def dispersion(chain: ChainInput, order: int) -> Answer:
             shown_edges = frequencies if chain.si else edges
             unit = " (Hz)" if chain.si else ", in rad per unit of time"
             for i, band in enumerate(shown_edges, start=1):
-                ends = tuple(sp.Float(float(x)) for x in band)
-                rows.append(Row("", f"band {i}{unit}", ends))
+                rows.append(Row("", f"band {i}{unit}", tuple(map(sp.Float, band))))
     return Answer(head, rows, chain.scale, shown)
 
 
-def _series_lines(
-    branches: Mapping[str, Mapping[int, sp.Expr]],
-) -> Iterator[str]:
+def _series_lines(branches: Mapping[str, Mapping[int, sp.Expr]]) -> Iterator[str]:
     """Lines of text with the coefficients of each branch, exact, one a line."""
     for name, series in branches.items():
         yield f"{name}:"
@@ -226,11 +223,10 @@ def envelope(
         shown.append(breather)
         # Bright and dark envelopes of the cubic equation have these shapes.
         shape = {"bright": "sech", "dark": "tanh"}[breather.kind]
-        own = breather.frequency / turn
         rows += [
             "",
             f"{breather.kind} breather, |Ψ| = a {shape}(b n):",
-            Row("breather_frequency", frequency_label, own),
+            Row("breather_frequency", frequency_label, breather.frequency / turn),
             *rows_of(
                 breather,
                 {
