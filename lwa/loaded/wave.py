@@ -277,14 +277,12 @@ class LoadedWave(States):
         )
         if name == "speed":
             value = number(self.speed)
-            relative = known.speed
+            relative = known["speed"]
         else:
             value = number(self.fwhm(quantity, extent))
-            relative = known.width
-            if quantity == "velocity":
-                relative = known.velocity
+            relative = known[quantity]
             if extent == "time":  # the width divided by the speed
-                relative += known.speed
+                relative += known["speed"]
         return Estimate(value, value * relative)
 
     @cached_property
