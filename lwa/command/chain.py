@@ -28,6 +28,10 @@ from lwa.spheres.beads import (
 from lwa.spheres.beads import Row as Beads
 from lwa.spheres.hertz import EXPONENT
 
+HERTZIAN = 0.01
+"""Compression over the spacing from which on a note is printed: the radius of contact of equal
+spheres is then a tenth of their radius R, ``a/R = √(δ/2R)``, where Hertz (1882) wants a ≪ R."""
+
 STRIKER_FILE = "lwa-validate run --example striker > chain.toml"
 """The line that writes a file of equal beads and a striker."""
 
@@ -84,6 +88,19 @@ class ChainInput:
             parts.append(Row("", label, value).text(self.scale))
         masses, stiffnesses, spacing = parts
         return f"{masses}; contact force {force}, {stiffnesses}; {spacing}"
+
+    def hertz_notes(self, force: sp.Expr) -> list[str]:
+        """A note on a force that presses spheres too much for Hertz's contact; [] for others."""
+        if not self.si or self.law.exponent != EXPONENT or force.free_symbols:
+            return []
+        # Of unlike contacts the mean: a note is no measurement.
+        strain = float(self.law.compression(self.cell, force) / self.cell.spacing)
+        if strain < HERTZIAN:
+            return []
+        return [
+            f"contacts are compressed by {strain:.2g} of the spacing: Hertz's contact is that of "
+            f"elastic spheres up to about {HERTZIAN}, and metals yield before"
+        ]
 
 
 def take_chain(options: dict[str, Any]) -> ChainInput:

@@ -105,7 +105,7 @@ def strike(
         Row("fwhm.time", "FWHM of the force in time (s)", pulse.fwhm()),
     ]
     # Limits of the model, each said where it is reached.
-    notes = []
+    notes = chain.hertz_notes(pulse.wave.force)
     if chain.gravity:
         notes.append(
             f"gravity {chain.gravity:g} is neglected: the weight of the beads is taken for small "

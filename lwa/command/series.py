@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import partial
 
 from lwa.base.words import QUANTITIES
 from lwa.cell import k
@@ -43,6 +42,8 @@ def expansion(chain: ChainInput, order: int | None) -> Answer:
     Each sum comes with an estimate of its absolute error, at the peak force 1 on the first contact
     and with lengths in D; k and the cell must be numbers. `lwa wave` has the closed form of the
     lattice's wave, where there is one, for every k.
+
+    A dimer's numbers are those of the mean of its two contacts, which differ behind a striker.
 
     In JSON c² is the sum of ``c2[n] ε^n``. `fwhm` is that of the first contact, `fwhm_contact_2`
     that of the second where contacts are unlike, and so on.
@@ -89,7 +90,7 @@ def expansion(chain: ChainInput, order: int | None) -> Answer:
         mass = attempt(expanded.effective_mass.at)
         rows.append(Row("effective_mass", "effective mass P²/2E", mass))
         rows.append("")
-    rows.append(partial(_series_lines, series))
+    rows.append(_series_lines(series))
     return Answer(head, rows, shown=[expanded], errors=_ERRORS)
 
 

@@ -13,9 +13,9 @@ import sympy as sp
 import lwa  # its names are loaded when they are used: waves under a load need NumPy
 from lwa.base import latex
 from lwa.base.exact import InputError, brief, number, read_exact
-from lwa.base.frozen import Estimate, NoSolitaryWave, Shown
+from lwa.base.frozen import Estimate, NoSolitaryWave
 from lwa.base.words import EXTENTS, LANGUAGES, QUANTITIES, ExtentName
-from lwa.command.answer import LONG, Answer, Lines, Made, Row, Scale, attempt, rows_of
+from lwa.command.answer import LONG, Answer, Lines, Row, Scale, Shows, attempt, rows_of
 from lwa.command.chain import ChainInput
 from lwa.command.derivation import closure_lines, depends_on_first, settings_json
 from lwa.command.options import (
@@ -195,12 +195,14 @@ def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
         "",
         *rows_of(wave, {"beta": "β (1/m)", "width": "width π/β (m)"}),
     ]
-    shown: list[Shown | Made] = [theory.pde, wave]
+    shown: Shows = [theory.pde, wave]
+    notes = []
     # A number of the size turns V_s and B into speed and strain in space and time.
     if force is not None:
         physical = wave.at_force(force)
         rows += pulse_rows(physical, "peak")
         shown = [wave, physical]
+        notes = chain.hertz_notes(force)
     else:
         reduction = wave.reduction()
         rows += [
@@ -223,7 +225,7 @@ def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
         canonical = canonical_wave(theory.cell, theory.k)
         part = _beside("canonical", CANONICAL, canonical, "speed", force, chain.scale)
         rows.append(part)
-    notes = _put_lattice(rows, chain, force)
+    notes += _put_lattice(rows, chain, force)
     return Answer(settings_json(theory), rows, chain.scale, shown, notes=notes)
 
 
@@ -328,7 +330,8 @@ def under_load(chain: ChainInput, theory: Theory, force: sp.Expr) -> Answer:
             },
         ),
     ]
-    return Answer(settings_json(theory), rows, chain.scale, [wave], _ERRORS)
+    notes = chain.hertz_notes(wave.force)
+    return Answer(settings_json(theory), rows, chain.scale, [wave], _ERRORS, notes)
 
 
 def on_background(chain: ChainInput, theory: Theory, p0: sp.Expr) -> Answer:
@@ -345,7 +348,7 @@ def on_background(chain: ChainInput, theory: Theory, p0: sp.Expr) -> Answer:
         f"  dx/dt = V_s · {field.time_scale}",
         *_unit_rise(field),
     ]
-    shown: list[Shown | Made] = [field]
+    shown: Shows = [field]
     # Small waves of a law without curvature have another equation, and a chain without load none.
     try:
         kdv = field.kdv

@@ -32,17 +32,8 @@ from lwa.base.exact import (
     shorten,
 )
 from lwa.base.frozen import Value
-from lwa.cell import (
-    Cell,
-    Parametric,
-    exponent,
-    read_cell,
-)
-from lwa.law import (
-    ContactLaw,
-    Power,
-    for_cell,
-)
+from lwa.cell import Cell, Parametric, exponent, read_cell
+from lwa.law import ContactLaw, Power, for_cell
 from lwa.linear.bloch import Bloch
 
 if TYPE_CHECKING:

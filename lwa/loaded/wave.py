@@ -49,12 +49,7 @@ from lwa.base.exact import (
     read_exact,
     shorten,
 )
-from lwa.base.frozen import (
-    Estimate,
-    NoSolitaryWave,
-    known_extent,
-    known_quantity,
-)
+from lwa.base.frozen import Estimate, NoSolitaryWave, known_extent, known_quantity
 from lwa.base.words import ExtentName, QuantityName, one_of
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k

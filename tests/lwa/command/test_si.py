@@ -193,6 +193,18 @@ def test_the_striker_of_a_file_is_the_default(capsys, file):
         assert named["force_value"] == plain["force_value"]
 
 
+def test_a_blow_beyond_hertzs_contact_has_a_note(capsys, file):
+    """a/R = √(δ/2R) is 1/10 where the compression is 1/100 of the spacing."""
+    spheres = ("--spheres", file(ONE_KIND))
+    cell = read_chain(spheres[-1]).cell
+    for share, noted in ((0.009, False), (0.011, True)):
+        force = float(cell.stiffnesses[0]) * (share * float(cell.spacing)) ** 1.5
+        found = result(capsys, "wave", *spheres, "--force", f"{force:.10g}")
+        assert ("notes" in found) == noted
+    fast = result(capsys, "strike", *spheres, "--velocity", "1e6")
+    assert "Hertz's contact is that of elastic spheres" in fast["notes"][0]
+
+
 def test_an_error_that_was_not_measured_is_null(capsys, file):
     """A strike at k = 6/5: beyond the exponents at which the rule's error was measured."""
     chain = file("[chain]\ncell = [1]\nk = 1.2\nspacings = [1]\n")

@@ -71,7 +71,7 @@ def test_a_bad_value_is_refused_by_name(change, named):
         (Drive, {"velocity": 1, "amplitude": 1, "frequency": 1}, "drive has not one"),
         (Drive, {"velocity": 1, "ramp": 1}, "drive.ramp is 1"),
         (Drive, {"amplitude": 1, "frequency": 0}, "drive.frequency is 0"),
-        (Drive, {"amplitude": 1e300, "frequency": 1e10}, "the drive's acceleration"),
+        (Drive, RISING | {"displacement": (0, 1e308, -1e308, 0)}, "drive.displacement"),
         (Drive, {"time": (0, 1), "displacement": (0, 1)}, "drive has 2 times"),
         (Drive, {"time": (0, 1, 2, 2), "displacement": (0,) * 4}, "drive.time must"),
     ],

@@ -94,9 +94,8 @@ def test_ctrl_c_says_how_points_are_kept(capsys, folder, monkeypatch, options, s
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ("pragma user_version = 5003", "another stretch"),
-        ("pragma user_version = 0", "a database, but not a sweep's"),
-        ("update points set k = '__import__(0)'", "k is"),
+        ("alter table points_5_2 rename to points_5_3", "other data than points"),
+        ("update points_5_2 set point = replace(point, '\"4\"', '\"f(0)\"')", "k is"),
     ],
 )
 def test_another_database_is_refused_and_left_alone(file, change, words):
