@@ -13,12 +13,7 @@ the share ``C_i`` of the strain, and the cell responds like one of P equal conta
 
 from __future__ import annotations
 
-from collections.abc import (
-    Collection,
-    Iterable,
-    Mapping,
-    Sequence,
-)
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any, Self
@@ -273,12 +268,7 @@ class Parametric(Value):
 
 
 def Dimer(
-    m1: Any,
-    m2: Any,
-    N: int = 1,
-    *,
-    stiffnesses: Sequence[Any] = (),
-    spacing: Any = D,
+    m1: Any, m2: Any, N: int = 1, *, stiffnesses: Sequence[Any] = (), spacing: Any = D
 ) -> Cell:
     """The paper's N:1 dimer.
 
@@ -353,9 +343,7 @@ def by_name(symbols: Collection[sp.Symbol]) -> dict[str, sp.Symbol]:
 
 
 def substitution(
-    values: Mapping[str, Any],
-    symbols: Collection[sp.Symbol],
-    cell: Cell,
+    values: Mapping[str, Any], symbols: Collection[sp.Symbol], cell: Cell
 ) -> dict[sp.Symbol, sp.Expr]:
     """Map symbols of a cell and of its results to the values given for their names.
 
@@ -397,9 +385,7 @@ def substitution(
 
 
 def _by_ratio(
-    cell: Cell,
-    omega: sp.Expr,
-    known: Mapping[sp.Symbol, sp.Expr],
+    cell: Cell, omega: sp.Expr, known: Mapping[sp.Symbol, sp.Expr]
 ) -> tuple[sp.Symbol, sp.Expr]:
     """Return the mass symbol that a given m2/m1 determines, and its value; others are ``known``."""
     masses = tuple(dict.fromkeys(cell.masses))
@@ -421,11 +407,7 @@ def _by_ratio(
     )
 
 
-def _quantities(
-    values: Any,
-    name: str,
-    singular: str,
-) -> tuple[sp.Expr, ...]:
+def _quantities(values: Any, name: str, singular: str) -> tuple[sp.Expr, ...]:
     """Read a sequence of positive numbers or symbols."""
     numbered = enumerate(items(values, name), start=1)
     return tuple(positive(x, f"{singular} {i}") for i, x in numbered)

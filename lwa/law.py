@@ -27,7 +27,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from lwa.base import latex
-from lwa.base.calculus import growing_root, integral, ratio
+from lwa.base.calculus import growing_root, integral
 from lwa.base.exact import (
     InputError,
     demand_numbers,
@@ -36,6 +36,7 @@ from lwa.base.exact import (
     power,
     read_exact,
     real,
+    rearranged,
     replaced,
     signed,
 )
@@ -109,7 +110,8 @@ class ContactLaw(Value):
         """The parameter ``φ_n = δ^{n-1} F^{(n)}/F′`` as an expression in δ."""
         # φ_0 has no meaning.
         order = integer(n, "n", 1) - 1
-        return ratio(self.delta**order * self.slope(n), self.slope())
+        value = self.delta**order * self.slope(n) / self.slope()
+        return rearranged(sp.cancel, sp.powsimp(value))
 
     @property
     def pulls(self) -> bool:
@@ -118,11 +120,7 @@ class ContactLaw(Value):
         known = not (self.homogeneous or self.formless)
         return known and bool(self.slope().subs(self.delta, 0).is_positive)
 
-    def at(
-        self,
-        delta: Any,
-        n: int = 0,
-    ) -> Any:
+    def at(self, delta: Any, n: int = 0) -> Any:
         """The force F, or its n-th derivative, at a compression.
 
         Parameters
@@ -158,11 +156,7 @@ class ContactLaw(Value):
             return sp.S.Zero
         return self._put(self.slope(n), delta)
 
-    def _put(
-        self,
-        value: sp.Expr,
-        delta: sp.Expr,
-    ) -> sp.Expr:
+    def _put(self, value: sp.Expr, delta: sp.Expr) -> sp.Expr:
         """An expression in δ at a compression; long numbers are not written out."""
         # SymPy alone can put a value into the derivative of an unknown function.
         if self.formless:
@@ -199,12 +193,7 @@ class ContactLaw(Value):
         """True if F is a function without an expression, as that of `general`."""
         return bool(self.F.atoms(AppliedUndef))
 
-    def of_strain(
-        self,
-        p: sp.Expr,
-        D: sp.Expr,
-        n: int = 0,
-    ) -> sp.Expr:
+    def of_strain(self, p: sp.Expr, D: sp.Expr, n: int = 0) -> sp.Expr:
         """The n-th derivative of F at a strain, in the units of ``u_ττ = F′(u_x) u_xx``.
 
         Parameters
@@ -226,11 +215,7 @@ class ContactLaw(Value):
             return self._put(self.energy, D * p) / D**2
         return self.at(D * p, n) * D ** (n - 1)
 
-    def check_strain(
-        self,
-        p: sp.Expr,
-        cell: Cell,
-    ) -> None:
+    def check_strain(self, p: sp.Expr, cell: Cell) -> None:
         """Refuse a strain at which F does not grow or before which F has a pole.
 
         Parameters
@@ -265,11 +250,7 @@ class ContactLaw(Value):
                 f"the strain is {shorten(p)}: F′ is {sp.N(slope, 4)} there, and sound needs F′ > 0"
             )
 
-    def compression(
-        self,
-        cell: Cell,
-        force: sp.Expr,
-    ) -> sp.Expr:
+    def compression(self, cell: Cell, force: sp.Expr) -> sp.Expr:
         """The mean compression of a cell's contacts that push with this force; see `inverse`."""
         # The contacts of a cell act like equal ones of this stiffness.
         return self.inverse(real(force, "force") / cell.stiffness(self.exponent))
@@ -343,12 +324,7 @@ class Power(ContactLaw):
     def phi(self, n: int) -> sp.Expr:
         return sp.ff(self.k - 1, integer(n, "n", 1) - 1)
 
-    def of_strain(
-        self,
-        p: sp.Expr,
-        D: sp.Expr,
-        n: int = 0,
-    ) -> sp.Expr:
+    def of_strain(self, p: sp.Expr, D: sp.Expr, n: int = 0) -> sp.Expr:
         # The time of a power's wave equation holds the spacing, and the k of F′ as well.
         return super().of_strain(p, sp.S.One, n) / self.k
 
@@ -503,11 +479,7 @@ def read_law(value: Any, name: str) -> ContactLaw:
     return named(title.strip(), *(parameters.split(",") if colon else ()))
 
 
-def _check_parameter(
-    value: sp.Expr,
-    name: str,
-    delta: sp.Symbol,
-) -> sp.Expr:
+def _check_parameter(value: sp.Expr, name: str, delta: sp.Symbol) -> sp.Expr:
     """Return a law's parameter; raise `lwa.InputError` if it holds the compression's symbol."""
     if delta.name in {s.name for s in value.free_symbols}:
         raise InputError(
@@ -521,11 +493,7 @@ def phi_symbol(n: int) -> sp.Symbol:
     return sp.Symbol(f"phi{n}", real=True)
 
 
-def for_cell(
-    law: Any,
-    cell: Cell,
-    k: Any = symbol_k,
-) -> ContactLaw:
+def for_cell(law: Any, cell: Cell, k: Any = symbol_k) -> ContactLaw:
     """Return the law of a cell's contacts.
 
     Parameters
@@ -565,12 +533,7 @@ def for_cell(
     return law
 
 
-def power_exponent(
-    law: ContactLaw | None,
-    cell: Cell,
-    k: Any,
-    why: str,
-) -> sp.Expr:
+def power_exponent(law: ContactLaw | None, cell: Cell, k: Any, why: str) -> sp.Expr:
     """Return the exponent of the power law of a cell's contacts.
 
     Parameters

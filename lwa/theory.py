@@ -26,12 +26,7 @@ from lwa.cell import Cell, read_cell
 from lwa.cell import k as symbol_k
 from lwa.closure.consistency import Closure, OfClosure
 from lwa.equation.pde import PDE
-from lwa.equation.terms import (
-    STRAIN,
-    Terms,
-    latex_by_order,
-    terms,
-)
+from lwa.equation.terms import STRAIN, Terms, latex_by_order, terms
 from lwa.law import ContactLaw, for_cell
 
 MOST_TERMS = 600_000
@@ -231,10 +226,7 @@ def homogenize(
     return Theory(Closure(model, closure, field))
 
 
-def _check_length(
-    model: Model,
-    closure: ClosureName,
-) -> None:
+def _check_length(model: Model, closure: ClosureName) -> None:
     """Raise `lwa.InputError` for a derivation of more than `MOST_TERMS` terms, by an estimate."""
     # The φ_n of a law that is no power grow as powers of one parameter, k.
     parameters = min(len(model.parameters), 1)

@@ -45,7 +45,7 @@ from lwa.loaded.background import Background
 from validation.lattice.result import Run
 from validation.lattice.simulate import repeated, simulate
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Piecewise, highest_pulse, leading_pulses
+from validation.pulses.pulse import Piecewise, first_pulse, highest_pulse
 from validation.pulses.sensors import tracks
 from validation.report.study import EXPONENT, Report, option, study
 from validation.report.table import Column, Finding, Table, percent
@@ -87,14 +87,12 @@ def front_width(k: float) -> float:
 class Upright:
     """A chain under its own weight, of ``beads`` beads that repeat the cell.
 
-    weak: velocity of the struck bead that counts as weak.
     tolerances: of the run that is read and of the less accurate run.
     """
 
     cell: Cell
     k: float
     beads: int
-    weak: float = WEAK
     tolerances: tuple[float, float] = (1e-5, 1e-4)
 
     @cached_property
@@ -154,7 +152,7 @@ class Upright:
             times = [highest_pulse(velocity).fwhm for velocity in moving]
             return np.asarray((np.reshape(times, x.shape) * self.sound(x)).mean(axis=1))
 
-        scene = self.blown(self.weak, bead_sensors=beads.ravel().tolist())
+        scene = self.blown(WEAK, bead_sensors=beads.ravel().tolist())
         fine, coarse = map(widths, repeated(scene, self.tolerances))
         return x.mean(axis=1), fine, coarse
 
@@ -195,7 +193,7 @@ class Upright:
         scene = self.blown(velocity, contact_sensors=np.unique(contacts).tolist())
         run, by_contact = simulate(scene, rtol=self.tolerances[0]), {}
         for track in tracks(run):
-            (pulse,) = leading_pulses(track.force, self.k)
+            pulse = first_pulse(track.force, 0.25**self.k)
             by_contact[track.number - 1] = pulse.arrival, pulse.peak, pulse.fwhm
         rows = []
         for cell in contacts:

@@ -38,8 +38,9 @@ from validation.lattice.simulate import repeated
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import (
     MeasureError,
+    Piecewise,
+    first_pulse,
     highest_pulse,
-    leading_pulses,
 )
 from validation.pulses.sensors import tracks
 from validation.report.study import EXPONENT, Report, option, study
@@ -241,9 +242,11 @@ class Wave:
         records = tracks(run)
         beads, contacts = records[: len(records) // 2], records[len(records) // 2 :]
         for bead, contact in zip(beads, contacts, strict=True):
-            (pulse,) = leading_pulses(contact.force, self.stiffness / self.load)
+            # up to where the strain falls to a quarter
+            pulse = first_pulse(contact.force, 0.25 ** (self.stiffness / self.load))
             velocity = run.signal("bead", bead.number - 1, "velocity")
-            fastest = highest_pulse(velocity, pulse.fall + pulse.fwhm).peak
+            end = velocity.times.searchsorted(pulse.fall + pulse.fwhm, side="right")
+            fastest = highest_pulse(Piecewise(velocity.times[:end], velocity)).peak
             rows.append((pulse.arrival, pulse.peak / self.load, pulse.fwhm, fastest))
         table = np.array(rows).reshape(3, len(self.masses), 4)[stretch : stretch + 2]
         arrival, force, width, velocity = np.moveaxis(table, 2, 0)

@@ -20,7 +20,6 @@ from validation.lattice.result import Run
 from validation.lattice.simulate import repeated
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import compared, tolerances
-from validation.pulses.sensors import Train
 from validation.report.study import Report, study
 from validation.report.table import Column, Table, percent
 from validation.scenes.chains import DIAMETER
@@ -33,7 +32,10 @@ from validation.studies.paper import (
     STATED,
     bead_fwhm,
     cells_of_lines,
+    mean,
+    passing,
     recorded_chain,
+    speed,
 )
 
 READINGS = {
@@ -185,21 +187,21 @@ def _panel(beads: Sequence[int], widths: Sequence[Estimate], lines: Lines) -> Pa
 
 def _numbers(run: Run) -> dict[str, float]:
     """FWHM of each bead's force and their averages (s), mean peaks (N) and the speed (m/s)."""
-    beads, contacts = (
-        Train.of(run),
-        Train.of(run, "contact").only(range(FIRST_BEAD, BEADS)),
-    )
-    late = beads.only(range(FIRST_BEAD, BEADS))
-    steel = late.only(range(1, BEADS, 2))
+    beads = passing(run)
+    contacts = passing(run, "contact")
+    late = [bead for bead in beads if bead >= FIRST_BEAD]
+    steel = [bead for bead in late if bead % 2]
+    ptfe = [bead for bead in late if not bead % 2]
+    far = [contact for contact in contacts if contact >= FIRST_BEAD]
     return {
-        **{f"bead {bead}": pulse.fwhm for bead, pulse in beads.pulses.items()},
-        "contacts": contacts.fwhm,
-        "beads": late.fwhm,
-        "steel": steel.fwhm,
-        "PTFE": late.only(range(0, BEADS, 2)).fwhm,
-        "contacts' force": contacts.peak,
-        "F_m": beads.only(SENSORS).peak,
-        "speed": steel.speed,
+        **{f"bead {bead}": pulse.fwhm for bead, pulse in beads.items()},
+        "contacts": mean(contacts, "fwhm", far),
+        "beads": mean(beads, "fwhm", late),
+        "steel": mean(beads, "fwhm", steel),
+        "PTFE": mean(beads, "fwhm", ptfe),
+        "contacts' force": mean(contacts, "peak", far),
+        "F_m": mean(beads, "peak", SENSORS),
+        "speed": speed(beads, steel[0], steel[-1]),
     }
 
 

@@ -23,21 +23,12 @@ For ``δ^k`` they are the numbers ``(k-1) … (k-n+1)``.
 
 from __future__ import annotations
 
-from collections.abc import (
-    Iterator,
-    Mapping,
-    Sequence,
-)
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from math import factorial
 from typing import NamedTuple
 
-from flint import (
-    Ordering,
-    fmpq,
-    fmpq_mpoly,
-    fmpq_mpoly_ctx,
-)
+from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from lwa.algebra.model import Model, Term
 
@@ -89,11 +80,7 @@ class JetAlgebra:
     -r1^2 + r2
     """
 
-    def __init__(
-        self,
-        model: Model,
-        weight: int,
-    ) -> None:
+    def __init__(self, model: Model, weight: int) -> None:
         strain = [f"r{n}" for n in range(1, weight + 1)]
         velocity = [f"s{n}" for n in range(weight + 1)]
         names = [*model.names, *strain, *velocity]
@@ -158,27 +145,16 @@ class JetAlgebra:
             self._dx[n - 2] = r[1] * slope
             self._dt[n - 2] = s[1] * slope
 
-    def dx(
-        self,
-        f: fmpq_mpoly,
-        exponent: fmpq_mpoly | int,
-    ) -> fmpq_mpoly:
+    def dx(self, f: fmpq_mpoly, exponent: fmpq_mpoly | int) -> fmpq_mpoly:
         """The derivative ``p^{-e} ∂_x (p^e f)`` in space, e the exponent."""
         return self._derivative(f, exponent * self.r[1], self._dx)
 
-    def dt(
-        self,
-        f: fmpq_mpoly,
-        exponent: fmpq_mpoly | int,
-    ) -> fmpq_mpoly:
+    def dt(self, f: fmpq_mpoly, exponent: fmpq_mpoly | int) -> fmpq_mpoly:
         """The derivative ``∂_τ (p^e f)`` without ``u_ττ``, divided by ``p^{e + (k-1)/2}``."""
         return self._derivative(f, exponent * self.s[1], self._dt)
 
     def _derivative(
-        self,
-        f: fmpq_mpoly,
-        rate: fmpq_mpoly,
-        images: Mapping[int, fmpq_mpoly],
+        self, f: fmpq_mpoly, rate: fmpq_mpoly, images: Mapping[int, fmpq_mpoly]
     ) -> fmpq_mpoly:
         """The derivative of ``p^e f`` over ``p^e`` by the chain rule.
 
@@ -209,27 +185,15 @@ class JetAlgebra:
                 slopes.append((index - self._s0, f.derivative(index)))
         return slopes
 
-    def slope(
-        self,
-        f: fmpq_mpoly,
-        n: int,
-    ) -> fmpq_mpoly:
+    def slope(self, f: fmpq_mpoly, n: int) -> fmpq_mpoly:
         """The slope ``∂f/∂r_n``; the coefficient of the term ``r_n`` if f has weight n."""
         return f.derivative(self._r1 + n - 1)
 
-    def shift(
-        self,
-        h: fmpq_mpoly | int,
-        n: int,
-    ) -> fmpq_mpoly:
+    def shift(self, h: fmpq_mpoly | int, n: int) -> fmpq_mpoly:
         """Coefficient of ``D^{n+1}`` in ``(u(x + hD) - u(x)) / u_x``, on the acoustic branch."""
         return self.r[n] * taylor(h, n + 1)
 
-    def terms(
-        self,
-        f: fmpq_mpoly,
-        base: int,
-    ) -> dict[Jet, list[Term]]:
+    def terms(self, f: fmpq_mpoly, base: int) -> dict[Jet, list[Term]]:
         """Split a polynomial into a mapping from jets to the terms of their coefficients.
 
         Parameters
@@ -254,11 +218,7 @@ class JetAlgebra:
             split.setdefault(jet, []).append(term)
         return split
 
-    def by_parts(
-        self,
-        f: fmpq_mpoly,
-        exponent: fmpq_mpoly,
-    ) -> fmpq_mpoly:
+    def by_parts(self, f: fmpq_mpoly, exponent: fmpq_mpoly) -> fmpq_mpoly:
         """Reduce f by a total derivative ``p^{-e} ∂_x (p^e g)`` until no highest jet is linear.
 
         All terms of f have one weight. The highest jet of a term is its ``s_n`` of the largest n,
@@ -271,28 +231,18 @@ class JetAlgebra:
         # r_1 alone is the derivative of p^e / e.
         return f - self._linear_part(f, self._r1) * self.r[1]
 
-    def _linear_part(
-        self,
-        f: fmpq_mpoly,
-        index: int,
-    ) -> fmpq_mpoly:
+    def _linear_part(self, f: fmpq_mpoly, index: int) -> fmpq_mpoly:
         """Coefficient of a jet, linear, in the terms of f without this and higher jets beside."""
         others = self.context.names()[index:]
         return f.derivative(index).subs(dict.fromkeys(others, 0))
 
 
-def taylor(
-    h: fmpq_mpoly | int,
-    n: int,
-) -> fmpq_mpoly | fmpq:
+def taylor(h: fmpq_mpoly | int, n: int) -> fmpq_mpoly | fmpq:
     """The factor ``h^n/n!`` of the n-th derivative of f in f(x + h)."""
     return h**n * fmpq(1, factorial(n))
 
 
-def _powers(
-    exponents: Sequence[int],
-    lowest: int,
-) -> Powers:
+def _powers(exponents: Sequence[int], lowest: int) -> Powers:
     """Pairs of the order and the exponent of each jet, from the exponents of jets in a row."""
     orders = enumerate(exponents, start=lowest)
     return tuple((i, int(e)) for i, e in orders if e)
@@ -333,33 +283,21 @@ class GradedSeries:
         """Append the next term of the series."""
         self._derivatives.append([f_n])
 
-    def dx(
-        self,
-        n: int,
-        j: int,
-    ) -> fmpq_mpoly:
+    def dx(self, n: int, j: int) -> fmpq_mpoly:
         """The j-th derivative ``p^{-e} ∂_x^j (p^e f_n)``."""
         derivatives = self._derivatives[n]
         while len(derivatives) <= j:
             derivatives.append(self.algebra.dx(derivatives[-1], self.exponent))
         return derivatives[j]
 
-    def increment(
-        self,
-        h: fmpq_mpoly | int,
-        n: int,
-    ) -> fmpq_mpoly:
+    def increment(self, h: fmpq_mpoly | int, n: int) -> fmpq_mpoly:
         """Coefficient of ``D^n`` in f(x + hD) - f(x): ``Σ_{0<j≤n} h^j/j! ∂_x^j f_{n-j}``."""
         total = self.algebra.zero
         for j in range(1, n + 1):
             total = total + self.dx(n - j, j) * taylor(h, j)
         return total
 
-    def dt(
-        self,
-        E: GradedSeries,
-        n: int,
-    ) -> fmpq_mpoly:
+    def dt(self, E: GradedSeries, n: int) -> fmpq_mpoly:
         """Coefficient of ``D^{n-1}`` in the derivative in time, divided by ``p^{e + (k-1)/2}``.
 
         Parameters

@@ -13,12 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import sympy as sp
-from flint import (
-    Ordering,
-    fmpq,
-    fmpq_mpoly,
-    fmpq_mpoly_ctx,
-)
+from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from sympy.polys.polyerrors import BasePolynomialError
 
 from lwa.base.exact import factored
@@ -41,10 +36,7 @@ def to_sympy(value: fmpq) -> sp.Rational:
     return sp.Rational(int(value.p), int(value.q))
 
 
-def generator(
-    context: fmpq_mpoly_ctx,
-    name: str,
-) -> fmpq_mpoly:
+def generator(context: fmpq_mpoly_ctx, name: str) -> fmpq_mpoly:
     """The generator of a ring that has this name."""
     return context.gen(context.variable_to_index(name))
 
@@ -96,10 +88,7 @@ class Partition(Value):
             return ()
         return tuple(f"{self.letter}{i}" for i in range(len(self.distinct) - 1))
 
-    def elements(
-        self,
-        context: fmpq_mpoly_ctx,
-    ) -> list[fmpq_mpoly]:
+    def elements(self, context: fmpq_mpoly_ctx) -> list[fmpq_mpoly]:
         """The fractions ``f_0, f_1, …`` in a ring that has `names` among its generators."""
         fractions = {}
         for weight, value in self.rational.items():
@@ -186,11 +175,7 @@ class Model(Parametric):
         """Names of the ring's generators."""
         return (*self.parameters, *self.masses.names, *self.contacts.names)
 
-    def phi(
-        self,
-        context: fmpq_mpoly_ctx,
-        most: int,
-    ) -> list[fmpq_mpoly]:
+    def phi(self, context: fmpq_mpoly_ctx, most: int) -> list[fmpq_mpoly]:
         """The law's parameters ``φ_0 = 0, φ_1 = 1, φ_2, …`` as elements of a ring.
 
         Parameters
@@ -244,10 +229,7 @@ class Conversion:
     model : Model
     """
 
-    def __init__(
-        self,
-        model: Model,
-    ) -> None:
+    def __init__(self, model: Model) -> None:
         partitions = [p for p in (model.masses, model.contacts) if p.names]
         # Values of the ring's generators, in the caller's symbols
         values = list(model.parameters.values())
@@ -283,20 +265,14 @@ class Conversion:
             self._sums.append(total)
         self._source = _context(len(self._images) + len(self._sums))
 
-    def _element(
-        self,
-        value: sp.Expr,
-    ) -> fmpq_mpoly:
+    def _element(self, value: sp.Expr) -> fmpq_mpoly:
         """The polynomial of an expression in the generators."""
         letter = self._letters.get(value, value)
         polynomial = sp.Poly(letter, *self._generators, domain="QQ")
         terms = {e: to_flint(c) for e, c in polynomial.terms()}
         return self._context.from_dict(terms)
 
-    def __call__(
-        self,
-        terms: Sequence[Term],
-    ) -> sp.Expr:
+    def __call__(self, terms: Sequence[Term]) -> sp.Expr:
         """Convert the polynomial that has these terms in the ring's generators."""
         # Degrees in the fractions of each partition
         degrees = []
@@ -328,10 +304,7 @@ class Conversion:
         # One product: a number times a lone sum would be multiplied out.
         return sp.Mul(to_sympy(above / below), *powers)
 
-    def _sum(
-        self,
-        polynomial: fmpq_mpoly,
-    ) -> sp.Expr:
+    def _sum(self, polynomial: fmpq_mpoly) -> sp.Expr:
         """Convert a polynomial to a sum of products of the caller's expressions."""
         products = []
         for exponents, coefficient in polynomial.terms():

@@ -1,4 +1,4 @@
-"""Integrals and ratios of sums with large powers, and roots of growing functions."""
+"""Integrals of sums with large powers, and roots of growing functions."""
 
 from __future__ import annotations
 
@@ -7,8 +7,6 @@ from typing import Any
 
 import mpmath
 import sympy as sp
-
-from lwa.base.exact import rearranged
 
 
 def integral(F: sp.Expr, x: sp.Symbol) -> sp.Expr:
@@ -27,11 +25,6 @@ def integral(F: sp.Expr, x: sp.Symbol) -> sp.Expr:
         else:
             total += sp.integrate(term, x, conds="none")
     return total
-
-
-def ratio(top: sp.Expr, bottom: sp.Expr) -> sp.Expr:
-    """The ratio top/bottom in lowest terms."""
-    return rearranged(sp.cancel, sp.powsimp(top / bottom))
 
 
 _FIRST_STEP = mpmath.mpf(2) ** -20

@@ -264,19 +264,6 @@ def place(count: int) -> Reader:
     return read
 
 
-def places(count: int) -> Reader:
-    """Reader of a list of different numbers from 1 to ``count``; returns the indices."""
-
-    def read(value: Any, name: str) -> list[int]:
-        indices: list[int] = each(place(count))(value, name)
-        # A sensor named twice would be two columns of one name.
-        if len(set(indices)) < len(indices):
-            raise InputError(f"{name} is {shorten(value)}: each may be named once")
-        return indices
-
-    return read
-
-
 def _plain(key: str) -> str:
     """A key as it is written, or in quotes and shortened if it is no plain name."""
     if key.isidentifier() and len(key) < 60:

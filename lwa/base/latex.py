@@ -120,10 +120,10 @@ def rows(values: Mapping[str, sp.Expr]) -> list[str]:
     return [text for name, text in written.items() if text != f"{name} = {name}"]
 
 
-def power(symbol: sp.Expr, n: int) -> str:
-    """The power ``symbol^n`` in LaTeX."""
-    base = str(sp.latex(symbol))
-    return f"{base}^{{{n}}}" if n > 1 else base
+def power(base: sp.Expr, n: int) -> str:
+    """The factor ``base^n`` in LaTeX; empty where it is 1."""
+    value = base**n
+    return "" if value == 1 else str(sp.latex(value))
 
 
 def derivative(n: int, mark: str = "") -> str:
@@ -157,4 +157,5 @@ def total(terms: Iterable[tuple[sp.Expr, str]]) -> str:
         if value == "1" and factor:
             value = ""
         parts += [sign, value, factor]
-    return " ".join(filter(None, parts)) or "0"
+    # Factors of 1 leave blanks beside each other.
+    return " ".join(" ".join(parts).split()) or "0"

@@ -88,7 +88,7 @@ def suggestion(value: Any, known: Collection[str]) -> str:
         return f"did you mean {' or '.join(near)}?"
     if not known:
         return "none is defined"
-    first = list(known)[:_LISTED]
+    first = [*filter(None, known)][:_LISTED]
     if len(known) <= 2:
         return f"{' or '.join(first)} is wanted"
     return f"one of {', '.join(first)} is wanted"
@@ -99,11 +99,10 @@ def similar(value: Any, known: Collection[str]) -> list[str]:
     if not isinstance(value, str):
         return []
     word = value[:_SHOWN].casefold()
-    folded = {name: name.casefold() for name in known}
-    alike = get_close_matches(word, folded.values(), _NEAR)
-    containing = [name for name in folded if len(word) > 2 and word in folded[name]]
-    spelt = [name for name in folded if folded[name] in alike]
-    return list(dict.fromkeys(containing + spelt))[:_NEAR]
+    names = {name.casefold(): name for name in known}
+    near = [folded for folded in names if len(word) > 2 and word in folded]
+    near += get_close_matches(word, names, _NEAR)
+    return [names[folded] for folded in dict.fromkeys(near)][:_NEAR]
 
 
 def shorten(value: object) -> str:

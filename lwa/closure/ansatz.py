@@ -19,11 +19,7 @@ from lwa.base.progress import Progress
 from lwa.closure.slaving import Force, Solution
 
 
-def _applied(
-    b: Sequence[fmpq_mpoly],
-    f: GradedSeries,
-    n: int,
-) -> fmpq_mpoly:
+def _applied(b: Sequence[fmpq_mpoly], f: GradedSeries, n: int) -> fmpq_mpoly:
     """Term n of the ansatz on a series, ``Σ_j b_j ∂_x^j f_{n-j}``, j > 0 up to the last b."""
     total = f.algebra.zero
     for j in range(1, len(b)):
@@ -31,10 +27,7 @@ def _applied(
     return total
 
 
-def acoustic(
-    model: Model,
-    progress: Progress[int] = iter,
-) -> Solution:
+def acoustic(model: Model, progress: Progress[int] = iter) -> Solution:
     """Solve the paper's closure of a dimer's acoustic branch, to ``D^order`` in the ansatz."""
     algebra = JetAlgebra(model, max(model.order - 1, 1))
     mu = algebra.mu  # mass fractions
@@ -74,10 +67,7 @@ def acoustic(
     return _solution(b, first, second)
 
 
-def optical(
-    model: Model,
-    progress: Progress[int] = iter,
-) -> Solution:
+def optical(model: Model, progress: Progress[int] = iter) -> Solution:
     """Solve the paper's closure of a dimer's optical branch, to ``D^order`` in the ansatz.
 
     Contacts also pull, by the odd law of ``δ^k``. The strains of the contacts are
@@ -111,17 +101,12 @@ def optical(
 
 
 def _solution(
-    b: Sequence[fmpq_mpoly],
-    first: GradedSeries,
-    second: GradedSeries,
+    b: Sequence[fmpq_mpoly], first: GradedSeries, second: GradedSeries
 ) -> Solution:
     """The solution with E_n of the first equation of motion and the defect first - second."""
     defect = []
     for E_n, other in zip(first, second, strict=True):
         defect.append(E_n - other)
     return Solution(
-        first.algebra,
-        acceleration=tuple(first),
-        ansatz=tuple(b),
-        defect=tuple(defect),
+        first.algebra, acceleration=tuple(first), ansatz=tuple(b), defect=tuple(defect)
     )

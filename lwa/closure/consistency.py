@@ -120,17 +120,17 @@ class Closure(Parametric):
         rows = [latex.row(r"\lambda", self.ratio)]
         if not self.b:
             return rows
-        parts = ["u"]
+        parts = [(sp.S.One, "u")]
         for n, b in self.b.items():
             if most is not None and n > most:
-                parts.append(r"\cdots")
+                parts.append((sp.S.One, r"\cdots"))
                 break
             D = latex.power(self.model.cell.spacing, n)
-            parts.append(f"b_{{{n}}} {D} {latex.derivative(n)}")
+            parts.append((sp.S.One, f"b_{{{n}}} {D} {latex.derivative(n)}"))
             rows.append(latex.row(f"b_{{{n}}}", b))
         if self.name == "full":
-            parts.append(r"\cdots")
-        return [rf"w = \lambda \left({' + '.join(parts)}\right)", *rows]
+            parts.append((sp.S.One, r"\cdots"))
+        return [rf"w = \lambda \left({latex.total(parts)}\right)", *rows]
 
     def _repr_latex_(self) -> str:
         return latex.display(self.latex_rows(4))

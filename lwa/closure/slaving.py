@@ -30,11 +30,7 @@ from itertools import accumulate
 
 from flint import fmpq_mpoly
 
-from lwa.algebra.jets import (
-    GradedSeries,
-    JetAlgebra,
-    taylor,
-)
+from lwa.algebra.jets import GradedSeries, JetAlgebra, taylor
 from lwa.algebra.model import Model
 from lwa.base.progress import Progress
 from lwa.base.words import FieldName
@@ -50,10 +46,7 @@ class Force:
         F(p (1 + X)) = F(p) + p F'(p) Φ,    Φ = Σ_{m≥1} φ_m X^m/m! = Σ_{n≥1} D^n Φ_n.
     """
 
-    def __init__(
-        self,
-        algebra: JetAlgebra,
-    ) -> None:
+    def __init__(self, algebra: JetAlgebra) -> None:
         self.algebra = algebra
         self.X = [algebra.zero]
         self.Phi = GradedSeries(algebra, algebra.k, [algebra.zero])
@@ -68,10 +61,7 @@ class Force:
         """The nonlinear part ``Φ_n - X_n`` of the next order n, known from ``X_1 … X_{n-1}``."""
         return self._nonlinear(len(self.X))
 
-    def _nonlinear_term(
-        self,
-        n: int,
-    ) -> fmpq_mpoly:
+    def _nonlinear_term(self, n: int) -> fmpq_mpoly:
         """The coefficient of ``D^n`` in ``Σ_{m≥2} φ_m X^m/m!``."""
         total = self.algebra.zero
         # X begins at D: the power X^m reaches D^n for m ≤ n.
@@ -79,11 +69,7 @@ class Force:
             total = total + self.algebra.phi[m] * self._power(m, n)
         return total
 
-    def _term_of_power(
-        self,
-        m: int,
-        n: int,
-    ) -> fmpq_mpoly:
+    def _term_of_power(self, m: int, n: int) -> fmpq_mpoly:
         """The coefficient of ``D^n`` in ``X^m/m! = (1/m) X · X^{m-1}/(m-1)!``, n ≥ m ≥ 1."""
         if m == 1:
             return self.X[n]
@@ -92,28 +78,18 @@ class Force:
             total = total + self.X[j] * self._power(m - 1, n - j)
         return total / m
 
-    def append(
-        self,
-        X_n: fmpq_mpoly,
-    ) -> None:
+    def append(self, X_n: fmpq_mpoly) -> None:
         """Append the next term ``X_n`` to X, and ``Φ_n`` to Φ."""
         self.Phi.append(X_n + self.nonlinear)
         self.X.append(X_n)
 
-    def increment(
-        self,
-        h: int,
-        n: int,
-    ) -> fmpq_mpoly:
+    def increment(self, h: int, n: int) -> fmpq_mpoly:
         """Coefficient of ``D^n`` in the force at x + hD minus the force at x, over ``p F'``."""
         # F(p) adds h^n/n! ∂_x^n F(p) = h^n/n! ∂_x^{n-1} (p F' r_1), r_1 = p_x/p.
         of_strain = self._slope.dx(0, n - 1) * taylor(h, n)
         return self.Phi.increment(h, n) + of_strain
 
-    def work(
-        self,
-        n: int,
-    ) -> fmpq_mpoly:
+    def work(self, n: int) -> fmpq_mpoly:
         """Coefficient of ``D^n`` in the integral of Φ over X.
 
         With the energy W of the contact it is ``[W(p (1 + X)) - W(p) - p F(p) X] / (p² F')``.
@@ -160,9 +136,7 @@ class Solution:
 
 
 def full(
-    model: Model,
-    field: FieldName = "first",
-    progress: Progress[int] = iter,
+    model: Model, field: FieldName = "first", progress: Progress[int] = iter
 ) -> Solution:
     """Find the closure that satisfies all equations of motion, to ``D^order`` in all fields."""
     chain = _Slaving(model, field)
@@ -202,11 +176,7 @@ class _Slaving:
     forces : list of Force
     """
 
-    def __init__(
-        self,
-        model: Model,
-        field: FieldName,
-    ) -> None:
+    def __init__(self, model: Model, field: FieldName) -> None:
         self.algebra = algebra = JetAlgebra(model, max(model.order - 1, 1))
         self.order = model.order
         self.size = model.cell.size
@@ -221,10 +191,7 @@ class _Slaving:
             self.rates.append(GradedSeries(algebra, algebra.half, [algebra.zero]))
             self.forces.append(Force(algebra))
 
-    def extend(
-        self,
-        n: int,
-    ) -> None:
+    def extend(self, n: int) -> None:
         """Append the terms in ``D^n`` of wave equation E, strains X, forces Φ and fields S.
 
         Let ``a_i`` be the term of ``∂_ττ (D φ_x S_i)``, which is known from lower orders. At
@@ -248,11 +215,7 @@ class _Slaving:
         self._append_strains(n, accelerations)
         self._append_fields(n)
 
-    def _append_strains(
-        self,
-        n: int,
-        accelerations: list[fmpq_mpoly],
-    ) -> None:
+    def _append_strains(self, n: int, accelerations: list[fmpq_mpoly]) -> None:
         """Append the term ``X_n`` of each contact's strain.
 
         Let ``X_i`` and ``Φ_i`` be these terms of contact i. The equations of motion (see `extend`)
@@ -276,10 +239,7 @@ class _Slaving:
         for force, difference in zip(self.forces, differences, strict=True):
             force.append(total / P + difference)
 
-    def _append_fields(
-        self,
-        n: int,
-    ) -> None:
+    def _append_fields(self, n: int) -> None:
         """Append ``S_n`` of each particle.
 
         Neighbours differ by a strain, ``S_{i+1} - S_i = C_i (1 + X_i)``. The term ``origin`` of the

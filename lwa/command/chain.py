@@ -32,7 +32,6 @@ HERTZIAN = 0.01
 """Compression over the spacing from which on a note is printed: the radius of contact of equal
 spheres is then a tenth of their radius R, ``a/R = √(δ/2R)``, where Hertz (1882) wants a ≪ R."""
 
-
 STRIKER_FILE = "lwa-validate run --example striker > chain.toml"
 """The line that writes a file of equal beads and a striker."""
 
@@ -107,9 +106,12 @@ class ChainInput:
 def take_chain(options: dict[str, Any]) -> ChainInput:
     """Remove the options that describe a chain from a command's options and return the chain."""
     # What is left in the options belongs to the theory of the chain.
-    names = ("masses", "stiffnesses", "spacing", "k", "law", "precompression")
-    chosen = {name: options.pop(name, None) for name in names}
-    load = chosen["precompression"]
+    masses = options.pop("masses", None)
+    stiffnesses = options.pop("stiffnesses", None)
+    spacing = options.pop("spacing", None)
+    k = options.pop("k", None)
+    law = options.pop("law", None)
+    load = options.pop("precompression", None)
     file = options.pop("spheres", None)
     if file is not None:
         chain = read_chain(file)
@@ -124,17 +126,17 @@ def take_chain(options: dict[str, Any]) -> ChainInput:
             precompression=None,
             background=None,
         )
-    if chosen["masses"] is None:  # a command that reads files alone
+    if masses is None:  # a command that reads files alone
         raise InputError(
             f"the chain is read from a file by --spheres; try: {STRIKER_FILE}"
         )
-    cell = Cell(chosen["masses"], chosen["stiffnesses"] or (), chosen["spacing"] or D)
+    cell = Cell(masses, stiffnesses or (), spacing or D)
     # D = 1 would then set k, too.
-    if cell.spacing.is_Symbol and chosen["k"] == cell.spacing:
+    if cell.spacing.is_Symbol and k == cell.spacing:
         raise InputError(
             f"k is {cell.spacing}: the name is that of the spacing, a unit of length"
         )
-    return ChainInput(cell, for_cell(chosen["law"], cell, chosen["k"]), load)
+    return ChainInput(cell, for_cell(law, cell, k), load)
 
 
 def read_chain(path: str) -> ChainInput:
@@ -186,7 +188,7 @@ def _numbers(entries: Table, readers: Mapping[str, Reader]) -> dict[str, sp.Expr
 
 def _cell_of_masses(row: Beads) -> Cell:
     """The smallest periodic cell of a chain of masses."""
-    # Two cells show a period that is longer than one half of a cell.
+    # Two cells in a row show how a cell that repeats goes on: 1, 2, 1 has the period 3, not 2.
     masses = row.masses * min(row.repeat, 2)
     stiffnesses = row.stiffnesses or [1.0]
     P = period(masses, stiffnesses)

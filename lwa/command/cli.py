@@ -262,9 +262,9 @@ def _change(
 
 COMMANDS = {
     "derive": ("derivation", "Derive the long-wave equation of a chain."),
-    "dispersion": ("modes", "Series of Ω²(κ), and the bands of a loaded chain."),
+    "dispersion": ("modes", "Frequencies of linear waves, and bands under a load."),
     "envelope": ("modes", "Nonlinear Schrödinger equation of a mode, and breathers."),
-    "expansion": ("series", "Series in k - 1 of the lattice's own wave, summed."),
+    "expansion": ("series", "The beads' own solitary wave, as a series in k - 1."),
     "shock": ("driven", "Shock, or rarefaction, of a chain that a wall drives."),
     "strike": ("driven", "Leading pulse of equal beads that a mass strikes."),
     "wave": ("waves", "Compact traveling wave: β, width, FWHM, amplitude and speed."),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import partial
 from typing import Any
 
 from lwa.command.answer import Answer, Lines, Values, rows_of
@@ -92,14 +91,14 @@ def derive(chain: ChainInput, **options: Any) -> Answer:
         chain.text,
         *closure_lines(theory),
         f"{theory.closure.model.branch} branch, to D^{theory.order}; τ = t·{pde.time_scale}",
-        partial(_lines, theory),
+        _lines(theory),
     ]
     # G, H and I are the coefficients at D^{k+3}, which an ansatz to D^4 has.
     if depends_on_first(theory) and theory.order >= 4:
         canonical = canonical_wave(theory.cell, theory.k)
         letters = rows_of(canonical, {"G": "G", "H": "H", "I": "I"})
         rows.append(Answer({}, ["", FIRST, *letters], key="canonical"))
-    shown = theory, partial(_defect_latex, theory)
+    shown = theory, _defect_latex(theory)
     return Answer(head, rows, shown=shown)
 
 
@@ -155,7 +154,7 @@ def _lines(theory: Theory) -> Iterator[str]:
 
 def _terms_json(coefficients: Mapping[int, Terms]) -> list[Values]:
     """JSON of the terms by their orders."""
-    # Jets are lists of [derivative, power]: JSON has no tuples as keys.
+    # A row a term, whose jet is a list of [derivative, power]: JSON has no jets as keys.
     rows: list[Values] = []
     for n, terms in coefficients.items():
         for jet, coefficient in terms.items():

@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import sympy as sp
 
 import lwa  # its names are loaded when they are used: `lwa dispersion` spares NumPy
 from lwa.base.exact import InputError, positive
-from lwa.base.frozen import Shown
 from lwa.base.words import BRANCHES, BranchName, one_of
-from lwa.command.answer import Answer, Lines, Made, Row, Values, rows_of
+from lwa.command.answer import Answer, Lines, Row, Shows, Values, rows_of
 from lwa.command.chain import ChainInput
 from lwa.command.options import (
     BACKGROUND,
@@ -69,11 +67,11 @@ def dispersion(chain: ChainInput, order: int) -> Answer:
     head: Values = {"acoustic": None, "optical": None} | series
     rows: Lines = [
         chain.text,
-        "Ω²(κ), κ = qD and Ω/D the frequency in τ",
+        "coefficients of Ω²(κ), κ = qD and Ω/D the frequency in τ",
         "",
-        partial(_series_lines, series),
+        _series_lines(series),
     ]
-    shown: list[Shown | Made] = [linear]
+    shown: Shows = [linear]
     if precompression is not None:
         loaded = LoadedChain(chain.cell, chain.law, precompression)
         shown.append(loaded)
@@ -91,8 +89,8 @@ def dispersion(chain: ChainInput, order: int) -> Answer:
             ),
         ]
         # Edges are roots, which have no closed form beyond two masses.
-        numbers = (*chain.cell.masses, *loaded.spring_constants)
-        if not any(x.free_symbols for x in numbers):
+        numbers = sp.Tuple(*chain.cell.masses, *loaded.spring_constants)
+        if not numbers.free_symbols:
             edges = loaded.bands.edges()
             frequencies = edges / (2 * math.pi)
             head["band_edges_value"] = edges.tolist()
@@ -101,14 +99,11 @@ def dispersion(chain: ChainInput, order: int) -> Answer:
             shown_edges = frequencies if chain.si else edges
             unit = " (Hz)" if chain.si else ", in rad per unit of time"
             for i, band in enumerate(shown_edges, start=1):
-                ends = tuple(sp.Float(float(x)) for x in band)
-                rows.append(Row("", f"band {i}{unit}", ends))
+                rows.append(Row("", f"band {i}{unit}", tuple(map(sp.Float, band))))
     return Answer(head, rows, chain.scale, shown)
 
 
-def _series_lines(
-    branches: Mapping[str, Mapping[int, sp.Expr]],
-) -> Iterator[str]:
+def _series_lines(branches: Mapping[str, Mapping[int, sp.Expr]]) -> Iterator[str]:
     """Lines of text with the coefficients of each branch, exact, one a line."""
     for name, series in branches.items():
         yield f"{name}:"
@@ -218,7 +213,7 @@ def envelope(
         ),
         described,
     ]
-    shown: list[Shown | Made] = [equation]
+    shown: Shows = [equation]
     # A breather is one solution of the equation: that of a frequency.
     if frequency is not None or detuning is not None:
         angular = frequency and frequency * turn
@@ -226,11 +221,10 @@ def envelope(
         shown.append(breather)
         # Bright and dark envelopes of the cubic equation have these shapes.
         shape = {"bright": "sech", "dark": "tanh"}[breather.kind]
-        own = breather.frequency / turn
         rows += [
             "",
             f"{breather.kind} breather, |Ψ| = a {shape}(b n):",
-            Row("breather_frequency", frequency_label, own),
+            Row("breather_frequency", frequency_label, breather.frequency / turn),
             *rows_of(
                 breather,
                 {

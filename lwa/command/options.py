@@ -157,13 +157,13 @@ def command(
         )
         @wraps(function)
         def answer(style: str, **options: Any) -> None:
-            # Click has no options that exclude each other; a refusal names the one to leave out.
-            for one, others in ALTERNATIVES.items():
-                for other in filter(given, others):
-                    if given(one):
+            # Click has no options that exclude each other.
+            for option, replaced in ALTERNATIVES.items():
+                for other in filter(given, replaced):
+                    if given(option):
                         raise InputError(
-                            f"--{one} and --{other} are both given: one says the other",
-                            **{other: None},
+                            f"--{option} and --{other} are both given: one says the other",
+                            **{other: None},  # to be left out
                         )
             made = function(take_chain(options), **options)
             # The source code of a wave is a text already.
@@ -264,11 +264,7 @@ STIFFNESSES = value(
 )
 # A symbol by default: results are then in units of D.
 SPACING = value(
-    "--spacing",
-    "Distance D between neighbouring beads at rest.",
-    "1",
-    positive,
-    D.name,
+    "--spacing", "Distance D between neighbouring beads at rest.", "1", positive, D.name
 )
 # Forces are those of contacts, which sensors between beads measure.
 FORCE = value(

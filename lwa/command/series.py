@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import partial
 
 from lwa.base.words import QUANTITIES
 from lwa.cell import k
@@ -38,11 +37,13 @@ _ERRORS = "estimate of a sum's error, by its last terms and by radiation"
 @STIFFNESSES
 @order_option("Highest power of ε = k - 1; by default 8, or 4 with symbols.", None)
 def expansion(chain: ChainInput, order: int | None) -> Answer:
-    """Expand the lattice's own wave in ``ε = k - 1``, and sum the series.
+    """Expand the solitary wave of the beads themselves in ``ε = k - 1``, and sum the series.
 
     Each sum comes with an estimate of its absolute error, at the peak force 1 on the first contact
     and with lengths in D; k and the cell must be numbers. `lwa wave` has the closed form of the
     lattice's wave, where there is one, for every k.
+
+    A dimer's numbers are those of the mean of its two contacts, which differ behind a striker.
 
     In JSON c² is the sum of ``c2[n] ε^n``. `fwhm` is that of the first contact, `fwhm_contact_2`
     that of the second where contacts are unlike, and so on.
@@ -64,7 +65,7 @@ def expansion(chain: ChainInput, order: int | None) -> Answer:
     series = {"c2": ("c²", expanded.c2)}
     # Unlike contacts have unlike widths; series with symbols are long enough for one.
     contacts = 1
-    if expanded.numeric and len(set(cell.stiffnesses)) > 1:
+    if expanded.numeric and not cell.equal_contacts:
         contacts = cell.size
     for i in range(contacts):
         for q in QUANTITIES:
@@ -88,18 +89,12 @@ def expansion(chain: ChainInput, order: int | None) -> Answer:
         # A mass of the pulse as a particle: what a striker meets.
         mass = attempt(expanded.effective_mass.at)
         rows.append(Row("effective_mass", "effective mass P²/2E", mass))
-        if cell.size == 2 and contacts == 1:
-            rows.append(
-                "  (of the mean of a dimer's two contacts, which differ behind a striker)"
-            )
         rows.append("")
-    rows.append(partial(_series_lines, series))
+    rows.append(_series_lines(series))
     return Answer(head, rows, shown=[expanded], errors=_ERRORS)
 
 
-def _series_lines(
-    series: Mapping[str, tuple[str, EpsilonSeries]],
-) -> Iterator[str]:
+def _series_lines(series: Mapping[str, tuple[str, EpsilonSeries]]) -> Iterator[str]:
     """Lines of text with the coefficients of each series."""
     for label, part in series.values():
         factors = []  # of the whole series

@@ -84,10 +84,7 @@ def energy(closure: Closure) -> list[fmpq_mpoly]:
     return densities
 
 
-def _kinetic(
-    solution: Solution,
-    n: int,
-) -> fmpq_mpoly:
+def _kinetic(solution: Solution, n: int) -> fmpq_mpoly:
     """Coefficient of ``D^n`` in the kinetic energy ``½ Σ m̂_i (∂_τ w_i)²`` over ``p² F′``."""
     algebra = solution.algebra
     total = algebra.zero
@@ -100,10 +97,7 @@ def _kinetic(
     return total
 
 
-def _elastic(
-    solution: Solution,
-    n: int,
-) -> fmpq_mpoly:
+def _elastic(solution: Solution, n: int) -> fmpq_mpoly:
     """Coefficient of ``D^n`` in ``[Σ C_i W(p (1 + X_i)) / P - W(p)] / (p² F′)``."""
     algebra = solution.algebra
     total = algebra.zero

@@ -23,21 +23,11 @@ import sympy as sp
 
 from lwa.algebra.jets import Jet
 from lwa.base import latex
-from lwa.base.exact import (
-    InputError,
-    power,
-    shorten,
-)
+from lwa.base.exact import InputError, power, shorten
 from lwa.cell import k as symbol_k
 from lwa.closure.consistency import OfClosure
 from lwa.equation.energy import conservative, energy
-from lwa.equation.terms import (
-    ENERGY,
-    Terms,
-    by_order,
-    latex_by_order,
-    terms,
-)
+from lwa.equation.terms import ENERGY, Terms, by_order, latex_by_order, terms
 from lwa.law import power_exponent
 from lwa.wave.compact import POWERS_ALONE, CompactWave
 

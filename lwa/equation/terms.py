@@ -8,11 +8,7 @@ is ``u_x`` (on the optical branch u). A term is ``coefficient · base^{a + bk} �
 from __future__ import annotations
 
 import re
-from collections.abc import (
-    Iterator,
-    Mapping,
-    Sequence,
-)
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -36,10 +32,7 @@ class BasePower(NamedTuple):
     a: Fraction | int
     b: Fraction | int
 
-    def beside(
-        self,
-        jet: Jet,
-    ) -> BasePower:
+    def beside(self, jet: Jet) -> BasePower:
         """The power of the base beside a jet that is written with bare derivatives.
 
         As in ``u_x^k · (u_xx/u_x)² = u_x^{k-2} u_xx²``.
@@ -74,10 +67,7 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
     raw: dict[Jet, list[Term]]
     power: BasePower = FORCE
 
-    def __getitem__(
-        self,
-        jet: Jet | Powers,
-    ) -> sp.Expr:
+    def __getitem__(self, jet: Jet | Powers) -> sp.Expr:
         jet = jet if isinstance(jet, Jet) else Jet(jet)
         if jet not in self._converted:
             self._converted[jet] = self.model.expression(self.raw[jet])
@@ -94,10 +84,7 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
     def __len__(self) -> int:
         return len(self.raw)
 
-    def __eq__(
-        self,
-        other: object,
-    ) -> bool:
+    def __eq__(self, other: object) -> bool:
         # Equal polynomials of one model need no conversion.
         if isinstance(other, Terms) and self.__getstate__() == other.__getstate__():
             return True
@@ -119,10 +106,7 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
             rows.append(f"{more} more" if rows else f"{more} terms")
         return f"{{{', '.join(rows)}}}"
 
-    def text(
-        self,
-        jet: Jet,
-    ) -> str:
+    def text(self, jet: Jet) -> str:
         """The jet as text with its power of the base, such as ``u_x^(k-3) u_xx^3``."""
         factors = []
         for name, exponent in self._factors(jet):
@@ -134,10 +118,7 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
             factors.append(name if power == "1" else f"{name}^{power}")
         return " ".join(factors) or "1"
 
-    def latex(
-        self,
-        jet: Jet,
-    ) -> str:
+    def latex(self, jet: Jet) -> str:
         """The jet in the paper's notation, such as ``u_x^{k-3} u_{xx}^{3}``."""
         factors = []
         for name, exponent in self._factors(jet):
@@ -147,10 +128,7 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
             factors.append(name if power == "1" else f"{name}^{{{power}}}")
         return " ".join(factors) or "1"
 
-    def _factors(
-        self,
-        jet: Jet,
-    ) -> list[tuple[str, sp.Expr]]:
+    def _factors(self, jet: Jet) -> list[tuple[str, sp.Expr]]:
         """Names, in LaTeX, and exponents of the factors: F′, the base, the derivatives."""
         # A jet is a quotient by powers of the base. Printed with bare derivatives it leaves them to
         # the base, whose power here is base^{a + bk}.
@@ -181,11 +159,7 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
         return [latex.total((self[jet], self.latex(jet)) for jet in self)]
 
 
-def terms(
-    closure: Closure,
-    polynomial: fmpq_mpoly,
-    power: BasePower = FORCE,
-) -> Terms:
+def terms(closure: Closure, polynomial: fmpq_mpoly, power: BasePower = FORCE) -> Terms:
     """Convert a polynomial of the closure's algebra into jets of the field.
 
     Parameters
@@ -210,10 +184,7 @@ def _papers_order(jet: Jet) -> tuple[bool, int, Jet]:
     return bool(jet.t), -derivatives, jet
 
 
-def by_order(
-    orders: Mapping[int, Terms],
-    heading: str,
-) -> list[str]:
+def by_order(orders: Mapping[int, Terms], heading: str) -> list[str]:
     """Lines of text with the terms of each order n, under the heading ``heading.format(n)``."""
     lines = []
     for n, of_order in orders.items():

@@ -39,14 +39,7 @@ from flint import fmpq_mpoly
 
 from lwa.base.arrays import Array
 from lwa.cell import Cell, k
-from lwa.expansion.joined import (
-    EPSILON,
-    FORMS,
-    decimals,
-    pade,
-    power_series,
-    taylor,
-)
+from lwa.expansion.joined import EPSILON, FORMS, decimals, pade, power_series, taylor
 from lwa.expansion.observables import Observables, equal_beads, shares_model
 from lwa.expansion.recursion import Recursion
 
@@ -72,18 +65,11 @@ class FollowingRecursion(Recursion):
         # The stiff tie takes m̂_2² from I, the elastic energy of unlike strains.
         return super()._dispersion() - self.mu[1] ** 2
 
-    def _next_force(
-        self,
-        i: int,
-        n: int,
-    ) -> fmpq_mpoly:
+    def _next_force(self, i: int, n: int) -> fmpq_mpoly:
         # in the equations both contacts have the mean force
         return self.force[0].series[n]
 
-    def _last_force(
-        self,
-        n: int,
-    ) -> fmpq_mpoly:
+    def _last_force(self, n: int) -> fmpq_mpoly:
         return super()._last_force(n) + self._inertia(1, n) / 2
 
 
@@ -142,11 +128,7 @@ def _deviations() -> Array:
     return np.loadtxt(text.splitlines(), delimiter=",", skiprows=1)
 
 
-def _mean(
-    values: Array,
-    k_value: sp.Expr,
-    ratio: sp.Expr,
-) -> float:
+def _mean(values: Array, k_value: sp.Expr, ratio: sp.Expr) -> float:
     """The bilinear interpolation in k and m2/m1 of values by row of the file."""
     exponents, ratios = map(np.unique, _deviations().T[:2])
     at_ratio = []
@@ -155,11 +137,7 @@ def _mean(
     return float(np.interp(float(k_value), exponents, at_ratio))
 
 
-def dimer_error(
-    quantity: str,
-    k_value: sp.Expr,
-    ratio: sp.Expr,
-) -> float:
+def dimer_error(quantity: str, k_value: sp.Expr, ratio: sp.Expr) -> float:
     """Relative error of a closed form of dimers; NaN for k beyond the measurement."""
     rows = _deviations()
     if k_value > rows[-1, 0]:
@@ -174,10 +152,7 @@ def dimer_error(
     return MARGIN * abs(mean) + SPREAD * spread
 
 
-def steadiness(
-    k_value: sp.Expr,
-    ratio: sp.Expr,
-) -> float:
+def steadiness(k_value: sp.Expr, ratio: sp.Expr) -> float:
     """1 where the pulse of a struck chain is steady, 0 where light beads resonate and it decays.
 
     Between points of the grid the share of those that are steady.

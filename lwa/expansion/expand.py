@@ -99,9 +99,7 @@ class Expansion(Parametric):
         return self._series("c2", self._sound, sp.S.Zero)
 
     def fwhm(
-        self,
-        quantity: QuantityName = "strain",
-        contact: Any = 0,
+        self, quantity: QuantityName = "strain", contact: Any = 0
     ) -> EpsilonSeries:
         """Full width at half maximum.
 
@@ -151,11 +149,7 @@ class Expansion(Parametric):
         return self.cell.size / (self.cell.mass * self.compliance)
 
     def _series(
-        self,
-        quantity: str,
-        unit: sp.Expr,
-        power: sp.Expr,
-        contact: int = 0,
+        self, quantity: str, unit: sp.Expr, power: sp.Expr, contact: int = 0
     ) -> EpsilonSeries:
         # Those of other contacts are counted for widths alone.
 
@@ -172,11 +166,7 @@ class Expansion(Parametric):
 
 
 def expand(
-    cell: Cell,
-    order: Any = 4,
-    *,
-    k: Any = symbol_k,
-    law: ContactLaw | None = None,
+    cell: Cell, order: Any = 4, *, k: Any = symbol_k, law: ContactLaw | None = None
 ) -> Expansion:
     """Expand the traveling wave of a chain in ``ε = k - 1``, from the lattice's equations.
 
@@ -213,10 +203,7 @@ def expand(
     return Expansion(cell, order, power_exponent(law, cell, k, why))
 
 
-def _terms(
-    model: Model,
-    order: int,
-) -> int:
+def _terms(model: Model, order: int) -> int:
     """Estimate the number of terms of all polynomials of an expansion.
 
     Most are those of the derivatives of strain and force: the coefficient of t^n

@@ -150,10 +150,7 @@ def joined(quantity: str) -> sp.Expr:
     return sp.sqrt(limit**2 + form.growth * rest / epsilon)
 
 
-def phi_series(
-    quantity: str,
-    order: int,
-) -> list[mpmath.mpf]:
+def phi_series(quantity: str, order: int) -> list[mpmath.mpf]:
     """Coefficients of the powers of ε in φ, up to this order, to `DIGITS` digits.
 
     >>> [round(float(term), 6) for term in phi_series("momentum", 1)]
@@ -178,26 +175,19 @@ def phi_series(
     return taylor(exponent, order + 1)[1:]
 
 
-def decimals(
-    values: Iterable[sp.Expr],
-    digits: int = DIGITS,
-) -> list[mpmath.mpf]:
+def decimals(values: Iterable[sp.Expr], digits: int = DIGITS) -> list[mpmath.mpf]:
     """Exact numbers to this many digits."""
     return [mpmath.mpmathify(sp.N(value, digits)) for value in values]
 
 
-def power_series(
-    coefficients: Sequence[mpmath.mpf],
-    x: mpmath.mpf,
-) -> mpmath.mpf:
+def power_series(coefficients: Sequence[mpmath.mpf], x: mpmath.mpf) -> mpmath.mpf:
     """The polynomial in x with these coefficients, that of ``x⁰`` first."""
     # mpmath's polynomials begin with the highest power.
     return mpmath.polyval(coefficients[::-1], x)
 
 
 def taylor(
-    function: Callable[[mpmath.mpf], mpmath.mpf],
-    order: int,
+    function: Callable[[mpmath.mpf], mpmath.mpf], order: int
 ) -> list[mpmath.mpf]:
     """Taylor coefficients of a function at 0, to `DIGITS` digits."""
     # SymPy's derivatives of these functions take a hundred times as long.
@@ -205,10 +195,7 @@ def taylor(
         return list(mpmath.taylor(function, 0, order))
 
 
-def pade(
-    terms: Sequence[mpmath.mpf],
-    n: int,
-) -> sp.Expr:
+def pade(terms: Sequence[mpmath.mpf], n: int) -> sp.Expr:
     """The Padé approximant of a series with n powers of `EPSILON` in its denominator."""
     with mpmath.workdps(DIGITS):
         # numerator and denominator
@@ -224,10 +211,7 @@ def pade(
 # --- errors -------------------------------------------------------------------------------------
 
 
-def joined_error(
-    quantity: str,
-    k_value: sp.Expr,
-) -> float:
+def joined_error(quantity: str, k_value: sp.Expr) -> float:
     """Relative error of a quantity of equal beads, for every k > 1.
 
     The exponent εφ errs by at most ``defect ε^{order+2} / (1 + ε)^damping`` (measured, see
@@ -247,50 +231,3 @@ def joined_error(
     left_out /= (1 + epsilon) ** form.damping
     # The last digit of a float is rounded.
     return min(share * left_out, form.most) + 2**-52
-
-
-# --- in elementary functions, for source code ---------------------------------------------------
-
-STEPS = 8
-"""Steps up to Γ(z + 8), where the next term of Stirling's series is 3e-10."""
-
-TERMS = 30
-"""Terms of the sum of the incomplete beta function, falling as ``x^j/√j``; x is at most ½."""
-
-
-def elementary(value: sp.Expr) -> sp.Expr:
-    """A closed form with Γ and the incomplete beta function written out, to 1e-8 of the value.
-
-    Some languages lack them.
-    """
-    return value.replace(sp.betainc_regularized, _beta).replace(sp.gamma, _gamma)
-
-
-def _beta(
-    a: sp.Expr,
-    b: sp.Expr,
-    low: sp.Expr,
-    x: sp.Expr,
-) -> sp.Expr:
-    """I_x(a, ½) for x ≤ ½: x^a/B(a, ½) Σ_j C(2j, j) (x/4)^j/(a + j)."""
-    # (1 - t)^{-1/2} = Σ_j C(2j, j) (t/4)^j, integrated with t^{a-1}
-    total = sp.S.Zero
-    for j in range(TERMS):
-        total += sp.binomial(2 * j, j) * (x / 4) ** j / (a + j)
-    inverse = sp.gamma(a + b) / sp.gamma(a)  # 1/B(a, b)
-    inverse /= sp.gamma(b)
-    return x**a * total * inverse
-
-
-def _gamma(z: sp.Expr) -> sp.Expr:
-    """Γ(z) by Stirling's series at z + `STEPS`."""
-    w = z + STEPS
-    log = w * (sp.log(w) - 1)
-    log += 1 / (12 * w)
-    log -= 1 / (360 * w**3)
-    log += 1 / (1260 * w**5)
-    value = sp.sqrt(2 * sp.pi / w) * sp.exp(log)
-    # Γ(z) = Γ(z + 1)/z, step by step
-    for j in range(STEPS):
-        value /= z + j
-    return value

@@ -23,30 +23,13 @@ from typing import Any, Self
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import InputError, number, positive, power, shorten
-from lwa.base.frozen import (
-    RISE,
-    Estimate,
-    NoSolitaryWave,
-    known_extent,
-    known_quantity,
-)
-from lwa.base.words import (
-    QUANTITIES,
-    ExtentName,
-    LanguageName,
-    QuantityName,
-    one_of,
-)
+from lwa.base.exact import InputError, demand_numbers, number, positive, power, shorten
+from lwa.base.frozen import RISE, Estimate, NoSolitaryWave, known_extent, known_quantity
+from lwa.base.words import QUANTITIES, ExtentName, LanguageName, QuantityName, one_of
 from lwa.cell import Cell, Parametric, exponent, read_cell
 from lwa.cell import k as symbol_k
-from lwa.expansion.dimers import (
-    ALIKE,
-    dimer_error,
-    exponent_of_light_beads,
-    steadiness,
-)
-from lwa.expansion.joined import FORMS, elementary, joined, joined_error
+from lwa.expansion.dimers import ALIKE, dimer_error, exponent_of_light_beads, steadiness
+from lwa.expansion.joined import FORMS, joined, joined_error
 from lwa.law import ContactLaw, Power, power_exponent
 from lwa.wave.source import Functions, module
 
@@ -64,6 +47,9 @@ _TITLE = (
     "The lattice's own solitary wave, written by lwa: exact to 1e-5 (speed) and",
     "1e-3 for equal beads at every k > 1. Peak contact force F, lengths in units of D.",
 )
+
+_DIGITS = 17
+"""Digits of the numbers in a program, those of a double."""
 
 _MEANINGS = {
     "speed": "dx/dt",
@@ -309,33 +295,30 @@ class LatticeWave(Parametric):
         Parameters
         ----------
         language : {"numpy", "c", "javascript"}
-            The language. Γ and the incomplete beta function are written out, to 1e-8.
+            The language.
 
         Raises
         ------
         lwa.InputError
-            For another language, and for symbols that are no names of variables.
+            For another language, for symbols that are no names of variables, and for a symbol k:
+            Γ and the incomplete beta function are numbers for a number k alone.
         """
+        why = "the languages lack the incomplete beta function; give k by at(k=…)"
+        demand_numbers(self.k.free_symbols, why)
         cell = self.cell
         # Each function has those of these arguments that it depends on, in this order.
-        functions = Functions(
-            self.force, self.k, *cell.masses, *cell.stiffnesses, cell.spacing
-        )
+        functions = Functions(self.force, *cell.masses, *cell.stiffnesses, cell.spacing)
         for name, meaning in _MEANINGS.items():
-            functions.define(name, meaning, elementary(getattr(self, name)))
+            functions.define(name, meaning, getattr(self, name).n(_DIGITS))
         for quantity in QUANTITIES:
             meaning = f"Full width at half maximum of the {quantity}"
-            width = elementary(self.fwhm(quantity))
+            width = self.fwhm(quantity).n(_DIGITS)
             functions.define(f"fwhm_{quantity}", meaning, width)
         return module([*functions.values()], language, _TITLE)
 
 
 def lattice_wave(
-    cell: Cell,
-    *,
-    k: Any = symbol_k,
-    force: Any = 1,
-    law: ContactLaw | None = None,
+    cell: Cell, *, k: Any = symbol_k, force: Any = 1, law: ContactLaw | None = None
 ) -> LatticeWave:
     """The lattice's own solitary wave in closed form.
 

@@ -40,10 +40,7 @@ class Observables:
     Full widths at half maximum are in units of ``4 √(I log 2/ε)``, the width of the Gaussian.
     """
 
-    def __init__(
-        self,
-        wave: Recursion,
-    ) -> None:
+    def __init__(self, wave: Recursion) -> None:
         self.wave = wave
         self.order = wave.order
 
@@ -57,24 +54,15 @@ class Observables:
         """The speed c, divided by its leading term."""
         return power(self.c2, fmpq(1, 2))
 
-    def force(
-        self,
-        contact: int = 0,
-    ) -> Series:
+    def force(self, contact: int = 0) -> Series:
         """Full width at half maximum of a contact's force."""
         return half_width(self.wave.force[contact].log)
 
-    def strain(
-        self,
-        contact: int = 0,
-    ) -> Series:
+    def strain(self, contact: int = 0) -> Series:
         """Full width at half maximum of a contact's strain."""
         return half_width(self.wave.strain[contact].log)
 
-    def velocity(
-        self,
-        contact: int = 0,
-    ) -> Series:
+    def velocity(self, contact: int = 0) -> Series:
         """Full width at half maximum of the velocity of the bead before a contact."""
         return half_width(logarithm(self.wave.slope[contact]))
 
@@ -111,11 +99,7 @@ class Observables:
         square = product(self.momentum, self.momentum)
         return product(square, power(self.energy, fmpq(-1)))
 
-    def coefficients(
-        self,
-        quantity: str,
-        contact: int = 0,
-    ) -> tuple[sp.Expr, ...]:
+    def coefficients(self, quantity: str, contact: int = 0) -> tuple[sp.Expr, ...]:
         """Coefficients of the powers of ε in the named quantity, from the power 0 on."""
         found = getattr(self, quantity)
         terms: Series = found(contact) if callable(found) else found
@@ -136,20 +120,14 @@ class Observables:
         """Coefficient I in the linear chain's dispersion ``Ω² = κ² - I κ⁴ + …``, in units of D²."""
         return self._expression(self.wave.I)
 
-    def _expression(
-        self,
-        polynomial: fmpq_mpoly,
-    ) -> sp.Expr:
+    def _expression(self, polynomial: fmpq_mpoly) -> sp.Expr:
         """A polynomial without Z in the caller's symbols."""
         # Z is the first generator.
         terms = [(tuple(map(int, e[1:])), c) for e, c in polynomial.terms()]
         return self.wave.model.expression(terms)
 
 
-def shares_model(
-    cell: Cell,
-    k: sp.Expr,
-) -> Model:
+def shares_model(cell: Cell, k: sp.Expr) -> Model:
     """The model of a cell; with 1 for k if contacts are equal, whose shares do not depend on k."""
     # With symbols for k the ring of the recursion would have one generator more.
     if cell.equal_contacts:
@@ -164,9 +142,6 @@ def _equal_beads(order: int) -> Observables:
 
 
 @cache
-def equal_beads(
-    quantity: str,
-    order: int,
-) -> tuple[sp.Expr, ...]:
+def equal_beads(quantity: str, order: int) -> tuple[sp.Expr, ...]:
     """Coefficients of the chain of equal beads; cached, as the sums of other chains need them."""
     return _equal_beads(order).coefficients(quantity)

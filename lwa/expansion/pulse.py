@@ -15,10 +15,7 @@ Series = list[fmpq_mpoly]
 """The coefficients of 1, t, t², …"""
 
 
-def log_term(
-    S: Series,
-    log: Series,
-) -> fmpq_mpoly:
+def log_term(S: Series, log: Series) -> fmpq_mpoly:
     """The next coefficient of ``log Σ S_n t^n``, where S_0 is 1.
 
     By ``n log_n = n S_n - Σ j log_j S_{n-j}``.
@@ -30,10 +27,7 @@ def log_term(
     return S[n] - _weighted(log, S, n - 1, n) / n
 
 
-def exp_term(
-    log: Series,
-    S: Series,
-) -> fmpq_mpoly:
+def exp_term(log: Series, S: Series) -> fmpq_mpoly:
     """The next coefficient of ``exp Σ log_n t^n``, where log_0 is 0.
 
     By ``n S_n = Σ j log_j S_{n-j}``.
@@ -44,12 +38,7 @@ def exp_term(
     return _weighted(log, S, n, n) / n
 
 
-def _weighted(
-    log: Series,
-    S: Series,
-    end: int,
-    n: int,
-) -> fmpq_mpoly:
+def _weighted(log: Series, S: Series, end: int, n: int) -> fmpq_mpoly:
     """The sum Σ j log_j S_{n-j}, j = 1 … end, of the coefficients of ln S and of S."""
     total = 0 * log[0]
     for j in range(1, end + 1):
@@ -67,10 +56,7 @@ def logarithm(S: Series) -> Series:
     return log
 
 
-def product(
-    a: Series,
-    b: Series,
-) -> Series:
+def product(a: Series, b: Series) -> Series:
     """The product of two series, to the length of the first one."""
     total = [0 * a[0] for _ in a]
     for n, term in enumerate(a):
@@ -82,10 +68,7 @@ def product(
     return total
 
 
-def power(
-    S: Series,
-    a: fmpq,
-) -> Series:
+def power(S: Series, a: fmpq) -> Series:
     """The power ``(Σ S_n t^n)^a``, where S_0 is 1, by the logarithm."""
     log = [a * term for term in logarithm(S)]
     R: Series = []
@@ -105,10 +88,7 @@ def by_degree(polynomial: fmpq_mpoly) -> dict[int, fmpq_mpoly]:
     return {d: context.from_dict(part) for d, part in parts.items()}
 
 
-def moments(
-    series: Series,
-    variance: int,
-) -> Series:
+def moments(series: Series, variance: int) -> Series:
     """The means of the coefficients of a series under the normal distribution of Z."""
     means = []
     for polynomial in series:
@@ -152,11 +132,7 @@ def half_width(log: Series) -> Series:
     return width
 
 
-def _moved(
-    S: Series,
-    a: fmpq_mpoly,
-    n: int,
-) -> Series:
+def _moved(S: Series, a: fmpq_mpoly, n: int) -> Series:
     """The series at Z + a t^n in place of Z, a a polynomial in Z, by Taylor's formula."""
     moved = list(S)
     derivatives = S

@@ -47,19 +47,13 @@ class Pulse:
         self.series: Series = []
         self.log: Series = []
 
-    def append(
-        self,
-        term: fmpq_mpoly,
-    ) -> None:
+    def append(self, term: fmpq_mpoly) -> None:
         """Append a coefficient of the series."""
         self.series.append(term)
         # A power of the field needs its logarithm.
         self.log.append(log_term(self.series, self.log))
 
-    def append_log(
-        self,
-        term: fmpq_mpoly,
-    ) -> None:
+    def append_log(self, term: fmpq_mpoly) -> None:
         """Append a coefficient of the logarithm."""
         self.log.append(term)
         self.series.append(exp_term(self.log, self.series))
@@ -87,11 +81,7 @@ class Recursion:
         The square of the speed, divided by its leading term.
     """
 
-    def __init__(
-        self,
-        model: Model,
-        order: int,
-    ) -> None:
+    def __init__(self, model: Model, order: int) -> None:
         self.model = model
         self.order = order
         self.context = fmpq_mpoly_ctx.get(("Z", *model.names), Ordering.lex)
@@ -122,10 +112,7 @@ class Recursion:
             I = I - self.context.from_dict({powers: coefficient})
         return I
 
-    def derivative(
-        self,
-        S: fmpq_mpoly,
-    ) -> fmpq_mpoly:
+    def derivative(self, S: fmpq_mpoly) -> fmpq_mpoly:
         """The polynomial R of the derivative ``∂ (e^{-Z²/4} S t^n) = e^{-Z²/4} R t^{n+1}``."""
         if not S:
             return S
@@ -133,10 +120,7 @@ class Recursion:
 
     # --- the order of the equations ---
 
-    def _solve(
-        self,
-        order: int,
-    ) -> None:
+    def _solve(self, order: int) -> None:
         """Solve for γ_2 at the order of the Gaussian, then for q_n and γ_{n+2}, n = 1, 2, …"""
         residual = self._residual(0)
         # γ_1 = 0: c² is even, since (Z, t) and (-Z, -t) are one wave.
@@ -150,10 +134,7 @@ class Recursion:
                 self._put(n, q)
         self._truncate(order + 1)
 
-    def _residual(
-        self,
-        n: int,
-    ) -> fmpq_mpoly:
+    def _residual(self, n: int) -> fmpq_mpoly:
         """The residual at t^{n+2} of the balance of momentum, with 0 for q_n and later ones.
 
         It is ``γ Σ m̂_i s_i(ξ) - (1/P) ∫_0^P f_{P-1}(ξ - x) dx``, without the coefficient
@@ -166,10 +147,7 @@ class Recursion:
             residual = residual + mu * self._accelerated(slope, n + 2)
         return residual - self._applied(self._cell_mean, self.push, n + 2)
 
-    def _invert(
-        self,
-        residual: fmpq_mpoly,
-    ) -> tuple[fmpq_mpoly, fmpq_mpoly]:
+    def _invert(self, residual: fmpq_mpoly) -> tuple[fmpq_mpoly, fmpq_mpoly]:
         """Solve I³ (q'' - Z q' + q) = residual + γ, q(0) = q'(0) = 0, for q and γ."""
         # At Z^d the left side is I³ [(1 - d) q_d + (d + 2)(d + 1) q_{d+2}]: solved from the top.
         left = by_degree(residual)
@@ -187,11 +165,7 @@ class Recursion:
 
     # --- the fields ---
 
-    def _put(
-        self,
-        n: int,
-        q: fmpq_mpoly,
-    ) -> None:
+    def _put(self, n: int, q: fmpq_mpoly) -> None:
         """Put q in the place of zero for q_n, and delete the terms of the fields beyond t^n."""
         self._truncate(n + 1)
         # A change of q_n adds q_n to the term at t^n of every field, strain, force and logarithm:
@@ -199,10 +173,7 @@ class Recursion:
         for row in self._rows():
             row[n] = row[n] + q
 
-    def _truncate(
-        self,
-        n: int,
-    ) -> None:
+    def _truncate(self, n: int) -> None:
         """Delete the terms of the fields from t^n on."""
         for row in self._rows():
             del row[n:]
@@ -214,10 +185,7 @@ class Recursion:
             rows += [pulse.series, pulse.log]
         return rows
 
-    def _append(
-        self,
-        n: int,
-    ) -> None:
+    def _append(self, n: int) -> None:
         """Append the terms at t^n to the fields, with zero for q_n."""
         # Forces from contact to contact, then strains, then slopes: each needs those before.
         self.force[0].append_log(self.zero)
@@ -232,26 +200,15 @@ class Recursion:
         self.push.append(self._last_force(n))
         self._append_slopes(n)
 
-    def _next_force(
-        self,
-        i: int,
-        n: int,
-    ) -> fmpq_mpoly:
+    def _next_force(self, i: int, n: int) -> fmpq_mpoly:
         """Coefficient of t^n in the force of contact i, by the equation of motion of bead i."""
         return self.force[i - 1].series[n] + self._inertia(i, n)
 
-    def _last_force(
-        self,
-        n: int,
-    ) -> fmpq_mpoly:
+    def _last_force(self, n: int) -> fmpq_mpoly:
         """Coefficient of t^n in the force with which the last contact pushes the next cell."""
         return self.force[-1].series[n]
 
-    def _inertia(
-        self,
-        i: int,
-        n: int,
-    ) -> fmpq_mpoly:
+    def _inertia(self, i: int, n: int) -> fmpq_mpoly:
         """Coefficient of t^n in P m̂_i γ ∂s_i, mass times acceleration of bead i."""
         # The derivative raises the power of t by one.
         if n == 0:
@@ -259,11 +216,7 @@ class Recursion:
         slope = self._accelerated(self.slope[i], n - 1)
         return self.P * self.mu[i] * self.derivative(slope)
 
-    def _log_strain(
-        self,
-        force: Pulse,
-        n: int,
-    ) -> fmpq_mpoly:
+    def _log_strain(self, force: Pulse, n: int) -> fmpq_mpoly:
         """Coefficient of t^n in log r = (1 - ε + ε² - …) log f; that of Z²/4 at t^0 is left out."""
         total = self.zero
         for m in range(n // 2 + 1):
@@ -274,10 +227,7 @@ class Recursion:
                 total = total - factor * self.Z**2 / 4
         return total
 
-    def _append_slopes(
-        self,
-        n: int,
-    ) -> None:
+    def _append_slopes(self, n: int) -> None:
         """Append the terms at t^n to the slopes.
 
         ``∫_0^P s_0(ξ + x) dx = Σ C_i r_i``, P times the mean strain, gives s_0 as
@@ -291,11 +241,7 @@ class Recursion:
                 strain = self.strain[i].series[n - 1]
                 slope = slope + self.c[i] * self.derivative(strain)
 
-    def _accelerated(
-        self,
-        slope: Series,
-        n: int,
-    ) -> fmpq_mpoly:
+    def _accelerated(self, slope: Series, n: int) -> fmpq_mpoly:
         """Coefficient of t^n in γ s_i, s_i the slope of a bead's displacement."""
         # γ may end before t^n: what is missing is the next unknown, see `_residual`.
         total = self.zero
@@ -305,10 +251,7 @@ class Recursion:
         return total
 
     def _applied(
-        self,
-        operator: Callable[[int], fmpq],
-        field: Series,
-        n: int,
+        self, operator: Callable[[int], fmpq], field: Series, n: int
     ) -> fmpq_mpoly:
         """Coefficient of t^n in ``Σ_m operator(m) ∂^m`` of a field, by Horner's rule."""
         total = self.zero
@@ -317,17 +260,11 @@ class Recursion:
             total = total + operator(m) * field[n - m]
         return total
 
-    def _cell_mean(
-        self,
-        m: int,
-    ) -> fmpq:
+    def _cell_mean(self, m: int) -> fmpq:
         """Coefficient of ∂^m in the mean over a cell behind a place, ``(1 - e^{-P∂})/(P∂)``."""
         return fmpq((-self.P) ** m, factorial(m + 1))
 
-    def _inverse_cell_mean(
-        self,
-        m: int,
-    ) -> fmpq:
+    def _inverse_cell_mean(self, m: int) -> fmpq:
         """Coefficient of ∂^m in the inverse of the mean over a cell ahead, ``P∂/(e^{P∂} - 1)``."""
         taylor = fmpq(self.P**m, factorial(m))
         return taylor * fmpq.bernoulli(m)

@@ -124,10 +124,7 @@ class EpsilonSeries(Value):
         """The highest power of ε in the sum."""
         return len(self.coefficients) - 1
 
-    def at(
-        self,
-        k: Any = None,
-    ) -> Estimate:
+    def at(self, k: Any = None) -> Estimate:
         """Sum the series at a number k > 1, with an estimate of the error.
 
         Parameters
@@ -192,10 +189,7 @@ class EpsilonSeries(Value):
             error = abs(scale) * mpmath.fsum(part.error for part in parts)
             return Estimate(float(value), float(error)).widened(relative)
 
-    def _for(
-        self,
-        k: sp.Expr,
-    ) -> EpsilonSeries:
+    def _for(self, k: sp.Expr) -> EpsilonSeries:
         """The series with a number or symbol in place of its symbol k."""
         if not self.k.is_Symbol:
             raise InputError(
@@ -225,11 +219,10 @@ class EpsilonSeries(Value):
     def latex_rows(self) -> list[str]:
         """The series as a paper prints it: its name, its first `SHOWN` terms and dots."""
         epsilon = sp.Symbol(r"\varepsilon")
-        # The constant has no factor.
-        terms = [(self.coefficients[0], "")]
-        for n in range(1, min(SHOWN, len(self.coefficients))):
-            if self.coefficients[n]:
-                terms.append((self.coefficients[n], latex.power(epsilon, n)))
+        terms = []
+        for n, coefficient in enumerate(self.coefficients[:SHOWN]):
+            if coefficient:
+                terms.append((coefficient, latex.power(epsilon, n)))
         value = latex.total(terms) + r" + \dots"
         unit = self.prefactor * epsilon**self.power
         if unit != 1:
@@ -250,10 +243,7 @@ def _transformed(coefficients: Sequence[sp.Expr]) -> list[mpmath.mpf]:
     return b
 
 
-def _sum(
-    b: Sequence[mpmath.mpf],
-    x: mpmath.mpf,
-) -> Estimate:
+def _sum(b: Sequence[mpmath.mpf], x: mpmath.mpf) -> Estimate:
     """Sum Σ b_n x^n to the last term, or to that of x^LAST."""
     b = b[: LAST + 1]
     # The terms left out are at most as large as a geometric series, 1/(1 - x) times the first.
@@ -263,10 +253,7 @@ def _sum(
     return Estimate(power_series(b, x), error)
 
 
-def _truncated(
-    b: Sequence[mpmath.mpf],
-    x: mpmath.mpf,
-) -> Estimate:
+def _truncated(b: Sequence[mpmath.mpf], x: mpmath.mpf) -> Estimate:
     """Sum Σ b_n x^n up to the first term that is smaller than the next, if there is one."""
     # A later term may be small by chance, next to a change of sign: the first growth decides.
     terms = [term * x**n for n, term in enumerate(b)]
@@ -277,10 +264,7 @@ def _truncated(
 
 
 @lru_cache(maxsize=64)
-def radiated(
-    cell: Cell,
-    k: sp.Expr,
-) -> float:
+def radiated(cell: Cell, k: sp.Expr) -> float:
     """Relative error of the sums of unlike beads by radiation, which no order in ε removes.
 
     Light beads rattle under the pulse and leave an oscillating tail. An oscillation that stands in

@@ -16,12 +16,7 @@ from __future__ import annotations
 
 from math import factorial
 
-from flint import (
-    Ordering,
-    fmpq,
-    fmpq_mpoly,
-    fmpq_mpoly_ctx,
-)
+from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from lwa.algebra.model import Model
 
@@ -68,11 +63,7 @@ class Bloch:
         _, f = self._carried(none, one)
         return [a_m + f_m for a_m, f_m in zip(a, f, strict=True)]
 
-    def _carried(
-        self,
-        a: Polynomial,
-        f: Polynomial,
-    ) -> tuple[Polynomial, Polynomial]:
+    def _carried(self, a: Polynomial, f: Polynomial) -> tuple[Polynomial, Polynomial]:
         """Displacement and force (a, f) in the next cell, by the transfer matrix of a cell."""
         for mu, c in zip(self.mu, self.c, strict=True):
             shifted = [self.zero, *a[:-1]]  # Ω² a

@@ -32,17 +32,8 @@ from lwa.base.exact import (
     shorten,
 )
 from lwa.base.frozen import Value
-from lwa.cell import (
-    Cell,
-    Parametric,
-    exponent,
-    read_cell,
-)
-from lwa.law import (
-    ContactLaw,
-    Power,
-    for_cell,
-)
+from lwa.cell import Cell, Parametric, exponent, read_cell
+from lwa.law import ContactLaw, Power, for_cell
 from lwa.linear.bloch import Bloch
 
 if TYPE_CHECKING:
@@ -96,9 +87,7 @@ class Dispersion(Parametric):
         for branch, series in self.series(order).items():
             terms = []
             for n, coefficient in series.items():
-                # At κ^0 the coefficient stands alone.
-                power = latex.power(_KAPPA, n) if n else ""
-                terms.append((coefficient, power))
+                terms.append((coefficient, latex.power(_KAPPA, n)))
             letter = rf"\Omega_{{\mathrm{{{branch}}}}}^{{2}}"
             rows.append(rf"{letter} = {latex.total(terms)} + \cdots")
         return rows

@@ -178,11 +178,7 @@ class Network(NamedTuple):
             row[bond.j % self.size] -= bond.cosine
         return rows
 
-    def acoustic(
-        self,
-        springs: Array,
-        masses: Array,
-    ) -> Acoustic:
+    def acoustic(self, springs: Array, masses: Array) -> Acoustic:
         """Compute the acoustic branch of long waves; NaN where springs of 0 hold no particle.
 
         The equation ``λ² M a + K(s) a = 0`` (`lwa.linear.springs`) holds at each power of s. At
@@ -261,10 +257,7 @@ class Network(NamedTuple):
         return parts
 
 
-def solved(
-    matrix: Array,
-    right: Array,
-) -> Array:
+def solved(matrix: Array, right: Array) -> Array:
     """Solve linear systems; NaN for a matrix that is singular or not finite.
 
     Parameters

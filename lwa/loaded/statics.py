@@ -81,19 +81,13 @@ class Statics:
     laws: tuple[tuple[Function, ...], ...]
     factors: Array
 
-    def compressions(
-        self,
-        e: Array,
-    ) -> Array:
+    def compressions(self, e: Array) -> Array:
         """Compressions of the links at mean compressions; NaN where there is no static state."""
         if self.network.size == 1:
             return np.asarray(e[..., None] * self.network.spans)
         return self._series(e) if self.network.in_series else self._network(e)
 
-    def _series(
-        self,
-        e: Array,
-    ) -> Array:
+    def _series(self, e: Array) -> Array:
         """Newton's method for links that carry one force f, in ln f and the ln δ of the links.
 
         A static state at the mean compression e has, for each link of the law ``F_l``::
@@ -137,10 +131,7 @@ class Statics:
                     break
         return np.asarray(delta)
 
-    def _network(
-        self,
-        e: Array,
-    ) -> Array:
+    def _network(self, e: Array) -> Array:
         """Newton's method for the displacements w inside the cell, at which the energy is least.
 
         The compressions are ``δ = e spans + Bw``, B the incidence matrix. Where the energy is least
@@ -169,11 +160,7 @@ class Statics:
                     break
         return np.asarray(delta)
 
-    def _part(
-        self,
-        delta: Array,
-        change: Array,
-    ) -> Array:
+    def _part(self, delta: Array, change: Array) -> Array:
         """The part 1, 1/2, 1/4, … of a step behind which the energy is no steeper than before."""
         force = self.values(delta, 0)
         # The energy's slope along the step, and what rounding may add to this slope
@@ -189,11 +176,7 @@ class Statics:
             part = np.where(fine, part, part / 2)
         return np.asarray(part[..., None])
 
-    def values(
-        self,
-        delta: Array,
-        n: int,
-    ) -> Array:
+    def values(self, delta: Array, n: int) -> Array:
         """The n-th derivative of each link's force at compressions of shape (…, links)."""
         columns = []
         with np.errstate(all="ignore"):
@@ -201,19 +184,13 @@ class Statics:
                 columns.append(law[n](delta[..., i]))
             return np.stack(columns, axis=-1) * self.factors
 
-    def force(
-        self,
-        e: Array,
-    ) -> Array:
+    def force(self, e: Array) -> Array:
         """The mean force at mean compressions."""
         forces = self.values(self.compressions(e), 0)
         with np.errstate(invalid="ignore"):  # opposite infinities far beyond the wave
             return np.asarray(forces @ self.network.spans / self.network.size)
 
-    def samples(
-        self,
-        e: Array,
-    ) -> Samples:
+    def samples(self, e: Array) -> Samples:
         """``F′``, ``F″`` and I at mean compressions."""
         size = self.network.size
         if size > 1:
@@ -234,10 +211,7 @@ class Statics:
         # I of a chain of alike links is one number for all e.
         return Samples(stiffness, bend, dispersion + 0 * e)
 
-    def mean_compression(
-        self,
-        force: float,
-    ) -> float:
+    def mean_compression(self, force: float) -> float:
         """The mean compression under a force > 0; raises `lwa.InputError` if it is not reached."""
         unreached = InputError(f"force is {force:g}: the links do not reach it")
         e: Array = np.exp2(np.arange(*_REACH))
@@ -253,12 +227,7 @@ class Statics:
             raise unreached
         return float(e[-1])
 
-    def rise(
-        self,
-        e: float,
-        force: float,
-        added: float,
-    ) -> float:
+    def rise(self, e: float, force: float, added: float) -> float:
         """The rise of the mean compression from e to that under a force, which is larger by added.
 
         A small difference of compressions has lost its digits: the force added over the mean ``F′``

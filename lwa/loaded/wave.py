@@ -49,12 +49,7 @@ from lwa.base.exact import (
     read_exact,
     shorten,
 )
-from lwa.base.frozen import (
-    Estimate,
-    NoSolitaryWave,
-    known_extent,
-    known_quantity,
-)
+from lwa.base.frozen import Estimate, NoSolitaryWave, known_extent, known_quantity
 from lwa.base.words import ExtentName, QuantityName, one_of
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k
@@ -281,6 +276,8 @@ class LoadedWave(States):
         else:
             value = number(self.fwhm(quantity, extent))
             relative = known.width
+            if quantity == "velocity":
+                relative = known.velocity
             if extent == "time":  # the width divided by the speed
                 relative += known.speed
         return Estimate(value, value * relative)

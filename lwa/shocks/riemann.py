@@ -39,25 +39,12 @@ from typing import Any, Literal, get_args
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import (
-    InputError,
-    brief,
-    demand_numbers,
-    number,
-    one_of,
-    read_exact,
-)
+from lwa.base.exact import InputError, brief, demand_numbers, number, one_of, read_exact
 from lwa.base.frozen import Estimate
 from lwa.cell import Cell, Parametric
 from lwa.law import ContactLaw
 from lwa.loaded.background import Background
-from lwa.shocks.waves import (
-    DIGITS,
-    WORKING,
-    Pulse,
-    demand_one_sign,
-    velocity,
-)
+from lwa.shocks.waves import DIGITS, WORKING, Pulse, demand_one_sign, velocity
 
 RuleName = Literal["dispersion", "doubling"]
 """A rule for the leading edge: El's, or the solitary wave with beads at 2 v_p."""

@@ -198,11 +198,21 @@ class Pulse(Value):
             return sp.powsimp(sp.powdenest(parts, force=True), force=True)
         x = sp.Dummy("x", positive=True)
         p0 = sp.N(self.field.p0, WORKING)
-        # A power has no strain of its own: that of the load is the unit.
-        unit = sp.sign(w) * (p0 if self.field.law.homogeneous else 1)
-        B = unit * x
+        unit = sp.S.One
+        power = sp.S.One
+        if self.field.law.homogeneous:
+            # A power has no strain of its own: the unit is that of the load, or where this one is
+            # larger that of a wave without load, w^{2/(k+1)}. There B is this power of x: in B
+            # itself the squares below would be flat near 0.
+            unit = p0
+            exponent = 2 / (self.field.law.exponent + 1)
+            bare = sp.N(abs(w) ** exponent, WORKING)
+            if bare > p0:
+                unit = bare
+                power = exponent
+        B = sp.sign(w) * unit * x**power
         rising = self.field.on(p0).squared_speed(B) * B**2 - sp.N(w, WORKING) ** 2
-        return unit * rising_root(self.field, rising, x, WORKING)
+        return B.subs(x, rising_root(self.field, rising, x, WORKING))
 
     @property
     def speed(self) -> sp.Expr:

@@ -35,10 +35,7 @@ class Unit:
     size: float = 1.0
 
 
-def fitting(
-    unit: str,
-    magnitude: float,
-) -> Unit:
+def fitting(unit: str, magnitude: float) -> Unit:
     """Return a unit in which a magnitude has one to three digits before the decimal point.
 
     Parameters
@@ -62,10 +59,7 @@ def fitting(
     return Unit(PREFIXES[place] + unit, 10.0**power * own)
 
 
-def labelled(
-    label: str,
-    magnitude: float,
-) -> Unit:
+def labelled(label: str, magnitude: float) -> Unit:
     """Return the label of a column or an axis with its unit fitted to a magnitude.
 
     >>> labelled("arrival (s)", 2e-4), labelled("peak", 2e-4)

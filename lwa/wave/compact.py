@@ -18,11 +18,7 @@ from typing import TYPE_CHECKING, Any, overload
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import (
-    InputError,
-    read_exact,
-    shorten,
-)
+from lwa.base.exact import InputError, read_exact, shorten
 from lwa.base.words import LanguageName, one_of
 from lwa.cell import Cell
 from lwa.cell import k as symbol_k

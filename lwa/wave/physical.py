@@ -16,14 +16,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 import sympy as sp
 
 from lwa.base import latex
-from lwa.base.exact import (
-    InputError,
-    brief,
-    number,
-    positive,
-    power,
-    shorten,
-)
+from lwa.base.exact import InputError, brief, number, positive, power, shorten
 from lwa.base.frozen import known_extent, known_quantity, strain_power
 from lwa.base.words import ExtentName, QuantityName, one_of
 from lwa.cell import Parametric

@@ -266,9 +266,7 @@ def wave_functions(wave: Arch) -> Functions:
     total = define("coefficient_sum", "(G + H + I)/D^2", wave.coefficient_sum)
     factor = define("speed_factor", "V_s^2/B^(k - 1)", wave.speed_factor)
     beta = define(
-        "beta",
-        "beta = (k - 1)/(2 sqrt(G + H + I))",
-        (k - 1) / (2 * D * sp.sqrt(total)),
+        "beta", "beta = (k - 1)/(2 sqrt(G + H + I))", (k - 1) / (2 * D * sp.sqrt(total))
     )
     define("width", "Length of the support, pi/beta", sp.pi / beta)
     for quantity in QUANTITIES:

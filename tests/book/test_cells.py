@@ -82,17 +82,3 @@ def test_the_decay_near_a_mass_ratio_of_0_57():
         struck_pulse(1.5, "0.57", *ends).decay for ends in ((40, 80), (80, 160))
     )
     assert 6 < early / late < 7
-
-
-def test_printed_numbers_have_names(capsys):
-    """Each line of the four lattices has its lattice, and a name before each number."""
-    text = (BOOK / "links.md").read_text(encoding="utf-8")
-    (cell,) = (
-        code
-        for _, code in CELL.findall(text)
-        if "print(" in code and "for name" in code
-    )
-    exec(cell, {})
-    lines = capsys.readouterr().out.splitlines()
-    line = re.compile(r"[a-z ]+speed \d\.\d+, width \d\.\d+")
-    assert len(lines) == len([text for text in lines if line.fullmatch(text)]) == 4

@@ -22,6 +22,7 @@ from lwa.base.arrays import Array
 _BEFORE = 2.0  # widths between the samples of the base and the rise
 _CLOSE = 1.0  # likewise in a record that begins less than 2.5 widths before them
 _LONG = 10.0  # widths of the base: drift and hum are straight over such a time
+_SHORTEST = 0.9  # likewise, at least
 FEWEST = 16  # samples of the base
 _GROWTHS = (1.0, 2.0)  # widths in which what rises before the pulse grows e-fold
 _LINE = 2  # terms of a straight line
@@ -53,7 +54,9 @@ class Fit:
     @property
     def variance(self) -> float:
         """Variance of the noise: its squares over the degrees of freedom, samples less terms."""
-        return float(np.sum(self.noise**2)) / (len(self.noise) - len(self.sizes))
+        squares = np.sum(self.noise**2)
+        freedom = len(self.noise) - len(self.sizes)
+        return float(squares) / freedom
 
     @cached_property
     def correlation_time(self) -> float:
@@ -73,8 +76,10 @@ class Fit:
     def correlations(self) -> Array:
         """Mean products of the noise with itself by lag, up to the first lag without any."""
         count = len(self.noise)
-        spectrum = np.abs(np.fft.rfft(self.noise, 2 * count)) ** 2
-        products = np.fft.irfft(spectrum)[:count] / count
+        # Twice as long, so that the end of the noise does not meet its start.
+        spectrum = np.fft.rfft(self.noise, 2 * count)
+        power = np.abs(spectrum) ** 2
+        products = np.fft.irfft(power)[:count] / count
         unlike = np.append(products, 0.0) <= 0
         first = int(np.argmax(unlike))
         return np.asarray(products[: max(1, first)])
@@ -111,19 +116,27 @@ class Base:
         end = rise - _BEFORE * width
         if t[0] > end - 2.5 * width:
             end = rise - _CLOSE * width
-        calm = (t < end) & (t > end - _LONG * width)
+        start = end - _LONG * width
+        calm = (t > start) & (t < end)
         x = (t[calm] - rise) / width
-        if len(x) < FEWEST or np.ptp(x) < 0.9:
+        if len(x) < FEWEST:
+            return None
+        length = np.ptp(x)
+        if length < _SHORTEST:
             return None
         counts: Sequence[int] = _BASES
-        if np.ptp(x) < _SLOW:
+        if length < _SLOW:
             counts = (_LINE,)
-        fits = [Fit.of(x, f[calm], count) for count in counts]
+        samples = f[calm]
+        fits = [Fit.of(x, samples, count) for count in counts]
         # Akaike's criterion, for the independent among the samples, with the noise that the base
         # with all terms leaves.
         full = fits[-1]
         scale = full.variance * full.correlation_time or 1.0
-        criteria = [np.sum(fit.noise**2) / scale + 2 * len(fit.sizes) for fit in fits]
+        criteria = []
+        for fit in fits:
+            squares = np.sum(fit.noise**2)
+            criteria.append(squares / scale + 2 * len(fit.sizes))
         weights = scipy.special.softmax(-np.array(criteria) / 2)
         best = fits[int(np.argmax(weights))]
         return cls(rise, width, x, fits, weights, best)
@@ -139,10 +152,13 @@ class Base:
         noise : float
             Standard deviation of their noise.
         """
-        levels = (f[:_GUESSED].mean(), np.quantile(f, 0.1))
         samples = np.array([noise, 0.0])  # of this variance, and white
-        fits = [Fit(np.array([level]), samples) for level in levels]
-        return cls(0.0, 1.0, np.zeros(0), fits, np.full(2, 0.5), fits[0])
+        first = f[:_GUESSED].mean()
+        lowest = np.quantile(f, 0.1)
+        fits = [Fit(np.array([level]), samples) for level in (first, lowest)]
+        nowhere = np.zeros(0)
+        alike = np.full(2, 0.5)
+        return cls(0.0, 1.0, nowhere, fits, alike, fits[0])
 
     def at(self, t: Array) -> Array:
         """Return the base at times of the pulse."""
@@ -169,18 +185,13 @@ class Base:
         rng = np.random.default_rng(0)
         count = len(self.x)
         noise = self._noise(rng, count + len(t))
-        calm, added = noise[:count], noise[count:]
-        calm *= self.best.noise.std()
+        calm = noise[:count] * self.best.noise.std()
         # Rounding has the variance step²/12.
-        added *= math.sqrt(max(0.0, variance - step**2 / 12))
+        unrounded = max(0.0, variance - step**2 / 12)
+        added = noise[count:] * math.sqrt(unrounded)
         if step:
-            for part, exact in (
-                (calm, np.zeros((1, 1))),
-                (added, pulse[:, np.newaxis]),
-            ):
-                # Base and pulse lie anywhere between two levels.
-                true = exact + step * rng.uniform(-0.5, 0.5, DRAWS)
-                part[:] = step * np.round((true + part) / step) - true
+            calm = _rounding(calm, np.zeros(1), step, rng)
+            added = _rounding(added, pulse, step, rng)
         x = (t - self.rise) / self.width
         chosen = rng.choice(len(self.fits), DRAWS, p=self.weights)
         for i, fit in enumerate(self.fits):
@@ -195,15 +206,31 @@ class Base:
         products = self.best.correlations
         size = count + len(products)
         white = rng.normal(size=(size, DRAWS))
-        spectrum = np.maximum(np.fft.rfft(products, size).real - products[0] / 2, 0)
-        if not spectrum.any():
+        # The products are those of both directions, and that at lag 0 counts once.
+        power = np.fft.rfft(products, size).real - products[0] / 2
+        power = np.maximum(power, 0.0)
+        if not power.any():
             return white[:count]
-        factors = np.sqrt(spectrum / spectrum.mean())[:, np.newaxis]
-        shaped = np.fft.irfft(np.fft.rfft(white, axis=0) * factors, size, axis=0)
+        factors = np.sqrt(power / power.mean())
+        spectra = np.fft.rfft(white, axis=0) * factors[:, np.newaxis]
+        shaped = np.fft.irfft(spectra, size, axis=0)
         return np.asarray(shaped[:count])
+
+
+def _rounding(
+    noise: Array, exact: Array, step: float, rng: np.random.Generator
+) -> Array:
+    """Return noise with the errors of rounding to levels; ``exact`` are values without noise."""
+    # Base and pulse lie anywhere between two levels.
+    true = exact[:, np.newaxis] + step * rng.uniform(-0.5, 0.5, DRAWS)
+    levels = np.round((true + noise) / step)
+    return np.asarray(step * levels - true)
 
 
 def _terms(x: Array, count: int) -> Array:
     """Return the first terms of a base, (len(x), count): level, slope, exponentials."""
-    growths = [np.exp(np.minimum(x, 0) / growth) for growth in _GROWTHS]
-    return np.column_stack([np.ones_like(x), x, *growths])[:, :count]
+    before = np.minimum(x, 0.0)
+    columns = [np.ones_like(x), x]
+    for growth in _GROWTHS:
+        columns.append(np.exp(before / growth))
+    return np.column_stack(columns[:count])

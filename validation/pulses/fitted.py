@@ -67,33 +67,40 @@ def fitted(
     MeasureError
         If the noise is too large.
     """
-    width = sides[1] - sides[0]
-    near = (t >= sides[0] - _BESIDE * width) & (t <= sides[1] + _BESIDE * width)
-    ends = (sides[0] - _READ * width, sides[1] + _READ * width)
-    t, f = t[near], f[near]
-    rounding = (np.finfo(float).eps * np.abs(f).max()) ** 2
-    variance = base.best.variance + rounding
+    rise, fall = sides
+    beside = _BESIDE * (fall - rise)
+    near = (t >= rise - beside) & (t <= fall + beside)
+    margin = _READ * (fall - rise)
+    ends = (rise - margin, fall + margin)
+    t = t[near]
+    f = f[near]
+    rounding = np.finfo(float).eps * np.abs(f).max()
+    variance = base.best.variance + rounding**2
     most = min(_HIGHEST, int(_DENSEST * len(t)))
     smoothed = partial(_smoothed, t, f, base.best.correlation_time, most)
     wanted, spline, left = smoothed(variance)
     if left > _MISFIT * variance:  # the noise during the pulse is larger
         wanted, spline, variance = smoothed(left)
         variance = max(variance, left)
-    share = math.sqrt(variance) / float(spline(t).max())
+    pulse = spline(t)
+    share = math.sqrt(variance) / float(pulse.max())
     if share > _LOUDEST:
         raise MeasureError(
             f"the noise is {share:.1%} of the peak: at most {_LOUDEST:.0%} is read"
         )
-    noise = base.drawn(t, spline(t), variance, step)
-    drawn = _fit(t, noise, len(spline.c)).c
+    noise = base.drawn(t, pulse, variance, step)
+    drawn = _fit(t, noise, len(spline.c))
     best = spline.c[:, np.newaxis]
-    found = _read(BSpline(spline.t, np.hstack((best, best + drawn)), _DEGREE), ends)
+    coefficients = np.hstack((best, best + drawn.c))
+    found = _read(BSpline(spline.t, coefficients, _DEGREE), ends)
     numbers = found[0]
-    errors = np.quantile(np.abs(found[1:] - numbers), _WITHIN, axis=0)
+    off = np.abs(found[1:] - numbers)
+    errors = np.quantile(off, _WITHIN, axis=0)
     if wanted > most:
         count = max(_LOWEST, round(most / _COARSER))
-        coarse = _read(_fit(t, f[:, np.newaxis], count), ends)
-        errors = np.hypot(errors, numbers - coarse[0])
+        rough = _fit(t, f[:, np.newaxis], count)
+        (coarse,) = _read(rough, ends)
+        errors = np.hypot(errors, numbers - coarse)
     estimates = map(Estimate, numbers.tolist(), errors.tolist())
     return dict(zip(("arrival", "peak", "fwhm"), estimates, strict=True))
 
@@ -108,22 +115,29 @@ def _smoothed(
     """
     tries = math.ceil(math.log(most / _LOWEST) / math.log(_RATIO))
     counts = np.geomspace(_LOWEST, most, tries + 1).round().astype(int)
-    squares = [np.sum((_fit(t, f, count)(t) - f) ** 2) for count in counts]
     # Schwarz's criterion, Σ residual²/σ² + count · ln N, for the independent among the samples.
-    penalty = math.log(max(len(t) / correlation_time, 2))
-    criterion = np.array(squares) / (variance * correlation_time) + counts * penalty
-    best = int(counts[np.argmin(criterion)])
+    independent = len(t) / correlation_time
+    penalty = math.log(max(independent, 2))
+    criteria = []
+    for count in counts:
+        residuals = _fit(t, f, count)(t) - f
+        misfit = np.sum(residuals**2) / (variance * correlation_time)
+        criteria.append(misfit + count * penalty)
+    best = int(counts[np.argmin(criteria)])
     wanted = math.ceil(_FINER * best)
     spline = _fit(t, f, min(wanted, most))
-    left = float(np.sum((spline(t) - f) ** 2)) / (len(t) - len(spline.c))
+    residuals = spline(t) - f
+    freedom = len(t) - len(spline.c)
+    left = float(np.sum(residuals**2)) / freedom
     return wanted, spline, left
 
 
 def _fit(t: Array, f: Array, count: int) -> BSpline:
     """Fit a spline of so many coefficients to samples."""
     # Equally many samples lie between neighbouring knots, so that gaps in a record do no harm.
-    at = np.linspace(0, len(t) - 1, count - _DEGREE + 1)
-    knots = np.pad(np.interp(at, np.arange(len(t)), t), _DEGREE, mode="edge")
+    places = np.linspace(0, len(t) - 1, count - _DEGREE + 1)
+    inside = np.interp(places, np.arange(len(t)), t)
+    knots = np.pad(inside, _DEGREE, mode="edge")
     return make_lsq_spline(t, f, knots, _DEGREE)
 
 
@@ -134,18 +148,22 @@ def _read(splines: BSpline, ends: tuple[float, float]) -> Array:
     for f in splines(grid).T:
         # The vertex of the parabola through the highest value and its neighbours: it lies at
         # top - slope/bend, at most one interval away, and there f = f[top] - slope²/(2 bend).
-        top = min(max(int(np.argmax(f)), 1), _GRID - 1)
-        slope = (f[top + 1] - f[top - 1]) / 2
-        bend = f[top - 1] - 2 * f[top] + f[top + 1]
+        top = int(np.argmax(f[1:-1])) + 1
+        before, highest, after = f[top - 1 : top + 2]
+        slope = (after - before) / 2
+        bend = before - 2 * highest + after
         shift = 0.0
         if bend < 0:
             shift = min(max(-slope / bend, -1.0), 1.0)
-        peak = f[top] + slope * shift / 2
+        peak = highest + slope * shift / 2
         # SciPy measures the width at the height f[top] - prominence/2. The prominence
         # 2 f[top] - peak makes this peak/2, half of the vertex above the base, which is 0. Both
         # flanks are looked for on the whole grid.
-        bounds = (np.array([2 * f[top] - peak]), np.array([0]), np.array([_GRID]))
-        width, *_ = peak_widths(f, [top], 0.5, bounds)
-        numbers.append((top + shift, peak, width[0]))
+        prominence = np.array([2 * highest - peak])
+        start = np.array([0])
+        end = np.array([_GRID])
+        (width,), *_ = peak_widths(f, [top], 0.5, (prominence, start, end))
+        numbers.append((top + shift, peak, width))
     step = grid[1] - grid[0]
-    return np.asarray(np.array(numbers) * (step, 1.0, step) + (ends[0], 0.0, 0.0))
+    tops, peaks, widths = np.transpose(numbers)
+    return np.column_stack((ends[0] + step * tops, peaks, step * widths))

@@ -33,8 +33,6 @@ from validation.pulses.fitted import fitted
 from validation.pulses.pulse import (
     READINGS,
     MeasureError,
-    Piecewise,
-    Pulse,
     checked,
     first_pulse,
     spline,
@@ -76,7 +74,7 @@ class NoisyPulse:
     numbers : arrival, peak above the base, fwhm, by these names; without the peak if the record
     begins too late for a base. base : value below the pulse, at the time rise. missing : words on
     the number that is missing. slope : growth of the base in time. noise : standard deviation,
-    times √n, of the mean noise of n samples; 0 in a record without noise.
+    times ``√n``, of the mean noise of n samples; 0 in a record without noise.
     """
 
     numbers: Mapping[str, Estimate]
@@ -120,21 +118,25 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
     size = float(np.abs(f).max()) or 1.0  # so that squares neither over- nor underflow
     f = f / size
     step = _step(f)
-    if np.ptp(f) < _CONSTANT:
+    swing = np.ptp(f)
+    if swing < _CONSTANT:
         raise MeasureError("no pulse is in the record: its signal is constant")
-    if _is_exact(f) and step < _EXACT * np.ptp(f):
+    if _is_exact(f) and step < _EXACT * swing:
         return _exact(t, f, size)
-    rise, fall = _place(t, f - f[:_EARLY].mean())
+    start = f[:_EARLY].mean()
+    rise, fall = _place(t, f - start)
+    width = fall - rise
     inside = int(np.count_nonzero((t > rise) & (t < fall)))
     block = max(1, inside // _MOST)
     whole = len(t) // block * block
     blocks = np.array((t, f))[:, :whole].reshape(2, -1, block)
     at, means = blocks.mean(axis=2)
-    base = Base.before(at, means, rise, fall - rise)
+    base = Base.before(at, means, rise, width)
     missing = None
     if base is None:
         base = Base.guessed(means, _noise_by_neighbours(means))
-        wanted = max(2 * (fall - rise), FEWEST * float(np.median(np.diff(t))))
+        spacing = float(np.median(np.diff(t)))
+        wanted = max(2 * width, FEWEST * spacing)
         missing = (
             f"no peak: the record starts {in_unit(rise - t[0], unit)} before the pulse, and "
             f"{in_unit(wanted, unit)} are wanted for its base"
@@ -150,7 +152,7 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
     else:
         numbers["peak"] *= size
     level, later = base.at(np.array([rise, fall])).tolist()
-    slope = (later - level) / (fall - rise)
+    slope = (later - level) / width
     # Samples of correlated noise count as fewer; each of ``means`` counts as the block's.
     noise = math.sqrt(base.best.variance * base.best.correlation_time * block)
     return NoisyPulse(numbers, level * size, missing, rise, slope * size, noise * size)
@@ -164,18 +166,20 @@ def _is_exact(f: Array) -> bool:
     if len(early) >= _EARLY and np.ptp(early) < _EXACT * np.ptp(f):
         return True
     # The signal may rise smoothly from the start; noise falls as well.
-    falls = -np.minimum(np.diff(before), 0.0).sum()
-    return len(before) > 0 and bool(falls < _EXACT * np.ptp(f))
+    falls = np.minimum(np.diff(before), 0.0)
+    return len(before) > 0 and bool(-falls.sum() < _EXACT * np.ptp(f))
 
 
 def _exact(t: Array, f: Array, size: float) -> NoisyPulse:
     """Measure the first pulse of a record without noise, whose base is its first sample."""
     level = float(f[0])
     signal = spline(t, f - level)
-    coarse = [spline(t[start::2], f[start::2] - level) for start in (0, 1)]
     pulse = first_pulse(signal)
     _check_top(t, f, (pulse.rise, pulse.fall), _FEWEST_EXACT)
-    rough = [first_pulse(other) for other in coarse]
+    rough = []
+    for start in (0, 1):
+        coarse = spline(t[start::2], f[start::2] - level)
+        rough.append(first_pulse(coarse))
     numbers = {}
     for name in READINGS:
         value = getattr(pulse, name)
@@ -183,10 +187,9 @@ def _exact(t: Array, f: Array, size: float) -> NoisyPulse:
         numbers[name] = Estimate(value, error)
     # Which of two humps is the higher is unsure within the error of the peak.
     peak = numbers["peak"]
-    apart = 0.0
-    for other in (signal, *coarse):
-        tops = _tops(other, pulse, pulse.peak - peak.error)
-        apart = max(apart, np.abs(tops - pulse.arrival).max(initial=0.0))
+    times = np.linspace(pulse.rise, pulse.fall, _GRID + 1)
+    tops, _ = find_peaks(signal(times), height=pulse.peak - peak.error)
+    apart = np.abs(times[tops] - pulse.arrival).max(initial=0.0)
     if apart > _SAME * pulse.fwhm:
         late = numbers["arrival"]
         error = max(late.error, apart + _SAME * pulse.fwhm)
@@ -196,18 +199,12 @@ def _exact(t: Array, f: Array, size: float) -> NoisyPulse:
     width = numbers["fwhm"]
     numbers["fwhm"] = Estimate(width.value, max(width.error, least))
     # A base that is off by this much moves the peak as much, and both flanks at its half.
-    doubt = _front(f, pulse.fwhm / float(t[1] - t[0]))
+    samples = pulse.fwhm / float(t[1] - t[0])
+    doubt = _front(f, samples)
     for name in ("peak", "fwhm"):
         numbers[name] = numbers[name].widened(doubt / pulse.peak)
     numbers["peak"] *= size
     return NoisyPulse(numbers, level * size)
-
-
-def _tops(signal: Piecewise, pulse: Pulse, least: float) -> Array:
-    """Return times at which a signal has a maximum above a value in a pulse."""
-    times = np.linspace(pulse.rise, pulse.fall, _GRID + 1)
-    places, _ = find_peaks(signal(times), height=least)
-    return np.asarray(times[places])
 
 
 def _front(f: Array, width: float) -> float:
@@ -219,10 +216,10 @@ def _front(f: Array, width: float) -> float:
     if not 0 < first < second:
         return abs(first)
     # Differences of a + b e^{n g}, n the number of a sample, grow by the factor e^g.
-    growth = math.log(second / first)
-    if growth * width > _SUDDEN:
+    factor = second / first
+    if math.log(factor) * width > _SUDDEN:
         return 0.0
-    return first / math.expm1(growth)
+    return first / (factor - 1)
 
 
 def in_unit(time: float, unit: str) -> str:
@@ -249,7 +246,8 @@ def _step(f: Array) -> float:
     if not least:
         return 0.0
     # Printed levels are rounded, too: their distance is told best by all of them.
-    step = np.ptp(f) / round(np.ptp(f) / least)
+    count = round(np.ptp(f) / least)
+    step = np.ptp(f) / count
     levels = (f - f.min()) / step
     off = np.abs(levels - levels.round())
     if off.max() > 0.25:
@@ -266,9 +264,10 @@ def _place(t: Array, f: Array) -> tuple[float, float]:
     # The moving mean. The mean of n samples of noise σ has the noise σ/√n, which is _SMOOTH times
     # the peak for n = (σ/(_SMOOTH peak))².
     highest = max(f.max(), np.finfo(float).tiny)
-    samples = (_noise_by_neighbours(f) / (_SMOOTH * highest)) ** 2
-    count = math.ceil(min(max(1.0, samples), len(f)))
-    g = np.convolve(f, np.full(count, 1 / count), "same")
+    noise = _noise_by_neighbours(f) / (_SMOOTH * highest)
+    count = math.ceil(min(max(1.0, noise**2), len(f)))
+    weights = np.full(count, 1 / count)
+    g = np.convolve(f, weights, "same")
     if -g.min() > max(g.max(), 0):
         raise InvertedError(
             "the signal falls farther below its start than it rises: it begins in a pulse, or is "
@@ -278,8 +277,9 @@ def _place(t: Array, f: Array) -> tuple[float, float]:
         raise MeasureError("no pulse is in the record: its signal is nowhere positive")
     # The first pulse: from where the mean first exceeds half of its maximum to where it next falls
     # below _LOW of the maximum.
-    start = int(np.argmax(g > g.max() / 2))
-    fallen = np.append(g[start:] < _LOW * g.max(), True)
+    peak = g.max()
+    start = int(np.argmax(g > peak / 2))
+    fallen = np.append(g[start:] < _LOW * peak, True)
     end = start + int(np.argmax(fallen))
     top = start + int(np.argmax(g[start:end]))
     # The sides of the pulse, now by its own top: another pulse may be higher.
@@ -301,24 +301,28 @@ def _check_top(
     sides : times at which the pulse rises and falls through half of its peak. step : distance of
     the levels to which samples are rounded.
     """
-    inside = np.flatnonzero((t > sides[0]) & (t < sides[1]))
+    rise, fall = sides
+    inside = np.flatnonzero((t > rise) & (t < fall))
     width = len(inside)  # FWHM in samples
     if width < fewest:
         raise MeasureError(
             f"{width} samples lie above half the pulse's peak: at least {fewest} are wanted"
         )
-    top, low = f[inside].max(), f[inside].min()
+    samples = f[inside]
+    top = samples.max()
+    peak = 2 * (top - samples.min())  # as all these samples lie above its half
     # The longest run of samples at the top, equal but for `_EQUAL` of the record's range.
-    start, end = longest(f[inside] >= top - _EQUAL * np.ptp(f))
+    start, end = longest(samples >= top - _EQUAL * np.ptp(f))
     # A smooth pulse about its top is peak (1 - 4 ln 2 (t/width)²), as a Gaussian is; 4 ln 2 ≈ 2.7.
     # It stays within a step of its top for the time 2 width √(step/(2.7 peak)); a run of twice as
-    # many samples, and three, is no top. The peak is 2 (top - low), as all samples inside lie above
-    # its half. If all are equal, as in a square pulse, nothing is known of the top.
+    # many samples, and three, is no top. If all are equal, as in a square pulse, nothing is known
+    # of the top.
     run = end - start
-    if run == width or run > 3 + 4 * width * math.sqrt(step / (2.7 * 2 * (top - low))):
-        times = f"{t[inside[start]]:.6g} to {t[inside[end - 1]]:.6g}"
+    if run == width or run > 3 + 4 * width * math.sqrt(step / (2.7 * peak)):
+        first, *_, last = t[inside[start:end]]
         raise MeasureError(
-            f"the record is clipped from {times}: a larger range of the recorder is wanted"
+            f"the record is clipped from {first:.6g} to {last:.6g}: a larger range of the "
+            "recorder is wanted"
         )
 
 

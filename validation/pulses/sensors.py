@@ -16,14 +16,13 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array
 from lwa.base.frozen import Estimate
 from validation.lattice.cost import RunProgress, silent
 from validation.lattice.equations import Motion
 from validation.lattice.result import Run
-from validation.lattice.signal import RECORDS, sensors_of
+from validation.lattice.signal import RECORDS, quantities, sensed_beads, sensors_of
 from validation.lattice.simulate import COMPILED, repeated
 from validation.pulses.pulse import (
     MeasureError,
@@ -33,7 +32,6 @@ from validation.pulses.pulse import (
     all_pulses,
     compared,
     first_pulse,
-    highest_pulse,
     readings,
     spline,
     tolerances,
@@ -312,31 +310,19 @@ def _above(force: Signal, static: float) -> Piecewise:
 def forces_at_start(scene: Scene) -> dict[str, float]:
     """Return the forces at the start at the sensors of a scene, by names such as "bead 15".
 
-    Where all beads start in equilibrium, whatever their velocities, they are the static forces: a
+    Where beads start in equilibrium, whatever their velocities, they are the static forces: a
     damped contact of a moving bead resists at once, but a sensor has been at rest before.
     """
     motion = Motion(scene)
-    y, v = motion.start[: 2 * scene.size].reshape(2, scene.size)
-    if not y.any():
-        return _at_sensors(scene, scene.load)
-    compression = motion.compression(y)
-    elastic = motion.force(compression)
-    return _at_sensors(scene, motion.damped_force(elastic, compression, motion.rate(v)))
-
-
-def _at_sensors(scene: Scene, contact_forces: ArrayLike) -> dict[str, float]:
-    """Return the forces at the sensors of a scene, by names such as "bead 15"."""
-    # Bead i stands between the contacts of the entries i and i + 1. The first bead has no contact
-    # on its left, and the last one none on its right without a wall: their entries stay 0.
-    beside = np.zeros(scene.size + 1)
-    beside[1 : scene.contact_count + 1] = contact_forces
+    beads = sensed_beads(motion)
+    y = np.append(motion.start[: scene.size], 0.0)  # of the wall
+    at_rest = np.zeros((len(beads), 1))
+    records = quantities(motion, beads, y[beads, np.newaxis], at_rest)
     forces = {}
-    for i in scene.bead_sensors:
-        # The force between the two halves of a bead, where its sensor lies: each half takes half of
-        # the net force, so that the mean of both contacts' forces is left in the middle.
-        forces[f"bead {i + 1}"] = float(beside[i] + beside[i + 1]) / 2
-    for i in scene.contact_sensors:
-        forces[f"contact {i + 1}"] = float(beside[i + 1])
+    for kind, numbers in sensors_of(scene).items():
+        for i in numbers:
+            force = records[RECORDS[kind, "force"]][beads.searchsorted(i)]
+            forces[f"{kind} {i + 1}"] = float(force[0])
     return forces
 
 
@@ -432,54 +418,3 @@ def _elapsed(
             "a speed needs a later second arrival, by more than its error"
         )
     return time
-
-
-@dataclass(frozen=True)
-class Train:
-    """A pulse at several beads or contacts: ``pulses`` of dynamic force by number, from 1."""
-
-    pulses: Mapping[int, Pulse]
-    spacing: float  # of neighbours
-
-    @classmethod
-    def of(cls, run: Run, kind: str = "bead") -> Train:
-        """Measure the pulses at the "bead" or "contact" sensors of a run, before the wall's echo.
-
-        The last contact sensor must be the wall's, and all spacings equal. Raises `MeasureError`.
-        """
-        end = float(run.time[np.argmax(run.contact_force[-1])])
-        pulses = {}
-        for track in tracks(run)[:-1]:
-            if track.kind == kind:
-                try:
-                    pulses[track.number] = highest_pulse(track.force, end)
-                except MeasureError as error:
-                    place = f"{kind} {track.number}, before the wave reaches the wall"
-                    raise MeasureError(f"{place}: {error}") from None
-        return cls(pulses, run.scene.spacings[0])
-
-    def only(self, wanted: Container[int]) -> Train:
-        """Return the train of the pulses with the wanted numbers."""
-        chosen = {
-            number: pulse for number, pulse in self.pulses.items() if number in wanted
-        }
-        return replace(self, pulses=chosen)
-
-    @property
-    def speed(self) -> float:
-        """Speed of the pulse from the first sensor to the last, a length per time."""
-        first, last = min(self.pulses), max(self.pulses)
-        time = self.pulses[last].arrival - self.pulses[first].arrival
-        if time <= 0:
-            raise MeasureError("the pulse does not arrive later at the last sensor")
-        return (last - first) * self.spacing / time
-
-    @property
-    def peak(self) -> float:
-        """Mean peak force."""
-        return float(np.mean([pulse.peak for pulse in self.pulses.values()]))
-
-    @property
-    def fwhm(self) -> float:
-        """Mean FWHM, a time."""
-        return float(np.mean([pulse.fwhm for pulse in self.pulses.values()]))

@@ -22,7 +22,7 @@ import math
 import sqlite3
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
@@ -35,7 +35,7 @@ from lwa.base.frozen import Estimate
 from validation.lattice.cost import IntegrationError
 from validation.lattice.result import Run
 from validation.lattice.simulate import simulate
-from validation.pulses.pulse import MeasureError, leading_pulses
+from validation.pulses.pulse import MeasureError, first_pulse
 from validation.scenes.chains import struck
 
 LABELS = {  # measured numbers and their labels
@@ -176,12 +176,13 @@ class StruckDimer:
         Names are arrival, peak, width of the force, strain_width, end, and highest, the peak of the
         highest pulse. Raises `MeasureError` if a pulse does not pass all places in time.
         """
-        shares = (0.5, 0.5**self.k)  # half of the force, and half of the compression
+        low = 0.25**self.k  # a quarter of the compression
         sensors = run.scene.contact_sensors
         found: dict[str, list[float]] = {}
         for force in (run.signal("contact", i) for i in sensors):
             try:
-                pulse, strain = leading_pulses(force, self.k, shares)
+                pulse = first_pulse(force, low)
+                strain = first_pulse(force, low, 0.5**self.k)
             except MeasureError:
                 end = run.scene.duration
                 missing = (
@@ -229,9 +230,8 @@ class StruckDimer:
 class PointFile:
     """A file of points measured with the same ``stretch``, an SQLite database.
 
-    Its table ``points`` has a row for each finished point: k and ω, the ends of the stretch, the
-    reason without numbers, and the numbers in JSON, each with its error. The database's
-    user_version is `VERSION` and the stretch.
+    Its one table has a row for each finished point, the `Point` in JSON. The table's name holds
+    `VERSION` and the stretch.
     """
 
     path: Path
@@ -250,46 +250,36 @@ class PointFile:
             ) as data:
                 data.execute("pragma locking_mode = exclusive")
                 data.execute("begin exclusive")
-                (version,) = data.execute("pragma user_version").fetchone()
-                own = 1000 * VERSION + self.stretch
+                own = f"points_{VERSION}_{self.stretch}"
+                data.execute(f"create table if not exists {own} (point)")
                 (tables,) = data.execute(
                     "select count(*) from sqlite_master"
                 ).fetchone()
-                if tables and not version:
-                    raise self._refusal("a database, but not a sweep's")
-                if version not in (0, own):
-                    raise self._refusal("its points have another stretch or definition")
-                if not version:
-                    data.execute(f"pragma user_version = {own}")
-                    data.execute(
-                        "create table points (k, omega, sites, missing, numbers)"
+                if tables > 1:
+                    raise self._refusal(
+                        "it holds other data than points of this stretch and definition"
                     )
                 data.execute("commit")
 
                 def keep(point: Point) -> None:
-                    numbers = {
-                        name: [n.value, n.error] for name, n in point.numbers.items()
-                    }
-                    texts = (
-                        str(point.k),
-                        str(point.omega),
-                        json.dumps(point.sites),
-                        point.missing,
-                    )
-                    row = *texts, json.dumps(numbers)
-                    data.execute("insert into points values (?, ?, ?, ?, ?)", row)
+                    row = json.dumps(asdict(point), default=str)
+                    data.execute(f"insert into {own} values (?)", [row])
 
                 points = {}
-                for k, omega, sites, missing, numbers in data.execute(
-                    "select * from points"
-                ):
-                    pairs = json.loads(numbers).items()
-                    found = {name: Estimate(*map(float, pair)) for name, pair in pairs}
-                    ends = json.loads(sites)
-                    key = read_exact(k, "k"), read_exact(omega, "omega")
-                    points[key] = Point(*key, ends and (*ends,), found, missing)
+                for (row,) in data.execute(f"select point from {own}"):
+                    stored = json.loads(row)
+                    numbers = {}
+                    for name, number in stored["numbers"].items():
+                        numbers[name] = Estimate(**number)
+                    sites = stored["sites"]
+                    key = (
+                        read_exact(stored["k"], "k"),
+                        read_exact(stored["omega"], "omega"),
+                    )
+                    ends = sites and (sites[0], sites[1])
+                    points[key] = Point(*key, ends, numbers, stored["missing"])
                 yield points, keep
-        except (sqlite3.Error, ValueError, TypeError, KeyError) as error:
+        except (sqlite3.Error, ValueError, TypeError, LookupError) as error:
             if isinstance(error, InputError):
                 raise
             raise self._refusal(str(error)) from None

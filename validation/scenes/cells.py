@@ -1,16 +1,17 @@
 """Tables of cells: the texts of recorders and programs, whatever stands around their numbers.
 
-Cells are separated by tabs, semicolons, commas or blanks, by those that make most numbers; where
-commas do not separate, as in quotes, they are decimal commas.
+Cells are separated by tabs, semicolons, commas or blanks, by those that make most numbers. A comma
+inside a cell, where others separate or in quotes, is a decimal comma.
 """
 
 from __future__ import annotations
 
 import codecs
 import csv
+import math
 import re
 from collections.abc import Iterator, Sequence
-from itertools import chain, islice, pairwise, repeat
+from itertools import chain, islice, pairwise
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +19,6 @@ from numpy.typing import ArrayLike
 
 from lwa.base import files
 from lwa.base.arrays import Array
-from lwa.base.exact import shorten
 from validation.scenes.checks import SceneError
 
 _LINE = re.compile(r"[^\r\n]*\S[^\r\n]*")  # a line that is not blank
@@ -28,14 +28,6 @@ HEAD = 1000
 """Lines in which the separator and the first numbers are looked for."""
 
 _MARKS = "\t;, "
-_COMMA = re.compile(r'"([-+]?\d+),(\d+(?:[eE][-+]?\d+)?)"')  # a number in quotes
-# Signs that NumPy's reader does not take, as it takes them, and the separator beside which they
-# stay: Fortran writes 1.5D-3; decimal commas; some loggers write + 1.5.
-_PLAIN = (("D", "e", ""), (",", ".", ","), ("+ ", "+", " "), ("- ", "-", " "))
-UNSIGNED = r"(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-"""Pattern of a number without a sign."""
-
-_NUMBER = rf"[-+]?(?:{UNSIGNED}|inf)"
 HEADER = re.compile(r"^(.*?) ?(?:(?:[([] ?|\bin )([^][()\s]+) ?[])]?)?$")
 """Pattern of the name and the unit of a column: "Force (N)", "Force [N]", "Force in N"."""
 
@@ -58,7 +50,7 @@ class Cells:
         lines = [line[0] for line in islice(_LINE.finditer(text), HEAD)]
         tables = {}
         for mark in _MARKS:
-            tables[mark] = [_split(_plain(line, mark), mark) for line in lines]
+            tables[mark] = [_split(line, mark) for line in lines]
 
         def record(mark: str) -> tuple[int, int]:
             # A row of numbers may hold as many texts: states, dates.
@@ -70,24 +62,24 @@ class Cells:
             return sum(len(row) * _share(row) ** 2 for row in rows)
 
         self._mark = mark = max(_MARKS, key=weight)
-        self._text = _plain(text, mark)
+        self._text = text
+        rows = tables[mark]
         start, end = record(mark)
-        above = lines
         line: list[str] = []
         if end:
-            above = lines[:start]
             # Behind the settings a line shows which columns hold the numbers of the record.
-            line = tables[mark][min(start + _SETTINGS, end - 1)]
-        # Headers keep their signs: a comma in them is no decimal comma.
-        self.head = [_split(text_line, mark) for text_line in above]
+            line = rows[min(start + _SETTINGS, end - 1)]
+        else:
+            start = len(rows)
+        self.head = rows[:start]
         self.entries = {}
         for number, cell in enumerate(line, start=1):
-            if re.fullmatch(_NUMBER, cell):
+            if not math.isnan(number_of(cell)):
                 self.entries[number] = cell
         if mark == " ":
             # Headers of several words stand apart by several blanks.
-            for i, text_line in enumerate(above):
-                tabs = re.sub(r"[ \t]{2,}", "\t", text_line.strip("#% \t"))
+            for i, above in enumerate(lines[:start]):
+                tabs = re.sub(r"[ \t]{2,}", "\t", above.strip("#% \t"))
                 apart = _split(tabs, "\t")
                 if len(apart) == len(line):
                     self.head[i] = apart
@@ -107,7 +99,7 @@ class Cells:
         # A translation would take as much memory again.
         for sign, plain in _SIGNS.items():
             text = text.replace(sign, plain)
-        return cls(_COMMA.sub(r"\1.\2", text))
+        return cls(text)
 
     @property
     def headers(self) -> set[str]:
@@ -137,44 +129,32 @@ class Cells:
     def numbers(self, places: Sequence[int], most: int | None = None) -> Array:
         """Return columns, (lines, columns), at increasing places; NaN for a cell without a number.
 
-        Blank lines are left out, and lines behind the first ``most``. Raises `SceneError` for cells
-        that NumPy cannot read.
+        Blank lines are left out, and lines behind the first ``most``.
         """
         if not self.entries:
             return np.empty((0, len(places)))
-        try:
-            # NumPy's reader parses 2 million rows in a second, Python's in twelve.
-            return np.loadtxt(
-                islice(self._lines(places), most),
-                delimiter=self._mark.strip(" ") or None,
-                comments=None,
-                quotechar='"',
-                usecols=places,
-                ndmin=2,
-            )
-        except (ValueError, csv.Error) as error:
-            raise SceneError(shorten(str(error))) from None
+        # NumPy's reader parses a million rows in a second, Python's in six.
+        return np.loadtxt(
+            islice(self._lines(places[-1] + 1), most),
+            delimiter=self._mark.strip(" ") or None,
+            comments=None,
+            converters=number_of,
+            quotechar='"',
+            usecols=places,
+            ndmin=2,
+        )
 
-    def _lines(self, places: Sequence[int]) -> Iterator[str]:
-        """Yield the lines with NaN in place of cells that are no numbers."""
-        mark = self._mark
-        between, other = f" *{mark} *", f'(?:"[^"]*"|[^"{mark}]*)'
-        if mark == " ":  # several blanks and tabs are one separator
-            between, other = "[ \t]+", r"[^ \t]+"
-        count = places[-1] + 1
-        forms = [
-            f'(?:{_NUMBER}|"{_NUMBER}")' if i in places else other for i in range(count)
-        ]
-        row = re.compile(rf" *{between.join(forms)} *(?:{mark}.*)?")
+    def _lines(self, count: int) -> Iterator[str]:
+        """Yield the lines, with so many cells more that the reader finds all columns."""
+        more = f"{self._mark}nan" * count
         for line in _LINE.finditer(self._text):
             text = line[0]
-            # Most lines are rows of numbers: to match one takes less than to split it.
-            if not row.fullmatch(text):
-                cells = []
-                for cell in islice(chain(_split(text, mark), repeat("")), count):
-                    cells.append(cell if re.fullmatch(_NUMBER, cell) else "nan")
-                text = mark.join(cells)
-            yield text
+            if '"' in text:
+                # NumPy takes quotes right behind a separator; a single one would join lines.
+                text = text.replace(f'{self._mark} "', f'{self._mark}"')
+                if text.count('"') % 2:
+                    text = text.replace('"', "'")
+            yield text + more
 
     def rows(self, table: Array) -> tuple[int, int]:
         """Return start and end of the record in a table of columns: the rows without any NaN.
@@ -232,12 +212,22 @@ def name_of(header: str) -> str:
     return HEADER.sub(r"\1", header).lower().replace("dynamic ", "").strip("#% ")
 
 
-def _plain(text: str, mark: str) -> str:
-    """Return a text with its numbers as NumPy's reader takes them."""
-    for sign, plain, kept_beside in _PLAIN:
-        if mark != kept_beside:
-            text = text.replace(sign, plain)
-    return text
+def number_of(cell: str) -> float:
+    """Return the number in a cell; NaN for other text.
+
+    >>> [number_of(cell) for cell in ("-1,5", "1.5D-3", "+ 4", "12:03")]
+    [-1.5, 0.0015, 4.0, nan]
+    """
+    plain = cell.replace(",", ".")
+    try:
+        return float(plain)
+    except ValueError:
+        # Fortran writes 1.5D-3, and some loggers write + 1.5.
+        plain = plain.replace("D", "e").replace("+ ", "+").replace("- ", "-")
+    try:
+        return float(plain)
+    except ValueError:
+        return math.nan
 
 
 def _split(line: str, mark: str) -> list[str]:
@@ -253,5 +243,5 @@ def _split(line: str, mark: str) -> list[str]:
 def _share(row: Sequence[str]) -> float:
     """Return the share of numbers among the cells of a row that are not blank."""
     filled = [*filter(None, row)]
-    numbers = [cell for cell in filled if re.fullmatch(_NUMBER, cell)]
+    numbers = [cell for cell in filled if not math.isnan(number_of(cell))]
     return len(numbers) / max(len(filled), 1)

@@ -28,7 +28,7 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
-from validation.scenes.cells import HEAD, HEADER, UNSIGNED, Cells, longest, name_of
+from validation.scenes.cells import HEAD, HEADER, Cells, longest, name_of
 from validation.scenes.checks import SceneError
 
 BASES = {
@@ -50,11 +50,14 @@ _SPELLINGS = {
     "m/s": "m/s|m/sec",
     "V": "V|volts?",
 }
+# Names of prefixes by their powers of ten
+_PREFIXES = {
+    **{-15: "f femto", -12: "p pico", -9: "n nano", -6: "u µ micro", -3: "m milli"},
+    **{-2: "c centi", -1: "d deci", 0: "", 2: "h hecto", 3: "k kilo"},
+    **{6: "M mega", 9: "G giga", 12: "T tera"},
+}
 _POWERS = {
-    **{"f": -15, "p": -12, "n": -9, "u": -6, "µ": -6, "m": -3, "c": -2, "d": -1},
-    **{"": 0, "h": 2, "k": 3, "M": 6, "G": 9, "T": 12},
-    **{"femto": -15, "pico": -12, "nano": -9, "micro": -6, "milli": -3, "centi": -2},
-    **{"kilo": 3, "mega": 6, "giga": 9},
+    name: power for power, names in _PREFIXES.items() for name in names.split(" ")
 }
 
 NAME = re.compile(
@@ -69,6 +72,8 @@ NAMES = ("time", "bead 8 force", "bead 8 velocity", "contact 8 force", "speed")
 STEP = "1 us"
 """An example of a time: a usual step of recorders."""
 
+# A number without a sign
+_UNSIGNED = r"(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 # Columns in a message, which is to have 300 characters at most
 _LISTED = 4
 _UNLIKE = 2  # least rank of a column that does not behave like a quantity
@@ -165,6 +170,8 @@ class Columns:
 
     Parameters
     ----------
+    path : str
+        Name of the file.
     cells : Cells
         The table.
     headers : mapping of str
@@ -175,6 +182,7 @@ class Columns:
         The user's statement of the time from sample to sample, "" for none.
     """
 
+    path: str
     cells: Cells
     headers: Mapping[str, str]
     units: Mapping[str, str]
@@ -222,58 +230,55 @@ class Columns:
         # A number alone is a factor.
         return bool(re.search(r"[^-+.\deE ]", "".join(texts)))
 
+    def refusal(
+        self, words: str, missing: Sequence[str] = (), step: str = ""
+    ) -> SceneError:
+        """Return an error that names the file, lists its columns and proposes statements.
 
-def refusal(
-    words: str, columns: Columns, missing: Sequence[str] = (), step: str = ""
-) -> SceneError:
-    """Return an error that lists the columns of a file and proposes statements.
-
-    Parameters
-    ----------
-    words : str
-        What is wrong.
-    columns : Columns
-        The columns of the file.
-    missing : sequence of str
-        Names for which columns are proposed, the time first.
-    step : str
-        Time from sample to sample that is proposed in place of a column.
-    """
-    cells = columns.cells
-    headers = {n: header for n, header in columns.headers.items() if n not in missing}
-    used = set()
-    for column in replace(columns, headers=headers).named:
-        if column.name not in missing:
-            used.add(column.number)
-    # Columns that are named already are not proposed for another name.
-    free = [number for number in cells.entries if number not in used]
-    steps = _steps(cells)
-    for name in missing:
-        rank = partial(_rank, cells, steps, name)
-        best = min(free, key=rank, default=None)
-        if name == "time" and (step or best is None or rank(best) >= _UNLIKE):
-            step = step or STEP
-        elif best is not None:
-            free.remove(best)
-            headers[name] = str(best)
-    proposed = replace(columns, headers=headers, step=step or columns.step)
-    units = {}
-    for column in proposed.named:
-        # The unit of the times that a step states is its own.
-        if column.number is not None:
-            if column.size is None and proposed.si:
-                units[column.key] = column.proposed
-            elif column.stated:
-                units[column.key] = column.stated
-    change: dict[str, object] = {}
-    for option, given, wanted in (
-        ("columns", columns.headers, headers),
-        ("step", columns.step, proposed.step),
-        ("units", columns.units, units),
-    ):
-        if given or wanted:  # an empty one takes the user's away
-            change[option] = wanted
-    return SceneError(f"{words}: found {_listed(cells)}", **change)
+        Parameters
+        ----------
+        words : str
+            What is wrong.
+        missing : sequence of str
+            Names for which columns are proposed, the time first.
+        step : str
+            Time from sample to sample that is proposed in place of a column.
+        """
+        cells = self.cells
+        headers = {n: header for n, header in self.headers.items() if n not in missing}
+        used = set()
+        for column in replace(self, headers=headers).named:
+            if column.name not in missing:
+                used.add(column.number)
+        # Columns that are named already are not proposed for another name.
+        free = [number for number in cells.entries if number not in used]
+        steps = _steps(cells)
+        for name in missing:
+            rank = partial(_rank, cells, steps, name)
+            best = min(free, key=rank, default=None)
+            if name == "time" and (step or best is None or rank(best) >= _UNLIKE):
+                step = step or STEP
+            elif best is not None:
+                free.remove(best)
+                headers[name] = str(best)
+        proposed = replace(self, headers=headers, step=step or self.step)
+        units = {}
+        for column in proposed.named:
+            # The unit of the times that a step states is its own.
+            if column.number is not None:
+                if column.size is None and proposed.si:
+                    units[column.key] = column.proposed
+                elif column.stated:
+                    units[column.key] = column.stated
+        change: dict[str, object] = {}
+        for option, given, wanted in (
+            ("columns", self.headers, headers),
+            ("step", self.step, proposed.step),
+            ("units", self.units, units),
+        ):
+            if given or wanted:  # an empty one takes the user's away
+                change[option] = wanted
+        return SceneError(f"{self.path}: {words}: found {_listed(cells)}", **change)
 
 
 def _rank(cells: Cells, steps: dict[int, Array], name: str, number: int) -> int:
@@ -294,11 +299,7 @@ def _rank(cells: Cells, steps: dict[int, Array], name: str, number: int) -> int:
 def _steps(cells: Cells) -> dict[int, Array]:
     """Return the differences from line to line, at the beginning, of the columns of numbers."""
     numbers = [*cells.entries]
-    try:
-        table = cells.numbers([number - 1 for number in numbers], HEAD)
-    except SceneError:
-        # Without numbers nothing is known of the columns' behaviour.
-        table = np.empty((0, len(numbers)))
+    table = cells.numbers([number - 1 for number in numbers], HEAD)
     steps = {}
     for number, column in zip(numbers, table.T, strict=True):
         start, end = longest(np.isfinite(column))
@@ -321,23 +322,23 @@ def in_si(unit: str, base: str) -> float | None:
     >>> [in_si(unit, "s") for unit in ("ms", "uS", "USEC", "Microseconds", "N")]
     [0.001, 1e-06, 1e-06, 1e-06, None]
     """
-    # Recorders that write in capitals mean ms by MS; MN may well be a meganewton.
-    if unit.isupper() and base != "N":
-        unit = unit.lower()
-    parts = re.fullmatch(rf"([a-zA-Zµ]*?)(?i:{_SPELLINGS[base]})", unit)
-    if parts is None:
-        return None
-    # M is mega and m milli, but Micro is micro.
-    power = _POWERS.get(parts[1], _POWERS.get(parts[1].lower()))
-    return None if power is None else 10.0**power
+    found = known(unit)
+    return found[1] if found and found[0] == base else None
 
 
 def known(unit: str) -> tuple[str, float] | None:
     """Return the base unit of a unit and its multiple, or None for an unknown unit."""
-    for base in _SPELLINGS:
-        size = in_si(unit, base)
-        if size is not None:
-            return base, size
+    for base, spellings in _SPELLINGS.items():
+        text = unit
+        # Recorders that write in capitals mean ms by MS; MN may well be a meganewton.
+        if unit.isupper() and base != "N":
+            text = unit.lower()
+        parts = re.fullmatch(rf"([a-zA-Zµ]*?)(?i:{spellings})", text)
+        if parts:
+            # M is mega and m milli, but Micro is micro.
+            power = _POWERS.get(parts[1], _POWERS.get(parts[1].lower()))
+            if power is not None:
+                return base, 10.0**power
     return None
 
 
@@ -370,7 +371,7 @@ def read_statement(text: str, base: str) -> tuple[float, str] | None:
     >>> read_statement("12.5 mN/V", "N"), read_statement("us", "s"), read_statement("us", "N")
     ((0.0125, 'V'), (1e-06, 'us'), None)
     """
-    parts = re.fullmatch(rf"(-?)({UNSIGNED})? *(.*)", text.replace("μ", "µ").strip())
+    parts = re.fullmatch(rf"(-?)({_UNSIGNED})? *(.*)", text.replace("μ", "µ").strip())
     assert parts is not None  # all may be empty
     # A sign alone turns an inverted signal: -N/V.
     sign, number, unit = parts.groups()

@@ -29,7 +29,6 @@ from validation.scenes.columns import (
     Columns,
     Stated,
     read_time,
-    refusal,
 )
 
 
@@ -64,36 +63,34 @@ class Record:
     inverted: str
 
 
-class MeasuredFile:
-    """The named columns of a file.
+class MeasuredFile(Columns):
+    """The named columns of a file."""
 
-    Parameters
-    ----------
-    path : str or Path
-        Name of the file; "-" is standard input.
-    columns, units, step
-        Statements of the user, see `validation.scenes.columns.Stated`.
+    @classmethod
+    def read(cls, path: str | Path, **stated: Unpack[Stated]) -> MeasuredFile:
+        """Read a file by the statements of the user.
 
-    Attributes
-    ----------
-    columns : Columns
-        The columns that have names.
+        Parameters
+        ----------
+        path : str or Path
+            Name of the file; "-" is standard input.
+        **stated
+            Statements of the user, see `validation.scenes.columns.Stated`.
 
-    Raises
-    ------
-    SceneError
-        In one line, for a file that cannot be read or has no such columns, and for statements on
-        columns that the file does not have. It proposes statements that make the file readable.
-    """
-
-    def __init__(self, path: str | Path, **stated: Unpack[Stated]) -> None:
-        self.path = path
-        if str(path) == "-":
-            self.path = "standard input"
+        Raises
+        ------
+        SceneError
+            In one line, for a file that cannot be read or has no such columns, and for statements
+            on columns that the file does not have. It proposes statements that make the file
+            readable.
+        """
+        source = str(path)
+        if source == "-":
+            source = "standard input"
         try:
             cells = Cells.read(path)
         except (OSError, SceneError, csv.Error) as error:
-            raise SceneError(f"{self.path}: {reason(error)}") from None
+            raise SceneError(f"{source}: {reason(error)}") from None
         step = stated.get("step") or ""
         if step:
             read_time(step, "step", STEP)
@@ -110,12 +107,13 @@ class MeasuredFile:
             if name != "time" or not step:
                 headers[name] = str(header)
         units = {key: str(unit) for key, unit in (stated.get("units") or {}).items()}
-        self.columns = Columns(cells, headers, units, step)
+        file = cls(source, cells, headers, units, step)
         for name, header in headers.items():
-            self._demand(header, len(cells.headed(header)), [name])
+            file._demand(header, len(cells.headed(header)), [name])
         for key in units:
-            if name_of(key) not in self.columns.names and not cells.headed(key):
-                self._demand(key, 0, [])
+            if name_of(key) not in file.names and not cells.headed(key):
+                file._demand(key, 0, [])
+        return file
 
     def _demand(self, header: str, count: int, missing: Sequence[str]) -> None:
         """Refuse a header, or a name, unless one column has it."""
@@ -124,21 +122,15 @@ class MeasuredFile:
         words = f"{count} columns are {shorten(header)}"
         if count == 0:
             words = f"no column is {shorten(header)}"
-            near = similar(header, self.columns.cells.headers)
+            near = similar(header, self.cells.headers)
             if near:
                 words += f", near: {', '.join(near)}"
-        raise self._refusal(words, missing)
-
-    def _refusal(
-        self, words: str, missing: Sequence[str] = (), step: str = ""
-    ) -> SceneError:
-        """Return an error that names the file, lists its columns and proposes statements."""
-        return refusal(f"{self.path}: {words}", self.columns, missing, step)
+        raise self.refusal(words, missing)
 
     @property
     def notes(self) -> list[str]:
         """Lines on units that the user states otherwise than the file."""
-        return [column.note for column in self.columns.named if column.note]
+        return [column.note for column in self.named if column.note]
 
     def rows(self, *names: str) -> Array:
         """Return the record of columns, (rows, columns), in SI if a unit is stated.
@@ -146,11 +138,11 @@ class MeasuredFile:
         Raises `SceneError`, in one line, for two columns of one name, for a gap in the record, for
         a value beyond the recorder's range, and for a unit of another quantity.
         """
-        there = self.columns.names
+        there = self.names
         missing = [name for name in names if there.count(name) != 1]
         for name in missing:
             self._demand(name, there.count(name), missing)
-        by_name = {column.name: column for column in self.columns.named}
+        by_name = {column.name: column for column in self.named}
         return self._record([by_name[name] for name in names])
 
     def records(
@@ -171,13 +163,12 @@ class MeasuredFile:
         Raises
         ------
         SceneError
-            As `rows` does, for columns of time that are not as many as the sensors, and for one of
-            several sensors without a number.
+            As `rows` does, and for columns of time that are not as many as the sensors.
         """
-        names = self.columns.names
+        names = self.names
         times = []
         sensors = []
-        for column in self.columns.named:
+        for column in self.named:
             place, _, quantity = column.name.rpartition(" ")
             force = f"{place} force".strip()
             if column.name == "time":
@@ -195,19 +186,6 @@ class MeasuredFile:
         records = []
         for time, signal in zip(cycle(times), sensors, strict=False):
             records.append(self._signal(time, signal, of))
-        # One sensor may be any one; of several the file must tell which is which.
-        if len(records) > 1 and None in [record.number for record in records]:
-            # Proposed are the numbers 1, 2, … in the order of the columns.
-            headers = dict(self.columns.headers)
-            for number, column in enumerate(sensors, start=1):
-                headers.pop(column.name, None)
-                place, _, quantity = column.name.rpartition(" ")
-                kind = place.rstrip(" 0123456789")
-                headers[f"{kind} {number} {quantity}".strip()] = str(column.number)
-            raise SceneError(
-                f"{self.path}: each of several sensors needs its number",
-                columns=headers,
-            )
         # The order in which `run` writes its sensors.
         return sorted(records, key=lambda record: record.kind)
 
@@ -221,9 +199,9 @@ class MeasuredFile:
             kind = "bead"  # contacts have none
         t, values = self._record([time, signal]).T
         if len(t) > 1 and np.diff(t).min() <= 0:
-            step = f"{np.ptp(t) / (len(t) - 1):.6g}{' s' * self.columns.si}"
+            step = f"{np.ptp(t) / (len(t) - 1):.6g}{' s' * self.si}"
             words = "time must increase, --step states it of evenly spaced samples"
-            raise self._refusal(words, ["time"], step)
+            raise self.refusal(words, ["time"], step)
         # The user's own calibration, with the other sign, turns an inverted signal.
         given = signal.stated or signal.unit or "1"
         return Record(
@@ -239,26 +217,25 @@ class MeasuredFile:
 
     def _record(self, columns: Sequence[Column]) -> Array:
         """Return columns, (rows, columns), in the rows where all of them are numbers."""
-        cells = self.columns.cells
         entries = [self._numbers[c.number] for c in columns if c.number is not None]
         # A record needs numbers in all wanted columns; other columns may have gaps.
         table = np.column_stack(entries)
         names = " and ".join(column.name for column in columns)
         if np.isnan(table).any(axis=1).all():
-            known = (None, *cells.entries)
+            known = (None, *self.cells.entries)
             missing = [column.name for column in columns if column.number not in known]
-            raise self._refusal(f"no row has numbers in {names}", missing)
+            raise self.refusal(f"no row has numbers in {names}", missing)
         try:
-            start, end = cells.rows(table)
+            start, end = self.cells.rows(table)
         except SceneError as error:
             raise SceneError(f"{self.path}: {names}: {error}") from None
         record = []
         for column in columns:
             size: float | None = 1.0
-            if self.columns.si or column.stated:
+            if self.si or column.stated:
                 size = column.size
             if size is None:
-                raise self._refusal(column.fault)
+                raise self.refusal(column.fault)
             if column.number is None:
                 # The times that a step states start with the record.
                 values = np.arange(end - start, dtype=float)
@@ -270,9 +247,6 @@ class MeasuredFile:
     @cached_property
     def _numbers(self) -> dict[int, Array]:
         """Columns of all lines by number, with NaN where a cell is no number."""
-        numbers = [c.number for c in self.columns.named if c.number is not None]
-        try:
-            table = self.columns.cells.numbers([number - 1 for number in numbers])
-        except SceneError as error:
-            raise SceneError(f"{self.path}: {error}") from None
+        numbers = [c.number for c in self.named if c.number is not None]
+        table = self.cells.numbers([number - 1 for number in numbers])
         return dict(zip(numbers, table.T, strict=True))

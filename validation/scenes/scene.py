@@ -390,5 +390,5 @@ def _sensors(values: Any, name: str, count: int) -> tuple[int, ...]:
         integer(i, f"{name}[{j}]", 0, count - 1) for j, i in enumerate(given)
     )
     if len(set(sensors)) < len(sensors):
-        raise SceneError(f"{name} is {shorten(sensors)}: each may be named once")
+        raise SceneError(f"{name} have one sensor twice: each may be named once")
     return sensors

@@ -29,7 +29,6 @@ from lwa.base.files import (
     entries,
     load,
     place,
-    places,
 )
 from lwa.law import read_law
 from lwa.spheres.beads import (
@@ -119,20 +118,8 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     if row.size > MOST_BEADS:
         made = f"chain.cell and repeat make {shorten(row.size)} beads"
         raise SceneError(f"{made}: at most {MOST_BEADS} are wanted")
-    defects = [*file.read("defects", _defects, ())]
-    # A striker that is like another bead takes the place of bead 1.
-    if "like" in striker:
-        if any(defect.entries.get("bead") == 1 for defect in defects):
-            raise SceneError(
-                "striker.like and defects name bead 1: one of them is wanted"
-            )
-        other = {"bead": 1, "like": striker.entries["like"]}
-        defects.append(Table(other, "striker", ("bead", "like")))
     spheres = row.spheres * row.repeat
-    # Spheres are replaced first: the contacts beside them follow from their radii.
-    _replace_spheres(spheres, beads, defects)
-    fields = _contacts(row, spheres)
-    _change_contacts(fields, defects)
+    fields = _chain(row, spheres, beads, _defects(file, striker))
     contacts = row.size - 1
     if "wall" in file:
         fields["wall"] = _wall(part("wall"), spheres, materials)
@@ -150,7 +137,7 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
         kind = damping.one(*DAMPINGS)
         value = damping.read(kind, own(finite))
         fields["damping"] = Damping(kind, value)
-    fields["velocities"] = start.read("velocities", each(finite), ())
+    fields |= start.entries
     if "striker" in file:
         if "start" in file:
             raise SceneError(
@@ -161,7 +148,7 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     units = file.read("units", among({"SI": "SI"}), "SI" if spheres else "")
     if "drive" in file:
         fields["drive"] = _drive(part("drive"), units, folder)
-    # The scene checks these; a key that is left out keeps the scene's default.
+    # The scene checks these and the start; a key that is left out keeps the scene's default.
     for key in ("gravity", "precompression", "samples"):
         if key in file:
             fields[key] = file.entries[key]
@@ -173,7 +160,6 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
         **fields,
         duration=file.read("duration", positive, passage),
         units=units,
-        displacements=start.read("displacements", each(finite), ()),
         bead_sensors=sensors.read("beads", _sensors(row.size), ()),
         contact_sensors=sensors.read("contacts", _sensors(contacts), ()),
     )
@@ -207,7 +193,7 @@ def _passage(fields: Mapping[str, Any]) -> float:
 def _sensors(count: int) -> Reader:
     """Return a reader of sensors: a list of numbers from 1 to ``count``, or "all"."""
     return lambda value, name: (
-        range(count) if value == "all" else places(count)(value, name)
+        range(count) if value == "all" else each(place(count))(value, name)
     )
 
 
@@ -231,15 +217,25 @@ def _per_contact(reader: Reader, period: int, contacts: int) -> Reader:
     return read
 
 
-def _defects(value: Any, name: str) -> list[Table]:
-    """Read the tables of ``defects``, at most one of each bead and contact."""
-    found: dict[str, Table] = {}
-    for defect in each(_defect)(value, name):
+def _defects(file: Table, striker: Table) -> list[Table]:
+    """Read the tables of ``defects``, at most one of each bead and contact.
+
+    A striker that is like another bead takes the place of bead 1.
+    """
+    given = [*file.read("defects", each(_defect), ())]
+    if "like" in striker:
+        other = {"bead": 1, "like": striker.entries["like"]}
+        given.append(Table(other, "striker", ("bead", "like")))
+    named: set[str] = set()
+    for defect in given:
         kind = defect.one("contact", "bead")
-        if (at := f"{kind} {shorten(defect.entries[kind])}") in found:
-            raise SceneError(f"{name} has two tables of {at}: one is wanted")
-        found[at] = defect
-    return [*found.values()]
+        at = f"{kind} {shorten(defect.entries[kind])}"
+        if at in named:
+            raise SceneError(
+                f"{at} has two tables of defects, or one and striker.like: one is wanted"
+            )
+        named.add(at)
+    return given
 
 
 def _defect(value: Any, name: str) -> Table:
@@ -252,10 +248,17 @@ def _defect(value: Any, name: str) -> Table:
     return given
 
 
-def _replace_spheres(
-    spheres: list[Sphere], beads: Mapping[str, Sphere], defects: Sequence[Table]
-) -> None:
-    """Put other beads in the places that defects name."""
+def _chain(
+    row: Row,
+    spheres: list[Sphere],
+    beads: Mapping[str, Sphere],
+    defects: Sequence[Table],
+) -> dict[str, Any]:
+    """Return masses, stiffnesses and spacings of a chain with its defects.
+
+    The fields of spheres, in which defects put other beads, hold their exponent, too.
+    """
+    # Spheres are replaced first: the contacts beside them follow from their radii.
     for defect in defects:
         if "like" in defect:
             if not spheres:
@@ -263,21 +266,13 @@ def _replace_spheres(
                 raise SceneError(f"{named} names a bead in a chain of masses")
             at = defect.read("bead", place(len(spheres)))
             spheres[at] = defect.read("like", among(beads))
-
-
-def _contacts(row: Row, spheres: Sequence[Sphere]) -> dict[str, Any]:
-    """Return masses, stiffnesses and spacings of a chain, of spheres with their exponent."""
-    if spheres:
-        return contacts_of(spheres)
-    return {
+    fields: dict[str, Any] = {
         "masses": row.masses * row.repeat,
         "stiffnesses": row.by_contact(row.stiffnesses) or [1.0] * (row.size - 1),
         "spacings": row.by_contact(row.spacings),
     }
-
-
-def _change_contacts(fields: dict[str, Any], defects: Sequence[Table]) -> None:
-    """Change stiffnesses and masses in the places that defects name."""
+    if spheres:
+        fields = contacts_of(spheres)
     for defect in defects:
         if "contact" in defect:
             stiffnesses = fields["stiffnesses"]
@@ -286,6 +281,7 @@ def _change_contacts(fields: dict[str, Any], defects: Sequence[Table]) -> None:
         elif "mass" in defect:
             at = defect.read("bead", place(len(fields["masses"])))
             fields["masses"][at] = defect.read("mass", positive)
+    return fields
 
 
 def _wall(
@@ -310,8 +306,8 @@ def _drive(given: Table, units: str, folder: Path) -> Drive:
         if not isinstance(name, str):
             raise SceneError(f"drive.file is {shorten(name)}: a file's name is wanted")
         try:
-            file = MeasuredFile(folder / name, **stated)
-            check_units(file.columns.si, units, file.path)
+            file = MeasuredFile.read(folder / name, **stated)
+            check_units(file.si, units, file.path)
             motion["time"], motion["displacement"] = file.rows("time", "displacement").T
         except SceneError as error:
             # A dictionary of Python is a table of TOML but for its colons.

@@ -117,7 +117,7 @@ def law(
     an unknown material, ``E_value``, with their errors; ``correlation_value`` of k and ln A;
     ``one_power``.
     """
-    file = MeasuredFile(data, **stated)
+    file = MeasuredFile.read(data, **stated)
     force, speed, weight = _pulses(file)
     content: dict[str, Any] = {}
     if spheres is None:
@@ -133,7 +133,7 @@ def law(
         numbers["E"] = _modulus(content, material, fit.hertz)
     units = {"k": ""}
     axes = ("peak contact force", "speed")
-    if file.columns.si:
+    if file.si:
         units |= {"A": f" (N/m^{fit.k.value:.3g})", "E": " (Pa)"}
         axes = ("peak contact force (N)", "speed (m/s)")
     # Speeds beside one power, for which ln V is linear in ln F.
@@ -157,7 +157,7 @@ def law(
         rows.append((name + units.get(name, ""), number))
         values |= {f"{name}_value": number.value, f"{name}_error_value": number.error}
     return Report(
-        f"{len(force)} pulses, forces {force[0]:.4g} … {force[-1]:.4g}{' N' * file.columns.si}",
+        f"{len(force)} pulses, forces {force[0]:.4g} … {force[-1]:.4g}{' N' * file.si}",
         (Table(_POWER, tuple(rows)),),
         panels=(Panel(*axes, curves, "xy"),),
         notes=(*file.notes, *notes, _NOTE),
@@ -167,7 +167,7 @@ def law(
 
 def _pulses(file: MeasuredFile) -> tuple[Array, Array, Array | None]:
     """Return rising forces of `_FEWEST` or more pulses, their speeds and weights (None if none)."""
-    errors = [n for n in ("force_error", "speed_error") if n in file.columns.names]
+    errors = [n for n in ("force_error", "speed_error") if n in file.names]
     read = file.rows("force", "speed", *errors).T
     force, speed, *deviations = read[:, np.argsort(read[0])]
     if len(force) < _FEWEST or not (force[0] > 0 and speed.min() > 0):

@@ -20,10 +20,11 @@ figure.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
 import scipy
 import sympy as sp
 
@@ -42,20 +43,25 @@ from lwa.base.progress import Progress
 from lwa.spheres.beads import GRAVITY
 from validation.lattice.cost import RunProgress, silent
 from validation.lattice.result import Run
+from validation.lattice.signal import sensors_of
 from validation.lattice.simulate import repeated, simulate, simulate_many
 from validation.pictures import Curve, Panel
-from validation.pulses.pulse import Pulse, compared, exponent, tolerances
-from validation.pulses.sensors import Train
+from validation.pulses.pulse import (
+    Pulse,
+    compared,
+    exponent,
+    first_pulse,
+    tolerances,
+)
 from validation.report.study import Report, option, study
 from validation.report.table import Column, Table, percent
 from validation.scenes.chains import DIAMETER, PTFE, PTFE_BEAD, STEEL, STEEL_BEAD
-from validation.scenes.checks import between, positive
+from validation.scenes.checks import between
 from validation.scenes.scene import Scene
 
 HERTZ = sp.Rational(3, 2)
 BEADS = 38
 SENSORS = (15, 34)  # beads, counted from the striker, 1
-LIKE = ((15, 33), (16, 34))  # beads of one kind, both steel and both PTFE
 VELOCITY = 1.37  # of the striker, in m/s
 RTOL = 1e-10  # 38 beads lose 0.002 to 0.008 of it
 SOURCES = ("F_m", "striker")
@@ -90,8 +96,7 @@ def recorded_chain(
     Parameters
     ----------
     sensors : sequence of int
-        Beads, counted from 1; the two contacts of each of them and the contact of the steel wall
-        behind the chain are recorded too.
+        Beads, counted from 1; the two contacts of each of them are recorded too.
     velocity : float
         Velocity of the striker, in m/s.
     N : int
@@ -110,7 +115,7 @@ def recorded_chain(
         wall=STEEL,
         velocities=(velocity,),
         bead_sensors=[bead - 1 for bead in sensors],
-        contact_sensors=[*sorted(contacts), BEADS - 1],
+        contact_sensors=sorted(contacts),
         # A pulse with all of the striker's momentum needs two thirds of this time to the wall.
         duration=1.6 * BEADS * DIAMETER / float(pulse.speed),
         # Some hundred of them in a pulse's FWHM of 2.5 sites.
@@ -119,13 +124,11 @@ def recorded_chain(
 
 
 def of_momentum(wave: CompactWave, momentum: float) -> PhysicalWave:
-    """Return the theory's wave with a given momentum; `SceneError` unless it is positive."""
+    """Return the theory's wave with a given momentum, a positive one."""
     of_unit_force = number(PhysicalWave(wave, sp.S.One).momentum)
-    ratio = positive(momentum, "momentum") / of_unit_force
-    # The momentum is proportional to F^{(k + 1)/(2k)}: F is the ratio to the inverse power, in
-    # floats, as the exponential of a logarithm.
+    # The momentum is proportional to F^{(k + 1)/(2k)}.
     power = number(2 * wave.k / (wave.k + 1))
-    return PhysicalWave(wave, math.exp(math.log(ratio) * power))
+    return PhysicalWave(wave, (momentum / of_unit_force) ** power)
 
 
 def bead_fwhm(wave: PhysicalWave) -> float:
@@ -140,7 +143,55 @@ def bead_fwhm(wave: PhysicalWave) -> float:
     return 2 * float(scipy.optimize.brentq(above_half, 0, end, xtol=1e-14 * end))
 
 
+def passing(run: Run, kind: str = "bead") -> dict[int, Pulse]:
+    """Measure the first pulses at the "bead" or "contact" sensors of a run, by number from 1."""
+    return {
+        i + 1: first_pulse(run.signal(kind, i)) for i in sensors_of(run.scene)[kind]
+    }
+
+
+def speed(pulses: Mapping[int, Pulse], first: int, last: int) -> float:
+    """Return the speed of a pulse between two beads, in m/s."""
+    time = pulses[last].arrival - pulses[first].arrival
+    return (last - first) * DIAMETER / time
+
+
+def mean(pulses: Mapping[int, Pulse], number: str, sensors: Iterable[int]) -> float:
+    """Return the mean of a number of the pulses, such as "peak", at some sensors."""
+    return float(np.mean([getattr(pulses[i], number) for i in sensors]))
+
+
 # --- the experiment ---
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number of the table: the mean over sensors of a kind, or the speed between two beads."""
+
+    name: str
+    unit: str  # tells what is measured: a speed, a peak force, or a FWHM in sites or in time
+    kind: str
+    sensors: tuple[int, ...]
+
+
+AROUND = (14, 15, 33, 34)  # contacts of the beads `SENSORS`
+QUANTITIES = (
+    Quantity("speed V_s", "m/s", "bead", SENSORS),
+    Quantity("peak bead force F_15", "N", "bead", (15,)),
+    Quantity("peak bead force F_34", "N", "bead", (34,)),
+    Quantity("peak bead force F_m", "N", "bead", SENSORS),
+    Quantity("peak contact force", "N", "contact", AROUND),
+    Quantity("FWHM of F_15", "sites", "bead", (15,)),
+    Quantity("FWHM of F_34", "sites", "bead", (34,)),
+    Quantity("FWHM of bead force", "sites", "bead", SENSORS),
+    Quantity("FWHM of bead force in time", "µs", "bead", SENSORS),
+    Quantity("FWHM of contact force", "sites", "contact", AROUND),
+    Quantity("FWHM of contact force in time", "µs", "contact", AROUND),
+    # Beads of one kind: both steel, and both PTFE.
+    Quantity("speed from bead 15 to 33", "m/s", "bead", (15, 33)),
+    Quantity("speed from bead 16 to 34", "m/s", "bead", (16, 34)),
+)
+"""Numbers of the pulse, in the order of the table."""
 
 _COLUMNS = (
     Column("quantity", "quantity"),
@@ -196,7 +247,7 @@ def paper(
     (``F_m``, ``striker``) ``theory_value`` {…} and ``error_value`` {…}, theory over lattice - 1.
     """
     velocity = between(velocity, "velocity", 1e-6, 1000)
-    scene = recorded_chain(sorted({*SENSORS, *LIKE[0], *LIKE[1]}), velocity)
+    scene = recorded_chain((15, 16, 33, 34), velocity)  # all beads of `QUANTITIES`
     # A run, and another whose difference to it is the error.
     runs = repeated(scene, tolerances(rtol), progress=run_progress)
     lattice = compared(lattice_numbers, runs)
@@ -209,11 +260,17 @@ def paper(
     }
     theories = {source: theory_numbers(waves[source]) for source in SOURCES}
     rows = []
-    for name, value in lattice.items():
-        row: dict[str, Any] = {"quantity": name, "unit": _unit(name), "lattice": value}
+    for quantity in QUANTITIES:
+        found = lattice[quantity.name]
+        row: dict[str, Any] = {
+            "quantity": quantity.name,
+            "unit": quantity.unit,
+            "lattice": found,
+        }
         for source, theory in theories.items():
-            row[f"theory_value.{source}"] = theory[name]
-            row[f"error_value.{source}"] = theory[name] / value.value - 1
+            value = theory[quantity.name]
+            row[f"theory_value.{source}"] = value
+            row[f"error_value.{source}"] = value / found.value - 1
         rows.append(row)
     return Report(
         f"{BEADS} beads, steel (the striker, {velocity:g} m/s) and PTFE in turn, steel wall; "
@@ -224,71 +281,52 @@ def paper(
     )
 
 
-def _unit(name: str) -> str:
-    """The unit of one of the `numbers`."""
-    if name.endswith("in time"):
-        return "µs"
-    return {"speed": "m/s", "peak": "N", "FWHM": "sites"}[name.split()[0]]
-
-
 def lattice_numbers(run: Run) -> dict[str, float]:
-    """Return the `numbers` of a run's pulse."""
-    return numbers(Train.of(run), Train.of(run, "contact"))
+    """Return `QUANTITIES` of a run's pulse, by name."""
+    pulses = {kind: passing(run, kind) for kind in ("bead", "contact")}
+    sites = speed(pulses["bead"], *SENSORS) / DIAMETER  # in a second
+    of_width = {"sites": sites, "µs": 1e6}
+    found = {}
+    for quantity in QUANTITIES:
+        some = pulses[quantity.kind]
+        if quantity.unit == "m/s":
+            value = speed(some, *quantity.sensors)
+        elif quantity.unit == "N":
+            value = mean(some, "peak", quantity.sensors)
+        else:
+            value = mean(some, "fwhm", quantity.sensors) * of_width[quantity.unit]
+        found[quantity.name] = value
+    return found
 
 
 def theory_numbers(wave: PhysicalWave) -> dict[str, float]:
-    """Return the `numbers` of the theory's wave."""
+    """Return `QUANTITIES` of the theory's wave, by name: the same at all sensors of a kind."""
     V = float(wave.speed)
-
-    def train(peak: float, fwhm: float) -> Train:
-        """Pulse at every bead or contact, with its width as a length."""
-        half = fwhm / V / 2
-        pulses = {}
-        for i in range(1, BEADS + 1):
-            # From any start: differences of arrivals alone count.
-            arrival = i * DIAMETER / V
-            pulses[i] = Pulse(arrival, peak, arrival - half, arrival + half)
-        return Train(pulses, DIAMETER)
-
-    beads = train(float(wave.bead_force), bead_fwhm(wave))
-    contacts = train(float(wave.contact_force), float(wave.fwhm("force")))
-    return numbers(beads, contacts)
-
-
-def numbers(beads: Train, contacts: Train) -> dict[str, float]:
-    """Return speeds, peak forces and FWHM at the two beads `SENSORS`, in the units of `_unit`.
-
-    Numbers whose names hold no bead are means over both beads or over their four contacts.
-    """
-    first, second = SENSORS
-    both = beads.only(SENSORS)
-    around = contacts.only((first - 1, first, second - 1, second))
-    sites = both.speed / DIAMETER
-    found = {
-        "speed V_s": both.speed,
-        f"peak bead force F_{first}": both.only([first]).peak,
-        f"peak bead force F_{second}": both.only([second]).peak,
-        "peak bead force F_m": both.peak,
-        "peak contact force": around.peak,
-        f"FWHM of F_{first}": both.only([first]).fwhm * sites,
-        f"FWHM of F_{second}": both.only([second]).fwhm * sites,
-        "FWHM of bead force": both.fwhm * sites,
-        "FWHM of bead force in time": 1e6 * both.fwhm,
-        "FWHM of contact force": around.fwhm * sites,
-        "FWHM of contact force in time": 1e6 * around.fwhm,
+    by_kind = {
+        "bead": (float(wave.bead_force), bead_fwhm(wave)),
+        "contact": (float(wave.contact_force), float(wave.fwhm("force"))),
     }
-    for a, b in LIKE:
-        found[f"speed from bead {a} to {b}"] = beads.only((a, b)).speed
+    found = {}
+    for quantity in QUANTITIES:
+        peak, width = by_kind[quantity.kind]
+        by_unit = {
+            "m/s": V,
+            "N": peak,
+            "sites": width / DIAMETER,
+            "µs": 1e6 * width / V,
+        }
+        found[quantity.name] = by_unit[quantity.unit]
     return found
 
 
 def _panel(run: Run, theory: PhysicalWave) -> Panel:
     """Return a panel of the forces at two beads, and the theory's wave with each peak."""
     curves = []
-    for i, (bead, pulse) in enumerate(Train.of(run).only(SENSORS).pulses.items()):
+    pulses = passing(run)
+    for i, bead in enumerate(SENSORS):
         force = run.bead_force[run.scene.bead_sensors.index(bead - 1)]
         # Peak upon peak: the theory has no time of the blow.
-        wave = theory.curve(run.time - pulse.arrival)
+        wave = theory.curve(run.time - pulses[bead].arrival)
         curves.append(Curve(f"bead {bead}, lattice", run.time, force, f"C{i}-"))
         curves.append(Curve(f"bead {bead}, theory by F_m", run.time, wave, f"C{i}--"))
     return Panel("time (s)", "force, mean of the bead's contacts (N)", tuple(curves))
@@ -383,11 +421,13 @@ def stated_errors() -> list[dict[str, Any]]:
     # Where the pulse has passed before the wave reaches the wall.
     places = range(FIRST_BEAD, BEADS - 2)
     run = simulate(recorded_chain(places), rtol=RTOL)
-    contacts = Train.of(run, "contact").only(places)
+    contacts = passing(run, "contact")
+    peak = mean(contacts, "peak", places)
+    fwhm = mean(contacts, "fwhm", places)
     rows = []
     for (line, stated), cell in zip(STATED.items(), cells_of_lines(), strict=True):
-        wave = homogenize(cell, k=HERTZ).pde.traveling_wave().at_force(contacts.peak)
-        error = float(wave.fwhm("force", "time")) / contacts.fwhm - 1
+        wave = homogenize(cell, k=HERTZ).pde.traveling_wave().at_force(peak)
+        error = float(wave.fwhm("force", "time")) / fwhm - 1
         rows.append({"line": line, "stated_error_value": stated, "error_value": error})
     return rows
 
@@ -418,8 +458,8 @@ def scaling(E: float, rtol: float = RTOL) -> list[dict[str, Any]]:
 
 def _speed_and_force(run: Run) -> dict[str, float]:
     """V_s and F_m of a run."""
-    train = Train.of(run)
-    return {"speed": train.speed, "force": train.peak}
+    pulses = passing(run)
+    return {"speed": speed(pulses, *SENSORS), "force": mean(pulses, "peak", SENSORS)}
 
 
 def fitted_exponent(rows: Sequence[dict[str, Any]]) -> Estimate:

@@ -16,7 +16,13 @@ from lwa.command.cli import called
 from lwa.command.options import Words
 from validation.lattice.cost import RunProgress, silent
 from validation.pictures import Curve, Panel
-from validation.pulses.noisy import InvertedError, corrected, noisy_pulse, suggested
+from validation.pulses.noisy import (
+    InvertedError,
+    NoisyPulse,
+    corrected,
+    noisy_pulse,
+    suggested,
+)
 from validation.pulses.pulse import MeasureError
 from validation.pulses.sensors import Reading, forces_at_start, record, speeds_between
 from validation.report.study import Report, number, option, study
@@ -106,11 +112,14 @@ class Measured:
         Whether they are in SI.
     notes : sequence of str
         Lines on their units.
+    units : mapping of str
+        The user's statements of units.
     """
 
     signals: Sequence[Record]
     si: bool
     notes: Sequence[str]
+    units: Mapping[str, str]
 
     @classmethod
     def read(
@@ -123,34 +132,45 @@ class Measured:
     ) -> Measured:
         """Read files; records of sensors with a time constant are corrected.
 
-        Sensors of several files that have no number are numbered in the order of the files. The
+        Several sensors without a number are numbered in the order of files and columns. The
         ``wanted`` names are proposed for columns of files without sensors. Raises `SceneError` for
-        files of which some have no units, and for a sensor in two files.
+        files of which some have no units, and for a sensor that is there twice.
         """
         constant = math.inf
         if time_constant:
             constant = read_time(time_constant, "time_constant", "1 ms")
         names = [paths] if isinstance(paths, str | Path) else [*paths]
-        files = [MeasuredFile(name, **stated) for name in names]
-        signals: dict[tuple[str, int | None], Record] = {}
-        for place, file in enumerate(files, start=1):
-            if file.columns.si != files[0].columns.si:
+        files = [MeasuredFile.read(name, **stated) for name in names]
+        for file in files:
+            if file.si != files[0].si:
                 raise SceneError(
                     f"{file.path}: it has units, {names[0]} not, or the reverse"
                 )
-            for signal in file.records(of, wanted):
-                if len(files) > 1:
-                    signal = replace(signal, number=signal.number or place)
-                if time_constant:
-                    values = corrected(signal.time, signal.values, constant)
-                    signal = replace(signal, values=values)
-                sensor = (signal.kind, signal.number)
-                if sensor in signals:
-                    named = f"{signal.kind} {signal.number or ''}".strip()
-                    raise SceneError(f"{file.path}: {named} is there twice")
-                signals[sensor] = signal
+        records = [record for file in files for record in file.records(of, wanted)]
+        signals: dict[tuple[str, int | None], Record] = {}
+        for place, signal in enumerate(records, start=1):
+            if len(records) > 1:
+                signal = replace(signal, number=signal.number or place)
+            if time_constant:
+                values = corrected(signal.time, signal.values, constant)
+                signal = replace(signal, values=values)
+            if (signal.kind, signal.number) in signals:
+                raise SceneError(f"{signal.kind} {signal.number} is there twice")
+            signals[signal.kind, signal.number] = signal
         notes = [note for file in files for note in file.notes]
-        return cls([*signals.values()], files[0].columns.si, notes)
+        units = stated.get("units") or {}
+        return cls([*signals.values()], files[0].si, notes, units)
+
+    def pulse(self, signal: Record) -> NoisyPulse:
+        """Measure the first pulse of a record.
+
+        Raises `MeasureError`, for an inverted record with the statement that turns it.
+        """
+        try:
+            return noisy_pulse(signal.time, signal.values, self.unit)
+        except InvertedError as error:
+            turned = {**self.units, signal.key: signal.inverted}
+            raise MeasureError(str(error), units=turned) from None
 
     @property
     def unit(self) -> str:
@@ -196,11 +216,11 @@ def pulses(
 ) -> Report:
     """Pulses at sensors, and the speeds between them. RECORDS, files of any recorder or program (-
     is standard input), have the columns time and, for each sensor, such as "bead 15 force", "15
-    force", "bead 15 velocity" or, of a single sensor, "force"; --column names others by header or
-    number. Beads and contacts are counted from 1; sensors of several files without a number, in the
-    order of the files. Units are stated in the file or by --unit: results are then in SI, as is a
-    distance; without any they are in the file's own units. One column time serves all sensors; or
-    the first serves the first one, the next the next.
+    force", "bead 15 velocity" or "force"; --column names others by header or number. Beads and
+    contacts are counted from 1; several sensors without a number, in the order of files and
+    columns. Units are stated in the file or by --unit: results are then in SI, as is a distance;
+    without any they are in the file's own units. One column time serves all sensors; or the first
+    serves the first one, the next the next.
 
     ``sensors`` and ``speeds`` as of `validation.studies.run`, the static force from the
     record. A sensor has the speeds from the sensor before as well, so that the CSV holds them all.
@@ -214,7 +234,7 @@ def pulses(
     curves = []
     places = []
     notes = [*read.notes]
-    turned: dict[str, str] = {}  # statements of units that change signs
+    refusals: list[MeasureError] = []
     for i, signal in enumerate(read.signals):
         site = signal.number or 1
         blank = Reading(signal.kind, (site,), {}, math.nan, quantity=signal.quantity)
@@ -223,11 +243,11 @@ def pulses(
         if apart is not None:
             places[-1]["speed"] = apart * site
         try:
-            pulse = noisy_pulse(signal.time, signal.values, read.unit)
+            pulse = read.pulse(signal)
         except MeasureError as error:
-            found.append(replace(blank, missing=str(error)))
-            if isinstance(error, InvertedError):
-                turned[signal.key] = signal.inverted
+            found.append(replace(blank, missing=error.reason))
+            refusals.append(error)
+            if error.change:
                 notes.append(
                     f"{blank.name}: --unit '{signal.key}={signal.inverted}' turns it."
                 )
@@ -237,10 +257,10 @@ def pulses(
         hint = suggested(signal.time, signal.values, pulse, read.unit)
         if hint and not time_constant:
             notes.append(f"{blank.name}: {hint}")
-    if not any(reading.numbers for reading in found):
+    if len(refusals) == len(found):
         raise MeasureError(
             f"no sensor has a pulse: {found[0].name}: {found[0].missing}",
-            **_units(stated, turned),
+            **refusals[0].change,
         )
     # The noise of two sensors is independent.
     speeds = speeds_between(found, places, math.hypot)
@@ -308,12 +328,9 @@ def compare(
     found = {}
     for name, signal in signals.items():
         try:
-            found[name] = noisy_pulse(signal.time, signal.values, read.unit)
+            found[name] = read.pulse(signal)
         except MeasureError as error:
-            turned = {}
-            if isinstance(error, InvertedError):
-                turned[signal.key] = signal.inverted
-            raise MeasureError(f"{name}: {error}", **_units(stated, turned)) from None
+            raise MeasureError(f"{name}: {error.reason}", **error.change) from None
     velocities = [name for name, s in signals.items() if s.quantity == "velocity"]
     simulation = record(chain, velocities=velocities, progress=run_progress)
     run = simulation.run
@@ -393,8 +410,3 @@ def _by_sensor(
     for sensor, signal in zip(sensors, read.signals, strict=False):
         headers[f"{sensor} {signal.quantity}"] = str(signal.column)
     raise SceneError(f"no measured sensor is {wanted}", columns=headers)
-
-
-def _units(stated: Stated, turned: Mapping[str, str]) -> dict[str, Any]:
-    """Return the user's statements of units with those that change signs, if there are any."""
-    return {"units": {**(stated.get("units") or {}), **turned}} if turned else {}

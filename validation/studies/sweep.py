@@ -10,11 +10,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
+from concurrent.futures import (
+    BrokenExecutor,
+    CancelledError,
+    Executor,
+    Future,
+    as_completed,
+)
 from contextlib import AbstractContextManager
-from itertools import islice, product
+from itertools import product
 from pathlib import Path
-from queue import SimpleQueue
 from typing import Any
 
 import click
@@ -47,15 +52,14 @@ _MOST = 1000  # values of an axis; a grid of 10⁶ points takes days
 MEMORY = Path(":memory:")
 """SQLite's name of a database that is not kept, of a sweep without a file."""
 
-AHEAD = 1000  # points that wait for a worker, whatever the size of the grid
+AHEAD = 1000  # points that wait for a worker, at most, whatever the size of the grid
 Axis = Sequence[Rational]
-Grids = Mapping[str, Array]  # quantity → (len(ks), len(omegas)); NaN where missing
 
-_OMEGA = "ω = m2/m1"
+_LABELS = {"k": "k", "omega": "ω = m2/m1"}
 _COLUMNS = (
     # Heads a part of the table.
     Column("k", format="k = {}".format),
-    Column("omega", _OMEGA),
+    Column("omega", _LABELS["omega"]),
     Column("width", "width", error=True),
     Column("error.linear.width_value", "linear", format=percent),
     Column("error.canonical.width_value", "canonical", format=percent),
@@ -85,92 +89,94 @@ _ERRORS = (
 )
 
 
-def report(
-    ks: Axis, omegas: Axis, points: Sequence[Point], stretch: int = STRETCH
-) -> Report:
+Row = Mapping[str, Any]
+"""Cells of a point by the keys of columns."""
+
+
+def report(points: Sequence[Point], stretch: int = STRETCH) -> Report:
     """Return the report of points, in rising order of k, then of ω, beside the theories.
 
     Table ``points`` has the missing values' reasons.
     """
-    waves = theory(ks, omegas)
-    rows = []
+    rows = _rows(points)
     # Reasons stand below the table: a cell has no room for a sentence.
     missing = []
-    grid = np.ndindex(len(ks), len(omegas))
-    for place, found in zip(grid, points, strict=True):
-        rows.append(_row(found, waves, place))
+    for found in points:
         if found.missing is not None:
             missing.append(f"k = {found.k}, ω = {found.omega}: {found.missing}")
     return Report(
         "The steady pulse of a struck dimer chain",
         (Table.of(_COLUMNS, rows, "points", by="k", note=_NOTE, errors=_ERRORS),),
-        panels=tuple(_panels(omegas, points, waves)),
+        panels=tuple(_panels(rows)),
         notes=("\n".join(missing),),
         data={"stretch": stretch, "missing": len(missing)},
     )
 
 
-def _row(
-    found: Point, waves: Mapping[str, Grids], place: tuple[int, ...]
-) -> dict[str, Any]:
-    """Return the cells of a point by the keys of columns; ``place`` is that in the grids."""
-    row: dict[str, Any] = {
-        "k": found.k,
-        "omega": found.omega,
-        "sites": found.sites,
-        "missing": found.missing,
-    }
-    row |= found.numbers
-    for closure, grids in waves.items():
-        for quantity, grid in grids.items():
-            value = grid[place]
-            row[f"theory.{closure}.{quantity}_value"] = value
+def _rows(points: Sequence[Point]) -> list[Row]:
+    """Return the row of each point: its numbers, the theory's, and the theory's errors."""
+    waves = theory(points)
+    rows: list[Row] = []
+    for i, found in enumerate(points):
+        row: dict[str, Any] = {
+            "k": found.k,
+            "omega": found.omega,
+            "sites": found.sites,
+            "missing": found.missing,
+        }
+        row |= found.numbers
+        for (closure, quantity), values in waves.items():
+            row[f"theory.{closure}.{quantity}_value"] = values[i]
             # Some points have no steady pulse, or one whose width is not measured.
             if quantity in found.numbers:
-                error = value / found.numbers[quantity].value - 1
+                error = values[i] / found.numbers[quantity].value - 1
                 row[f"error.{closure}.{quantity}_value"] = error
-    return row
+        rows.append(row)
+    return rows
 
 
-def _panels(
-    omegas: Axis, points: Sequence[Point], waves: Mapping[str, Grids]
-) -> Iterator[Panel]:
+def _panels(rows: Sequence[Row]) -> Iterator[Panel]:
     """Yield curves of each quantity over ω, one for each k; of a single ω, over k.
 
     A single curve has the theories beside it.
     """
-    over_k = len(omegas) == 1
-    x = "k" if over_k else _OMEGA
-    groups: dict[str, list[Point]] = {}
-    # A curve for each k; where there is one ω, a single one over k.
-    for found in points:
-        name = f"{_OMEGA} = {found.omega}" if over_k else f"k = {found.k}"
-        groups.setdefault(name, []).append(found)
+    x, of_curve = "omega", "k"
+    if len({row["omega"] for row in rows}) == 1:
+        x, of_curve = of_curve, x
+    groups: dict[str, list[Row]] = {}
+    for row in rows:
+        name = f"{_LABELS[of_curve]} = {row[of_curve]}"
+        groups.setdefault(name, []).append(row)
     for quantity, label in LABELS.items():
         curves = []
         for name, group in groups.items():
-            numbers = [found.numbers.get(quantity, _NONE) for found in group]
+            axis = [row[x] for row in group]
+            numbers = [row.get(quantity, _NONE) for row in group]
             values = np.array([number.value for number in numbers])
             errors = np.array([number.error for number in numbers])
             # On a logarithmic axis a decay below its error, or below 0, is drawn as its error.
             if quantity == "decay":
                 values = np.fmax(values, errors)
-            axis = [found.k if over_k else found.omega for found in group]
             curves.append(Curve(name, axis, values, error=errors))
         # Beside several curves the theories' would hide them; theories have no decay.
         if len(groups) == 1 and quantity != "decay":
-            for closure, wave in waves.items():
-                line = wave[quantity].ravel()
-                curves.append(Curve(CLOSURES[closure], axis, line))
-        yield Panel(x, label, tuple(curves), "y" if quantity == "decay" else "")
+            for closure, name in CLOSURES.items():
+                line = [row[f"theory.{closure}.{quantity}_value"] for row in rows]
+                curves.append(Curve(name, axis, line))
+        scale = "y" if quantity == "decay" else ""
+        yield Panel(_LABELS[x], label, tuple(curves), scale)
 
 
 _NONE = Estimate(math.nan, math.nan)
 
 
-def theory(ks: Axis, omegas: Axis) -> dict[str, Grids]:
-    """Return widths and speed of the compact waves at contact force 1, by closure and quantity."""
-    k, omega = np.meshgrid(np.array(ks, float), np.array(omegas, float), indexing="ij")
+def theory(points: Sequence[Point]) -> dict[tuple[str, str], Array]:
+    """Return widths and speed of the compact waves at contact force 1, (points,).
+
+    The keys are closures and quantities. NaN where a closure has no wave.
+    """
+    k = np.array([point.k for point in points], float)
+    omega = np.array([point.omega for point in points], float)
     scale = np.sqrt(2 * k / (1 + omega))  # τ/t, for A = D = m1 = 1
     # One derivation in symbols serves all points.
     cell = Dimer("m1", "m2", spacing=1)
@@ -179,46 +185,42 @@ def theory(ks: Axis, omegas: Axis) -> dict[str, Grids]:
         # A width that does not depend on which bead is called the first.
         "canonical": canonical_wave(cell),
     }
-    grids: dict[str, Grids] = {}
+    found = {}
     for closure, exact in waves.items():
         # The paper's closure has no wave at some k and ω: nothing is drawn there.
         wave = exact.numeric(missing="nan")
-        grids[closure] = {
-            "width": wave.fwhm(k, omega, "force"),
-            "strain_width": wave.fwhm(k, omega, "strain"),
-            "speed": wave.speed(k, omega) * scale,
-        }
-    return grids
+        found[closure, "width"] = wave.fwhm(k, omega, "force")
+        found[closure, "strain_width"] = wave.fwhm(k, omega, "strain")
+        found[closure, "speed"] = wave.speed(k, omega) * scale
+    return found
 
 
-def _axis(text: str, name: str) -> Iterator[sp.Expr]:
-    """Yield the exact values of a text with numbers and ranges start:stop:count."""
-    for part in text.split(","):
-        numbers = [read_exact(number, name) for number in part.split(":")]
-        if len(numbers) == 1:
-            yield numbers[0]
-        elif len(numbers) == 3:
-            start, stop, given = numbers
-            if not (given.is_Integer and 2 <= given <= _MOST):
-                wanted = f"the count of a range is an integer from 2 to {_MOST}"
-                raise SceneError(f"{name} is {shorten(part)}: {wanted}")
-            # Exact steps: 1/10 is a value of 1/20:1:20, and a file finds the point again.
-            for i in range(given):
-                yield start + (stop - start) * i / (given - 1)
-        else:
-            raise SceneError(f"{name} is {shorten(part)}: a range is start:stop:count")
+def _read(part: Any, name: str) -> list[sp.Expr]:
+    """Read a number, or the numbers of a range start:stop:count, exactly."""
+    numbers = [read_exact(number, name) for number in str(part).split(":")]
+    if len(numbers) == 1:
+        return numbers
+    if len(numbers) != 3:
+        raise SceneError(f"{name} is {shorten(part)}: a range is start:stop:count")
+    start, stop, count = numbers
+    if not (count.is_Integer and 2 <= count <= _MOST):
+        wanted = f"the count of a range is an integer from 2 to {_MOST}"
+        raise SceneError(f"{name} is {shorten(part)}: {wanted}")
+    # Exact steps: 1/10 is a value of 1/20:1:20, and a file finds the point again.
+    return [start + (stop - start) * i / (count - 1) for i in range(count)]
 
 
 def _values(given: str | Iterable[Any], name: str) -> tuple[Rational, ...]:
     """Read the exact values of an axis, in rising order."""
     least, most = RANGES[name]
     values = set()  # a value in two overlapping ranges is one
-    for part in _axis(given, name) if isinstance(given, str) else items(given, name):
-        value = read_exact(part, name)
-        if not (value.is_Rational and least <= value <= most):
-            wanted = f"a number from {least} to {most} is wanted"
-            raise SceneError(f"{name} is {shorten(value)}: {wanted}")
-        values.add(value)
+    parts = given.split(",") if isinstance(given, str) else items(given, name)
+    for part in parts:
+        for value in _read(part, name):
+            if not (value.is_Rational and least <= value <= most):
+                wanted = f"a number from {least} to {most} is wanted"
+                raise SceneError(f"{name} is {shorten(value)}: {wanted}")
+            values.add(value)
     if not 0 < len(values) <= _MOST:
         fault = f"it has {len(values)} values, and 1 to {_MOST} are wanted"
         raise SceneError(f"{name} is {shorten(given)}: {fault}")
@@ -236,19 +238,19 @@ def measured(
     with workers as executor, file.opened() as (points, keep):
         # Points of an earlier sweep with this file are not computed again.
         missing = [key for key in product(ks, omegas) if key not in points]
-        waiting = iter(missing)
-        ahead: set[Future[Point]] = set()
-        done = SimpleQueue[Future[Point]]()
-        try:
-            for _ in progress(missing):
-                # As many new points as are done: an executor keeps all that it is given.
-                for key in islice(waiting, AHEAD - len(ahead)):
-                    future = executor.submit(point, *key, file.stretch)
-                    ahead.add(future)
-                    future.add_done_callback(done.put)
+
+        def finished() -> Iterator[Future[Point]]:
+            # An executor keeps all that it is given: it is given so many points at once.
+            for start in range(0, len(missing), AHEAD):
+                waiting = [
+                    executor.submit(point, *key, file.stretch)
+                    for key in missing[start : start + AHEAD]
+                ]
                 # The first that is done, whatever its place in the grid.
-                future = done.get()
-                ahead.remove(future)
+                yield from as_completed(waiting)
+
+        try:
+            for _, future in zip(progress(missing), finished(), strict=True):
                 new = future.result()
                 points[new.k, new.omega] = new
                 keep(new)
@@ -260,10 +262,6 @@ def measured(
             if file.path == MEMORY:
                 kept = "--file points.sqlite keeps finished points for the same line"
             raise KeyboardInterrupt(kept) from None
-        finally:
-            # After a failure the points that no worker has begun would still be computed.
-            for future in ahead:
-                future.cancel()
     return [points[key] for key in product(ks, omegas)]
 
 
@@ -353,4 +351,4 @@ def sweep(
         path = output_file("file", str(file), (".sqlite",))
     workers = threads(jobs, "jobs") if address is None else cluster(address)
     points = measured(*grid, PointFile(path, stretch), workers, progress)
-    return report(*grid, points, stretch)
+    return report(points, stretch)

@@ -94,6 +94,10 @@ def respond(force: Series, inverse: Pair, half_period: float) -> Series:
 
     The mean of a is set to 0. ``inverse`` holds 1/m1 and 1/m2.
     """
+    # F_a of equal masses is even, and its coefficients are real. Their imaginary part is rounding,
+    # which 1/q² would enlarge.
+    if inverse[0] == inverse[1]:
+        force = force.real.astype(complex)
     q = np.pi * np.arange(force.shape[-1]) / half_period
     # The right side nearly cancels at small q. Without the difference of large terms it is
     # (1/m1 + 1/m2)(f - f*) - [(e^{-iq} - 1)/m1 + (e^{iq} - 1)/m2] f*, and f - f* = 2i Im f.
@@ -128,15 +132,6 @@ class Found:
     force: Array
     c2: float
     masses: Pair
-
-
-@dataclass(frozen=True, eq=False)
-class Condition:
-    """An equation besides those of the forces: by how much it is missed, and its derivatives."""
-
-    fault: float
-    by_forces: Array
-    by_inverse: float  # by 1/m2
 
 
 class Problem:
@@ -209,10 +204,6 @@ class Problem:
     def _strains(self, forces: Array, inverse: Pair) -> Array:
         """Return c² a, shifted to 0 at L, from the unknown forces, one row or an array of rows."""
         force = scipy.fft.rfft(self._everywhere(forces))
-        # Equal masses: F_a is even, its odd part O is 0, and its Fourier coefficients are real.
-        # Their imaginary part is rounding, which the 1/q² of `respond` would enlarge.
-        if self.uniform:
-            force = force.real.astype(complex)
         strain = scipy.fft.irfft(respond(force, inverse, self.L), 2 * self.n)
         at_end = strain[..., [self.n]]
         return np.asarray(strain - at_end)[..., : self.count]
@@ -225,10 +216,12 @@ class Problem:
         by_second = self._strains(unit_forces, (0, 1)).T
         return by_first, by_second
 
-    def _closing(self, force: Array, inverse: float) -> Condition:
-        """The equation that determines 1/m2: it is given."""
-        fault = inverse - 1 / self.masses[1]
-        return Condition(fault, np.zeros(self.count), 1.0)
+    def _closing(self, force: Array, inverse: float) -> tuple[float, Array]:
+        """The equation that determines 1/m2, by how much it is missed, and its derivatives."""
+        # 1/m2 is given.
+        derivatives = np.zeros(self.count + 2)
+        derivatives[-1] = 1
+        return inverse - 1 / self.masses[1], derivatives
 
     def _step(self, unknowns: Array) -> Array:
         """Return the Newton step to be subtracted from the unknowns."""
@@ -239,24 +232,24 @@ class Problem:
         slope = self.k * np.maximum(self.p0 + a, 0) ** (self.k - 1) / c2
         by_first, by_second = self._responses
         response = by_first / self.masses[0] + by_second * inverse
-        closing = self._closing(force, inverse)
-        at_peak = np.zeros(self.count)
-        at_peak[0] = 1
-        conditions = [force[0] - self.height, closing.fault]
+        closing, of_closing = self._closing(force, inverse)
+        conditions = [force[0] - self.height, closing]
         faults = np.append(force - rise(a, self.k, self.p0), conditions)
         by_forces = np.eye(self.count) - slope[:, np.newaxis] * response
-        by_others = np.column_stack((slope * a, -slope * (by_second @ force)))
-        of_conditions = np.stack((at_peak, closing.by_forces))
-        corner = np.diag((0, closing.by_inverse))
-        jacobian = np.block([[by_forces, by_others], [of_conditions, corner]])
+        by_c2 = slope * a
+        by_inverse = -slope * (by_second @ force)
+        of_forces = np.column_stack((by_forces, by_c2, by_inverse))
+        at_peak = np.zeros(self.count + 2)
+        at_peak[0] = 1
+        jacobian = np.vstack((of_forces, at_peak, of_closing))
         return np.linalg.solve(jacobian, faults)
 
 
 class SpecialRatio(Problem):
     """The wave equations with m2 as one more unknown, and the condition ``T = 0``."""
 
-    def _closing(self, force: Array, inverse: float) -> Condition:
-        """The equation that determines 1/m2: no strain is left behind."""
+    def _closing(self, force: Array, inverse: float) -> tuple[float, Array]:
+        """The equation that no strain is left behind, as that of a given mass."""
         # c² T = Δ ∫_0^∞ E dξ + 2Σ ∫_0^∞ ξ O dξ = ∫ [(ξ - 1/2)/m1 + (ξ + 1/2)/m2] F_a dξ.
         # The force at the grid's end ξ = L is 0.
         places = np.where(self.xi < self.L, self.xi, 0)
@@ -264,7 +257,9 @@ class SpecialRatio(Problem):
         by_first = step * (places - 1 / 2)
         by_second = step * (places + 1 / 2)
         tail = by_first / self.masses[0] + by_second * inverse
-        return Condition(float(tail @ force), tail, float(by_second @ force))
+        by_c2 = 0.0
+        by_inverse = float(by_second @ force)
+        return float(tail @ force), np.append(tail, (by_c2, by_inverse))
 
 
 @np.errstate(all="ignore")  # an overflow or c² < 0 does not converge

@@ -16,7 +16,7 @@ from functools import cached_property
 from typing import Any, Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array, finite
 from lwa.base.frozen import Estimate
@@ -139,7 +139,7 @@ class ExactWave(Pictured):
         at = finite(xi, "xi")
         if integer(contact, "contact", 0) % 2:
             at = -at  # b is the mirror image of a
-        return np.where(self._ended(at), 0.0, self._sum(at, self._strains))
+        return self._fading(at, self._strains)
 
     def force(self, xi: ArrayLike, contact: int = 0) -> Array:
         """Force F_a(ξ) or F_b(ξ) of a contact, above the static force."""
@@ -155,9 +155,7 @@ class ExactWave(Pictured):
         # m c v' is the force behind less the force ahead, its mirror image, a sum of sin qξ.
         push = 2 * (behind[1:].conj() * np.exp(-0.5j * q)).imag
         velocities = np.append(0.0, -push / q) / (self.masses[kind] * self.c)
-        # The integral's constant: a bead is at rest far away.
-        moving = self._sum(at, velocities) - self._sum(self.half_period, velocities)
-        return np.where(self._ended(at), 0.0, moving)
+        return self._fading(at, velocities)
 
     def peak(self, quantity: QuantityName) -> float:
         """Return the maximum of a quantity.
@@ -179,9 +177,9 @@ class ExactWave(Pictured):
         """Panel of strain, force and velocity as functions of ξ, each divided by its peak."""
         xi = np.linspace(-self.half_period, self.half_period, 2001)
         curves = []
-        for name, style in zip(QUANTITIES, ("-", "--", ":"), strict=True):
+        for name in QUANTITIES:
             share = self._profile(name)(xi) / self.peak(name)
-            curves.append(Curve(name, xi, share, style))
+            curves.append(Curve(name, xi, share))
         return [Panel("ξ / D", "over its peak", tuple(curves))]
 
     def _hump(self, quantity: QuantityName) -> Pulse:
@@ -198,16 +196,12 @@ class ExactWave(Pictured):
 
     @cached_property
     def _strains(self) -> newton.Series:
-        """The series of a, as ``series`` is that of F_a."""
+        """The series of a, but for the mean, as ``series`` is that of F_a."""
         m1, m2 = self.masses
-        force = self.series
-        if m1 == m2:  # the odd part is rounding, which 1/q² would enlarge
-            force = force.real.astype(complex)
-        strain = newton.respond(force, (1 / m1, 1 / m2), self.half_period) / self.c2
+        inverse = (1 / m1, 1 / m2)
+        strain = newton.respond(self.series, inverse, self.half_period) / self.c2
         # A sine that is 0 at every point of the grid.
         strain[-1] = strain[-1].real
-        # The strain is 0 at L, where e^{iqξ} is 1 and -1 in turn.
-        strain[0] = strain[1::2].real.sum() - strain[2::2].real.sum()
         return strain
 
     @property
@@ -222,9 +216,12 @@ class ExactWave(Pictured):
         waves = np.cos(phase) @ series.real - np.sin(phase) @ series.imag
         return np.asarray(waves, float)
 
-    def _ended(self, xi: ArrayLike) -> NDArray[np.bool_]:
-        """True beyond L for a solitary wave: there the wave is 0, the Fourier sum periodic."""
-        return np.asarray((np.abs(xi) >= self.half_period) & self.solitary)
+    def _fading(self, xi: Array, series: Any) -> Array:
+        """Evaluate the Fourier sum of a quantity that is 0 at L; beyond L a solitary wave is 0."""
+        values = self._sum(xi, series) - self._sum(self.half_period, series)
+        # The wave has ended there, the Fourier sum is periodic.
+        ended = (np.abs(xi) >= self.half_period) & self.solitary
+        return np.where(ended, 0.0, values)
 
 
 def at_unit_force(problem: newton.Problem, found: newton.Found) -> ExactWave:

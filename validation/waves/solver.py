@@ -34,9 +34,9 @@ from itertools import islice
 from typing import Any
 
 import numpy as np
-import scipy
 
 from lwa import Cell, loaded_wave
+from lwa.base.arrays import Array
 from lwa.base.exact import InputError
 from validation.scenes.checks import SceneError, between, integer, items
 from validation.waves import newton
@@ -47,8 +47,10 @@ from validation.waves.profile import ExactWave, at_unit_force
 FALLEN = 38.0
 LIGHTEST = 1e-12  # background over peak strain, at least: a lighter one does not show
 SHALLOWEST = 1e-4  # rise of a wave on a background over the peak strain, at least
-LESS = 0.125  # step of the background from wave to wave, at k > 3 on small backgrounds
-STEEP = 3.0  # k above which the theory's wave is too wide to start from
+# k above which the theory's wave is too wide to start from: the wave at this k is near enough, for
+# every k, and on a background below this share of the peak strain. On a higher one the theory's is.
+STEEP = 3.0
+HIGH = 0.5
 STEEPEST = 60.0  # k: beyond, 1200 points take a second
 STEEPEST_LOADED = 8.0  # k on a background, where narrower waves were not tried
 NEAR = 1e-7  # relative difference from a special mass ratio: ratios are given in seven digits
@@ -148,28 +150,24 @@ def _background(value: Any) -> float:
 
 def _equal(k: float, p0: float) -> ExactWave:
     """Return the wave of masses 1, 1 on a background, or on none."""
+    problem = newton.Problem(_EQUAL, k)
+    if p0:
+        chain = Cell((1,), spacing=1)
+        theory = loaded_wave(chain, rise=1 - p0, background=p0, k=k)
+        # The wave ends as e^{-κ|ξ|} with c/c0 = sinh(κ/2)/(κ/2) ≤ e^{κ²/24}: κ is at least this.
+        fast = float(theory.speed / theory.sound_speed)
+        decay = math.sqrt(24 * math.log(fast))
+        L = max(problem.L, problem.L / 2 + FALLEN / decay)
+        # Points in proportion to the width, which a background enlarges; 1.3 is a margin, and 80
+        # points are enough for the widest waves.
+        bare = loaded_wave(chain, rise=1, background=0, k=k)
+        narrower = float(bare.fwhm("strain") / theory.fwhm("strain"))
+        points = newton.points_needed(_EQUAL, k, L) * min(1, 1.3 * narrower)
+        problem = newton.Problem(_EQUAL, k, L, max(80, math.ceil(points)), p0)
+    if k > STEEP and p0 < HIGH:
+        return solve(problem, _equal(STEEP, p0))
     if not p0:
-        wave = solve(newton.Problem(_EQUAL, min(k, STEEP)))
-        return solve(newton.Problem(_EQUAL, k), wave) if k > STEEP else wave
-    chain = Cell((1,), spacing=1)
-    theory = loaded_wave(chain, rise=1 - p0, background=p0, k=k)
-    # The wave ends as e^{-κ|ξ|} with (c/c0)² = (sinh(κ/2)/(κ/2))².
-    fast = float(theory.speed / theory.sound_speed)
-    half_kappa = scipy.optimize.brentq(
-        lambda x: math.log(math.sinh(x) / x / fast), 1e-5, 300, xtol=1e-12
-    )
-    core = newton.ample_half_period(_EQUAL, k)
-    L = max(core, core / 2 + FALLEN / (2 * half_kappa))
-    # Points in proportion to the width, which a background enlarges; 1.3 is a margin, and 80
-    # points are enough for the widest waves.
-    bare = loaded_wave(chain, rise=1, background=0, k=k)
-    narrower = float(bare.fwhm("strain") / theory.fwhm("strain"))
-    points = newton.points_needed(_EQUAL, k, L) * min(1, 1.3 * narrower)
-    problem = newton.Problem(_EQUAL, k, L, max(80, math.ceil(points)), p0)
-    if k > STEEP and p0 < 0.5:
-        # The theory's wave is too wide: from the wave on a lower background.
-        lower = _equal(k, max(p0 - LESS, 0))
-        return _converged(problem, lower.force(problem.xi), lower.c2)
+        return solve(problem)
     force = newton.rise(theory.along(problem.xi, "strain"), k, p0)
     return _converged(problem, force, float(theory.speed) ** 2)
 
@@ -196,7 +194,11 @@ def _dimer(pair: newton.Pair, k: float) -> ExactWave:
     )
 
 
-def solve(problem: newton.Problem, start: ExactWave | None = None) -> ExactWave:
+def solve(
+    problem: newton.Problem,
+    start: ExactWave | None = None,
+    change: float | Array = 0.0,
+) -> ExactWave:
     """Return a wave of peak force 1, on whatever branch Newton's method reaches.
 
     Parameters
@@ -205,6 +207,8 @@ def solve(problem: newton.Problem, start: ExactWave | None = None) -> ExactWave:
         Masses, exponent and grid; of a `newton.SpecialRatio` m2 is solved for.
     start : ExactWave, optional
         A near wave; by default the theory's.
+    change : float or Array
+        Added to the forces of the near wave at the grid points.
 
     Raises
     ------
@@ -214,7 +218,7 @@ def solve(problem: newton.Problem, start: ExactWave | None = None) -> ExactWave:
     k = problem.k
     m1, m2 = problem.masses
     if start is not None:
-        force = start.force(problem.xi)
+        force = start.force(problem.xi) + change
         c2 = start.c2 * sum(start.masses) / (m1 + m2)
     else:
         # The force cos^{2k/(k-1)}(βξ), and c² = 4/((k+1)(m1+m2)). The two contacts' forces are
@@ -316,12 +320,18 @@ def _following(path: Sequence[ExactWave], k: float) -> ExactWave:
     """
     before = path[0]
     last = path[-1]
-    expected = _root(last)
-    if len(path) > 1:
+    farther = 0.0  # length of the step over that of the path's last one
+    if before is not last:
         start, here, there = (math.log(x - 1) for x in (before.k, last.k, k))
-        slope = (_root(last) - _root(before)) / (here - start)
-        expected += slope * (there - here)
-    following = solve(SpecialRatio((1.0, expected**-2), k), last)
+        farther = (there - here) / (here - start)
+    expected = _root(last) + farther * (_root(last) - _root(before))
+    problem = SpecialRatio((1.0, expected**-2), k)
+    xi = problem.xi
+    change: float | Array = 0.0
+    # Towards k = 1 the profile goes on as before; at large k its flanks are too steep for that.
+    if k < HERTZ:
+        change = farther * (last.force(xi) - before.force(xi))
+    following = solve(problem, last, change)
     if following.solitary and abs(_root(following) - expected) < _NEARER:
         return following
     raise NoWave(f"the special ratio is lost {_parameters(last.masses, k)}")

@@ -98,17 +98,8 @@ def test_why_dimers_are_worse():
 @pytest.mark.slow
 def test_another_law(capsys):
     """Weak waves of any law: V/c0 - 1 = F″(1)/(6 F′(1)) B, B = F0/F′(1) times the ratio."""
-    options = (
-        "--law",
-        "hertz2:1,2",
-        "--masses",
-        "1",
-        "--ratios",
-        "0.1",
-        "--format",
-        "json",
-    )
-    status, out, _ = ended(capsys, precompressed.main, *options)
+    options = "--law hertz2:1,2 --masses 1 --ratios 0.1 --format json"
+    status, out, _ = ended(capsys, precompressed.main, *options.split())
     (row,) = json.loads(out)["rows"]
     assert (status, row["exact_value"]) == (0, None)
     # F = δ^{3/2} + 2 δ^{5/2}: F0 = 3, F′ = 13/2, F″ = 33/4

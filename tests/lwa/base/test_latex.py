@@ -44,3 +44,8 @@ def test_digits_in_a_sum_have_the_sign_of_the_number():
         sign = "+" if value > 0 else "-"
         found = latex.total([(sp.S.One, "u"), (value, "v")])
         assert found == f"u {sign} {sp.latex(sp.N(abs(long), 15))} v"
+
+
+def test_powers_of_numbers_are_numbers_and_factors_of_1_are_left_out():
+    half, one = latex.power(sp.S.Half, 3), latex.power(sp.S.One, 3)
+    assert latex.total([(a, half), (b, one)]) == r"a \frac{1}{8} + b"

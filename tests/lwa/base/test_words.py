@@ -25,6 +25,7 @@ class Unprintable:
         ("Forces", QUANTITIES, "did you mean force?"),
         ("x", QUANTITIES, "one of strain, force, velocity is wanted"),
         (b"full", CLOSURES, "linear or full is wanted"),
+        ("mm", ("", "SI"), "'mm': SI is wanted"),
         (Unprintable(), CLOSURES, "type Unprintable"),
         ("9" * 10**6, CLOSURES, "'999"),
     ],

@@ -124,6 +124,7 @@ ANSWERS = {
     "shock --masses 1 --spacing 1 --k 3/2 --behind 1 --ahead 2": {
         "kind": "rarefaction", "peak_value": None,
     },
+    "shock --k 3/2 --behind 1 --ahead 2": {"trailing_speed_value": None},
 }  # fmt: skip
 SYMBOLS = {s.name: s for s in theory.pde.H.free_symbols}
 

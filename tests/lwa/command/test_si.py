@@ -9,15 +9,11 @@ import sympy as sp
 
 import lwa
 from lwa import (
-    Dimer,
     LoadedChain,
-    Material,
-    Sphere,
     homogenize,
     pulse_of_strike,
 )
 from lwa.command.chain import read_chain
-from lwa.spheres import hertz
 from tests.lwa.command.answers import STEEL_AND_PTFE, result, said
 
 CHAIN = {
@@ -41,8 +37,6 @@ light = {mass = 9.75e-3, radius = 9.525e-3, material = "aluminium"}
 cell = ["heavy", "light"]
 """
 ONE_KIND = STEEL_AND_PTFE.replace('"heavy", "light"', '"heavy"')
-A, D = 193e9 / (1 - 0.3**2) / 3 * math.sqrt(2 * 2.38e-3), 2 * 2.38e-3
-"""Hertz's A and the diameter of its beads."""
 
 
 @pytest.fixture
@@ -77,16 +71,15 @@ def test_the_cell_is_the_smallest_one_and_lengths_may_have_no_unit(file):
 
 
 def test_a_wave_of_spheres_has_the_values_of_python(capsys, file):
-    steel, ptfe = Material("193e9", "0.3"), Material("1.46e9", "0.46")
-    A = hertz.stiffness(Sphere(1, "2.38e-3", steel), Sphere(1, "2.38e-3", ptfe))
-    cell = Dimer("0.45e-3", "0.123e-3", stiffnesses=(A, A), spacing="4.76e-3")
-    wave = homogenize(cell, k="3/2").pde.traveling_wave().at_force(10)
     options = ("wave", "--spheres", file(STEEL_AND_PTFE))
+    cell = read_chain(options[-1]).cell
+    wave = homogenize(cell, k="3/2").pde.traveling_wave().at_force(10)
     found = result(capsys, *options, "--force", "10")
     for name in ("compression", "speed", "bead_velocity", "force"):
         assert found[f"{name}_value"] == float(getattr(wave, name))
     out = said(capsys, *options, "--force", "10")
-    for words in ("450 mg, 123 mg", f"A = {float(A):.6g} N/m^(3/2)", "D = 4.76 mm"):
+    A = float(cell.stiffnesses[0])
+    for words in ("450 mg, 123 mg", f"A = {A:.6g} N/m^(3/2)", "D = 4.76 mm"):
         assert words in out
     assert f"speed dx/dt = {found['speed_value']:.6g} m/s" in out
     lattice = lwa.lattice_wave(cell, k="3/2", force=10)
@@ -202,12 +195,13 @@ def test_the_striker_of_a_file_is_the_default(capsys, file):
 
 def test_a_blow_beyond_hertzs_contact_has_a_note(capsys, file):
     """a/R = √(δ/2R) is 1/10 where the compression is 1/100 of the spacing."""
+    spheres = ("--spheres", file(ONE_KIND))
+    cell = read_chain(spheres[-1]).cell
     for share, noted in ((0.009, False), (0.011, True)):
-        force = ("--force", f"{A * (share * D) ** 1.5:.10g}")
-        assert (
-            "notes" in result(capsys, "wave", "--spheres", file(ONE_KIND), *force)
-        ) == noted
-    fast = result(capsys, "strike", "--spheres", file(ONE_KIND), "--velocity", "1e6")
+        force = float(cell.stiffnesses[0]) * (share * float(cell.spacing)) ** 1.5
+        found = result(capsys, "wave", *spheres, "--force", f"{force:.10g}")
+        assert ("notes" in found) == noted
+    fast = result(capsys, "strike", *spheres, "--velocity", "1e6")
     assert "Hertz's contact is that of elastic spheres" in fast["notes"][0]
 
 

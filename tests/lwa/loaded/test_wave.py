@@ -21,6 +21,7 @@ from lwa import (
 )
 from lwa.base.frozen import QUANTITIES
 from lwa.law import named
+from validation import exact_wave
 
 HERTZ = Power("3/2")
 LAWS = (named("hertz2", 1, "1/2"), named("exponential", "1/2"), named("magnetic", 4, 3))
@@ -205,6 +206,18 @@ def test_errors_cover_the_exact_wave(lattice, force, load):
     time = wave.estimate("fwhm", known.of, "time")
     relative = width.error / width.value + speed.error / speed.value
     assert time.error / time.value == pytest.approx(relative)
+
+
+def test_errors_of_all_widths_cover_the_wave_of_equal_beads():
+    """Velocities are narrower than strains, for which the theory has the same width."""
+    known = exact_wave([1], 5, background=0.4)
+    wave = loaded_wave(
+        Lattice([1], [Link(0, 1, Power(5))]), force=1, precompression=0.4**5
+    )
+    for quantity in QUANTITIES:
+        width = wave.estimate("fwhm", quantity)
+        missed = abs(width.value - known.fwhm(quantity))
+        assert missed < width.error < 5 * missed, quantity
 
 
 def test_four_particles_with_an_exponential_second_neighbour():

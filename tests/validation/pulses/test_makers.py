@@ -310,17 +310,21 @@ def test_a_refusal_ends_in_the_line_that_reads_the_file(record, folder, capsys, 
     assert status == 0, refused
 
 
-def test_one_file_a_channel(record, tmp_path):
-    """Sensors without a number are numbered in the order of the files."""
+def test_sensors_without_numbers_are_numbered_in_the_order_of_files_and_columns(
+    record, tmp_path
+):
     time, forces = record
-    files = []
-    for name, force in zip(("F0CH1.CSV", "F0CH2.CSV"), forces, strict=True):
-        files.append(tmp_path / name)
-        np.savetxt(files[-1], np.c_[time, force], delimiter=",")
+    first, second, both = (tmp_path / f"{name}.csv" for name in "abc")
+    np.savetxt(first, np.c_[time, forces[0]], delimiter=",")
+    np.savetxt(second, np.c_[time, forces[1]], delimiter=",")
     stated = {"columns": {"time": "1", "force": "2"}, "units": {"time": "s", "2": "N"}}
-    found = pulses(files, **stated).document()
-    assert [row["number"] for row in found["sensors"]] == [1, 2]
-    peaks = [row["peak_value"] for row in found["sensors"]]
-    assert peaks == pytest.approx([*PEAKS.values()], rel=0.01)
+    np.savetxt(
+        both, np.c_[time, *forces], "%g", ",", header="time (s),force (N),force (N)"
+    )
+    for files, given in (([first, second], stated), (both, {})):
+        found = pulses(files, **given).document()
+        assert [row["number"] for row in found["sensors"]] == [1, 2]
+        peaks = [row["peak_value"] for row in found["sensors"]]
+        assert peaks == pytest.approx([*PEAKS.values()], rel=0.01)
     with pytest.raises(SceneError, match="bead 3 is there twice"):
-        pulses(files, columns={"time": "1", "bead 3 force": "2"})
+        pulses([first, second], columns={"time": "1", "bead 3 force": "2"})

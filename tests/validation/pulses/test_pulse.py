@@ -79,10 +79,11 @@ def test_a_measured_number_carries_its_error():
 
 
 @pytest.mark.parametrize(
-    ("check", "error"), [(1, ROUNDING), (1.5, 1.0), (math.nan, math.nan)]
+    ("check", "error"),
+    [(1, ROUNDING), (1 + 2**-40, 5 * 2**-40), (1.5, 1.0), (math.nan, math.nan)],
 )
 def test_the_error_is_twice_the_difference_to_another_run(check, error):
-    """At least rounding; a number that the other run does not have has an unknown error."""
+    """A small one counts five times; what the other run does not have has an unknown error."""
     found = compared(lambda value: {"x": value}, [1.0, check])["x"]
     assert found.error == pytest.approx(error, nan_ok=True)
 

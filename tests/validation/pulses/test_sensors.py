@@ -132,6 +132,9 @@ def test_the_first_pulse_is_not_the_highest_one():
     assert found.fwhm == pytest.approx(math.sqrt(math.log(2)), rel=1e-6)
     with pytest.raises(MeasureError, match="nowhere positive"):
         first_pulse(spline(t, -first))
+    # Between these humps the signal stays above half of the first one: they are one pulse.
+    both = first_pulse(spline(t, pulse(0.6, 4) + pulse(1.0, 5.2)))
+    assert both.arrival == pytest.approx(5.2, abs=0.01)
     every = all_pulses(spline(t, small + first + echo))
     assert [p.peak for p in every] == pytest.approx([0.4, 1.0, 1.5], rel=1e-6)
 

@@ -84,7 +84,6 @@ def test_a_sensor_without_a_pulse_has_no_numbers(saved):
 @pytest.mark.parametrize(
     ("header", "options", "named"),
     [
-        ("time,force,2 force", {}, "each of several sensors needs its number"),
         ("time,1 force,2 force", {"distance": "2 ft"}, "distance is '2 ft'"),
         ("time,1 force,2 force", {"of": "wall"}, "of is 'wall'"),
     ],

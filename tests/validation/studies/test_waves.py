@@ -5,7 +5,6 @@ import pytest
 from scipy.integrate import quad
 
 from lwa import Dimer, homogenize
-from validation.scenes.checks import SceneError
 from validation.studies.paper import bead_fwhm, of_momentum
 
 CELL = Dimer("1", "1/4", stiffnesses=(3, 3), spacing="1/2")
@@ -41,8 +40,3 @@ def test_the_width_inside_a_bead_is_where_both_arches_are_half_of_their_peak(k):
 
     assert force(width / 2) == pytest.approx(force(0) / 2, rel=1e-11)
     assert float(wave.fwhm("force")) < width < float(wave.fwhm("force")) + D
-
-
-def test_no_momentum_is_refused():
-    with pytest.raises(SceneError, match=r"^momentum is 0"):
-        of_momentum(wave_of("3/2"), 0)

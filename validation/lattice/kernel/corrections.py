@@ -147,7 +147,6 @@ def watch_drive(chain: Chain, beads: Beads, plan: Plan, t: float, h: float) -> i
     fall and rise again. The difference between its motion and the quintic counts as error.
     """
     law = chain.laws[chain.law[0]]
-    A = chain.A[0]
     r = chain.r[0]
     start, end = _ends(chain, beads, h, FIRST)
     # Within the step δ changes by less than this from either end.
@@ -157,20 +156,9 @@ def watch_drive(chain: Chain, beads: Beads, plan: Plan, t: float, h: float) -> i
         return 0
     p = kinks.fitted_curve(start, end, kinks.STRAIGHT)
     count, top = kinks.find_edges(law, r, p, h, beads.edges)
-    curved, _ = kinks.value_and_slope(_drive_curve(beads, h), _OFF_MIDDLE)
-    given, _, _ = drive_motion(chain.drive, t + h / 2, t + _OFF_MIDDLE * h)
-    missed = abs(given - beads.y[0] - curved)
-    marked = beads.marks[0] > 0.0
-    if count > 1 or marked or abs(top) < missed:
-        force = elastic(law, max(top, 0.0) + missed) - elastic(law, top)
-        impulse = h * A * force
-        if r > 0.0:
-            # Damping c δ^p brakes a graze by the impulse c δ^p times the depth.
-            impulse += A * r * drag(law, max(top, 0.0) + missed) * missed
-        moved = impulse * chain.inverse[1] / plan.v
-        work = impulse * beads.v[0] / plan.energy
-        beads.books[SQUARES] += moved * moved + work * work
-    if count > 1 and not marked:
+    # A contact whose quintic misses it by more than its depth may close.
+    close = count > 1 or abs(top) < _drive_misfit(chain, beads, t, h)
+    if close and not beads.marks[0] > 0.0:
         beads.marks[0] = 1.0
         return 1
     return 0
@@ -191,6 +179,14 @@ def _drive_curve(beads: Beads, h: float) -> kinks.Curve:
     moved = beads.next_y[0] - beads.y[0]
     end = moved, h * beads.next_v[0], h * h * beads.given[1]
     return kinks.fitted_curve(start, end, kinks.STRAIGHT)
+
+
+@inlined
+def _drive_misfit(chain: Chain, beads: Beads, t: float, h: float) -> float:
+    """Return the distance of a driven bead's motion in a step from its quintic."""
+    curved, _ = kinks.value_and_slope(_drive_curve(beads, h), _OFF_MIDDLE)
+    given, _, _ = drive_motion(chain.drive, t + h / 2, t + _OFF_MIDDLE * h)
+    return float(abs(given - beads.y[0] - curved))
 
 
 @inlined
@@ -431,13 +427,30 @@ def correct_contact(
         _correct_heat(chain, beads, pair, i, sums.work, stored)
     if driven:
         _correct_work(chain, beads, pair, drive, sums.driven)
-    if r > 0.0:
-        # ∫ (1 - x) F dx and the heat ∫ r δ^p (dδ/dt)² dt are as wrong as p is, the impulse is not.
-        missed = _MISFIT * abs(sums.rough) * A * r * drag(law, max(found.top, 0.0))
-        heated = 2.0 * missed * abs(start[1]) / h / plan.energy
-        beads.books[SQUARES] += heated * heated
-        _count_error(beads.books, h * missed / plan.y, near, far)
-    _count_error(beads.books, change / plan.v, near, far)
+    misfit = _MISFIT * sums.rough
+    if driven:
+        misfit += _drive_misfit(chain, beads, t, h)
+    depth = max(found.top, 0.0) + misfit
+    # The moment ∫ (1 - x) F dx and the heat ∫ r δ^p (dδ/dt)² dt of damping are as wrong as p is.
+    resisted = misfit * A * r * drag(law, depth)
+    heated = 2.0 * resisted * abs(start[1]) / h / plan.energy
+    beads.books[SQUARES] += heated * heated
+    _count_error(beads.books, h * resisted / plan.y, near, far)
+    # So is the impulse of an elastic force, less so where the contact is hardly closed: half of it.
+    missed = 0.5 * misfit * h * A * stiffness(law, depth)
+    if found.jump != 0.0:
+        # The jump comes too early or too late by the misfit there over the slope.
+        place = known[0]
+        _, slope = kinks.value_and_slope(found.curve, place)
+        arch = 4.0 * place * (1.0 - place)
+        shift = 2.2 * misfit * arch * arch * arch / max(abs(slope), kinks.OPENS)
+        missed += h * A * abs(found.jump) * min(shift, 1.0)
+    if driven:
+        # Damping c δ^p brakes a graze by the impulse c δ^p times the depth.
+        missed += resisted
+        work = missed * beads.v[0] / plan.energy
+        beads.books[SQUARES] += work * work
+    _count_error(beads.books, math.hypot(missed, change) / plan.v, near, far)
     if found.top > 0.0:
         resisted = r * drag(law, found.top) * moment
         more = A * both * (stiffness(law, found.top) * third + resisted)
