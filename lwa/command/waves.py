@@ -59,7 +59,8 @@ def wave(
     """Compact traveling wave: β, width, FWHM, amplitude and speed.
 
     Beside it stands the lattice's own wave, the solitary wave of the beads' equations of motion,
-    for equal beads, light beads between heavy ones and beads nearly alike: in JSON `lattice`.
+    for equal beads, light beads between heavy ones and beads nearly alike: in JSON `lattice`. FWHM
+    is the full width at half maximum.
 
     With --force the wave of this peak contact force, in space and time; with --spheres in m, s, kg
     and N. With --background or --precompression the wave in a chain under load, in the canonical
