@@ -274,8 +274,11 @@ def attempt(read: Callable[..., Any], *arguments: Any) -> Any:
 
 
 Values = dict[str, Any]
-Made = Callable[[], Iterable[str]]
-"""Function of lines that take long to print: they are made if they are printed."""
+Made = Iterable[str]
+"""Lines that take long to print: a generator makes them when they are printed, once."""
+
+Shows = list[Shown | Made]
+"""Results, and lines of equations, that stand in LaTeX."""
 
 Lines = list["Row | str | Answer | Made"]
 """Rows, lines of text, and parts of an answer."""
@@ -289,12 +292,12 @@ class Answer:
     ----------
     head : mapping
         JSON of the chain and the settings; expressions become strings when they are printed.
-    rows : sequence of Row, str, Answer or callable
-        Results, lines of text (or a function of them), and parts, in the order of the text.
+    rows : sequence of Row, str, Answer or generator
+        Results, lines of text (or a generator of them), and parts, in the order of the text.
     scale : Scale
         Units of the numbers.
-    shown : sequence of Shown or callable
-        Results, or functions of equations, that stand in LaTeX before those of the rows.
+    shown : sequence of Shown or generator
+        Results, or generators of equations, that stand in LaTeX before those of the rows.
     errors : str
         Meaning of ±, printed below rows with an error.
     notes : sequence of str
@@ -354,8 +357,8 @@ class Answer:
                 lines.append(row.text())
             elif isinstance(row, str):
                 lines.append(row)
-            elif callable(row):
-                lines += row()
+            elif not isinstance(row, Row):
+                lines += row
             elif row.label:
                 lines.append(f"  {row.text(self.scale)}")
         # What ± means is said once, below the rows, and only where one is.
@@ -376,7 +379,7 @@ class Answer:
 
     def _equations(self) -> Iterator[str]:
         for result in self.shown:
-            yield from result() if callable(result) else result.latex_rows()
+            yield from result.latex_rows() if isinstance(result, Shown) else result
         for row in self.rows:
             if isinstance(row, Answer):
                 yield from row._equations()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import partial
 from typing import Any
 
 from lwa.command.answer import Answer, Lines, Values, rows_of
@@ -92,14 +91,14 @@ def derive(chain: ChainInput, **options: Any) -> Answer:
         chain.text,
         *closure_lines(theory),
         f"{theory.closure.model.branch} branch, to D^{theory.order}; τ = t·{pde.time_scale}",
-        partial(_lines, theory),
+        _lines(theory),
     ]
     # G, H and I are the coefficients at D^{k+3}, which an ansatz to D^4 has.
     if depends_on_first(theory) and theory.order >= 4:
         canonical = canonical_wave(theory.cell, theory.k)
         letters = rows_of(canonical, {"G": "G", "H": "H", "I": "I"})
         rows.append(Answer({}, ["", FIRST, *letters], key="canonical"))
-    shown = theory, partial(_defect_latex, theory)
+    shown = theory, _defect_latex(theory)
     return Answer(head, rows, shown=shown)
 
 

@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import sympy as sp
 
 import lwa  # its names are loaded when they are used: `lwa dispersion` spares NumPy
 from lwa.base.exact import InputError, positive
-from lwa.base.frozen import Shown
 from lwa.base.words import BRANCHES, BranchName, one_of
-from lwa.command.answer import Answer, Lines, Made, Row, Values, rows_of
+from lwa.command.answer import Answer, Lines, Row, Shows, Values, rows_of
 from lwa.command.chain import ChainInput
 from lwa.command.options import (
     BACKGROUND,
@@ -71,9 +69,9 @@ def dispersion(chain: ChainInput, order: int) -> Answer:
         chain.text,
         "coefficients of Ω²(κ), κ = qD and Ω/D the frequency in τ",
         "",
-        partial(_series_lines, series),
+        _series_lines(series),
     ]
-    shown: list[Shown | Made] = [linear]
+    shown: Shows = [linear]
     if precompression is not None:
         loaded = LoadedChain(chain.cell, chain.law, precompression)
         shown.append(loaded)
@@ -215,7 +213,7 @@ def envelope(
         ),
         described,
     ]
-    shown: list[Shown | Made] = [equation]
+    shown: Shows = [equation]
     # A breather is one solution of the equation: that of a frequency.
     if frequency is not None or detuning is not None:
         angular = frequency and frequency * turn

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import partial
 
 from lwa.base.words import QUANTITIES
 from lwa.cell import k
@@ -91,7 +90,7 @@ def expansion(chain: ChainInput, order: int | None) -> Answer:
         mass = attempt(expanded.effective_mass.at)
         rows.append(Row("effective_mass", "effective mass P²/2E", mass))
         rows.append("")
-    rows.append(partial(_series_lines, series))
+    rows.append(_series_lines(series))
     return Answer(head, rows, shown=[expanded], errors=_ERRORS)
 
 

@@ -13,9 +13,9 @@ import sympy as sp
 import lwa  # its names are loaded when they are used: waves under a load need NumPy
 from lwa.base import latex
 from lwa.base.exact import InputError, brief, number, read_exact
-from lwa.base.frozen import Estimate, NoSolitaryWave, Shown
+from lwa.base.frozen import Estimate, NoSolitaryWave
 from lwa.base.words import EXTENTS, LANGUAGES, QUANTITIES, ExtentName
-from lwa.command.answer import LONG, Answer, Lines, Made, Row, Scale, attempt, rows_of
+from lwa.command.answer import LONG, Answer, Lines, Row, Scale, Shows, attempt, rows_of
 from lwa.command.chain import ChainInput
 from lwa.command.derivation import closure_lines, depends_on_first, settings_json
 from lwa.command.options import (
@@ -59,7 +59,8 @@ def wave(
     """Compact traveling wave: β, width, FWHM, amplitude and speed.
 
     Beside it stands the lattice's own wave, the solitary wave of the beads' equations of motion,
-    for equal beads, light beads between heavy ones and beads nearly alike: in JSON `lattice`.
+    for equal beads, light beads between heavy ones and beads nearly alike: in JSON `lattice`. FWHM
+    is the full width at half maximum.
 
     With --force the wave of this peak contact force, in space and time; with --spheres in m, s, kg
     and N. With --background or --precompression the wave in a chain under load, in the canonical
@@ -195,7 +196,7 @@ def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
         "",
         *rows_of(wave, {"beta": "β (1/m)", "width": "width π/β (m)"}),
     ]
-    shown: list[Shown | Made] = [theory.pde, wave]
+    shown: Shows = [theory.pde, wave]
     notes = []
     # A number of the size turns V_s and B into speed and strain in space and time.
     if force is not None:
@@ -348,7 +349,7 @@ def on_background(chain: ChainInput, theory: Theory, p0: sp.Expr) -> Answer:
         f"  dx/dt = V_s · {field.time_scale}",
         *_unit_rise(field),
     ]
-    shown: list[Shown | Made] = [field]
+    shown: Shows = [field]
     # Small waves of a law without curvature have another equation, and a chain without load none.
     try:
         kdv = field.kdv

@@ -204,9 +204,7 @@ class Network(NamedTuple):
         """
         total = masses.sum()
         # k_0 … k_4: the dispersion stands in Λ_4.
-        k = []
-        for n in range(5):
-            k.append(np.tensordot(springs, self._stiffnesses(n), 1))
+        k = [np.tensordot(springs, self._stiffnesses(n), 1) for n in range(5)]
         zero = np.zeros((*springs.shape[:-1], self.size))
         a: list[Array] = [zero + 1]  # a_0, a_1, …
         Lambda: dict[int, Array] = {}  # Λ_2 and Λ_4

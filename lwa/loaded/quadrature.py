@@ -42,13 +42,19 @@ _LEAST = 1e-3  # size below which profiles are right to the absolute error of th
 _PLACES = 16  # nodes through which results are interpolated
 
 
-@dataclass(frozen=True, eq=False)
 class Grid:
     """Nodes of the double-exponential rule, from the foot of a wave to the peak.
 
     Distances ξ from the peak are wanted at the last nodes alone, the rows.
 
     Parameters
+    ----------
+    steps : int
+        Number of nodes per unit of t.
+    start : float
+        Least t of the rows.
+
+    Attributes
     ----------
     s, rest : Array
         The nodes, and 1 - s with all digits.
@@ -64,13 +70,36 @@ class Grid:
         ``(1-s)^{1/2} ds/dt / (s (1-s))`` at the rows, the factor of dξ.
     """
 
-    s: Array
-    rest: Array
-    ds: Array
-    rows: slice
-    to_peak: Array
-    kernel: Array
-    length: Array
+    def __init__(self, steps: int, start: float = _NEAR) -> None:
+        t = np.arange(-_END * steps, _END * steps + 1) / steps
+        odds = np.exp(np.pi * np.sinh(t))  # s over 1 - s
+        s = odds / (1 + odds)
+        rest = 1 / (1 + odds)
+        rate = np.pi * np.cosh(t) / steps  # d ln(s/(1-s)) from node to node
+        ds = s * rest * rate
+        # Towards the foot the nodes are too far apart for a polynomial through their neighbours.
+        smooth = (rate < _STEEPEST) & (t >= start)
+        rows = slice(int(np.argmax(smooth)), None)
+        sums = _cumulated(len(t))
+        # Integrals from the foot to a row
+        to_node = sums[rows]
+        # Integrals from a row to the peak: the nodes lie symmetrically about t = 0.
+        mirrored = sums[::-1, ::-1]
+        self.to_peak = mirrored[rows]
+        # The kernel K/(1-u), u = v/B, is (1-s)²/(1-u) for s > u. Below it is
+        # s (2 (1-s) - s (1-u)/u)/u, which does not cancel.
+        u = s[rows, None]
+        above_u = rest[rows, None]  # 1 - u
+        kernel = to_node * (2 * s * rest * ds) / u
+        kernel -= to_node * (s**2 * ds) * above_u / u**2
+        kernel += self.to_peak * (rest**2 * ds) / above_u
+        length = rate * np.sqrt(rest)
+        self.s = s
+        self.rest = rest
+        self.ds = ds
+        self.rows = rows
+        self.kernel = kernel
+        self.length = length[rows]
 
     def strains(self, p0: float, B: float) -> Array:
         """The strains at the nodes."""
@@ -96,43 +125,8 @@ class Grid:
         return values[first:][::-1]
 
 
-@cache
-def grid(steps: int, start: float = _NEAR) -> Grid:
-    """Build the grid of ``steps`` nodes per unit of t, with rows from ``start`` on."""
-    t = np.arange(-_END * steps, _END * steps + 1) / steps
-    odds = np.exp(np.pi * np.sinh(t))  # s over 1 - s
-    s = odds / (1 + odds)
-    rest = 1 / (1 + odds)
-    rate = np.pi * np.cosh(t) / steps  # d ln(s/(1-s)) from node to node
-    ds = s * rest * rate
-    # Towards the foot the nodes are too far apart for a polynomial through their neighbours.
-    smooth = (rate < _STEEPEST) & (t >= start)
-    first = int(np.argmax(smooth))
-    rows = slice(first, None)
-
-    sums = _cumulated(len(t))
-    # Integrals from the foot to a row
-    to_node = sums[rows]
-    # Integrals from a row to the peak: the nodes lie symmetrically about t = 0.
-    mirrored = sums[::-1, ::-1]
-    to_peak = mirrored[rows]
-    # The kernel K/(1-u), u = v/B, is (1-s)²/(1-u) for s > u. Below it is
-    # s (2 (1-s) - s (1-u)/u)/u, which does not cancel.
-    u = s[rows, None]
-    above_u = rest[rows, None]  # 1 - u
-    kernel = to_node * (2 * s * rest * ds) / u
-    kernel -= to_node * (s**2 * ds) * above_u / u**2
-    kernel += to_peak * (rest**2 * ds) / above_u
-    length = rate * np.sqrt(rest)
-    return Grid(
-        s=s,
-        rest=rest,
-        ds=ds,
-        rows=rows,
-        to_peak=to_peak,
-        kernel=kernel,
-        length=length[rows],
-    )
+grid = cache(Grid)
+"""The grid of so many nodes per unit of t, and of rows from this t on."""
 
 
 def _cumulated(count: int) -> Array:

@@ -101,10 +101,6 @@ CALLS = [
     ),
     (lambda: front(5, 1, law=WAVY), "changes its sign between the strains 3.1"),
     (lambda: front(1 + sp.Rational(1, 10**16), 1), "1e-15 of it at least"),
-    (
-        lambda: lwa.piston(Cell(["m"]), 1, law=named("exponential", 1)),
-        "results are computed in numbers",
-    ),
 ]
 
 ATTRACTED = Lattice([1], [LINK, Link(0, 3, Law(-DELTA / 50))])

@@ -19,7 +19,6 @@ from book.studies import disorder, gravity, precompressed, widths
 from lwa import Cell, Estimate, Power
 from lwa.base.words import QUANTITIES
 from validation.pulses import steady
-from validation.pulses.pulse import exponent
 from validation.pulses.sensors import record
 from validation.scenes import scenefile
 from validation.scenes.forcing import Damping, Drive
@@ -60,28 +59,50 @@ KINDS = {
 """Scenes of `run`, of beads of random masses."""
 
 
+def ratios(scene, rtol):
+    """± over deviations, from a run at a thousandth of the tolerance."""
+    found, finer = (record(scene, rtol=r, every=True) for r in (rtol, rtol / 1000))
+    for reading, true in zip(found.sensors, finer.sensors, strict=True):
+        for name, number in reading.numbers.items():
+            off = abs(number.value - true.numbers[name].value)
+            yield number.error / max(off, 1e-300)
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_errors_of_runs_are_one_to_thirty_times_the_deviation(kind):
     """At least 19 of 20: the errors of steps are nearly random, and one may vanish by chance."""
     rng = np.random.default_rng(6)
-    ratios = []
     given = dict(KINDS[kind])
     size = given.pop("size")
     stiffnesses = [given.pop("stiffness")] * (size - 1)
+    found = []
     for _ in range(8):
         masses = rng.uniform(0.3, 1.5, size)
         k = rng.choice((1.5, 2.5))
         scene = Scene(masses=masses, stiffnesses=stiffnesses, k=k, **given)
-        found, finer = (record(scene, rtol=r, every=True) for r in (1e-8, 1e-11))
-        for reading, true in zip(found.sensors, finer.sensors, strict=True):
-            for name, number in reading.numbers.items():
-                ratios.append(
-                    number.error / abs(number.value - true.numbers[name].value)
-                )
-    ratios = np.array(ratios)
-    assert np.mean(ratios < 1) < 0.05
-    assert np.mean(ratios > LARGEST) < 0.05
-    assert len(ratios) > 30
+        found += ratios(scene, 1e-8)
+    assert np.mean(np.array(found) < 1) < 0.05
+    assert np.mean(np.array(found) > LARGEST) < 0.05
+    assert len(found) > 30
+
+
+REFLECTED = """
+duration = 4e-3
+gravity = 9.81
+beads.steel = {radius = 8e-3, material = "steel 316"}
+beads.ptfe = {radius = 8e-3, material = "PTFE"}
+chain = {cell = ["steel", "steel", "ptfe"], repeat = 10}
+striker = {velocity = 0.99}
+wall = {material = "steel 316"}
+sensors = {contacts = [1, 5, 10, 15, 16, 17, 20, 25, 29, 30], beads = [15, 16, 17]}
+"""
+
+
+def test_errors_cover_the_rounding_of_a_broad_crest():
+    """Both runs err alike in its time; twice their difference left 5 of 81 outside."""
+    found = np.array([*ratios(scenefile.scene(tomllib.loads(REFLECTED)), 1e-10)])
+    assert np.sum(found < 1) <= 2
+    assert np.sum(found > LARGEST) <= 4
 
 
 def test_the_error_of_a_speed_is_that_of_both_arrivals():
@@ -91,22 +112,6 @@ def test_the_error_of_a_speed_is_that_of_both_arrivals():
     late = (first.error + second.error) / (second.value - first.value)
     for speed in found.speeds[0].numbers.values():
         assert speed.relative_error == pytest.approx(late, rel=1e-5)
-
-
-def test_the_error_of_an_exponent_is_the_worst_of_all_signs():
-    """The slope of ln y against ln x, as each of four pairs errs up or down within its ±."""
-    x = [Estimate(v, v * e) for v, e in ((1, 2e-6), (2, 1e-6), (4, 3e-6), (9, 1e-6))]
-    y = [
-        Estimate(v, v * e) for v, e in ((1, 1e-6), (1.4, 4e-6), (2.1, 1e-6), (3, 2e-6))
-    ]
-    found = exponent(x, y)
-    signs = np.array(list(product((-1, 1), repeat=8)))
-    off = np.log1p(signs * [number.relative_error for number in (*x, *y)])
-    logs = np.log([number.value for number in (*x, *y)]) + off
-    slopes = [np.polyfit(row[:4], row[4:], 1)[0] for row in logs]
-    worst = max(abs(slope - found.value) for slope in slopes)
-    assert worst <= found.error * (1 + 1e-4)
-    assert worst > found.error / 2
 
 
 def test_paper():

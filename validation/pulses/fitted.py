@@ -71,26 +71,27 @@ def fitted(
     beside = _BESIDE * (fall - rise)
     near = (t >= rise - beside) & (t <= fall + beside)
     margin = _READ * (fall - rise)
-    ends = (rise - margin, fall + margin)
-    t = t[near]
+    # Counted from the rise, times that are far from zero, as seconds since 1970, keep their digits.
+    ends = (-margin, fall - rise + margin)
+    x = t[near] - rise
     f = f[near]
     rounding = np.finfo(float).eps * np.abs(f).max()
     variance = base.best.variance + rounding**2
-    most = min(_HIGHEST, int(_DENSEST * len(t)))
-    smoothed = partial(_smoothed, t, f, base.best.correlation_time, most)
+    most = min(_HIGHEST, int(_DENSEST * len(x)))
+    smoothed = partial(_smoothed, x, f, base.best.correlation_time, most)
     wanted, spline, left = smoothed(variance)
     if left > _MISFIT * variance:
         # The noise during the pulse is larger than before.
         wanted, spline, variance = smoothed(left)
         variance = max(variance, left)
-    pulse = spline(t)
+    pulse = spline(x)
     share = math.sqrt(variance) / float(pulse.max())
     if share > _LOUDEST:
         raise MeasureError(
             f"the noise is {share:.1%} of the peak: at most {_LOUDEST:.0%} is read"
         )
-    noise = base.drawn(t, pulse, variance, step)
-    drawn = _fit(t, noise, len(spline.c))
+    noise = base.drawn(rise + x, pulse, variance, step)
+    drawn = _fit(x, noise, len(spline.c))
     best = spline.c[:, np.newaxis]
     coefficients = np.hstack((best, best + drawn.c))
     found = _read(BSpline(spline.t, coefficients, _DEGREE), ends)
@@ -101,9 +102,10 @@ def fitted(
         fewer = round(most / _COARSER)
         count = max(_LOWEST, fewer)
         samples = f[:, np.newaxis]
-        rough = _fit(t, samples, count)
+        rough = _fit(x, samples, count)
         (coarse,) = _read(rough, ends)
         errors = np.hypot(errors, numbers - coarse)
+    numbers[0] += rise  # the arrival
     estimates = map(Estimate, numbers.tolist(), errors.tolist())
     return dict(zip(READINGS, estimates, strict=True))
 

@@ -168,7 +168,10 @@ def law(
 def _pulses(file: MeasuredFile) -> tuple[Array, Array, Array | None]:
     """Return rising forces of `_FEWEST` or more pulses, their speeds and weights (None if none)."""
     errors = [n for n in ("force_error", "speed_error") if n in file.names]
-    read = file.rows("force", "speed", *errors).T
+    name = "speed"
+    if name not in file.names and "velocity" in file.names:
+        name = "velocity"
+    read = file.rows("force", name, *errors).T
     force, speed, *deviations = read[:, np.argsort(read[0])]
     if len(force) < _FEWEST or not (force[0] > 0 and speed.min() > 0):
         wanted = f"at least {_FEWEST} pulses of positive force and speed are wanted"

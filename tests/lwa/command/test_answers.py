@@ -28,7 +28,6 @@ ANSWERS = {
         "terms.0.jet": [[2, 3]], "terms.1.jet": [[2, 1], [3, 1]], "terms.2.jet": [[4, 1]],
         "terms.0.coefficient": theory.pde.G / theory.cell.spacing**2, "terms.0.jet_t": [],
     },
-    "derive --closure full --order 6": {"defect": []},
     "derive --closure full --field center --masses m1,m2,m3": {"conservative": True},
     "derive --law hertz2:1,1/2 --masses 1": {"law": "delta**(5/2)/2 + delta**(3/2)"},
     "wave --k 3/2 --masses 1,1": {
@@ -94,7 +93,6 @@ ANSWERS = {
         "lattice.fwhm_value.force": pytest.approx(1.411928, rel=1e-3),
         "lattice.fwhm_error_value.force": pytest.approx(1e-3 / 2, abs=1e-3 / 2),
     },
-    "wave --k 3/2 --masses 1,3/5": {"lattice": None},
     "wave --k 3/2 --masses 1,2,3": {"lattice": None},
     "envelope --masses 1,1/2 --k 3/2 --spacing 1 --background 2 --detuning 1/1000": {
         "kind": "bright", "branch": "1", "group_velocity_value": 0, "amplitude_value.0": 0,

@@ -70,8 +70,12 @@ def test_records_without_a_whole_pulse(time, signal, message):
     assert isinstance(caught.value, InputError)
 
 
-@pytest.mark.parametrize(("check", "error"), [(1, ROUNDING), (math.nan, math.nan)])
-def test_an_error_is_at_least_rounding_and_unknown_without_another_run(check, error):
+@pytest.mark.parametrize(
+    ("check", "error"),
+    [(1, ROUNDING), (1 + 2**-40, 5 * 2**-40), (math.nan, math.nan)],
+)
+def test_a_small_difference_counts_five_times_and_none_is_unknown(check, error):
+    """At least rounding; a number that the other run does not have has an unknown error."""
     found = compared(lambda value: {"x": value}, [1.0, check])["x"]
     assert found.error == pytest.approx(error, nan_ok=True)
 

@@ -233,24 +233,22 @@ def test_the_picture_has_a_curve_for_each_exponent(points):
 
 
 def test_the_theory_is_that_of_lwa():
-    """G + H + I < 0 at the last point: no wave of the paper's closure."""
-    *grid, none = [*product((R(3, 2), R(3)), (R(1, 5), R(1))), (R(3), R(7))]
-    found = theory([Point(k, omega, None, {}) for k, omega in (*grid, none)])
-    for i, (k, omega) in enumerate(grid):
-        cell = Dimer(1, omega, spacing=1)
-        waves = {
-            "linear": homogenize(cell, k=k).pde.traveling_wave(),
-            "canonical": canonical_wave(cell, k),
+    """G + H + I < 0 at the second point: no wave of the paper's closure."""
+    found = theory([Point(R(3), omega, None, {}) for omega in (R(1, 5), R(7))])
+    cell = Dimer(1, R(1, 5), spacing=1)
+    for closure, wave in (
+        ("linear", homogenize(cell, k=3).pde.traveling_wave()),
+        ("canonical", canonical_wave(cell, 3)),
+    ):
+        expected = {
+            "width": wave.fwhm("force"),
+            "strain_width": wave.fwhm("strain"),
+            "speed": wave.at_force(1).speed,
         }
-        for (closure, name), values in found.items():
-            wave = waves[closure]
-            expected = {
-                "width": wave.fwhm("force"),
-                "strain_width": wave.fwhm("strain"),
-                "speed": wave.at_force(1).speed,
-            }
-            assert values[i] == pytest.approx(float(expected[name]), rel=1e-14)
-    assert np.isnan([found["linear", name][-1] for name in ("width", "speed")]).all()
+        for name, value in expected.items():
+            first, second = found[closure, name]
+            assert first == pytest.approx(float(value), rel=1e-14)
+            assert np.isnan(second) == (closure == "linear")
 
 
 def test_lost_workers_are_reported():

@@ -46,11 +46,9 @@ _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the t
 _ROUNDS, _SETTLED = 4, 0.02
 # A contact is nearly open at a step's one end if δ there is less than _NEAR times δ at the other. A
 # weak contact, whose force is less than _STRONG times the least that counts, is nearly open below
-# _VERY_NEAR, as the pair's own error is smaller there. Measured: _NEAR for all takes a tenth more
-# time for equal beads, _VERY_NEAR for all a quarter more for dimers at small tolerances.
-# The singularity of damping, δ^{1/4} say, is felt farther away: at δ halved within a step, and a
-# tolerance of 1e-10, the energy was off by 18 tolerances.
-_NEAR, _VERY_NEAR, _NEAR_DAMPED, _STRONG = 0.3, 0.03, 0.6, 1e3
+# _VERY_NEAR, as the pair's own error is smaller there. Measured: with _STRONG = 1e3, or with _NEAR
+# = 0.6 for damped contacts, chains take up to a third more time for the same errors.
+_NEAR, _VERY_NEAR, _STRONG = 0.3, 0.03, 1e4
 # Mean distance of the quintic from a p with ``p'' = 9 P₄(x)``, Legendre's polynomial: the distance
 # is ``9 · 0.0365 (1 - (2x - 1)²)³``.
 _MISFIT = 0.15
@@ -113,11 +111,6 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
     # squared errors of all beads, so that each contact may have a share of 1/√hi.
     least = _SLIGHT * plan.v * plan.lightest / (h * math.sqrt(hi))
     count = 0
-    near = _NEAR
-    very_near = _VERY_NEAR
-    if chain.damped:
-        near = _NEAR_DAMPED
-        very_near = _NEAR
     for i in range(index(hi)):
         before = rest[i] + y[i] - y[i + ONE]
         after = rest[i] + next_y[i] - next_y[i + ONE]
@@ -128,7 +121,7 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
         force = max(first, then)
         most = max(before, after)
         # The error of a kink grows with the force: a strong contact is corrected from farther away.
-        share = near if force > _STRONG * least else very_near
+        share = _NEAR if force > _STRONG * least else _VERY_NEAR
         nearly_open = (most > 0.0) & (min(before, after) < share * most)
         # A damping force can begin or end with a jump, which matters however weak the force is at
         # the step's ends, and while δ > 0, as damping may not pull.
@@ -154,7 +147,6 @@ def watch_drive(chain: Chain, beads: Beads, plan: Plan, t: float, h: float) -> i
     fall and rise again. The difference between its motion and the quintic counts as error.
     """
     law = chain.laws[chain.law[0]]
-    A = chain.A[0]
     r = chain.r[0]
     start, end = _ends(chain, beads, h, FIRST)
     # Within the step δ changes by less than this from either end.
@@ -164,20 +156,9 @@ def watch_drive(chain: Chain, beads: Beads, plan: Plan, t: float, h: float) -> i
         return 0
     p = kinks.fitted_curve(start, end, kinks.STRAIGHT)
     count, top = kinks.find_edges(law, r, p, h, beads.edges)
-    curved, _ = kinks.value_and_slope(_drive_curve(beads, h), _OFF_MIDDLE)
-    given, _, _ = drive_motion(chain.drive, t + h / 2, t + _OFF_MIDDLE * h)
-    missed = abs(given - beads.y[0] - curved)
-    marked = beads.marks[0] > 0.0
-    if count > 1 or marked or abs(top) < missed:
-        force = elastic(law, max(top, 0.0) + missed) - elastic(law, top)
-        impulse = h * A * force
-        if r > 0.0:
-            # Damping c δ^p brakes a graze by the impulse c δ^p times the depth.
-            impulse += A * r * drag(law, max(top, 0.0) + missed) * missed
-        moved = impulse * chain.inverse[1] / plan.v
-        work = impulse * beads.v[0] / plan.energy
-        beads.books[SQUARES] += moved * moved + work * work
-    if count > 1 and not marked:
+    # A contact whose quintic misses it by more than its depth may close.
+    close = count > 1 or abs(top) < _drive_misfit(chain, beads, t, h)
+    if close and not beads.marks[0] > 0.0:
         beads.marks[0] = 1.0
         return 1
     return 0
@@ -198,6 +179,14 @@ def _drive_curve(beads: Beads, h: float) -> kinks.Curve:
     moved = beads.next_y[0] - beads.y[0]
     end = moved, h * beads.next_v[0], h * h * beads.given[1]
     return kinks.fitted_curve(start, end, kinks.STRAIGHT)
+
+
+@inlined
+def _drive_misfit(chain: Chain, beads: Beads, t: float, h: float) -> float:
+    """Return the distance of a driven bead's motion in a step from its quintic."""
+    curved, _ = kinks.value_and_slope(_drive_curve(beads, h), _OFF_MIDDLE)
+    given, _, _ = drive_motion(chain.drive, t + h / 2, t + _OFF_MIDDLE * h)
+    return float(abs(given - beads.y[0] - curved))
 
 
 @inlined
@@ -438,16 +427,30 @@ def correct_contact(
         _correct_heat(chain, beads, pair, i, sums.work, stored)
     if driven:
         _correct_work(chain, beads, pair, drive, sums.driven)
+    misfit = _MISFIT * sums.rough
+    if driven:
+        misfit += _drive_misfit(chain, beads, t, h)
+    depth = max(found.top, 0.0) + misfit
     # The moment ∫ (1 - x) F dx and the heat ∫ r δ^p (dδ/dt)² dt of damping are as wrong as p is.
-    misfit = _MISFIT * abs(sums.rough)
-    missed = misfit * A * r * drag(law, max(found.top, 0.0))
-    heated = 2.0 * missed * abs(start[1]) / h / plan.energy
+    resisted = misfit * A * r * drag(law, depth)
+    heated = 2.0 * resisted * abs(start[1]) / h / plan.energy
     beads.books[SQUARES] += heated * heated
-    _count_error(beads.books, h * missed / plan.y, near, far)
+    _count_error(beads.books, h * resisted / plan.y, near, far)
     # So is the impulse of an elastic force, less so where the contact is hardly closed: half of it.
-    missed = 0.5 * misfit * h * A * stiffness(law, found.top)
-    _count_error(beads.books, missed / plan.v, near, far)
-    _count_error(beads.books, change / plan.v, near, far)
+    missed = 0.5 * misfit * h * A * stiffness(law, depth)
+    if found.jump != 0.0:
+        # The jump comes too early or too late by the misfit there over the slope.
+        place = known[0]
+        _, slope = kinks.value_and_slope(found.curve, place)
+        arch = 4.0 * place * (1.0 - place)
+        shift = 2.2 * misfit * arch * arch * arch / max(abs(slope), kinks.OPENS)
+        missed += h * A * abs(found.jump) * min(shift, 1.0)
+    if driven:
+        # Damping c δ^p brakes a graze by the impulse c δ^p times the depth.
+        missed += resisted
+        work = missed * beads.v[0] / plan.energy
+        beads.books[SQUARES] += work * work
+    _count_error(beads.books, math.hypot(missed, change) / plan.v, near, far)
     if found.top > 0.0:
         resisted = r * drag(law, found.top) * moment
         more = A * both * (stiffness(law, found.top) * third + resisted)

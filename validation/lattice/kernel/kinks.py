@@ -75,9 +75,9 @@ class Integrals(NamedTuple):
     work, driven : float
         Those of ``F p'``, and of ``F b'`` for the motion b of a driven bead.
     rough : float
-        For a damped or driven contact, that of p'' by the force, less that of the curve, times
-        Legendre's polynomial of degree 4: 0 for a force that the second derivative of a quintic
-        follows.
+        For a damped or driven contact, and a force that jumps, the size of those of p'' by the
+        force, less that of the curve, times Legendre's polynomials of degrees 4 and 5: 0 for a
+        force that the second derivative of a quintic follows.
     """
 
     impulse: float
@@ -332,7 +332,8 @@ def resolved(
     c = fitted_curve(start, end, guess)
     count, top = find_edges(law, r, c, h, edges)
     place, jump, b = _find_jump(law, r, c, h, edges, count)
-    if abs(bend * jump) < 1e-12 * abs(start[1]):
+    # Between a driven bead and a wall the force bends nothing, but its jump heats.
+    if bend != 0.0 and abs(bend * jump) < 1e-12 * abs(start[1]):
         return Kinks(c, count, top, 0.0)
     c = fitted_curve(start, end, (place, bend * jump, b))
     count, top = find_edges(law, r, c, h, edges)
@@ -385,10 +386,13 @@ def _place_points(
 
 
 @part
-def _fourth(x: float) -> float:
-    """Return Legendre's polynomial of degree 4 for the interval from 0 to 1."""
+def _legendre(x: float) -> tuple[float, float]:
+    """Return Legendre's polynomials of degrees 4 and 5 for the interval from 0 to 1."""
     t = 2.0 * x - 1.0
-    return (35.0 * t * t * t * t - 30.0 * t * t + 3.0) / 8.0
+    second = 1.5 * t * t - 0.5
+    third = (5.0 * t * second - 2.0 * t) / 3.0
+    fourth = (7.0 * t * third - 3.0 * second) / 4.0
+    return fourth, (9.0 * t * fourth - 4.0 * third) / 5.0
 
 
 @alone
@@ -430,7 +434,7 @@ def integrals(
     c = found.curve
     x = points[0]
     w = points[1]
-    once = twice = third = work = given = rough = 0.0
+    once = twice = third = work = given = even = odd = 0.0
     for n in range(found.intervals):
         a = edges[n]
         b = edges[n + 1]
@@ -461,9 +465,13 @@ def integrals(
                 twice += left * force
                 third += 0.5 * left * left * force
                 work += slope * force
-                if r > 0.0 or driven:
+                if r > 0.0 or driven or found.jump != 0.0:
                     _, _, known = bent(c[6], x[m])
-                    rough += _fourth(x[m]) * (bend * force - w[m] * known)
+                    fourth, fifth = _legendre(x[m])
+                    even += fourth * (bend * force - w[m] * known)
+                    odd += fifth * (bend * force - w[m] * known)
                 if driven:
                     given += value_and_slope(bead, x[m])[1] * force
+    # A kink has no part of degree 4 at some places; there it has one of degree 5.
+    rough = math.hypot(even, 0.5 * odd)
     return Integrals(once, twice, third, work, given, rough)
