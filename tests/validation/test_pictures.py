@@ -92,7 +92,7 @@ def test_a_run_is_drawn_into_given_axes():
     ax.figure.draw_without_rendering()
     assert ax.get_legend().get_window_extent().y0 >= ax.bbox.y1  # on no curve
     own = run.plot()
-    assert own.get_xlabel() == ax.get_xlabel()
+    assert (own.get_xlabel(), own.get_ylabel()) == ("time", "force")
     pyplot.close(own.figure)
     with pytest.raises(InputError, match="no picture"):
         simulate(three).plot()
