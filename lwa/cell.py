@@ -77,8 +77,8 @@ class Cell(Value):
         stiffnesses: Iterable[Quantity] = (),
         spacing: Quantity = D,
     ) -> None:
-        masses = _quantities(masses, "masses", "mass")
-        stiffnesses = _quantities(stiffnesses, "stiffnesses", "stiffness")
+        masses = quantities(masses, "masses", "mass")
+        stiffnesses = quantities(stiffnesses, "stiffnesses", "stiffness")
         if not masses:
             raise InputError("a cell needs at least one mass")
         if not stiffnesses:
@@ -407,7 +407,14 @@ def _by_ratio(
     )
 
 
-def _quantities(values: Any, name: str, singular: str) -> tuple[sp.Expr, ...]:
-    """Read a sequence of positive numbers or symbols."""
+def quantities(values: Any, name: str, singular: str) -> tuple[sp.Expr, ...]:
+    """Read a sequence of positive numbers or symbols.
+
+    Parameters
+    ----------
+    values : iterable
+    name, singular : str
+        Names of the sequence and of one of its values in messages.
+    """
     numbered = enumerate(items(values, name), start=1)
     return tuple(positive(x, f"{singular} {i}") for i, x in numbered)

@@ -141,10 +141,7 @@ def test_the_first_compilation_is_not_silent_for_long(tmp_path):
     fresh = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
     screen, terminal = pty.openpty()
     streams = dict(stdout=terminal, stderr=terminal, env=fresh)
-    with (
-        subprocess.Popen(command, **streams) as running,
-        contextlib.ExitStack() as end,
-    ):
+    with subprocess.Popen(command, **streams) as running, contextlib.ExitStack() as end:
         end.callback(running.kill)
         os.close(terminal)
         for _ in range(4):

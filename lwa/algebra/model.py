@@ -90,9 +90,8 @@ class Partition(Value):
 
     def elements(self, context: fmpq_mpoly_ctx) -> list[fmpq_mpoly]:
         """The fractions ``f_0, f_1, …`` in a ring that has `names` among its generators."""
-        fractions = {}
-        for weight, value in self.rational.items():
-            fractions[weight] = context.constant(to_flint(value))
+        rational = self.rational.items()
+        fractions = {w: context.constant(to_flint(value)) for w, value in rational}
         if not fractions:
             # The last fraction is what the others leave of the total.
             rest = context.constant(self.total)

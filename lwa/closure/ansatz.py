@@ -104,9 +104,10 @@ def _solution(
     b: Sequence[fmpq_mpoly], first: GradedSeries, second: GradedSeries
 ) -> Solution:
     """The solution with E_n of the first equation of motion and the defect first - second."""
-    defect = []
-    for E_n, other in zip(first, second, strict=True):
-        defect.append(E_n - other)
+    pairs = zip(first, second, strict=True)
     return Solution(
-        first.algebra, acceleration=tuple(first), ansatz=tuple(b), defect=tuple(defect)
+        first.algebra,
+        acceleration=tuple(first),
+        ansatz=tuple(b),
+        defect=tuple(E_n - other for E_n, other in pairs),
     )

@@ -54,8 +54,6 @@ from lwa.law import ContactLaw, for_cell
 KindName = Literal["bright", "dark"]
 """A kind of envelope: localised, ``ω″χ < 0``, or a dip in a wave train."""
 
-KINDS: tuple[KindName, ...] = get_args(KindName)
-
 
 @dataclass(frozen=True, repr=False)
 class Envelope(LoadedMode):
@@ -229,7 +227,7 @@ class Breather(Value):
     kind: KindName
 
     def __post_init__(self) -> None:
-        one_of(self.kind, KINDS, "kind")
+        one_of(self.kind, get_args(KindName), "kind")
         # With symbols every condition is taken to hold.
         if self.detuning.is_number and self.detuning >= 1:
             self._refuse("a frequency is positive, and the detuning below 1")

@@ -76,10 +76,8 @@ class PDE(OfClosure):
         base = self.closure.model.base
         sign = 1 if self.acoustic else -1
         acceleration = self.closure.solution.acceleration
-        found = {}
-        for n in range(base + 1, len(acceleration)):
-            found[n] = terms(self.closure, sign * acceleration[n])
-        return found
+        orders = range(base + 1, len(acceleration))
+        return {n: terms(self.closure, sign * acceleration[n]) for n in orders}
 
     @cached_property
     def third_order(self) -> dict[str, sp.Expr]:
@@ -151,7 +149,7 @@ class PDE(OfClosure):
         Raises
         ------
         InputError
-            On the optical branch, and for a closure that leaves a defect.
+            On the optical branch, and for the linear closure of two particles.
         """
         densities = energy(self.closure)
         return {n: terms(self.closure, e, ENERGY) for n, e in enumerate(densities)}

@@ -131,9 +131,8 @@ def _deviations() -> Array:
 def _mean(values: Array, k_value: sp.Expr, ratio: sp.Expr) -> float:
     """The bilinear interpolation in k and m2/m1 of values by row of the file."""
     exponents, ratios = map(np.unique, _deviations().T[:2])
-    at_ratio = []
-    for row in values.reshape(len(exponents), -1):
-        at_ratio.append(np.interp(float(ratio), ratios, row))
+    rows = values.reshape(len(exponents), -1)
+    at_ratio = [np.interp(float(ratio), ratios, row) for row in rows]
     return float(np.interp(float(k_value), exponents, at_ratio))
 
 

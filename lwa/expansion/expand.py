@@ -151,8 +151,7 @@ class Expansion(Parametric):
     def _series(
         self, quantity: str, unit: sp.Expr, power: sp.Expr, contact: int = 0
     ) -> EpsilonSeries:
-        # Those of other contacts are counted for widths alone.
-
+        """The series of a quantity; the contact matters to widths alone."""
         coefficients = self._observables.coefficients(quantity, contact)
         return EpsilonSeries(unit, power, coefficients, self.k, self.cell, quantity)
 

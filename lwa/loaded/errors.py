@@ -61,30 +61,14 @@ BARE_PAIR = Rule(square=0.16, width=nan, largest=1.8)
 UNKNOWN = Rule(nan, nan, nan)
 
 
-class Bounds(NamedTuple):
-    """Bounds on the relative errors of the speed and of widths; NaN where none was measured.
-
-    Parameters
-    ----------
-    speed : float
-        Bound of the speed.
-    width, velocity : float
-        Bounds of the widths of force and strain, and of the width of the velocity.
-    """
-
-    speed: float
-    width: float
-    velocity: float
-
-
 def bounds(
     lattice: Lattice,
     slope_at_rest: float,
     slope_at_peak: float,
     square: float,
     rises: bool,
-) -> Bounds:
-    """Return the bounds for a wave.
+) -> dict[str, float]:
+    """Bounds on the relative errors of the speed and of widths; NaN where none was measured.
 
     Parameters
     ----------
@@ -96,6 +80,11 @@ def bounds(
         The squared speed ``V̂²``, in the unit of the slopes.
     rises : bool
         False for a rarefaction.
+
+    Returns
+    -------
+    dict
+        Bounds of the "speed", and of the width of each quantity by its name.
     """
     # Part of V² that the wave adds to the sound's
     added = 1 - slope_at_rest / square
@@ -105,11 +94,13 @@ def bounds(
         rule = UNKNOWN
     # The rules' unit of an error of V², relative. That of V is half of it.
     stiffening = (slope_at_peak - slope_at_rest) / square
-    return Bounds(
-        speed=rule.square * delta * stiffening / 2,
-        width=rule.width * delta,
-        velocity=rule.velocity * delta,
-    )
+    width = rule.width * delta
+    return {
+        "speed": rule.square * delta * stiffening / 2,
+        "strain": width,
+        "force": width,
+        "velocity": rule.velocity * delta,
+    }
 
 
 def _rule(lattice: Lattice, bare: bool) -> Rule:

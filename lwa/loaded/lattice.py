@@ -35,7 +35,7 @@ from lwa.base.exact import (
 )
 from lwa.base.files import items
 from lwa.base.frozen import Value
-from lwa.cell import Cell
+from lwa.cell import Cell, quantities
 from lwa.law import ContactLaw, Power, for_cell
 from lwa.linear.springs import Bond, Network
 from lwa.loaded.statics import Statics
@@ -180,10 +180,7 @@ class Lattice(Value):
         resonators: Iterable[Resonator] = (),
         spacing: Quantity = 1,
     ) -> None:
-        read = []
-        for n, mass in enumerate(items(masses, "masses"), start=1):
-            read.append(positive(mass, f"mass {n}"))
-        object.__setattr__(self, "masses", tuple(read))
+        object.__setattr__(self, "masses", quantities(masses, "masses", "mass"))
         object.__setattr__(self, "links", _parts(links, Link, "links"))
         parts = _parts(resonators, Resonator, "resonators")
         object.__setattr__(self, "resonators", parts)
@@ -204,9 +201,8 @@ class Lattice(Value):
     def of_cell(cls, cell: Cell, law: ContactLaw) -> Self:
         """The chain of a cell whose contacts share a law."""
         for_cell(law, cell)
-        links = []
-        for i, A in enumerate(cell.stiffnesses):
-            links.append(Link(i, i + 1, law, factor=A))
+        factors = enumerate(cell.stiffnesses)
+        links = [Link(i, i + 1, law, factor=A) for i, A in factors]
         return cls(cell.masses, links, (), cell.spacing)
 
     @property

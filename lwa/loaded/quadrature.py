@@ -42,13 +42,19 @@ _LEAST = 1e-3  # size below which profiles are right to the absolute error of th
 _PLACES = 16  # nodes through which results are interpolated
 
 
-@dataclass(frozen=True, eq=False)
 class Grid:
     """Nodes of the double-exponential rule, from the foot of a wave to the peak.
 
     Distances ξ from the peak are wanted at the last nodes alone, the rows.
 
     Parameters
+    ----------
+    steps : int
+        Number of nodes per unit of t.
+    start : float
+        Least t of the rows.
+
+    Attributes
     ----------
     s, rest : Array
         The nodes, and 1 - s with all digits.
@@ -64,13 +70,36 @@ class Grid:
         ``(1-s)^{1/2} ds/dt / (s (1-s))`` at the rows, the factor of dξ.
     """
 
-    s: Array
-    rest: Array
-    ds: Array
-    rows: slice
-    to_peak: Array
-    kernel: Array
-    length: Array
+    def __init__(self, steps: int, start: float = _NEAR) -> None:
+        t = np.arange(-_END * steps, _END * steps + 1) / steps
+        odds = np.exp(np.pi * np.sinh(t))  # s over 1 - s
+        s = odds / (1 + odds)
+        rest = 1 / (1 + odds)
+        rate = np.pi * np.cosh(t) / steps  # d ln(s/(1-s)) from node to node
+        ds = s * rest * rate
+        # Towards the foot the nodes are too far apart for a polynomial through their neighbours.
+        smooth = (rate < _STEEPEST) & (t >= start)
+        rows = slice(int(np.argmax(smooth)), None)
+        sums = _cumulated(len(t))
+        # Integrals from the foot to a row
+        to_node = sums[rows]
+        # Integrals from a row to the peak: the nodes lie symmetrically about t = 0.
+        mirrored = sums[::-1, ::-1]
+        self.to_peak = mirrored[rows]
+        # The kernel K/(1-u), u = v/B, is (1-s)²/(1-u) for s > u. Below it is
+        # s (2 (1-s) - s (1-u)/u)/u, which does not cancel.
+        u = s[rows, None]
+        above_u = rest[rows, None]  # 1 - u
+        kernel = to_node * (2 * s * rest * ds) / u
+        kernel -= to_node * (s**2 * ds) * above_u / u**2
+        kernel += self.to_peak * (rest**2 * ds) / above_u
+        length = rate * np.sqrt(rest)
+        self.s = s
+        self.rest = rest
+        self.ds = ds
+        self.rows = rows
+        self.kernel = kernel
+        self.length = length[rows]
 
     def strains(self, p0: float, B: float) -> Array:
         """The strains at the nodes."""
@@ -96,43 +125,8 @@ class Grid:
         return values[first:][::-1]
 
 
-@cache
-def grid(steps: int, start: float = _NEAR) -> Grid:
-    """Build the grid of ``steps`` nodes per unit of t, with rows from ``start`` on."""
-    t = np.arange(-_END * steps, _END * steps + 1) / steps
-    odds = np.exp(np.pi * np.sinh(t))  # s over 1 - s
-    s = odds / (1 + odds)
-    rest = 1 / (1 + odds)
-    rate = np.pi * np.cosh(t) / steps  # d ln(s/(1-s)) from node to node
-    ds = s * rest * rate
-    # Towards the foot the nodes are too far apart for a polynomial through their neighbours.
-    smooth = (rate < _STEEPEST) & (t >= start)
-    first = int(np.argmax(smooth))
-    rows = slice(first, None)
-
-    sums = _cumulated(len(t))
-    # Integrals from the foot to a row
-    to_node = sums[rows]
-    # Integrals from a row to the peak: the nodes lie symmetrically about t = 0.
-    mirrored = sums[::-1, ::-1]
-    to_peak = mirrored[rows]
-    # The kernel K/(1-u), u = v/B, is (1-s)²/(1-u) for s > u. Below it is
-    # s (2 (1-s) - s (1-u)/u)/u, which does not cancel.
-    u = s[rows, None]
-    above_u = rest[rows, None]  # 1 - u
-    kernel = to_node * (2 * s * rest * ds) / u
-    kernel -= to_node * (s**2 * ds) * above_u / u**2
-    kernel += to_peak * (rest**2 * ds) / above_u
-    length = rate * np.sqrt(rest)
-    return Grid(
-        s=s,
-        rest=rest,
-        ds=ds,
-        rows=rows,
-        to_peak=to_peak,
-        kernel=kernel,
-        length=length[rows],
-    )
+grid = cache(Grid)
+"""The grid of so many nodes per unit of t, and of rows from this t on."""
 
 
 def _cumulated(count: int) -> Array:
@@ -142,24 +136,16 @@ def _cumulated(count: int) -> Array:
     function vanishes beyond the ends.
     """
     # The cell from 0 to 1, with as many places before it as behind it
-    places = range(1 - _WINDOW // 2, _WINDOW // 2 + 1)
+    before = _WINDOW // 2 - 1
+    places = np.arange(-before, _WINDOW - before, dtype=float)
     # Gauss's rule of this many nodes is exact for the polynomial.
     x, w = np.polynomial.legendre.leggauss(_WINDOW)
-    x = (x + 1) / 2
-    w = w / 2
-    weights = []
-    for j in places:
-        lagrange = np.ones(_WINDOW)  # 1 at the place j, 0 at the others
-        for i in places:
-            if i != j:
-                lagrange *= (x - i) / (j - i)
-        weights.append(w @ lagrange)
+    weights = _lagrange(places[:, None], (x + 1) / 2) @ w / 2
     cells = np.zeros((count - 1, count + _WINDOW))
     for i, row in enumerate(cells):
         row[i : i + _WINDOW] = weights
     sums = np.cumsum(cells, axis=0)
     # The columns of places beyond the ends go: there the function is 0.
-    before = -places[0]
     inside = sums[:, before : before + count]
     return np.vstack([np.zeros(count), inside])
 
@@ -167,21 +153,23 @@ def _cumulated(count: int) -> Array:
 def _interpolated(x: Array, y: Array, at: Array) -> Array:
     """Values at the places ``at`` of a function with values y at ascending x.
 
-    The polynomial through the `_PLACES` nearest values is evaluated by Neville's scheme.
+    They are those of the polynomial through the `_PLACES` nearest values.
     """
     nearest = np.searchsorted(x, at) - _PLACES // 2
     first = np.clip(nearest, 0, len(x) - _PLACES)
     # One column of places for each value that is wanted
     window = first + np.arange(_PLACES)[:, None]
-    x = x[window]
-    y = y[window]
-    for n in range(1, _PLACES):
-        left = x[:-n]
-        right = x[n:]
-        rising = (at - left) * y[1:]
-        falling = (at - right) * y[:-1]
-        y = (rising - falling) / (right - left)
-    return np.asarray(y[0])
+    return np.asarray((y[window] * _lagrange(x[window], at)).sum(axis=0))
+
+
+def _lagrange(x: Array, at: Array) -> Array:
+    """Lagrange's polynomials at the places ``at``: the n-th is 1 at ``x[n]``, 0 at the others."""
+    # The product of (at - x_m)/(x_n - x_m) over all m but n
+    with np.errstate(all="ignore"):
+        ratios = (at - x) / (x[:, None] - x)
+    own = np.arange(len(x))
+    ratios[own, own] = 1
+    return np.asarray(ratios.prod(axis=1))
 
 
 @dataclass(frozen=True, eq=False)

@@ -94,7 +94,12 @@ class LoadedWave(States):
         else:
             reason = self._quadrature.refusal()
         if reason:
-            raise NoSolitaryWave(reason)
+            # The user may have given either, and taken the total force for the rise.
+            strains = f"p0 = {brief(self.background)}, B = {brief(self.strain)}"
+            forces = (
+                f"from F0 = {brief(self.precompression)} to F = {brief(self.force)}"
+            )
+            raise NoSolitaryWave(f"{strains}, {forces}: {reason}")
         for resonator in self.lattice.resonators:
             rate = number(self.speed / self.chain.spacing)  # V/D
             ratio = self.lattice.resonance(resonator) / (2 * pi * rate)
@@ -272,14 +277,12 @@ class LoadedWave(States):
         )
         if name == "speed":
             value = number(self.speed)
-            relative = known.speed
+            relative = known["speed"]
         else:
             value = number(self.fwhm(quantity, extent))
-            relative = known.width
-            if quantity == "velocity":
-                relative = known.velocity
+            relative = known[quantity]
             if extent == "time":  # the width divided by the speed
-                relative += known.speed
+                relative += known["speed"]
         return Estimate(value, value * relative)
 
     @cached_property
@@ -394,7 +397,11 @@ def loaded_wave(
     else:
         contact = for_cell(law, chain, k)
         if by_strain:
-            return _of_strains(chain, contact, rise, background)
+            field = Background(chain, contact, 0 if background is None else background)
+            B = field.rise if rise is None else read_exact(rise, "rise")
+            if B.is_zero:
+                raise InputError("rise is 0: `kdv` is the limit of small waves")
+            return LoadedWave.of_strains(field, B)
     load = read_exact(0 if precompression is None else precompression, "precompression")
     if not load.is_zero:
         load = positive(load, "precompression")
@@ -403,27 +410,4 @@ def loaded_wave(
         raise NoSolitaryWave(
             f"force and precompression are both {shorten(peak)}: no wave"
         )
-    try:
-        return LoadedWave.of_forces(chain, contact, load, peak)
-    except NoSolitaryWave as reason:
-        # The user may have taken the total force for the rise.
-        below = "below " if (peak - load).is_negative else ""
-        raise NoSolitaryWave(
-            f"force is {shorten(peak)}, {below}precompression {shorten(load)}: {reason}"
-        ) from None
-
-
-def _of_strains(
-    cell: Cell, law: ContactLaw, rise: Quantity | None, background: Quantity | None
-) -> LoadedWave:
-    """The wave of a cell whose strain rises from a static strain, by default from 0 by B."""
-    field = Background(cell, law, 0 if background is None else background)
-    B = field.rise if rise is None else read_exact(rise, "rise")
-    if B.is_zero:
-        raise InputError("rise is 0: `kdv` is the limit of small waves")
-    try:
-        return LoadedWave.of_strains(field, B)
-    except NoSolitaryWave as reason:
-        raise NoSolitaryWave(
-            f"p0 = {shorten(field.p0)}, B = {shorten(B)}: {reason}"
-        ) from None
+    return LoadedWave.of_forces(chain, contact, load, peak)

@@ -29,8 +29,6 @@ LARGEST = 1e6
 Missing = Literal["raise", "nan"]
 """Answers where no wave exists: raise `lwa.NoSolitaryWave`, or return NaN."""
 
-MISSING: tuple[Missing, ...] = get_args(Missing)
-
 
 @dataclass(frozen=True)
 class NumericWave(Value):
@@ -62,7 +60,7 @@ class NumericWave(Value):
     missing: Missing = "raise"
 
     def __post_init__(self) -> None:
-        one_of(self.missing, MISSING, "missing")
+        one_of(self.missing, get_args(Missing), "missing")
         symbols = {self.wave.k, *self.wave.cell.masses}
         held = sp.Tuple(self.wave.coefficient_sum, self.wave.speed_factor).free_symbols
         named = all(x.is_Symbol for x in symbols)

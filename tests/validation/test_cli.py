@@ -38,14 +38,19 @@ def shown(capsys, found, *arguments):
 
 @pytest.mark.parametrize("most", [1.0, 0.1])
 def test_a_study_prints_its_result(capsys, most):
-    """A result that fails is printed too, and ends with 1."""
+    """A result that fails is printed too, and ends with 1; text has findings that fail alone."""
     rows = (Table((Column("n", "sites"),), ((8,),), "rows"),)
-    found = Report("one", rows, (Finding("drift", 0.5, high=most),))
-    status = 0 if most > 0.5 else 1
-    assert shown(capsys, found) == (status, found.text() + "\n", "")
-    assert shown(capsys, found, "--format", "csv") == (status, "n\n8\n", "")
-    code, out, err = shown(capsys, found, "--format", "json")
-    assert (code, json.loads(out), err) == (status, found.document(), "")
+    findings = (Finding("drift", 0.5, 0.0, 1.0), Finding("loss", 0.5, high=most))
+    found = Report("one", rows, findings)
+    ok = most > 0.5
+    status, text, _ = shown(capsys, found)
+    assert (status, text.count("FAILS"), "drift" in text) == (not ok, not ok, False)
+    assert text.endswith(f"2 checks: {'all hold' if ok else '1 of 2 fail'}\n")
+    assert shown(capsys, found, "--format", "csv") == (not ok, "n\n8\n", "")
+    document = json.loads(shown(capsys, found, "--format", "json")[1])
+    assert document["ok"] is ok
+    assert document["rows"] == [{"n": 8}]
+    assert [row["ok"] for row in document["findings"]] == [True, ok]
 
 
 def test_text_is_as_wide_as_the_terminal_and_a_pipe_gets_100(monkeypatch):

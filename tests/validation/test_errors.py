@@ -19,7 +19,6 @@ from book.studies import disorder, gravity, precompressed, widths
 from lwa import Cell, Estimate, Power
 from lwa.base.words import QUANTITIES
 from validation.pulses import steady
-from validation.pulses.pulse import exponent
 from validation.pulses.sensors import record
 from validation.scenes import scenefile
 from validation.scenes.forcing import Damping, Drive
@@ -113,22 +112,6 @@ def test_the_error_of_a_speed_is_that_of_both_arrivals():
     late = (first.error + second.error) / (second.value - first.value)
     for speed in found.speeds[0].numbers.values():
         assert speed.relative_error == pytest.approx(late, rel=1e-5)
-
-
-def test_the_error_of_an_exponent_is_the_worst_of_all_signs():
-    """The slope of ln y against ln x, as each of four pairs errs up or down within its ±."""
-    x = [Estimate(v, v * e) for v, e in ((1, 2e-6), (2, 1e-6), (4, 3e-6), (9, 1e-6))]
-    y = [
-        Estimate(v, v * e) for v, e in ((1, 1e-6), (1.4, 4e-6), (2.1, 1e-6), (3, 2e-6))
-    ]
-    found = exponent(x, y)
-    signs = np.array(list(product((-1, 1), repeat=8)))
-    off = np.log1p(signs * [number.relative_error for number in (*x, *y)])
-    logs = np.log([number.value for number in (*x, *y)]) + off
-    slopes = [np.polyfit(row[:4], row[4:], 1)[0] for row in logs]
-    worst = max(abs(slope - found.value) for slope in slopes)
-    assert worst <= found.error * (1 + 1e-4)
-    assert worst > found.error / 2
 
 
 def test_paper():

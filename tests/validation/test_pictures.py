@@ -44,7 +44,8 @@ def ticks(axis):
 )
 def test_a_logarithmic_axis_of_few_decades_has_plain_numbers(most, labels):
     x = np.geomspace(1, most, 5)
-    (axes,) = figure([Panel("x", "y", (Curve("c", x, 1e6 * x),), "xy")]).axes
+    (axes,) = figure([Panel("x", "y", (Curve("c", x, 1e6 * x),), "xy", "line")]).axes
+    assert axes.get_title() == "line"
     axes.figure.draw_without_rendering()
     assert ticks(axes.xaxis) >= labels
     assert not any(tick.get_text() for tick in axes.get_xticklabels(minor=True))
@@ -77,22 +78,12 @@ def test_a_map_has_a_colour_for_each_place():
     assert axes.patch.get_hatch()
 
 
-def test_a_panel_is_drawn_into_axes_that_are_given(report):
-    given = Figure().subplots()
-    assert report.plot(ax=given) is given
-    assert (given.get_xlabel(), given.get_ylabel()) == ("x", "y")
-    assert (given.get_xscale(), given.get_yscale()) == ("log", "log")
-    (line,) = given.lines
-    np.testing.assert_array_equal(line.get_xydata(), np.column_stack((X, X**2)))
-    own = report.plot()
-    assert own.get_title() == "squares"
-    pyplot.close(own.figure)
-
-
 def test_a_run_is_drawn_into_given_axes():
     three = struck((1,), 3, duration=3)
     run = simulate(replace(three, contact_sensors=(1,), bead_sensors=(0, 2)))
-    ax = run.plot(Figure().add_subplot())
+    given = Figure().add_subplot()
+    ax = run.plot(given)
+    assert ax is given
     names = [text.get_text() for text in ax.get_legend().get_texts()]
     assert names == ["bead 1", "bead 3", "contact 2"]
     forces = (*run.bead_force, *run.contact_force)
@@ -101,5 +92,8 @@ def test_a_run_is_drawn_into_given_axes():
         assert np.array_equal(line.get_ydata(), force)
     ax.figure.draw_without_rendering()
     assert ax.get_legend().get_window_extent().y0 >= ax.bbox.y1  # on no curve
+    own = run.plot()
+    assert (own.get_xlabel(), own.get_ylabel()) == ("time", "force")
+    pyplot.close(own.figure)
     with pytest.raises(InputError, match="no picture"):
         simulate(three).plot()

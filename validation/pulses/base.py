@@ -43,13 +43,15 @@ class Fit:
     def of(cls, x: Array, f: Array, count: int) -> Fit:
         """Fit the first terms to samples f, (B,) or (B, draws), at times x in widths."""
         terms = _terms(x, count)
-        sizes = np.asarray(np.linalg.lstsq(terms, f)[0], float)
+        solved, *_ = np.linalg.lstsq(terms, f)
+        sizes = np.asarray(solved, float)
         return cls(sizes, f - terms @ sizes)
 
     def at(self, x: Array) -> Array:
         """Return the base at times of the pulse, without what rises before it."""
         line = self.sizes[:_LINE]
-        return np.asarray(_terms(x, len(line)) @ line)
+        terms = _terms(x, len(line))
+        return np.asarray(terms @ line)
 
     @property
     def variance(self) -> float:
@@ -163,7 +165,8 @@ class Base:
     def at(self, t: Array) -> Array:
         """Return the base at times of the pulse."""
         x = (t - self.rise) / self.width
-        return np.asarray(self.weights @ [fit.at(x) for fit in self.fits])
+        bases = [fit.at(x) for fit in self.fits]
+        return np.asarray(self.weights @ bases)
 
     def drawn(self, t: Array, pulse: Array, variance: float, step: float) -> Array:
         """Draw errors that noise makes in a pulse over its base.
@@ -193,12 +196,15 @@ class Base:
             calm = _rounding(calm, np.zeros(1), step, rng)
             added = _rounding(added, pulse, step, rng)
         x = (t - self.rise) / self.width
+        mean = self.at(t)
         chosen = rng.choice(len(self.fits), DRAWS, p=self.weights)
         for i, fit in enumerate(self.fits):
             draws = chosen == i
-            drawn = Fit.of(self.x, calm[:, draws], len(fit.sizes))
-            apart = self.at(t) - fit.at(x)
-            added[:, draws] += apart[:, np.newaxis] - drawn.at(x)
+            samples = calm[:, draws]
+            drawn = Fit.of(self.x, samples, len(fit.sizes))
+            apart = mean - fit.at(x)
+            added[:, draws] += apart[:, np.newaxis]
+            added[:, draws] -= drawn.at(x)
         return added
 
     def _noise(self, rng: np.random.Generator, count: int) -> Array:

@@ -22,7 +22,7 @@ from scipy.signal import peak_widths
 from lwa.base.arrays import Array
 from lwa.base.frozen import Estimate
 from validation.pulses.base import Base
-from validation.pulses.pulse import MeasureError
+from validation.pulses.pulse import READINGS, MeasureError
 
 _BESIDE = 0.3  # widths in front of the rise and behind the fall that the fit takes in
 _READ = 0.1  # widths likewise in which the spline is read: its ends follow the noise
@@ -71,25 +71,27 @@ def fitted(
     beside = _BESIDE * (fall - rise)
     near = (t >= rise - beside) & (t <= fall + beside)
     margin = _READ * (fall - rise)
-    ends = (rise - margin, fall + margin)
-    t = t[near]
+    # Counted from the rise, times that are far from zero, as seconds since 1970, keep their digits.
+    ends = (-margin, fall - rise + margin)
+    x = t[near] - rise
     f = f[near]
     rounding = np.finfo(float).eps * np.abs(f).max()
     variance = base.best.variance + rounding**2
-    most = min(_HIGHEST, int(_DENSEST * len(t)))
-    smoothed = partial(_smoothed, t, f, base.best.correlation_time, most)
+    most = min(_HIGHEST, int(_DENSEST * len(x)))
+    smoothed = partial(_smoothed, x, f, base.best.correlation_time, most)
     wanted, spline, left = smoothed(variance)
-    if left > _MISFIT * variance:  # the noise during the pulse is larger
+    if left > _MISFIT * variance:
+        # The noise during the pulse is larger than before.
         wanted, spline, variance = smoothed(left)
         variance = max(variance, left)
-    pulse = spline(t)
+    pulse = spline(x)
     share = math.sqrt(variance) / float(pulse.max())
     if share > _LOUDEST:
         raise MeasureError(
             f"the noise is {share:.1%} of the peak: at most {_LOUDEST:.0%} is read"
         )
-    noise = base.drawn(t, pulse, variance, step)
-    drawn = _fit(t, noise, len(spline.c))
+    noise = base.drawn(rise + x, pulse, variance, step)
+    drawn = _fit(x, noise, len(spline.c))
     best = spline.c[:, np.newaxis]
     coefficients = np.hstack((best, best + drawn.c))
     found = _read(BSpline(spline.t, coefficients, _DEGREE), ends)
@@ -97,12 +99,15 @@ def fitted(
     off = np.abs(found[1:] - numbers)
     errors = np.quantile(off, _WITHIN, axis=0)
     if wanted > most:
-        count = max(_LOWEST, round(most / _COARSER))
-        rough = _fit(t, f[:, np.newaxis], count)
+        fewer = round(most / _COARSER)
+        count = max(_LOWEST, fewer)
+        samples = f[:, np.newaxis]
+        rough = _fit(x, samples, count)
         (coarse,) = _read(rough, ends)
         errors = np.hypot(errors, numbers - coarse)
+    numbers[0] += rise  # the arrival
     estimates = map(Estimate, numbers.tolist(), errors.tolist())
-    return dict(zip(("arrival", "peak", "fwhm"), estimates, strict=True))
+    return dict(zip(READINGS, estimates, strict=True))
 
 
 def _smoothed(
@@ -113,30 +118,34 @@ def _smoothed(
 
     correlation_time, variance : of the noise, the time in samples.
     """
-    tries = math.ceil(math.log(most / _LOWEST) / math.log(_RATIO))
-    counts = np.geomspace(_LOWEST, most, tries + 1).round().astype(int)
+    ratios = math.log(most / _LOWEST) / math.log(_RATIO)
+    tries = math.ceil(ratios) + 1
+    counts = np.geomspace(_LOWEST, most, tries)
+    counts = counts.round().astype(int)
     # Schwarz's criterion, Σ residual²/σ² + count · ln N, for the independent among the samples.
     independent = len(t) / correlation_time
     penalty = math.log(max(independent, 2))
     criteria = []
     for count in counts:
         residuals = _fit(t, f, count)(t) - f
-        misfit = np.sum(residuals**2) / (variance * correlation_time)
+        squares = np.sum(residuals**2)
+        misfit = squares / (variance * correlation_time)
         criteria.append(misfit + count * penalty)
     best = int(counts[np.argmin(criteria)])
     wanted = math.ceil(_FINER * best)
     spline = _fit(t, f, min(wanted, most))
     residuals = spline(t) - f
+    squares = np.sum(residuals**2)
     freedom = len(t) - len(spline.c)
-    left = float(np.sum(residuals**2)) / freedom
-    return wanted, spline, left
+    return wanted, spline, float(squares) / freedom
 
 
 def _fit(t: Array, f: Array, count: int) -> BSpline:
     """Fit a spline of so many coefficients to samples."""
     # Equally many samples lie between neighbouring knots, so that gaps in a record do no harm.
+    numbers = np.arange(len(t))
     places = np.linspace(0, len(t) - 1, count - _DEGREE + 1)
-    inside = np.interp(places, np.arange(len(t)), t)
+    inside = np.interp(places, numbers, t)
     knots = np.pad(inside, _DEGREE, mode="edge")
     return make_lsq_spline(t, f, knots, _DEGREE)
 

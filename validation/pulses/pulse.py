@@ -70,7 +70,8 @@ class Signal(Protocol):
 def checked(time: ArrayLike, values: ArrayLike) -> tuple[Array, Array]:
     """Return sample times and values as arrays (S,), at least four; `MeasureError` for others."""
     try:
-        t, f = np.asarray(time, float), np.asarray(values, float)
+        t = np.asarray(time, float)
+        f = np.asarray(values, float)
         if f.size < 4 or not f.shape == t.shape == (f.size,):
             raise ValueError(f"the shapes are {t.shape} and {f.shape}")
     except (TypeError, ValueError, OverflowError) as reason:
@@ -165,7 +166,8 @@ def measure(time: ArrayLike | Signal, values: ArrayLike | None = None) -> Pulse:
             "values are missing: they are wanted beside the sample times"
         )
     pulse = highest_pulse(signal)
-    inside = np.count_nonzero((signal.times > pulse.rise) & (signal.times < pulse.fall))
+    t = signal.times
+    inside = np.count_nonzero((t > pulse.rise) & (t < pulse.fall))
     if values is not None and inside < FEWEST:
         few = f"{inside} samples lie above half the pulse's peak"
         raise MeasureError(f"{few}: at least {FEWEST} are wanted")
@@ -225,8 +227,9 @@ class _Grid:
     def __init__(self, signal: Signal) -> None:
         times = signal.times
         parts = np.arange(_POINTS) / _POINTS
-        steps = np.diff(times)
-        between = times[:-1, None] + steps[:, None] * parts
+        starts = times[:-1, np.newaxis]
+        steps = np.diff(times)[:, np.newaxis]
+        between = starts + steps * parts
         self.signal = signal
         self.t = np.append(between.ravel(), times[-1])
         self.f = signal(self.t)
@@ -264,14 +267,15 @@ class _Grid:
     def _crest(self, low: float, high: float) -> tuple[float, float]:
         """Return the time and value of the signal's maximum between two times."""
         # The signal is smooth between its times alone, and only there a polynomial follows it.
-        inside = self.signal.times[
-            (self.signal.times > low) & (self.signal.times < high)
-        ]
+        times = self.signal.times
+        inside = times[(times > low) & (times < high)]
         tops = []
-        for a, b in pairwise((low, *inside.tolist(), high)):
+        for a, b in pairwise((low, *inside, high)):
             series = self._interpolant(a, b)
             times = np.append(_zeros(series.deriv()), (a, b))
-            tops.append(max(zip(series(times).tolist(), times.tolist(), strict=True)))
+            values = series(times)
+            best = int(np.argmax(values))
+            tops.append((float(values[best]), float(times[best])))
         peak, arrival = max(tops)
         return arrival, peak
 

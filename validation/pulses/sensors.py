@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Container, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import pairwise
 from typing import Any
@@ -74,6 +74,8 @@ class Reading:
         Number of the pulse at the sensor, counted from 1.
     quantity : {"force", "velocity"}
         The measured signal.
+    along : mapping of float
+        Place of the sensor along the chain, by the names `SPEEDS`; empty where it has none.
     """
 
     kind: str
@@ -83,6 +85,7 @@ class Reading:
     missing: str | None = None
     pulse: int = 1
     quantity: str = "force"
+    along: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
@@ -210,8 +213,7 @@ def record(
         return ""
 
     # Errors of both arrivals are added: in the other run's speed they may cancel.
-    places = [track.place for track in recorded]
-    speeds = speeds_between(firsts, places, operator.add, doubt)
+    speeds = speeds_between(firsts, operator.add, doubt)
     end = {
         i + 1: compared(partial(_state_at_end, bead=i), runs)
         for i in scene.bead_sensors
@@ -335,8 +337,14 @@ def _readings(
     track: Track, other: Track, pulses: Callable[[Signal], list[Pulse]]
 ) -> list[Reading]:
     """Measure pulses at a sensor, the first or all, with errors from another run."""
-    place = (track.number,)
-    blank = Reading(track.kind, place, {}, track.static, quantity=track.quantity)
+    blank = Reading(
+        track.kind,
+        (track.number,),
+        {},
+        track.static,
+        quantity=track.quantity,
+        along=track.place,
+    )
     try:
         measured, known = map(pulses, (track.force, other.force))
     except MeasureError as error:
@@ -361,7 +369,6 @@ def _delay(pulse: Pulse, other: Pulse) -> float:
 
 def speeds_between(
     sensors: Sequence[Reading],
-    places: Sequence[Mapping[str, float]],
     total: Callable[[float, float], float],
     doubt: Callable[[Reading, Reading, float], str] = lambda *_: "",
 ) -> tuple[Reading, ...]:
@@ -371,15 +378,13 @@ def speeds_between(
     ----------
     sensors : sequence of Reading
         First pulses.
-    places : sequence of mappings
-        Places of the sensors along the chain, by the names `SPEEDS`.
     total : callable
         Error of a time between two arrivals as a function of the errors of both.
     doubt : callable
         Reason, "" if there is none, why one pulse does not pass two sensors at a speed in sites.
     """
     legs = []
-    for (first, at), (second, there) in pairwise(zip(sensors, places, strict=True)):
+    for first, second in pairwise(sensors):
         if first.kind != second.kind:
             continue
         leg = replace(
@@ -387,11 +392,13 @@ def speeds_between(
         )
         try:
             time = _elapsed(first, second, total)
-            if not (at and there):
+            if not (first.along and second.along):
                 raise MeasureError(
                     "a bead with one contact has a force of half a site away"
                 )
-            speeds = {name: abs(there[name] - at[name]) / time.value for name in at}
+            speeds = {}
+            for name, place in first.along.items():
+                speeds[name] = abs(second.along[name] - place) / time.value
             reason = doubt(first, second, speeds["speed_sites"])
             if reason:
                 raise MeasureError(reason)

@@ -50,8 +50,7 @@ class Report(Pictured):
     title : str
         What was computed, in one or a few lines.
     tables : tuple of Table
-        Tables; text shows those with column labels. JSON has a table under its key, and tables
-        without a key in the list ``tables``.
+        Tables; text shows those with column labels, JSON has a table under its key.
     findings : tuple of Finding
         Numbers with bounds. In a report with tables, text shows only the findings that fail.
     panels : tuple of Panel
@@ -128,14 +127,8 @@ class Report(Pictured):
         With findings: ``ok``, ``findings``, and KEY_value of each finding that has a key.
         """
         result: dict[str, Any] = dict(plain(self.data))
-        unnamed = []
         for table in self.tables:
-            if table.key:
-                result[table.key] = table.document()
-            else:
-                unnamed.append(table.document())
-        if unnamed:
-            result["tables"] = unnamed
+            result[table.key] = table.document()
         for finding in self.findings:
             if finding.key:
                 result[f"{finding.key}_value"] = plain(finding.value)
@@ -145,7 +138,7 @@ class Report(Pictured):
         return result
 
     def csv(self) -> str:
-        """Return the first table that has rows as CSV.
+        """Return the first table as CSV.
 
         Raises
         ------
@@ -154,10 +147,7 @@ class Report(Pictured):
         """
         if not self.tables:
             raise InputError("format is csv: this result has no table")
-        for table in self.tables:
-            if table.rows:
-                return table.csv()
-        return self.tables[0].csv()  # its header
+        return self.tables[0].csv()
 
     def pictured(self) -> tuple[Panel, ...]:
         """The panels, curves and maps, of which a picture of the result is made."""

@@ -71,6 +71,7 @@ class Cells:
             line = rows[min(start + _SETTINGS, end - 1)]
         else:
             start = len(rows)
+        # Without any row of numbers all lines are above them.
         self.head = rows[:start]
         self.entries = {}
         for number, cell in enumerate(line, start=1):
@@ -146,6 +147,7 @@ class Cells:
 
     def _lines(self, count: int) -> Iterator[str]:
         """Yield the lines, with so many cells more that the reader finds all columns."""
+        # The reader refuses a line that is too short.
         more = f"{self._mark}nan" * count
         for line in _LINE.finditer(self._text):
             text = line[0]

@@ -40,6 +40,7 @@ class Failure(RuntimeError):
 def between(value: Any, name: str, low: float, high: float, wanted: str = "") -> float:
     """Return a finite number between two limits; ``wanted`` ends the message of a `SceneError`."""
     number = finite(value, name)
+    # NaN is refused by `finite`.
     if not low <= number <= high:
         wanted = wanted or f"it lies between {low:g} and {high:g}"
         digits = repr(number).removesuffix(".0")  # all of them: 1.0000001 is not 1

@@ -253,6 +253,8 @@ class Columns:
         # Columns that are named already are not proposed for another name.
         free = [number for number in cells.entries if number not in used]
         steps = _steps(cells)
+        if not cells.entries:
+            missing = ()  # no step helps a file without numbers
         for name in missing:
             rank = partial(_rank, cells, steps, name)
             best = min(free, key=rank, default=None)

@@ -162,6 +162,7 @@ class Drive:
         for name in ("time", "displacement"):
             row = each(finite)(getattr(self, name), f"drive.{name}")
             object.__setattr__(self, name, row)
+        # A piston may stand still: 0 is a velocity.
         constant = self.velocity is not None
         harmonic = self.amplitude is not None or self.frequency is not None
         recorded = bool(self.time or self.displacement)

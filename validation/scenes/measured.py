@@ -85,6 +85,7 @@ class MeasuredFile(Columns):
             readable.
         """
         source = str(path)
+        # A message names what the user sees.
         if source == "-":
             source = "standard input"
         try:
@@ -110,6 +111,7 @@ class MeasuredFile(Columns):
         file = cls(source, cells, headers, units, step)
         for name, header in headers.items():
             file._demand(header, len(cells.headed(header)), [name])
+        # A unit may be stated by a name, or by a header of the file.
         for key in units:
             if name_of(key) not in file.names and not cells.headed(key):
                 file._demand(key, 0, [])

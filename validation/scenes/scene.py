@@ -144,6 +144,7 @@ class Scene:
     drive: Drive | None = None
 
     def __post_init__(self) -> None:
+        # Each field by its own rule; the rules below join several fields.
         for name, read in _READERS.items():
             if name != "wall" or self.wall is not None:
                 # A frozen dataclass is set by its base class while it is made.

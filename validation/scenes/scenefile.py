@@ -108,6 +108,7 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
         """Return a table of the file, an empty one if it is left out."""
         return Table(file.entries.get(name, {}), name, _TABLES[name])
 
+    # All tables are read first: an unknown key is refused before a missing value.
     start = part("start")
     sensors = part("sensors")
     striker = part("striker")

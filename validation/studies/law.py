@@ -51,7 +51,7 @@ LEAST, MOST = (
     4.0,
 )  # k: below, speeds do not depend on force; beyond, R is not known
 LARGEST = 700.0  # |ln A|, at most
-_POWER = (Column("", "F = A δ^k"), Column("", "value", error=True))
+_POWER = (Column("name", "F = A δ^k"), Column("number", "value", error=True))
 _UNITS = "A bead's mass or the distance is 1 as none is given: see --masses, --spacing, --spheres."
 _NOTE = "±: 95 % intervals by the scatter of the data."
 _FEWEST = 6  # pulses: three more than the coefficients of the curvature's fit
@@ -115,7 +115,7 @@ def law(
     Peak contact forces and speeds are in the units of the masses and the spacing, by default those
     of unit mass and spacing; with spheres they are in N and m/s. ``k_value``, ``A_value`` and, of
     an unknown material, ``E_value``, with their errors; ``correlation_value`` of k and ln A;
-    ``one_power``.
+    ``one_power``; ``rows``, the printed table.
     """
     file = MeasuredFile.read(data, **stated)
     force, speed, weight = _pulses(file)
@@ -158,7 +158,7 @@ def law(
         values |= {f"{name}_value": number.value, f"{name}_error_value": number.error}
     return Report(
         f"{len(force)} pulses, forces {force[0]:.4g} … {force[-1]:.4g}{' N' * file.si}",
-        (Table(_POWER, tuple(rows)),),
+        (Table(_POWER, tuple(rows), "rows"),),
         panels=(Panel(*axes, curves, "xy"),),
         notes=(*file.notes, *notes, _NOTE),
         data=values,
@@ -168,7 +168,10 @@ def law(
 def _pulses(file: MeasuredFile) -> tuple[Array, Array, Array | None]:
     """Return rising forces of `_FEWEST` or more pulses, their speeds and weights (None if none)."""
     errors = [n for n in ("force_error", "speed_error") if n in file.names]
-    read = file.rows("force", "speed", *errors).T
+    name = "speed"
+    if name not in file.names and "velocity" in file.names:
+        name = "velocity"
+    read = file.rows("force", name, *errors).T
     force, speed, *deviations = read[:, np.argsort(read[0])]
     if len(force) < _FEWEST or not (force[0] > 0 and speed.min() > 0):
         wanted = f"at least {_FEWEST} pulses of positive force and speed are wanted"
@@ -333,8 +336,12 @@ def fit_power(
 
 def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, float]:
     """Fit a polynomial in x - middle; return coefficients (degree + 1, 1 + draws) and middle."""
+    # On data without scatter the rounding of ln F, of ln V and of the fit is left.
+    rounding = 2 * np.finfo(float).eps * (1 + np.abs(x) + np.abs(y))
     w = np.ones_like(x)
-    least = 0.0  # scatter of residuals over their known deviations
+    least = float(
+        np.sum(rounding**2)
+    )  # scatter of residuals over their known deviations
     if weight is not None:
         w = weight
         least = 1.0
@@ -342,15 +349,11 @@ def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, 
     middle = float(np.average(x, weights=w**2))
     best, covariance = np.polyfit(x - middle, y, degree, w=w, cov="unscaled")
     freedom = len(x) - degree - 1
-    scatter = np.sum((w * (y - np.polyval(best, x - middle))) ** 2) / freedom
-    covariance = covariance * max(scatter, least)
-    # On data without scatter the rounding of ln F, of ln V and of the fit is left.
-    rounding = 2 * np.finfo(float).eps * (1 + np.abs(x) + np.abs(y))
-    change = np.linalg.pinv(w[:, np.newaxis] * np.vander(x - middle, degree + 1)) * w
-    largest = np.abs(change) @ rounding
+    residuals = y - np.polyval(best, x - middle)
+    scatter = np.sum((w * residuals) ** 2) / freedom
     # Coefficients, highest first, of the best fit, then draws from their distribution: Student's t
     # with the scatter of the residuals.
-    shape = covariance + np.outer(largest, largest)
+    shape = covariance * max(scatter, least)
     noise = scipy.stats.multivariate_t(None, shape, freedom, allow_singular=True)
     draws = noise.rvs(_DRAWS, random_state=0).reshape(_DRAWS, degree + 1)
     return np.vstack((best, best + draws)).T, middle

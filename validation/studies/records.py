@@ -88,15 +88,18 @@ def column_options(function: Any) -> Any:
 
 def record_options(function: Any) -> Any:
     """Give a study that reads records the options --step, --time-constant, --column and --unit."""
-    for name, says in (
-        (
-            "--time-constant",
-            "Time in which sensors lose their charge, which is corrected",
-        ),
-        ("--step", "Time from sample to sample, in place of a column"),
-    ):
-        says += f", as in {name} '0.4 ms'."
-        function = option(name, metavar="TIME", says=says)(function)
+    constant = option(
+        "--time-constant",
+        metavar="TIME",
+        says="Time in which sensors lose their charge, which is corrected, as in "
+        "--time-constant '0.4 ms'.",
+    )
+    step = option(
+        "--step",
+        metavar="TIME",
+        says="Time from sample to sample, in place of a column, as in --step '0.4 ms'.",
+    )
+    function = step(constant(function))
     return column_options(function)
 
 
@@ -232,16 +235,17 @@ def pulses(
     read = Measured.read(records, of, time_constant, stated)
     found: list[Reading] = []
     curves = []
-    places = []
     notes = [*read.notes]
     refusals: list[MeasureError] = []
     for i, signal in enumerate(read.signals):
         site = signal.number or 1
-        blank = Reading(signal.kind, (site,), {}, math.nan, quantity=signal.quantity)
-        curves.append(Curve(blank.name, signal.time, signal.values, f"C{i}-"))
-        places.append({"speed_sites": float(site)})
+        along = {"speed_sites": float(site)}
         if apart is not None:
-            places[-1]["speed"] = apart * site
+            along["speed"] = apart * site
+        blank = Reading(
+            signal.kind, (site,), {}, math.nan, quantity=signal.quantity, along=along
+        )
+        curves.append(Curve(blank.name, signal.time, signal.values, f"C{i}-"))
         try:
             pulse = read.pulse(signal)
         except MeasureError as error:
@@ -252,8 +256,10 @@ def pulses(
                     f"{blank.name}: --unit '{signal.key}={signal.inverted}' turns it."
                 )
             continue
-        reading = replace(blank, numbers=pulse.numbers, missing=pulse.missing)
-        found.append(replace(reading, static=pulse.base))
+        reading = replace(
+            blank, numbers=pulse.numbers, missing=pulse.missing, static=pulse.base
+        )
+        found.append(reading)
         hint = suggested(signal.time, signal.values, pulse, read.unit)
         if hint and not time_constant:
             notes.append(f"{blank.name}: {hint}")
@@ -263,7 +269,7 @@ def pulses(
             **refusals[0].change,
         )
     # The noise of two sensors is independent.
-    speeds = speeds_between(found, places, math.hypot)
+    speeds = speeds_between(found, math.hypot)
     tables, missing = reading_tables(found, speeds, "peak", read.si)
     units = "SI" if read.si else "the file's own"
     return Report(

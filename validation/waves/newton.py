@@ -49,7 +49,8 @@ Series = NDArray[np.complex128]  # coefficients of e^{iqξ}, q = 0, π/L, …, �
 def widening(masses: Pair) -> float:
     """Return the canonical wave's width divided by its width at equal masses, ``√(12 I/D²)``."""
     m1, m2 = masses
-    return 2 * math.sqrt(m1 * m1 - m1 * m2 + m2 * m2) / (m1 + m2)
+    square = m1**2 - m1 * m2 + m2**2
+    return 2 * math.sqrt(square) / (m1 + m2)
 
 
 def ample_half_period(masses: Pair, k: float) -> float:
@@ -71,7 +72,8 @@ def points_needed(masses: Pair, k: float, half_period: float) -> int:
     narrow = 9 * math.sqrt(k - 1)  # the pulse's width falls like this
     steep = 7 * max(k - 2, 0)  # its flanks at large k
     light = 1.5 * math.sqrt(max(masses) / min(masses))  # light beads oscillate as fast
-    return max(FEWEST, math.ceil((3 + narrow + steep + light) * half_period))
+    per_site = 3 + narrow + steep + light
+    return max(FEWEST, math.ceil(per_site * half_period))
 
 
 def rise(strain: Array, k: float, p0: float) -> Array:
@@ -103,7 +105,8 @@ def respond(force: Series, inverse: Pair, half_period: float) -> Series:
     # (1/m1 + 1/m2)(f - f*) - [(e^{-iq} - 1)/m1 + (e^{iq} - 1)/m2] f*, and f - f* = 2i Im f.
     ahead = inverse[0] * np.expm1(-1j * q)
     behind = inverse[1] * np.expm1(1j * q)
-    strain = 2j * sum(inverse) * force.imag - (ahead + behind) * force.conj()
+    twice_odd = 2j * force.imag
+    strain = sum(inverse) * twice_odd - (ahead + behind) * force.conj()
     strain[..., 0] = 0
     q[0] = q[1]  # no division by 0: the mean is 0 already
     return np.asarray(strain / q**2)
@@ -192,7 +195,9 @@ class Problem:
         sizes = np.where(start == 0, 1.0, np.abs(start))
         sizes[: self.count] = 2 * self.height
         x = newton(self._step, start, sizes)
-        return Found(self._everywhere(x[:-2]), float(x[-2]), (m1, float(1 / x[-1])))
+        forces = self._everywhere(x[:-2])
+        c2, inverse = x[-2:].tolist()
+        return Found(forces, c2, (m1, 1 / inverse))
 
     def _everywhere(self, forces: Array) -> Array:
         """F_a at all grid points, (…, 2n), from the unknown forces, (…, count)."""
@@ -204,7 +209,8 @@ class Problem:
     def _strains(self, forces: Array, inverse: Pair) -> Array:
         """Return c² a, shifted to 0 at L, from the unknown forces, one row or an array of rows."""
         force = scipy.fft.rfft(self._everywhere(forces))
-        strain = scipy.fft.irfft(respond(force, inverse, self.L), 2 * self.n)
+        response = respond(force, inverse, self.L)
+        strain = scipy.fft.irfft(response, 2 * self.n)
         at_end = strain[..., [self.n]]
         return np.asarray(strain - at_end)[..., : self.count]
 
@@ -227,14 +233,16 @@ class Problem:
         """Return the Newton step to be subtracted from the unknowns."""
         force = unknowns[:-2]
         c2, inverse = unknowns[-2:]
+        first = 1 / self.masses[0]
         # Not by the matrices below, whose rounding shows in long waves on a background.
-        a = self._strains(force, (1 / self.masses[0], inverse)) / c2
-        slope = self.k * np.maximum(self.p0 + a, 0) ** (self.k - 1) / c2
-        by_first, by_second = self._responses
-        response = by_first / self.masses[0] + by_second * inverse
+        a = self._strains(force, (first, inverse)) / c2
+        missed = force - rise(a, self.k, self.p0)
         closing, of_closing = self._closing(force, inverse)
-        conditions = [force[0] - self.height, closing]
-        faults = np.append(force - rise(a, self.k, self.p0), conditions)
+        faults = np.append(missed, [force[0] - self.height, closing])
+        pressed = np.maximum(self.p0 + a, 0)
+        slope = self.k * pressed ** (self.k - 1) / c2
+        by_first, by_second = self._responses
+        response = by_first * first + by_second * inverse
         by_forces = np.eye(self.count) - slope[:, np.newaxis] * response
         by_c2 = slope * a
         by_inverse = -slope * (by_second @ force)
@@ -259,7 +267,8 @@ class SpecialRatio(Problem):
         tail = by_first / self.masses[0] + by_second * inverse
         by_c2 = 0.0
         by_inverse = float(by_second @ force)
-        return float(tail @ force), np.append(tail, (by_c2, by_inverse))
+        fault = float(tail @ force)
+        return fault, np.append(tail, (by_c2, by_inverse))
 
 
 @np.errstate(all="ignore")  # an overflow or c² < 0 does not converge

@@ -143,7 +143,8 @@ class ExactWave(Pictured):
 
     def force(self, xi: ArrayLike, contact: int = 0) -> Array:
         """Force F_a(ξ) or F_b(ξ) of a contact, above the static force."""
-        return newton.rise(self.strain(xi, contact), self.k, self.background)
+        strain = self.strain(xi, contact)
+        return newton.rise(strain, self.k, self.background)
 
     def velocity(self, xi: ArrayLike, bead: int = 0) -> Array:
         """Velocity of beads m1 (bead 0) or m2 (bead 1) at ξ, 0 at the end of the period."""
@@ -153,8 +154,9 @@ class ExactWave(Pictured):
         behind = self.series.conj() if kind else self.series
         q = self._wavenumbers[1:]
         # m c v' is the force behind less the force ahead, its mirror image, a sum of sin qξ.
-        push = 2 * (behind[1:].conj() * np.exp(-0.5j * q)).imag
-        velocities = np.append(0.0, -push / q) / (self.masses[kind] * self.c)
+        shifted = behind[1:].conj() * np.exp(-0.5j * q)
+        momenta = -2 * shifted.imag / (q * self.c)
+        velocities = np.append(0.0, momenta) / self.masses[kind]
         return self._fading(at, velocities)
 
     def peak(self, quantity: QuantityName) -> float:
@@ -185,7 +187,8 @@ class ExactWave(Pictured):
     def _hump(self, quantity: QuantityName) -> Pulse:
         """The highest hump of a quantity, over ξ in place of time."""
         # Half as many points as the solution has are enough for a search.
-        points = np.linspace(-self.half_period, self.half_period, len(self.series) + 1)
+        L = self.half_period
+        points = np.linspace(-L, L, len(self.series) + 1)
         return highest_pulse(Piecewise(points, self._profile(quantity)))
 
     def _profile(self, quantity: QuantityName) -> Callable[[ArrayLike], Array]:
@@ -207,18 +210,20 @@ class ExactWave(Pictured):
     @property
     def _wavenumbers(self) -> Array:
         """The wavenumbers q of the coefficients."""
-        wavenumbers = np.pi / self.half_period * np.arange(len(self.series))
-        return np.asarray(wavenumbers)
+        lowest = np.pi / self.half_period
+        return np.asarray(lowest * np.arange(len(self.series)))
 
     def _sum(self, xi: ArrayLike, series: Any) -> Array:
         """Evaluate the Fourier sum ``Re Σ c_j e^{i q_j ξ}`` of a series c at any ξ."""
         phase = np.multiply.outer(xi, self._wavenumbers)
-        waves = np.cos(phase) @ series.real - np.sin(phase) @ series.imag
-        return np.asarray(waves, float)
+        even = np.cos(phase) @ series.real
+        odd = -np.sin(phase) @ series.imag
+        return np.asarray(even + odd, float)
 
     def _fading(self, xi: Array, series: Any) -> Array:
         """Evaluate the Fourier sum of a quantity that is 0 at L; beyond L a solitary wave is 0."""
-        values = self._sum(xi, series) - self._sum(self.half_period, series)
+        at_end = self._sum(self.half_period, series)
+        values = self._sum(xi, series) - at_end
         # The wave has ended there, the Fourier sum is periodic.
         ended = (np.abs(xi) >= self.half_period) & self.solitary
         return np.where(ended, 0.0, values)
@@ -230,7 +235,8 @@ def at_unit_force(problem: newton.Problem, found: newton.Found) -> ExactWave:
     wave = ExactWave(
         found.masses, problem.k, found.c2, problem.L, series, 0.0, 0.0, problem.p0
     )
-    wave = wave.times(1 / (problem.p0 + wave.peak("strain")))
+    peak = problem.p0 + wave.peak("strain")
+    wave = wave.times(1 / peak)
     # Of equal masses the odd part is rounding.
     tail = 0.0 if problem.uniform else _tail(wave)
     return replace(wave, tail=tail, residual=_residual(wave))
@@ -242,14 +248,16 @@ def _tail(wave: ExactWave) -> float:
     # Some twenty points for each oscillation of the tail.
     outside = np.linspace(OUTSIDE * L, L, 4 * len(wave.series))
     odd = 1j * wave._strains.imag
-    return float(np.abs(wave._sum(outside, odd)).max())
+    oscillations = wave._sum(outside, odd)
+    return float(np.abs(oscillations).max())
 
 
 def _residual(wave: ExactWave) -> float:
     """The error in the equations of motion, see `ExactWave.residual`."""
     # Strains that follow from the forces of the strains: of a solution the same ones.
-    xi = newton.periodic_grid(wave.half_period, 2 * len(wave.series) - 2)
+    twice = 2 * (len(wave.series) - 1)
+    xi = newton.periodic_grid(wave.half_period, twice)
     series = newton.coefficients(wave.force(xi))
     response = replace(wave, series=series)
-    off = float(np.abs(response.strain(xi) - wave.strain(xi)).max())
-    return off / (1 - wave.background)
+    off = response.strain(xi) - wave.strain(xi)
+    return float(np.abs(off).max()) / (1 - wave.background)

@@ -163,7 +163,8 @@ def _equal(k: float, p0: float) -> ExactWave:
         bare = loaded_wave(chain, rise=1, background=0, k=k)
         narrower = float(bare.fwhm("strain") / theory.fwhm("strain"))
         points = newton.points_needed(_EQUAL, k, L) * min(1, 1.3 * narrower)
-        problem = newton.Problem(_EQUAL, k, L, max(80, math.ceil(points)), p0)
+        n = max(80, math.ceil(points))
+        problem = newton.Problem(_EQUAL, k, L, n, p0)
     if k > STEEP and p0 < HIGH:
         return solve(problem, _equal(STEEP, p0))
     if not p0:
@@ -223,9 +224,12 @@ def solve(
     else:
         # The force cos^{2k/(k-1)}(βξ), and c² = 4/((k+1)(m1+m2)). The two contacts' forces are
         # shifted by (m2-m1)/(m1+m2), so that both beads move alike.
-        beta = (k - 1) * math.sqrt(6 / (k * (k + 1))) / newton.widening(problem.masses)
-        phase = beta * (problem.xi - (m2 - m1) / (m1 + m2) / 2)
-        force = np.cos(np.clip(phase, -np.pi / 2, np.pi / 2)) ** (2 * k / (k - 1))
+        of_equal = (k - 1) * math.sqrt(6 / (k * (k + 1)))
+        beta = of_equal / newton.widening(problem.masses)
+        middle = (m2 - m1) / (m1 + m2) / 2
+        phase = beta * (problem.xi - middle)
+        arch = np.cos(np.clip(phase, -np.pi / 2, np.pi / 2))
+        force = arch ** (2 * k / (k - 1))
         c2 = 4 / ((k + 1) * (m1 + m2))
     # c² of the wave scaled to peak force 1, as `newton.Problem.wave` scales the forces.
     share = float(force[0]) / problem.height
@@ -282,7 +286,7 @@ def special_waves(k: float) -> Iterator[ExactWave]:
     for i in range(_known(k)):
         if i == len(waves):
             waves.append(_next(*waves[-2:]))
-        yield waves[i] if waves[i].k == k else _followed(waves[i], k)
+        yield _followed(waves[i], k)
 
 
 def _root(wave: ExactWave) -> float:
@@ -324,7 +328,8 @@ def _following(path: Sequence[ExactWave], k: float) -> ExactWave:
     if before is not last:
         start, here, there = (math.log(x - 1) for x in (before.k, last.k, k))
         farther = (there - here) / (here - start)
-    expected = _root(last) + farther * (_root(last) - _root(before))
+    grown = _root(last) - _root(before)
+    expected = _root(last) + farther * grown
     problem = SpecialRatio((1.0, expected**-2), k)
     xi = problem.xi
     change: float | Array = 0.0
@@ -340,10 +345,12 @@ def _following(path: Sequence[ExactWave], k: float) -> ExactWave:
 def _next(before: ExactWave, last: ExactWave) -> ExactWave:
     """Return the solitary wave at the next smaller ratio than those of two neighbouring waves."""
     step = _root(last) - _root(before)
-    places = (_root(last) + step * np.arange(0.6, 1.35, 0.05)).tolist()
+    shares = np.arange(0.6, 1.35, 0.05)
+    places = (_root(last) + step * shares).tolist()
     first = places[0]
     end = places[-1]
-    middle_first = sorted(places, key=lambda x: abs(x - (first + end) / 2))
+    middle = (first + end) / 2
+    middle_first = sorted(places, key=lambda x: abs(x - middle))
     for root in middle_first:
         with suppress(NoWave):
             following = solve(SpecialRatio((1.0, root**-2), last.k))

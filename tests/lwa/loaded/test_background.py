@@ -11,20 +11,6 @@ from tests.identity import same
 p0, k = sp.symbols("p0 k", positive=True)
 
 
-@pytest.mark.parametrize("cell", [Cell([1]), Dimer("m1", "m2"), Dimer(3, 1, N=2)])
-def test_without_load_the_wave_is_the_compact_wave(cell):
-    compact = canonical_wave(cell, "3/2")
-    wave = compact.on_background(0, 7)
-    assert same(wave.speed, compact.speed(7) * compact.time_scale)
-    if not cell.masses[0].free_symbols:
-        for quantity in ("strain", "force", "velocity"):
-            known = float(compact.fwhm(quantity) / cell.spacing)
-            assert float(wave.fwhm(quantity) / cell.spacing) == pytest.approx(
-                known, rel=1e-12
-            )
-    assert compact.at_force(7, precompression=0) == compact.at_force(7)
-
-
 def test_kdv_in_closed_form():
     field = Background(Dimer("m1", "m2"), Power("k"), "p0")
     c0 = p0 ** ((k - 1) / 2)
@@ -75,3 +61,5 @@ def test_symbols_take_their_numbers():
     wave = canonical_wave(Cell(["m"]), "3/2").at_force("F", precompression="F0")
     known = loaded_wave(Cell([2], spacing=1), force=7, precompression=2, k="3/2")
     assert wave.at(m=2, F=7, F0=2, D=1) == known
+    by_strain = canonical_wave(known.chain, "3/2").on_background(2, 7)
+    assert by_strain == loaded_wave(known.chain, background=2, rise=7, k="3/2")

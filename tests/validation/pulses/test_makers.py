@@ -22,6 +22,7 @@ ARRIVALS = {8: 2.5e-4, 14: 4.3e-4}  # in s, from the blow
 PEAKS = {8: 41.2, 14: 40.9}  # in N
 WIDTH = 55e-6  # FWHM in s
 SPACING = 19.05e-3
+CLOCK = 1_764_237_753  # s
 TRIGGER = 1.9e-4  # time at which the clock of the recorder is 0
 CONSTANT = 1e-3  # of a sensor that loses its charge
 
@@ -163,7 +164,7 @@ LAYOUTS = {
         "{t:.7f}\t{F:.4f}\t{G:.4f}\n",
         "--column time=1 --column '8 force=Force A' --column '14 force=Force B'",
     ),
-    # A clock that began at 58 s
+    # Its clock began in 1970.
     "DEWESoft": (
         "Data info\nFile name: x.dxd\nSample rate: 1E6\n\n\nData1\n\nTime (s),AI 1 (N),AI 2 (N)\n",
         "{late:.7f},{F:.6f},{G:.6f}\n",
@@ -248,7 +249,7 @@ def written(layout, record):
     for i, row in enumerate(zip(time, *forces / 12.5, *forces, lost, strict=True)):
         numbers = dict(zip("tabFGQ", row, strict=True))
         form = forms[min(i, len(forms) - 1)]
-        numbers |= {"i": i, "us": 1e6 * row[0], "late": 58 + row[0]}
+        numbers |= {"i": i, "us": 1e6 * row[0], "late": CLOCK + row[0]}
         text += form.format(**numbers)
     if layout == "a footer":
         text += "End of data,,\n"
@@ -275,7 +276,7 @@ def test_pulses_are_read_within_three_errors(capsys, record, folder, layout):
     found = json.loads(out)
     assert [row["kind"] for row in found["sensors"]] == ["bead"] * len(found["sensors"])
     assert len(found["sensors"]) == 1 + ("14 force" in stated + head)
-    start = TRIGGER - 58 * (layout == "DEWESoft")
+    start = TRIGGER - CLOCK * (layout == "DEWESoft")
     if "--step" in stated:
         start = 0.0
     for row in found["sensors"]:

@@ -1,7 +1,6 @@
 """Reports hold the same numbers as text, JSON, CSV, picture and page."""
 
 import dataclasses
-import json
 import re
 
 import pytest
@@ -15,28 +14,6 @@ from validation.report.table import Column, Finding, Table
 TABLE = Table((Column("n", "sites"),), ((8,),))
 PANEL = Panel("x", "y", (Curve("c", [1], [3]),))
 PART = Report("a part", (TABLE,), (Finding("drift", 0.5, 0.0, 1.0),), (PANEL,))
-
-
-@pytest.mark.parametrize("high", [1.0, 0.1])
-def test_findings_of_a_document(high):
-    """Beside a table, text shows only those that fail."""
-    loss = Finding("loss", 0.5, high=high)
-    report = dataclasses.replace(PART, findings=(*PART.findings, loss))
-    ok = high > 0.5
-    document = json.loads(json.dumps(report.document(), allow_nan=False))
-    assert document["ok"] is report.ok is ok
-    assert [row["ok"] for row in document["findings"]] == [True, ok]
-    assert report.text().count("FAILS") == (not ok)
-    assert "drift" not in report.text()
-    assert report.text().endswith("2 checks: " + ("all hold" if ok else "1 of 2 fail"))
-
-
-def test_a_table_without_keys_is_in_json_and_csv():
-    """Its labels are the names; the CSV is the first table that has rows."""
-    cubes = Table.of((Column("", "n"), Column("", "n³")), [{"n": 2, "n³": 8}])
-    report = Report("cubes", (Table((Column("k"),), ()), cubes))
-    assert report.document() == {"tables": [[], [{"n": 2, "n³": 8}]]}
-    assert report.csv() == "n,n³\n2,8\n"
 
 
 def test_a_notebook_shows_tables_and_picture():

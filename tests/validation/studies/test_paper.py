@@ -57,17 +57,22 @@ def test_the_chain_scales_exactly_with_the_blow(rows):
 
 
 def test_means_and_units(rows):
-    """Numbers of contacts are means over the two contacts of both beads."""
+    """Means over both beads or their four contacts; sites at the speed V_s."""
     run = simulate(recorded_chain(SENSORS))
-    contacts = [first_pulse(run.signal("contact", i)) for i in (13, 14, 32, 33)]
-    force, fwhm = np.mean([(pulse.peak, pulse.fwhm) for pulse in contacts], axis=0)
-    wanted = {"peak contact force": force, "FWHM of contact force in time": 1e6 * fwhm}
-    for name, mean in wanted.items():
-        assert value(rows, name) == pytest.approx(mean, rel=1e-8)
-    for name in ("peak bead force F_{}", "FWHM of F_{}"):
-        mean = np.mean([value(rows, name.format(bead)) for bead in SENSORS])
-        both = name.format("m") if "peak" in name else "FWHM of bead force"
-        assert value(rows, both) == pytest.approx(mean, rel=1e-14)
-    in_time = value(rows, "FWHM of bead force in time") * value(rows, "speed V_s")
-    in_sites = value(rows, "FWHM of bead force")
-    assert in_sites == pytest.approx(1e-6 * in_time / DIAMETER, rel=1e-14)
+    sites = value(rows, "speed V_s") / DIAMETER
+    for kind, sensors in (("bead", (14, 33)), ("contact", (13, 14, 32, 33))):
+        pulses = [first_pulse(run.signal(kind, i)) for i in sensors]
+        peak, fwhm = np.mean([(pulse.peak, pulse.fwhm) for pulse in pulses], axis=0)
+        width = f"FWHM of {kind} force"
+        mean = {
+            f"peak {kind} force{' F_m' * (kind == 'bead')}": peak,
+            width: fwhm * sites,
+            f"{width} in time": 1e6 * fwhm,
+        }
+        for name, number in mean.items():
+            assert value(rows, name) == pytest.approx(number, rel=1e-8)
+    for bead, pulse in zip(SENSORS, run.scene.bead_sensors, strict=True):
+        found = first_pulse(run.signal("bead", pulse))
+        assert value(rows, f"peak bead force F_{bead}") == pytest.approx(found.peak)
+        wide = value(rows, f"FWHM of F_{bead}")
+        assert wide == pytest.approx(found.fwhm * sites)

@@ -120,29 +120,21 @@ def test_a_file_that_is_open_or_of_another_kind_is_refused(file):
 
 def test_few_points_wait_for_a_worker():
     """A grid of 40 values by 50 never has more than `AHEAD` points in the executor."""
+    given = []
 
-    class Counting(ThreadPoolExecutor):
-        def submit(self, function, k, omega, stretch):
-            nonlocal most
-            most = max(most, len(todo) - len(finished))
-
-            def finish():
-                finished.append(k)
-                return Point(k, omega, None, {}, "no")
-
-            return super().submit(finish)
-
-    most, todo, finished = 0, [], []
-    grid = tuple(map(R, range(2, 42))), tuple(R(n, 10) for n in range(1, 51))
+    class Noting(ThreadPoolExecutor):
+        def submit(self, _, k, omega, stretch):
+            given.append((k, omega))
+            return super().submit(Point, k, omega, None, {}, "no")
 
     def progress(keys):
-        for key in keys:
-            todo.append(key)
+        for done, key in enumerate(keys):
+            assert len(given) <= done + AHEAD
             yield key
 
-    found = measured(*grid, PointFile(MEMORY, 2), Counting(2), progress)
-    assert [(p.k, p.omega) for p in found] == [*product(*grid)]
-    assert most <= AHEAD
+    grid = tuple(map(R, range(2, 42))), tuple(R(n, 10) for n in range(1, 51))
+    found = measured(*grid, PointFile(MEMORY, 2), Noting(2), progress)
+    assert [(p.k, p.omega) for p in found] == given == [*product(*grid)]
 
 
 with_dask = pytest.mark.optional("distributed")
@@ -204,14 +196,17 @@ def points():
 def test_the_document_is_json_and_complete(points):
     found = json.loads(json.dumps(report(points).document(), allow_nan=False))
     assert (found["stretch"], found["missing"]) == (4, 1)
-    for row, point in zip(found["points"], points, strict=True):
-        assert (row["k"], row["omega"]) == (str(point.k), str(point.omega))
-        for name in LABELS:
-            number = point.numbers.get(name)
-            pair = None if number is None else number.value, number and number.error
-            assert (row[f"{name}_value"], row[f"{name}_error_value"]) == pair
-        assert (row["missing"] is None) == (row["sites"] == [24, 32])
-    *_, last = found["points"]
+    none, last = found["points"][4::4]
+    assert {none[f"{name}_value"] for name in LABELS} == {none["sites"], None}
+    assert (none["missing"], last["missing"], last["sites"]) == (
+        "broke",
+        None,
+        [24, 32],
+    )
+    assert (last["k"], last["omega"]) == ("6", "50")
+    for name, number in points[-1].numbers.items():
+        pair = number.value, number.error
+        assert (last[f"{name}_value"], last[f"{name}_error_value"]) == pair
     assert last["theory"]["linear"]["width_value"] is None
     off = last["theory"]["canonical"]["width_value"] / last["width_value"] - 1
     assert last["error"]["canonical"]["width_value"] == pytest.approx(off)
@@ -219,12 +214,11 @@ def test_the_document_is_json_and_complete(points):
 
 def test_the_picture_has_a_curve_for_each_exponent(points):
     """A single curve, over either axis, has the theories beside it."""
-    (ks, omegas), panels = AXES, report(points).panels
+    panels = report(points).panels
     assert [len(panel.curves) for panel in panels] == [3, 3, 3, 3]
-    for k, curve in zip(ks, panels[0].curves, strict=True):
-        values = [float(k + omega) for omega in omegas]
-        expected = [np.nan if x == 3 else x for x in values]
-        np.testing.assert_array_equal(curve.y, expected)
+    _, second, _ = panels[0].curves
+    np.testing.assert_array_equal(second.y, [2.5, np.nan, 52])
+    # A decay below 0 is drawn as its error.
     assert all((curve.y[1:] > 0).all() for curve in panels[3].curves[::2])
     for some in (points[:3], points[::3]):
         panels = report(some).panels
@@ -233,24 +227,22 @@ def test_the_picture_has_a_curve_for_each_exponent(points):
 
 
 def test_the_theory_is_that_of_lwa():
-    """G + H + I < 0 at the last point: no wave of the paper's closure."""
-    *grid, none = [*product((R(3, 2), R(3)), (R(1, 5), R(1))), (R(3), R(7))]
-    found = theory([Point(k, omega, None, {}) for k, omega in (*grid, none)])
-    for i, (k, omega) in enumerate(grid):
-        cell = Dimer(1, omega, spacing=1)
-        waves = {
-            "linear": homogenize(cell, k=k).pde.traveling_wave(),
-            "canonical": canonical_wave(cell, k),
+    """G + H + I < 0 at the second point: no wave of the paper's closure."""
+    found = theory([Point(R(3), omega, None, {}) for omega in (R(1, 5), R(7))])
+    cell = Dimer(1, R(1, 5), spacing=1)
+    for closure, wave in (
+        ("linear", homogenize(cell, k=3).pde.traveling_wave()),
+        ("canonical", canonical_wave(cell, 3)),
+    ):
+        expected = {
+            "width": wave.fwhm("force"),
+            "strain_width": wave.fwhm("strain"),
+            "speed": wave.at_force(1).speed,
         }
-        for (closure, name), values in found.items():
-            wave = waves[closure]
-            expected = {
-                "width": wave.fwhm("force"),
-                "strain_width": wave.fwhm("strain"),
-                "speed": wave.at_force(1).speed,
-            }
-            assert values[i] == pytest.approx(float(expected[name]), rel=1e-14)
-    assert np.isnan([found["linear", name][-1] for name in ("width", "speed")]).all()
+        for name, value in expected.items():
+            first, second = found[closure, name]
+            assert first == pytest.approx(float(value), rel=1e-14)
+            assert np.isnan(second) == (closure == "linear")
 
 
 def test_lost_workers_are_reported():

@@ -10,7 +10,7 @@ import sympy as sp
 
 from book.studies.accuracy import launched
 from lwa.base.words import QUANTITIES
-from validation import measure, simulate
+from validation import simulate
 from validation.scenes.checks import SceneError
 from validation.studies.exact import exact
 from validation.studies.exact import resonances as special_ratios
@@ -29,15 +29,9 @@ def specials():
 
 
 def test_the_widths_of_the_hertz_chain(hertz):
-    """The widths of a simulated struck chain; further digits by another grid."""
+    """The widths of a simulated struck chain."""
     assert hertz.fwhm("force") == pytest.approx(1.411928, abs=5e-7)
     assert hertz.fwhm() == pytest.approx(1.725713, abs=5e-7)
-    finer = solve(Problem((1.0, 1.0), 1.5, 9, 200))
-    for name in QUANTITIES:  # rounding, divided by the slope at half maximum
-        assert finer.fwhm(name) == pytest.approx(hertz.fwhm(name), abs=1e-11)
-    assert finer.c2 == pytest.approx(hertz.c2, rel=1e-13)
-    assert (hertz.solitary, hertz.tail) == (True, 0.0)
-    assert hertz.residual < 1e-14
 
 
 SECOND = np.array([2, -27, 270, -490, 270, -27, 2]) / 180
@@ -99,8 +93,7 @@ def test_the_residual_under_load_is_a_share_of_the_waves_own_peak():
 
 def came_back(wave, sites=100):
     """The largest change of strain and velocity when a chain's wave is ``sites`` on; the run."""
-    recorded = {"contact_sensors": (60,), "samples": 4001}
-    scene = launched(wave, 20, sites, duration=sites / wave.c, **recorded)
+    scene = launched(wave, 20, sites, duration=sites / wave.c)
     run = simulate(scene, method="symplectic", rtol=1e-11)
     compression, velocity = -np.diff(scene.displacements), np.array(scene.velocities)
     strain = np.abs(-np.diff(run.displacements)[sites:] - compression[:-sites]).max()
@@ -109,13 +102,8 @@ def came_back(wave, sites=100):
 
 def test_the_wave_put_into_the_lattice_comes_back_to_itself(hertz):
     """After 100 sites to rounding, 1e-13; a speed wrong by 1e-8 would show."""
-    change, run = came_back(hertz)
-    assert change < 1e-11
+    assert came_back(hertz)[0] < 1e-11
     assert came_back(replace(hertz, c2=hertz.c2 * (1 + 2e-8)))[0] > 1e-7
-    pulse = measure(run.time, run.contact_force[0])
-    # the spline's error on 4001 samples
-    assert pulse.fwhm * hertz.c == pytest.approx(hertz.fwhm("force"), rel=1e-7)
-    assert pulse.peak == pytest.approx(1, abs=1e-8)
 
 
 def test_a_dimers_wave_keeps_its_shape_only_at_a_special_ratio(specials):
@@ -173,9 +161,6 @@ def test_special_ratios_far_from_hertz(k, count):
     if k < 1.5:
         assert np.diff(roots) == pytest.approx(roots[1] - roots[0], rel=0.25)
         assert roots[0] - 1 < 2 * (roots[1] - roots[0])
-    wave = waves[-1]  # a longer period changes nothing
-    longer = solve(SpecialRatio(wave.masses, k, 1.1 * wave.half_period), wave)
-    assert longer.omega == pytest.approx(wave.omega, rel=1e-8)
 
 
 def test_units_of_mass_and_relabelling(specials):

@@ -8,6 +8,7 @@ from validation.lattice.kernel.arrays import (
     BLOCK,
     MARGIN,
     SHORTEST,
+    SQUARES,
     Beads,
     Chain,
     Knots,
@@ -89,6 +90,8 @@ def advance(
         for _ in range(marks):
             i = next_mark(beads.marks, i + 1)
             correct_contact(chain, beads, plan, now.t, h, i)
+            if beads.books[SQUARES] > 1.0:
+                break  # the step is refused, whatever the other contacts add
         error = step_error(beads, plan, h, hi)
         made = end_step(beads, plan, now, h, error, stopping)
         corrected = marks > 0
