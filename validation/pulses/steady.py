@@ -100,7 +100,8 @@ def point(
 def _measured(
     k: sp.Rational, omega: sp.Rational, stretch: int, farther: float
 ) -> Point:
-    chain = StruckDimer(float(k), float(omega), 2 * cells_apart(float(k), stretch))
+    cells = cells_apart(float(k), stretch)
+    chain = StruckDimer(float(k), float(omega), 2 * cells)
     near = [n * chain.sites for n in range(1, PLACES + 1)]
     far = int(farther * near[-1])
     rtol, less = TOLERANCES
@@ -138,7 +139,8 @@ def _measured(
         value = float(values[1 + best])
         measured[name] = Estimate(value, float(errors[name][best]))
     place = near[best + 1]
-    decayed = math.exp(measured["decay"].value * (near[-1] - far))
+    behind = near[-1] - far
+    decayed = math.exp(measured["decay"].value * behind)
     expected = fine["peak"][-1] * decayed
     higher = float(np.mean(rough["highest"][-1] / expected))
     if not abs(higher - 1) <= STEADY:
