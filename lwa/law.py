@@ -313,9 +313,7 @@ class Power(ContactLaw):
         """The exponent."""
         return self.parameters[0]
 
-    @property
-    def exponent(self) -> sp.Expr:
-        return self.k
+    exponent = k
 
     def slope(self, n: int = 1) -> sp.Expr:
         n = integer(n, "n", 0)

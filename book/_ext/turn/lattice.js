@@ -161,22 +161,18 @@ function row({omega = 0.2733, k = 1.5, law = power(k), n = 40, inside = [], more
   return new Lattice({mass: [...masses, ...inside], links: [...contacts, ...more], contacts: n - 1, ...blow});
 }
 
-// The first pulse of a record of rows [time, force], as lwa-validate finds it: the highest hump of
-// the first stretch above half of the record's maximum, until the force is as high again. The peak
-// is that of a parabola through three rows; a pulse that does not fall to its half has no width.
+// The first pulse of a record of rows [time, force], as lwa-validate finds it: from where the force
+// exceeds half of the record's maximum to where it first falls below half of its highest value so
+// far. The peak is that of a parabola through three rows; a pulse that has not fallen has no width.
 function leading(rows) {
-  const after = (start, test) => {
-    const found = rows.findIndex((row, i) => i >= start && test(row[1]));
-    return found < 0 ? rows.length : found;
-  };
-  const most = (from, to) => rows.slice(from, to).reduce((high, row) => Math.max(high, row[1]), 0);
-  const half = most(0) / 2;
-  const start = after(0, force => force > half);
-  const fallen = after(start, force => force <= half);
-  const hump = most(start, fallen);
-  const end = after(fallen, force => force >= hump);
-  const peak = most(0, end);
-  const top = after(0, force => force === peak);
+  const most = rows.reduce((high, row) => Math.max(high, row[1]), 0);
+  const start = rows.findIndex(row => row[1] > most / 2);
+  let peak = 0;
+  rows.findIndex((row, i) => {
+    if (i >= start) peak = Math.max(peak, row[1]);
+    return row[1] < peak / 2;
+  });
+  const top = rows.findIndex(row => row[1] === peak);
   const inside = i => rows[Math.min(Math.max(i, 0), rows.length - 1)];
   const [before, now, next] = [inside(top - 1), inside(top), inside(top + 1)];
   const slope = (next[1] - before[1]) / 2;
@@ -184,10 +180,10 @@ function leading(rows) {
   const time = now[0] + ahead * (now[0] - before[0]);
   const force = now[1] + (slope * ahead) / 2;
   const up = rows.slice(0, top).findLastIndex(row => row[1] <= force / 2);
-  const down = after(top, f => f <= force / 2);
+  const down = rows.findIndex((row, i) => i > top && row[1] <= force / 2);
   const crossing = ([t0, f0], [t1, f1]) => t0 + ((force / 2 - f0) / (f1 - f0)) * (t1 - t0);
   const rise = up < 0 ? rows[0][0] : crossing(rows[up], rows[up + 1]);
-  const fall = down < end ? crossing(rows[down - 1], rows[down]) : NaN;
+  const fall = down < 0 ? NaN : crossing(rows[down - 1], rows[down]);
   return {time, force, rise, width: fall - rise};
 }
 
