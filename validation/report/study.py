@@ -138,7 +138,7 @@ class Report(Pictured):
         return result
 
     def csv(self) -> str:
-        """Return the first table that has rows as CSV.
+        """Return the first table as CSV.
 
         Raises
         ------
@@ -147,10 +147,7 @@ class Report(Pictured):
         """
         if not self.tables:
             raise InputError("format is csv: this result has no table")
-        for table in self.tables:
-            if table.rows:
-                return table.csv()
-        return self.tables[0].csv()  # its header
+        return self.tables[0].csv()
 
     def pictured(self) -> tuple[Panel, ...]:
         """The panels, curves and maps, of which a picture of the result is made."""

@@ -16,13 +16,6 @@ PANEL = Panel("x", "y", (Curve("c", [1], [3]),))
 PART = Report("a part", (TABLE,), (Finding("drift", 0.5, 0.0, 1.0),), (PANEL,))
 
 
-def test_the_csv_is_the_first_table_that_has_rows():
-    table = Table.of((Column("n"), Column("", "n²")), [{"n": 2, "n²": 4}], "rows")
-    report = Report("squares", (Table((Column("k"),), ()), table))
-    assert report.document()["rows"] == [{"n": 2}]
-    assert report.csv() == "n\n2\n"
-
-
 def test_a_notebook_shows_tables_and_picture():
     page = dataclasses.replace(PART, title="<part>")._repr_html_()
     assert "&lt;part&gt;" in page
