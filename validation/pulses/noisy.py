@@ -56,6 +56,7 @@ _GRID = 400  # intervals in which the maxima of a pulse are looked for
 _SAME = 0.01  # distance, over the width, of two readings of one maximum
 _LEAST_OF_WIDTH = 0.1  # relative error of a width over that of the peak, at least
 _EXACT = 1e-4  # noise over the peak of a record without noise
+_UPRIGHT = 0.1  # rise over fall of a record that may be upright, at least
 # Widths behind the arrival: ends of two stretches that are searched for an undershoot
 _BEHIND = (1.5, 2.5, 3.5)
 _SURE = 4.0  # mean of a stretch below the base, in its standard deviations, at least
@@ -162,8 +163,10 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
 
 
 def _is_exact(f: Array) -> bool:
-    """Whether a record is without noise before it first exceeds half of its greatest swing."""
-    swing = np.abs(f - f[0])  # of an inverted record the pulse, not the noise
+    """Whether a record is without noise before it first exceeds half of its maximum."""
+    swing = f - f[0]
+    if swing.max() < _UPRIGHT * -swing.min():
+        return False  # the moving mean tells that it is inverted
     rise = int(np.argmax(swing > swing.max() / 2))
     before = f[:rise]
     early = before[: len(before) // 4]
