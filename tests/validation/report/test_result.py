@@ -16,6 +16,14 @@ PANEL = Panel("x", "y", (Curve("c", [1], [3]),))
 PART = Report("a part", (TABLE,), (Finding("drift", 0.5, 0.0, 1.0),), (PANEL,))
 
 
+def test_a_table_without_keys_is_in_json_and_csv():
+    """Its labels are the names; the CSV is the first table that has rows."""
+    cubes = Table.of((Column("", "n"), Column("", "n³")), [{"n": 2, "n³": 8}])
+    report = Report("cubes", (Table((Column("k"),), ()), cubes))
+    assert report.document() == {"tables": [[], [{"n": 2, "n³": 8}]]}
+    assert report.csv() == "n,n³\n2,8\n"
+
+
 def test_a_notebook_shows_tables_and_picture():
     page = dataclasses.replace(PART, title="<part>")._repr_html_()
     assert "&lt;part&gt;" in page
