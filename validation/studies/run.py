@@ -97,7 +97,7 @@ def report(recording: Recording, every: bool = False) -> Report:
         note += _DYNAMIC
         peak = "peak dynamic force"
     if not recording.sensors:
-        note = "No sensors: beads = [5] or contacts = [5] in [sensors] reads pulses there."
+        note = "No sensors: beads = [5] or contacts = [5] in [sensors] read pulses."
     tables, missing = reading_tables(
         recording.sensors,
         recording.speeds,
