@@ -32,16 +32,17 @@ from lwa.base.exact import (
     InputError,
     demand_numbers,
     integer,
+    one_of,
     positive,
     power,
     read_exact,
     real,
     rearranged,
     replaced,
+    shorten,
     signed,
 )
 from lwa.base.frozen import Value
-from lwa.base.words import one_of, shorten
 from lwa.cell import Cell, exponent, read_cell
 from lwa.cell import k as symbol_k
 
@@ -313,9 +314,7 @@ class Power(ContactLaw):
         """The exponent."""
         return self.parameters[0]
 
-    @property
-    def exponent(self) -> sp.Expr:
-        return self.k
+    exponent = k
 
     def slope(self, n: int = 1) -> sp.Expr:
         n = integer(n, "n", 0)

@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from lwa import CompactWave, canonical_wave, homogenize
+from lwa import CompactWave, PhysicalWave, canonical_wave, homogenize
 from lwa.base.frozen import Estimate
 from validation.lattice.result import Run
 from validation.lattice.simulate import repeated
@@ -217,7 +217,7 @@ def _waves() -> dict[str, list[CompactWave]]:
 def _width(wave: CompactWave, quantity: str, force: float, in_time: bool) -> float:
     """The theory's FWHM of a quantity whose peak is ``force``, in s or sites."""
     bead = quantity == "bead force"
-    physical = wave.at_force(force, of="bead" if bead else "contact")
+    physical = PhysicalWave(wave, force, "bead" if bead else "contact")
     width = bead_fwhm(physical) if bead else float(physical.fwhm("force"))
     return width / (float(physical.speed) if in_time else float(wave.D))
 

@@ -120,17 +120,18 @@ class Closure(Parametric):
         rows = [latex.row(r"\lambda", self.ratio)]
         if not self.b:
             return rows
-        parts = [(sp.S.One, "u")]
+        parts = ["u"]
         for n, b in self.b.items():
             if most is not None and n > most:
-                parts.append((sp.S.One, r"\cdots"))
                 break
             D = latex.power(self.model.cell.spacing, n)
-            parts.append((sp.S.One, f"b_{{{n}}} {D} {latex.derivative(n)}"))
+            parts.append(f"b_{{{n}}} {D} {latex.derivative(n)}")
             rows.append(latex.row(f"b_{{{n}}}", b))
-        if self.name == "full":
-            parts.append((sp.S.One, r"\cdots"))
-        return [rf"w = \lambda \left({latex.total(parts)}\right)", *rows]
+        # Where no number is left out, λ makes one row more than numbers.
+        if self.name == "full" or len(rows) <= len(self.b):
+            parts.append(r"\cdots")
+        ansatz = latex.total((sp.S.One, part) for part in parts)
+        return [rf"w = \lambda \left({ansatz}\right)", *rows]
 
     def _repr_latex_(self) -> str:
         return latex.display(self.latex_rows(4))

@@ -178,7 +178,7 @@ class Contacts:
         if np.any(near & driven):
             raise InputError(DRIVEN)
         amplitudes = np.where(near, 0, forces / np.where(near, 1, gaps))
-        return np.asarray(-bent @ amplitudes)
+        return -bent @ amplitudes
 
 
 # --- in closed form ---

@@ -38,7 +38,7 @@ from flint import fmpq_mpoly
 from lwa.algebra.jets import taylor
 from lwa.base.exact import InputError
 from lwa.closure.consistency import Closure
-from lwa.closure.slaving import Solution, full
+from lwa.closure.slaving import Solution
 
 
 def conservative(closure: Closure) -> bool:
@@ -58,23 +58,20 @@ def energy(closure: Closure) -> list[fmpq_mpoly]:
     Raises
     ------
     InputError
-        On the optical branch, and for a closure that leaves a defect.
+        On the optical branch, and for the linear closure of two particles.
     """
     if closure.model.branch != "acoustic":
         raise InputError(
             "the energy in the slaved fields is that of the acoustic branch"
         )
-    if any(not d.is_zero() for d in closure.solution.defect):
+    solution = closure.solution
+    # The linear closure keeps no forces.
+    if not solution.forces:
         raise InputError(
             "the linear closure does not satisfy both equations of motion (see the defect), so "
             "that no energy is conserved",
             closure="full",
         )
-    solution = closure.solution
-    if not solution.forces:
-        # The linear closure keeps no forces. Without a defect its fields are those of the full
-        # closure, which keeps them.
-        solution = full(closure.model, closure.field)
     algebra = solution.algebra
     # The density is known to the order to which the velocities are.
     densities = []

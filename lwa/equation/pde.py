@@ -149,7 +149,7 @@ class PDE(OfClosure):
         Raises
         ------
         InputError
-            On the optical branch, and for a closure that leaves a defect.
+            On the optical branch, and for the linear closure of two particles.
         """
         densities = energy(self.closure)
         return {n: terms(self.closure, e, ENERGY) for n, e in enumerate(densities)}

@@ -303,7 +303,10 @@ class LatticeWave(Parametric):
             For another language, for symbols that are no names of variables, and for a symbol k:
             Γ and the incomplete beta function are numbers for a number k alone.
         """
-        why = "the languages lack the incomplete beta function; give k by at(k=…)"
+        why = (
+            "the languages lack the incomplete beta function, which is a number for a number k, as "
+            "in wave.at(k='3/2').code('c')"
+        )
         demand_numbers(self.k.free_symbols, why)
         cell = self.cell
         # Each function has those of these arguments that it depends on, in this order.

@@ -89,7 +89,7 @@ class Bands(Value):
         edge = np.pi / len(self.fractions) / self.length
         ends = self.branches([0.0, edge])
         ends[0, 0] = 0.0  # a shift of all particles, but for rounding
-        return np.asarray(np.sort(ends, axis=0).T)
+        return np.sort(ends, axis=0).T
 
     def __repr__(self) -> str:
         return f"Bands(edges={np.round(self.edges(), 6).tolist()})"
@@ -114,7 +114,7 @@ def compressions(phase: NDArray[Any], size: int) -> NDArray[Any]:
     following = np.roll(here, 1, axis=1)
     factors = np.ones((*phase.shape, size, 1), phase.dtype)
     factors[..., -1, 0] = phase
-    return np.asarray(here - factors * following)
+    return here - factors * following
 
 
 class Acoustic(NamedTuple):
@@ -278,4 +278,4 @@ def solved(matrix: Array, right: Array) -> Array:
     # NumPy refuses all systems if one is singular, but none for a NaN.
     singular = (sign == 0)[..., None, None]
     found = np.linalg.solve(np.where(singular, np.nan, scaled), column)
-    return np.asarray(found[..., 0])
+    return found[..., 0]

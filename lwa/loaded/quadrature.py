@@ -136,24 +136,16 @@ def _cumulated(count: int) -> Array:
     function vanishes beyond the ends.
     """
     # The cell from 0 to 1, with as many places before it as behind it
-    places = range(1 - _WINDOW // 2, _WINDOW // 2 + 1)
+    before = _WINDOW // 2 - 1
+    places = np.arange(-before, _WINDOW - before, dtype=float)
     # Gauss's rule of this many nodes is exact for the polynomial.
     x, w = np.polynomial.legendre.leggauss(_WINDOW)
-    x = (x + 1) / 2
-    w = w / 2
-    weights = []
-    for j in places:
-        lagrange = np.ones(_WINDOW)  # 1 at the place j, 0 at the others
-        for i in places:
-            if i != j:
-                lagrange *= (x - i) / (j - i)
-        weights.append(w @ lagrange)
+    weights = _lagrange(places[:, None], (x + 1) / 2) @ w / 2
     cells = np.zeros((count - 1, count + _WINDOW))
     for i, row in enumerate(cells):
         row[i : i + _WINDOW] = weights
     sums = np.cumsum(cells, axis=0)
     # The columns of places beyond the ends go: there the function is 0.
-    before = -places[0]
     inside = sums[:, before : before + count]
     return np.vstack([np.zeros(count), inside])
 
@@ -161,21 +153,23 @@ def _cumulated(count: int) -> Array:
 def _interpolated(x: Array, y: Array, at: Array) -> Array:
     """Values at the places ``at`` of a function with values y at ascending x.
 
-    The polynomial through the `_PLACES` nearest values is evaluated by Neville's scheme.
+    They are those of the polynomial through the `_PLACES` nearest values.
     """
     nearest = np.searchsorted(x, at) - _PLACES // 2
     first = np.clip(nearest, 0, len(x) - _PLACES)
     # One column of places for each value that is wanted
     window = first + np.arange(_PLACES)[:, None]
-    x = x[window]
-    y = y[window]
-    for n in range(1, _PLACES):
-        left = x[:-n]
-        right = x[n:]
-        rising = (at - left) * y[1:]
-        falling = (at - right) * y[:-1]
-        y = (rising - falling) / (right - left)
-    return np.asarray(y[0])
+    return np.asarray((y[window] * _lagrange(x[window], at)).sum(axis=0))
+
+
+def _lagrange(x: Array, at: Array) -> Array:
+    """Lagrange's polynomials at the places ``at``: the n-th is 1 at ``x[n]``, 0 at the others."""
+    # The product of (at - x_m)/(x_n - x_m) over all m but n
+    with np.errstate(all="ignore"):
+        ratios = (at - x) / (x[:, None] - x)
+    own = np.arange(len(x))
+    ratios[own, own] = 1
+    return np.asarray(ratios.prod(axis=1))
 
 
 @dataclass(frozen=True, eq=False)

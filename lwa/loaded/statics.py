@@ -84,7 +84,7 @@ class Statics:
     def compressions(self, e: Array) -> Array:
         """Compressions of the links at mean compressions; NaN where there is no static state."""
         if self.network.size == 1:
-            return np.asarray(e[..., None] * self.network.spans)
+            return e[..., None] * self.network.spans
         return self._series(e) if self.network.in_series else self._network(e)
 
     def _series(self, e: Array) -> Array:
@@ -129,7 +129,7 @@ class Statics:
                 delta = delta * np.exp(step)
                 if np.all(np.abs(step) <= _ROUNDING):
                     break
-        return np.asarray(delta)
+        return delta
 
     def _network(self, e: Array) -> Array:
         """Newton's method for the displacements w inside the cell, at which the energy is least.
@@ -158,7 +158,7 @@ class Statics:
                 largest = np.abs(step).max(axis=-1)
                 if not np.any(largest > _ROUNDING * e):
                     break
-        return np.asarray(delta)
+        return delta
 
     def _part(self, delta: Array, change: Array) -> Array:
         """The part 1, 1/2, 1/4, … of a step behind which the energy is no steeper than before."""
@@ -188,7 +188,7 @@ class Statics:
         """The mean force at mean compressions."""
         forces = self.values(self.compressions(e), 0)
         with np.errstate(invalid="ignore"):  # opposite infinities far beyond the wave
-            return np.asarray(forces @ self.network.spans / self.network.size)
+            return forces @ self.network.spans / self.network.size
 
     def samples(self, e: Array) -> Samples:
         """``F′``, ``F″`` and I at mean compressions."""
@@ -222,7 +222,7 @@ class Statics:
             if not len(above) or above[0] == 0:
                 raise unreached
             low, high = e[above[0] - 1 : above[0] + 1]
-            e = np.asarray(np.linspace(low, high, _PARTS))
+            e = np.linspace(low, high, _PARTS)
         if np.isnan(self.force(e[-1:])[0]):
             raise unreached
         return float(e[-1])

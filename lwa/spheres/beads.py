@@ -46,7 +46,7 @@ from lwa.base.files import (
     positive,
     table,
 )
-from lwa.spheres.hertz import MATERIALS, Material, Sphere
+from lwa.spheres.hertz import BY_NAME, Material, Sphere
 
 GRAVITY = sp.Rational("9.81")
 """Gravity in m/s², of strikers that drop and of the scenes."""
@@ -78,12 +78,10 @@ STRIKER = ("velocity", "drop", "like")
 
 
 def read_materials(file: Table) -> dict[str, Material]:
-    """Materials by name: the built-in `MATERIALS` ("steel" is steel 316), and those of a file."""
+    """Materials by name: the built-in ones, and those of a file."""
     materials: dict[str, Material] = file.read("materials", named(_material), {})
-    # Porter et al. 2008, whose chains are the examples, have beads of steel 316.
-    known = MATERIALS | {"steel": MATERIALS["steel 316"]}
     # A file's own names come first in lists, and its values stand above the built-in ones.
-    return materials | known | materials
+    return materials | BY_NAME | materials
 
 
 def striker_velocity(striker: Table) -> float:
@@ -211,7 +209,7 @@ def _material(value: Any, name: str) -> Material:
     needed = {"E", "nu"}
     values: dict[str, Any] = {}
     if "like" in entries:
-        values = vars(entries.read("like", among(MATERIALS)))
+        values = vars(entries.read("like", among(BY_NAME)))
         needed = set()
     for key, read in {"E": positive, "nu": finite, "density": positive}.items():
         # A needed key that is missing is refused by its reader.

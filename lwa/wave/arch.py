@@ -65,17 +65,17 @@ class Arch(Parametric):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "k", exponent(self.k))
+        conditions = (
+            ("k", self.k, 1, "k > 1"),
+            ("(G+H+I)/D²", self.coefficient_sum, 0, "G+H+I > 0"),
+            ("V²/B^(k-1)", self.speed_factor, 0, "V² > 0"),
+        )
         # With symbols every condition is taken to hold.
-        if self.k.is_number and not self.k > 1:
-            raise NoSolitaryWave(f"k is {self.k}: a compact wave needs k > 1")
-        if self.coefficient_sum.is_number and not self.coefficient_sum > 0:
-            raise NoSolitaryWave(
-                f"(G+H+I)/D² is {self.coefficient_sum}: a compact wave needs G+H+I > 0"
-            )
-        if self.speed_factor.is_number and not self.speed_factor > 0:
-            raise NoSolitaryWave(
-                f"V²/B^(k-1) is {self.speed_factor}: a compact wave needs V² > 0"
-            )
+        for name, value, least, wanted in conditions:
+            if value.is_number and not value > least:
+                raise NoSolitaryWave(
+                    f"{name} is {value}: a compact wave needs {wanted}"
+                )
 
     @cached_property
     def _ratios(self) -> tuple[sp.Expr, sp.Expr]:

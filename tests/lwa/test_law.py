@@ -104,6 +104,8 @@ def test_an_open_contact_carries_nothing():
     assert np.array_equal(hertz.at([[-1, 4], [0, 1]]), [[0, 8], [0, 1]])
     assert np.array_equal(Power(1).at([-1, 1], 1), [0, 1])
     assert toda.at(-1) == sp.exp(-1) - 1
+    x = sp.Symbol("x", positive=True)
+    assert Law(sp.sinh(x), x).at(2) == sp.sinh(2)  # in the law's own variable
     assert np.allclose(toda.at([-1.0, 1.0]), np.expm1([-1.0, 1.0]), rtol=1e-15)
 
 

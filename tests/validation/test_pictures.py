@@ -44,7 +44,8 @@ def ticks(axis):
 )
 def test_a_logarithmic_axis_of_few_decades_has_plain_numbers(most, labels):
     x = np.geomspace(1, most, 5)
-    (axes,) = figure([Panel("x", "y", (Curve("c", x, 1e6 * x),), "xy")]).axes
+    (axes,) = figure([Panel("x", "y", (Curve("c", x, 1e6 * x),), "xy", "line")]).axes
+    assert axes.get_title() == "line"
     axes.figure.draw_without_rendering()
     assert ticks(axes.xaxis) >= labels
     assert not any(tick.get_text() for tick in axes.get_xticklabels(minor=True))

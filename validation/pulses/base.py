@@ -213,12 +213,13 @@ class Base:
         size = count + len(products)
         white = rng.normal(size=(size, DRAWS))
         # The products are those of both directions, and that at lag 0 counts once.
-        power = np.fft.rfft(products, size).real - products[0] / 2
-        power = np.maximum(power, 0.0)
+        spectrum = np.fft.rfft(products, size)
+        power = np.maximum(spectrum.real - products[0] / 2, 0.0)
         if not power.any():
             return white[:count]
         factors = np.sqrt(power / power.mean())
-        spectra = np.fft.rfft(white, axis=0) * factors[:, np.newaxis]
+        spectra = np.fft.rfft(white, axis=0)
+        spectra *= factors[:, np.newaxis]
         shaped = np.fft.irfft(spectra, size, axis=0)
         return np.asarray(shaped[:count])
 
@@ -228,7 +229,8 @@ def _rounding(
 ) -> Array:
     """Return noise with the errors of rounding to levels; ``exact`` are values without noise."""
     # Base and pulse lie anywhere between two levels.
-    true = exact[:, np.newaxis] + step * rng.uniform(-0.5, 0.5, DRAWS)
+    places = rng.uniform(-0.5, 0.5, DRAWS)
+    true = exact[:, np.newaxis] + step * places
     levels = np.round((true + noise) / step)
     return np.asarray(step * levels - true)
 

@@ -75,7 +75,8 @@ def fitted(
     ends = (-margin, fall - rise + margin)
     x = t[near] - rise
     f = f[near]
-    rounding = np.finfo(float).eps * np.abs(f).max()
+    size = np.abs(f).max()
+    rounding = np.finfo(float).eps * size
     variance = base.best.variance + rounding**2
     most = min(_HIGHEST, int(_DENSEST * len(x)))
     smoothed = partial(_smoothed, x, f, base.best.correlation_time, most)
@@ -175,4 +176,5 @@ def _read(splines: BSpline, ends: tuple[float, float]) -> Array:
         numbers.append((top + shift, peak, width))
     step = grid[1] - grid[0]
     tops, peaks, widths = np.transpose(numbers)
-    return np.column_stack((ends[0] + step * tops, peaks, step * widths))
+    arrivals = ends[0] + step * tops
+    return np.column_stack((arrivals, peaks, step * widths))

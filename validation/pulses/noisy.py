@@ -56,6 +56,7 @@ _GRID = 400  # intervals in which the maxima of a pulse are looked for
 _SAME = 0.01  # distance, over the width, of two readings of one maximum
 _LEAST_OF_WIDTH = 0.1  # relative error of a width over that of the peak, at least
 _EXACT = 1e-4  # noise over the peak of a record without noise
+_UPRIGHT = 0.1  # rise over fall of a record that may be upright, at least
 # Widths behind the arrival: ends of two stretches that are searched for an undershoot
 _BEHIND = (1.5, 2.5, 3.5)
 _SURE = 4.0  # mean of a stretch below the base, in its standard deviations, at least
@@ -129,7 +130,8 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
     inside = int(np.count_nonzero((t > rise) & (t < fall)))
     block = max(1, inside // _MOST)
     whole = len(t) // block * block
-    blocks = np.array((t, f))[:, :whole].reshape(2, -1, block)
+    samples = np.array((t, f))[:, :whole]
+    blocks = samples.reshape(2, -1, block)
     at, means = blocks.mean(axis=2)
     base = Base.before(at, means, rise, width)
     missing = None
@@ -146,12 +148,14 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
     if base.best.variance < (step / 2) ** 2:
         rounding = step
     _check_top(t, f, (rise, fall), _FEWEST, step)
-    numbers = fitted(at, means - base.at(at), base, (rise, fall), rounding)
+    above = means - base.at(at)
+    numbers = fitted(at, above, base, (rise, fall), rounding)
     if missing:
         del numbers["peak"]
     else:
         numbers["peak"] *= size
-    level, later = base.at(np.array([rise, fall])).tolist()
+    ends = np.array([rise, fall])
+    level, later = base.at(ends).tolist()
     slope = (later - level) / width
     # Samples of correlated noise count as fewer; each of ``means`` counts as the block's.
     noise = math.sqrt(base.best.variance * base.best.correlation_time * block)
@@ -159,9 +163,12 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
 
 
 def _is_exact(f: Array) -> bool:
-    """Whether a record is without noise before it first exceeds half of its greatest swing."""
-    swing = np.abs(f - f[0])  # of an inverted record the pulse, not the noise
-    before = f[: int(np.argmax(swing > swing.max() / 2))]
+    """Whether a record is without noise before it first exceeds half of its maximum."""
+    swing = f - f[0]
+    if swing.max() < _UPRIGHT * -swing.min():
+        return False  # the moving mean tells that it is inverted
+    rise = int(np.argmax(swing > swing.max() / 2))
+    before = f[:rise]
     early = before[: len(before) // 4]
     if len(early) >= _EARLY and np.ptp(early) < _EXACT * np.ptp(f):
         return True
@@ -290,7 +297,8 @@ def _place(t: Array, f: Array) -> tuple[float, float]:
         raise MeasureError(
             f"the pulse is not wholly in the record: its {side} does not pass half its peak"
         )
-    return float(t[below[after - 1]]), float(t[below[after]])
+    rise, fall = t[below[after - 1 : after + 1]]
+    return float(rise), float(fall)
 
 
 def _check_top(
@@ -332,7 +340,8 @@ def corrected(t: Array, signal: Array, constant: float) -> Array:
     An error of the base makes a slope, which the base of a pulse takes out.
     """
     swing = signal - signal[:_EARLY].mean()
-    return np.asarray(signal + cumulative_trapezoid(swing, t, initial=0) / constant)
+    charge = cumulative_trapezoid(swing, t, initial=0)
+    return np.asarray(signal + charge / constant)
 
 
 def suggested(t: Array, signal: Array, pulse: NoisyPulse, unit: str) -> str:
@@ -343,18 +352,22 @@ def suggested(t: Array, signal: Array, pulse: NoisyPulse, unit: str) -> str:
     arrival = pulse.numbers["arrival"].value
     width = pulse.numbers["fwhm"].value
     # A base that falls is no undershoot.
-    swing = signal - pulse.base - min(pulse.slope, 0.0) * (t - pulse.rise)
+    fall = min(pulse.slope, 0.0)
+    base = pulse.base + fall * (t - pulse.rise)
+    swing = signal - base
     charge = cumulative_trapezoid(swing, t, initial=0)
     constants = []
     for start, end in pairwise(_BEHIND):
-        inside = (t > arrival + start * width) & (t < arrival + end * width)
+        behind = (t - arrival) / width
+        inside = (behind > start) & (behind < end)
         below = -swing[inside]
         if len(below) < _EARLY:
             return ""
         error = pulse.noise / math.sqrt(len(below))
         if not 0 < _SURE * error < below.mean() > _SHALLOWEST * swing.max():
             return ""
-        constants.append(float(charge[inside].mean() / below.mean()))
+        constant = charge[inside].mean() / below.mean()
+        constants.append(float(constant))
     near, far = constants
     if not 1 / _ALIKE < near / far < _ALIKE:
         return ""

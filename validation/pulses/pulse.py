@@ -216,7 +216,8 @@ def first_pulse(signal: Signal, low: float = 0.5, share: float = 0.5) -> Pulse:
     grid = _Grid(signal)
     start = int(np.argmax(grid.f > low * grid.f.max()))
     f = grid.f[start:]
-    fallen = np.append(f < low * np.maximum.accumulate(f), True)
+    highest = np.maximum.accumulate(f)
+    fallen = np.append(f < low * highest, True)
     stop = start + int(np.argmax(fallen))
     return grid.highest(stop=stop + 1, share=share)
 
@@ -260,9 +261,11 @@ class _Grid:
 
     def _crossing(self, i: int, level: float) -> float:
         """Return the time between grid points i and i+1 at which the signal passes a level."""
-        series = self._interpolant(self.t[i], self.t[i + 1])
+        low, high = self.t[i : i + 2]
+        series = self._interpolant(low, high)
+        passed = _zeros(series - level)
         # Without a zero the signal jumps at the end: a damped contact opens.
-        return float(min(_zeros(series - level), default=self.t[i + 1]))
+        return float(min(passed, default=high))
 
     def _crest(self, low: float, high: float) -> tuple[float, float]:
         """Return the time and value of the signal's maximum between two times."""
@@ -272,7 +275,8 @@ class _Grid:
         tops = []
         for a, b in pairwise((low, *inside, high)):
             series = self._interpolant(a, b)
-            times = np.append(_zeros(series.deriv()), (a, b))
+            flat = _zeros(series.deriv())
+            times = np.append(flat, (a, b))
             values = series(times)
             best = int(np.argmax(values))
             tops.append((float(values[best]), float(times[best])))

@@ -208,7 +208,8 @@ def record(
         start = first.numbers["arrival"].value
         end = second.numbers["arrival"].value - second.numbers["fwhm"].value
         force = recorded[firsts.index(second)].force
-        if end > start and force(np.linspace(start, end, _LOOKS)).max() > peaks[0] / 2:
+        looks = np.linspace(start, end, _LOOKS)
+        if end > start and force(looks).max() > peaks[0] / 2:
             return "another pulse passes the second sensor before"
         return ""
 

@@ -61,9 +61,8 @@ class Point:
 
     k: sp.Rational
     omega: sp.Rational
-    sites: (
-        tuple[int, int] | None
-    )  # from the struck bead to both ends of the measured stretch
+    # From the struck bead to both ends of the measured stretch
+    sites: tuple[int, int] | None
     numbers: Mapping[str, Estimate]  # by the names `LABELS`
     missing: str | None = None  # reason without numbers
 
@@ -74,7 +73,8 @@ def cells_apart(k: float, stretch: int) -> int:
     >>> [cells_apart(k, 4) for k in (3, 1.5, 1.1)]
     [4, 4, 30]
     """
-    return math.ceil(stretch * max(1.0, math.pow(2 * (k - 1), -1.25)))
+    longer = math.pow(2 * (k - 1), -1.25)
+    return math.ceil(stretch * max(1.0, longer))
 
 
 def point(
@@ -100,14 +100,16 @@ def point(
 def _measured(
     k: sp.Rational, omega: sp.Rational, stretch: int, farther: float
 ) -> Point:
-    chain = StruckDimer(float(k), float(omega), 2 * cells_apart(float(k), stretch))
+    cells = cells_apart(float(k), stretch)
+    chain = StruckDimer(float(k), float(omega), 2 * cells)
     near = [n * chain.sites for n in range(1, PLACES + 1)]
     far = int(farther * near[-1])
     rtol, less = TOLERANCES
     distant = [*near, far - chain.sites, far]
     rough = chain.passages(chain.run(distant, chain.crossing(far), less))
     # A place's time more: the front of a later, slower pulse is no leading pulse.
-    until = (1 + 1 / PLACES) * float(rough["end"][:PLACES].max())
+    passed = float(rough["end"][:PLACES].max())
+    until = (1 + 1 / PLACES) * passed
     fine = chain.passages(chain.run(near, until, rtol))
     numbers = chain.numbers(fine)
     less_accurate = chain.numbers(rough)
@@ -134,9 +136,11 @@ def _measured(
     best = int(np.nanargmin(worst))
     measured = {}
     for name, values in numbers.items():
-        measured[name] = Estimate(float(values[1 + best]), float(errors[name][best]))
+        value = float(values[1 + best])
+        measured[name] = Estimate(value, float(errors[name][best]))
     place = near[best + 1]
-    decayed = math.exp(measured["decay"].value * (near[-1] - far))
+    behind = near[-1] - far
+    decayed = math.exp(measured["decay"].value * behind)
     expected = fine["peak"][-1] * decayed
     higher = float(np.mean(rough["highest"][-1] / expected))
     if not abs(higher - 1) <= STEADY:
@@ -158,17 +162,20 @@ class StruckDimer:
     def crossing(self, sites: int) -> float:
         """Return the time in which the theory's pulse of force `_WEAKEST` passes sites."""
         # The speed is 2 F^q/√((k+1)(1+ω)), F the peak contact force.
-        weak = math.pow(_WEAKEST, (self.k - 1) / (2 * self.k))
-        return sites * math.sqrt((self.k + 1) * (1 + self.omega)) / (2 * weak)
+        q = (self.k - 1) / (2 * self.k)
+        weak = math.pow(_WEAKEST, q)
+        of_unit_force = 2 / math.sqrt((self.k + 1) * (1 + self.omega))
+        return sites / (of_unit_force * weak)
 
     def run(self, places: Sequence[int], duration: float, rtol: float) -> Run:
         """Strike the chain and record the two contacts of each place, up to the last one."""
         sensors = tuple(place + side for place in places for side in (0, 1))
         options = {"contact_sensors": sensors, "duration": duration, "samples": 2}
-        beads = places[-1] + max(
-            12, self.sites
-        )  # the end is a pulse's length away as k → 1, too
-        return simulate(struck((1.0, self.omega), beads, self.k, **options), rtol=rtol)
+        # The end is a pulse's length away as k → 1, too.
+        behind = max(12, self.sites)
+        masses = (1.0, self.omega)
+        scene = struck(masses, places[-1] + behind, self.k, **options)
+        return simulate(scene, rtol=rtol)
 
     def passages(self, run: Run) -> dict[str, Array]:
         """Return numbers of the leading pulse at both contacts of each place, (places, 2), by name.
@@ -179,7 +186,9 @@ class StruckDimer:
         low = 0.25**self.k  # a quarter of the compression
         sensors = run.scene.contact_sensors
         found: dict[str, list[float]] = {}
-        for force in (run.signal("contact", i) for i in sensors):
+        for contact in sensors:
+            force = run.signal("contact", contact)
+            highest = float(force(force.times).max())
             try:
                 pulse = first_pulse(force, low)
                 strain = first_pulse(force, low, 0.5**self.k)
@@ -195,7 +204,7 @@ class StruckDimer:
                 "width": pulse.fwhm,
                 "strain_width": strain.fwhm,
                 "end": pulse.fall,
-                "highest": max(pulse.peak, float(force(force.times).max())),
+                "highest": max(pulse.peak, highest),
             }
             for name, number in numbers.items():
                 found.setdefault(name, []).append(number)
@@ -214,7 +223,9 @@ class StruckDimer:
         fall = -np.diff(np.log(passages["peak"]), axis=0)
         q = (self.k - 1) / (2 * self.k)
         scaled = passages["peak"] ** q
-        speed = self.sites * scipy.special.exprel(q * fall) / (elapsed * scaled[:-1])
+        # exprel(z) is (e^z - 1)/z.
+        distance = self.sites * scipy.special.exprel(q * fall)
+        speed = distance / (elapsed * scaled[:-1])
         # A width is a duration at a contact times the speed there.
         at_end = speed * scaled[1:]
         numbers = {
@@ -256,7 +267,7 @@ class PointFile:
                     "select count(*) from sqlite_master"
                 ).fetchone()
                 if tables > 1:
-                    raise self._refusal(
+                    raise ValueError(
                         "it holds other data than points of this stretch and definition"
                     )
                 data.execute("commit")
@@ -282,11 +293,8 @@ class PointFile:
         except (sqlite3.Error, ValueError, TypeError, LookupError) as error:
             if isinstance(error, InputError):
                 raise
-            raise self._refusal(str(error)) from None
-
-    def _refusal(self, fault: str) -> InputError:
-        """The refusal of the file, which proposes the first name beside it that is free."""
-        number = 2
-        while (free := self.path.with_stem(f"{self.path.stem}-{number}")).exists():
-            number += 1
-        return InputError(f"file is {self.path}: {fault}", file=str(free))
+            # The first name beside the file that is free
+            number = 2
+            while (free := self.path.with_stem(f"{self.path.stem}-{number}")).exists():
+                number += 1
+            raise InputError(f"file is {self.path}: {error}", file=str(free)) from None

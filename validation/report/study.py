@@ -50,7 +50,8 @@ class Report(Pictured):
     title : str
         What was computed, in one or a few lines.
     tables : tuple of Table
-        Tables; text shows those with column labels, JSON has a table under its key.
+        Tables; text shows those with column labels. JSON has a table under its key, and tables
+        without a key in the list ``tables``.
     findings : tuple of Finding
         Numbers with bounds. In a report with tables, text shows only the findings that fail.
     panels : tuple of Panel
@@ -127,8 +128,14 @@ class Report(Pictured):
         With findings: ``ok``, ``findings``, and KEY_value of each finding that has a key.
         """
         result: dict[str, Any] = dict(plain(self.data))
+        unnamed = []
         for table in self.tables:
-            result[table.key] = table.document()
+            if table.key:
+                result[table.key] = table.document()
+            else:
+                unnamed.append(table.document())
+        if unnamed:
+            result["tables"] = unnamed
         for finding in self.findings:
             if finding.key:
                 result[f"{finding.key}_value"] = plain(finding.value)

@@ -69,16 +69,16 @@ class Column:
         digits = ".6g" if isinstance(cell, float) else ""
         return format(cell, self.format or digits)
 
-    def values(self, cell: Any) -> dict[str, Any]:
+    def values(self, name: str, cell: Any) -> dict[str, Any]:
         """Return the JSON names and values of a cell.
 
-        >>> Column("speed.m1", error=True).values(Estimate(2.0, 0.25))
+        >>> Column(error=True).values("speed.m1", Estimate(2.0, 0.25))
         {'speed_value.m1': 2.0, 'speed_error_value.m1': 0.25}
         """
         if not self.error:
-            return {self.key: plain(cell)}
+            return {name: plain(cell)}
         # The endings belong to the name of the mapping, not to its entries.
-        head, dot, entry = self.key.partition(".")
+        head, dot, entry = name.partition(".")
         return {
             f"{head}_value{dot}{entry}": plain(getattr(cell, "value", None)),
             f"{head}_error_value{dot}{entry}": plain(getattr(cell, "error", None)),
@@ -92,7 +92,7 @@ class Table:
     Parameters
     ----------
     columns : tuple of Column
-        Columns.
+        Columns. If no column has a key, the labels are the names in JSON and CSV.
     rows : tuple of sequences
         Cells, one for each column.
     key : str
@@ -145,10 +145,13 @@ class Table:
 
     def _record(self, row: Row) -> dict[str, Any]:
         """The JSON names (with their dots) and values of a row, in the order of columns."""
+        names = [column.key for column in self.columns]
+        if not any(names):
+            names = [column.label for column in self.columns]
         record: dict[str, Any] = {}
-        for column, cell in zip(self.columns, row, strict=True):
-            if column.key:
-                record |= column.values(cell)
+        for name, column, cell in zip(names, self.columns, row, strict=True):
+            if name:  # a column without a key, beside others with one, is only printed
+                record |= column.values(name, cell)
         return record
 
     def document(self) -> list[dict[str, Any]]:

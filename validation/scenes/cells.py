@@ -127,23 +127,26 @@ class Cells:
                     return numbers
         return []
 
-    def numbers(self, places: Sequence[int], most: int | None = None) -> Array:
-        """Return columns, (lines, columns), at increasing places; NaN for a cell without a number.
+    def columns(
+        self, numbers: Sequence[int], most: int | None = None
+    ) -> dict[int, Array]:
+        """Return columns, (lines,), by their rising numbers; NaN for a cell without a number.
 
         Blank lines are left out, and lines behind the first ``most``.
         """
-        if not self.entries:
-            return np.empty((0, len(places)))
-        # NumPy's reader parses a million rows in a second, Python's in six.
-        return np.loadtxt(
-            islice(self._lines(places[-1] + 1), most),
-            delimiter=self._mark.strip(" ") or None,
-            comments=None,
-            converters=number_of,
-            quotechar='"',
-            usecols=places,
-            ndmin=2,
-        )
+        table = np.empty((0, len(numbers)))
+        if self.entries and numbers:
+            # NumPy's reader parses a million rows in a second, Python's in six.
+            table = np.loadtxt(
+                islice(self._lines(numbers[-1]), most),
+                delimiter=self._mark.strip(" ") or None,
+                comments=None,
+                converters=number_of,
+                quotechar='"',
+                usecols=[number - 1 for number in numbers],
+                ndmin=2,
+            )
+        return dict(zip(numbers, table.T, strict=True))
 
     def _lines(self, count: int) -> Iterator[str]:
         """Yield the lines, with so many cells more that the reader finds all columns."""

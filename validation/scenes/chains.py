@@ -41,7 +41,7 @@ def struck(masses: Sequence[float], beads: int, k: float = 1.5, **rest: Any) -> 
     >>> struck((1, 0.5), 3, duration=1).masses
     (1.0, 0.5, 1.0)
     """
-    row = tuple(masses[i % len(masses)] for i in range(beads))
+    row = np.resize(masses, beads)  # repeats them
     # A blow of velocity 1, unless another start is given.
     blow = {"velocities": (1.0,)} | rest
     return Scene(masses=row, stiffnesses=(1.0,) * (beads - 1), k=k, **blow)
@@ -73,10 +73,10 @@ def carrying(
     """
     strain = np.asarray(compression, float)
     return Scene(
-        masses=tuple(masses),
+        masses=masses,
         stiffnesses=(1.0,) * len(strain),
         # The beads behind have moved by all compressions before them.
-        displacements=tuple(np.append(np.cumsum(strain[::-1])[::-1], 0.0)),
-        velocities=tuple(np.asarray(velocity, float)),
+        displacements=np.append(np.cumsum(strain[::-1])[::-1], 0.0),
+        velocities=velocity,
         **rest,
     )

@@ -246,11 +246,8 @@ class Columns:
         """
         cells = self.cells
         headers = {n: header for n, header in self.headers.items() if n not in missing}
-        used = set()
-        for column in replace(self, headers=headers).named:
-            if column.name not in missing:
-                used.add(column.number)
         # Columns that are named already are not proposed for another name.
+        used = {column.number for column in self.named if column.name not in missing}
         free = [number for number in cells.entries if number not in used]
         steps = _steps(cells)
         if not cells.entries:
@@ -300,10 +297,8 @@ def _rank(cells: Cells, steps: dict[int, Array], name: str, number: int) -> int:
 
 def _steps(cells: Cells) -> dict[int, Array]:
     """Return the differences from line to line, at the beginning, of the columns of numbers."""
-    numbers = [*cells.entries]
-    table = cells.numbers([number - 1 for number in numbers], HEAD)
     steps = {}
-    for number, column in zip(numbers, table.T, strict=True):
+    for number, column in cells.columns([*cells.entries], HEAD).items():
         start, end = longest(np.isfinite(column))
         steps[number] = np.diff(column[start:end])
     return steps

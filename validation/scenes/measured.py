@@ -250,5 +250,4 @@ class MeasuredFile(Columns):
     def _numbers(self) -> dict[int, Array]:
         """Columns of all lines by number, with NaN where a cell is no number."""
         numbers = [c.number for c in self.named if c.number is not None]
-        table = self.cells.numbers([number - 1 for number in numbers])
-        return dict(zip(numbers, table.T, strict=True))
+        return self.cells.columns(numbers)

@@ -156,7 +156,7 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     # A law of another form, or a list of exponents, has no passage in closed form.
     passage = None
     if "striker" in file and isinstance(fields.get("k"), float):
-        passage = _passage(fields)
+        passage = _passage(fields) or None  # a bead alone has no contact
     return Scene(
         **fields,
         duration=file.read("duration", positive, passage),

@@ -51,7 +51,7 @@ LEAST, MOST = (
     4.0,
 )  # k: below, speeds do not depend on force; beyond, R is not known
 LARGEST = 700.0  # |ln A|, at most
-_POWER = (Column("name", "F = A δ^k"), Column("number", "value", error=True))
+_POWER = (Column("", "F = A δ^k"), Column("", "value", error=True))
 _UNITS = "A bead's mass or the distance is 1 as none is given: see --masses, --spacing, --spheres."
 _NOTE = "±: 95 % intervals by the scatter of the data."
 _FEWEST = 6  # pulses: three more than the coefficients of the curvature's fit
@@ -115,7 +115,7 @@ def law(
     Peak contact forces and speeds are in the units of the masses and the spacing, by default those
     of unit mass and spacing; with spheres they are in N and m/s. ``k_value``, ``A_value`` and, of
     an unknown material, ``E_value``, with their errors; ``correlation_value`` of k and ln A;
-    ``one_power``; ``rows``, the printed table.
+    ``one_power``.
     """
     file = MeasuredFile.read(data, **stated)
     force, speed, weight = _pulses(file)
@@ -158,7 +158,7 @@ def law(
         values |= {f"{name}_value": number.value, f"{name}_error_value": number.error}
     return Report(
         f"{len(force)} pulses, forces {force[0]:.4g} … {force[-1]:.4g}{' N' * file.si}",
-        (Table(_POWER, tuple(rows), "rows"),),
+        (Table(_POWER, tuple(rows)),),
         panels=(Panel(*axes, curves, "xy"),),
         notes=(*file.notes, *notes, _NOTE),
         data=values,

@@ -96,6 +96,8 @@ def report(recording: Recording, every: bool = False) -> Report:
     if any(scene.load):
         note += _DYNAMIC
         peak = "peak dynamic force"
+    if not recording.sensors:
+        note = "No sensors: beads = [5] or contacts = [5] in [sensors] read pulses."
     tables, missing = reading_tables(
         recording.sensors,
         recording.speeds,
@@ -117,7 +119,7 @@ def report(recording: Recording, every: bool = False) -> Report:
         f"{title}, momentum {momentum}",
         (*tables, Table.of(columns, end, "end")),
         panels=tuple(run.pictured()),
-        notes=(missing, note if recording.sensors else ""),
+        notes=(missing, note),
         data=data,
     )
 

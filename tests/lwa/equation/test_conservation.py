@@ -72,7 +72,6 @@ TODA = named("exponential", 1 / lwa.D)
     ("cell", "order", "law", "kind"),
     [
         (Cell([1]), 4, Power("3/2"), {}),
-        (Dimer(3, 1), 3, Power("3/2"), {}),  # below D^{k+3} it leaves no defect
         (Dimer(3, 1), 4, Power("3/2"), FIRST),
         (Dimer(3, 1), 6, Power(2), CANONICAL),
         (Cell([1, 2, 3], [1, 2, 3]), 5, Power(1), FIRST),

@@ -45,6 +45,12 @@ KEEP_ENERGY = [
     chain(
         10, k=7, duration=50, drive=Drive(velocity=1.4), damping=Damping("restitution", 0.55)
     ),
+    # A jump was misplaced as far as the curve of its contact erred.
+    chain((0.1,), wall=0.3, law=JUMPS, displacements=(-0.01,), velocities=(1,), duration=5),
+    # A fast drive works where the contact closes with a jump.
+    chain(
+        (1, 0.1), wall=1, law=ATTRACTS, duration=20, drive=Drive(amplitude=0.3, frequency=0.5)
+    ),
     # The wall's contact expands without a force, when the drive hits the bead in front of it.
     shaken((1, 1), 1.5, ("restitution", 0.5), 0.5, 0.2, 0),
     shaken((0.409, 1.455), 2.5, ("restitution", 0.589), 0.344, 0.446, -1.643),
@@ -62,15 +68,19 @@ def test_the_energy_is_kept(scene, rtol):
     assert abs(simulate(scene, rtol=rtol).energy_drift) < 20 * rtol
 
 
+def passed(A, gap, velocity, duration, k=1.5, damping=None):
+    """A bead that moves beside a driven one, along ``sin t``."""
+    return chain(
+        2, stiffnesses=(A,), k=k, displacements=(0, gap), velocities=(0, velocity),
+        duration=duration, damping=damping, drive=Drive(amplitude=1, frequency=1 / (2 * np.pi)),
+    )  # fmt: skip
+
+
 @pytest.mark.parametrize("rtol", [1e-6, 1e-9, 1e-11])
 def test_a_contact_near_an_inflection_of_its_drive_is_seen(rtol):
     """The rate of the compression changes its sign three times within a step."""
     gap = 0.998 * np.pi + 0.8 * (2 / 3) * 0.002 * np.sqrt(0.004)
-    scene = chain(
-        2, stiffnesses=(1e7,), displacements=(0, gap), velocities=(0, -0.998), duration=3.3,
-        drive=Drive(amplitude=1, frequency=1 / (2 * np.pi)),
-    )  # fmt: skip
-    velocity = simulate(scene, rtol=rtol).velocities[1]
+    velocity = simulate(passed(1e7, gap, -0.998, 3.3), rtol=rtol).velocities[1]
     assert velocity == pytest.approx(-0.9960454316, abs=max(10 * rtol, 1e-9))
 
 
@@ -100,16 +110,17 @@ INFLECTION = chain(
 )  # fmt: skip
 
 
-INFLECTED = chain(
-    2, stiffnesses=(907.2998957572929,), displacements=(0, 3.1287034930842177),
-    velocities=(0, -0.9959307251569779), duration=4.65237375443861,
+INFLECTED = passed(
+    907.2998957572929, 3.1287034930842177, -0.9959307251569779, 4.65237375443861,
     damping=Damping("kuwabara_kono", 0.9200695416030286),
-    drive=Drive(amplitude=1, frequency=1 / (2 * np.pi)),
 )  # fmt: skip
-GRAZE = chain(
-    2, stiffnesses=(224.74561040028715,), k=2, displacements=(0, 0.24763140564507657),
-    velocities=(0, 0.5956896767371712), duration=6.821425172704302,
-    damping=Damping("contact", 0.326), drive=Drive(amplitude=1, frequency=1 / (2 * np.pi)),
+CLOSED = passed(
+    579.270586588404, 3.0946816019061583, -0.9845886417241916, 4.628062933371744,
+    damping=Damping("kuwabara_kono", 0.0013403119338021737),
+)  # fmt: skip
+GRAZE = passed(
+    224.74561040028715, 0.24763140564507657, 0.5956896767371712, 6.821425172704302, k=2,
+    damping=Damping("contact", 0.326),
 )  # fmt: skip
 
 
@@ -126,6 +137,8 @@ GRAZE = chain(
         (GRAZE, 1, 0.595, 10),
         # Near an inflection of the drive
         (INFLECTED, 1, -0.1, 10),
+        # A contact that closes early in a long step, along no quintic
+        (CLOSED, 1, -0.03, 10),
     ],
 )
 def test_a_contact_that_touches_between_two_steps_is_seen(

@@ -257,6 +257,7 @@ WHITE = np.random.default_rng(2).normal(size=400)
         # square: all samples inside are equal
         (np.where(abs(N - 300) < 20, 1, 0.003 * WHITE), "clipped from 281 to 319"),
         (2 - PULSE + 0.01 * WHITE, "is inverted"),
+        (2 - PULSE, "is inverted"),
         # the second sample is the highest
         (np.where(N == 1, 0.05, 0.01 * WHITE) - PULSE, "is inverted"),
     ],

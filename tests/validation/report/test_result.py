@@ -16,11 +16,12 @@ PANEL = Panel("x", "y", (Curve("c", [1], [3]),))
 PART = Report("a part", (TABLE,), (Finding("drift", 0.5, 0.0, 1.0),), (PANEL,))
 
 
-def test_the_csv_is_the_first_table_that_has_rows():
-    table = Table.of((Column("n"), Column("", "n²")), [{"n": 2, "n²": 4}], "rows")
-    report = Report("squares", (Table((Column("k"),), ()), table))
-    assert report.document()["rows"] == [{"n": 2}]
-    assert report.csv() == "n\n2\n"
+def test_a_table_without_keys_is_in_json_and_csv():
+    """Its labels are the names; the CSV is the first table that has rows."""
+    cubes = Table.of((Column("", "n"), Column("", "n³")), [{"n": 2, "n³": 8}])
+    report = Report("cubes", (Table((Column("k"),), ()), cubes))
+    assert report.document() == {"tables": [[], [{"n": 2, "n³": 8}]]}
+    assert report.csv() == "n,n³\n2,8\n"
 
 
 def test_a_notebook_shows_tables_and_picture():

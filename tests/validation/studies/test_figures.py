@@ -1,20 +1,15 @@
 """The paper's figures: identities, published numbers."""
 
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from lwa import canonical_wave
-from validation.scenes.chains import PTFE_BEAD
 from validation.studies.paper import (
     HEIGHTS,
-    HERTZ,
     MODULI,
     RECORDED,
     STATED,
-    chain_cell,
     figures,
     fitted_exponent,
     scaling,
@@ -61,18 +56,14 @@ def test_the_errors_of_the_scaling_cover_a_finer_run(document):
 
 
 def test_the_theorys_line_is_parallel_to_the_lattices(document):
-    """Speeds of `lwa`'s wave at a bead's peak force; below the lattice's, by one share of them."""
+    """Both go as F^{1/6}: the canonical wave's speed is one share of the lattice's, 0.973."""
     for modulus in MODULI:
         rows = [row for row in document["rows"] if row["modulus_value"] == modulus]
         assert [row["height_value"] for row in rows] == list(HEIGHTS)
-        ptfe = replace(PTFE_BEAD, material=replace(PTFE_BEAD.material, E=modulus))
-        wave = canonical_wave(chain_cell(ptfe=ptfe), HERTZ)
-        for row in rows:
-            speed = float(wave.at_force(row["force_value"], of="bead").speed)
-            assert speed == pytest.approx(row["theory_value"], rel=1e-9)
         share = np.array([row["theory_value"] / row["speed_value"] for row in rows])
-        assert share == pytest.approx(share[0], rel=1e-6)  # both go as F^{1/6}
-        assert 0.95 < share[0] < 1
+        assert share == pytest.approx(share[0], rel=1e-6)
+        # The paper's closure, or the peak of a contact's force, gives 0.996 or 0.949.
+        assert share[0] == pytest.approx(0.973, abs=0.01)
 
 
 def test_force_records(document):

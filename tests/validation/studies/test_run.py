@@ -58,3 +58,5 @@ def test_a_report_states_what_is_conserved_and_what_is_lost():
     assert shown.document()["dissipated_value"] == found.run.dissipated > 0
     assert f"dissipated {found.run.dissipated:.6g}" in " ".join(shown.text().split())
     assert "work_value" not in shown.document()
+    silent = report(record(replace(free, contact_sensors=())))
+    assert "No sensors" in silent.text()

@@ -120,29 +120,21 @@ def test_a_file_that_is_open_or_of_another_kind_is_refused(file):
 
 def test_few_points_wait_for_a_worker():
     """A grid of 40 values by 50 never has more than `AHEAD` points in the executor."""
+    given = []
 
-    class Counting(ThreadPoolExecutor):
-        def submit(self, function, k, omega, stretch):
-            nonlocal most
-            most = max(most, len(todo) - len(finished))
-
-            def finish():
-                finished.append(k)
-                return Point(k, omega, None, {}, "no")
-
-            return super().submit(finish)
-
-    most, todo, finished = 0, [], []
-    grid = tuple(map(R, range(2, 42))), tuple(R(n, 10) for n in range(1, 51))
+    class Noting(ThreadPoolExecutor):
+        def submit(self, _, k, omega, stretch):
+            given.append((k, omega))
+            return super().submit(Point, k, omega, None, {}, "no")
 
     def progress(keys):
-        for key in keys:
-            todo.append(key)
+        for done, key in enumerate(keys):
+            assert len(given) <= done + AHEAD
             yield key
 
-    found = measured(*grid, PointFile(MEMORY, 2), Counting(2), progress)
-    assert [(p.k, p.omega) for p in found] == [*product(*grid)]
-    assert most <= AHEAD
+    grid = tuple(map(R, range(2, 42))), tuple(R(n, 10) for n in range(1, 51))
+    found = measured(*grid, PointFile(MEMORY, 2), Noting(2), progress)
+    assert [(p.k, p.omega) for p in found] == given == [*product(*grid)]
 
 
 with_dask = pytest.mark.optional("distributed")

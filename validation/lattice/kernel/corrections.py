@@ -387,7 +387,7 @@ def correct_contact(
     driven = i == 0 and chain.drive.driven
     drive = _drive_curve(beads, h)
     force = beads.points[2]
-    impulse = moment = change = steepness = 0.0
+    impulse = moment = change = steepness = top = 0.0
     known = kinks.STRAIGHT
     # The force also depends on the corrected end, all the more the later it jumps.
     for _ in range(_ROUNDS):
@@ -407,7 +407,9 @@ def correct_contact(
         before = impulse
         impulse = h * A * (sums.impulse - integral(pair.impulses[last], force))
         moment = h * h * A * (sums.moment - integral(pair.moments[last], force))
-        steepness = _steepness(law, r, found.top, h)
+        # A corrected curve may miss the contact that it is corrected for.
+        top = max(top, found.top)
+        steepness = _steepness(law, r, top, h)
         change = impulse - before
         if r > 0.0 and abs(elastic(law, kinks.OPENS)) < _NO_JUMP:
             # The next round changes the correction by about this share of the change.
@@ -430,7 +432,7 @@ def correct_contact(
     misfit = _MISFIT * sums.rough
     if driven:
         misfit += _drive_misfit(chain, beads, t, h)
-    depth = max(found.top, 0.0) + misfit
+    depth = top + misfit
     # The moment ∫ (1 - x) F dx and the heat ∫ r δ^p (dδ/dt)² dt of damping are as wrong as p is.
     resisted = misfit * A * r * drag(law, depth)
     heated = 2.0 * resisted * abs(start[1]) / h / plan.energy
@@ -451,9 +453,9 @@ def correct_contact(
         work = missed * beads.v[0] / plan.energy
         beads.books[SQUARES] += work * work
     _count_error(beads.books, math.hypot(missed, change) / plan.v, near, far)
-    if found.top > 0.0:
-        resisted = r * drag(law, found.top) * moment
-        more = A * both * (stiffness(law, found.top) * third + resisted)
+    if top > 0.0:
+        resisted = r * drag(law, top) * moment
+        more = A * both * (stiffness(law, top) * third + resisted)
         if found.jump != 0.0:
             more *= bend * steepness
         _count_error(beads.books, _SECOND * more / plan.v, near, far)
