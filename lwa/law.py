@@ -386,6 +386,7 @@ _HERTZ = sp.Rational(3, 2)
 # Mapping from a name to the force, or the law itself, as a function of the law's parameters.
 _NAMED: Mapping[str, Callable[..., Any]] = {
     "power": Power,
+    "hertz": lambda: Power(_HERTZ),
     "hertz2": lambda a, b: a * DELTA**_HERTZ + b * DELTA ** (_HERTZ + 1),
     "exponential": lambda a: (sp.exp(a * DELTA) - 1) / a,
     "magnetic": lambda n, d: (1 - DELTA / d) ** (-n) - 1,
@@ -401,6 +402,7 @@ def named(name: str, *parameters: Any) -> ContactLaw:
     """Make a law by its name.
 
     - power: ``δ^k``.
+    - hertz: ``δ^{3/2}``, a power, of spheres.
     - hertz2: ``a δ^{3/2} + b δ^{5/2}``, Hertz and its next order.
     - exponential: ``(e^{aδ} - 1)/a``, Toda's.
     - magnetic: ``(1 - δ/d)^{-n} - 1``, poles at the distance d - δ that repel with its power -n.
@@ -444,7 +446,7 @@ def named(name: str, *parameters: Any) -> ContactLaw:
         value = read(letter if given is None else given, place)
         values.append(_check_parameter(value, place, DELTA))
     force = build(*values)
-    # "power" and "general" build the law itself.
+    # "power", "hertz" and "general" build the law itself.
     if isinstance(force, ContactLaw):
         return force
     return Law(force, DELTA, name, tuple(values))

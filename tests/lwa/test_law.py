@@ -98,7 +98,8 @@ def test_every_name_has_its_derivatives_and_energy(name):
 
 def test_an_open_contact_carries_nothing():
     """Numbers, arrays and expressions; only laws with F′(0) > 0 also pull."""
-    hertz, toda = Power("3/2"), named("exponential", 1)
+    hertz, toda = named("hertz"), named("exponential", 1)
+    assert hertz == Power("3/2")
     assert (hertz.at(-1), hertz.at(4), hertz.at(0.25, 1)) == (0, 8, sp.Rational(3, 4))
     assert named("hertz2", 1, 1).at(-2) == named("hertz2", 1, 1).at(-2, 1) == 0
     assert np.array_equal(hertz.at([[-1, 4], [0, 1]]), [[0, 8], [0, 1]])

@@ -56,7 +56,7 @@ def test_the_equations_of_motion_hold_at_any_point(k, p0):
     by differences of sixth order; for a multiple of the wave at its own speed."""
     wave = exact_wave([1], k, background=p0)
     assert wave.solitary
-    assert wave.residual < 1e-14
+    assert wave.residual < 5e-16 * max(k, 20)  # rounding of the strain, k times in F
     assert p0 + wave.strain(0.0) == pytest.approx(1, abs=1e-13)
     more = wave.times(2.5)
     xi = wave.fwhm("strain") * np.linspace(-1.1, 1.5, 41)
