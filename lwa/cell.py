@@ -291,7 +291,7 @@ def Dimer(
     (m1, m1, m2)
     """
     masses = (m1,) * integer(N, "N", 1, MOST_PARTICLES) + (m2,)
-    return Cell(masses, stiffnesses=stiffnesses, spacing=spacing)
+    return Cell(masses, stiffnesses, spacing)
 
 
 def read_cell(value: Any) -> Cell:
