@@ -285,10 +285,8 @@ class LatticeWave(Parametric):
 
     def latex_rows(self) -> list[str]:
         """LaTeX of speed and widths at the peak force."""
-        rows = {latex.SPEED: self.speed}
-        for quantity in QUANTITIES:
-            rows[latex.fwhm(quantity)] = self.fwhm(quantity)
-        return latex.rows(rows)
+        widths = {latex.fwhm(quantity): self.fwhm(quantity) for quantity in QUANTITIES}
+        return latex.rows({latex.SPEED: self.speed} | widths)
 
     def code(self, language: LanguageName) -> str:
         """Source text of a program: speed, widths, momentum and energy as functions.
