@@ -246,8 +246,7 @@ class _Slaving:
         """
         relative = [self.algebra.zero]  # S_n less that of the first particle
         for c, force in zip(self.algebra.c[:-1], self.forces, strict=False):
-            strain = c * force.X[n]
-            relative.append(relative[-1] + strain)
+            relative.append(relative[-1] + c * force.X[n])
         origin = self.algebra.zero
         for i, weight in enumerate(self.weights):
             h = -self.x[i]

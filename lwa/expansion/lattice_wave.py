@@ -274,10 +274,7 @@ class LatticeWave(Parametric):
             # A time is a length over the speed.
             if "time" in extent:
                 parts.append("speed")
-        result = Estimate(number(value), 0.0)
-        for part in parts:
-            result = result.widened(self._error(part))
-        return result
+        return Estimate(number(value), 0.0).widened(sum(map(self._error, parts)))
 
     def at_force(self, F: Any = "F") -> Self:
         """The wave of another peak force, a number or a name."""
