@@ -246,13 +246,7 @@ class PDE(OfClosure):
         """
         power_exponent(self.law, self.cell, symbol_k, POWERS_ALONE)
         # G, H, I refuse an order below 4 and the optical branch.
-        wave = CompactWave(
-            cell=self.cell,
-            k=self.k,
-            G=self.G,
-            H=self.H,
-            I=self.I,
-        )
+        wave = CompactWave(self.cell, self.k, self.G, self.H, self.I)
         # u_x^{k-2} u_xx² breaks the symmetry x → -x, u → -u, which an even pulse has.
         if 2 not in self.vanishing:
             raise InputError(

@@ -39,8 +39,9 @@ _PARTS = {
     "momentum": ("momentum",),
     "energy": ("energy",),
     "effective_mass": ("momentum", "momentum", "energy"),
+    "fwhm": (),
 }
-"""Quantities in a result, in the units of the module; their relative errors add up."""
+"""Quantities in a result besides its arguments; their relative errors add up."""
 
 
 _TITLE = (
@@ -258,7 +259,7 @@ class LatticeWave(Parametric):
         lwa.InputError
             For another name, and if the wave holds symbols.
         """
-        one_of(name, (*_PARTS, "fwhm"), "name")
+        one_of(name, _PARTS, "name")
         spacing = self.cell.spacing
         if spacing.is_Symbol and not self.force.has(spacing):
             return self.at(**{spacing.name: 1}).estimate(name, *arguments)
@@ -266,7 +267,7 @@ class LatticeWave(Parametric):
         # A method is read with its arguments, an attribute has none.
         if callable(value):
             value = value(*arguments)
-        parts = list(_PARTS.get(name, ()))
+        parts = [*_PARTS[name]]
         if name == "fwhm":
             quantity, *extent = arguments or ("force",)
             parts.append(quantity)

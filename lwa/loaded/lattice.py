@@ -233,13 +233,6 @@ class Lattice(Value):
         return self._network.in_series
 
     @property
-    def exact(self) -> bool:
-        """True for links in series whose laws are powers: all results are closed forms."""
-        # The energy of another law by the force may be no closed form.
-        powers = all(isinstance(link.law, Power) for link in self.links)
-        return self.in_series and powers
-
-    @property
     def alike(self) -> bool:
         """True for equal particles, with equal links from each one to the next."""
         links = {(link.law, link.factor, link.cosine) for link in self.links}

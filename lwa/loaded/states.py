@@ -154,7 +154,9 @@ class States(Parametric):
             peak = ahead + self.exact_compression
             A = self.chain.stiffness(self.law.exponent)
             return A * (energy.subs(delta, peak) - energy.subs(delta, ahead))
-        if not self.chain.exact:
+        # The energy of another law by the force may be no closed form.
+        powers = all(link.law.homogeneous for link in self.chain.links)
+        if not (powers and self.chain.in_series):
             return None
         at_peak = self.chain.equilibrium(self.force)
         at_rest = self.chain.equilibrium(self.precompression)

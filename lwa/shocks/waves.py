@@ -201,9 +201,9 @@ class Pulse(Value):
         unit = sp.S.One
         power = sp.S.One
         if self.field.law.homogeneous:
-            # A power has no strain of its own: the unit is that of the load, or where this one is
-            # larger that of a wave without load, w^{2/(k+1)}. There B is this power of x: in B
-            # itself the squares below would be flat near 0.
+            # A power has no strain of its own. The unit is the strain of the load, or that of a
+            # wave without load, w^{2/(k+1)}, if it is larger. Then B is a power of x, in which the
+            # squares below grow evenly; as functions of B they are flat near 0.
             unit = p0
             exponent = 2 / (self.field.law.exponent + 1)
             bare = sp.N(abs(w) ** exponent, WORKING)

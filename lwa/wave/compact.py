@@ -193,4 +193,4 @@ def canonical_wave(
     I = Dispersion(cell, k).I
     G = I * (k - 1) * (k - 2) / 2
     H = 2 * I * (k - 1)
-    return CompactWave(cell=cell, k=k, G=G, H=H, I=I)
+    return CompactWave(cell, k, G, H, I)

@@ -16,7 +16,7 @@ of few pulses may be small by chance.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, Unpack
@@ -51,6 +51,8 @@ LEAST, MOST = (
     4.0,
 )  # k: below, speeds do not depend on force; beyond, R is not known
 LARGEST = 700.0  # |ln A|, at most
+RATIO_ERROR = 1e-10
+"""Relative error of R(k), measured between the nodes of its interpolant."""
 _POWER = (Column("", "F = A δ^k"), Column("", "value", error=True))
 _UNITS = "A bead's mass or the distance is 1 as none is given: see --masses, --spacing, --spheres."
 _NOTE = "±: 95 % intervals by the scatter of the data."
@@ -216,16 +218,10 @@ def speed_ratio(k: Any) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Medium:
-    """Mass, spacing and speed ratio R(k) of the chain in which pulses were measured.
-
-    R(k) is the squared speed of the lattice's wave over that of the long-wave theory.
-    """
+    """Mass and spacing of the chain of equal beads in which pulses were measured."""
 
     mass: float  # m
     spacing: float  # D
-    # R as a function of k
-    ratio: Callable[[Any], Array] = speed_ratio
-    ratio_error: float = 1e-10  # relative, measured between the nodes
 
     @classmethod
     def of(cls, cell: Cell) -> Medium:
@@ -246,7 +242,7 @@ class Medium:
         """
         k = _exponent(slope)
         # ln(V/D) at A = F = 1
-        log_rate = np.log(2 * self.ratio(k) / ((k + 1) * self.mass)) / 2
+        log_rate = np.log(2 * speed_ratio(k) / ((k + 1) * self.mass)) / 2
         return np.asarray(2 * k * (constant - math.log(self.spacing) - log_rate))
 
 
@@ -318,7 +314,7 @@ def fit_power(
 
     def stiffness(log_A: Array, k: float) -> Estimate:
         log = _interval(log_A)
-        error = log.error + k * medium.ratio_error  # A ~ R^{-k}
+        error = log.error + k * RATIO_ERROR  # A ~ R^{-k}
         if not abs(log.value) + error < LARGEST:
             raise SceneError(
                 f"A is e^({log}) by the best fit: this is no number of a computer"
