@@ -223,8 +223,10 @@ class Problem:
         return by_first, by_second
 
     def _closing(self, force: Array, inverse: float) -> tuple[float, Array]:
-        """The equation that determines 1/m2, by how much it is missed, and its derivatives."""
-        # 1/m2 is given.
+        """Return the error of the condition that 1/m2 is the given one, and its derivatives.
+
+        The derivatives are those by all unknowns: the forces, c² and 1/m2.
+        """
         derivatives = np.zeros(self.count + 2)
         derivatives[-1] = 1
         return inverse - 1 / self.masses[1], derivatives
@@ -257,7 +259,7 @@ class SpecialRatio(Problem):
     """The wave equations with m2 as one more unknown, and the condition ``T = 0``."""
 
     def _closing(self, force: Array, inverse: float) -> tuple[float, Array]:
-        """The equation that no strain is left behind, as that of a given mass."""
+        """Return the error of the condition that no strain is left behind, and its derivatives."""
         # c² T = Δ ∫_0^∞ E dξ + 2Σ ∫_0^∞ ξ O dξ = ∫ [(ξ - 1/2)/m1 + (ξ + 1/2)/m2] F_a dξ.
         # The force at the grid's end ξ = L is 0.
         places = np.where(self.xi < self.L, self.xi, 0)

@@ -47,8 +47,9 @@ from validation.waves.profile import ExactWave, at_unit_force
 FALLEN = 38.0
 LIGHTEST = 1e-12  # background over peak strain, at least: a lighter one does not show
 SHALLOWEST = 1e-4  # rise of a wave on a background over the peak strain, at least
-# k above which the theory's wave is too wide to start from: the wave at this k is near enough, for
-# every k, and on a background below this share of the peak strain. On a higher one the theory's is.
+# The theory's wave is too wide to start from above this k. There the wave at this k is near enough,
+# on a background up to a share of the peak strain (tried from k = 3.2 to 60, and to 8 under load);
+# on higher ones the theory's is.
 STEEP = 3.0
 HIGH = 0.5
 STEEPEST = 60.0  # k: beyond, 1200 points take a second

@@ -118,6 +118,10 @@ CLOSED = passed(
     579.270586588404, 3.0946816019061583, -0.9845886417241916, 4.628062933371744,
     damping=Damping("kuwabara_kono", 0.0013403119338021737),
 )  # fmt: skip
+BOUNCED = passed(
+    39202662.22056781, 5.774159872283946e-05, 0.9984346342144845, 0.2,
+    damping=Damping("kuwabara_kono", 0.08661124734081216),
+)  # fmt: skip
 GRAZE = passed(
     224.74561040028715, 0.24763140564507657, 0.5956896767371712, 6.821425172704302, k=2,
     damping=Damping("contact", 0.326),
@@ -139,6 +143,8 @@ GRAZE = passed(
         (INFLECTED, 1, -0.1, 10),
         # A contact that closes early in a long step, along no quintic
         (CLOSED, 1, -0.03, 10),
+        # The curve of a hard bounce, once corrected, misses its contact.
+        (BOUNCED, 1, 0.9985, 1e3),
     ],
 )
 def test_a_contact_that_touches_between_two_steps_is_seen(
