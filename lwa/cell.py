@@ -240,10 +240,9 @@ class Parametric(Value):
         parts = self._parts()
         symbols: set[sp.Symbol] = set()
         for part in parts:
-            if isinstance(part, sp.Expr):
-                symbols |= part.free_symbols
-            else:  # a cell or a law; words and numbers have no symbols
-                symbols |= {*getattr(part, "symbols", ())}
+            # Expressions have free symbols, cells and laws symbols; words and numbers have none.
+            own = getattr(part, "symbols", ())
+            symbols |= {*getattr(part, "free_symbols", own)}
         cell = next(part for part in parts if isinstance(part, Cell))
         return self.replaced(substitution(values, symbols, cell))
 
@@ -291,7 +290,7 @@ def Dimer(
     (m1, m1, m2)
     """
     masses = (m1,) * integer(N, "N", 1, MOST_PARTICLES) + (m2,)
-    return Cell(masses, stiffnesses=stiffnesses, spacing=spacing)
+    return Cell(masses, stiffnesses, spacing)
 
 
 def read_cell(value: Any) -> Cell:

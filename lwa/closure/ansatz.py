@@ -59,8 +59,7 @@ def acoustic(model: Model, progress: Progress[int] = iter) -> Solution:
         # The divisions by the masses leave no remainder.
         force_1 = force_1 + xi * r_n
         force_2 = force_2 - xi * r_n
-        of_first = force_1 / (2 * mu[0])
-        first.append(of_first)
+        first.append(force_1 / (2 * mu[0]))
         of_second = force_2 / (2 * mu[1])  # acceleration of w
         second.append(of_second - _applied(b, second, n))
         b.append(c[0] * strain)

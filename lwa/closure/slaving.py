@@ -54,15 +54,14 @@ class Force:
         self._slope = GradedSeries(algebra, algebra.k, [algebra.r[1]])
         # Each term is computed once: the series of the powers share them.
         self._power = cache(self._term_of_power)
-        self._nonlinear = cache(self._nonlinear_term)
 
     @property
     def nonlinear(self) -> fmpq_mpoly:
-        """The nonlinear part ``Φ_n - X_n`` of the next order n, known from ``X_1 … X_{n-1}``."""
-        return self._nonlinear(len(self.X))
+        """The nonlinear part ``Φ_n - X_n`` of the next order n, known from ``X_1 … X_{n-1}``.
 
-    def _nonlinear_term(self, n: int) -> fmpq_mpoly:
-        """The coefficient of ``D^n`` in ``Σ_{m≥2} φ_m X^m/m!``."""
+        It is the coefficient of ``D^n`` in ``Σ_{m≥2} φ_m X^m/m!``.
+        """
+        n = len(self.X)
         total = self.algebra.zero
         # X begins at D: the power X^m reaches D^n for m ≤ n.
         for m in range(2, n + 1):
@@ -247,8 +246,7 @@ class _Slaving:
         """
         relative = [self.algebra.zero]  # S_n less that of the first particle
         for c, force in zip(self.algebra.c[:-1], self.forces, strict=False):
-            strain = c * force.X[n]
-            relative.append(relative[-1] + strain)
+            relative.append(relative[-1] + c * force.X[n])
         origin = self.algebra.zero
         for i, weight in enumerate(self.weights):
             h = -self.x[i]

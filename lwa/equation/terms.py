@@ -8,10 +8,10 @@ is ``u_x`` (on the optical branch u). A term is ``coefficient Â· base^{a + bk} Â
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
+from functools import cache, cached_property
 from typing import NamedTuple
 
 import sympy as sp
@@ -69,14 +69,12 @@ class Terms(Value, Mapping[Jet, sp.Expr]):
 
     def __getitem__(self, jet: Jet | Powers) -> sp.Expr:
         jet = jet if isinstance(jet, Jet) else Jet(jet)
-        if jet not in self._converted:
-            self._converted[jet] = self.model.expression(self.raw[jet])
-        return self._converted[jet]
+        return self._coefficient(jet)
 
     @cached_property
-    def _converted(self) -> dict[Jet, sp.Expr]:
-        """The coefficients that were looked up."""
-        return {}
+    def _coefficient(self) -> Callable[[Jet], sp.Expr]:
+        """The coefficient of a jet, converted once."""
+        return cache(lambda jet: self.model.expression(self.raw[jet]))
 
     def __iter__(self) -> Iterator[Jet]:
         return iter(self.raw)

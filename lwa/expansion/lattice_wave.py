@@ -274,10 +274,7 @@ class LatticeWave(Parametric):
             # A time is a length over the speed.
             if "time" in extent:
                 parts.append("speed")
-        result = Estimate(number(value), 0.0)
-        for part in parts:
-            result = result.widened(self._error(part))
-        return result
+        return Estimate(number(value), 0.0).widened(sum(map(self._error, parts)))
 
     def at_force(self, F: Any = "F") -> Self:
         """The wave of another peak force, a number or a name."""
@@ -285,10 +282,8 @@ class LatticeWave(Parametric):
 
     def latex_rows(self) -> list[str]:
         """LaTeX of speed and widths at the peak force."""
-        rows = {latex.SPEED: self.speed}
-        for quantity in QUANTITIES:
-            rows[latex.fwhm(quantity)] = self.fwhm(quantity)
-        return latex.rows(rows)
+        widths = {latex.fwhm(quantity): self.fwhm(quantity) for quantity in QUANTITIES}
+        return latex.rows({latex.SPEED: self.speed} | widths)
 
     def code(self, language: LanguageName) -> str:
         """Source text of a program: speed, widths, momentum and energy as functions.

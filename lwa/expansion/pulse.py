@@ -16,36 +16,31 @@ Series = list[fmpq_mpoly]
 
 
 def log_term(S: Series, log: Series) -> fmpq_mpoly:
-    """The next coefficient of ``log Σ S_n t^n``, where S_0 is 1.
-
-    By ``n log_n = n S_n - Σ j log_j S_{n-j}``.
-    """
+    """The next coefficient of ``log Σ S_n t^n``, where S_0 is 1."""
     n = len(log)
-    # At the order of the Gaussian S_0 is 1, and its logarithm S_0 - 1.
-    if n == 0:
-        return S[0] - 1
-    return S[n] - _weighted(log, S, n - 1, n) / n
+    return S[n] - _less(log, S, n)
 
 
 def exp_term(log: Series, S: Series) -> fmpq_mpoly:
-    """The next coefficient of ``exp Σ log_n t^n``, where log_0 is 0.
-
-    By ``n S_n = Σ j log_j S_{n-j}``.
-    """
+    """The next coefficient of ``exp Σ log_n t^n``, where log_0 is 0."""
     n = len(S)
+    return log[n] + _less(log, S, n)
+
+
+def _less(log: Series, S: Series, n: int) -> fmpq_mpoly | int:
+    """The difference ``S_n - log_n`` by lower coefficients of a series and of its logarithm.
+
+    It is ``Σ j log_j S_{n-j}/n``, 0 < j < n, as ``S′ = S (log S)′``.
+    """
+    # At the order of the Gaussian S_0 is 1, and its logarithm S_0 - 1.
     if n == 0:
-        return log[0] + 1
-    return _weighted(log, S, n, n) / n
-
-
-def _weighted(log: Series, S: Series, end: int, n: int) -> fmpq_mpoly:
-    """The sum Σ j log_j S_{n-j}, j = 1 … end, of the coefficients of ln S and of S."""
-    total = 0 * log[0]
-    for j in range(1, end + 1):
+        return 1
+    total = 0 * S[0]
+    for j in range(1, n):
         # Equal beads have no odd terms.
         if log[j]:
             total = total + j * log[j] * S[n - j]
-    return total
+    return total / n
 
 
 def logarithm(S: Series) -> Series:

@@ -236,10 +236,8 @@ def _transformed(coefficients: Sequence[sp.Expr]) -> list[mpmath.mpf]:
     a = decimals(coefficients, TERM_DIGITS)
     b = a[:1]
     for n in range(1, len(a)):
-        total = mpmath.mpf(0)
-        for m in range(1, n + 1):
-            total += comb(n - 1, m - 1) * a[m]
-        b.append(total)
+        terms = (comb(n - 1, m - 1) * a[m] for m in range(1, n + 1))
+        b.append(mpmath.fsum(terms))
     return b
 
 

@@ -74,9 +74,7 @@ class Bloch:
     @property
     def Pi(self) -> fmpq_mpoly:
         """The product ``m̂_0 m̂_1 C_0 C_1``: Π in a dimer's relation ``sin²κ = Ω² - Π Ω⁴``."""
-        masses = self.mu[0] * self.mu[1]
-        shares = self.c[0] * self.c[1]
-        return masses * shares
+        return self.mu[0] * self.mu[1] * self.c[0] * self.c[1]
 
     def acoustic(self, order: int) -> list[fmpq_mpoly]:
         """Coefficients ``L_0 … L_order`` of the acoustic root ``Ω² = Σ L_n κ^{2n} = κ² + …``.

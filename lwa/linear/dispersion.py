@@ -133,10 +133,8 @@ class Dispersion(Parametric):
             )
         # The two roots have the sum 1/Π.
         Pi = self._expression(self._bloch.Pi)
-        series = {0: 1 / Pi}
-        for n, coefficient in self.acoustic(order).items():
-            series[n] = -coefficient
-        return series
+        acoustic = self.acoustic(order).items()
+        return {0: 1 / Pi} | {n: -coefficient for n, coefficient in acoustic}
 
     @cached_property
     def I(self) -> sp.Expr:

@@ -81,7 +81,7 @@ class Bands(Value):
         B = compressions(phase, P) / (share[:, None] * mass)
         # NumPy's singular values descend.
         descending = np.linalg.svd(B, compute_uv=False)
-        return descending[..., ::-1].astype(float) * self.rate
+        return descending[..., ::-1] * self.rate
 
     def edges(self) -> Array:
         """Least and largest frequency of each branch, shape (P, 2), at the ends of the zone."""

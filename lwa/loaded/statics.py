@@ -178,10 +178,8 @@ class Statics:
 
     def values(self, delta: Array, n: int) -> Array:
         """The n-th derivative of each link's force at compressions of shape (…, links)."""
-        columns = []
         with np.errstate(all="ignore"):
-            for i, law in enumerate(self.laws):
-                columns.append(law[n](delta[..., i]))
+            columns = [law[n](delta[..., i]) for i, law in enumerate(self.laws)]
             return np.stack(columns, axis=-1) * self.factors
 
     def force(self, e: Array) -> Array:

@@ -386,8 +386,8 @@ def loaded_wave(
     by_strain = rise is not None or background is not None
     if by_strain and (force is not None or precompression is not None):
         raise InputError("a wave is given by its forces or by its strains, not by both")
-    contact: ContactLaw | None = None
     if isinstance(chain, Lattice):
+        contact = None
         if law is not None or k != symbol_k:
             raise InputError("a law is given: the links of a lattice have their own")
         if by_strain:

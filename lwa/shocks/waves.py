@@ -198,19 +198,16 @@ class Pulse(Value):
             return sp.powsimp(sp.powdenest(parts, force=True), force=True)
         x = sp.Dummy("x", positive=True)
         p0 = sp.N(self.field.p0, WORKING)
-        unit = sp.S.One
-        power = sp.S.One
+        B = sp.sign(w) * x
         if self.field.law.homogeneous:
             # A power has no strain of its own. The unit is the strain of the load, or that of a
             # wave without load, w^{2/(k+1)}, if it is larger. Then B is a power of x, in which the
             # squares below grow evenly; as functions of B they are flat near 0.
-            unit = p0
             exponent = 2 / (self.field.law.exponent + 1)
             bare = sp.N(abs(w) ** exponent, WORKING)
+            B *= p0
             if bare > p0:
-                unit = bare
-                power = exponent
-        B = sp.sign(w) * unit * x**power
+                B = sp.sign(w) * bare * x**exponent
         rising = self.field.on(p0).squared_speed(B) * B**2 - sp.N(w, WORKING) ** 2
         return B.subs(x, rising_root(self.field, rising, x, WORKING))
 

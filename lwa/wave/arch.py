@@ -131,8 +131,8 @@ class Arch(Parametric):
         a = factored(3 + self._ratios[1] - k) * p - 2  # 1 - kp + 3 (p - 1) + p H/I
         eta = 1 + p - k * p
         return Reduction(
-            p=p,
-            a=a,
+            p,
+            a,
             mu=positive(V, "V") ** 2 / (I * (p + a)),
             eta=eta,
             sigma=1 / (I * (k * p + a)),
