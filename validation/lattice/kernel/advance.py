@@ -86,7 +86,7 @@ def advance(
         marks = mark_kinks(chain, beads, plan, h, hi)
         i = -1
         if chain.drive.driven:
-            marks += watch_drive(chain, beads, plan, now.t, h)
+            marks += watch_drive(chain, beads, now.t, h)
         for _ in range(marks):
             i = next_mark(beads.marks, i + 1)
             correct_contact(chain, beads, plan, now.t, h, i)

@@ -472,6 +472,7 @@ def integrals(
                     odd += fifth * (bend * force - w[m] * known)
                 if driven:
                     given += value_and_slope(bead, x[m])[1] * force
-    # A kink has no part of degree 4 at some places; there it has one of degree 5.
+    # A kink has no part of degree 4 at some places; there it has one of degree 5, whose part
+    # in p is about half as large.
     rough = math.hypot(even, 0.5 * odd)
     return Integrals(once, twice, third, work, given, rough)
