@@ -110,10 +110,6 @@ INFLECTION = chain(
 )  # fmt: skip
 
 
-INFLECTED = passed(
-    907.2998957572929, 3.1287034930842177, -0.9959307251569779, 4.65237375443861,
-    damping=Damping("kuwabara_kono", 0.9200695416030286),
-)  # fmt: skip
 CLOSED = passed(
     579.270586588404, 3.0946816019061583, -0.9845886417241916, 4.628062933371744,
     damping=Damping("kuwabara_kono", 0.0013403119338021737),
@@ -139,8 +135,6 @@ GRAZE = passed(
         (INFLECTION, 0, -1, 2e3),
         # A graze that is 1e-9 deep: damping alone is felt.
         (GRAZE, 1, 0.595, 10),
-        # Near an inflection of the drive
-        (INFLECTED, 1, -0.1, 10),
         # A contact that closes early in a long step, along no quintic
         (CLOSED, 1, -0.03, 10),
         # The curve of a hard bounce, once corrected, misses its contact.

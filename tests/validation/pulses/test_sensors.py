@@ -58,7 +58,7 @@ def test_a_chain_at_rest_has_no_pulses():
     """Rounding moves beads that carry their weight."""
     at_rest = replace(scene(tomllib.loads(example("vertical"))), velocities=())
     for reading in record(at_rest, every=True).sensors:
-        assert reading.missing.startswith("no pulse")
+        assert reading.missing.startswith("no pulse: the force is the static one")
 
 
 @pytest.mark.parametrize(
