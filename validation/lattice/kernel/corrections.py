@@ -46,9 +46,12 @@ _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the t
 _ROUNDS, _SETTLED = 4, 0.02
 # A contact is nearly open at a step's one end if δ there is less than _NEAR times δ at the other. A
 # weak contact, whose force is less than _STRONG times the least that counts, is nearly open below
-# _VERY_NEAR, as the pair's own error is smaller there. Measured: with _STRONG = 1e3, or with _NEAR
-# = 0.6 for damped contacts, chains take up to a third more time for the same errors.
-_NEAR, _VERY_NEAR, _STRONG = 0.3, 0.03, 1e4
+# _VERY_NEAR, as the pair's own error is smaller there. Measured: with _STRONG = 1e3 chains take up
+# to a third more time for the same errors.
+# The singularity of damping, δ^{1/4} say, is felt farther away: with _NEAR, and a tolerance of
+# 1e-10, a sample of a driven chain was off by 1,100 tolerances, and the energy of a driven bead by
+# 120; with _NEAR_DAMPED by 0.02 and 35, in as many steps.
+_NEAR, _VERY_NEAR, _NEAR_DAMPED, _STRONG = 0.3, 0.03, 0.6, 1e4
 # Mean distance of the quintic from a p with ``p'' = 9 P₄(x)``, Legendre's polynomial: the distance
 # is ``9 · 0.0365 (1 - (2x - 1)²)³``.
 _MISFIT = 0.15
@@ -111,6 +114,7 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
     # squared errors of all beads, so that each contact may have a share of 1/√hi.
     least = _SLIGHT * plan.v * plan.lightest / (h * math.sqrt(hi))
     count = 0
+    near = _NEAR_DAMPED if chain.damped else _NEAR
     for i in range(index(hi)):
         before = rest[i] + y[i] - y[i + ONE]
         after = rest[i] + next_y[i] - next_y[i + ONE]
@@ -121,7 +125,7 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
         force = max(first, then)
         most = max(before, after)
         # The error of a kink grows with the force: a strong contact is corrected from farther away.
-        share = _NEAR if force > _STRONG * least else _VERY_NEAR
+        share = near if force > _STRONG * least else _VERY_NEAR
         nearly_open = (most > 0.0) & (min(before, after) < share * most)
         # A damping force can begin or end with a jump, which matters however weak the force is at
         # the step's ends, and while δ > 0, as damping may not pull.
