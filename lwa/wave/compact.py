@@ -13,7 +13,7 @@ arch ``v = B cos^m(βξ)`` (Porter et al. 2008; `lwa.wave.arch`), with::
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import sympy as sp
 
@@ -61,6 +61,14 @@ class CompactWave(Arch):
             "V_{s}": self.speed(),
         }
         return [wave, *latex.rows(values)]
+
+    @overload
+    def at_force(self, F: Any = "F", of: BearerName = "contact") -> PhysicalWave: ...
+
+    @overload
+    def at_force(
+        self, F: Any = "F", of: BearerName = "contact", *, precompression: Any
+    ) -> PhysicalWave | LoadedWave: ...
 
     def at_force(
         self, F: Any = "F", of: BearerName = "contact", *, precompression: Any = 0
