@@ -112,18 +112,18 @@ def test_exact_numbers_are_those_of_floats(cell, kappa):
 def test_resonances_are_refused_by_name():
     """Sound is the one mode with c_g = c_0; second harmonics may be optical modes."""
     with pytest.raises(InputError, match="sound, c_g = c_0, has no envelope"):
-        envelope(Dimer(1, 2), law=HERTZ, background=1, wavenumber=0, branch=0).kind  # noqa: B018
+        envelope(Dimer(1, 2), law=HERTZ, background=1, wavenumber=0, branch=0).kind  # noqa: B018 - to read it is refused
     long = envelope(Cell([1], spacing=1), law=HERTZ, background=1, wavenumber="1/1000")
     with pytest.raises(
         InputError, match="too close to that of sound, c_g = c_0, for floats"
     ):
-        long.numeric().nonlinearity  # noqa: B018
+        long.numeric().nonlinearity  # noqa: B018 - to read it is refused
     limit = -long.frequency / 4  # χ = -ω (k-1) (k - cos² κ/2) → -ω (k-1)²
     assert float(long.nonlinearity / limit) == pytest.approx(1, abs=1e-6)
 
     driven = envelope(Cell([1, 1], [1, 9], 1), law=Power(2), background=1, branch=0)
     with pytest.raises(InputError, match="the second harmonic is a mode too"):
-        driven.nonlinearity  # noqa: B018
+        driven.nonlinearity  # noqa: B018 - to read it is refused
 
 
 def test_a_harmonic_that_no_force_drives_is_left_out():
