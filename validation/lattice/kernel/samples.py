@@ -11,6 +11,7 @@ to bead ``watched[q]``, row q + 1 to the next bead; h is the step, x, from 0 to 
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -20,8 +21,11 @@ from validation.lattice.kernel import kinks
 from validation.lattice.kernel.arrays import Beads, Chain, Knots, Numbers
 from validation.lattice.kernel.compiled import FIRST, cached, inlined, part
 from validation.lattice.kernel.force import drag, elastic, push, stiffness
-from validation.lattice.kernel.kinks import Curve, value_and_slope
+from validation.lattice.kernel.kinks import Curve, State, value_and_slope
 
+# The sixth difference of a force at seven places of a step, 0 to 1, times 6⁶ is its sixth
+# derivative s: y has the part ``s x⁸/8!``, of which the septic leaves ``s/8! x⁴ (1 - x)⁴``.
+_SIXTH = 6**6 / math.factorial(8) * np.array([1, -6, 15, -20, 15, -6, 1])
 # A plain False is a type of its own, for which numba would compile `kinks.integrals` once more.
 NOT_DRIVEN: Any = np.bool_(False)
 
@@ -45,18 +49,20 @@ def store_knot(chain: Chain, beads: Beads, knots: Knots, now: Any) -> None:
 
 
 @part
-def _compression(
-    knots: Knots, n: int, q: int, rest: float
-) -> tuple[float, float, float]:
-    """Return δ, δ' and δ'' of the contact between the beads of rows q and q + 1, at knot n."""
+def _state(chain: Chain, knots: Knots, n: int, q: int, h: float) -> State:
+    """Return δ, δ' and δ'' of a contact at knot n, in units of a step h.
+
+    The contact is ahead of the bead of row q.
+    """
     near = knots.state[n, q]
     far = knots.state[n, q + 1]
-    return rest + near[0] - far[0], near[1] - far[1], near[2] - far[2]
+    d = chain.rest[knots.watched[q]] + near[0] - far[0]
+    return d, h * (near[1] - far[1]), h * h * (near[2] - far[2])
 
 
 @part
 def _rate(law: Any, r: float, d: float, v: float, a: float) -> float:
-    """Return dF/dt of a contact of unit stiffness from δ, δ' and δ''."""
+    """Return F' of a contact of unit stiffness from δ, δ' and δ''; r in units of the step."""
     rate = stiffness(law, d) * v
     if not r > 0.0 or not (d > 0.0 or law.pulls):
         return rate
@@ -121,11 +127,9 @@ def _take_kink_away(
     scale = h * h * chain.A[i]
     near = scale * chain.inverse[i]
     far = scale * chain.inverse[i + 1]
-    d, u, a = _compression(knots, n, q, chain.rest[i])
-    end, end_u, end_a = _compression(knots, n + 1, q, chain.rest[i])
+    begin = _state(chain, knots, n, q, h)
+    over = _state(chain, knots, n + 1, q, h)
     bend = -near - far
-    begin = (d, h * u, h * h * a)
-    over = (end, h * end_u, h * h * end_a)
     found = kinks.resolved(law, ratio, begin, over, h, bend, kinks.STRAIGHT, edges)
     p = found.curve
     if p[6][1] != 0.0:
@@ -159,19 +163,34 @@ def _take_kink_away(
 def _add_rates(
     chain: Chain, knots: Knots, n: int, q: int, r: int, h: float, ends: Array
 ) -> None:
-    """Add the rate dF/dt of a contact's force to the jerks of its two beads, ``m y''' = ∓dF/dt``.
+    """Add the rates F' of a contact's force to the jerks of its two beads, ``m y''' = ∓F'``.
 
     The contact is ahead of the bead of row q, which is row r of ``ends``. The step h is from knot n
-    to knot n + 1. Column j of ``ends`` holds the j-th derivative times ``h^j``, the derivative by
-    the time in units of the step: the jerk is in column 3, with the factor h³.
+    to knot n + 1. Column j of ``ends`` holds the j-th derivative in units of the step: the jerk is
+    in column 3. In a damped chain column 4 holds, for x = 0, the factor of ``x⁴ (1 - x)⁴``.
     """
     i = knots.watched[q]
-    scale = h * h * h * chain.A[i]
-    for end in range(2):
-        d, speed, a = _compression(knots, n + end, q, chain.rest[i])
-        rate = scale * _rate(chain.laws[chain.law[i]], chain.r[i], d, speed, a)
-        ends[end, r, 3] -= chain.inverse[i] * rate
-        ends[end, r + 1, 3] += chain.inverse[i + 1] * rate
+    law = chain.laws[chain.law[i]]
+    ratio = chain.r[i] / h
+    scale = h * h * chain.A[i]
+    near = scale * chain.inverse[i]
+    far = scale * chain.inverse[i + 1]
+    begin = _state(chain, knots, n, q, h)
+    over = _state(chain, knots, n + 1, q, h)
+    for end, state in enumerate((begin, over)):
+        d, u, a = state
+        rate = _rate(law, ratio, d, u, a)
+        ends[end, r, 3] -= near * rate
+        ends[end, r + 1, 3] += far * rate
+    # Steps of an undamped chain are short enough for the septic.
+    if chain.damped:
+        p = kinks.fitted_curve(begin, over, kinks.STRAIGHT)
+        sixth = 0.0
+        for m in range(len(_SIXTH)):
+            d, u = value_and_slope(p, m / (len(_SIXTH) - 1))
+            sixth += _SIXTH[m] * push(law, ratio, d, u)
+        ends[0, r, 4] -= near * sixth
+        ends[0, r + 1, 4] += far * sixth
 
 
 @cached
@@ -203,7 +222,7 @@ def interpolate(
         Number of the step that holds each time.
     y, v : array, (R, S)
         Room for the results.
-    ends : array, (2, R, 4)
+    ends : array, (2, R, 5)
         Working memory.
     points, edges : array
         Working memory, as in `Beads`.
@@ -226,7 +245,7 @@ def interpolate(
                 row[0] = state[0]
                 row[1] = h * state[1]
                 row[2] = h * h * state[2]
-                row[3] = 0.0
+                row[3] = row[4] = 0.0
             for s in range(first, last):
                 y[r, s] = v[r, s] = 0.0
         # The contact between the beads of rows r and r + 1: its force changes the jerk of both, or,
@@ -263,5 +282,8 @@ def interpolate(
                 x = (time[s] - start) / h
                 smooth, slope = value_and_slope(low, x)
                 x5 = x * x * x * x * x
-                y[r, s] += smooth + x5 * x * (c6 + x * c7)
-                v[r, s] += (slope + x5 * (6 * c6 + x * 7 * c7)) / h
+                arch = x * (1 - x)
+                high = ends[0, r, 4] * arch * arch * arch
+                y[r, s] += smooth + x5 * x * (c6 + x * c7) + high * arch
+                slope += x5 * (6 * c6 + x * 7 * c7) + high * 4 * (1 - 2 * x)
+                v[r, s] += slope / h
