@@ -77,7 +77,8 @@ class KnotPath:
         step = self.time[1:-1].searchsorted(time, side="right")
         y, v = np.empty((2, len(rows), len(time)))
         # Working memory: the compiled loops allocate nothing.
-        working = np.empty((2, len(rows), 5)), np.empty((3, ROOM)), np.empty(EDGES)
+        ends, pushes = np.empty((2, len(rows), 3)), np.empty((len(rows), 7))
+        working = ends, pushes, np.empty((3, ROOM)), np.empty(EDGES)
         interpolate(self.chain, self.knots, rows, time, step, y, v, *working)
         own = near.searchsorted(beads)
         y, v = y[own], v[own]
