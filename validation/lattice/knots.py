@@ -27,11 +27,8 @@ _MOST_BYTES = 2**28
 
 def _with_neighbours(beads: Beads) -> NDArray[np.int_]:
     """Return the increasing numbers of beads and their neighbours."""
-    numbers = np.asarray(beads, int)
-    # A row from bead -1 to the one behind the last; without beads it is bead -1 alone.
-    near = np.zeros(numbers.max(initial=-2) + 3, bool)
-    near[numbers] = near[numbers + 1] = near[numbers + 2] = True
-    return np.flatnonzero(near[1:])
+    near = np.unique(np.add.outer(np.asarray(beads, int), (-1, 0, 1)))
+    return near[near >= 0]
 
 
 def set_addresses(laws: Any, motion: Motion) -> None:

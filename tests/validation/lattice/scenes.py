@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import sympy as sp
+from scipy.linalg import expm
 
 from lwa.law import Law, Power, named
 from tests.validation.lattice.reference import follow
@@ -37,6 +38,15 @@ def chain(masses, **fields):
     if "law" not in fields:
         fields = {"k": 1.5} | fields
     return Scene(masses=masses, **{"stiffnesses": (1,) * (len(masses) - 1)} | fields)
+
+
+def on_springs(masses, stiffnesses, y, v, t):
+    """Displacements and velocities after a time t of masses on springs, the last one at a wall."""
+    n = len(masses)
+    strain = np.eye(n) - np.eye(n, k=1)  # δ = strain @ y, the wall at rest
+    pull = -(strain.T * stiffnesses) @ strain / np.reshape(masses, (n, 1))
+    rates = np.block([[np.zeros((n, n)), np.eye(n)], [pull, np.zeros((n, n))]])
+    return np.split(expm(t * rates) @ [*y, *v], 2)
 
 
 def law_of(random, kind, loaded):

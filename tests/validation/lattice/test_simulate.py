@@ -7,10 +7,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.interpolate import CubicSpline
-from scipy.linalg import expm
 
-from tests.validation.lattice.scenes import chain
+from tests.validation.lattice.scenes import chain, on_springs
 from validation.lattice.simulate import COMPILED, simulate
 from validation.lattice.steppers import METHODS
 from validation.pulses.pulse import highest_pulse, measure
@@ -40,18 +38,15 @@ def test_two_beads_collide(k, m1, m2, A, v):
     )
     pair = chain(
         (m1, m2), stiffnesses=(A,), k=k, velocities=(v,), duration=1.2 * lasting,
-        contact_sensors=(0,), samples=2001,
+        contact_sensors=(0,),
     )  # fmt: skip
     run = simulate(pair, **TIGHT)
     common = m1 * v / (m1 + m2)
     # The step in which the contact opens holds a kink that the error estimate can miss.
     assert run.velocities == pytest.approx([2 * common - v, 2 * common], abs=2e-7 * v)
-    pulse = measure(run.time, run.contact_force[0])
-    # the spline's error on 1667 samples of a half wave that starts like a power k
+    pulse = measure(run.signal("contact", 0))
     assert pulse.peak == pytest.approx(A * deepest**k, rel=1e-9)
     assert pulse.arrival == pytest.approx(lasting / 2, rel=1e-9)
-    zeros = CubicSpline(run.time, run.compression[0]).roots(extrapolate=False)
-    assert zeros[zeros > lasting / 2] == pytest.approx([lasting], rel=1e-8)
 
 
 @pytest.mark.parametrize(
@@ -59,19 +54,16 @@ def test_two_beads_collide(k, m1, m2, A, v):
 )
 def test_the_linear_chain_moves_by_the_exponential_of_its_matrix(method, rtol):
     """k = 1, all contacts closed by the weight: exact. 1e-12 of 0.03 a step, 400 steps."""
-    masses = np.array((1.0, 0.3, 2.0, 0.7, 1.1))
-    stiffnesses = np.array((1.0, 2.0, 0.5, 1.5, 3.0))
-    y = (0.01, -0.02, 0.0, 0.015, 0.0)
-    v = (0.0, 0.01, -0.02, 0.0, 0.03)
+    masses = 1.0, 0.3, 2.0, 0.7, 1.1
+    stiffnesses = 1.0, 2.0, 0.5, 1.5, 3.0
+    y = 0.01, -0.02, 0.0, 0.015, 0.0
+    v = 0.0, 0.01, -0.02, 0.0, 0.03
     scene = chain(
         masses, stiffnesses=stiffnesses[:-1], wall=stiffnesses[-1], gravity=1, k=1,
         displacements=y, velocities=v, duration=20,
     )  # fmt: skip
     run = simulate(scene, rtol=rtol, method=method)
-    strain = np.eye(5) - np.eye(5, k=1)  # δ = strain @ y, the wall at rest
-    pull = -(strain.T * stiffnesses) @ strain / masses[:, None]
-    rates = np.block([[np.zeros((5, 5)), np.eye(5)], [pull, np.zeros((5, 5))]])
-    exact = np.split(expm(20.0 * rates) @ (y + v), 2)
+    exact = on_springs(masses, stiffnesses, y, v, 20)
     np.testing.assert_allclose(
         (run.displacements, run.velocities), exact, atol=10 * rtol
     )
@@ -155,17 +147,19 @@ def test_what_the_equations_of_motion_keep(fields, drift, unit):
 
 @pytest.mark.parametrize(
     ("method", "damping"),
-    [("RKN86", 0), ("RKN86", 0.03), ("symplectic", 0), ("DOP853", 0)],
+    [
+        ("RKN86", None),
+        ("RKN86", Damping("kuwabara_kono", 0.03)),
+        ("symplectic", None),
+        ("DOP853", None),
+    ],
 )
 def test_sensors_change_nothing(method, damping):
-    """Forces and motion, with damped contacts, too."""
-    damped = Damping("kuwabara_kono", damping) if damping else None
-    bare = struck((1, 0.5), 12, duration=9, damping=damped)
+    bare = struck((1, 0.5), 12, duration=9, damping=damping)
     some = replace(bare, contact_sensors=(7, 2, 3), bead_sensors=(0, 3, 11))
     plain, seen = (simulate(scene, method=method) for scene in (bare, some))
     np.testing.assert_array_equal(seen.end, plain.end)
     assert plain.contact_force.shape == plain.bead_velocity.shape == (0, 1001)
-    assert seen.time[[0, -1]].tolist() == [0, 9]
     with pytest.raises(ValueError, match="read-only"):
         seen.time[0] = 1
 
