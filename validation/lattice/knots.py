@@ -123,10 +123,10 @@ class Recorder:
         times, states, watched = self.knots
         if not len(watched):
             return 0
-        # The first knot is the last one of the part before.
-        new = slice(len(self._parts) > 0, count)
-        self._parts.append((times[new].copy(), states[new].copy()))
-        self._bytes += self._parts[-1][1].nbytes
+        # Its first knot is also the last one of the part before.
+        part = times[:count].copy(), states[:count].copy()
+        self._parts.append(part)
+        self._bytes += part[1].nbytes
         times[0], states[0] = times[count - 1], states[count - 1]
         if self._bytes > _MOST_BYTES:
             self._sample()

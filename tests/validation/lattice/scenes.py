@@ -20,13 +20,18 @@ from validation.scenes.scene import Scene
 SAMPLES = 13
 X = sp.Symbol("x", positive=True)
 POWERS = 1, 1.1, 1.25, 1.5, 1.5, 1.5, 2, 3, 4
+HERTZ = X ** sp.Rational(3, 2)
+TODA = named("exponential", 1)
+MAGNETS = named("magnetic", 4, 2)
+NO_NUMBER_AT_0 = Law(X**2 * sp.log(1 + 1 / X), X)
+JUMPS = Law(HERTZ + sp.Rational(1, 10), X)
 LAWS = (
-    named("exponential", 1),
+    TODA,
     named("hertz2", 1, 2),
-    named("magnetic", 4, 2),
-    Law(X ** sp.Rational(3, 2) - sp.Rational(1, 20), X),  # attracts where it opens
-    Law(X**2 * sp.log(1 + 1 / X), X),  # no number at 0
-    Law(sp.Rational(1, 10) + X ** sp.Rational(3, 2), X),  # jumps
+    MAGNETS,
+    Law(HERTZ - sp.Rational(1, 20), X),  # attracts where it opens
+    NO_NUMBER_AT_0,
+    JUMPS,
 )
 
 

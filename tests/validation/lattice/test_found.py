@@ -6,13 +6,20 @@ import sympy as sp
 
 from lwa.law import Law, Power, named
 from tests.validation.lattice.reference import follow
-from tests.validation.lattice.scenes import chain, on_springs
+from tests.validation.lattice.scenes import (
+    HERTZ,
+    JUMPS,
+    MAGNETS,
+    NO_NUMBER_AT_0,
+    TODA,
+    X,
+    chain,
+    on_springs,
+)
 from validation.lattice.simulate import simulate
 from validation.scenes.forcing import Damping, Drive
 
-X = sp.Symbol("x", positive=True)
-ATTRACTS = Law(X ** sp.Rational(3, 2) - sp.Rational(1, 10), X)
-JUMPS = Law(X ** sp.Rational(3, 2) + sp.Rational(1, 10), X)
+ATTRACTS = Law(HERTZ - sp.Rational(1, 10), X)
 SPRING = named("polynomial", 0, 0)
 
 
@@ -62,7 +69,7 @@ KEEP_ENERGY = [
     # Beyond a free end 0 times the force of no contact was no number.
     *(
         chain(3, law=law, velocities=(1,), duration=100, damping=Damping("contact", 0.1))
-        for law in (named("exponential", 1), Law(X**2 * sp.log(1 + 1 / X), X))
+        for law in (TODA, NO_NUMBER_AT_0)
     ),
 ]  # fmt: skip
 
@@ -269,7 +276,7 @@ def test_a_response_that_is_stronger_than_guessed_is_recorded():
         # Damping makes a contact jump; its neighbour pulls.
         (
             chain(
-                (0.5, 0.13, 0.48), law=(named("magnetic", 4, 2), Power(1)),
+                (0.5, 0.13, 0.48), law=(MAGNETS, Power(1)),
                 displacements=(0, 0.0002, 0.0012), velocities=(0, 0, -0.054), duration=0.05,
                 damping=Damping("contact", (0.1, 0.24)),
             ),
