@@ -192,7 +192,10 @@ class MeasuredFile(Columns):
         return sorted(records, key=lambda record: record.kind)
 
     def _signal(self, time: Column, signal: Column, of: str) -> Record:
-        """Return the record of a sensor from the columns of its time and signal."""
+        """Return the record of a sensor from the columns of its time and signal.
+
+        of : the sensor's kind, "bead" or "contact", where the column's name does not say it.
+        """
         sensor = NAME.fullmatch(signal.name)
         assert sensor is not None
         assert signal.number is not None
