@@ -4,8 +4,10 @@ import copy
 import dataclasses
 import io
 import json
+import math
 import re
 import tomllib
+from contextlib import suppress
 
 import pytest
 from hypothesis import given
@@ -18,7 +20,7 @@ from lwa.spheres.hertz import Material, Sphere, stiffness
 from tests.validation.scenes.test_scene import anything
 from validation.lattice.simulate import simulate
 from validation.scenes.chains import STEEL
-from validation.scenes.forcing import DAMPINGS, Damping, Drive
+from validation.scenes.forcing import Damping, Drive
 from validation.scenes.scene import Scene, SceneError
 from validation.scenes.scenefile import read_scene, scene
 from validation.studies.paper import recorded_chain
@@ -197,11 +199,8 @@ FILES = [
 def test_a_bad_file_is_refused_by_its_name(tmp_path, name, content, named):
     file = tmp_path / name
     file.write_bytes(content)
-    with pytest.raises(SceneError) as caught:
+    with pytest.raises(SceneError, match=rf"^{re.escape(str(file))}: {named}"):
         read_scene(file)
-    assert re.fullmatch(
-        f"{re.escape(str(file))}: ({named})[^\n]{{,160}}", str(caught.value)
-    )
     with pytest.raises(SceneError, match="1 is no file name"):
         read_scene(1)
 
@@ -213,27 +212,22 @@ FULL = tomllib.loads(PAPER) | {
 }
 
 
+def entries(content):
+    """Tables and lists of a file, with the keys and places of their entries."""
+    keys = content if isinstance(content, dict) else range(len(content))
+    for key in keys:
+        yield content, key
+        if isinstance(content[key], dict | list):
+            yield from entries(content[key])
+
+
 @given(st.data())
-def test_any_file_is_read_or_refused_in_one_line(data):
+def test_any_file_is_read_or_refused(data):
     content = copy.deepcopy(FULL)
-    at = content
-    while True:
-        keys = sorted(at) if isinstance(at, dict) else list(range(len(at)))
-        key = data.draw(st.sampled_from(keys))
-        if (
-            not isinstance(at[key], dict | list)
-            or not at[key]
-            or data.draw(st.booleans())
-        ):
-            break
-        at = at[key]
-    at[key] = data.draw(anything | words | st.dictionaries(words, anything))
-    message = ""
-    try:
+    table, key = data.draw(st.sampled_from([*entries(content)]))
+    table[key] = data.draw(anything | words | st.dictionaries(words, anything))
+    with suppress(SceneError):
         scene(content)
-    except SceneError as error:
-        message = str(error)
-    assert "\n" not in message
 
 
 def four(**keys):
@@ -252,10 +246,9 @@ def four(**keys):
         (four(law="hertz2:1,1/2"), {"law": named("hertz2", 1, "1/2")}),
         ({"drive": {"velocity": 2.0}}, {"drive": Drive(velocity=2)}),
         ({"drive": MOTION}, {"drive": Drive(**MOTION)}),
-        *(
-            ({"damping": {kind: 0.9}}, {"damping": Damping(kind, 0.9)})
-            for kind in DAMPINGS
-        ),
+        # sqrt(2 g h)
+        ({"striker": {"drop": 0.05}}, {"velocities": (math.sqrt(2 * 9.81 * 0.05),)}),
+        ({"damping": {"contact": 0.9}}, {"damping": Damping("contact", 0.9)}),
     ],
 )
 def test_keys_and_the_fields_that_they_set(keys, fields):
@@ -313,12 +306,6 @@ def test_a_striker_unlike_the_beads_is_a_defect_of_bead_1(other):
     struck = scene(paper | {"striker": paper["striker"] | other})
     assert struck == scene(paper | {"defects": [{"bead": 1, **other}]})
     assert struck.masses[0] != scene(paper).masses[0]
-
-
-def test_a_striker_that_drops_has_the_velocity_of_a_fall():
-    paper = tomllib.loads(PAPER)
-    (velocity,) = scene(paper | {"striker": {"drop": 0.05}}).velocities
-    assert velocity**2 == pytest.approx(2 * 9.81 * 0.05, rel=1e-15)
 
 
 def test_a_scene_is_read_from_standard_input(monkeypatch):
