@@ -143,6 +143,7 @@ GOOD = {
 }
 BALLS, WALL = {"chain": {"cell": ["ball", "ball"]}}, {"wall": {"stiffness": 1}}
 MOTION = {"time": [0.0, 0.3, 0.6, 1.0], "displacement": [0.0, 1.0, 0.0, 0.0]}
+SI = {"units": "SI"}
 ALL = {"sensors": {"beads": "all", "contacts": "all"}}
 
 # A row for each kind of fault
@@ -270,34 +271,27 @@ def test_values_of_contacts_that_differ_are_lists():
 
 
 def test_a_drive_is_read_from_a_file_beside_the_scene(tmp_path):
-    path = tmp_path / "shaker.csv"
-    file = tmp_path / "scene.json"
-    chain = {
-        "duration": 1,
-        "chain": {"cell": [1, 2], "k": 1.5},
-        "drive": {"file": str(path)},
-    }
-    path.write_text("time (s),displacement (mm)\n0,0\n0.5,1\n1,2\n2,0\n")
-    assert scene(chain | {"units": "SI"}).drive.displacement == (0, 1e-3, 2e-3, 0)
+    def drive(table, si=SI, **stated):
+        (tmp_path / "shaker.csv").write_text(table)
+        content = GOOD | si | {"drive": {"file": "shaker.csv", **stated}}
+        (tmp_path / "scene.json").write_text(json.dumps(content))
+        return read_scene(tmp_path / "scene.json").drive
+
+    plain = "time,displacement\n0,0\n0.5,1\n1,2\n2,0\n"
+    in_units = plain.replace("time,displacement", "time (s),displacement (mm)")
+    assert drive(plain, {}).displacement == (0, 1, 2, 0)
+    assert drive(in_units).displacement == (0, 1e-3, 2e-3, 0)
     with pytest.raises(SceneError, match="it states units"):
-        scene(chain)
-    path.write_text("time,displacement\n0,0\n0.5,1\n1,2\n2,0\n")
-    file.write_text(json.dumps(chain | {"drive": {"file": path.name}}))
-    assert read_scene(file) == scene(chain)
-    stated = {
-        "columns": {"displacement": 1},
-        "units": {"displacement": "um"},
-        "step": "0.5 s",
-    }
-    moved = scene(chain | {"units": "SI", "drive": chain["drive"] | stated})
-    assert moved.drive.displacement == pytest.approx((0, 5e-7, 1e-6, 2e-6), rel=1e-15)
-    assert moved.drive.time == (0, 0.5, 1, 1.5)
-    proposed = r"shaker.csv: .* columns={'time' = '1', 'displacement' = '2'}$"
-    path.write_text("t [ms],x [mm]\n0,0\n0.5,1\n")
+        drive(in_units, {})
+    columns, units = {"displacement": 1}, {"displacement": "um"}
+    found = drive(plain, columns=columns, units=units, step="0.5 s")
+    assert found.displacement == pytest.approx((0, 5e-7, 1e-6, 2e-6), rel=1e-15)
+    assert found.time == (0, 0.5, 1, 1.5)
+    proposed = r"shaker.csv: .* columns={'time' = '1', 'displacement' = '2'};"
     with pytest.raises(SceneError, match=proposed):
-        scene(chain | {"units": "SI"})
+        drive("t [ms],x [mm]\n0,0\n0.5,1\n")
     with pytest.raises(SceneError, match=r"^none.csv: No such file"):
-        scene(chain | {"drive": {"file": "none.csv"}})
+        scene(GOOD | {"drive": {"file": "none.csv"}})
 
 
 @pytest.mark.parametrize("other", [{"like": "ptfe"}, {"mass": 1e-3}])
