@@ -88,11 +88,6 @@ ANSWERS = {
     "expansion --k 3 --masses 1,2,3 --order 6": {
         "c2_value": None, "fwhm_value": dict.fromkeys(QUANTITIES),
     },
-    # Two beads collide at a time.
-    "wave --k 40 --masses 1": {
-        "lattice.speed_value": 2 * sp.gamma(sp.Rational(43, 82))
-        / (sp.sqrt(1640 * sp.pi) * sp.gamma(sp.Rational(42, 41))),
-    },
     "wave --k 3/2 --masses 1": {
         "lattice.speed_value": pytest.approx(math.sqrt(0.819967 / 1.5), rel=1e-5),
         "lattice.fwhm_value.force": pytest.approx(1.411928, rel=1e-3),
