@@ -213,6 +213,7 @@ class Row:
         label, _, _ = self.label.partition(" (")
         if isinstance(self.value, InputError):
             return f"{label}: {self.value}"
+        # No number at all if one of the values has none.
         numbers = self.numbers(scale) or repeat(None)
         texts = []
         for value, number in zip(self.values, numbers, strict=False):
