@@ -73,8 +73,9 @@ FILE = (
 CHAIN = ("cell", "k", "law", "stiffnesses", "spacings", "repeat")
 """Keys of the table ``chain``; beads with names have ``cell`` and ``repeat`` alone."""
 
-STRIKER = ("velocity", "drop", "like")
-"""Keys of the table ``striker``: velocity of bead 1 or height of its fall, and a bead like it."""
+STRIKER = ("velocity", "drop", "like", "mass")
+"""Keys of the table ``striker``: velocity of bead 1 or height of its fall, and the name of a bead
+like it, or its mass."""
 
 
 def read_materials(file: Table) -> dict[str, Material]:
