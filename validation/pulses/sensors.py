@@ -41,7 +41,8 @@ from validation.scenes.scene import Scene
 
 TOLERANCE = 1e-10  # default tolerance of the accurate run
 _ROUNDING = 10  # rounding of the static compression over rtol; with more, steps follow the noise
-_QUICK = 0.9  # of the time of a small wave, of light beads: a pulse takes more
+# Of the time in which a small wave passes a site (`_time_of_a_site`): no pulse takes less.
+_QUICK = 0.9
 # Samples in the shortest time √(m/spring) of a bead between two contacts. The force of two beads
 # that collide, or of a Hertz chain's wave, has 1.5 or 1.9 √(m/spring) of one contact above half.
 _RESOLVED = 22.0

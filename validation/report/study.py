@@ -310,7 +310,7 @@ def option(
         Further settings of `click.option`.
     """
     settings.setdefault("show_default", default is not None and default is not False)
-    # A flag's False is no integer here.
+    # By the type itself: the False of a flag is an instance of int.
     read = read or {float: number, int: count}.get(type(default))
     if read:
         # As a text, which the reader takes, and which a refusal proposes.

@@ -174,7 +174,7 @@ def _passage(fields: Mapping[str, Any]) -> float:
     k = fields["k"]
     (velocity,) = fields["velocities"]
     # A heavy bead is as fast as the momentum of a light striker makes it.
-    speed = abs(velocity) * masses[0] / max(masses)
+    speed = velocity * masses[0] / max(masses)
     # At the wall the last bead moves alone.
     beads = pairwise([*masses, masses[-1]])
     total = last = 0.0

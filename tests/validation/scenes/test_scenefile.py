@@ -164,6 +164,7 @@ REFUSED = [
     ),
     ({"wall": {"material": "steel"}}, "wall.material is given"),
     ({"striker": {"velocity": 1}, "start": {}}, "striker and start are both there"),
+    ({"striker": {"velocity": -1}}, "striker.velocity is -1"),
     ({"striker": {"like": "ball"}} | BALLS, "striker has neither velocity nor drop"),
     (
         {"striker": {"like": "ball"}, "defects": [{"bead": 1, "mass": 1.0}]},
