@@ -176,7 +176,7 @@ def modes() -> Numbers:
     chain = Cell.of_spheres([Sphere("28.84e-3", "9.525e-3", STEEL), aluminium])
     edge = LoadedChain(chain, Power(HALF), 20).bands.edges()[1, 0] / (2000 * math.pi)
     pair = envelope(chain, law=Power(HALF), precompression=20).numeric()
-    strain = pair.mean_strain[0] / pair.strains[0] * pair.static_compressions[0]
+    strain = pair.mean_strain[0] / pair.squared_strains[0] * pair.static_compressions[0]
     mean = float(strain) / 4
     swing = (1 - math.sqrt(1 - 4 * mean)) / (2 * mean)  # 1 = s - mean s²: contacts open
     return {

@@ -324,7 +324,8 @@ class Power(ContactLaw):
         return sp.ff(self.k - 1, integer(n, "n", 1) - 1)
 
     def of_strain(self, p: sp.Expr, D: sp.Expr, n: int = 0) -> sp.Expr:
-        # The time of a power's wave equation holds the spacing, and the k of F′ as well.
+        # The unit of a power's τ takes up the spacing and the k of F′ (`Cell.time_scale`): what is
+        # left is F′ = p^{k-1}, as of the spacing 1 over k.
         return super().of_strain(p, sp.S.One, n) / self.k
 
     def inverse(self, force: sp.Expr) -> sp.Expr:

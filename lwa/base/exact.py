@@ -206,7 +206,7 @@ def number(value: sp.Expr) -> float:
 
 
 def evaluated(value: sp.Expr, digits: int) -> sp.Expr:
-    """Evaluate an exact number to the given digits, though `MOST_CANCELLED` digits cancel."""
+    """Evaluate an exact number to the given digits; terms may cancel `MOST_CANCELLED` digits."""
     return sp.N(value, digits, maxn=MOST_CANCELLED)
 
 
@@ -232,7 +232,7 @@ class Unmultiplied(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymP
 
 
 def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
-    """The power ``base^exponent``; that of a long number or a long exponent is not written out.
+    """The power ``base^exponent``, left as a power if its number or its exponent is long.
 
     >>> power(sp.Rational(9, 4), sp.Rational(3, 2)), power(sp.Rational(9, 4), sp.Rational(1, 9999))
     (27/8, (9/4)**(1/9999))
@@ -244,7 +244,8 @@ def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
             return base**exponent
         # SymPy multiplies out by the larger part of the exponent: x^{p/q} has x^p in a root.
         bits = int(factor.p).bit_length() + int(factor.q).bit_length()
-        # The root of a surd joins a long exponent.
+        # SymPy joins the root of a surd and the exponent: (2^{1/2})^{p/q} becomes 2^{p/(2q)}. So
+        # powers of surds are written out up to a p or q of about `_FINEST_ROOT` alone.
         if not number.is_Rational:
             bits += _POWER_BITS // _FINEST_ROOT
         if bits * max(abs(int(exponent.p)), int(exponent.q)) > _POWER_BITS:

@@ -156,7 +156,8 @@ def _chain(content: Any) -> ChainInput:
     if force < 0:
         raise InputError(f"precompression is {force}: it must not be negative")
     described = file.read("striker", table(STRIKER), Table({}, "striker", STRIKER))
-    striker = _numbers(described, {"velocity": finite, "drop": positive})
+    numbers = {"velocity": finite, "drop": positive, "mass": positive}
+    striker = _numbers(described, numbers)
     if "like" in described:
         striker["mass"] = described.read("like", among(beads)).mass
     law: ContactLaw

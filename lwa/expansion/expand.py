@@ -145,7 +145,8 @@ class Expansion(Parametric):
 
     @cached_property
     def _sound(self) -> sp.Expr:
-        """The value of c² in the limit of k to 1."""
+        """The value of c², in sites, in the limit of k to 1."""
+        # The stiffness of a site is 1/ā, its mean mass M/P.
         return self.cell.size / (self.cell.mass * self.compliance)
 
     def _series(

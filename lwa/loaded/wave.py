@@ -145,6 +145,7 @@ class LoadedWave(States):
     def speed(self) -> sp.Expr:
         """The speed V."""
         D = self.chain.spacing
+        # Without a closed form of the work, the integral of the force, V² is an integral in floats.
         if self.work is None:
             square = self._quadrature.square / number(self.lattice.mass)
             return D * sp.Float(sqrt(square))

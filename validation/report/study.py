@@ -304,14 +304,14 @@ def option(
     says : str
         Help text.
     read : callable, optional
-        Reader of the text, a key of `READERS`. An option whose default is a float reads a `number`,
-        and a `count` where the default is an integer.
+        Reader of the text, a key of `READERS`; if none is given, `number` for a default that is a
+        float, and `count` for an integer.
     **settings : object
         Further settings of `click.option`.
     """
     settings.setdefault("show_default", default is not None and default is not False)
-    # A flag's False is no integer here.
-    read = {float: number, int: count}.get(type(default), read)
+    # By the type itself: the False of a flag is an instance of int.
+    read = read or {float: number, int: count}.get(type(default))
     if read:
         # As a text, which the reader takes, and which a refusal proposes.
         default = default and str(default)

@@ -50,6 +50,7 @@ from validation.scenes.scene import Scene, contacts_of
 # So many beads are read in 2 s and 40 MB.
 MOST_BEADS = 1_000_000
 _STATED = ("columns", "units", "step")  # of the file of a drive
+_OTHER = ("like", "mass")  # of a bead that is unlike the others at its place
 _TABLES = {  # that a file may leave out
     "wall": ("material", "stiffness"),
     "damping": DAMPINGS,
@@ -180,7 +181,7 @@ def _passage(fields: Mapping[str, Any]) -> float:
     k = fields["k"]
     (velocity,) = fields["velocities"]
     # A heavy bead is as fast as the momentum of a light striker makes it.
-    speed = abs(velocity) * masses[0] / max(masses)
+    speed = velocity * masses[0] / max(masses)
     # At the wall the last bead moves alone.
     beads = pairwise([*masses, masses[-1]])
     total = last = 0.0
@@ -221,19 +222,19 @@ def _per_contact(reader: Reader, period: int, contacts: int) -> Reader:
 def _defects(file: Table, striker: Table) -> list[Table]:
     """Read the tables of ``defects``, at most one of each bead and contact.
 
-    A striker that is like another bead takes the place of bead 1.
+    A striker that is described takes the place of bead 1.
     """
     given = [*file.read("defects", each(_defect), ())]
-    if "like" in striker:
-        other = {"bead": 1, "like": striker.entries["like"]}
-        given.append(Table(other, "striker", ("bead", "like")))
+    own = {key: striker.entries[key] for key in _OTHER if key in striker}
+    if own:
+        given.append(_defect({"bead": 1, **own}, "striker"))
     named: set[str] = set()
     for defect in given:
         kind = defect.one("contact", "bead")
         at = f"{kind} {shorten(defect.entries[kind])}"
         if at in named:
             raise SceneError(
-                f"{at} has two tables of defects, or one and striker.like: one is wanted"
+                f"{at} has two tables of defects, or one and the striker's: one is wanted"
             )
         named.add(at)
     return given
@@ -244,8 +245,8 @@ def _defect(value: Any, name: str) -> Table:
     # A defect is told by what it names: a contact or a bead.
     if "contact" in entries(value, name):
         return Table(value, name, ("contact", "stiffness"))
-    given = Table(value, name, ("bead", "like", "mass"))
-    given.one("like", "mass")
+    given = Table(value, name, ("bead", *_OTHER))
+    given.one(*_OTHER)
     return given
 
 

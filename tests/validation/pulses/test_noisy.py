@@ -209,6 +209,17 @@ def test_many_samples_are_averaged():
         assert abs(numbers[name].value - value) < 3 * numbers[name].error < 6e-3
 
 
+@pytest.mark.parametrize("noise", [0, 0.001])
+def test_times_that_count_from_1970_err_by_the_last_digit_of_a_float(noise):
+    """Samples each microsecond, at times that are known to 2e-7 s."""
+    off = []
+    for arrival in np.linspace(270, 271, 20):
+        f = np.exp(-(((N - arrival) / 30) ** 2)) + noise * WHITE
+        found = noisy_pulse(1.7e9 + 1e-6 * N, f).numbers["arrival"]
+        off.append((found.value - 1.7e9 - 1e-6 * arrival) / found.error)
+    assert 1 / 30 < np.abs(off).max() < 1
+
+
 def test_a_record_that_begins_too_late_has_an_arrival_and_a_width(signals):
     pulse_at = at_widths(signals[1, 24])
     x = np.arange(-2, 3, 1 / WIDTH)

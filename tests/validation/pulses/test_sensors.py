@@ -88,7 +88,7 @@ def test_beads_with_one_contact_have_no_place():
     every = dict(bead_sensors=(0, 1, 2), contact_sensors=(0, 1, 2))
     scene = struck((1,), 3, wall=1, duration=1, spacings=(1, 3), **every)
     found = tracks(simulate(scene))
-    places = {f"{track.kind} {track.number}": track.place for track in found}
+    places = {f"{track.kind} {track.number}": track.along for track in found}
     assert places.pop("bead 1") == {}
     assert [place["speed"] for place in places.values()] == [1, 4, 0.5, 2.5, 5.5]
     last = replace(

@@ -73,7 +73,7 @@ def test_the_list_of_keys_holds_every_key():
         assert set(content.pop(name)) == set(scenefile.KEYS[name])
     assert content["chain"].pop("law") == "hertz2:1,2"
     balls = {key: content["chain"].pop(key) for key in ("k", "stiffnesses", "spacings")}
-    del content["striker"]["drop"]
+    del content["striker"]["drop"], content["striker"]["mass"]
     assert scene(content).size == 38
     del content["striker"]
     content |= {"start": start, "chain": {"cell": [1.0, 2.0], "repeat": 19} | balls}
@@ -160,6 +160,7 @@ REFUSED = [
     ),
     ({"wall": {"material": "steel"}}, "wall.material is given"),
     ({"striker": {"velocity": 1}, "start": {}}, "striker and start are both there"),
+    ({"striker": {"velocity": -1}}, "striker.velocity is -1"),
     ({"striker": {"like": "ball"}} | BALLS, "striker has neither velocity nor drop"),
     (
         {"striker": {"like": "ball"}, "defects": [{"bead": 1, "mass": 1.0}]},
@@ -306,10 +307,11 @@ def test_a_drive_is_read_from_a_file_beside_the_scene(tmp_path):
         scene(chain | {"drive": {"file": "none.csv"}})
 
 
-def test_a_striker_like_another_bead_is_a_defect_of_bead_1():
+@pytest.mark.parametrize("other", [{"like": "ptfe"}, {"mass": 1e-3}])
+def test_a_striker_unlike_the_beads_is_a_defect_of_bead_1(other):
     paper = tomllib.loads(PAPER)
-    struck = scene(paper | {"striker": paper["striker"] | {"like": "ptfe"}})
-    assert struck == scene(paper | {"defects": [{"bead": 1, "like": "ptfe"}]})
+    struck = scene(paper | {"striker": paper["striker"] | other})
+    assert struck == scene(paper | {"defects": [{"bead": 1, **other}]})
     assert struck.masses[0] != scene(paper).masses[0]
 
 
