@@ -88,7 +88,7 @@ def read_materials(file: Table) -> dict[str, Material]:
 def striker_velocity(striker: Table) -> float:
     """Read the velocity of the table ``striker``, or that of a fall from the height ``drop``."""
     if striker.one("velocity", "drop") == "velocity":
-        return float(striker.read("velocity", finite))
+        return float(striker.read("velocity", positive))
     return math.sqrt(2 * float(GRAVITY) * striker.read("drop", positive))
 
 

@@ -25,8 +25,7 @@ import click
 from lwa.base.exact import InputError, read_exact
 from lwa.base.files import reason
 from lwa.base.progress import bar, shown
-from lwa.command.cli import HELP, called, help_end
-from lwa.command.cli import run as run_command
+from lwa.command.cli import HELP, called, help_end, run as run_command
 from lwa.command.options import Read, Reader, Words, count, quantities
 from validation.pictures import SUFFIXES, Panel, Pictured
 from validation.report.table import WIDTH, Finding, Table, findings_table, plain, wrap
@@ -310,7 +309,7 @@ def option(
         Further settings of `click.option`.
     """
     settings.setdefault("show_default", default is not None and default is not False)
-    # A flag's False is no integer here.
+    # By the type itself: the False of a flag is an instance of int.
     read = read or {float: number, int: count}.get(type(default))
     if read:
         # As a text, which the reader takes, and which a refusal proposes.
