@@ -19,8 +19,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import InputError as InputError
-from lwa.base.words import one_of as one_of
-from lwa.base.words import shorten as shorten
+from lwa.base.words import one_of as one_of, shorten as shorten
 
 Quantity = int | float | str | Fraction | sp.Expr
 """Accepted types of an exponent, a mass, a stiffness or a length."""
@@ -206,7 +205,7 @@ def number(value: sp.Expr) -> float:
 
 
 def evaluated(value: sp.Expr, digits: int) -> sp.Expr:
-    """Evaluate an exact number to the given digits, though `MOST_CANCELLED` digits cancel."""
+    """Evaluate an exact number to the given digits; terms may cancel `MOST_CANCELLED` digits."""
     return sp.N(value, digits, maxn=MOST_CANCELLED)
 
 
@@ -232,7 +231,7 @@ class Unmultiplied(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymP
 
 
 def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
-    """The power ``base^exponent``; that of a long number or a long exponent is not written out.
+    """The power ``base^exponent``, left as a power if its number or its exponent is long.
 
     >>> power(sp.Rational(9, 4), sp.Rational(3, 2)), power(sp.Rational(9, 4), sp.Rational(1, 9999))
     (27/8, (9/4)**(1/9999))
@@ -244,7 +243,8 @@ def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
             return base**exponent
         # SymPy multiplies out by the larger part of the exponent: x^{p/q} has x^p in a root.
         bits = int(factor.p).bit_length() + int(factor.q).bit_length()
-        # The root of a surd joins a long exponent.
+        # SymPy joins the root of a surd and the exponent: (2^{1/2})^{p/q} becomes 2^{p/(2q)}. So
+        # powers of surds are written out up to a p or q of about `_FINEST_ROOT` alone.
         if not number.is_Rational:
             bits += _POWER_BITS // _FINEST_ROOT
         if bits * max(abs(int(exponent.p)), int(exponent.q)) > _POWER_BITS:

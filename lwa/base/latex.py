@@ -92,7 +92,7 @@ def expression(value: sp.Expr) -> str:
 def _short(value: sp.Expr) -> sp.Expr:
     """The value, or the digits of a number whose formula is long."""
     if not value.free_symbols and width(_formula(value)) > NUMBER:
-        return evaluated(value, 15)
+        return evaluated(value, 15)  # the digits of a float
     return value
 
 

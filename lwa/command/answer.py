@@ -213,6 +213,7 @@ class Row:
         label, _, _ = self.label.partition(" (")
         if isinstance(self.value, InputError):
             return f"{label}: {self.value}"
+        # No number at all if one of the values has none.
         numbers = self.numbers(scale) or repeat(None)
         texts = []
         for value, number in zip(self.values, numbers, strict=False):
@@ -260,7 +261,7 @@ class Row:
         return rf"{self.symbol} = \left({digits}\right) {sp.latex(unit)}"
 
 
-def rows_of(result: Any, labels: Mapping[str, str]) -> list[Row]:
+def rows_of(result: Any, **labels: str) -> list[Row]:
     """Make rows of several attributes of a result, whose labels are given by name."""
     return [Row.of(result, name, label) for name, label in labels.items()]
 

@@ -46,8 +46,7 @@ from lwa.base.exact import (
 )
 from lwa.base.frozen import Value
 from lwa.base.words import BRANCHES, BranchName, one_of
-from lwa.cell import Cell, by_name
-from lwa.cell import k as symbol_k
+from lwa.cell import Cell, by_name, k as symbol_k
 from lwa.envelopes.modes import LoadedMode
 from lwa.law import ContactLaw, for_cell
 
@@ -128,7 +127,7 @@ class Envelope(LoadedMode):
         return self._each(self._mode.shape)
 
     @cached_property
-    def strains(self) -> tuple[sp.Expr, ...]:
+    def squared_strains(self) -> tuple[sp.Expr, ...]:
         """Squared compression ``|d|²`` of each contact in the mode."""
         return self._each(self._mode.size)
 
@@ -186,11 +185,11 @@ class Envelope(LoadedMode):
         if self.law.pulls or self.law.formless:
             return sp.oo
         smallest = sp.oo
-        contacts = zip(self.static_compressions, self.strains, strict=True)
-        for static, strain in contacts:
-            if strain:  # a contact that the mode does not compress never opens
+        contacts = zip(self.static_compressions, self.squared_strains, strict=True)
+        for static, square in contacts:
+            if square:  # a contact that the mode does not compress never opens
                 # 2|Ψ||d| is the largest change of the compression.
-                smallest = sp.Min(smallest, static**2 / (4 * strain))
+                smallest = sp.Min(smallest, static**2 / (4 * square))
         return sp.N(smallest) if self.floats else smallest
 
     def _each(self, values: Iterable[sp.Expr]) -> tuple[sp.Expr, ...]:

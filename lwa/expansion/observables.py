@@ -54,6 +54,9 @@ class Observables:
         """The speed c, divided by its leading term."""
         return power(self.c2, fmpq(1, 2))
 
+    # Quantities have the names by which `coefficients` is asked for them; a force, a strain and a
+    # velocity stand for their widths.
+
     def force(self, contact: int = 0) -> Series:
         """Full width at half maximum of a contact's force."""
         return half_width(self.wave.force[contact].log)

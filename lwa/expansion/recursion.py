@@ -71,6 +71,14 @@ class Recursion:
 
     Attributes
     ----------
+    Z, zero : polynomial
+        The place Z and the number 0 in the ring Q[Z, m̂, C].
+    mu, c : list of polynomial
+        Mass fractions m̂_i of the beads, and shares C_i of the contacts.
+    P : int
+        Number of beads of a cell.
+    I, epsilon : polynomial
+        The dispersion of the linear chain, and ``I³``, by which ε is ``I³ t²``.
     force, strain : list of Pulse
         Forces and strains of the contacts.
     slope : list of Series
@@ -93,7 +101,7 @@ class Recursion:
         self.I = self._dispersion()
         # -I times the logarithmic slope of the Gaussian
         self._fall = self.I * self.Z / 2
-        # (ε/I)^{1/2} = I t
+        # (ε/I)^{1/2} = I t, so that ε = I³ t²
         self.epsilon = self.I**3
         self.gamma: Series = [self.context.constant(1)]
         self.force = [Pulse() for _ in range(self.P)]
@@ -242,8 +250,11 @@ class Recursion:
                 slope = slope + self.c[i] * self.derivative(strain)
 
     def _accelerated(self, slope: Series, n: int) -> fmpq_mpoly:
-        """Coefficient of t^n in γ s_i, s_i the slope of a bead's displacement."""
-        # γ may end before t^n: what is missing is the next unknown, see `_residual`.
+        """Coefficient of t^n in γ s_i, s_i the slope of a bead's displacement.
+
+        Its derivative is the bead's acceleration, in the recursion's units.
+        """
+        # If γ ends before t^n the product lacks γ_n, the unknown that `_solve` finds next.
         total = self.zero
         for a, factor in enumerate(self.gamma[: n + 1]):
             if factor and slope[n - a]:

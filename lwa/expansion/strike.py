@@ -133,7 +133,10 @@ class Strike(Value):
 
     @property
     def _share(self) -> float:
-        """Relative error of speed and time, which go as F^{±(k-1)/(2k)}, by that of the force."""
+        """Relative error of the speed, and of times, that the error of the force F makes.
+
+        The speed goes as ``F^{(k-1)/(2k)}``, times as its inverse.
+        """
         return float((self.k - 1) / (2 * self.k)) * self._error
 
     @property

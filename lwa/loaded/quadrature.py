@@ -328,7 +328,8 @@ class Nodes:
     def places(self) -> Array:
         """The distances ξ of the rows from the peak, from the peak on.
 
-        A row's ξ is the sum of the distances dξ between rows from there to the peak.
+        A row's ξ is the sum of the distances dξ from the row to the peak, by the weights of
+        `Grid.to_peak`.
         """
         g = self.grid
         between_rows = g.to_peak[:, g.rows]

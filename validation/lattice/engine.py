@@ -223,9 +223,11 @@ def _pair_plan(motion: Motion, rtol: float, longest: float) -> tuple[Plan, int]:
     pair = RKN86 if scene.damping is None else RK853
     stops = {end}
     if scene.drive is not None:
+        # At least two steps for the length in which a drive has one extremum or one cubic
         longest = min(longest, scene.drive.longest_step / 2)
         stops |= {t for t in (scene.drive.ramp, *scene.drive.time) if 0 < t < end}
     most = step_limit(scene, "RKN86", end / min(time, longest))
+    # Short scenes begin with a hundredth: a first step that is too short costs little.
     h = min(_FIRST * rtol ** (1 / pair.order) * time, longest, end / 100)
     times = np.array(sorted(stops), float)
     plan = _plan(motion, pair, rtol, h=h, longest=longest, stops=times)
@@ -260,6 +262,8 @@ def _chain(motion: Motion) -> Chain:
     load[:contacts] = motion.load
     opens[:contacts] = 1.0
     laws = list(motion.laws)
+    # The padding, of stiffness 0, has the last contact's law, so that one loop takes both; but a
+    # linear one where the last contact's force may overflow as a free end moves on (`_UNBOUNDED`).
     beyond = int(motion.law_of[-1]) if contacts else 0
     if laws[beyond].law is not None or laws[beyond].k >= _UNBOUNDED:
         beyond = len(laws)
@@ -268,10 +272,11 @@ def _chain(motion: Motion) -> Chain:
     alike = np.full(padded, padded)
     law_of[:contacts] = motion.law_of
     if len(laws) > 1:
+        # Contacts at which another law begins
         places = np.append(np.flatnonzero(np.diff(law_of)) + 1, padded)
         alike = places[np.searchsorted(places, np.arange(padded), side="right")]
     for number, law in enumerate(laws):
-        if law.pulls:
+        if law.pulls:  # it holds at every δ, and has no kink
             opens[:padded][law_of == number] = 0.0
     return Chain(
         inverse=inverse,

@@ -155,17 +155,18 @@ class Motion:
         """Return the rates dδ_i/dt of the compressions at velocities of shape (n,) or (n, S)."""
         rates = v[:-1] - v[1:]
         if len(self.rest) < len(v):
-            return np.asarray(rates)
+            return rates
         return np.concatenate((rates, v[-1:]))  # against a wall
 
     def compression(self, y: Array) -> Array:
         """Return the compressions δ_i at displacements of shape (n,) or (n, S)."""
-        return np.asarray((self.rest + self.rate(y).T).T)
+        return (self.rest + self.rate(y).T).T
 
     def force(self, compression: Array, contacts: Any = ...) -> Array:
         """Return the elastic forces A_i F(δ_i) of all contacts, or of some."""
         forces = self._each(contacts, Contact.force, compression)
-        return np.asarray((self.stiffnesses[contacts] * forces.T).T)
+        stiffnesses: Array = self.stiffnesses[contacts]
+        return (stiffnesses * forces.T).T
 
     def damped_force(
         self, elastic: Array, compression: Array, rate: Array, contacts: Any = ...

@@ -27,11 +27,8 @@ _MOST_BYTES = 2**28
 
 def _with_neighbours(beads: Beads) -> NDArray[np.int_]:
     """Return the increasing numbers of beads and their neighbours."""
-    numbers = np.asarray(beads, int)
-    # A row from bead -1 to the one behind the last; without beads it is bead -1 alone.
-    near = np.zeros(numbers.max(initial=-2) + 3, bool)
-    near[numbers] = near[numbers + 1] = near[numbers + 2] = True
-    return np.flatnonzero(near[1:])
+    near = np.unique(np.add.outer(np.asarray(beads, int), (-1, 0, 1)))
+    return near[near >= 0]
 
 
 def set_addresses(laws: Any, motion: Motion) -> None:
@@ -126,10 +123,10 @@ class Recorder:
         times, states, watched = self.knots
         if not len(watched):
             return 0
-        # The first knot is the last one of the part before.
-        new = slice(len(self._parts) > 0, count)
-        self._parts.append((times[new].copy(), states[new].copy()))
-        self._bytes += self._parts[-1][1].nbytes
+        # Its first knot is also the last one of the part before.
+        part = times[:count].copy(), states[:count].copy()
+        self._parts.append(part)
+        self._bytes += part[1].nbytes
         times[0], states[0] = times[count - 1], states[count - 1]
         if self._bytes > _MOST_BYTES:
             self._sample()

@@ -66,20 +66,20 @@ class Contact:
             return self._evaluated("force", compression)
         pressed = np.maximum(compression, 0.0)
         if self.k == 1.5:
-            return np.asarray(pressed * np.sqrt(pressed))
-        return np.asarray(pressed**self.k)
+            return pressed * np.sqrt(pressed)
+        return pressed**self.k
 
     def stiffness(self, compression: Array) -> Array:
         """Return the stiffness ``dF/dδ`` at a compression δ, of any shape."""
         if self.law is not None:
             return self._evaluated("slope", compression)
-        return np.asarray(self.k * np.maximum(compression, 0.0) ** (self.k - 1))
+        return self.k * np.maximum(compression, 0.0) ** (self.k - 1)
 
     def energy(self, compression: Array) -> Array:
         """Return the elastic energy ``∫ F dδ``, from 0 to the compression."""
         if self.law is not None:
             return self._evaluated("energy", compression)
-        return np.asarray(self.force(compression) * compression / (self.k + 1))
+        return self.force(compression) * compression / (self.k + 1)
 
     def energy_above(self, rest: Array, change: Array) -> Array:
         """Return the energy of a change of the compression less the work of the static force.
@@ -140,7 +140,7 @@ class Contact:
     def compressed_by(self, forces: Array) -> Array:
         """Return static compressions at given forces; `lwa.InputError` for unattainable forces."""
         if self.law is None:
-            return np.asarray(forces ** (1 / self.k))
+            return forces ** (1 / self.k)
         different, place = np.unique(forces, return_inverse=True)
         found = []
         for force in different:

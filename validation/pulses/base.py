@@ -41,7 +41,10 @@ class Fit:
 
     @classmethod
     def of(cls, x: Array, f: Array, count: int) -> Fit:
-        """Fit the first terms to samples f, (B,) or (B, draws), at times x in widths."""
+        """Fit the first ``count`` terms of a base to samples f at times x in widths.
+
+        f is (B,), or (B, draws) for a fit of each drawn record.
+        """
         terms = _terms(x, count)
         solved, *_ = np.linalg.lstsq(terms, f)
         sizes = np.asarray(solved, float)

@@ -73,6 +73,8 @@ def cells_apart(k: float, stretch: int) -> int:
     >>> [cells_apart(k, 4) for k in (3, 1.5, 1.1)]
     [4, 4, 30]
     """
+    # 1 at k of 3/2. The power is chosen, not derived: stretches are compared with one another, so
+    # that stretches too short widen the errors and do no more harm.
     longer = math.pow(2 * (k - 1), -1.25)
     return math.ceil(stretch * max(1.0, longer))
 

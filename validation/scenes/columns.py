@@ -123,6 +123,7 @@ class Column:
     @property
     def base(self) -> str:
         """Unit of its quantity in SI."""
+        # The quantity is the last word of a name such as "bead 8 force".
         return BASES[self.name.split()[-1]]
 
     @property
@@ -286,13 +287,13 @@ def _rank(cells: Cells, steps: dict[int, Array], name: str, number: int) -> int:
     unknown = in_si(found_unit(cells.above(number)), base) is None
     own = steps[number]
     if name == "time":
-        # Numbers of lines rise by 1, as times in a unit may.
+        # A column without a unit that rises by 1 counts the lines; times in a unit may do so.
         lines = unknown and np.all(own == 1)
-        alike = own.min(initial=0) >= 0 < own.max(initial=0) and not lines
+        suits = own.min(initial=0) >= 0 < own.max(initial=0) and not lines
     else:
-        # Numbers of lines, and constants, are no signals.
-        alike = len(np.unique(own)) > 1
-    return unknown + _UNLIKE * (not alike)
+        # Counts of lines, and constants, are no signals: all their steps are equal.
+        suits = len(np.unique(own)) > 1
+    return unknown + _UNLIKE * (not suits)
 
 
 def _steps(cells: Cells) -> dict[int, Array]:

@@ -192,7 +192,10 @@ class MeasuredFile(Columns):
         return sorted(records, key=lambda record: record.kind)
 
     def _signal(self, time: Column, signal: Column, of: str) -> Record:
-        """Return the record of a sensor from the columns of its time and signal."""
+        """Return the record of a sensor from the columns of its time and signal.
+
+        of : the sensor's kind, "bead" or "contact", where the column's name does not say it.
+        """
         sensor = NAME.fullmatch(signal.name)
         assert sensor is not None
         assert signal.number is not None
@@ -201,7 +204,9 @@ class MeasuredFile(Columns):
             kind = "bead"  # contacts have none
         t, values = self._record([time, signal]).T
         if len(t) > 1 and np.diff(t).min() <= 0:
-            step = f"{np.ptp(t) / (len(t) - 1):.6g}{' s' * self.si}"
+            step = ""
+            if np.ptp(t):
+                step = f"{np.ptp(t) / (len(t) - 1):.6g}{' s' * self.si}"
             words = "time must increase, --step states it of evenly spaced samples"
             raise self.refusal(words, ["time"], step)
         # The user's own calibration, with the other sign, turns an inverted signal.

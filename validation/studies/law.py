@@ -32,8 +32,7 @@ from lwa.base.exact import read_exact, shorten
 from lwa.base.files import entries, load
 from lwa.base.frozen import Estimate
 from lwa.command.options import quantities
-from lwa.spheres.beads import FILE, read_materials
-from lwa.spheres.beads import spheres as read_spheres
+from lwa.spheres.beads import FILE, read_materials, spheres as read_spheres
 from validation.pictures import Curve, Panel
 from validation.report.study import Report, option, study
 from validation.report.table import Column, Table
@@ -301,6 +300,15 @@ def fit_power(
         Peak contact forces and speeds (N,) of four or more pulses.
     weight : array, optional
         Weights (N,), see `weights`; by default all pulses weigh the same.
+
+    Returns
+    -------
+    PowerFit
+
+    Raises
+    ------
+    SceneError
+        For a k out of the range from `LEAST` to `MOST`, and for an A beyond the range of a float.
     """
     x, y = np.log(force), np.log(speed)
     (slope, constant), middle = _fit(x, y, 1, weight)
@@ -308,13 +316,15 @@ def fit_power(
     if not LEAST <= k[0] <= MOST:
         wanted = f"laws with k from {LEAST:g} to {MOST:g} are read"
         raise SceneError(f"k is {k[0]:.3g} by the best fit: {wanted}")
+    # Hertz's law: the slope (k - 1)/(2k) of ln V is given, and the constant alone is fitted.
     sixth = (_HERTZ - 1) / (2 * _HERTZ)
     (hertz,), _ = _fit(x, y - sixth * x, 0, weight)
+    # A parabola, for the curvature
     (curvature, *_), _ = _fit(x, y, 2, weight)
 
     def stiffness(log_A: Array, k: float) -> Estimate:
         log = _interval(log_A)
-        error = log.error + k * RATIO_ERROR  # A ~ R^{-k}
+        error = log.error + k * RATIO_ERROR  # A goes as R(k)^{-k}
         if not abs(log.value) + error < LARGEST:
             raise SceneError(
                 f"A is e^({log}) by the best fit: this is no number of a computer"

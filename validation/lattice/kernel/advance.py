@@ -59,7 +59,10 @@ def advance(
     be added, and where the response is greater than ``plan.most``.
     """
     until = now.tries + tries
-    hi = plan.size
+    hi = plan.size  # beads that are moved; all of them at the start
+    # ``made``: the beads are at a new time, whose knot is not stored yet. ``corrected``: and the
+    # forces there are not those of the last stage. Both hold at the start of a run; a call that
+    # goes on finds a stored knot.
     made = corrected = now.tries == 0
     while True:
         if made:
@@ -73,6 +76,7 @@ def advance(
             return float(now.t)
         h = now.h
         left = plan.stops[now.stop] - now.t
+        # A rest of rounding would be a step of no length.
         stopping = h > left - 1e-9 * h
         if stopping:
             h = left

@@ -197,9 +197,10 @@ def _drive_misfit(chain: Chain, beads: Beads, t: float, h: float) -> float:
 def _follow_curve(
     law: Any, r: float, p: kinks.Curve, pair: Pair, h: float, points: Array
 ) -> None:
-    """Compute a contact's δ, δ' and force at the stages; they go to ``points``.
+    """Compute a contact's δ, δ' and force at the stages along a curve p; they go to ``points``.
 
-    On the curve p the pair's quadrature and the integral err alike, by the error of p.
+    The correction is the integral of the force less the pair's quadrature of it. With both along p
+    the error of p, a quintic, cancels in the difference.
     """
     for s in range(len(pair.nodes)):
         d, slope = kinks.value_and_slope(p, pair.nodes[s])
@@ -333,8 +334,9 @@ def _correct_neighbour(
 ) -> None:
     """Correct the impulse of contact n by the moments of a corrected contact beside it.
 
-    share : δ of contact n is moved by this times a moment. jump : of the force of the corrected
-    contact, per unit of share.
+    share : ``-1/m`` of the bead between both contacts: a moment of the corrected contact changes δ
+    of contact n by ``moment/m``, and a force changes δ″ by ``force/m``. jump : jump of the force of
+    the corrected contact, 0 without one.
     """
     law = chain.laws[chain.law[n]]
     A = chain.A[n]

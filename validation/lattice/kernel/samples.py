@@ -62,8 +62,10 @@ def _rate(law: Any, r: float, d: float, v: float, a: float) -> float:
         return rate
     resistance = r * drag(law, d)
     force = elastic(law, d)
+    # Damping may not pull unless the law ``sticks``: where the sum would pull more than the elastic
+    # force does, the force is the elastic one if that attracts, and 0 otherwise.
     if not (law.sticks or force + resistance * v > min(force, 0.0)):
-        return rate if force < 0.0 else 0.0  # the damping, which may not pull, is idle
+        return rate if force < 0.0 else 0.0
     rate += resistance * a
     if law.p > 0.0:
         rate += law.p * resistance / d * v * v
