@@ -11,7 +11,7 @@ import json
 import math
 import sys
 import tomllib
-from collections.abc import Callable, Mapping, Sequence, Set
+from collections.abc import Callable, Collection, Mapping, Sequence, Set
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, TypeVar
@@ -151,7 +151,7 @@ class Table:
         The parsed table.
     name : str
         The full key of the table; "" for the file itself.
-    known : sequence of str
+    known : collection of str
         Its keys.
 
     Examples
@@ -162,7 +162,7 @@ class Table:
     lwa.base.InputError: bead.masss is unknown: did you mean mass?
     """
 
-    def __init__(self, value: Any, name: str, known: Sequence[str]) -> None:
+    def __init__(self, value: Any, name: str, known: Collection[str]) -> None:
         self.name = name
         self.entries = entries(value, name or "the file")
         for key in self.entries:

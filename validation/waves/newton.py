@@ -85,7 +85,7 @@ def rise(strain: Array, k: float, p0: float) -> Array:
         growth = np.expm1(k * np.log1p(relative))
     # The power of a large logarithm loses digits, the difference of unlike powers none.
     total = np.maximum(p0 + strain, 0)
-    return np.where(relative > 1, total**k - p0**k, p0**k * growth)
+    return np.asarray(np.where(relative > 1, total**k - p0**k, p0**k * growth))
 
 
 def respond(force: Series, inverse: Pair, half_period: float) -> Series:
