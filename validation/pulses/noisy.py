@@ -204,7 +204,7 @@ def _is_exact(f: Array) -> bool:
     turns = np.count_nonzero(np.diff(signs))
     # A front past its steepest place tells nothing of its foot, unless the foot is 0.
     late = f[0] != 0 and -1 in signs[:1]
-    return len(before) > 0 and -falls.sum() < least and turns < 2 and not late
+    return bool(len(before) and -falls.sum() < least and turns < 2 and not late)
 
 
 def _exact(t: Array, f: Array) -> NoisyPulse:
