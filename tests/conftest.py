@@ -96,19 +96,12 @@ def engine(tmp_path_factory):
     """Let the first of several processes of tests compile the lattice's engine, and others wait."""
     if "PYTEST_XDIST_WORKER" in os.environ:
         from validation.lattice.simulate import simulate
+        from validation.scenes.chains import struck
         from validation.scenes.forcing import Damping
-        from validation.scenes.scene import Scene
 
-        pair = {
-            "masses": (1, 1),
-            "stiffnesses": (1,),
-            "k": 1.5,
-            "duration": 1,
-            "velocities": (1,),
-        }
         scenes = (
-            Scene(**pair, bead_sensors=(0,)),
-            Scene(**pair, damping=Damping("contact", 0.1)),
+            struck((1,), 2, duration=1, bead_sensors=(0,)),
+            struck((1,), 2, duration=1, damping=Damping("contact", 0.1)),
         )
         with (tmp_path_factory.getbasetemp().parent / "engine.lock").open("w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)  # until the file is closed

@@ -4,15 +4,12 @@ A process takes a second of the machine, so that few are started, and each answe
 Everything else about a command is tested by a call of its ``main`` in the process of the tests.
 """
 
-import contextlib
 import os
-import pty
-import select
 import signal
 import subprocess
 import sys
-import termios
 import time
+from contextlib import contextmanager
 from importlib.metadata import version
 from pathlib import Path
 
@@ -20,6 +17,7 @@ import pytest
 
 from lwa import __version__
 from lwa.base import INTERRUPTED
+from tests.commands import terminal
 
 LWA = (sys.executable, "-m", "lwa")
 VERSION = (*LWA, "--version")  # takes a tenth of a second, as it does not load SymPy
@@ -30,6 +28,25 @@ def ended(*command, **options):
     options = {"capture_output": True, "text": True, "timeout": 240} | options
     done = subprocess.run(command, check=False, **options)
     return done.returncode, done.stdout, done.stderr
+
+
+@contextmanager
+def killed(process):
+    """A process that ends with the test, whatever the test finds."""
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+
+
+def waited(written, seconds):
+    """What a terminal shows next, after so many seconds at most."""
+    end = time.monotonic() + seconds
+    while not (shown := written()):
+        assert time.monotonic() < end, f"silent for {seconds} s"
+        time.sleep(0.1)
+    return shown
 
 
 NUMBERS = "numpy scipy matplotlib numba"
@@ -103,34 +120,23 @@ def test_a_long_run_shows_its_progress_on_a_terminal_and_stops_at_ctrl_c(
     engine, tmp_path
 ):
     (tmp_path / "scene.toml").write_text(CHAIN)
-    command = (sys.executable, "-m", "validation", "run", "scene.toml")
-    mine, theirs = pty.openpty()
-    termios.tcsetwinsize(theirs, (24, 80))
     outputs = ("--plot", "p.svg", "--out", "o.json")
-    pipes = dict(stdout=subprocess.PIPE, stderr=theirs, text=True, cwd=tmp_path)
-    with (
-        subprocess.Popen((*command, *outputs), **pipes) as running,
-        contextlib.ExitStack() as end,
-    ):
-        end.callback(running.kill)
-        os.close(theirs)
-        shown = b""
-        while b"lattice run:" not in shown:
-            assert select.select([mine], [], [], 120)[0], "no progress"
-            shown += os.read(mine, 1000)
-        running.send_signal(signal.SIGINT)
-        out, _ = running.communicate(timeout=120)
-    rest = b""
-    with contextlib.suppress(OSError):  # the other end is closed
-        while some := os.read(mine, 1000):
-            rest += some
-    os.close(mine)
+    command = (sys.executable, "-m", "validation", "run", "scene.toml", *outputs)
+    with terminal() as written:
+        pipes = dict(stdout=subprocess.PIPE, stderr=sys.stderr, cwd=tmp_path)
+        with killed(subprocess.Popen(command, **pipes)) as running:
+            shown = waited(written, 120)
+            while "lattice run:" not in shown:
+                shown += waited(written, 120)
+            running.send_signal(signal.SIGINT)
+            out, _ = running.communicate(timeout=120)
+        shown += written()
     # Python ends itself by the signal, which is 130 in a shell as well, where the interrupt passed
     # through a text that is executed, as in the compiler.
     assert running.returncode in (INTERRUPTED, -signal.SIGINT)
-    assert out == ""
-    assert rest.decode().splitlines()[-1].endswith("lwa-validate: interrupted")
-    assert b"Traceback" not in rest
+    assert out == b""
+    assert shown.splitlines()[-1].endswith("lwa-validate: interrupted")
+    assert "Traceback" not in shown
     assert [file.name for file in tmp_path.iterdir()] == ["scene.toml"]
 
 
@@ -139,15 +145,11 @@ def test_the_first_compilation_is_not_silent_for_long(tmp_path):
     """On a terminal, where ten seconds are the most."""
     command = (sys.executable, "-m", "validation", "paper")
     fresh = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
-    screen, terminal = pty.openpty()
-    streams = dict(stdout=terminal, stderr=terminal, env=fresh)
-    with subprocess.Popen(command, **streams) as running, contextlib.ExitStack() as end:
-        end.callback(running.kill)
-        os.close(terminal)
-        for _ in range(4):
-            # Twice the promised time: the machine may be busy.
-            assert select.select([screen], [], [], 20)[0], "silent for 20 s"
-            assert os.read(screen, 10_000)
-            # Parts of a sign that come at once are one.
-            time.sleep(1)
-    os.close(screen)
+    with terminal() as written:
+        streams = dict(stdout=sys.stderr, stderr=sys.stderr, env=fresh)
+        with killed(subprocess.Popen(command, **streams)):
+            for _ in range(4):
+                # Twice the promised time: the machine may be busy.
+                waited(written, 20)
+                # Parts of a sign that come at once are one.
+                time.sleep(1)

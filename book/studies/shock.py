@@ -28,8 +28,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from lwa import Cell, Power, Shock
-from lwa import shock as front
+from lwa import Cell, Power, Shock, shock as front
 from lwa.base.exact import InputError, read_exact
 from lwa.base.frozen import Estimate
 from lwa.base.progress import Progress
@@ -172,7 +171,7 @@ class Driven:
         """Table row: plateau, speed and peak on the lattice, with the theories' errors."""
         chain, strain = self.theory, float(self.theory.behind)
         plateau = float(run.compression[0][-len(run.time) // 10 :].mean())
-        speed, peak = _leading(run)
+        speed, peak = leading(run)
         cells: list[Any] = []
         for name, (s, p) in self.theories.items():
             cells += [s, _off(s, speed.value)]
@@ -254,8 +253,8 @@ def own_wave(chain: Shock) -> Pair:
     return scaled(share)[:2]
 
 
-def _leading(run: Run) -> tuple[Estimate, Estimate]:
-    """Speed and peak strain of the leading pulse."""
+def leading(run: Run) -> tuple[Estimate, Estimate]:
+    """Speed and peak strain of the leading pulse; the first sensor is near the piston."""
     x = np.array(run.scene.contact_sensors[1:], float)
     time, peak = np.array([_first_peak(run, i) for i in range(1, len(x) + 1)]).T
 
@@ -270,17 +269,21 @@ def _leading(run: Run) -> tuple[Estimate, Estimate]:
 
 
 def _first_peak(run: Run, i: int) -> tuple[float, float]:
-    """Time and strain of the first peak of a record that rises above half its largest rise."""
+    """Time and strain of the first peak of a record that rises above half its largest rise.
+
+    Behind a piston that pulls the strain falls.
+    """
     values, time = run.compression[i], run.time
     signal = run.signal("contact", run.scene.contact_sensors[i], "compression")
-    rise = values - values[0]
+    sign = float(np.sign(values[-1] - values[0]))
+    rise = sign * (values - values[0])
     start = int(np.argmax(rise > rise.max() / 2))
-    top = start + int(np.argmax(np.diff(values[start:]) < 0))
+    top = start + int(np.argmax(np.diff(rise[start:]) < 0))
     maximum = scipy.optimize.minimize_scalar(
-        lambda t: -float(signal(t)), bounds=(time[top - 1], time[top + 1]), method="bounded",
+        lambda t: -sign * float(signal(t)), bounds=(time[top - 1], time[top + 1]), method="bounded",
         options={"xatol": 1e-8},
     )  # fmt: skip
-    return float(maximum.x), -float(maximum.fun)
+    return float(maximum.x), -sign * float(maximum.fun)
 
 
 def _number(value: Any) -> float | None:

@@ -261,7 +261,7 @@ class Row:
         return rf"{self.symbol} = \left({digits}\right) {sp.latex(unit)}"
 
 
-def rows_of(result: Any, labels: Mapping[str, str]) -> list[Row]:
+def rows_of(result: Any, **labels: str) -> list[Row]:
     """Make rows of several attributes of a result, whose labels are given by name."""
     return [Row.of(result, name, label) for name, label in labels.items()]
 

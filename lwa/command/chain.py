@@ -20,12 +20,12 @@ from lwa.law import ContactLaw, Power, for_cell, read_law
 from lwa.spheres.beads import (
     FILE,
     STRIKER,
+    Row as Beads,
     period,
     read_beads,
     read_materials,
     read_row,
 )
-from lwa.spheres.beads import Row as Beads
 from lwa.spheres.hertz import EXPONENT
 
 HERTZIAN = 0.01
@@ -156,7 +156,8 @@ def _chain(content: Any) -> ChainInput:
     if force < 0:
         raise InputError(f"precompression is {force}: it must not be negative")
     described = file.read("striker", table(STRIKER), Table({}, "striker", STRIKER))
-    striker = _numbers(described, {"velocity": finite, "drop": positive})
+    numbers = {"velocity": finite, "drop": positive, "mass": positive}
+    striker = _numbers(described, numbers)
     if "like" in described:
         striker["mass"] = described.read("like", among(beads)).mass
     law: ContactLaw

@@ -96,7 +96,7 @@ def derive(chain: ChainInput, **options: Any) -> Answer:
     # G, H and I are the coefficients at D^{k+3}, which an ansatz to D^4 has.
     if depends_on_first(theory) and theory.order >= 4:
         canonical = canonical_wave(theory.cell, theory.k)
-        letters = rows_of(canonical, {"G": "G", "H": "H", "I": "I"})
+        letters = rows_of(canonical, G="G", H="H", I="I")
         rows.append(Answer({}, ["", FIRST, *letters], key="canonical"))
     shown = theory, _defect_latex(theory)
     return Answer(head, rows, shown=shown)

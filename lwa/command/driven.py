@@ -91,16 +91,12 @@ def strike(
         Row("", "mass of the beads (kg)", cell.masses[0]),
         *rows_of(
             pulse,
-            {
-                "mass": "mass of the striker (kg)",
-                "velocity": "velocity of the striker (m/s)",
-            },
+            mass="mass of the striker (kg)",
+            velocity="velocity of the striker (m/s)",
         ),
         "",
         "leading pulse:",
-        *rows_of(
-            pulse, {"force": "peak contact force (N)", "speed": "speed dx/dt (m/s)"}
-        ),
+        *rows_of(pulse, force="peak contact force (N)", speed="speed dx/dt (m/s)"),
         Row("fwhm.length", "FWHM of the force (m)", pulse.fwhm("force", "length")),
         Row("fwhm.time", "FWHM of the force in time (s)", pulse.fwhm()),
     ]
@@ -174,15 +170,13 @@ def shock(
         kind = front.kind
     rows: Lines = [
         chain.text,
-        *rows_of(front, {"behind": "strain behind", "ahead": "strain ahead"}),
+        *rows_of(front, behind="strain behind", ahead="strain ahead"),
         "",
         f"{kind or 'front'}, speeds dx/dt:",
         *rows_of(
             front,
-            {
-                "plateau": "velocity of the wall (m/s)",
-                "trailing_speed": "trailing edge (m/s)",
-            },
+            plateau="velocity of the wall (m/s)",
+            trailing_speed="trailing edge (m/s)",
         ),
     ]
     for rule in RULES:
@@ -190,11 +184,11 @@ def shock(
         key = f"leading_speed.{rule}"
         rows.append(Row.of(front, "leading_speed", label, rule, key=key))
     if kind != "rarefaction":  # which has no leading pulse
-        peak = {
-            "peak": "peak strain, doubling",
-            "peak_force": "peak force, doubling (N)",
-        }
-        rows += rows_of(front, peak)
+        rows += rows_of(
+            front,
+            peak="peak strain, doubling",
+            peak_force="peak force, doubling (N)",
+        )
     # The closed form takes the strain behind for constant.
     notes = []
     if front.oscillates:

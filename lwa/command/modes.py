@@ -82,10 +82,8 @@ def dispersion(chain: ChainInput, order: int) -> Answer:
             Row("", "static force F0 (N)", precompression),
             *rows_of(
                 loaded,
-                {
-                    "spring_constants": "spring constants (N/m)",
-                    "sound_speed": "sound speed dx/dt (m/s)",
-                },
+                spring_constants="spring constants (N/m)",
+                sound_speed="sound speed dx/dt (m/s)",
             ),
         ]
         # Edges are roots, which have no closed form beyond two masses.
@@ -205,11 +203,9 @@ def envelope(
         Row("frequency", frequency_label, equation.frequency / turn),
         *rows_of(
             equation,
-            {
-                "group_velocity": "dω/dκ (cells/s)",
-                "dispersion": "ω'' (cells²/s)",
-                "nonlinearity": "χ (1/(s kg m²))",
-            },
+            group_velocity="dω/dκ (cells/s)",
+            dispersion="ω'' (cells²/s)",
+            nonlinearity="χ (1/(s kg m²))",
         ),
         described,
     ]
@@ -227,11 +223,9 @@ def envelope(
             Row("breather_frequency", frequency_label, breather.frequency / turn),
             *rows_of(
                 breather,
-                {
-                    "detuning": "detuning Δ = 1 - f/f0",
-                    "amplitude": "largest displacement by bead (m)",
-                    "width": "width 1/b in cells",
-                },
+                detuning="detuning Δ = 1 - f/f0",
+                amplitude="largest displacement by bead (m)",
+                width="width 1/b in cells",
             ),
         ]
     return Answer(head, rows, chain.scale, shown)

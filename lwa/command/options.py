@@ -234,7 +234,7 @@ def order_option(says: str, default: str | None = "4") -> Option:
 
 def law_option(says: str) -> Option:
     """Make the option ``--law``."""
-    return value("--law", says, "hertz2:1,2", read_law, None, "NAME[:PARAM,…]")
+    return value("--law", says, "hertz2:1,2", read_law, metavar="NAME[:PARAM,…]")
 
 
 # The file is read by the command, whose refusals have the line to paste.

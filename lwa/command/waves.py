@@ -173,12 +173,12 @@ def pulse_rows(wave: Any, prefix: str) -> Iterator[Row]:
     yield Row.of(wave, "force", "peak contact force F (N)")
     # B is the paper's letter of the peak strain.
     yield Row.of(wave, "strain", f"{prefix} strain B", key="B")
-    labels = {
-        "compression": f"{prefix} compression (m)",
-        "speed": SPEED,
-        "bead_velocity": "peak velocity of the beads (m/s)",
-    }
-    yield from rows_of(wave, labels)
+    yield from rows_of(
+        wave,
+        compression=f"{prefix} compression (m)",
+        speed=SPEED,
+        bead_velocity="peak velocity of the beads (m/s)",
+    )
     yield from width_rows(wave, EXTENTS)
 
 
@@ -194,7 +194,7 @@ def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
         *closure_lines(theory),
         f"v = u_x = B cos^({wave.m})(β ξ), ξ = x - V_s τ, on |ξ| ≤ π/(2β)",
         "",
-        *rows_of(wave, {"beta": "β (1/m)", "width": "width π/β (m)"}),
+        *rows_of(wave, beta="β (1/m)", width="width π/β (m)"),
     ]
     shown: Shows = [theory.pde, wave]
     notes = []
@@ -323,12 +323,10 @@ def under_load(chain: ChainInput, theory: Theory, force: sp.Expr) -> Answer:
         *pulse_rows(wave, "rise of the"),
         *rows_of(
             wave,
-            {
-                "precompression": "static force F0 (N)",
-                "background": "static strain p0",
-                "static_compression": "static compression (m)",
-                "sound_speed": "speed of sound dx/dt (m/s)",
-            },
+            precompression="static force F0 (N)",
+            background="static strain p0",
+            static_compression="static compression (m)",
+            sound_speed="speed of sound dx/dt (m/s)",
         ),
     ]
     notes = chain.hertz_notes(wave.force)

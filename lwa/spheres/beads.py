@@ -73,8 +73,9 @@ FILE = (
 CHAIN = ("cell", "k", "law", "stiffnesses", "spacings", "repeat")
 """Keys of the table ``chain``; beads with names have ``cell`` and ``repeat`` alone."""
 
-STRIKER = ("velocity", "drop", "like")
-"""Keys of the table ``striker``: velocity of bead 1 or height of its fall, and a bead like it."""
+STRIKER = ("velocity", "drop", "like", "mass")
+"""Keys of the table ``striker``: velocity of bead 1 or height of its fall, and the name of a bead
+like it, or its mass."""
 
 
 def read_materials(file: Table) -> dict[str, Material]:
@@ -87,7 +88,7 @@ def read_materials(file: Table) -> dict[str, Material]:
 def striker_velocity(striker: Table) -> float:
     """Read the velocity of the table ``striker``, or that of a fall from the height ``drop``."""
     if striker.one("velocity", "drop") == "velocity":
-        return float(striker.read("velocity", finite))
+        return float(striker.read("velocity", positive))
     return math.sqrt(2 * float(GRAVITY) * striker.read("drop", positive))
 
 

@@ -1,15 +1,6 @@
 """What can be seen of a page in the browser: mathematics, pictures, widths, what axe finds."""
 
-import sys
-import zipfile
-from pathlib import Path
-
-from tests.book.browser import DESKTOP, Browser
-
-PACKAGE = "axe-playwright-python==0.1.8"
-WHEEL = "axe_playwright_python-0.1.8-py3-none-any.whl"
-SHA256 = "fdd263c998388f1a8e67cad02677e612d946248bd44d163be5e8650ea31f95f8"
-"""The package with axe 4.12, which finds what hinders readers without a mouse or without sight."""
+from tests.book.browser import chromium, opened
 
 PROBE = r"""(async () => {
   for (const image of document.images) image.loading = "eager";
@@ -81,29 +72,17 @@ DARK = "localStorage.mode = localStorage.theme = 'dark';"
 """A script of a reader's choice; without it each browser begins with a first visit."""
 
 
-def axe(folder):
-    """The source of axe, fetched once and kept in the folder."""
-    # The book's extension needs Sphinx, which the tests without the book have not.
-    sys.path.append(str(Path(__file__).parents[2] / "book" / "_ext"))
-    from local_mathjax import fetched
-
-    folder.mkdir(exist_ok=True)
-    with zipfile.ZipFile(fetched(folder, PACKAGE, WHEEL, SHA256)) as wheel:
-        return wheel.read("axe_playwright_python/axe.min.js").decode()
-
-
 def seen(folder, pages, width, script="", axe=""):
     """Reports of the pages in a window of this width in CSS pixels, after a script.
 
     ``errors`` are the console's: a request for what is missing, or not beside the page, is one.
     """
     reports = {}
-    with Browser() as browser:
+    window = {"viewport": {"width": width, "height": 800}}
+    with chromium() as browser:
         for name in pages:
-            page = browser.open(folder / name, DESKTOP | {"width": width}, script)
-            page.loaded()
-            if axe:
-                page.evaluate(f"{axe}; 0")
-            reports[name] = page.evaluate(PROBE) | {"errors": page.faults}
-            page.close()
+            page, errors = opened(browser, folder / name, window, script)
+            page.evaluate(f"{axe}; 0")
+            reports[name] = page.evaluate(PROBE) | {"errors": errors}
+            page.context.close()
     return reports

@@ -3,6 +3,7 @@
 import contextlib
 import re
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,13 +23,9 @@ def cells_of(page):
     names = {}
     # The page's cells run in the folder of its record.
     with contextlib.chdir(BOOK):
-        _run(page, names)
+        for _, code in CELL.findall(Path(f"{page}.md").read_text(encoding="utf-8")):
+            exec(re.sub(r"^[%!].*$", "", code, flags=re.M), names)
     return names
-
-
-def _run(page, names):
-    for _, code in CELL.findall((BOOK / f"{page}.md").read_text(encoding="utf-8")):
-        exec(re.sub(r"^[%!].*$", "", code, flags=re.M), names)
 
 
 @pytest.fixture(scope="module")

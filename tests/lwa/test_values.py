@@ -93,29 +93,21 @@ def test_other_derivations_differ():
     assert len({t.pde for t in theories}) == len(theories)
 
 
-@pytest.mark.parametrize("order", [4, 9])
-def test_repr_is_one_short_line(order):
-    found = homogenize(Dimer(m1, m2), order, closure="full", field="first")
+def test_repr_of_long_expressions_is_one_short_line():
+    found = theory(9, closure="full", field="first")
     wave = canonical_wave(Cell(sp.symbols("a1:7")))
-    pieces = [found, found.pde, found.closure, found.pde.coefficients[order - 1], wave]
-    for piece in (*pieces, wave.at(k="3/2", a1=1, a2=2, a3=3, a4=4, a5=5, a6=6)):
+    for piece in (found, found.pde, found.closure, found.pde.coefficients[8], wave):
         assert "\n" not in repr(piece)
         assert len(repr(piece)) < 600
-    assert repr(theory().pde.coefficients[2]) == "{}"
 
 
 def test_at_substitutes_everywhere():
     """Specialised afterwards and derived for the numbers are the same."""
-    values, cell = {"k": "3/2", "m1": 2, "m2": 3}, Dimer(2, 3)
     for kind in ({}, {"closure": "full", "field": "center"}, {"branch": "optical"}):
-        own = homogenize(cell, k="3/2", **kind)
-        assert (
-            theory(**kind).at(**values)
-            == theory(**kind).at(k="3/2", m1=2, omega="3/2")
-            == own
-        )
-        assert theory(**kind).pde.at(**values) == own.pde
+        own, derived = homogenize(Dimer(2, 3), k="3/2", **kind), theory(**kind)
+        assert derived.at(k="3/2", m1=2, m2=3) == own
+        assert derived.at(k="3/2", m1=2, omega="3/2") == own
+        assert derived.pde.at(k="3/2", m1=2, m2=3) == own.pde
     wave = theory().pde.traveling_wave()
-    assert sp.cancel(wave.at(**values).G - homogenize(cell, k="3/2").pde.G) == 0
     assert wave.at(omega=1, k="3/2").beta == sp.sqrt(10) / (5 * wave.D)
     assert Dispersion(Dimer(m1, m2)).at(omega=1).I == lwa.D**2 / 12

@@ -58,7 +58,10 @@ class Contact:
         """True if damping may pull, as the law pulls, or attracts where the contact opens."""
         if self.law is None:
             return False
-        return self.pulls or float(self.force(np.array([_OPENS]))[0]) < 0
+        if self.pulls:
+            return True
+        (opening,) = self.force(np.array([_OPENS]))
+        return bool(opening < 0)
 
     def force(self, compression: Array) -> Array:
         """Return the force F at a compression δ, of any shape; ``[δ]_+^k`` for a power law."""
@@ -66,20 +69,20 @@ class Contact:
             return self._evaluated("force", compression)
         pressed = np.maximum(compression, 0.0)
         if self.k == 1.5:
-            return np.asarray(pressed * np.sqrt(pressed))
-        return np.asarray(pressed**self.k)
+            return pressed * np.sqrt(pressed)
+        return pressed**self.k
 
     def stiffness(self, compression: Array) -> Array:
         """Return the stiffness ``dF/dδ`` at a compression δ, of any shape."""
         if self.law is not None:
             return self._evaluated("slope", compression)
-        return np.asarray(self.k * np.maximum(compression, 0.0) ** (self.k - 1))
+        return self.k * np.maximum(compression, 0.0) ** (self.k - 1)
 
     def energy(self, compression: Array) -> Array:
         """Return the elastic energy ``∫ F dδ``, from 0 to the compression."""
         if self.law is not None:
             return self._evaluated("energy", compression)
-        return np.asarray(self.force(compression) * compression / (self.k + 1))
+        return self.force(compression) * compression / (self.k + 1)
 
     def energy_above(self, rest: Array, change: Array) -> Array:
         """Return the energy of a change of the compression less the work of the static force.
@@ -118,7 +121,8 @@ class Contact:
         if self.damping_power is None:
             return elastic
         closed = compression if self.pulls else np.maximum(compression, 0.0)
-        force = elastic + (damping * (closed**self.damping_power * rate).T).T
+        resisted = closed**self.damping_power * rate
+        force = elastic + (damping * resisted.T).T
         if not self.sticks:
             force = np.maximum(force, np.minimum(elastic, 0.0))
         return force if self.pulls else np.where(compression > 0.0, force, 0.0)
@@ -140,7 +144,7 @@ class Contact:
     def compressed_by(self, forces: Array) -> Array:
         """Return static compressions at given forces; `lwa.InputError` for unattainable forces."""
         if self.law is None:
-            return np.asarray(forces ** (1 / self.k))
+            return forces ** (1 / self.k)
         different, place = np.unique(forces, return_inverse=True)
         found = []
         for force in different:
@@ -184,7 +188,8 @@ class Contact:
             # δ^{k-1} does not fall, as scenes have k ≥ 1: it is greatest at the greater depth. A
             # NumPy float, which overflows to ∞; a Python one raises an exception.
             return float(np.float64(depth) ** (self.k - 1))
-        return float(self.stiffness(np.array([start, depth])).max())
+        ends = np.array([start, depth])
+        return float(self.stiffness(ends).max())
 
     @property
     def addresses(self) -> dict[str, int]:

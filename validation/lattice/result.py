@@ -275,7 +275,7 @@ class Run(Pictured):
             raise SceneError(
                 f"number is {number!r}: the scene has no sensor at this {kind}"
             )
-        beads = beads_at(self.motion, **{f"{kind}s": [number]})
+        beads = beads_at(self.motion, {kind: [number]})
         changes = [contact_changes(self.path, int(contact)) for contact in beads[:-1]]
         times = np.unique(np.concatenate((self.path.time, *changes)))
         return SensorSignal(times, self.path, beads, RECORDS[kind, quantity], number)

@@ -7,7 +7,7 @@ accurate as the run itself. The samples of a record are values of the same funct
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -18,8 +18,9 @@ from lwa.base.arrays import Array
 from validation.lattice.equations import Motion
 from validation.scenes.scene import Scene
 
-# Iterations that leave less than 1e-12 of a step of the integrator.
-_REGULA_FALSI = 9
+# Iterations of Newton's method. Of 227 contacts of random scenes one, which opened at a small rate,
+# was left more than 1e-12 of a step away; three iterations leave twenty.
+_NEWTON = 7
 
 RECORDS = {
     ("bead", "force"): "bead_force",
@@ -59,16 +60,16 @@ def sensors_of(scene: Scene) -> dict[str, tuple[int, ...]]:
     return {"bead": scene.bead_sensors, "contact": scene.contact_sensors}
 
 
-def beads_at(
-    motion: Motion, contacts: Sequence[int] = (), beads: Sequence[int] = ()
-) -> NDArray[np.int_]:
+def beads_at(motion: Motion, sensors: Mapping[str, Sequence[int]]) -> NDArray[np.int_]:
     """Return increasing numbers of the beads on which sensors depend; bead n is the wall."""
-    needed = {*beads}
-    for i in (*contacts, *beads, *(j - 1 for j in beads)):
+    beads = {*sensors.get("bead", ())}
+    contacts = {*sensors.get("contact", ())}
+    contacts |= beads | {i - 1 for i in beads}
+    for i in contacts:
         # An end bead has one contact.
         if 0 <= i < len(motion.rest):
-            needed |= {i, i + 1}
-    return np.array(sorted(needed), int)
+            beads |= {i, i + 1}
+    return np.array(sorted(beads), int)
 
 
 def quantities(
@@ -85,7 +86,8 @@ def quantities(
     compressions = y[:-1] - y[1:]
     compressions += motion.rest[contacts, None]
     elastic = motion.force(compressions, contacts)
-    forces = motion.damped_force(elastic, compressions, v[:-1] - v[1:], contacts)
+    rates = v[:-1] - v[1:]
+    forces = motion.damped_force(elastic, compressions, rates, contacts)
     # Half of the contact behind, and half of the contact ahead of each bead.
     means = np.zeros(v.shape)
     means[1:] = forces
@@ -102,7 +104,7 @@ def quantities(
 
 def sensed_beads(motion: Motion) -> NDArray[np.int_]:
     """Return increasing numbers of the beads on which a scene's sensors depend."""
-    return beads_at(motion, motion.scene.contact_sensors, motion.scene.bead_sensors)
+    return beads_at(motion, sensors_of(motion.scene))
 
 
 def sample_times(scene: Scene) -> Array:
@@ -154,25 +156,23 @@ def contact_changes(path: Path, contact: int) -> Array:
     time = path.time
     beads = np.array([contact, contact + 1])
 
-    def compression(t: Array) -> Array:
-        y, _ = path(beads, t)
-        return np.asarray(path.motion.rest[contact] + y[0] - y[1])
+    def compression(t: Array) -> tuple[Array, Array]:
+        """Return δ and dδ/dt at times within the run."""
+        y, v = path(beads, t)
+        return path.motion.rest[contact] + y[0] - y[1], v[0] - v[1]
 
-    d = compression(time)
+    d, _ = compression(time)
     # By signs, as products of compressions over- or underflow.
-    step = np.flatnonzero(np.sign(d[1:]) * np.sign(d[:-1]) < 0)
+    sign = np.sign(d)
+    step = np.flatnonzero(sign[1:] * sign[:-1] < 0)
+    early = time[step]
+    late = time[step + 1]
+    # The root of the straight line through both ends of the step
+    change = early + (late - early) * d[step] / (d[step] - d[step + 1])
     if not len(step):
-        return time[:0]
-    # The Illinois variant of regula falsi: the root lies between a and b, whose compressions are
-    # at_a and at_b.
-    a, b = time[step], time[step + 1]
-    at_a, at_b = d[step], d[step + 1]
-    for _ in range(_REGULA_FALSI):
-        c = b - at_b * (b - a) / np.where(at_b == at_a, 1.0, at_b - at_a)
-        at_c = compression(c)
-        beyond = np.sign(at_c) * np.sign(at_b) < 0
-        a = np.where(beyond, b, a)
-        at_a = np.where(beyond, at_b, at_a / 2)
-        b = c
-        at_b = at_c
-    return np.asarray(b[(b > time[step]) & (b < time[step + 1])])
+        return change
+    for _ in range(_NEWTON):
+        d, rate = compression(change)
+        rate[rate == 0] = 1.0  # any number: the change stays within its step
+        change = np.clip(change - d / rate, early, late)
+    return change[(change > early) & (change < late)]

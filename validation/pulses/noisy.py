@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -35,6 +35,7 @@ from validation.pulses.pulse import (
     MeasureError,
     checked,
     first_pulse,
+    readings,
     spline,
 )
 from validation.scenes.cells import longest
@@ -123,7 +124,32 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
     if swing < _CONSTANT:
         raise MeasureError("no pulse is in the record: its signal is constant")
     if _is_exact(f) and step < _EXACT * swing:
-        return _exact(t, f, size)
+        pulse = _exact(t, f)
+    else:
+        pulse = _noisy(t, f, step, unit)
+    # Times are known to the last digit of a float: 2e-7 s if they count from 1970.
+    resolution = float(np.spacing(np.abs(t).max()))
+    numbers = {}
+    for name, number in pulse.numbers.items():
+        if name == "peak":
+            numbers[name] = number * size
+        else:
+            error = max(number.error, resolution)
+            numbers[name] = Estimate(number.value, error)
+    return replace(
+        pulse,
+        numbers=numbers,
+        base=pulse.base * size,
+        slope=pulse.slope * size,
+        noise=pulse.noise * size,
+    )
+
+
+def _noisy(t: Array, f: Array, step: float, unit: str) -> NoisyPulse:
+    """Measure the first pulse of a record with noise.
+
+    step : distance of the levels to which samples are rounded. unit : of the times.
+    """
     start = f[:_EARLY].mean()
     rise, fall = _place(t, f - start)
     width = fall - rise
@@ -152,14 +178,12 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
     numbers = fitted(at, above, base, (rise, fall), rounding)
     if missing:
         del numbers["peak"]
-    else:
-        numbers["peak"] *= size
     ends = np.array([rise, fall])
     level, later = base.at(ends).tolist()
     slope = (later - level) / width
     # Samples of correlated noise count as fewer; each of ``means`` counts as the block's.
     noise = math.sqrt(base.best.variance * base.best.correlation_time * block)
-    return NoisyPulse(numbers, level * size, missing, rise, slope * size, noise * size)
+    return NoisyPulse(numbers, level, missing, rise, slope, noise)
 
 
 def _is_exact(f: Array) -> bool:
@@ -167,64 +191,69 @@ def _is_exact(f: Array) -> bool:
     swing = f - f[0]
     if swing.max() < _UPRIGHT * -swing.min():
         return False  # the moving mean tells that it is inverted
+    least = _EXACT * np.ptp(f)
     rise = int(np.argmax(swing > swing.max() / 2))
     before = f[:rise]
     early = before[: len(before) // 4]
-    if len(early) >= _EARLY and np.ptp(early) < _EXACT * np.ptp(f):
+    if len(early) >= _EARLY and np.ptp(early) < least:
         return True
-    # The signal may rise smoothly from the start; noise falls as well.
+    # The signal may rise smoothly from the start: noise falls as well, and bends to and fro.
     falls = np.minimum(np.diff(before), 0.0)
-    return len(before) > 0 and bool(-falls.sum() < _EXACT * np.ptp(f))
+    bends = np.diff(before, 2)
+    signs = np.sign(bends[np.abs(bends) > least])
+    turns = np.count_nonzero(np.diff(signs))
+    # A front past its steepest place tells nothing of its foot, unless the foot is 0.
+    late = f[0] != 0 and -1 in signs[:1]
+    return bool(len(before) and -falls.sum() < least and turns < 2 and not late)
 
 
-def _exact(t: Array, f: Array, size: float) -> NoisyPulse:
+def _exact(t: Array, f: Array) -> NoisyPulse:
     """Measure the first pulse of a record without noise, whose base is its first sample."""
     level = float(f[0])
-    signal = spline(t, f - level)
+    above = f - level
+    # Counted from the start, times far from zero, as seconds since 1970, keep their digits.
+    start = float(t[0])
+    x = t - start
+    signal = spline(x, above)
     pulse = first_pulse(signal)
-    _check_top(t, f, (pulse.rise, pulse.fall), _FEWEST_EXACT)
-    rough = []
-    for start in (0, 1):
-        coarse = spline(t[start::2], f[start::2] - level)
-        rough.append(first_pulse(coarse))
-    numbers = {}
-    for name in READINGS:
-        value = getattr(pulse, name)
-        error = max(abs(value - getattr(other, name)) for other in rough)
-        numbers[name] = Estimate(value, error)
+    _check_top(t, f, (start + pulse.rise, start + pulse.fall), _FEWEST_EXACT)
+    numbers = readings(pulse)
+    errors = dict.fromkeys(numbers, 0.0)
+    for first in (0, 1):
+        coarse = spline(x[first::2], above[first::2])
+        rough = readings(first_pulse(coarse))
+        for name, value in numbers.items():
+            errors[name] = max(errors[name], abs(value - rough[name]))
     # Which of two humps is the higher is unsure within the error of the peak.
-    peak = numbers["peak"]
     times = np.linspace(pulse.rise, pulse.fall, _GRID + 1)
-    tops, _ = find_peaks(signal(times), height=pulse.peak - peak.error)
+    tops, _ = find_peaks(signal(times), height=pulse.peak - errors["peak"])
     apart = np.abs(times[tops] - pulse.arrival).max(initial=0.0)
     if apart > _SAME * pulse.fwhm:
-        late = numbers["arrival"]
-        error = max(late.error, apart + _SAME * pulse.fwhm)
-        numbers["arrival"] = Estimate(late.value, error)
+        errors["arrival"] = max(errors["arrival"], apart + _SAME * pulse.fwhm)
     # Both differences of the width may vanish by chance.
-    least = _LEAST_OF_WIDTH * peak.relative_error * pulse.fwhm
-    width = numbers["fwhm"]
-    numbers["fwhm"] = Estimate(width.value, max(width.error, least))
+    least = _LEAST_OF_WIDTH * errors["peak"] / pulse.peak
+    errors["fwhm"] = max(errors["fwhm"], least * pulse.fwhm)
     # A base that is off by this much moves the peak as much, and both flanks at its half.
-    samples = pulse.fwhm / float(t[1] - t[0])
-    doubt = _front(f, samples)
+    doubt = _front(f, pulse.fwhm / x[1]) / pulse.peak
     for name in ("peak", "fwhm"):
-        numbers[name] = numbers[name].widened(doubt / pulse.peak)
-    numbers["peak"] *= size
-    return NoisyPulse(numbers, level * size)
+        errors[name] += doubt * numbers[name]
+    numbers["arrival"] += start
+    estimates = map(Estimate, numbers.values(), errors.values())
+    return NoisyPulse(dict(zip(READINGS, estimates, strict=True)), level)
 
 
 def _front(f: Array, width: float) -> float:
     """Return the error of the first sample as the base of a record that begins in a front.
 
-    width : of the pulse, in samples.
+    width : of the pulse, in samples. A record that begins with 0 may be that of a force which
+    begins suddenly.
     """
     first, second = map(float, np.diff(f[:3]))
     if not 0 < first < second:
         return abs(first)
     # Differences of a + b e^{n g}, n the number of a sample, grow by the factor e^g.
     factor = second / first
-    if math.log(factor) * width > _SUDDEN:
+    if f[0] == 0 and math.log(factor) * width > _SUDDEN:
         return 0.0
     return first / (factor - 1)
 

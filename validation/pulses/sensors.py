@@ -41,7 +41,8 @@ from validation.scenes.scene import Scene
 
 TOLERANCE = 1e-10  # default tolerance of the accurate run
 _ROUNDING = 10  # rounding of the static compression over rtol; with more, steps follow the noise
-_QUICK = 0.9  # of the time of a small wave, of light beads: a pulse takes more
+# Of the time in which a small wave passes a site (`_time_of_a_site`): no pulse takes less.
+_QUICK = 0.9
 # Samples in the shortest time √(m/spring) of a bead between two contacts. The force of two beads
 # that collide, or of a Hertz chain's wave, has 1.5 or 1.9 √(m/spring) of one contact above half.
 _RESOLVED = 22.0
@@ -88,11 +89,29 @@ class Reading:
     along: Mapping[str, float] = field(default_factory=dict)
 
     @property
+    def number(self) -> int:
+        """Number of the (first) sensor."""
+        return self.places[0]
+
+    @property
     def name(self) -> str:
         """Kind, places, and a quantity other than force, such as bead 15 → 34."""
         places = " → ".join(map(str, self.places))
         quantity = "" if self.quantity == "force" else f" {self.quantity}"
         return f"{self.kind} {places}{quantity}"
+
+
+@dataclass(frozen=True, eq=False)
+class Track(Reading):
+    """A sensor of a run, and its signal as a function of time.
+
+    Parameters
+    ----------
+    force : Signal
+        The force less ``static``, or the velocity of a bead.
+    """
+
+    force: Signal = field(kw_only=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,48 +122,18 @@ class Recording:
     ----------
     run : Run
         The run.
-    tracks : tuple of Track
-        Dynamic forces at the sensors.
-    sensors, speeds : tuple of Reading
-        Pulses, and speeds.
+    sensors : tuple of Track
+        Dynamic forces at the sensors, and their pulses.
+    speeds : tuple of Reading
+        Speeds between sensors.
     end : mapping
         Velocity and displacement at the end, by these names, of the bead sensors, counted from 1.
     """
 
     run: Run
-    tracks: tuple[Track, ...]
-    sensors: tuple[Reading, ...]
+    sensors: tuple[Track, ...]
     speeds: tuple[Reading, ...]
     end: Mapping[int, Mapping[str, Estimate]]
-
-
-@dataclass(frozen=True, eq=False)
-class Track:
-    """The dynamic force at a sensor, or the velocity of a bead, as a function of time.
-
-    Parameters
-    ----------
-    kind : {"bead", "contact"}
-        Kind of the sensor.
-    number : int
-        Number of the bead or contact, counted from 1.
-    force : Signal
-        The force less ``static``, or the velocity.
-    place : mapping of float
-        Place along the chain in sites and in lengths, by the names `SPEEDS`; empty for a bead
-        with one contact, whose force is that of a place half a site away.
-    static : float
-        Force from which dynamic forces count, the one at the start.
-    quantity : {"force", "velocity"}
-        The signal.
-    """
-
-    kind: str
-    number: int
-    force: Signal
-    place: Mapping[str, float]
-    static: float
-    quantity: str = "force"
 
 
 def record(
@@ -189,16 +178,15 @@ def record(
     both = tolerances(rtol, lost)
     runs = repeated(scene, both, method=method, progress=progress)
     run, check = runs
-    recorded = tracks(run, velocities)
     checks = tracks(check, velocities, 2)
-    firsts: list[Reading] = []
-    found: list[Reading] = []
-    for track, other in zip(recorded, checks, strict=True):
+    firsts: list[Track] = []
+    found: list[Track] = []
+    for track, other in zip(tracks(run, velocities), checks, strict=True):
         firsts += _readings(track, other, _first)
         if every:
             found += _readings(track, other, all_pulses)
 
-    def doubt(first: Reading, second: Reading, sites: float) -> str:
+    def doubt(first: Track, second: Track, sites: float) -> str:
         """Return why one pulse does not pass two sensors at a speed; "" if it may."""
         peaks = [r.numbers["peak"].value + r.static for r in (first, second)]
         numbers = sorted(first.places + second.places)
@@ -207,9 +195,8 @@ def record(
             return "no wave is so fast: the sensors see different pulses"
         start = first.numbers["arrival"].value
         end = second.numbers["arrival"].value - second.numbers["fwhm"].value
-        force = recorded[firsts.index(second)].force
         looks = np.linspace(start, end, _LOOKS)
-        if end > start and force(looks).max() > peaks[0] / 2:
+        if end > start and second.force(looks).max() > peaks[0] / 2:
             return "another pulse passes the second sensor before"
         return ""
 
@@ -219,7 +206,7 @@ def record(
         i + 1: compared(partial(_state_at_end, bead=i), runs)
         for i in scene.bead_sensors
     }
-    return Recording(run, recorded, tuple(found or firsts), speeds, end)
+    return Recording(run, tuple(found or firsts), speeds, end)
 
 
 def _state_at_end(run: Run, bead: int) -> dict[str, float]:
@@ -286,7 +273,17 @@ def tracks(
             if static:
                 dynamic = _above(signal, static)
             place = _place(scene, x, kind, i)
-            found.append(Track(kind, i + 1, dynamic, place, static, quantity))
+            found.append(
+                Track(
+                    kind,
+                    (i + 1,),
+                    {},
+                    static,
+                    quantity=quantity,
+                    along=place,
+                    force=dynamic,
+                )
+            )
     return tuple(found)
 
 
@@ -336,30 +333,22 @@ def _first(signal: Signal) -> list[Pulse]:
 
 def _readings(
     track: Track, other: Track, pulses: Callable[[Signal], list[Pulse]]
-) -> list[Reading]:
+) -> list[Track]:
     """Measure pulses at a sensor, the first or all, with errors from another run."""
-    blank = Reading(
-        track.kind,
-        (track.number,),
-        {},
-        track.static,
-        quantity=track.quantity,
-        along=track.place,
-    )
     try:
         measured, known = map(pulses, (track.force, other.force))
     except MeasureError as error:
-        return [replace(blank, missing=str(error))]
-    found: list[Reading] = []
+        return [replace(track, missing=str(error))]
+    found: list[Track] = []
     for pulse in measured:
         # Another run may see a pulse less, or one more.
         same = min(known, key=partial(_delay, pulse))
         numbers = compared(readings, [pulse, same])
         if numbers["peak"].relative_error < _HIDDEN:
-            found.append(replace(blank, numbers=numbers, pulse=len(found) + 1))
+            found.append(replace(track, numbers=numbers, pulse=len(found) + 1))
     if not found:
         reason = "no pulse: the force is the static one, but for errors"
-        return [replace(blank, missing=reason)]
+        return [replace(track, missing=reason)]
     return found
 
 
@@ -371,7 +360,7 @@ def _delay(pulse: Pulse, other: Pulse) -> float:
 def speeds_between(
     sensors: Sequence[Reading],
     total: Callable[[float, float], float],
-    doubt: Callable[[Reading, Reading, float], str] = lambda *_: "",
+    doubt: Callable[[Any, Any, float], str] = lambda *_: "",
 ) -> tuple[Reading, ...]:
     """Return the speeds of the pulse from each sensor to the next one of its kind.
 
@@ -388,34 +377,27 @@ def speeds_between(
     for first, second in pairwise(sensors):
         if first.kind != second.kind:
             continue
-        leg = replace(
-            first, places=first.places + second.places, numbers={}, missing=None
-        )
+        both = first.places + second.places
+        leg = replace(first, places=both, numbers={}, missing=None)
         try:
-            time = _elapsed(first, second, total)
-            if not (first.along and second.along):
-                raise MeasureError(
-                    "a bead with one contact has a force of half a site away"
-                )
-            speeds = {}
-            for name, place in first.along.items():
-                speeds[name] = abs(second.along[name] - place) / time.value
-            reason = doubt(first, second, speeds["speed_sites"])
+            speeds = _speeds(first, second, total)
+            reason = doubt(first, second, speeds["speed_sites"].value)
             if reason:
                 raise MeasureError(reason)
-        except MeasureError as reason:
-            legs.append(replace(leg, missing=str(reason)))
-            continue
-        error = time.relative_error
-        numbers = {name: Estimate(V, V * error) for name, V in speeds.items()}
-        legs.append(replace(leg, numbers=numbers))
+            leg = replace(leg, numbers=speeds)
+        except MeasureError as error:
+            leg = replace(leg, missing=str(error))
+        legs.append(leg)
     return tuple(legs)
 
 
-def _elapsed(
+def _speeds(
     first: Reading, second: Reading, total: Callable[[float, float], float]
-) -> Estimate:
-    """Return the time from one arrival to a later one; raises `MeasureError` if there is none."""
+) -> dict[str, Estimate]:
+    """Return the speeds from one arrival to a later one by the names `SPEEDS`.
+
+    Raises `MeasureError` if there are none.
+    """
     if "arrival" not in first.numbers or "arrival" not in second.numbers:
         raise MeasureError("one of the two has no pulse")
     start = first.numbers["arrival"]
@@ -425,4 +407,10 @@ def _elapsed(
         raise MeasureError(
             "a speed needs a later second arrival, by more than its error"
         )
-    return time
+    if not (first.along and second.along):
+        raise MeasureError("a bead with one contact has a force of half a site away")
+    speeds = {}
+    for name, place in first.along.items():
+        V = abs(second.along[name] - place) / time.value
+        speeds[name] = Estimate(V, V * time.relative_error)
+    return speeds

@@ -25,8 +25,7 @@ import click
 from lwa.base.exact import InputError, read_exact
 from lwa.base.files import reason
 from lwa.base.progress import bar, shown
-from lwa.command.cli import HELP, called, help_end
-from lwa.command.cli import run as run_command
+from lwa.command.cli import HELP, called, help_end, run as run_command
 from lwa.command.options import Read, Reader, Words, count, quantities
 from validation.pictures import SUFFIXES, Panel, Pictured
 from validation.report.table import WIDTH, Finding, Table, findings_table, plain, wrap
@@ -304,14 +303,14 @@ def option(
     says : str
         Help text.
     read : callable, optional
-        Reader of the text, a key of `READERS`. An option whose default is a float reads a `number`,
-        and a `count` where the default is an integer.
+        Reader of the text, a key of `READERS`; if none is given, `number` for a default that is a
+        float, and `count` for an integer.
     **settings : object
         Further settings of `click.option`.
     """
     settings.setdefault("show_default", default is not None and default is not False)
-    # A flag's False is no integer here.
-    read = {float: number, int: count}.get(type(default), read)
+    # By the type itself: the False of a flag is an instance of int.
+    read = read or {float: number, int: count}.get(type(default))
     if read:
         # As a text, which the reader takes, and which a refusal proposes.
         default = default and str(default)

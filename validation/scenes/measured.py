@@ -204,7 +204,9 @@ class MeasuredFile(Columns):
             kind = "bead"  # contacts have none
         t, values = self._record([time, signal]).T
         if len(t) > 1 and np.diff(t).min() <= 0:
-            step = f"{np.ptp(t) / (len(t) - 1):.6g}{' s' * self.si}"
+            step = ""
+            if np.ptp(t):
+                step = f"{np.ptp(t) / (len(t) - 1):.6g}{' s' * self.si}"
             words = "time must increase, --step states it of evenly spaced samples"
             raise self.refusal(words, ["time"], step)
         # The user's own calibration, with the other sign, turns an inverted signal.

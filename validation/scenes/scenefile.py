@@ -1,21 +1,22 @@
 """Files of scenes, TOML or JSON, read by `read_scene`.
 
-The file ``keys.toml`` beside this module lists all keys with examples; `lwa-validate run --keys`
-prints the list.
+The file ``keys.toml`` beside this module lists all keys with examples: these keys are known, and
+others are refused. `lwa-validate run --keys` prints the list.
 
 Beads and contacts are counted from 1, as in the paper and on the command line (a `Scene` counts
 from 0). Stiffnesses are as many as the cell has beads, the last one joining it to the next cell,
 or as many as the whole chain has contacts; spacings likewise. Exponents, laws and values of damping
 that differ are as many as the cell has beads, or as the scene has contacts, the wall's included.
 
-Unknown keys are refused, and every fault is one line that names the key.
+Every fault is one line that names the key.
 """
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -32,9 +33,6 @@ from lwa.base.files import (
 )
 from lwa.law import read_law
 from lwa.spheres.beads import (
-    CHAIN,
-    FILE,
-    STRIKER,
     Row,
     read_beads,
     read_materials,
@@ -50,19 +48,7 @@ from validation.scenes.scene import Scene, contacts_of
 # So many beads are read in 2 s and 40 MB.
 MOST_BEADS = 1_000_000
 _STATED = ("columns", "units", "step")  # of the file of a drive
-_TABLES = {  # that a file may leave out
-    "wall": ("material", "stiffness"),
-    "damping": DAMPINGS,
-    "drive": (
-        *("velocity", "amplitude", "frequency", "ramp", "file", *_STATED),
-        *("time", "displacement"),
-    ),
-    "striker": STRIKER,
-    "start": ("velocities", "displacements"),
-    "sensors": ("beads", "contacts"),
-}
-KEYS: Mapping[str, Sequence[str]] = {"file": FILE, "chain": CHAIN, **_TABLES}
-"""Keys of a file, and of each of its tables."""
+_OTHER = ("like", "mass")  # of a bead that is unlike the others at its place
 
 
 def read_scene(
@@ -102,11 +88,12 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     folder : Path
         Folder of the measured files that the content names.
     """
-    file = Table(content, "", FILE)
+    known = _known()
+    file = Table(content, "", known)
 
     def part(name: str) -> Table:
         """Return a table of the file, an empty one if it is left out."""
-        return Table(file.entries.get(name, {}), name, _TABLES[name])
+        return Table(file.entries.get(name, {}), name, known[name])
 
     # All tables are read first: an unknown key is refused before a missing value.
     start = part("start")
@@ -166,6 +153,13 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     )
 
 
+@cache
+def _known() -> dict[str, Any]:
+    """Return the list of all keys as a parsed file."""
+    text = Path(__file__).with_name("keys.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text)
+
+
 def _passage(fields: Mapping[str, Any]) -> float:
     """About twice the time in which the pulse of a striker runs through a chain and leaves it.
 
@@ -180,7 +174,7 @@ def _passage(fields: Mapping[str, Any]) -> float:
     k = fields["k"]
     (velocity,) = fields["velocities"]
     # A heavy bead is as fast as the momentum of a light striker makes it.
-    speed = abs(velocity) * masses[0] / max(masses)
+    speed = velocity * masses[0] / max(masses)
     # At the wall the last bead moves alone.
     beads = pairwise([*masses, masses[-1]])
     total = last = 0.0
@@ -221,19 +215,19 @@ def _per_contact(reader: Reader, period: int, contacts: int) -> Reader:
 def _defects(file: Table, striker: Table) -> list[Table]:
     """Read the tables of ``defects``, at most one of each bead and contact.
 
-    A striker that is like another bead takes the place of bead 1.
+    A striker that is described takes the place of bead 1.
     """
     given = [*file.read("defects", each(_defect), ())]
-    if "like" in striker:
-        other = {"bead": 1, "like": striker.entries["like"]}
-        given.append(Table(other, "striker", ("bead", "like")))
+    own = {key: striker.entries[key] for key in _OTHER if key in striker}
+    if own:
+        given.append(_defect({"bead": 1, **own}, "striker"))
     named: set[str] = set()
     for defect in given:
         kind = defect.one("contact", "bead")
         at = f"{kind} {shorten(defect.entries[kind])}"
         if at in named:
             raise SceneError(
-                f"{at} has two tables of defects, or one and striker.like: one is wanted"
+                f"{at} has two tables of defects, or one and the striker's: one is wanted"
             )
         named.add(at)
     return given
@@ -244,8 +238,8 @@ def _defect(value: Any, name: str) -> Table:
     # A defect is told by what it names: a contact or a bead.
     if "contact" in entries(value, name):
         return Table(value, name, ("contact", "stiffness"))
-    given = Table(value, name, ("bead", "like", "mass"))
-    given.one("like", "mass")
+    given = Table(value, name, ("bead", *_OTHER))
+    given.one(*_OTHER)
     return given
 
 

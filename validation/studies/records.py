@@ -341,19 +341,19 @@ def compare(
     simulation = record(chain, velocities=velocities, progress=run_progress)
     run = simulation.run
     simulated = {}
-    for reading, track in zip(simulation.sensors, simulation.tracks, strict=True):
+    for track in simulation.sensors:
         name = f"{track.kind} {track.number}"
         if name in signals:
-            if not reading.numbers:
-                raise SceneError(f"{reading.name}: {reading.missing}")
-            simulated[name] = (reading, track)
+            if track.missing:
+                raise SceneError(f"{track.name}: {track.missing}")
+            simulated[name] = track
     # The first pulses at the first sensor shall arrive together.
-    first, (leader, _) = next(iter(simulated.items()))
+    first, leader = next(iter(simulated.items()))
     late = found[first].numbers["arrival"]
     shift = Estimate(leader.numbers["arrival"].value - late.value, late.error)
     rows: list[dict[str, Any]] = []
     curves: list[Curve] = []
-    for i, (name, (reading, track)) in enumerate(simulated.items()):
+    for i, (name, track) in enumerate(simulated.items()):
         theirs = dict(found[name].numbers)
         arrival = theirs["arrival"]
         doubt = arrival.error
@@ -363,11 +363,11 @@ def compare(
         peak = f"peak dynamic {track.quantity}"
         labels = {"arrival": "arrival", "peak": peak, "fwhm": "FWHM"}
         for quantity, measured_number in theirs.items():
-            ours = reading.numbers[quantity]
+            ours = track.numbers[quantity]
             off = measured_number.value - ours.value
             rows.append(
                 {
-                    "first pulse": f"{reading.name}: {run.label(labels[quantity])}",
+                    "first pulse": f"{track.name}: {run.label(labels[quantity])}",
                     "kind": track.kind,
                     "number": track.number,
                     "quantity": quantity,
@@ -377,9 +377,7 @@ def compare(
                 }
             )
         ours_drawn = track.force(run.time)
-        curves.append(
-            Curve(f"{reading.name}, simulated", run.time, ours_drawn, f"C{i}-")
-        )
+        curves.append(Curve(f"{track.name}, simulated", run.time, ours_drawn, f"C{i}-"))
         times = signals[name].time + shift.value
         swing = signals[name].values - found[name].base
         curves.append(Curve("measured", times, swing, f"C{i}."))

@@ -75,21 +75,23 @@ def report(recording: Recording, every: bool = False) -> Report:
     null where ``missing`` is the reason; ``energy_drift_value``, and ``momentum_drift_value``, null
     with a wall; with damping the energy ``dissipated_value``, with a drive its ``work_value``.
     """
-    run, scene = recording.run, recording.run.scene
+    run = recording.run
+    scene = run.scene
     momentum = "not conserved"
     if run.momentum_drift is not None:
         momentum = f"drift {run.momentum_drift:.0e}"
     title = f"{scene}, energy drift {run.energy_drift:.0e}"
+    joule = scene.units and " J"
     data = {
         "energy_drift_value": run.energy_drift,
         "momentum_drift_value": run.momentum_drift,
     }
     if scene.damping is not None:
         data["dissipated_value"] = run.dissipated
-        title += f", dissipated {run.dissipated:.6g}"
+        title += f", dissipated {run.dissipated:.6g}{joule}"
     if scene.drive is not None:
         data["work_value"] = run.work
-        title += f", work {run.work:.6g}"
+        title += f", work {run.work:.6g}{joule}"
     which = "All pulses" if every else _FIRST
     note = _NOTE.format(which, scene.units or "the scene's own")
     peak = "peak force"

@@ -1,5 +1,4 @@
-const speedOf = (name, F) => lawSpeed(named(LAWS[name]), F);
-window.lwaTurn = {row, theory, toRest, lawSpeed: speedOf, LATTICES, calculate, drawRecord, things};
+window.lwaTurn = {row, theory, toRest, LATTICES, calculate, drawRecord, things};
 document.querySelectorAll(".lwa-calculator").forEach(calculator);
 for (const [name, thing] of Object.entries(things)) {
   document.querySelectorAll(`.lwa-${name}`).forEach(home => stage(home, thing));

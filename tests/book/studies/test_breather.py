@@ -18,9 +18,6 @@ def test_bright_breathers_of_a_dimer():
         assert row["frequency_value"] == pytest.approx(
             math.sqrt(6) * (1 - row["detuning_value"])
         )
-        # U = p0 √(32 ν/(k(k-1))), whatever the masses
-        U = math.sqrt(32 * row["detuning_value"] / 0.75)
-        assert row["amplitude_theory_value"] == pytest.approx(U, rel=1e-12)
         # multipliers of some lengths of a chain meet off the real axis and leave the circle
         assert row["multiplier_value"] == pytest.approx(1, abs=1e-3)
         assert 0 < row["energy_value"] < 5
@@ -67,7 +64,4 @@ def test_aluminium_and_steel_at_20_newtons():
     row = Standing(cell, 1.5, theory, 40, load=20.0).row()
     assert row["frequency_value"] == pytest.approx(edge * 0.995, rel=1e-9)
     assert abs(row["amplitude_off_value"]) < 0.015
-    static = (20 / float(cell.stiffnesses[0])) ** (2 / 3)  # 2.4 µm
-    expected = static * math.sqrt(32 * 0.005 / 0.75)
-    assert row["amplitude"].value == pytest.approx(expected, rel=0.015)
     assert row["multiplier_value"] == pytest.approx(1, abs=1e-3)

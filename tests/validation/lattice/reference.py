@@ -13,16 +13,17 @@ from scipy.optimize import brentq
 
 from validation.lattice.equations import Motion
 
-PLACES = np.linspace(0, 1, 13)[1:]  # in a step, at which the contacts are looked at
-LEAST = 1e-2  # impulse of a contact that counts in a step, in units of the tolerance
+PLACES = np.linspace(0, 1, 13)  # in a step, at which the contacts are looked at
 
 
 @dataclass
 class Found:
-    """Motion of a scene at some times, (times, n), and the energy without a driven bead's."""
+    """Displacements and velocities of a scene at some times, (times, 2, n), and its energies.
 
-    y: np.ndarray
-    v: np.ndarray
+    A driven bead's energy is left out.
+    """
+
+    motion: np.ndarray
     energy: np.ndarray
 
 
@@ -56,33 +57,26 @@ class Pieces(Motion):
         margins = np.where(self.holds, d, np.minimum(d, push))
         return np.where(self.pulls, np.inf, margins)
 
-    def first_change(self, solver, least):
+    def first_change(self, solver):
         """The first time in a step at which a contact changes, and its number; None without one."""
-        dense, closed = solver.dense_output(), self.closed.copy()
+        dense = solver.dense_output()
 
         def wrongs(time):
+            """Positive numbers for contacts that are closed and should be open, or the reverse."""
             y, v = dense(time)[:-2].reshape(2, -1)
             if self.scene.drive is not None:
                 y[0], v[0], _ = self.scene.drive.at(time)
-            d = self.compression(y)
-            impulses = np.abs(self.damped_force(self.force(d), d, self.rate(v)))
-            impulses *= (closed | (d > 0)) * solver.step_size
-            return np.where(closed, -1, 1) * self.margins(y, v), impulses
+            return np.where(self.closed, -1, 1) * self.margins(y, v)
 
-        self.closed[:] = True  # impulses of all contacts
-        times = [solver.t_old, *(solver.t_old + PLACES * solver.step_size)]
-        rows, impulses = np.swapaxes([wrongs(time) for time in times], 0, 1)
-        counts = impulses.max(axis=0, initial=0) > least
+        times = solver.t_old + PLACES * solver.step_size
+        rows = np.array([wrongs(time) for time in times])
         changes = []
-        for i in np.flatnonzero((rows[1:] > 0).any(axis=0) & counts):
+        for i in np.flatnonzero((rows[1:] > 0).any(axis=0)):
             n = int(np.argmax(rows[1:, i] > 0))
             at = times[n]
             if rows[n, i] < 0:
-                at = brentq(
-                    lambda t, i=i: wrongs(t)[0][i], at, times[n + 1], xtol=1e-16
-                )
+                at = brentq(lambda t, i=i: wrongs(t)[i], at, times[n + 1], xtol=1e-16)
             changes.append((at, i))
-        self.closed = closed
         return min(changes, default=None)
 
 
@@ -91,7 +85,6 @@ def follow(scene, times, rtol, scale):
     motion, drive = Pieces(scene), scene.drive
     n, t, state = motion.size, 0.0, motion.start
     options = {"rtol": rtol, "atol": rtol * np.repeat(scale, (n, n, 2))}
-    least = LEAST * rtol * scale[1] * motion.masses.min()
     stops = {*times}
     if drive is not None:
         stops |= {stop for stop in (drive.ramp, *drive.time) if 0 < stop < times[-1]}
@@ -106,7 +99,7 @@ def follow(scene, times, rtol, scale):
             while solver.status == "running" and change is None:
                 t, state = solver.t, solver.y
                 assert solver.step() is None
-                change = motion.first_change(solver, least)
+                change = motion.first_change(solver)
             if change is None:
                 t, state, step = solver.t, solver.y, min(1e-3, solver.h_abs)
                 continue
@@ -125,5 +118,5 @@ def follow(scene, times, rtol, scale):
                 state[0], state[n], _ = drive.at(stop)
             kinetic, stored = motion.energies(state)
             energy = kinetic[drive is not None :].sum() + stored.sum()
-            rows.append((state[:n].copy(), state[n : 2 * n].copy(), energy))
+            rows.append((state[:-2].reshape(2, n).copy(), energy))
     return Found(*map(np.array, zip(*rows, strict=True)))

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from lwa.law import named
 from tests.validation.lattice.scenes import chain
 from validation.lattice.simulate import simulate
 from validation.scenes.forcing import Damping, Drive
@@ -13,24 +14,22 @@ from validation.scenes.forcing import Damping, Drive
 @pytest.mark.parametrize(
     ("k", "v", "share"), [(1, 1, 0.3), (1.5, 1, 0.9), (1.5, 10, 0.05), (3, 0.2, 0.3)]
 )
-def test_beads_part_with_a_share_of_their_speed(k, v, share):
+@pytest.mark.parametrize(
+    "colliding",
+    [{"masses": (1, 3), "stiffnesses": (2,)}, {"masses": (0.75,), "wall": 2}],
+)
+def test_beads_part_with_a_share_of_their_speed(k, v, share, colliding):
+    """Two beads, and a bead and a wall, of infinite mass: the reduced mass is 3/4."""
     scene = chain(
-        (1, 3), stiffnesses=(2,), k=k, velocities=(v,), contact_sensors=(0,),
+        **colliding, k=k, velocities=(v,), contact_sensors=(0,),
         duration=12 * v ** (2 / (k + 1) - 1), damping=Damping("restitution", share),
     )  # fmt: skip
     run = simulate(scene, rtol=1e-12)
-    assert run.velocities[1] - run.velocities[0] == pytest.approx(share * v, rel=1e-10)
+    parting = -run.motion.rate(run.velocities)
+    assert parting == pytest.approx([share * v], rel=1e-10)
     assert run.contact_force.min() == 0  # no contact pulls
     assert run.dissipated == pytest.approx((1 - share**2) * 0.75 * v**2 / 2, rel=1e-10)
     assert abs(run.energy_drift) < 1e-11
-    assert abs(run.momentum_drift) < 1e-12
-
-
-def test_a_bead_leaves_a_wall_with_a_share_of_its_speed():
-    """A wall has infinite mass."""
-    damping = Damping("restitution", 0.4)
-    scene = chain((3,), wall=2, velocities=(1,), duration=30, damping=damping)
-    assert simulate(scene).velocities == pytest.approx([-0.4], abs=1e-8)
 
 
 @pytest.mark.parametrize(
@@ -66,17 +65,24 @@ def test_a_drive_from_rows_is_the_motion_that_they_sample():
     assert run.momentum_drift is None
 
 
-def test_scipys_methods_are_references_of_forced_scenes():
-    """A chain under load, whose damped contacts stay closed: motion, work and dissipated energy."""
-    scene = chain(
-        (1, 0.5, 1), stiffnesses=(1, 2), wall=1, precompression=1, duration=10,
-        damping=Damping("contact", 0.1), drive=Drive(amplitude=0.1, frequency=0.2, ramp=3),
-    )  # fmt: skip
+# A chain under load, whose damped contacts stay closed
+DAMPED = chain(
+    (1, 0.5, 1), stiffnesses=(1, 2), wall=1, precompression=1, duration=10,
+    damping=Damping("contact", 0.1), drive=Drive(amplitude=0.1, frequency=0.2, ramp=3),
+)  # fmt: skip
+# A wall recedes from a chain that softens: δ - δ² reaches its greatest force at δ = ½, which no
+# energy of the scene may pass.
+SOFT = chain(
+    80, wall=1, law=named("polynomial", -1, 0), precompression=0.24, duration=55,
+    drive=Drive(velocity=-0.2087),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("scene", [DAMPED, SOFT])
+def test_scipys_methods_are_references_of_forced_scenes(scene):
+    """Motion, work and dissipated energy."""
     ours, theirs = (simulate(scene, method=m, rtol=1e-10) for m in ("RKN86", "DOP853"))
-    for name in ("displacements", "velocities", "dissipated", "work"):
-        expected = getattr(ours, name)
-        np.testing.assert_allclose(getattr(theirs, name), expected, atol=3e-9)
-    assert min(ours.dissipated, ours.work) > 1e-3
+    np.testing.assert_allclose(theirs.end, ours.end, atol=3e-9)
 
 
 def test_samples_between_the_ends_of_steps_are_as_good_as_the_ends():

@@ -1,4 +1,4 @@
-"""Contact laws other than powers: Toda's exact soliton, and a wall that recedes."""
+"""Contact laws: Toda's exact soliton, and digits of small forces and energies."""
 
 import math
 
@@ -7,11 +7,9 @@ import numpy as np
 import pytest
 
 from lwa.law import named
-from tests.validation.lattice.scenes import chain
 from validation.lattice.laws import Contact
 from validation.lattice.simulate import simulate
 from validation.scenes.chains import carrying
-from validation.scenes.forcing import Drive
 
 
 def test_todas_soliton_runs_through_200_beads_at_its_own_speed():
@@ -33,23 +31,13 @@ def test_todas_soliton_runs_through_200_beads_at_its_own_speed():
     assert abs(run.energy_drift) < 1e-10
 
 
-def test_a_wall_recedes_from_a_chain_that_softens():
-    """δ - δ² reaches its greatest force at δ = ½, which no energy of the scene may pass."""
-    scene = chain(
-        80, wall=1, law=named("polynomial", -1, 0), precompression=0.24, duration=55,
-        drive=Drive(velocity=-0.2087),
-    )  # fmt: skip
-    fast, other = simulate(scene), simulate(scene, method="DOP853")
-    assert np.abs(fast.displacements - other.displacements).max() < 1e-7
-
-
 def test_a_small_force_has_all_digits():
     force = Contact(1, named("exponential", 1)).force(np.array([1e-9]))
     assert force == pytest.approx([math.expm1(1e-9)], rel=1e-15, abs=0)
 
 
 @pytest.mark.parametrize("k", [1.5, 20])
-@pytest.mark.parametrize("part", [-2.0, -0.049, 1e-9, 0.049, 3.0])
+@pytest.mark.parametrize("part", [-2.0, -0.01, 1e-9, 0.049, 3.0])
 def test_the_energy_above_a_load_has_all_digits(k, part):
     """``∫ (F(r + s) - F(r)) ds``, of which floats would lose up to eighteen digits."""
     rest, change = 0.7, 0.7 * part

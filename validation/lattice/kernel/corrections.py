@@ -334,8 +334,9 @@ def _correct_neighbour(
 ) -> None:
     """Correct the impulse of contact n by the moments of a corrected contact beside it.
 
-    share : δ of contact n is moved by this times a moment. jump : of the force of the corrected
-    contact, per unit of share.
+    share : ``-1/m`` of the bead between both contacts: a moment of the corrected contact changes δ
+    of contact n by ``moment/m``, and a force changes δ″ by ``force/m``. jump : jump of the force of
+    the corrected contact, 0 without one.
     """
     law = chain.laws[chain.law[n]]
     A = chain.A[n]

@@ -75,9 +75,10 @@ class Integrals(NamedTuple):
     work, driven : float
         Those of ``F p'``, and of ``F b'`` for the motion b of a driven bead.
     rough : float
-        For a damped or driven contact, and a force that jumps, the size of those of p'' by the
-        force, less that of the curve, times Legendre's polynomials of degrees 4 and 5: 0 for a
-        force that the second derivative of a quintic follows.
+        How far p is from a solution, for a damped or driven contact and for a force that jumps: the
+        force, times its effect on p'', has parts of degrees 4 and 5 in Legendre's polynomials, and
+        the second derivative of a quintic, a cubic, has none. The size of these parts, without
+        those of the bend that p has besides.
     """
 
     impulse: float
