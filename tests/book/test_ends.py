@@ -40,6 +40,7 @@ from tests.book.browser import DESKTOP, PHONE, chromium, opened
 from tests.book.prose import BOOK
 from tests.book.test_turn import bloch_error, force_at, numbers, pulses
 from validation import Scene, exact_wave, measure, simulate
+from validation.scenes.checks import MISSING
 
 HTML = BOOK / "_build" / "html"
 HERTZ = Power("3/2")
@@ -180,7 +181,8 @@ LAWS = {
 def law(run, law, v):
     chosen = LAWS[law]
     ends = run.pair()
-    rest = {"law": chosen, "velocities": (v,)}
+    # a law stands in place of an exponent
+    rest = {"k": MISSING, "law": chosen, "velocities": (v,)}
     seen = pulses((*ends, *run.front), run.time, (1.0,), **rest)
     force, speed = force_at(run.front, seen), speed_between(*ends, seen)
     strain = chosen.compression(EQUAL, sp.Float(force))

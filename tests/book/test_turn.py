@@ -43,23 +43,16 @@ def script():
     return __import__("stills").program()
 
 
-def in_node(program, **values):
-    """What a program prints, run after the pages' scripts and the values."""
-    constants = [
-        f"const {name} = {json.dumps(value)};" for name, value in values.items()
-    ]
-    source = "\n".join([script(), *constants, program])
-    command = ["node", "-"]
+def told(expression, **values):
+    """The value of an expression of JavaScript, after the pages' scripts and the values."""
+    constants = [f"const {name} = {json.dumps(v)};" for name, v in values.items()]
+    shown = f"console.log(JSON.stringify({expression}));"
     run = subprocess.run(
-        command, input=source, capture_output=True, text=True, timeout=250
-    )
+        ["node", "-"], input="\n".join([script(), *constants, shown]),
+        capture_output=True, text=True, timeout=250,
+    )  # fmt: skip
     assert not run.returncode, run.stderr
     return json.loads(run.stdout)
-
-
-def told(expression, **values):
-    """The value of an expression of JavaScript."""
-    return in_node(f"console.log(JSON.stringify({expression}));", **values)
 
 
 # --- the lattice
@@ -144,15 +137,15 @@ def test_a_line_is_drawn_only_where_the_pulse_has_formed():
 
 def test_the_line_of_the_theory_is_over_the_bars():
     """Contact i stands at i + 1/2; after 20 sites the line is there at its own speed."""
-    seen = in_node("""
+    seen = told("""(() => {
 const job = {omega: 0.2733, k: 1.5, p0: 0};
 const lattice = lwaTurn.row(job);
 lattice.to(33);
 const wave = lwaTurn.theory(lattice, job);
 const line = Array.from({length: 400}, (_, i) => wave.at(i / 10, lattice.time));
 const top = row => row.indexOf(Math.max(...row));
-console.log(JSON.stringify([top(line) / 10, top(lattice.contact)]));
-""")
+return [top(line) / 10, top(lattice.contact)];
+})()""")
     line, bars = seen
     assert abs(line - bars - 0.5) < 1
 
