@@ -13,9 +13,11 @@ from collections.abc import Callable
 from functools import cache
 
 import numpy as np
+import published
 import sympy as sp
 from studies.gravity import front_width
 from studies.hard import three_beads
+from studies.widths import widths
 from trust import STRIP, nearest, trust
 from turned import LOSSES
 
@@ -237,6 +239,36 @@ def experiment() -> Numbers:
     return {"glass": f"{float(Material.named('glass').E) / 1e9:.1f}"}
 
 
+def literature() -> Numbers:
+    """This project's numbers, and their differences to those that others published."""
+    (ptfe,) = (
+        row
+        for row in widths().document()["definitions"]
+        if row["quantity"].startswith("PTFE") and row["unit"] == "s"
+    )
+    off = {name: 100 * error for name, error in ptfe["error_value"]["linear"].items()}
+    rows = published.rows() | {
+        "wide_light": published.Beside(9.2, off["m1 ≫ m2"], 1),
+        "wide_equal": published.Beside(published.UNSTATED, off["m1 = m2"], 1),
+        "wide_paper": published.Beside(published.UNSTATED, off["m2/m1 = 0.27"], 1),
+    }
+    found = {}
+    for name, row in rows.items():
+        found[name] = signed(row.here, row.digits)
+        digits = 1 if row.unit == "%" else row.digits
+        found[f"{name}_off"] = f"{signed(row.off, digits)} {row.unit}".rstrip()
+    deeper = published.column(3200)
+    for name in ("velocity", "displacement"):
+        found[f"deeper_{name}"] = f"{deeper[f'column_{name}'].here:.3f}"
+    return found
+
+
+def signed(value: float, digits: int) -> str:
+    """A number with a typographic minus, and none before a zero."""
+    rounded = round(value, digits) + 0.0
+    return f"{rounded:.{digits}f}".replace("-", "−")
+
+
 PAGES: dict[str, Callable[[], Numbers]] = {
     "intro": intro,
     "equal": equal,
@@ -249,6 +281,7 @@ PAGES: dict[str, Callable[[], Numbers]] = {
     "column": column,
     "calculator": calculator,
     "experiment": experiment,
+    "literature": literature,
     "open": late_terms,
 }
 """Functions of the pages' numbers."""

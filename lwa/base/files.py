@@ -11,13 +11,12 @@ import json
 import math
 import sys
 import tomllib
-from collections.abc import Callable, Mapping, Sequence, Set
+from collections.abc import Callable, Collection, Mapping, Sequence, Set
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, TypeVar
 
-from lwa.base.exact import InputError, shorten
-from lwa.base.exact import integer as integer
+from lwa.base.exact import InputError, integer as integer, shorten
 from lwa.base.words import one_of, suggestion
 
 T = TypeVar("T")
@@ -151,7 +150,7 @@ class Table:
         The parsed table.
     name : str
         The full key of the table; "" for the file itself.
-    known : sequence of str
+    known : collection of str
         Its keys.
 
     Examples
@@ -162,7 +161,7 @@ class Table:
     lwa.base.InputError: bead.masss is unknown: did you mean mass?
     """
 
-    def __init__(self, value: Any, name: str, known: Sequence[str]) -> None:
+    def __init__(self, value: Any, name: str, known: Collection[str]) -> None:
         self.name = name
         self.entries = entries(value, name or "the file")
         for key in self.entries:

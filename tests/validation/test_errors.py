@@ -23,8 +23,7 @@ from validation.pulses.sensors import record
 from validation.scenes import scenefile
 from validation.scenes.forcing import Damping, Drive
 from validation.scenes.scene import Scene
-from validation.studies import paper
-from validation.studies import run as runs
+from validation.studies import paper, run as runs
 from validation.studies.law import Medium, fit_power
 from validation.waves.newton import Problem, SpecialRatio
 from validation.waves.solver import exact_wave, solve
@@ -153,20 +152,19 @@ def numbers(wave):
 
 def test_exact():
     """A grid 2.7 times as fine costs twenty times as much: Newton's cost is of third order."""
-    largest = []
     for masses, k in (([1], 1.5), ([1, 0.3428457811], 1.5), ([1], 5)):
         wave = exact_wave(masses, k)
         points = int(2.7 * len(wave.series))
         kind = Problem if len(masses) == 1 else SpecialRatio
         finer = solve(kind(wave.masses, k, wave.half_period, points), wave)
-        largest.append(held(numbers(wave), numbers(finer)))
-    # Rounding of a few ulp: the ± is that of the worst exponents, k = 60 among them.
-    assert max(largest) >= 1 / 100
+        largest = held(numbers(wave), numbers(finer))
+        # residual and tail of a dimer count in full, though most numbers feel less of them
+        assert largest >= 1 / LARGEST or wave.tail
 
 
-@pytest.mark.parametrize(("k", "load"), [(1.1, 0.99), (1.5, 0.9999)])
+@pytest.mark.parametrize(("k", "load"), [(1.1, 0.99), (1.5, 0.9999), (5.5, 1e-11)])
 def test_exact_on_a_background(k, load):
-    """The wave is a small part of the strain, whose rounding is that of the whole."""
+    """The wave, or the load, is a small part of the strain."""
     wave = exact_wave([1], k, background=load)
     points = int(1.3 * len(wave.series))
     finer = solve(Problem((1.0, 1.0), k, 1.05 * wave.half_period, points, load), wave)

@@ -377,34 +377,27 @@ def speeds_between(
     for first, second in pairwise(sensors):
         if first.kind != second.kind:
             continue
-        leg = replace(
-            first, places=first.places + second.places, numbers={}, missing=None
-        )
+        both = first.places + second.places
+        leg = replace(first, places=both, numbers={}, missing=None)
         try:
-            time = _elapsed(first, second, total)
-            if not (first.along and second.along):
-                raise MeasureError(
-                    "a bead with one contact has a force of half a site away"
-                )
-            speeds = {}
-            for name, place in first.along.items():
-                speeds[name] = abs(second.along[name] - place) / time.value
-            reason = doubt(first, second, speeds["speed_sites"])
+            speeds = _speeds(first, second, total)
+            reason = doubt(first, second, speeds["speed_sites"].value)
             if reason:
                 raise MeasureError(reason)
-        except MeasureError as reason:
-            legs.append(replace(leg, missing=str(reason)))
-            continue
-        error = time.relative_error
-        numbers = {name: Estimate(V, V * error) for name, V in speeds.items()}
-        legs.append(replace(leg, numbers=numbers))
+            leg = replace(leg, numbers=speeds)
+        except MeasureError as error:
+            leg = replace(leg, missing=str(error))
+        legs.append(leg)
     return tuple(legs)
 
 
-def _elapsed(
+def _speeds(
     first: Reading, second: Reading, total: Callable[[float, float], float]
-) -> Estimate:
-    """Return the time from one arrival to a later one; raises `MeasureError` if there is none."""
+) -> dict[str, Estimate]:
+    """Return the speeds from one arrival to a later one by the names `SPEEDS`.
+
+    Raises `MeasureError` if there are none.
+    """
     if "arrival" not in first.numbers or "arrival" not in second.numbers:
         raise MeasureError("one of the two has no pulse")
     start = first.numbers["arrival"]
@@ -414,4 +407,10 @@ def _elapsed(
         raise MeasureError(
             "a speed needs a later second arrival, by more than its error"
         )
-    return time
+    if not (first.along and second.along):
+        raise MeasureError("a bead with one contact has a force of half a site away")
+    speeds = {}
+    for name, place in first.along.items():
+        V = abs(second.along[name] - place) / time.value
+        speeds[name] = Estimate(V, V * time.relative_error)
+    return speeds

@@ -1,21 +1,22 @@
 """Files of scenes, TOML or JSON, read by `read_scene`.
 
-The file ``keys.toml`` beside this module lists all keys with examples; `lwa-validate run --keys`
-prints the list.
+The file ``keys.toml`` beside this module lists all keys with examples: these keys are known, and
+others are refused. `lwa-validate run --keys` prints the list.
 
 Beads and contacts are counted from 1, as in the paper and on the command line (a `Scene` counts
 from 0). Stiffnesses are as many as the cell has beads, the last one joining it to the next cell,
 or as many as the whole chain has contacts; spacings likewise. Exponents, laws and values of damping
 that differ are as many as the cell has beads, or as the scene has contacts, the wall's included.
 
-Unknown keys are refused, and every fault is one line that names the key.
+Every fault is one line that names the key.
 """
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -32,9 +33,6 @@ from lwa.base.files import (
 )
 from lwa.law import read_law
 from lwa.spheres.beads import (
-    CHAIN,
-    FILE,
-    STRIKER,
     Row,
     read_beads,
     read_materials,
@@ -51,19 +49,6 @@ from validation.scenes.scene import Scene, contacts_of
 MOST_BEADS = 1_000_000
 _STATED = ("columns", "units", "step")  # of the file of a drive
 _OTHER = ("like", "mass")  # of a bead that is unlike the others at its place
-_TABLES = {  # that a file may leave out
-    "wall": ("material", "stiffness"),
-    "damping": DAMPINGS,
-    "drive": (
-        *("velocity", "amplitude", "frequency", "ramp", "file", *_STATED),
-        *("time", "displacement"),
-    ),
-    "striker": STRIKER,
-    "start": ("velocities", "displacements"),
-    "sensors": ("beads", "contacts"),
-}
-KEYS: Mapping[str, Sequence[str]] = {"file": FILE, "chain": CHAIN, **_TABLES}
-"""Keys of a file, and of each of its tables."""
 
 
 def read_scene(
@@ -103,11 +88,12 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     folder : Path
         Folder of the measured files that the content names.
     """
-    file = Table(content, "", FILE)
+    known = _known()
+    file = Table(content, "", known)
 
     def part(name: str) -> Table:
         """Return a table of the file, an empty one if it is left out."""
-        return Table(file.entries.get(name, {}), name, _TABLES[name])
+        return Table(file.entries.get(name, {}), name, known[name])
 
     # All tables are read first: an unknown key is refused before a missing value.
     start = part("start")
@@ -165,6 +151,13 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
         bead_sensors=sensors.read("beads", _sensors(row.size), ()),
         contact_sensors=sensors.read("contacts", _sensors(contacts), ()),
     )
+
+
+@cache
+def _known() -> dict[str, Any]:
+    """Return the list of all keys as a parsed file."""
+    text = Path(__file__).with_name("keys.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text)
 
 
 def _passage(fields: Mapping[str, Any]) -> float:

@@ -83,7 +83,9 @@ def rise(strain: Array, k: float, p0: float) -> Array:
     relative = np.maximum(strain / p0, -1)  # -1 for an open contact
     with np.errstate(divide="ignore"):
         growth = np.expm1(k * np.log1p(relative))
-    return np.asarray(p0**k * growth)
+    # The power of a large logarithm loses digits, the difference of unlike powers none.
+    total = np.maximum(p0 + strain, 0)
+    return np.asarray(np.where(relative > 1, total**k - p0**k, p0**k * growth))
 
 
 def respond(force: Series, inverse: Pair, half_period: float) -> Series:

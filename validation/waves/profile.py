@@ -27,11 +27,10 @@ from validation.scenes.checks import between, integer
 from validation.waves import newton
 
 TOLERANCE = 1e-9  # tail and residual of a solitary wave over its peak strain, at most
-# Relative errors of a solitary wave's numbers by rounding, 1.5 times the differences between grids
-# or more (k = 1.02 … 60, p0 = 0 … 0.9999): of each number, and by cancellation, as a wave is bent
-# by (k - 1)(1 - p0) of its strain.
-ROUNDING = 5e-14
-CANCELLED = 1e-15
+# Relative error of a solitary wave's numbers by rounding, over k + 1/bend: a wave is bent by bend =
+# (k - 1)(1 - p0) of its strain. 1.1 times the differences between grids or more (k = 1.02 … 60, p0
+# = 0 … 0.9999, special ratios); of equal beads some number differs by 1/20 of its error or more.
+ROUNDING = 2e-15
 OUTSIDE = 0.6  # share of the half period at which a dimer's pulse has ended and its tail begins
 
 Number = Literal["c2", "c", "tail", "peak", "fwhm"]
@@ -117,7 +116,7 @@ class ExactWave(Pictured):
         if callable(value):
             value = value(*arguments)
         bend = (self.k - 1) * (1 - self.background)
-        share = ROUNDING + CANCELLED / bend + self.residual + self.tail
+        share = ROUNDING * (self.k + 1 / bend) + self.residual + self.tail
         if name == "tail":  # a share of the peak strain already
             return Estimate(value, share)
         return Estimate(value, share * value)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import example, given, strategies as st
 
 from lwa import InputError
 from validation.pulses.pulse import (
@@ -11,15 +12,18 @@ from validation.pulses.pulse import (
     ROUNDING,
     MeasureError,
     Piecewise,
+    all_pulses,
     compared,
+    first_pulse,
     measure,
+    spline,
     tolerances,
 )
 
 
-def arch(t, arrival=0.0, peak=1.0, beta=1.0):
+def arch(t):
     """The theory's pulse for k = 3/2, cos^6."""
-    return peak * np.cos(np.clip(beta * (t - arrival), -np.pi / 2, np.pi / 2)) ** 6
+    return np.cos(np.clip(t, -np.pi / 2, np.pi / 2)) ** 6
 
 
 def test_a_pulse_may_end_in_a_jump():
@@ -30,6 +34,47 @@ def test_a_pulse_may_end_in_a_jump():
             times, lambda t, end=jump: np.where(np.less(t, end), 1 - t * t, 0.0)
         )
         assert measure(signal).fall == pytest.approx(jump, rel=1e-12)
+
+
+TIMES = np.linspace(-4, 14, 3601)
+
+
+def humps(*places):
+    """The signal of Gaussian humps of given heights and times."""
+    f = [height * np.exp(-4 * (TIMES - at) ** 2) for height, at in places]
+    return spline(TIMES, np.sum(f, axis=0))
+
+
+@pytest.mark.parametrize(
+    ("places", "low", "arrival", "count"),
+    [
+        (((0.4, 1), (1, 4), (1.5, 8)), 0.5, 4, 3),
+        # Between these humps the signal stays above half of the first one: they are one pulse.
+        (((0.6, 4), (1, 5.2)), 0.5, 5.2, 1),
+        (((0.6, 4), (2, 8)), 0.25, 4, 2),
+    ],
+)
+def test_the_first_pulse_is_not_a_later_and_higher_one(places, low, arrival, count):
+    found = first_pulse(humps(*places), low, low)
+    assert found.arrival == pytest.approx(arrival, abs=0.01)
+    # A Gaussian falls to the same fraction of its peak.
+    late = math.sqrt(-math.log(low) / 4)
+    assert found.fall == pytest.approx(arrival + late, abs=0.01)
+    assert len(all_pulses(humps(*places))) == count
+
+
+@given(st.lists(st.tuples(st.floats(0.2, 1), st.floats(1, 9)), min_size=1, max_size=5))
+@example([(1.0, 4.0), (0.9, 4.9)])
+def test_all_pulses_of_a_record_backwards_are_the_same(places):
+    """The force falls to half of its peak, or below the hump between two, on both sides."""
+    signal = humps(*places)
+    there = all_pulses(signal)
+    back = all_pulses(Piecewise(-TIMES[::-1], lambda t: signal(-np.asarray(t))))[::-1]
+    assert [p.peak for p in there] == pytest.approx([p.peak for p in back], rel=1e-6)
+    for one, other in zip(there, back, strict=True):
+        times = one.arrival, one.rise, one.fall
+        mirrored = -other.arrival, -other.fall, -other.rise
+        assert times == pytest.approx(mirrored, abs=1e-6)
 
 
 T = np.linspace(-2, 2, 401)

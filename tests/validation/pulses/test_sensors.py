@@ -1,17 +1,11 @@
 """Readings of sensors against the paper's experiment and the linear chain's exact waves."""
 
-import math
 import tomllib
 from dataclasses import replace
 
-import numpy as np
 import pytest
-from hypothesis import example as also
-from hypothesis import given
-from hypothesis import strategies as st
 
 from validation.lattice.simulate import simulate
-from validation.pulses.pulse import MeasureError, all_pulses, first_pulse, spline
 from validation.pulses.sensors import (
     enough_samples,
     record,
@@ -118,36 +112,3 @@ def test_default_samples_resolve_a_pulse_by_32(name):
     step = chain.duration / (enough_samples(chain) - 1)
     for reading in record(chain).sensors:
         assert reading.numbers["fwhm"].value > 32 * step
-
-
-def test_the_first_pulse_is_not_the_highest_one():
-    t = np.linspace(0, 10, 2001)
-
-    def pulse(height, at):
-        return height * np.exp(-4 * (t - at) ** 2)
-
-    small, first, echo = pulse(0.4, 1), pulse(1.0, 4), pulse(1.5, 8)
-    found = first_pulse(spline(t, small + first + echo))
-    assert (found.arrival, found.peak) == pytest.approx((4, 1), rel=1e-6)
-    assert found.fwhm == pytest.approx(math.sqrt(math.log(2)), rel=1e-6)
-    with pytest.raises(MeasureError, match="nowhere positive"):
-        first_pulse(spline(t, -first))
-    # Between these humps the signal stays above half of the first one: they are one pulse.
-    both = first_pulse(spline(t, pulse(0.6, 4) + pulse(1.0, 5.2)))
-    assert both.arrival == pytest.approx(5.2, abs=0.01)
-    every = all_pulses(spline(t, small + first + echo))
-    assert [p.peak for p in every] == pytest.approx([0.4, 1.0, 1.5], rel=1e-6)
-
-
-@given(st.lists(st.tuples(st.floats(0.2, 1), st.floats(1, 9)), min_size=1, max_size=5))
-@also([(1.0, 4.0), (0.9, 5.8)])
-def test_all_pulses_of_a_record_backwards_are_the_same(humps):
-    """The force falls to half of its peak, or below the hump between two, on both sides."""
-    t = np.linspace(-4, 14, 3601)
-    f = sum(peak * np.exp(-((t - at) ** 2)) for peak, at in humps)
-    there = all_pulses(spline(t, f))
-    back = all_pulses(spline(-t[::-1], f[::-1]))[::-1]
-    for one, other in zip(there, back, strict=True):
-        assert one.arrival == pytest.approx(-other.arrival, abs=1e-6)
-        assert (one.peak, one.fwhm) == pytest.approx((other.peak, other.fwhm), rel=1e-6)
-        assert (one.rise, one.fall) == pytest.approx((-other.fall, -other.rise))

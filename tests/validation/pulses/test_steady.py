@@ -7,7 +7,6 @@ import pytest
 import sympy as sp
 
 from validation.pulses import steady
-from validation.pulses.pulse import first_pulse, spline
 from validation.pulses.steady import LABELS, STRETCH, point
 from validation.waves.newton import SpecialRatio
 from validation.waves.solver import exact_wave, solve
@@ -72,16 +71,6 @@ def test_a_pulse_without_numbers_states_the_reason(k, omega, reason):
     found = point(k, omega, STRETCH)
     assert (found.sites, found.numbers) == (None, {})
     assert found.missing.startswith(reason)
-
-
-def test_the_leading_pulse_is_not_a_later_and_higher_one():
-    time = np.linspace(0, 20, 2001)
-    first, second = np.exp(-((time - 5) ** 2)), 2 * np.exp(-((time - 12) ** 2))
-    pulse = first_pulse(spline(time, first + second), 0.25**1.5)
-    assert pulse.arrival == pytest.approx(5, abs=1e-6)
-    # two humps are one pulse while the compression between them stays above a quarter
-    two_humps = spline(time, first + np.exp(-((time - 7) ** 2)))
-    assert first_pulse(two_humps, 0.25**1.5, 0.25).fall > 8
 
 
 def test_the_end_of_the_chain_is_far_from_the_last_place():

@@ -1,12 +1,10 @@
 """Measured files: cells, names and units of columns, and what is refused."""
 
-import re
 from contextlib import suppress
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
-from hypothesis import strategies as st
+from hypothesis import example, given, settings, strategies as st
 
 from lwa import InputError
 from validation.scenes.columns import in_si
@@ -200,13 +198,9 @@ STATED = {"columns": {"force": "2"}}
         (f"{HEAD}1,2\n", {"step": "x"}, "step is 'x': .* step='1 us'$"),
     ],
 )
-def test_a_bad_file_is_refused_in_a_short_line(tmp_path, text, stated, named):
-    with pytest.raises(InputError) as refused:
+def test_a_bad_file_is_refused(tmp_path, text, stated, named):
+    with pytest.raises(InputError, match=named):
         read(tmp_path, text, **stated).records()
-    message = str(refused.value)
-    assert re.search(named, message), message
-    assert "\n" not in message
-    assert len(message) <= 300
 
 
 cells = st.sampled_from(

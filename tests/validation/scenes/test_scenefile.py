@@ -4,21 +4,22 @@ import copy
 import dataclasses
 import io
 import json
+import math
 import re
 import tomllib
+from contextlib import suppress
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from lwa.base import files
 from lwa.law import named
+from lwa.spheres.beads import CHAIN, FILE, STRIKER
 from lwa.spheres.hertz import Material, Sphere, stiffness
 from tests.validation.scenes.test_scene import anything
 from validation.lattice.simulate import simulate
-from validation.scenes import scenefile
 from validation.scenes.chains import STEEL
-from validation.scenes.forcing import DAMPINGS, Damping, Drive
+from validation.scenes.forcing import Damping, Drive
 from validation.scenes.scene import Scene, SceneError
 from validation.scenes.scenefile import read_scene, scene
 from validation.studies.paper import recorded_chain
@@ -60,20 +61,21 @@ def test_every_other_key():
     )
 
 
-def test_the_list_of_keys_holds_every_key():
-    """The list reads as a scene once the keys that exclude each other are taken out."""
+def test_the_list_of_keys_reads_as_a_scene():
+    """Once the keys that exclude each other are taken out."""
     text = keys()
     assert text.isascii()
     content = tomllib.loads(text)
-    assert set(content) == set(scenefile.KEYS["file"])
-    for name in ("chain", "striker", "start", "sensors"):
-        assert set(content[name]) == set(scenefile.KEYS[name])
+    # The keys that `lwa` knows are these, too.
+    assert set(content) == set(FILE)
+    assert set(content["chain"]) == set(CHAIN)
+    assert set(content["striker"]) == set(STRIKER)
     start = content.pop("start")  # what excludes each other
-    for name in ("damping", "drive"):
-        assert set(content.pop(name)) == set(scenefile.KEYS[name])
+    del content["damping"], content["drive"]
     assert content["chain"].pop("law") == "hertz2:1,2"
     balls = {key: content["chain"].pop(key) for key in ("k", "stiffnesses", "spacings")}
     del content["striker"]["drop"], content["striker"]["mass"]
+    del content["wall"]["stiffness"]
     assert scene(content).size == 38
     del content["striker"]
     content |= {"start": start, "chain": {"cell": [1.0, 2.0], "repeat": 19} | balls}
@@ -140,6 +142,7 @@ GOOD = {
 }
 BALLS, WALL = {"chain": {"cell": ["ball", "ball"]}}, {"wall": {"stiffness": 1}}
 MOTION = {"time": [0.0, 0.3, 0.6, 1.0], "displacement": [0.0, 1.0, 0.0, 0.0]}
+SI = {"units": "SI"}
 ALL = {"sensors": {"beads": "all", "contacts": "all"}}
 
 # A row for each kind of fault
@@ -197,11 +200,8 @@ FILES = [
 def test_a_bad_file_is_refused_by_its_name(tmp_path, name, content, named):
     file = tmp_path / name
     file.write_bytes(content)
-    with pytest.raises(SceneError) as caught:
+    with pytest.raises(SceneError, match=rf"^{re.escape(str(file))}: {named}"):
         read_scene(file)
-    assert re.fullmatch(
-        f"{re.escape(str(file))}: ({named})[^\n]{{,160}}", str(caught.value)
-    )
     with pytest.raises(SceneError, match="1 is no file name"):
         read_scene(1)
 
@@ -213,27 +213,22 @@ FULL = tomllib.loads(PAPER) | {
 }
 
 
+def entries(content):
+    """Tables and lists of a file, with the keys and places of their entries."""
+    keys = content if isinstance(content, dict) else range(len(content))
+    for key in keys:
+        yield content, key
+        if isinstance(content[key], dict | list):
+            yield from entries(content[key])
+
+
 @given(st.data())
-def test_any_file_is_read_or_refused_in_one_line(data):
+def test_any_file_is_read_or_refused(data):
     content = copy.deepcopy(FULL)
-    at = content
-    while True:
-        keys = sorted(at) if isinstance(at, dict) else list(range(len(at)))
-        key = data.draw(st.sampled_from(keys))
-        if (
-            not isinstance(at[key], dict | list)
-            or not at[key]
-            or data.draw(st.booleans())
-        ):
-            break
-        at = at[key]
-    at[key] = data.draw(anything | words | st.dictionaries(words, anything))
-    message = ""
-    try:
+    table, key = data.draw(st.sampled_from([*entries(content)]))
+    table[key] = data.draw(anything | words | st.dictionaries(words, anything))
+    with suppress(SceneError):
         scene(content)
-    except SceneError as error:
-        message = str(error)
-    assert "\n" not in message
 
 
 def four(**keys):
@@ -252,10 +247,9 @@ def four(**keys):
         (four(law="hertz2:1,1/2"), {"law": named("hertz2", 1, "1/2")}),
         ({"drive": {"velocity": 2.0}}, {"drive": Drive(velocity=2)}),
         ({"drive": MOTION}, {"drive": Drive(**MOTION)}),
-        *(
-            ({"damping": {kind: 0.9}}, {"damping": Damping(kind, 0.9)})
-            for kind in DAMPINGS
-        ),
+        # sqrt(2 g h)
+        ({"striker": {"drop": 0.05}}, {"velocities": (math.sqrt(2 * 9.81 * 0.05),)}),
+        ({"damping": {"contact": 0.9}}, {"damping": Damping("contact", 0.9)}),
     ],
 )
 def test_keys_and_the_fields_that_they_set(keys, fields):
@@ -277,34 +271,27 @@ def test_values_of_contacts_that_differ_are_lists():
 
 
 def test_a_drive_is_read_from_a_file_beside_the_scene(tmp_path):
-    path = tmp_path / "shaker.csv"
-    file = tmp_path / "scene.json"
-    chain = {
-        "duration": 1,
-        "chain": {"cell": [1, 2], "k": 1.5},
-        "drive": {"file": str(path)},
-    }
-    path.write_text("time (s),displacement (mm)\n0,0\n0.5,1\n1,2\n2,0\n")
-    assert scene(chain | {"units": "SI"}).drive.displacement == (0, 1e-3, 2e-3, 0)
+    def drive(table, si=SI, **stated):
+        (tmp_path / "shaker.csv").write_text(table)
+        content = GOOD | si | {"drive": {"file": "shaker.csv", **stated}}
+        (tmp_path / "scene.json").write_text(json.dumps(content))
+        return read_scene(tmp_path / "scene.json").drive
+
+    plain = "time,displacement\n0,0\n0.5,1\n1,2\n2,0\n"
+    in_units = plain.replace("time,displacement", "time (s),displacement (mm)")
+    assert drive(plain, {}).displacement == (0, 1, 2, 0)
+    assert drive(in_units).displacement == (0, 1e-3, 2e-3, 0)
     with pytest.raises(SceneError, match="it states units"):
-        scene(chain)
-    path.write_text("time,displacement\n0,0\n0.5,1\n1,2\n2,0\n")
-    file.write_text(json.dumps(chain | {"drive": {"file": path.name}}))
-    assert read_scene(file) == scene(chain)
-    stated = {
-        "columns": {"displacement": 1},
-        "units": {"displacement": "um"},
-        "step": "0.5 s",
-    }
-    moved = scene(chain | {"units": "SI", "drive": chain["drive"] | stated})
-    assert moved.drive.displacement == pytest.approx((0, 5e-7, 1e-6, 2e-6), rel=1e-15)
-    assert moved.drive.time == (0, 0.5, 1, 1.5)
-    proposed = r"shaker.csv: .* columns={'time' = '1', 'displacement' = '2'}$"
-    path.write_text("t [ms],x [mm]\n0,0\n0.5,1\n")
+        drive(in_units, {})
+    columns, units = {"displacement": 1}, {"displacement": "um"}
+    found = drive(plain, columns=columns, units=units, step="0.5 s")
+    assert found.displacement == pytest.approx((0, 5e-7, 1e-6, 2e-6), rel=1e-15)
+    assert found.time == (0, 0.5, 1, 1.5)
+    proposed = r"shaker.csv: .* columns={'time' = '1', 'displacement' = '2'};"
     with pytest.raises(SceneError, match=proposed):
-        scene(chain | {"units": "SI"})
+        drive("t [ms],x [mm]\n0,0\n0.5,1\n")
     with pytest.raises(SceneError, match=r"^none.csv: No such file"):
-        scene(chain | {"drive": {"file": "none.csv"}})
+        scene(GOOD | {"drive": {"file": "none.csv"}})
 
 
 @pytest.mark.parametrize("other", [{"like": "ptfe"}, {"mass": 1e-3}])
@@ -313,12 +300,6 @@ def test_a_striker_unlike_the_beads_is_a_defect_of_bead_1(other):
     struck = scene(paper | {"striker": paper["striker"] | other})
     assert struck == scene(paper | {"defects": [{"bead": 1, **other}]})
     assert struck.masses[0] != scene(paper).masses[0]
-
-
-def test_a_striker_that_drops_has_the_velocity_of_a_fall():
-    paper = tomllib.loads(PAPER)
-    (velocity,) = scene(paper | {"striker": {"drop": 0.05}}).velocities
-    assert velocity**2 == pytest.approx(2 * 9.81 * 0.05, rel=1e-15)
 
 
 def test_a_scene_is_read_from_standard_input(monkeypatch):

@@ -170,9 +170,8 @@ ROWS = "".join(f"{n},{n}\n" for n in range(1, 9))
         ("force,speed\n" + ROWS, {"spacing": sp.Symbol("D")}, "spacing is D"),
     ],
 )
-def test_bad_files_are_refused_in_one_line(tmp_path, text, options, named):
+def test_bad_files_are_refused(tmp_path, text, options, named):
     file = tmp_path / "data.csv"
     file.write_text(text)
-    with pytest.raises(SceneError, match=named) as refused:
+    with pytest.raises(SceneError, match=named):
         law(file, **options)
-    assert "\n" not in str(refused.value)

@@ -12,8 +12,7 @@ from book.studies.accuracy import launched
 from lwa.base.words import QUANTITIES
 from validation import simulate
 from validation.scenes.checks import SceneError
-from validation.studies.exact import exact
-from validation.studies.exact import resonances as special_ratios
+from validation.studies.exact import exact, resonances as special_ratios
 from validation.waves.newton import Problem, SpecialRatio
 from validation.waves.solver import NoWave, exact_wave, resonances, solve
 
