@@ -89,10 +89,11 @@ class Cell(Value):
                 "many contacts as particles",
                 stiffnesses=(),  # the call that the message proposes: without them
             )
-        # A frozen dataclass sets its own fields in this way.
-        object.__setattr__(self, "masses", masses)
-        object.__setattr__(self, "stiffnesses", stiffnesses)
-        object.__setattr__(self, "spacing", positive(spacing, "spacing"))
+        self._set(
+            masses=masses,
+            stiffnesses=stiffnesses,
+            spacing=positive(spacing, "spacing"),
+        )
 
     def latex_rows(self) -> list[str]:
         rows = []

@@ -43,8 +43,8 @@ from lwa.base.exact import (
     signed,
 )
 from lwa.base.frozen import Value
-from lwa.cell import Cell, exponent, read_cell
-from lwa.cell import k as symbol_k
+from lwa.cell import Cell, exponent, k as symbol_k, read_cell
+from lwa.spheres.hertz import EXPONENT
 
 if TYPE_CHECKING:
     from lwa.base.arrays import Array
@@ -371,7 +371,7 @@ class Law(ContactLaw):
             fault = f"a SymPy expression that depends on {self.delta} is wanted"
             raise InputError(f"F is {shorten(self.F)}: {fault}")
         # Floats are taken for the decimals that they print.
-        object.__setattr__(self, "F", read_exact(self.F, "F"))
+        self._set(F=read_exact(self.F, "F"))
 
 
 def general() -> Law:
@@ -383,12 +383,11 @@ def general() -> Law:
     return Law(sp.Function("F")(DELTA), name="general")
 
 
-_HERTZ = sp.Rational(3, 2)
 # Mapping from a name to the force, or the law itself, as a function of the law's parameters.
 _NAMED: Mapping[str, Callable[..., Any]] = {
     "power": Power,
-    "hertz": lambda: Power(_HERTZ),
-    "hertz2": lambda a, b: a * DELTA**_HERTZ + b * DELTA ** (_HERTZ + 1),
+    "hertz": lambda: Power(EXPONENT),
+    "hertz2": lambda a, b: a * DELTA**EXPONENT + b * DELTA ** (EXPONENT + 1),
     "exponential": lambda a: (sp.exp(a * DELTA) - 1) / a,
     "magnetic": lambda n, d: (1 - DELTA / d) ** (-n) - 1,
     "polynomial": lambda a, b: DELTA + a * DELTA**2 + b * DELTA**3,

@@ -22,8 +22,7 @@ from lwa.base.words import (
     FieldName,
     one_of,
 )
-from lwa.cell import Cell, read_cell
-from lwa.cell import k as symbol_k
+from lwa.cell import Cell, k as symbol_k, read_cell
 from lwa.closure.consistency import Closure, OfClosure
 from lwa.equation.pde import PDE
 from lwa.equation.terms import STRAIN, Terms, latex_by_order, terms

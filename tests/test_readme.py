@@ -10,11 +10,9 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from lwa.command.cli import COMMANDS
-from lwa.command.cli import main as lwa_main
+from lwa.command.cli import COMMANDS, main as lwa_main
 from tests.commands import ended
-from validation.cli import STUDIES
-from validation.cli import main as validate_main
+from validation.cli import STUDIES, main as validate_main
 
 ROOT = Path(__file__).parent.parent
 README, CHANGELOG, CATALOGUE = (

@@ -28,8 +28,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from lwa import Cell, Power, Shock
-from lwa import shock as front
+from lwa import Cell, Power, Shock, shock as front
 from lwa.base.exact import InputError, read_exact
 from lwa.base.frozen import Estimate
 from lwa.base.progress import Progress

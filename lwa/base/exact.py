@@ -19,8 +19,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import InputError as InputError
-from lwa.base.words import one_of as one_of
-from lwa.base.words import shorten as shorten
+from lwa.base.words import one_of as one_of, shorten as shorten
 
 Quantity = int | float | str | Fraction | sp.Expr
 """Accepted types of an exponent, a mass, a stiffness or a length."""

@@ -16,8 +16,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, TypeVar
 
-from lwa.base.exact import InputError, shorten
-from lwa.base.exact import integer as integer
+from lwa.base.exact import InputError, integer as integer, shorten
 from lwa.base.words import one_of, suggestion
 
 T = TypeVar("T")

@@ -9,11 +9,14 @@ from typing import Any, ClassVar, Self
 
 import sympy as sp
 
-from lwa.base import NoSolitaryWave as NoSolitaryWave
-from lwa.base import latex
-from lwa.base.words import EXTENTS as EXTENTS
-from lwa.base.words import QUANTITIES as QUANTITIES
-from lwa.base.words import ExtentName, QuantityName, one_of
+from lwa.base import NoSolitaryWave as NoSolitaryWave, latex
+from lwa.base.words import (
+    EXTENTS as EXTENTS,
+    QUANTITIES as QUANTITIES,
+    ExtentName,
+    QuantityName,
+    one_of,
+)
 
 RISE = sp.Symbol("B", positive=True)
 """B, the peak strain of a wave, unless the caller gives another."""
@@ -88,6 +91,11 @@ class Value(Shown):
 
     def __getstate__(self) -> dict[str, Any]:
         return {field.name: getattr(self, field.name) for field in fields(self)}
+
+    def _set(self, **values: Any) -> None:
+        """Set fields to values that were read, which a frozen dataclass takes in this way only."""
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
 
 
 @dataclass(frozen=True, repr=False)

@@ -20,12 +20,12 @@ from lwa.law import ContactLaw, Power, for_cell, read_law
 from lwa.spheres.beads import (
     FILE,
     STRIKER,
+    Row as Beads,
     period,
     read_beads,
     read_materials,
     read_row,
 )
-from lwa.spheres.beads import Row as Beads
 from lwa.spheres.hertz import EXPONENT
 
 HERTZIAN = 0.01

@@ -46,8 +46,7 @@ from lwa.base.exact import (
 )
 from lwa.base.frozen import Value
 from lwa.base.words import BRANCHES, BranchName, one_of
-from lwa.cell import Cell, by_name
-from lwa.cell import k as symbol_k
+from lwa.cell import Cell, by_name, k as symbol_k
 from lwa.envelopes.modes import LoadedMode
 from lwa.law import ContactLaw, for_cell
 

@@ -20,8 +20,7 @@ from lwa.algebra.model import Model
 from lwa.base.exact import InputError, integer
 from lwa.base.frozen import known_quantity
 from lwa.base.words import QUANTITIES, QuantityName
-from lwa.cell import Cell, Parametric, exponent, read_cell
-from lwa.cell import k as symbol_k
+from lwa.cell import Cell, Parametric, exponent, k as symbol_k, read_cell
 from lwa.expansion.observables import Observables, shares_model
 from lwa.expansion.recursion import Recursion
 from lwa.expansion.series import EpsilonSeries
@@ -54,9 +53,7 @@ class Expansion(Parametric):
 
     def __post_init__(self) -> None:
         read_cell(self.cell)
-        order = integer(self.order, "order", 1)
-        object.__setattr__(self, "order", order)
-        object.__setattr__(self, "k", exponent(self.k))
+        self._set(order=integer(self.order, "order", 1), k=exponent(self.k))
         # Text and LaTeX call the series' own parameter so.
         for symbol in {*self.cell.symbols, *self.k.free_symbols}:
             if symbol.name in EPSILON_NAMES:
@@ -65,10 +62,10 @@ class Expansion(Parametric):
                 )
         if not self.k.free_symbols and self.k <= 1:
             raise InputError(f"k is {self.k}: the expansion in k - 1 wants k > 1")
-        terms = _terms(shares_model(self.cell, self.k), order)
+        terms = _terms(shares_model(self.cell, self.k), self.order)
         if terms > LARGEST:
             raise InputError(
-                f"order is {order}: polynomials of some {terms:.0e} terms take hours; a lower "
+                f"order is {self.order}: polynomials of some {terms:.0e} terms take hours; a lower "
                 "order, or numbers for symbols, takes fewer"
             )
 

@@ -26,8 +26,7 @@ from lwa.base import latex
 from lwa.base.exact import InputError, demand_numbers, number, positive, power, shorten
 from lwa.base.frozen import RISE, Estimate, NoSolitaryWave, known_extent, known_quantity
 from lwa.base.words import QUANTITIES, ExtentName, LanguageName, QuantityName, one_of
-from lwa.cell import Cell, Parametric, exponent, read_cell
-from lwa.cell import k as symbol_k
+from lwa.cell import Cell, Parametric, exponent, k as symbol_k, read_cell
 from lwa.expansion.dimers import ALIKE, dimer_error, exponent_of_light_beads, steadiness
 from lwa.expansion.joined import FORMS, joined, joined_error
 from lwa.law import ContactLaw, Power, power_exponent
@@ -77,14 +76,12 @@ class LatticeWave(Parametric):
     force: sp.Expr
 
     def __post_init__(self) -> None:
-        # A frozen dataclass takes a value that was read in this way only.
-        object.__setattr__(self, "force", positive(self.force, "force"))
-        object.__setattr__(self, "k", exponent(self.k))
+        self._set(force=positive(self.force, "force"), k=exponent(self.k))
         cell = read_cell(self.cell)
         if cell.uniform:
             # However many equal beads a cell lists, its wave is that of one.
             one = Cell(cell.masses[:1], cell.stiffnesses[:1], cell.spacing)
-            object.__setattr__(self, "cell", one)
+            self._set(cell=one)
         elif cell.size != 2 or not cell.equal_contacts:
             raise InputError(
                 f"cell is {shorten(cell)}: closed forms are those of equal beads and of two beads "

@@ -9,7 +9,8 @@ particles obey::
 Carrying (a, f) through one cell gives a matrix of determinant 1 whose trace is a polynomial in
 ``Ω²``, and the branches are the roots of ``2 cos(Pκ) = trace`` (Brillouin, *Wave Propagation in
 Periodic Structures*, 1946). Since ``trace = 2 - P²Ω² + …``, the coefficients of the acoustic root
-follow one from another. A dimer's two roots have the sum 1/Π, ``Π = m̂_0 m̂_1 C_0 C_1``.
+follow one from another. A dimer's relation is ``sin²κ = Ω² - Π Ω⁴``, whose two roots have the sum
+1/Π, ``Π = m̂_0 m̂_1 C_0 C_1``.
 """
 
 from __future__ import annotations
@@ -70,11 +71,6 @@ class Bloch:
             f = [f_m - self.P * mu * a_m for f_m, a_m in zip(f, shifted, strict=True)]
             a = [a_m + c * f_m for a_m, f_m in zip(a, f, strict=True)]
         return a, f
-
-    @property
-    def Pi(self) -> fmpq_mpoly:
-        """The product ``m̂_0 m̂_1 C_0 C_1``: Π in a dimer's relation ``sin²κ = Ω² - Π Ω⁴``."""
-        return self.mu[0] * self.mu[1] * self.c[0] * self.c[1]
 
     def acoustic(self, order: int) -> list[fmpq_mpoly]:
         """Coefficients ``L_0 … L_order`` of the acoustic root ``Ω² = Σ L_n κ^{2n} = κ² + …``.

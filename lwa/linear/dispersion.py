@@ -71,7 +71,7 @@ class Dispersion(Parametric):
 
     def __post_init__(self) -> None:
         read_cell(self.cell)
-        object.__setattr__(self, "k", exponent(self.k))
+        self._set(k=exponent(self.k))
 
     def __repr__(self) -> str:
         relation = "Ω² = κ² + …"
@@ -131,8 +131,8 @@ class Dispersion(Parametric):
             raise InputError(
                 f"the optical series needs a cell of 2 masses, not {self.cell.size}"
             )
-        # The two roots have the sum 1/Π.
-        Pi = self._expression(self._bloch.Pi)
+        # The trace is 2 - 4 Ω² + 4Π Ω⁴, and the two roots have the sum 1/Π.
+        Pi = self._expression(self._bloch.trace(2)[2]) / 4
         acoustic = self.acoustic(order).items()
         return {0: 1 / Pi} | {n: -coefficient for n, coefficient in acoustic}
 
@@ -224,8 +224,7 @@ class LoadedChain(Value):
 
     def __post_init__(self) -> None:
         for_cell(self.law, self.cell)
-        load = positive(self.precompression, "precompression")
-        object.__setattr__(self, "precompression", load)
+        self._set(precompression=positive(self.precompression, "precompression"))
 
     def __repr__(self) -> str:
         return (

@@ -77,7 +77,7 @@ class Background(Value):
         for_cell(self.law, self.cell)
         # Floats in an expression keep the digits of a shock's strains.
         read = real if isinstance(self.p0, sp.Expr) else read_exact
-        object.__setattr__(self, "p0", read(self.p0, "background"))
+        self._set(p0=read(self.p0, "background"))
         if self.law.homogeneous and self.p0.is_negative:
             raise InputError(
                 f"background is {shorten(self.p0)}: under a power law it must not be negative"

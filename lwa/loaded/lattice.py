@@ -86,8 +86,10 @@ class Link(Value):
             raise InputError(
                 f"link ({i}, {j}): its law is {shorten(self.law)}, no contact law"
             )
-        object.__setattr__(self, "factor", positive(self.factor, "link's factor"))
-        object.__setattr__(self, "cosine", positive(self.cosine, "link's cosine"))
+        self._set(
+            factor=positive(self.factor, "link's factor"),
+            cosine=positive(self.cosine, "link's cosine"),
+        )
 
     def compression(self, force: sp.Expr) -> sp.Expr:
         """The compression δ at which the link pushes with this force along the lattice."""
@@ -119,9 +121,10 @@ class Resonator(Value):
 
     def __post_init__(self) -> None:
         integer(self.bead, "a resonator's bead", 0)
-        object.__setattr__(self, "mass", positive(self.mass, "resonator's mass"))
-        stiffness = positive(self.stiffness, "resonator's stiffness")
-        object.__setattr__(self, "stiffness", stiffness)
+        self._set(
+            mass=positive(self.mass, "resonator's mass"),
+            stiffness=positive(self.stiffness, "resonator's stiffness"),
+        )
 
 
 class Equilibrium(NamedTuple):
@@ -180,11 +183,12 @@ class Lattice(Value):
         resonators: Iterable[Resonator] = (),
         spacing: Quantity = 1,
     ) -> None:
-        object.__setattr__(self, "masses", quantities(masses, "masses", "mass"))
-        object.__setattr__(self, "links", _parts(links, Link, "links"))
-        parts = _parts(resonators, Resonator, "resonators")
-        object.__setattr__(self, "resonators", parts)
-        object.__setattr__(self, "spacing", positive(spacing, "spacing"))
+        self._set(
+            masses=quantities(masses, "masses", "mass"),
+            links=_parts(links, Link, "links"),
+            resonators=_parts(resonators, Resonator, "resonators"),
+            spacing=positive(spacing, "spacing"),
+        )
         if not self.masses or not self.links:
             raise InputError("a lattice needs at least one mass and one link")
         # A link's second particle may be in a cell ahead, the first one may not.

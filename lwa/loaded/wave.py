@@ -51,8 +51,7 @@ from lwa.base.exact import (
 )
 from lwa.base.frozen import Estimate, NoSolitaryWave, known_extent, known_quantity
 from lwa.base.words import ExtentName, QuantityName, one_of
-from lwa.cell import Cell
-from lwa.cell import k as symbol_k
+from lwa.cell import Cell, k as symbol_k
 from lwa.law import ContactLaw, for_cell
 from lwa.loaded.background import Background, KdV, squared_speed
 from lwa.loaded.errors import bounds

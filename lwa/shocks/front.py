@@ -11,8 +11,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base.exact import InputError, demand_numbers, positive, read_exact, shorten
-from lwa.cell import Cell
-from lwa.cell import k as symbol_k
+from lwa.cell import Cell, k as symbol_k
 from lwa.law import ContactLaw, for_cell
 from lwa.loaded.background import Background
 from lwa.shocks.riemann import Shock

@@ -48,14 +48,13 @@ class Material(Value):
 
     def __post_init__(self) -> None:
         given = self.nu
-        object.__setattr__(self, "E", positive(self.E, "E"))
-        object.__setattr__(self, "nu", read_exact(self.nu, "nu"))
+        self._set(E=positive(self.E, "E"), nu=read_exact(self.nu, "nu"))
         if self.nu.is_number and not -1 < self.nu <= sp.S.Half:
             raise InputError(
                 f"nu is {shorten(given)}: Poisson's ratio lies between -1 and 1/2"
             )
         if self.density is not None:
-            object.__setattr__(self, "density", positive(self.density, "density"))
+            self._set(density=positive(self.density, "density"))
 
     @classmethod
     def named(cls, name: str, **changed: Any) -> Material:
@@ -130,8 +129,8 @@ class Sphere(Value):
     material: Material
 
     def __post_init__(self) -> None:
-        for name in ("mass", "radius"):
-            object.__setattr__(self, name, positive(getattr(self, name), name))
+        mass = positive(self.mass, "mass")
+        self._set(mass=mass, radius=positive(self.radius, "radius"))
         if not isinstance(self.material, Material):
             raise InputError(
                 f"material is {shorten(self.material)}: a Material is wanted"

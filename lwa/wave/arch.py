@@ -64,7 +64,7 @@ class Arch(Parametric):
     I: sp.Expr
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "k", exponent(self.k))
+        self._set(k=exponent(self.k))
         conditions = (
             ("k", self.k, 1, "k > 1"),
             ("(G+H+I)/D²", self.coefficient_sum, 0, "G+H+I > 0"),

@@ -20,8 +20,7 @@ import sympy as sp
 from lwa.base import latex
 from lwa.base.exact import InputError, read_exact, shorten
 from lwa.base.words import LanguageName, one_of
-from lwa.cell import Cell
-from lwa.cell import k as symbol_k
+from lwa.cell import Cell, k as symbol_k
 from lwa.law import ContactLaw, power_exponent
 from lwa.linear.dispersion import Dispersion
 from lwa.wave.arch import Arch

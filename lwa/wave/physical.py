@@ -68,7 +68,7 @@ class PhysicalWave(Parametric):
     of: BearerName = "contact"
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "force", positive(self.force, "force"))
+        self._set(force=positive(self.force, "force"))
         if one_of(self.of, BEARERS, "of") == "bead":
             self._bead_share  # noqa: B018 - a share that does not exist is refused here
 

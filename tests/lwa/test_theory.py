@@ -2,8 +2,7 @@
 
 import pytest
 import sympy as sp
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from lwa import Cell, Dimer, InputError, homogenize
 from tests.commands import terminal

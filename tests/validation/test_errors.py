@@ -23,8 +23,7 @@ from validation.pulses.sensors import record
 from validation.scenes import scenefile
 from validation.scenes.forcing import Damping, Drive
 from validation.scenes.scene import Scene
-from validation.studies import paper
-from validation.studies import run as runs
+from validation.studies import paper, run as runs
 from validation.studies.law import Medium, fit_power
 from validation.waves.newton import Problem, SpecialRatio
 from validation.waves.solver import exact_wave, solve

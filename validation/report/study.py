@@ -25,8 +25,7 @@ import click
 from lwa.base.exact import InputError, read_exact
 from lwa.base.files import reason
 from lwa.base.progress import bar, shown
-from lwa.command.cli import HELP, called, help_end
-from lwa.command.cli import run as run_command
+from lwa.command.cli import HELP, called, help_end, run as run_command
 from lwa.command.options import Read, Reader, Words, count, quantities
 from validation.pictures import SUFFIXES, Panel, Pictured
 from validation.report.table import WIDTH, Finding, Table, findings_table, plain, wrap

@@ -10,8 +10,7 @@ from typing import Any
 import sympy as sp
 
 from lwa.base import files
-from lwa.base.exact import InputError, shorten
-from lwa.base.exact import one_of as one_of
+from lwa.base.exact import InputError, one_of as one_of, shorten
 from lwa.base.files import Reader
 from lwa.cell import exponent
 from lwa.law import ContactLaw

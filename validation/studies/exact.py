@@ -14,8 +14,7 @@ from validation.pictures import Curve, Panel
 from validation.report.study import EXPONENT, Report, option, study
 from validation.report.table import Column, Table
 from validation.waves.profile import Number
-from validation.waves.solver import exact_wave
-from validation.waves.solver import resonances as special_ratios
+from validation.waves.solver import exact_wave, resonances as special_ratios
 
 _COLUMNS = (
     Column("of", "of"),

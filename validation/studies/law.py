@@ -32,8 +32,7 @@ from lwa.base.exact import read_exact, shorten
 from lwa.base.files import entries, load
 from lwa.base.frozen import Estimate
 from lwa.command.options import quantities
-from lwa.spheres.beads import FILE, read_materials
-from lwa.spheres.beads import spheres as read_spheres
+from lwa.spheres.beads import FILE, read_materials, spheres as read_spheres
 from validation.pictures import Curve, Panel
 from validation.report.study import Report, option, study
 from validation.report.table import Column, Table

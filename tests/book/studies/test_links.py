@@ -5,8 +5,7 @@ import math
 import pytest
 import sympy as sp
 
-from book.studies import links as exactly
-from book.studies import struck as blows
+from book.studies import links as exactly, struck as blows
 from lwa import Lattice, Link, Power, loaded_wave
 from validation import exact_wave
 

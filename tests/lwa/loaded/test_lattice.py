@@ -4,8 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from lwa import Lattice, Law, Link, Power, loaded_wave
 from lwa.law import DELTA, named

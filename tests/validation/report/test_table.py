@@ -8,8 +8,7 @@ import math
 import numpy as np
 import pytest
 import sympy as sp
-from hypothesis import example, given
-from hypothesis import strategies as st
+from hypothesis import example, given, strategies as st
 
 from lwa import Estimate
 from validation.report.table import Column, Finding, Table, aligned, plain

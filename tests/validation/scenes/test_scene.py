@@ -6,8 +6,7 @@ from dataclasses import replace
 
 import pytest
 import sympy as sp
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from lwa import Cell, Dimer
 from lwa.law import Law, named

@@ -10,8 +10,7 @@ import tomllib
 from contextlib import suppress
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from lwa.base import files
 from lwa.law import named
