@@ -54,7 +54,7 @@ class Fit:
         """Return the base at times of the pulse, without what rises before it."""
         line = self.sizes[:_LINE]
         terms = _terms(x, len(line))
-        return np.asarray(terms @ line)
+        return terms @ line
 
     @property
     def variance(self) -> float:
@@ -87,7 +87,7 @@ class Fit:
         products = np.fft.irfft(power)[:count] / count
         unlike = np.append(products, 0.0) <= 0
         first = int(np.argmax(unlike))
-        return np.asarray(products[: max(1, first)])
+        return products[: max(1, first)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,7 +169,7 @@ class Base:
         """Return the base at times of the pulse."""
         x = (t - self.rise) / self.width
         bases = [fit.at(x) for fit in self.fits]
-        return np.asarray(self.weights @ bases)
+        return self.weights @ bases
 
     def drawn(self, t: Array, pulse: Array, variance: float, step: float) -> Array:
         """Draw errors that noise makes in a pulse over its base.
@@ -224,7 +224,7 @@ class Base:
         spectra = np.fft.rfft(white, axis=0)
         spectra *= factors[:, np.newaxis]
         shaped = np.fft.irfft(spectra, size, axis=0)
-        return np.asarray(shaped[:count])
+        return shaped[:count]
 
 
 def _rounding(
@@ -235,7 +235,7 @@ def _rounding(
     places = rng.uniform(-0.5, 0.5, DRAWS)
     true = exact[:, np.newaxis] + step * places
     levels = np.round((true + noise) / step)
-    return np.asarray(step * levels - true)
+    return step * levels - true
 
 
 def _terms(x: Array, count: int) -> Array:

@@ -55,7 +55,6 @@ _CONSTANT = 1e-8  # range of a signal without pulses, over its size
 _SUDDEN = 11.0  # growth, in a width, of a force that begins: two widths before a Gaussian's top
 _GRID = 400  # intervals in which the maxima of a pulse are looked for
 _SAME = 0.01  # distance, over the width, of two readings of one maximum
-_LEAST_OF_WIDTH = 0.1  # relative error of a width over that of the peak, at least
 _EXACT = 1e-4  # noise over the peak of a record without noise
 _UPRIGHT = 0.1  # rise over fall of a record that may be upright, at least
 # Widths behind the arrival: ends of two stretches that are searched for an undershoot
@@ -191,14 +190,20 @@ def _is_exact(f: Array) -> bool:
     swing = f - f[0]
     if swing.max() < _UPRIGHT * -swing.min():
         return False  # the moving mean tells that it is inverted
+    least = _EXACT * np.ptp(f)
     rise = int(np.argmax(swing > swing.max() / 2))
     before = f[:rise]
     early = before[: len(before) // 4]
-    if len(early) >= _EARLY and np.ptp(early) < _EXACT * np.ptp(f):
+    if len(early) >= _EARLY and np.ptp(early) < least:
         return True
-    # The signal may rise smoothly from the start; noise falls as well.
+    # The signal may rise smoothly from the start: noise falls as well, and bends to and fro.
     falls = np.minimum(np.diff(before), 0.0)
-    return len(before) > 0 and bool(-falls.sum() < _EXACT * np.ptp(f))
+    bends = np.diff(before, 2)
+    signs = np.sign(bends[np.abs(bends) > least])
+    turns = np.count_nonzero(np.diff(signs))
+    # A front past its steepest place tells nothing of its foot, unless the foot is 0.
+    late = f[0] != 0 and -1 in signs[:1]
+    return bool(len(before) and -falls.sum() < least and turns < 2 and not late)
 
 
 def _exact(t: Array, f: Array) -> NoisyPulse:
@@ -224,9 +229,6 @@ def _exact(t: Array, f: Array) -> NoisyPulse:
     apart = np.abs(times[tops] - pulse.arrival).max(initial=0.0)
     if apart > _SAME * pulse.fwhm:
         errors["arrival"] = max(errors["arrival"], apart + _SAME * pulse.fwhm)
-    # Both differences of the width may vanish by chance.
-    least = _LEAST_OF_WIDTH * errors["peak"] / pulse.peak
-    errors["fwhm"] = max(errors["fwhm"], least * pulse.fwhm)
     # A base that is off by this much moves the peak as much, and both flanks at its half.
     doubt = _front(f, pulse.fwhm / x[1]) / pulse.peak
     for name in ("peak", "fwhm"):
@@ -239,14 +241,15 @@ def _exact(t: Array, f: Array) -> NoisyPulse:
 def _front(f: Array, width: float) -> float:
     """Return the error of the first sample as the base of a record that begins in a front.
 
-    width : of the pulse, in samples.
+    width : of the pulse, in samples. A record that begins with 0 may be that of a force which
+    begins suddenly.
     """
     first, second = map(float, np.diff(f[:3]))
     if not 0 < first < second:
         return abs(first)
     # Differences of a + b e^{n g}, n the number of a sample, grow by the factor e^g.
     factor = second / first
-    if math.log(factor) * width > _SUDDEN:
+    if f[0] == 0 and math.log(factor) * width > _SUDDEN:
         return 0.0
     return first / (factor - 1)
 

@@ -17,10 +17,9 @@ light beads are at rest before the pulse: its pulse is measured by `validation.p
 
 Newton's method solves ``T = 0`` together with the equations of motion, with m2 as an unknown, and
 may converge to any of the special ratios, so their order is secured as follows. All ratios are
-found at ``k = 3/2``: the first two as published, and each further one at the distance of the last
-two in ``√(m1/m2)``, which is nearly constant. From there they are continued to k in steps that
-change ``√(m1/m2)`` little. Below ``k = 1.3`` the smaller ratios are lost on the way (measured: six
-are found from ``k = 1.3`` on, five at 1.25, four at 1.2, three at 1.15, two at 1.1).
+found at ``k = 3/2``, from starts that lead to one after another. From there they are continued to
+k in steps that change ``√(m1/m2)`` little. Below ``k = 1.3`` the smaller ratios are lost on the way
+(measured: six are found from ``k = 1.3`` on, five at 1.25, four at 1.2, three at 1.15, two at 1.1).
 """
 
 from __future__ import annotations
@@ -36,7 +35,6 @@ from typing import Any
 import numpy as np
 
 from lwa import Cell, loaded_wave
-from lwa.base.arrays import Array
 from lwa.base.exact import InputError
 from validation.scenes.checks import SceneError, between, integer, items
 from validation.waves import newton
@@ -55,15 +53,19 @@ HIGH = 0.5
 STEEPEST = 60.0  # k: beyond, 1200 points take a second
 STEEPEST_LOADED = 8.0  # k on a background, where narrower waves were not tried
 NEAR = 1e-7  # relative difference from a special mass ratio: ratios are given in seven digits
-MOST = 6  # ratios at one k
 FOLLOWED = (1.15, 1.2, 1.25, 1.3)
 """Least k of the third to the sixth special ratio, measured: below, the strain T that tells a
 ratio from its neighbours is lost in rounding."""
 HERTZ = 1.5
-PUBLISHED = (0.3428, 0.1548)  # the first ratios at k = 3/2, by Jayaprakash et al.
-# Difference of √(m1/m2) from its extrapolation, in one step along k: less than half of that of
-# neighbours, 0.28 or more.
-_NEARER = 0.1
+# From the theory's wave of these ratios Newton's method reaches the six special ratios at k = 3/2
+# (0.3428, 0.1548, 0.0901, … by Jayaprakash et al.). √(m1/m2) is 0.3 larger than theirs, and any
+# value from 0.2 to 0.4 leads to the same ratios.
+STARTS = (0.248, 0.1238, 0.0758, 0.0533, 0.0401, 0.0309)
+# One step along k. √(m1/m2) of neighbours differs by a tenth or more: less than half of that tells
+# a ratio from its neighbours. Longer steps of ln(k - 1) are mostly divided.
+_NEARER = 0.05
+_FARTHEST = 0.25
+_SHORTEST = 1e-3  # a wave that a shorter step does not reach is lost
 _EQUAL = (1.0, 1.0)
 
 
@@ -196,11 +198,7 @@ def _dimer(pair: newton.Pair, k: float) -> ExactWave:
     )
 
 
-def solve(
-    problem: newton.Problem,
-    start: ExactWave | None = None,
-    change: float | Array = 0.0,
-) -> ExactWave:
+def solve(problem: newton.Problem, start: ExactWave | None = None) -> ExactWave:
     """Return a wave of peak force 1, on whatever branch Newton's method reaches.
 
     Parameters
@@ -209,8 +207,6 @@ def solve(
         Masses, exponent and grid; of a `newton.SpecialRatio` m2 is solved for.
     start : ExactWave, optional
         A near wave; by default the theory's.
-    change : float or Array
-        Added to the forces of the near wave at the grid points.
 
     Raises
     ------
@@ -220,7 +216,7 @@ def solve(
     k = problem.k
     m1, m2 = problem.masses
     if start is not None:
-        force = start.force(problem.xi) + change
+        force = start.force(problem.xi)
         c2 = start.c2 * sum(start.masses) / (m1 + m2)
     else:
         # The force cos^{2k/(k-1)}(βξ), and c² = 4/((k+1)(m1+m2)). The two contacts' forces are
@@ -263,7 +259,7 @@ def resonances(k: Any, count: Any) -> tuple[ExactWave, ...]:
     SceneError
         For numbers out of range, and for more ratios than are found at k, see `FOLLOWED`.
     """
-    count = integer(count, "count", 1, MOST)
+    count = integer(count, "count", 1, len(STARTS))
     known = _known(k)
     if count > known:
         found = f"at k = {k:g} the {known} largest special mass ratios are found"
@@ -275,7 +271,7 @@ def _known(k: Any) -> int:
     """Number of the special ratios that are found at k."""
     # Nearer to k = 1 the strain T is lost in rounding.
     k = between(k, "k", 1.1, 5, "special mass ratios are found for k from 1.1 to 5")
-    return len(PUBLISHED) + bisect(FOLLOWED, k)
+    return len(STARTS) - len(FOLLOWED) + bisect(FOLLOWED, k)
 
 
 def special_waves(k: float) -> Iterator[ExactWave]:
@@ -283,78 +279,25 @@ def special_waves(k: float) -> Iterator[ExactWave]:
 
     The mass m1 is 1. Raises `SceneError` for k out of range.
     """
-    waves = [solve(SpecialRatio((1.0, ratio), HERTZ)) for ratio in PUBLISHED]
-    for i in range(_known(k)):
-        if i == len(waves):
-            waves.append(_next(*waves[-2:]))
-        yield _followed(waves[i], k)
-
-
-def _root(wave: ExactWave) -> float:
-    """Return √(m1/m2), to which the frequency of the light beads is proportional."""
-    return math.sqrt(1 / wave.omega)
+    for start in STARTS[: _known(k)]:
+        yield _followed(solve(SpecialRatio((1.0, start), HERTZ)), k)
 
 
 def _followed(wave: ExactWave, k: float) -> ExactWave:
     """Continue a solitary wave and its special mass ratio to another exponent k.
 
-    Steps of ln(k - 1) adapt: a wave that is lost, or of another ratio, halves the step.
+    A step that loses the wave, or leads to another ratio, is divided in two.
     """
-    path = [wave]
-    step = 0.1
-    while path[-1].k != k:
-        here = math.log(path[-1].k - 1)
-        left = math.log(k - 1) - here
-        exponent = k  # without rounding
-        if abs(left) > step:
-            exponent = 1 + math.exp(here + math.copysign(step, left))
-        try:
-            path.append(_following(path[-2:], exponent))
-            step *= 1.5
-        except NoWave:
-            step /= 2
-            if step < 1e-3:
-                raise
-    return path[-1]
-
-
-def _following(path: Sequence[ExactWave], k: float) -> ExactWave:
-    """Return the wave at k behind one or two waves of a path.
-
-    Raises `NoWave` if √(m1/m2) is far from extrapolated: the wave is that of another ratio.
-    """
-    before = path[0]
-    last = path[-1]
-    farther = 0.0  # length of the step over that of the path's last one
-    if before is not last:
-        start, here, there = (math.log(x - 1) for x in (before.k, last.k, k))
-        farther = (there - here) / (here - start)
-    grown = _root(last) - _root(before)
-    expected = _root(last) + farther * grown
-    problem = SpecialRatio((1.0, expected**-2), k)
-    xi = problem.xi
-    change: float | Array = 0.0
-    # Towards k = 1 the profile goes on as before; at large k its flanks are too steep for that.
-    if k < HERTZ:
-        change = farther * (last.force(xi) - before.force(xi))
-    following = solve(problem, last, change)
-    if following.solitary and abs(_root(following) - expected) < _NEARER:
-        return following
-    raise NoWave(f"the special ratio is lost {_parameters(last.masses, k)}")
-
-
-def _next(before: ExactWave, last: ExactWave) -> ExactWave:
-    """Return the solitary wave at the next smaller ratio than those of two neighbouring waves."""
-    step = _root(last) - _root(before)
-    shares = np.arange(0.6, 1.35, 0.05)
-    places = (_root(last) + step * shares).tolist()
-    first = places[0]
-    end = places[-1]
-    middle = (first + end) / 2
-    middle_first = sorted(places, key=lambda x: abs(x - middle))
-    for root in middle_first:
+    length = abs(math.log((k - 1) / (wave.k - 1)))
+    if length < _FARTHEST:
         with suppress(NoWave):
-            following = solve(SpecialRatio((1.0, root**-2), last.k))
-            if following.solitary and first < _root(following) < end:
+            following = solve(SpecialRatio(wave.masses, k), wave)
+            # The frequency of the light beads is proportional to √(m1/m2).
+            faster = math.sqrt(wave.omega / following.omega)
+            if following.solitary and abs(faster - 1) < _NEARER:
                 return following
-    raise NoWave(f"no next special ratio is found {_parameters(last.masses, last.k)}")
+    if length < _SHORTEST:
+        lost = _parameters(wave.masses, wave.k)
+        raise NoWave(f"the special ratio is lost {lost}")
+    middle = 1 + math.sqrt((k - 1) * (wave.k - 1))
+    return _followed(_followed(wave, middle), k)

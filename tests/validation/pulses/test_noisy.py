@@ -202,6 +202,26 @@ def test_a_record_may_begin_in_the_front_of_its_pulse(at):
     assert np.all((off < errors) & (errors < 30 * off))
 
 
+@pytest.mark.parametrize("noise", [0, 0.003])
+def test_the_foot_of_a_record_that_begins_in_its_pulse_is_unknown(noise):
+    late = np.exp(-(((N - 20) / 30) ** 2)) + noise * WHITE
+    with pytest.raises(MeasureError, match="begins in a pulse"):
+        noisy_pulse(N, late)
+    early = np.exp(-(((N - 40) / 30) ** 2)) + noise * WHITE
+    found = noisy_pulse(N, early).numbers
+    # The noise hides how the front begins.
+    assert ("peak" in found) == (noise == 0)
+    width = found["fwhm"]
+    assert abs(width.value - 60 * math.sqrt(math.log(2))) < 3 * width.error
+
+
+def test_a_front_that_has_just_begun_has_a_foot_below_the_first_sample():
+    """An arch that has risen to 0.4 % of its peak: a sudden front begins at 0."""
+    places = np.clip((N - 75) / 90, -1, 1)
+    peak = noisy_pulse(N, np.cos(math.pi / 2 * places) ** 4).numbers["peak"]
+    assert abs(peak.value - 1) < peak.error < 30 * abs(peak.value - 1)
+
+
 def test_many_samples_are_averaged():
     """Thirty thousand samples a width: the errors are those of the samples themselves."""
     t = np.linspace(-6, 3, 270_001)
