@@ -256,9 +256,11 @@ class Motion:
         # a wall, which has no equation of motion and is left out below.
         springs = np.zeros(n + 1)
         for number, law in enumerate(self.laws):
-            # All contacts of a chain with one law: a slice takes no copies.
-            own: Any = self.law_of == number if len(self.laws) > 1 else slice(None)
-            rest, stiffnesses = self.rest[own], self.stiffnesses[own]
+            own: Any = slice(None)  # takes no copies, of a chain with one law
+            if len(self.laws) > 1:
+                own = self.law_of == number
+            rest = self.rest[own]
+            stiffnesses = self.stiffnesses[own]
             if not rest.size:  # a single bead without a wall
                 continue
             # Scale of the compression: all the energy in the stiffest contact of this law.
@@ -281,7 +283,8 @@ class Motion:
             springs[1 : len(self.rest) + 1][own] += stiff
         if not deepest:  # nothing presses: any scale does
             return Scales(energy, 0.0, 1.0, 1.0, math.inf)
-        time = 1 / math.sqrt((springs[:n] / self.masses).max())
+        squares = springs[:n] / self.masses  # of angular frequencies
+        time = 1 / math.sqrt(squares.max())
         _check_range("shortest time", time)
         y = deepest
         v = deepest / time
@@ -294,7 +297,8 @@ class Motion:
             _check_range("velocity", v)
             # What a float cannot tell of the static compression, over the displacement y: the part
             # of the motion that rounding may hide.
-            rounding = sys.float_info.epsilon * float(self.rest.max()) / y
+            lost = sys.float_info.epsilon * float(self.rest.max())
+            rounding = lost / y
         return Scales(energy, deepest, y, v, time, rounding)
 
 

@@ -73,9 +73,19 @@ class KnotPath:
         rows = self.knots.watched.searchsorted(near)
         step = self.time[1:-1].searchsorted(time, side="right")
         y, v = np.empty((2, len(rows), len(time)))
-        # Working memory: the compiled loops allocate nothing.
-        working = np.empty((2, len(rows), 4)), np.empty((3, ROOM)), np.empty(EDGES)
-        interpolate(self.chain, self.knots, rows, time, step, y, v, *working)
+        interpolate(
+            self.chain,
+            self.knots,
+            rows,
+            time,
+            step,
+            y,
+            v,
+            # Working memory: the compiled loops allocate nothing.
+            ends=np.empty((2, len(rows), 4)),
+            points=np.empty((3, ROOM)),
+            edges=np.empty(EDGES),
+        )
         own = near.searchsorted(beads)
         y, v = y[own], v[own]
         if self.motion.scene.drive is not None and 0 in beads:
@@ -110,7 +120,11 @@ class Recorder:
         if len(watched):
             # A knot: four numbers a bead, and its time.
             most += BUFFER // (4 * len(watched) + 1)
-        self.knots = Knots(np.empty(most), np.empty((most, len(watched), 4)), watched)
+        self.knots = Knots(
+            time=np.empty(most),
+            state=np.empty((most, len(watched), 4)),
+            watched=watched,
+        )
         self.samples: list[Array] = []
         self._parts: list[tuple[Array, Array]] = []  # times and states of knots
         self._bytes = 0
@@ -127,7 +141,8 @@ class Recorder:
         part = times[:count].copy(), states[:count].copy()
         self._parts.append(part)
         self._bytes += part[1].nbytes
-        times[0], states[0] = times[count - 1], states[count - 1]
+        times[0] = times[count - 1]
+        states[0] = states[count - 1]
         if self._bytes > _MOST_BYTES:
             self._sample()
         return 1
@@ -139,13 +154,18 @@ class Recorder:
         time = sample_times(self.motion.scene)
         done = sum(part.shape[2] for part in self.samples)
         due = int(time.searchsorted(path.time[-1], side="right"))
-        y, v = path(sensed_beads(self.motion), time[done:due])
-        self.samples.append(np.array((y, v)))
+        motions = path(sensed_beads(self.motion), time[done:due])
+        self.samples.append(np.array(motions))
         self._parts.clear()
 
     def path(self) -> KnotPath | None:
         """Return the motion of the whole run; None if it takes more than `_MOST_BYTES` bytes."""
         if not self._parts:
             return None
-        time, state = (np.concatenate(rows) for rows in zip(*self._parts, strict=True))
-        return KnotPath(self.motion, self.chain, Knots(time, state, self.knots.watched))
+        times, states = zip(*self._parts, strict=True)
+        knots = Knots(
+            time=np.concatenate(times),
+            state=np.concatenate(states),
+            watched=self.knots.watched,
+        )
+        return KnotPath(self.motion, self.chain, knots)

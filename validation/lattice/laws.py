@@ -58,7 +58,10 @@ class Contact:
         """True if damping may pull, as the law pulls, or attracts where the contact opens."""
         if self.law is None:
             return False
-        return self.pulls or float(self.force(np.array([_OPENS]))[0]) < 0
+        if self.pulls:
+            return True
+        (opening,) = self.force(np.array([_OPENS]))
+        return bool(opening < 0)
 
     def force(self, compression: Array) -> Array:
         """Return the force F at a compression δ, of any shape; ``[δ]_+^k`` for a power law."""
@@ -118,7 +121,8 @@ class Contact:
         if self.damping_power is None:
             return elastic
         closed = compression if self.pulls else np.maximum(compression, 0.0)
-        force = elastic + (damping * (closed**self.damping_power * rate).T).T
+        resisted = closed**self.damping_power * rate
+        force = elastic + (damping * resisted.T).T
         if not self.sticks:
             force = np.maximum(force, np.minimum(elastic, 0.0))
         return force if self.pulls else np.where(compression > 0.0, force, 0.0)
@@ -184,7 +188,8 @@ class Contact:
             # δ^{k-1} does not fall, as scenes have k ≥ 1: it is greatest at the greater depth. A
             # NumPy float, which overflows to ∞; a Python one raises an exception.
             return float(np.float64(depth) ** (self.k - 1))
-        return float(self.stiffness(np.array([start, depth])).max())
+        ends = np.array([start, depth])
+        return float(self.stiffness(ends).max())
 
     @property
     def addresses(self) -> dict[str, int]:

@@ -86,7 +86,8 @@ def quantities(
     compressions = y[:-1] - y[1:]
     compressions += motion.rest[contacts, None]
     elastic = motion.force(compressions, contacts)
-    forces = motion.damped_force(elastic, compressions, v[:-1] - v[1:], contacts)
+    rates = v[:-1] - v[1:]
+    forces = motion.damped_force(elastic, compressions, rates, contacts)
     # Half of the contact behind, and half of the contact ahead of each bead.
     means = np.zeros(v.shape)
     means[1:] = forces
@@ -162,7 +163,8 @@ def contact_changes(path: Path, contact: int) -> Array:
 
     d, _ = compression(time)
     # By signs, as products of compressions over- or underflow.
-    step = np.flatnonzero(np.sign(d[1:]) * np.sign(d[:-1]) < 0)
+    sign = np.sign(d)
+    step = np.flatnonzero(sign[1:] * sign[:-1] < 0)
     early = time[step]
     late = time[step + 1]
     # The root of the straight line through both ends of the step

@@ -55,7 +55,6 @@ _CONSTANT = 1e-8  # range of a signal without pulses, over its size
 _SUDDEN = 11.0  # growth, in a width, of a force that begins: two widths before a Gaussian's top
 _GRID = 400  # intervals in which the maxima of a pulse are looked for
 _SAME = 0.01  # distance, over the width, of two readings of one maximum
-_LEAST_OF_WIDTH = 0.1  # relative error of a width over that of the peak, at least
 _EXACT = 1e-4  # noise over the peak of a record without noise
 _UPRIGHT = 0.1  # rise over fall of a record that may be upright, at least
 # Widths behind the arrival: ends of two stretches that are searched for an undershoot
@@ -230,9 +229,6 @@ def _exact(t: Array, f: Array) -> NoisyPulse:
     apart = np.abs(times[tops] - pulse.arrival).max(initial=0.0)
     if apart > _SAME * pulse.fwhm:
         errors["arrival"] = max(errors["arrival"], apart + _SAME * pulse.fwhm)
-    # Both differences of the width may vanish by chance.
-    least = _LEAST_OF_WIDTH * errors["peak"] / pulse.peak
-    errors["fwhm"] = max(errors["fwhm"], least * pulse.fwhm)
     # A base that is off by this much moves the peak as much, and both flanks at its half.
     doubt = _front(f, pulse.fwhm / x[1]) / pulse.peak
     for name in ("peak", "fwhm"):

@@ -18,10 +18,12 @@ PLACES = np.linspace(0, 1, 13)  # in a step, at which the contacts are looked at
 
 @dataclass
 class Found:
-    """Motion of a scene at some times, (times, n), and the energy without a driven bead's."""
+    """Displacements and velocities of a scene at some times, (times, 2, n), and its energies.
 
-    y: np.ndarray
-    v: np.ndarray
+    A driven bead's energy is left out.
+    """
+
+    motion: np.ndarray
     energy: np.ndarray
 
 
@@ -116,5 +118,5 @@ def follow(scene, times, rtol, scale):
                 state[0], state[n], _ = drive.at(stop)
             kinetic, stored = motion.energies(state)
             energy = kinetic[drive is not None :].sum() + stored.sum()
-            rows.append((state[:n].copy(), state[n : 2 * n].copy(), energy))
+            rows.append((state[:-2].reshape(2, n).copy(), energy))
     return Found(*map(np.array, zip(*rows, strict=True)))

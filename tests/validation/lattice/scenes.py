@@ -131,16 +131,10 @@ def scales_of(scene, found):
     """Scales of length, velocity and energy of the response."""
     energy = found.energy.max()
     scales = Motion(scene, energy if energy > 0 else None).scales
-    free = found.v[:, scene.drive is not None :]
+    free = found.motion[:, 1, scene.drive is not None :]
     speed = max(scales.velocity, np.abs(free).max(initial=0))
     length = max(scales.displacement, scales.compression)
     return length, speed, energy if energy > 0 else 1.0
-
-
-def difference(y, v, found, scale):
-    return max(
-        np.abs(y - found.y).max() / scale[0], np.abs(v - found.v).max() / scale[1]
-    )
 
 
 def errors(seed, tolerances):
@@ -149,11 +143,16 @@ def errors(seed, tolerances):
     scene = drawn(seed)
     times = np.arange(SAMPLES) / (SAMPLES - 1) * scene.duration
     scale = scales_of(scene, follow(scene, times, 1e-6, (1.0, 1.0, 1.0)))
-    exact, near = (follow(scene, times, rtol, scale) for rtol in (1e-13, 1e-11))
-    amplification = max(1, difference(near.y, near.v, exact, scale) / 1e-11)
+    exact, near = (follow(scene, times, rtol, scale).motion for rtol in (1e-13, 1e-11))
+
+    def off(motion):
+        return (np.abs(motion - exact).max(axis=(0, 2)) / scale[:2]).max()
+
+    amplification = max(1, off(near) / 1e-11)
     rows = []
     for rtol in tolerances:
         run = simulate(scene, rtol=rtol)
-        error = difference(run.bead_displacement.T, run.bead_velocity.T, exact, scale)
-        rows.append((error / amplification / rtol, abs(run.energy_drift) / rtol))
+        motion = np.transpose((run.bead_displacement, run.bead_velocity), (2, 0, 1))
+        error = off(motion) / amplification
+        rows.append((error / rtol, abs(run.energy_drift) / rtol))
     return np.transpose(rows)

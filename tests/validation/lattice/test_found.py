@@ -66,10 +66,10 @@ KEEP_ENERGY = [
     # The wall's contact, idle as damping may not pull, seems to push at some stages.
     shaken((1.361, 0.578), 3.0, ("contact", 0.395), 0.824, 0.592, -1.128),
     shaken((1.404, 0.973), 2.5, ("contact", 0.684), 0.621, 0.391, 0.08),
-    # Beyond a free end 0 times the force of no contact was no number.
+    # Beyond a free end 0 times the force of no contact, which grows with time, is no number.
     *(
-        chain(3, law=law, velocities=(1,), duration=100, damping=Damping("contact", 0.1))
-        for law in (TODA, NO_NUMBER_AT_0)
+        chain(3, law=law, velocities=(1,), duration=3000, damping=Damping("contact", 0.1))
+        for law in (TODA, NO_NUMBER_AT_0, Power(200))
     ),
 ]  # fmt: skip
 
@@ -86,14 +86,6 @@ def passed(A, gap, velocity, duration, k=1.5, damping=None):
         2, stiffnesses=(A,), k=k, displacements=(0, gap), velocities=(0, velocity),
         duration=duration, damping=damping, drive=Drive(amplitude=1, frequency=1 / (2 * np.pi)),
     )  # fmt: skip
-
-
-@pytest.mark.parametrize("rtol", [1e-6, 1e-9, 1e-11])
-def test_a_contact_near_an_inflection_of_its_drive_is_seen(rtol):
-    """The rate of the compression changes its sign three times within a step."""
-    gap = 0.998 * np.pi + 0.8 * (2 / 3) * 0.002 * np.sqrt(0.004)
-    velocity = simulate(passed(1e7, gap, -0.998, 3.3), rtol=rtol).velocities[1]
-    assert velocity == pytest.approx(-0.9960454316, abs=max(10 * rtol, 1e-9))
 
 
 def plate(short):
@@ -122,6 +114,10 @@ INFLECTION = chain(
 )  # fmt: skip
 
 
+# The rate of the compression changes its sign three times within a step.
+WAVY = passed(
+    1e7, 0.998 * np.pi + 0.8 * (2 / 3) * 0.002 * np.sqrt(0.004), -0.998, 3.3
+)  # fmt: skip
 CLOSED = passed(
     579.270586588404, 3.0946816019061583, -0.9845886417241916, 4.628062933371744,
     damping=Damping("kuwabara_kono", 0.0013403119338021737),
@@ -145,6 +141,7 @@ GRAZE = passed(
         (plate(0.1), 1, 5.4, 1e3),
         (plate(1e-4), 1, 5.014, 1e3),
         (INFLECTION, 0, -1, 2e3),
+        (WAVY, 1, -0.9960454317, 10),
         # A graze that is 1e-9 deep: damping alone is felt.
         (GRAZE, 1, 0.595, 10),
         # A contact that closes early in a long step, along no quintic
@@ -286,7 +283,7 @@ def test_a_response_that_is_stronger_than_guessed_is_recorded():
 )  # fmt: skip
 def test_forces_that_jump(scene, most):
     """The motion erred by up to 31,000, 26,000, 401, 51 and 4 times the tolerance."""
-    true = follow(scene, [scene.duration], 1e-13, (0.1, 0.1, 0.1)).v[0]
+    true = follow(scene, [scene.duration], 1e-13, (0.1, 0.1, 0.1)).motion[0, 1]
     for rtol in (1e-6, 1e-7, 1e-10):
         off = np.abs(simulate(scene, rtol=rtol).velocities - true).max()
         assert off < most * rtol

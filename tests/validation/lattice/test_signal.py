@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lwa.law import named
-from tests.validation.lattice.scenes import chain
+from tests.validation.lattice.scenes import TODA, chain
+from validation.lattice import knots
 from validation.lattice.laws import Contact
 from validation.lattice.signal import RECORDS, sensors_of
 from validation.lattice.simulate import simulate
@@ -48,38 +48,36 @@ def test_samples_are_values_of_the_signals(method):
             assert (np.diff(signal.times) > 0).all()
 
 
-TODA = replace(LINEAR, law=named("exponential", 1), samples=3)
-
-
 def test_the_law_of_a_pickled_run_is_at_its_new_address(monkeypatch):
     """A law's machine code lies elsewhere in another process."""
-    run = simulate(TODA)
+    run = simulate(replace(LINEAR, law=TODA))
     stored = pickle.dumps(run)
-    elsewhere = {**run.path.motion.laws[0].addresses, "force": 7}
-    monkeypatch.setattr(Contact, "addresses", elsewhere)
+    force = pickle.loads(stored).signal("contact", 0)
+    assert force(0.5) == run.signal("contact", 0)(0.5) > 0
+    monkeypatch.setattr(Contact, "addresses", {"force": 7})
     assert pickle.loads(stored).path.chain.laws["force"][0] == 7
-    monkeypatch.undo()
-    assert (
-        pickle.loads(stored).signal("contact", 0)(0.5)
-        == run.signal("contact", 0)(0.5)
-        > 0
-    )
 
 
-def test_a_missing_sensor_or_quantity_is_refused(monkeypatch):
+def test_the_samples_of_a_run_that_is_too_long_for_signals(monkeypatch):
     run = simulate(LINEAR)
-    monkeypatch.setattr("validation.lattice.knots.BUFFER", 40)  # room for seven steps
-    monkeypatch.setattr("validation.lattice.knots._MOST_BYTES", 400)
+    monkeypatch.setattr(knots, "BUFFER", 40)  # room for seven steps
+    monkeypatch.setattr(knots, "_MOST_BYTES", 400)
     long = simulate(LINEAR)
     np.testing.assert_array_equal(long.bead_velocity, run.bead_velocity)
     with pytest.raises(SceneError, match="too many steps to keep the motion"):
         long.signal("contact", 0)
-    for arguments, message in (
-        (("contact", 1), "number is 1: the scene has no sensor at this contact"),
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("contact", 1), "number is 1"),
         (
             ("bead", 0, "compression"),
             "quantity is 'compression': .* velocity is wanted",
         ),
-    ):
-        with pytest.raises(SceneError, match=f"^{message}$"):
-            run.signal(*arguments)
+    ],
+)
+def test_a_missing_sensor_or_quantity_is_refused(arguments, message):
+    with pytest.raises(SceneError, match=f"^{message}"):
+        simulate(LINEAR).signal(*arguments)

@@ -79,22 +79,21 @@ def test_equilibrium_stays_and_carries_the_weight_and_the_load(k, masses, A, loa
     n = len(masses)
     scene = chain(
         masses, stiffnesses=[A] * (n - 1), wall=A, k=k, gravity=1, precompression=load,
-        duration=10, contact_sensors=range(n), bead_sensors=range(n), samples=3,
+        duration=10, contact_sensors=range(n), bead_sensors=range(n),
     )  # fmt: skip
     run = simulate(scene, method="DOP853")
     # exactly: the load is computed as the force is
-    assert not any((*run.displacements, *run.velocities, run.energy_drift))
+    assert not run.end.any()
+    assert run.energy_drift == 0
     # a fused product keeps the rounding of the load, and no step is too long for so little
     for method in COMPILED:
         moved = simulate(scene, method=method).displacements
         assert np.abs(moved).max() < 1e-9 * (load + sum(masses))
     weight = load + np.cumsum(masses)
     # A ((F/A)^{1/k})^k = F up to some ulp, k ≤ 3
-    np.testing.assert_allclose(
-        run.contact_force, np.outer(weight, [1, 1, 1]), rtol=1e-14
-    )
-    above = np.concatenate(([0.0], weight[:-1]))  # bead 1 has no contact behind it
-    np.testing.assert_allclose(run.bead_force[:, 0], (above + weight) / 2, rtol=1e-14)
+    np.testing.assert_allclose(run.contact_force[:, 0], weight, rtol=1e-14)
+    behind = np.append(0, weight[:-1])  # bead 1 has no contact behind it
+    np.testing.assert_allclose(run.bead_force[:, 0], (behind + weight) / 2, rtol=1e-14)
 
 
 some_chains = st.integers(2, 6).flatmap(
