@@ -38,10 +38,9 @@ from lwa import (
 from lwa.law import named
 from tests.book.browser import DESKTOP, PHONE, chromium, opened
 from tests.book.prose import BOOK
-from tests.book.test_turn import bloch_error, numbers
+from tests.book.test_turn import bloch_error, force_at, numbers, pulses
 from validation import Scene, exact_wave, measure, simulate
-from validation.pulses.pulse import first_pulse
-from validation.pulses.sensors import tracks
+from validation.scenes.checks import MISSING
 
 HTML = BOOK / "_build" / "html"
 HERTZ = Power("3/2")
@@ -85,27 +84,8 @@ class Run:
         return self.read[0] - 2, self.read[0] - 1
 
 
-def pulses(places, duration, masses, stiffness=1.0, **rest):
-    """Pulses at contacts of a row that is struck."""
-    places = sorted({*places})
-    scene = Scene(
-        masses=masses, stiffnesses=(stiffness,) * (len(masses) - 1), duration=duration,
-        contact_sensors=places, **rest,
-    )  # fmt: skip
-    read = (first_pulse(track.force) for track in tracks(simulate(scene, rtol=1e-8)))
-    return dict(zip(places, read, strict=True))
-
-
 def speed_between(first, last, seen):
     return (last - first) / (seen[last].arrival - seen[first].arrival)
-
-
-def force_at(places, seen):
-    return sum(seen[place].peak for place in places) / 2
-
-
-def alternating(omega, beads):
-    return tuple((1.0, omega)[i % 2] for i in range(beads))
 
 
 def beside_theory(run, v, omega=1.0, p0=0.0, beads=40):
@@ -113,12 +93,12 @@ def beside_theory(run, v, omega=1.0, p0=0.0, beads=40):
     load, pressed = p0**1.5, {}
     if p0:
         pressed = {"precompression": sp.Float(load)}
-    blow = dict(k=1.5, velocities=(v,), precompression=load, wall=1.0 if p0 else None)
+    blow = dict(velocities=(v,), precompression=load, wall=1.0 if p0 else None)
     ends = run.pair()
-    seen = pulses(ends, run.time, alternating(omega, beads), **blow)
+    seen = pulses(ends, run.time, (1.0, omega), beads, **blow)
     speed = speed_between(*ends, seen)
     near, later = (11, 12), (30, 31)
-    seen = pulses(near + later, 37 / speed, alternating(omega, 40), **blow)
+    seen = pulses(near + later, 37 / speed, (1.0, omega), **blow)
     longer = sum(seen[i].fwhm for i in later) / sum(seen[i].fwhm for i in near)
     if abs(longer - 1) > 0.03:
         return [close(speed)]
@@ -172,9 +152,7 @@ def cell(run, masses, **rest):
 
 
 def ring(run, omega):
-    seen = pulses(
-        (12, 13, *run.front), run.time, alternating(omega, 64), k=1.5, velocities=(1.0,)
-    )
+    seen = pulses((12, 13, *run.front), run.time, (1.0, omega), 64)
     before, after = force_at((12, 13), seen), force_at(run.front, seen)
     change = pytest.approx(100 * (after / before - 1), abs=0.3)
     return [12, close(before), run.front[0], close(after), change]
@@ -203,8 +181,9 @@ LAWS = {
 def law(run, law, v):
     chosen = LAWS[law]
     ends = run.pair()
-    rest = {"law": chosen, "velocities": (v,)}
-    seen = pulses((*ends, *run.front), run.time, (1.0,) * 40, **rest)
+    # a law stands in place of an exponent
+    rest = {"k": MISSING, "law": chosen, "velocities": (v,)}
+    seen = pulses((*ends, *run.front), run.time, (1.0,), **rest)
     force, speed = force_at(run.front, seen), speed_between(*ends, seen)
     strain = chosen.compression(EQUAL, sp.Float(force))
     theory = float(loaded_wave(EQUAL, rise=strain, background=0, law=chosen).speed)
@@ -215,8 +194,8 @@ def law(run, law, v):
 def lattices(run, v):
     """The last row, whose layers are a chain; test_turn has the theory's speeds of the others."""
     ends = run.pair(11, 3)
-    layers = 2 * 0.75**1.25  # their stiffness
-    seen = pulses(ends, run.time, (1.0,) * 40, k=1.5, stiffness=layers, velocities=(v,))
+    stiffness = 2 * 0.75**1.25  # of layers of unit mass
+    seen = pulses(ends, run.time, (1 / stiffness,), velocities=(v,))
     return [ANY] * 6 + [close(speed_between(*ends, seen))]
 
 
@@ -276,7 +255,7 @@ def disorder(run, spread, draw):
     for _ in range(90):
         state = state * 48271 % 2147483647
         masses.append(1 + spread * (2 * state / 2147483647 - 1))
-    seen = pulses((12, 13, *run.front), run.time, masses, k=1.5, velocities=(1.0,))
+    seen = pulses((12, 13, *run.front), run.time, masses, len(masses))
     left = 100 * force_at(run.front, seen) / force_at((12, 13), seen)
     last = run.front[0]
     # over masses that are drawn evenly

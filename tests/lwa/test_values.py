@@ -30,7 +30,7 @@ MADE = {
     "cell": lambda: Dimer(m1, m2, spacing="h"),
     "decimals": lambda: Cell(["0.45", sp.sqrt(2)], [1, "0.123456789"], 2),
     "linear": theory,
-    "full": lambda: theory(6, closure="full", field="center"),
+    "full": lambda: theory(5, closure="full", field="center"),
     "optical": lambda: theory(branch="optical"),
     "pde": lambda: theory().pde,
     "closure": lambda: theory(5, closure="full", field="first").closure,
@@ -43,7 +43,7 @@ MADE = {
     "dispersion": lambda: Dispersion(Dimer(m1, m2)),
     "law": lambda: lwa.general(),
     "power": lambda: Power("k"),
-    "of a law": lambda: theory(5, law=lwa.general(), closure="full", field="first"),
+    "of a law": lambda: theory(5, law=lwa.general(), closure="full", field="center"),
     "background": lambda: loaded_wave(Dimer(m1, m2), background="p0"),
     "kdv": lambda: loaded_wave(Dimer(m1, m2), background="p0").kdv,
     "precompressed": lambda: canonical_wave(Dimer(m1, m2)).at_force(

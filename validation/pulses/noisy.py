@@ -55,7 +55,6 @@ _CONSTANT = 1e-8  # range of a signal without pulses, over its size
 _SUDDEN = 11.0  # growth, in a width, of a force that begins: two widths before a Gaussian's top
 _GRID = 400  # intervals in which the maxima of a pulse are looked for
 _SAME = 0.01  # distance, over the width, of two readings of one maximum
-_LEAST_OF_WIDTH = 0.1  # relative error of a width over that of the peak, at least
 _EXACT = 1e-4  # noise over the peak of a record without noise
 _UPRIGHT = 0.1  # rise over fall of a record that may be upright, at least
 # Widths behind the arrival: ends of two stretches that are searched for an undershoot
@@ -119,10 +118,10 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
     t, f = checked(time, values)
     size = float(np.abs(f).max()) or 1.0  # so that squares neither over- nor underflow
     f = f / size
-    step = _step(f)
     swing = np.ptp(f)
     if swing < _CONSTANT:
         raise MeasureError("no pulse is in the record: its signal is constant")
+    step = _step(f)
     if _is_exact(f) and step < _EXACT * swing:
         pulse = _exact(t, f)
     else:
@@ -230,9 +229,6 @@ def _exact(t: Array, f: Array) -> NoisyPulse:
     apart = np.abs(times[tops] - pulse.arrival).max(initial=0.0)
     if apart > _SAME * pulse.fwhm:
         errors["arrival"] = max(errors["arrival"], apart + _SAME * pulse.fwhm)
-    # Both differences of the width may vanish by chance.
-    least = _LEAST_OF_WIDTH * errors["peak"] / pulse.peak
-    errors["fwhm"] = max(errors["fwhm"], least * pulse.fwhm)
     # A base that is off by this much moves the peak as much, and both flanks at its half.
     doubt = _front(f, pulse.fwhm / x[1]) / pulse.peak
     for name in ("peak", "fwhm"):
@@ -278,12 +274,11 @@ def _noise_by_neighbours(f: Array) -> float:
 def _step(f: Array) -> float:
     """Return the distance of the levels to which a recorder rounds; 0 if there are none."""
     gaps = np.diff(np.unique(f))
-    least = min(gaps[gaps > _EQUAL * np.ptp(f)], default=0.0)
-    if not least:
-        return 0.0
+    swing = np.ptp(f)
+    # A million samples or more may leave no gap: the one level that is left is none.
+    least = min(gaps[gaps > _EQUAL * swing], default=swing)
     # Printed levels are rounded, too: their distance is told best by all of them.
-    count = round(np.ptp(f) / least)
-    step = np.ptp(f) / count
+    step = swing / round(swing / least)
     levels = (f - f.min()) / step
     off = np.abs(levels - levels.round())
     if off.max() > 0.25:
@@ -309,8 +304,6 @@ def _place(t: Array, f: Array) -> tuple[float, float]:
             "the signal falls farther below its start than it rises: it begins in a pulse, or is "
             "inverted"
         )
-    if not g.max() > 0:
-        raise MeasureError("no pulse is in the record: its signal is nowhere positive")
     # The first pulse: from where the mean first exceeds half of its maximum to where it next falls
     # below _LOW of the maximum.
     peak = g.max()

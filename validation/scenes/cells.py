@@ -205,7 +205,8 @@ def runs(flags: ArrayLike) -> list[tuple[int, int]]:
     edges = np.flatnonzero(
         np.diff(np.asarray(flags, bool), prepend=False, append=False)
     )
-    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+    # Rising and falling edges take turns.
+    return [(start, end) for start, end in edges.reshape(-1, 2).tolist()]
 
 
 def name_of(header: str) -> str:

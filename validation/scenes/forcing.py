@@ -100,7 +100,8 @@ def restitution(ratio: float) -> float:
         phase = math.pi - math.atan2(2 * ratio * turn, 1 - 2 * ratio * ratio)
         return math.exp(-ratio / turn * phase)
     turn = math.sqrt(ratio * ratio - 1) or 1e-8  # the limit is e^{-2}
-    return math.exp(-ratio / turn * math.log((ratio + turn) / (ratio - turn)))
+    phase = math.log((ratio + turn) / (ratio - turn))
+    return math.exp(-ratio / turn * phase)
 
 
 def damping_ratio(share: float) -> float:

@@ -45,10 +45,9 @@ from validation.waves.solver import exact_wave
 
 _DRAWS = 1000  # of the coefficients of ln V, for the errors
 _HERTZ = 1.5
-LEAST, MOST = (
-    1.01,
-    4.0,
-)  # k: below, speeds do not depend on force; beyond, R is not known
+# Exponents that are read: below, speeds do not depend on force; beyond, R is not known.
+LEAST = 1.01
+MOST = 4.0
 LARGEST = 700.0  # |ln A|, at most
 RATIO_ERROR = 1e-10
 """Relative error of R(k), measured between the nodes of its interpolant."""
@@ -139,7 +138,8 @@ def law(
         axes = ("peak contact force (N)", "speed (m/s)")
     # Speeds beside one power, for which ln V is linear in ln F.
     x = np.log(force)
-    line = np.exp(np.polyval(np.polyfit(x, np.log(speed), 1), x))
+    fitted = np.polyfit(x, np.log(speed), 1)
+    line = np.exp(np.polyval(fitted, x))
     bars = None if weight is None else speed / weight
     curves = (
         Curve("measured", force, speed, "C0o", bars),
@@ -264,9 +264,8 @@ class PowerFit:
     A: Estimate
     correlation: float  # of k and ln A
     hertz: Estimate  # A at k = 3/2
-    curvature: (
-        Estimate  # coefficient of (ln F)² in a parabola for ln V; 0 for one power
-    )
+    # Coefficient of (ln F)² in a parabola for ln V; 0 for one power
+    curvature: Estimate
 
     @property
     def one_power(self) -> bool:
@@ -329,7 +328,8 @@ def fit_power(
             raise SceneError(
                 f"A is e^({log}) by the best fit: this is no number of a computer"
             )
-        return Estimate(math.exp(log.value), math.exp(log.value) * math.expm1(error))
+        A = math.exp(log.value)
+        return Estimate(A, A * math.expm1(error))
 
     return PowerFit(
         _interval(k),
@@ -345,9 +345,8 @@ def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, 
     # On data without scatter the rounding of ln F, of ln V and of the fit is left.
     rounding = 2 * np.finfo(float).eps * (1 + np.abs(x) + np.abs(y))
     w = np.ones_like(x)
-    least = float(
-        np.sum(rounding**2)
-    )  # scatter of residuals over their known deviations
+    # Scatter of the residuals over their known deviations, at least
+    least = float(np.sum(rounding**2))
     if weight is not None:
         w = weight
         least = 1.0

@@ -222,9 +222,8 @@ def _digits(sensors: Sequence[Reading]) -> str:
     late = 1.0
     for reading in sensors:
         if "fwhm" in reading.numbers:
-            arrival, width = (
-                reading.numbers[name].value for name in ("arrival", "fwhm")
-            )
+            arrival = reading.numbers["arrival"].value
+            width = reading.numbers["fwhm"].value
             late = max(late, abs(arrival) / width)
     return str(max(6, math.ceil(math.log10(late)) + 4))
 

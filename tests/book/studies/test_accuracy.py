@@ -63,5 +63,8 @@ def test_the_document_holds_the_contract():
         errors = [row[f"{name}_error"] for name in study.READINGS]
         assert row["error"] == max(errors) < 0.1
         assert row["seconds"] > 0
-    methods = [(row["task"], row["method"]) for row in result["rows"]]
-    assert {*methods} == {*product(tasks, names)}
+    methods = {(row["task"], row["method"]) for row in result["rows"]}
+    assert methods == set(product(tasks, names))
+    assert {one["task"] for one in result["costs"]} == set(tasks)
+    exact, experiment = result["references"]
+    assert (exact["peak"], experiment["task"]) == (1.0, "experiment")
