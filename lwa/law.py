@@ -442,7 +442,7 @@ def named(name: str, *parameters: Any) -> ContactLaw:
     read = signed if name == "polynomial" else positive
     values = []
     for letter, given in zip_longest(letters, parameters):
-        place = f"{name}'s {letter}"
+        place = f"law {name}'s {letter}"
         value = read(letter if given is None else given, place)
         values.append(_check_parameter(value, place, DELTA))
     force = build(*values)
@@ -484,7 +484,7 @@ def _check_parameter(value: sp.Expr, name: str, delta: sp.Symbol) -> sp.Expr:
     """Return a law's parameter; raise `lwa.InputError` if it holds the compression's symbol."""
     if delta.name in {s.name for s in value.free_symbols}:
         raise InputError(
-            f"{name} {delta.name!r}: the name means the compression of a contact"
+            f"{name} is {delta.name!r}: the name means the compression of a contact"
         )
     return value
 
