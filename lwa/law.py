@@ -436,13 +436,13 @@ def named(name: str, *parameters: Any) -> ContactLaw:
     if len(parameters) > len(letters):
         wanted = ", ".join(letters) or "none"
         raise InputError(
-            f"law {name} has {len(parameters)} parameters: {wanted} are wanted"
+            f"law is {name} with {len(parameters)} parameters: {wanted} are wanted"
         )
     # Only the corrections of a polynomial may soften a contact.
     read = signed if name == "polynomial" else positive
     values = []
     for letter, given in zip_longest(letters, parameters):
-        place = f"law {name}'s {letter}"
+        place = f"law is {name}, whose {letter}"
         value = read(letter if given is None else given, place)
         values.append(_check_parameter(value, place, DELTA))
     force = build(*values)

@@ -220,7 +220,7 @@ TRY = "; try: "
 KEYS = "lwa-validate run --keys"
 """The line that shows all keys of a file."""
 
-_SUBJECT = re.compile(r"(\w+)(?: .*?)? (?:is|has) |'(\w+)' has no value")
+_SUBJECT = re.compile(r"(\w+) is |'(\w+)' has no value")
 """The option at the start of a reason, or the symbol for which a number is wanted."""
 
 
