@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Unpack
@@ -115,14 +115,11 @@ class Measured:
         Whether they are in SI.
     notes : sequence of str
         Lines on their units.
-    units : mapping of str
-        The user's statements of units.
     """
 
     signals: Sequence[Record]
     si: bool
     notes: Sequence[str]
-    units: Mapping[str, str]
 
     @classmethod
     def read(
@@ -161,8 +158,7 @@ class Measured:
                 raise SceneError(f"{signal.kind} {signal.number} is there twice")
             signals[signal.kind, signal.number] = signal
         notes = [note for file in files for note in file.notes]
-        units = stated.get("units") or {}
-        return cls([*signals.values()], files[0].si, notes, units)
+        return cls([*signals.values()], files[0].si, notes)
 
     def pulse(self, signal: Record) -> NoisyPulse:
         """Measure the first pulse of a record.
@@ -172,8 +168,7 @@ class Measured:
         try:
             return noisy_pulse(signal.time, signal.values, self.unit)
         except InvertedError as error:
-            turned = {**self.units, signal.key: signal.inverted}
-            raise MeasureError(str(error), units=turned) from None
+            raise MeasureError(str(error), units=signal.turned) from None
 
     @property
     def unit(self) -> str:
@@ -252,9 +247,8 @@ def pulses(
             found.append(replace(blank, missing=error.reason))
             refusals.append(error)
             if error.change:
-                notes.append(
-                    f"{blank.name}: --unit '{signal.key}={signal.inverted}' turns it."
-                )
+                turned = f"{signal.key}={signal.turned[signal.key]}"
+                notes.append(f"{blank.name}: --unit '{turned}' turns it.")
             continue
         reading = replace(
             blank, numbers=pulse.numbers, missing=pulse.missing, static=pulse.base

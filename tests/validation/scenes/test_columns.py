@@ -152,7 +152,7 @@ def test_an_inverted_record_is_turned_by_the_users_own_statement(
     read, unit, units, key, turned
 ):
     (record,) = read(f"time (s),force ({unit})\n1,7\n2,8\n", units=units).records()
-    assert (record.key, record.inverted) == (key, turned)
+    assert (record.key, record.turned[key]) == (key, turned)
 
 
 HEAD = "time (s),force (N)\n"
