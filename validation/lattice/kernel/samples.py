@@ -3,7 +3,8 @@
 Within a step a bead's displacement y is the sum of two parts. The first is the effect of the
 forces of its contacts, ``F(p, p'/h)`` along the quintic p of a contact's compression
 (`validation.lattice.kernel.kinks`), integrated twice. The second, the rest, is small and smooth:
-the polynomial of degree 7 with the y, y' and y'' that are left at both ends, and y''' = 0 there.
+the polynomial of degree 7 with the ``y``, ``y'`` and ``y''`` that are left at both ends, and
+``y''' = 0`` there.
 
 A smooth force is integrated as a polynomial. If the step was corrected for a kink of the contact,
 its force is integrated up to each sample.
