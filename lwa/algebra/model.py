@@ -142,7 +142,7 @@ class Model(Parametric):
 
     @cached_property
     def masses(self) -> Partition:
-        """The mass fractions ``m̂_i``."""
+        """The mass fractions ``m̂_i``, whose sum is 1."""
         return Partition(self.cell.masses, 1, "mu")
 
     @cached_property

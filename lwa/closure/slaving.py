@@ -225,6 +225,7 @@ class _Slaving:
         """
         P, c = self.size, self.algebra.c
         first = self.forces[0].nonlinear
+        # P m̂_i (E_n + a_i) is mass times acceleration of bead i, with the a_i of `extend`.
         push = self.algebra.zero  # Φ_i - Φ_0
         differences = [push]  # X_i - X_0
         for i in range(1, P):

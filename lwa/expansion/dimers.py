@@ -62,11 +62,12 @@ class FollowingRecursion(Recursion):
     """
 
     def _dispersion(self) -> fmpq_mpoly:
-        # The stiff tie takes m̂_2² from I, the elastic energy of unlike strains.
+        # In a free dimer the two contacts of the light bead are strained unequally, which adds m̂_2²
+        # to I. A bead that is held midway strains both alike.
         return super()._dispersion() - self.mu[1] ** 2
 
     def _next_force(self, i: int, n: int) -> fmpq_mpoly:
-        # in the equations both contacts have the mean force
+        # In the equations both contacts have the mean force.
         return self.force[0].series[n]
 
     def _last_force(self, n: int) -> fmpq_mpoly:

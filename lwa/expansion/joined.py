@@ -49,7 +49,11 @@ SHOWN = 11
 
 
 def _width(x: sp.Expr) -> sp.Expr:
-    """The part of a collision, two sites, in which the strain exceeds x^{1/(k+1)}."""
+    """The sites that a wave passes while a contact's strain exceeds ``x^{1/(k+1)}`` of its peak.
+
+    For large k a wave is one collision of two beads after another, each of which takes two sites:
+    ``(dδ/dt)² ~ 1 - δ^{k+1}``.
+    """
     return 2 * (1 - sp.betainc_regularized(1 / (k + 1), sp.S.Half, 0, x))
 
 

@@ -242,9 +242,10 @@ def _transformed(coefficients: Sequence[sp.Expr]) -> list[mpmath.mpf]:
 
 
 def _sum(b: Sequence[mpmath.mpf], x: mpmath.mpf) -> Estimate:
-    """Sum Σ b_n x^n to the last term, or to that of x^LAST."""
+    """Sum ``Σ b_n x^n`` over all n, at most to n = `LAST`; the error is that of the module."""
     b = b[: LAST + 1]
-    # The terms left out are at most as large as a geometric series, 1/(1 - x) times the first.
+    # The exponent, as x = 1 - 1/k: the terms left out are at most as large as a geometric series,
+    # whose sum is k times its first term.
     k = 1 / (1 - x)
     largest = max(abs(term) for term in b[-WINDOW:])
     error = max(SAFETY, REST * k) * largest * x ** len(b)

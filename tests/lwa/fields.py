@@ -14,7 +14,8 @@ def rational(value):
 def at_compression(law, value, delta):
     """The value of an expression in φ_2, φ_3, … at a compression."""
     for n in range(2, 9):
-        value = value.xreplace({phi_symbol(n): law.phi(n).subs(law.delta, delta)})
+        if value.has(phi_symbol(n)):
+            value = value.xreplace({phi_symbol(n): law.phi(n).subs(law.delta, delta)})
     return value
 
 

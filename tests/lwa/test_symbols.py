@@ -28,8 +28,7 @@ def results(m1, m2, k, D, a, b):
     theory = homogenize(cell, 4, k=k)
     yield from (theory.ansatz[4], *theory.pde.coefficients[3].values())
     wave = theory.pde.traveling_wave()
-    yield from (wave.speed(), wave.profile(sp.Rational(1, 5), 2))
-    yield wave.at_force().fwhm("force", "time")
+    yield from (wave.speed(), wave.at_force().fwhm("force", "time"))
     full = homogenize(cell, 4, k=k, closure="full", field="center")
     yield from (full.pde.I, *full.pde.energy[2].values(), *full.slaved[1][3].values())
     yield Dispersion(Cell((m1, m2), (m2, 2 * m2), D), k).acoustic(4)[4]
@@ -42,7 +41,7 @@ def results(m1, m2, k, D, a, b):
     center = homogenize(cell, law=law, closure="full", field="center")
     yield at_compression(law, center.pde.G, 3)
     field = loaded_wave(cell, background="1/2", law=law).field
-    yield from (field.speed(field.rise), field.kdv.width())
+    yield from (field.speed(field.rise), field.kdv.nonlinearity)
 
 
 def numbers(symbols):

@@ -82,7 +82,8 @@ class KnotPath:
             y,
             v,
             # Working memory: the compiled loops allocate nothing.
-            ends=np.empty((2, len(rows), 4)),
+            ends=np.empty((2, len(rows), 3)),
+            pushes=np.empty((len(rows), 7)),
             points=np.empty((3, ROOM)),
             edges=np.empty(EDGES),
         )

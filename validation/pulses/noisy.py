@@ -118,10 +118,10 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
     t, f = checked(time, values)
     size = float(np.abs(f).max()) or 1.0  # so that squares neither over- nor underflow
     f = f / size
-    step = _step(f)
     swing = np.ptp(f)
     if swing < _CONSTANT:
         raise MeasureError("no pulse is in the record: its signal is constant")
+    step = _step(f)
     if _is_exact(f) and step < _EXACT * swing:
         pulse = _exact(t, f)
     else:
@@ -274,12 +274,11 @@ def _noise_by_neighbours(f: Array) -> float:
 def _step(f: Array) -> float:
     """Return the distance of the levels to which a recorder rounds; 0 if there are none."""
     gaps = np.diff(np.unique(f))
-    least = min(gaps[gaps > _EQUAL * np.ptp(f)], default=0.0)
-    if not least:
-        return 0.0
+    swing = np.ptp(f)
+    # A million samples or more may leave no gap: the one level that is left is none.
+    least = min(gaps[gaps > _EQUAL * swing], default=swing)
     # Printed levels are rounded, too: their distance is told best by all of them.
-    count = round(np.ptp(f) / least)
-    step = np.ptp(f) / count
+    step = swing / round(swing / least)
     levels = (f - f.min()) / step
     off = np.abs(levels - levels.round())
     if off.max() > 0.25:
@@ -305,8 +304,6 @@ def _place(t: Array, f: Array) -> tuple[float, float]:
             "the signal falls farther below its start than it rises: it begins in a pulse, or is "
             "inverted"
         )
-    if not g.max() > 0:
-        raise MeasureError("no pulse is in the record: its signal is nowhere positive")
     # The first pulse: from where the mean first exceeds half of its maximum to where it next falls
     # below _LOW of the maximum.
     peak = g.max()

@@ -29,7 +29,7 @@ from lwa.command.cli import HELP, called, help_end, run as run_command
 from lwa.command.options import Read, Reader, Words, count, quantities
 from validation.pictures import SUFFIXES, Panel, Pictured
 from validation.report.table import WIDTH, Finding, Table, findings_table, plain, wrap
-from validation.scenes.checks import Failure, SceneError
+from validation.scenes.checks import Failure, finite
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -175,6 +175,7 @@ class Report(Pictured):
 # --- studies ---
 
 
+@dataclass(eq=False)
 class Study(Generic[P]):
     """A function that returns a `Report`, with a ``command`` that prints the report.
 
@@ -188,13 +189,12 @@ class Study(Generic[P]):
         Text at the end of the command's help.
     """
 
-    def __init__(
-        self, function: Callable[P, Report], options: Sequence[Any], help_end: str = ""
-    ) -> None:
-        self.function = function
-        self.options = options
-        self.help_end = help_end
-        update_wrapper(self, function)
+    function: Callable[P, Report]
+    options: Sequence[Any]
+    help_end: str = ""
+
+    def __post_init__(self) -> None:
+        update_wrapper(self, self.function)
 
     def __call__(self, *arguments: P.args, **options: P.kwargs) -> Report:
         return self.function(*arguments, **options)
@@ -389,10 +389,7 @@ def output_option(name: str, suffixes: Sequence[str], says: str) -> Any:
 
 def number(text: str, name: str) -> float:
     """Read an integer, a decimal or a fraction."""
-    exact = read_exact(text, name)
-    if not exact.is_number:
-        raise SceneError(f"{name} is {exact}: a number is wanted")
-    return float(exact)
+    return finite(read_exact(text, name), name)
 
 
 READERS: dict[Any, str] = {

@@ -64,8 +64,6 @@ BEADS = 38
 SENSORS = (15, 34)  # beads, counted from the striker, 1
 VELOCITY = 1.37  # of the striker, in m/s
 RTOL = 1e-10  # numbers of the pulse err by up to 0.009 of it, of the 2:1 chain by 0.025
-SOURCES = ("F_m", "striker")
-"""Names of the quantities that set the theory's amplitude."""
 
 RECORDED = {1: (15, 24, 33), 2: (16, 24, 34)}  # N → beads of figure 2; 24 is PTFE
 HEIGHTS = (0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2)  # drop heights of figure 3a, in m
@@ -106,12 +104,11 @@ def recorded_chain(
     """
     momentum = float(STEEL_BEAD.mass) * velocity
     pulse = of_momentum(canonical_wave(chain_cell(N, ptfe), HERTZ), momentum)
-    # N times steel, then PTFE: at places N + 1, 2(N + 1), …
-    beads = [STEEL_BEAD if place % (N + 1) else ptfe for place in range(1, BEADS + 1)]
+    cells = ([STEEL_BEAD] * N + [ptfe]) * BEADS  # more than enough
     # From 0 on, bead 15 is number 14, between the contacts 13 and 14.
     contacts = {bead - 1 for bead in sensors} | {bead - 2 for bead in sensors}
     return Scene.of_beads(
-        beads,
+        cells[:BEADS],
         wall=STEEL,
         velocities=(velocity,),
         bead_sensors=[bead - 1 for bead in sensors],
@@ -252,13 +249,13 @@ def paper(
     runs = repeated(scene, tolerances(rtol), progress=run_progress)
     lattice = compared(lattice_numbers, runs)
     # The paper's closure, for the displacement of the steel beads.
-    wave = homogenize(chain_cell(), k=HERTZ).pde.traveling_wave()
+    steel = homogenize(chain_cell(), k=HERTZ).pde.traveling_wave()
     peak = lattice["peak bead force F_m"].value
     waves = {
-        "F_m": PhysicalWave(wave, peak, "bead"),
-        "striker": of_momentum(wave, float(STEEL_BEAD.mass) * velocity),
+        "F_m": PhysicalWave(steel, peak, "bead"),
+        "striker": of_momentum(steel, float(STEEL_BEAD.mass) * velocity),
     }
-    theories = {source: theory_numbers(waves[source]) for source in SOURCES}
+    theories = {source: theory_numbers(wave) for source, wave in waves.items()}
     rows = []
     for quantity in QUANTITIES:
         found = lattice[quantity.name]
@@ -373,8 +370,14 @@ def figures(progress: Progress[Any] = iter) -> Report:
     for N, run in records.items():
         (panel,) = run.pictured()
         panels.append(replace(panel, title=f"{N}:1 chain"))
-        record = {"time_value": run.time, "force_value": run.bead_force}
-        forces_document.append({"N": N, "beads": RECORDED[N]} | record)
+        forces_document.append(
+            {
+                "N": N,
+                "beads": RECORDED[N],
+                "time_value": run.time,
+                "force_value": run.bead_force,
+            }
+        )
     panels.append(_scaling_panel(scalings))
     fitted = " and ".join(map(str, exponents))
     return Report(
@@ -405,12 +408,11 @@ def cells_of_lines() -> tuple[Cell, ...]:
     """Return the unit cells of the lines `STATED`: the chain's contacts, and three masses m2."""
     cell = chain_cell()
     heavy, light = cell.masses
-    contacts: dict[str, Any] = {
-        "stiffnesses": cell.stiffnesses,
-        "spacing": cell.spacing,
-    }
     # the first for m2 → 0, exact to 12 digits
-    return tuple(Dimer(heavy, m2, **contacts) for m2 in (heavy / 10**12, light, heavy))
+    return tuple(
+        Dimer(heavy, m2, stiffnesses=cell.stiffnesses, spacing=cell.spacing)
+        for m2 in (heavy / 10**12, light, heavy)
+    )
 
 
 def stated_errors() -> list[dict[str, Any]]:

@@ -104,13 +104,15 @@ def respond(force: Series, inverse: Pair, half_period: float) -> Series:
     # which 1/q² would enlarge.
     if inverse[0] == inverse[1]:
         force = force.real.astype(complex)
-    q = np.pi * np.arange(force.shape[-1]) / half_period
+    count = force.shape[-1]
+    q = np.pi * np.arange(count) / half_period
     # The right side nearly cancels at small q. Without the difference of large terms it is
     # (1/m1 + 1/m2)(f - f*) - [(e^{-iq} - 1)/m1 + (e^{iq} - 1)/m2] f*, and f - f* = 2i Im f.
     ahead = inverse[0] * np.expm1(-1j * q)
     behind = inverse[1] * np.expm1(1j * q)
     twice_odd = 2j * force.imag
-    strain = sum(inverse) * twice_odd - (ahead + behind) * force.conj()
+    mirrored = (ahead + behind) * force.conj()
+    strain = sum(inverse) * twice_odd - mirrored
     strain[..., 0] = 0
     q[0] = q[1]  # no division by 0: the mean is 0 already
     return np.asarray(strain / q**2)
@@ -184,7 +186,8 @@ class Problem:
         self.count = 2 * self.n
         if self.uniform:  # half of the matrix's rows and columns, an eighth of the time
             self.count = self.n + 1
-        self.xi = periodic_grid(self.L, self.n)[: self.count]
+        grid = periodic_grid(self.L, self.n)
+        self.xi = grid[: self.count]
 
     def wave(self, force: Array, c2: float) -> Found:
         """Solve for the wave near a force on the grid and a squared speed.
@@ -192,7 +195,8 @@ class Problem:
         Raises `numpy.linalg.LinAlgError` if Newton's method does not converge.
         """
         m1, m2 = self.masses
-        scaled = force[: self.count] * (self.height / force[0])
+        share = self.height / force[0]
+        scaled = share * force[: self.count]
         start = np.append(scaled, [c2, 1 / m2])
         # Forces have the size of twice their peak; c² and 1/m2 their own, but c² may be 0 at a bad
         # start.
@@ -244,12 +248,14 @@ class Problem:
         a = self._strains(force, (first, inverse)) / c2
         missed = force - rise(a, self.k, self.p0)
         closing, of_closing = self._closing(force, inverse)
-        faults = np.append(missed, [force[0] - self.height, closing])
+        too_high = force[0] - self.height
+        faults = np.append(missed, [too_high, closing])
         pressed = np.maximum(self.p0 + a, 0)
         slope = self.k * pressed ** (self.k - 1) / c2
         by_first, by_second = self._responses
         response = by_first * first + by_second * inverse
-        by_forces = np.eye(self.count) - slope[:, np.newaxis] * response
+        of_rows = slope[:, np.newaxis]
+        by_forces = np.eye(self.count) - of_rows * response
         by_c2 = slope * a
         by_inverse = -slope * (by_second @ force)
         of_forces = np.column_stack((by_forces, by_c2, by_inverse))
@@ -293,7 +299,8 @@ def newton(change: Callable[[Array], Array], x: Array, sizes: Array) -> Array:
     before = math.inf
     for _ in range(MOST_STEPS):
         step = change(x)
-        size = float(np.max(np.abs(step) / sizes))
+        shares = np.abs(step) / sizes
+        size = float(shares.max())
         if not math.isfinite(size):
             break
         if size > _LONGEST_STEP:

@@ -187,7 +187,8 @@ class ExactWave(Pictured):
         """The highest hump of a quantity, over ξ in place of time."""
         # Half as many points as the solution has are enough for a search.
         L = self.half_period
-        points = np.linspace(-L, L, len(self.series) + 1)
+        count = len(self.series) + 1
+        points = np.linspace(-L, L, count)
         return highest_pulse(Piecewise(points, self._profile(quantity)))
 
     def _profile(self, quantity: QuantityName) -> Callable[[ArrayLike], Array]:
@@ -230,7 +231,14 @@ def at_unit_force(problem: newton.Problem, found: newton.Found) -> ExactWave:
     """Return the wave of a solution, scaled to peak contact force 1, with tail and residual."""
     series = newton.coefficients(found.force)
     wave = ExactWave(
-        found.masses, problem.k, found.c2, problem.L, series, 0.0, 0.0, problem.p0
+        masses=found.masses,
+        k=problem.k,
+        c2=found.c2,
+        half_period=problem.L,
+        series=series,
+        tail=0.0,
+        residual=0.0,
+        background=problem.p0,
     )
     peak = problem.p0 + wave.peak("strain")
     wave = wave.times(1 / peak)
@@ -243,10 +251,11 @@ def _tail(wave: ExactWave) -> float:
     """The largest odd part of the strain outside the pulse, see `ExactWave.tail`."""
     L = wave.half_period
     # Some twenty points for each oscillation of the tail.
-    outside = np.linspace(OUTSIDE * L, L, 4 * len(wave.series))
+    count = 4 * len(wave.series)
+    outside = np.linspace(OUTSIDE * L, L, count)
     # The other contact's strain is the mirror image.
-    odd = (wave.strain(outside) - wave.strain(outside, 1)) / 2
-    return float(np.abs(odd).max())
+    twice_odd = wave.strain(outside) - wave.strain(outside, 1)
+    return float(np.abs(twice_odd).max()) / 2
 
 
 def _residual(wave: ExactWave) -> float:
@@ -257,4 +266,5 @@ def _residual(wave: ExactWave) -> float:
     series = newton.coefficients(wave.force(xi))
     response = replace(wave, series=series)
     off = response.strain(xi) - wave.strain(xi)
-    return float(np.abs(off).max()) / (1 - wave.background)
+    largest = float(np.abs(off).max())
+    return largest / (1 - wave.background)

@@ -124,7 +124,8 @@ def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWa
     k = between(k, "k", 1.01, most, f"{wanted} on a background" if p0 else wanted)
     if given[0] == given[-1]:
         wave = _equal(k, p0)
-        return replace(wave, masses=(given[0], given[0]), c2=wave.c2 / given[0])
+        mass = given[0]
+        return replace(wave, masses=(mass, mass), c2=wave.c2 / mass)
     if p0:
         raise SceneError(
             f"background is {p0:g}: under a load exact waves are for equal masses"
@@ -134,12 +135,12 @@ def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWa
     between(light / heavy, "masses", 0.01, 1, ratio)
     wave = _dimer((given[0], given[1]), k)
     if given[0] == heavy:
-        return replace(wave, masses=(heavy, heavy * wave.omega), c2=wave.c2 / heavy)
+        light = heavy * wave.omega
+        return replace(wave, masses=(heavy, light), c2=wave.c2 / heavy)
+    heavy = light / wave.omega
     # The mirror image, with b(ξ) for a(ξ): F_a = E + O and F_b = E - O.
-    mirrored = (light, light / wave.omega)
-    return replace(
-        wave, masses=mirrored, c2=wave.c2 / mirrored[1], series=wave.series.conj()
-    )
+    mirrored = wave.series.conj()
+    return replace(wave, masses=(light, heavy), c2=wave.c2 / heavy, series=mirrored)
 
 
 def _background(value: Any) -> float:

@@ -84,29 +84,6 @@ def test_residual_of_newtons_equations_falls_as_the_order_promises(name):
     assert slopes == pytest.approx([expected] * 2, abs=0.05)
 
 
-def test_the_width_is_that_of_the_pulse():
-    """A dimer's force at its peak and at both places of half of it, with 50 digits."""
-    errors = []
-    fields = Recursion(shares_model(CELLS["dimer"], sp.S.One), 3)
-    coefficients = wave("dimer").fwhm("force").coefficients[3::-1]
-    with mpmath.workdps(50):
-        I = exact(Observables(fields).I)
-        series = [mpmath.mpmathify(sp.N(a, 50)) for a in coefficients]
-        for n in (400, 800):
-            small = mpmath.mpf(1) / n
-            strain = contact(fields.force[0].log[:7], I, small)
-            peak = strain(mpmath.findroot(lambda x, f=strain: mpmath.diff(f, x), 0))
-            low = peak * mpmath.mpf(0.5) ** (1 / (1 + small))  # at half of the force
-            half = 2 * mpmath.sqrt(I * mpmath.log(2) / small)
-            right, left = (
-                mpmath.findroot(lambda x, f=strain, y=low: f(x) - y, side * half)
-                for side in (1, -1)
-            )
-            errors.append(2 * half * mpmath.polyval(series, small) - (right - left))
-    # What is missing is ε^4 of the width, which is of the size ε^{-1/2}.
-    assert abs(mpmath.log(errors[0] / errors[1], 2) - 3.5) < 0.05
-
-
 @pytest.mark.parametrize("name", ["equal", "dimer"])
 def test_the_long_wave_has_the_lattice_s_momentum_as_k_tends_to_1(name):
     """The error of the canonical wave falls as k - 1."""

@@ -7,7 +7,7 @@ import sympy as sp
 from lwa import Cell, Dimer, NoSolitaryWave, lattice_wave
 from lwa.cell import k as symbol_k
 from lwa.expansion.dimers import exponent_of_light_beads
-from lwa.expansion.joined import FORMS, phi_series
+from lwa.expansion.joined import FORMS
 from tests.lwa.expansion.test_exact_waves import lattice
 from tests.lwa.wave.test_source import LANGUAGE, answers
 from tests.test_errors import LOOSE, holds
@@ -39,16 +39,6 @@ def test_closed_forms_are_the_lattices_at_every_k():
                 ratios[name].append(found.relative_error / deviation)
     assert all(min(of_name) < 1.5 for of_name in ratios.values())
     assert np.mean(np.concatenate([*ratios.values()]) <= LOOSE) >= 0.9
-
-
-def test_the_first_coefficients_are_exact():
-    """By hand, to all digits: c = 1 - ε/4 + …, c₂(1) = √8/π, c₂'/c₂ = (1 - 2 ln 2)/4 at k = 1."""
-    ln2 = sp.log(2)
-    force = 4 / (3 * ln2) - (6 - ln2) / 30
-    speed = (1 - ln2) / 2 / (1 - sp.sqrt(8) / sp.pi)
-    for name, first in {"force": force, "strain": force - 1, "speed": speed}.items():
-        found = sp.Float(phi_series(name, 0)[0], 30)
-        assert abs(found - first.n(30)) < 1e-27, name
 
 
 @pytest.mark.parametrize("name", FORMS)

@@ -3,7 +3,6 @@
 import pytest
 
 from lwa import Cell, pulse_of_strike
-from tests.lwa.expansion.test_exact_waves import lattice
 from tests.test_errors import holds
 from validation import Scene, simulate
 
@@ -43,16 +42,6 @@ def test_the_error_of_a_strike(engine, k, mass):
     # next to m_eff, and at large k, the rule passes through the lattice's force
     assert mass == 1.3 or found.k > 5 or holds(found.force.error, deviation, 2e-5)
     assert found.train == (mass > 2)
-
-
-def test_a_heavy_striker_meets_the_mass_of_the_wave():
-    """An elastic collision with the mass P²/2E, its momentum and energy by exact waves."""
-    values, _, _ = lattice(2.0)
-    mass = values["effective_mass"]
-    velocity = 2 * 4 / (4 + mass)
-    force = (mass * velocity**2 / 2 / values["energy"]) ** (2 / 3)
-    found = pulse_of_strike(EQUAL, 4, 1, k=2)
-    assert found.force.value == pytest.approx(force, rel=1e-3)
 
 
 def test_a_strike_in_si_units_and_by_its_drop():

@@ -83,3 +83,19 @@ def test_scipys_methods_are_references_of_forced_scenes(scene):
     """Motion, work and dissipated energy."""
     ours, theirs = (simulate(scene, method=m, rtol=1e-10) for m in ("RKN86", "DOP853"))
     np.testing.assert_allclose(theirs.end, ours.end, atol=3e-9)
+
+
+def test_samples_between_the_ends_of_steps_are_as_good_as_the_ends():
+    """Samples between some forty steps of a damped and driven bead err by one tolerance."""
+    scene = chain(
+        2,
+        wall=1,
+        duration=8,
+        samples=400,
+        bead_sensors=(1,),
+        damping=Damping("kuwabara_kono", 0.05),
+        drive=Drive(amplitude=0.5, frequency=0.1),
+    )
+    found, exact = (simulate(scene, rtol=r).bead_velocity for r in (1e-10, 1e-13))
+    # Polynomials of degree 7 erred by 8 tolerances.
+    assert abs(found - exact).max() < 2e-10

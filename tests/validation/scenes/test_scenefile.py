@@ -250,24 +250,24 @@ def four(**keys):
         # sqrt(2 g h)
         ({"striker": {"drop": 0.05}}, {"velocities": (math.sqrt(2 * 9.81 * 0.05),)}),
         ({"damping": {"contact": 0.9}}, {"damping": Damping("contact", 0.9)}),
+        # Values of contacts that differ: as long as the cell, or as the row of contacts with the
+        # wall's, the last one
+        (
+            WALL | four(k=2) | {"damping": {"contact": [0, 2]}},
+            {"damping": Damping("contact", (0, 2, 0, 2))},
+        ),
+        (
+            WALL | four(law=["power:3/2", "exponential:1"]),
+            {"contact_laws": ((1.5, None), (1.0, named("exponential", 1))) * 2},
+        ),
+        (WALL | four(k=[1, 2, 3, 4]), {"k": (1, 2, 3, 4)}),
+        (four(k=[1.5, 2]), {"k": (1.5, 2, 1.5)}),
+        (four(law=["power:3/2"] * 3), {"law": None}),
     ],
 )
 def test_keys_and_the_fields_that_they_set(keys, fields):
     found = scene(GOOD | keys)
     assert {name: getattr(found, name) for name in fields} == fields
-
-
-def test_values_of_contacts_that_differ_are_lists():
-    """As long as the cell, or as the row of contacts with the wall's, the last one."""
-    toda = named("exponential", 1)
-    laws = ["power:3/2", "exponential:1"]
-    found = scene(GOOD | WALL | four(law=laws) | {"damping": {"contact": [0, 2]}})
-    assert found.contact_laws == ((1.5, None), (1.0, toda)) * 2
-    assert found.damping == Damping("contact", (0, 2, 0, 2))
-    found = scene(GOOD | WALL | four(k=[1, 2, 3, 4]))
-    assert found.k == (1, 2, 3, 4)
-    assert scene(GOOD | four(k=[1.5, 2])).k == (1.5, 2, 1.5)
-    assert scene(GOOD | four(law=["power:3/2"] * 3)).law is None
 
 
 def test_a_drive_is_read_from_a_file_beside_the_scene(tmp_path):

@@ -6,7 +6,7 @@ import signal
 import socket
 import sqlite3
 import sys
-from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor
 from contextlib import closing
 from itertools import product
 
@@ -22,7 +22,7 @@ from validation.lattice.threads import cluster, threads
 from validation.pulses.steady import LABELS, Point, PointFile
 from validation.report import study
 from validation.scenes.checks import Failure
-from validation.studies.sweep import AHEAD, MEMORY, measured, report, sweep, theory
+from validation.studies.sweep import MEMORY, measured, report, sweep, theory
 
 R = sp.Rational
 QUICK = {"stretch": 2, "jobs": 1}  # the shortest chains, one after another
@@ -31,7 +31,10 @@ KS, OMEGAS = (R(3),), (R(1, 4), R(1, 2), R(3, 4), R(1))
 
 @pytest.fixture(scope="module")
 def reference():
-    return measured(KS, OMEGAS, PointFile(MEMORY, 2), threads(1), iter)
+    """Four points, of which three wait for a worker at most."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("validation.studies.sweep.AHEAD", 3)
+        return measured(KS, OMEGAS, PointFile(MEMORY, 2), threads(1), iter)
 
 
 def numbers(found):
@@ -116,25 +119,6 @@ def test_a_file_that_is_open_or_of_another_kind_is_refused(file):
         refused(file, r"s\.sqlite: .*locked")
     file.write_bytes(100 * b"a,b,c,d,e\n")
     refused(file, "not a database")
-
-
-def test_few_points_wait_for_a_worker():
-    """A grid of 40 values by 50 never has more than `AHEAD` points in the executor."""
-    given = []
-
-    class Noting(ThreadPoolExecutor):
-        def submit(self, _, k, omega, stretch):
-            given.append((k, omega))
-            return super().submit(Point, k, omega, None, {}, "no")
-
-    def progress(keys):
-        for done, key in enumerate(keys):
-            assert len(given) <= done + AHEAD
-            yield key
-
-    grid = tuple(map(R, range(2, 42))), tuple(R(n, 10) for n in range(1, 51))
-    found = measured(*grid, PointFile(MEMORY, 2), Noting(2), progress)
-    assert [(p.k, p.omega) for p in found] == given == [*product(*grid)]
 
 
 with_dask = pytest.mark.optional("distributed")

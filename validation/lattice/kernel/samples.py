@@ -1,9 +1,13 @@
 """Interpolated motion of the watched beads within steps, between knots (the ends of steps).
 
-Within a step a displacement is the polynomial with y, y', y'' and y''' at both ends (Hermite).
-If the step was corrected for a kink of the bead's contact, the effect of the contact's force
-``F(p, p'/h)`` (`validation.lattice.kernel.kinks`) is subtracted before the interpolation and added
-afterwards.
+Within a step a bead's displacement y is the sum of two parts. The first is the effect of the
+forces of its contacts, ``F(p, p'/h)`` along the quintic p of a contact's compression
+(`validation.lattice.kernel.kinks`), integrated twice. The second, the rest, is small and smooth:
+the polynomial of degree 7 with the ``y``, ``y'`` and ``y''`` that are left at both ends, and
+``y''' = 0`` there.
+
+A smooth force is integrated as a polynomial. If the step was corrected for a kink of the contact,
+its force is integrated up to each sample.
 
 Letters: n numbers the steps, step n leading from knot n to knot n + 1; row q of the arrays belongs
 to bead ``watched[q]``, row q + 1 to the next bead; h is the step, x, from 0 to 1, the time in it.
@@ -19,9 +23,15 @@ from lwa.base.arrays import Array
 from validation.lattice.kernel import kinks
 from validation.lattice.kernel.arrays import Beads, Chain, Knots, Numbers
 from validation.lattice.kernel.compiled import FIRST, cached, inlined, part
-from validation.lattice.kernel.force import drag, elastic, push, stiffness
-from validation.lattice.kernel.kinks import Curve, value_and_slope
+from validation.lattice.kernel.force import push
+from validation.lattice.kernel.kinks import State, value_and_slope
 
+# Places of a step at which a smooth force is computed, and the matrix from accelerations there to
+# the coefficients of x², x³, … in y. The polynomial of degree 7 alone, which cannot follow a force
+# of degree 6, erred by up to 93 tolerances in damped chains at 1e-10, where knots err by 1.
+_PLACES = np.linspace(0.0, 1.0, 7)
+_POWERS = np.arange(len(_PLACES))[:, None]
+_FIT = np.linalg.inv(_PLACES[:, None] ** _POWERS.T) / (_POWERS + 1) / (_POWERS + 2)
 # A plain False is a type of its own, for which numba would compile `kinks.integrals` once more.
 NOT_DRIVEN: Any = np.bool_(False)
 
@@ -45,51 +55,46 @@ def store_knot(chain: Chain, beads: Beads, knots: Knots, now: Any) -> None:
 
 
 @part
-def _compression(
-    knots: Knots, n: int, q: int, rest: float
-) -> tuple[float, float, float]:
-    """Return δ, δ' and δ'' of the contact between the beads of rows q and q + 1, at knot n."""
+def _state(chain: Chain, knots: Knots, n: int, q: int, h: float) -> State:
+    """Return δ, δ' and δ'' of the contact ahead of the bead of row q at knot n, in units of h."""
     near = knots.state[n, q]
     far = knots.state[n, q + 1]
-    return rest + near[0] - far[0], near[1] - far[1], near[2] - far[2]
-
-
-@part
-def _rate(law: Any, r: float, d: float, v: float, a: float) -> float:
-    """Return dF/dt of a contact of unit stiffness from δ, δ' and δ''."""
-    rate = stiffness(law, d) * v
-    if not r > 0.0 or not (d > 0.0 or law.pulls):
-        return rate
-    resistance = r * drag(law, d)
-    force = elastic(law, d)
-    # Damping may not pull unless the law ``sticks``: where the sum would pull more than the elastic
-    # force does, the force is the elastic one if that attracts, and 0 otherwise.
-    if not (law.sticks or force + resistance * v > min(force, 0.0)):
-        return rate if force < 0.0 else 0.0
-    rate += resistance * a
-    if law.p > 0.0:
-        rate += law.p * resistance / d * v * v
-    return rate
+    d = chain.rest[knots.watched[q]] + near[0] - far[0]
+    return d, h * (near[1] - far[1]), h * h * (near[2] - far[2])
 
 
 @inlined
-def _septic(a: Array, b: Array) -> tuple[Curve, float, float]:
-    """Return the coefficients c0 … c5, c6 and c7 of y from y … y''' at x = 0 (a) and at x = 1 (b).
+def _fit_curve(a: Array, b: Array, pushes: Array, c: Array) -> None:
+    """Compute the coefficients c of y, a polynomial of degree 8 in x.
 
-    The coefficients c0 … c5 are a curve without a bend.
+    Parameters
+    ----------
+    a, b : array, (3,)
+        y, y' and y'' at x = 0 and at x = 1.
+    pushes : array, (7,)
+        Accelerations by smooth forces at the `_PLACES`.
+    c : array, (9,)
+        Room for the coefficients.
     """
-    c2 = a[2] / 2
-    c3 = a[3] / 6
-    # c4 … c7 solve the four conditions at x = 1, of which c0 … c3 leave the remainders r0 … r3.
-    r0 = b[0] - a[0] - a[1] - c2 - c3
-    r1 = b[1] - a[1] - 2 * c2 - 3 * c3
-    r2 = b[2] - 2 * c2 - 6 * c3
-    r3 = b[3] - 6 * c3
-    c4 = 35 * r0 - 15 * r1 + 2.5 * r2 - r3 / 6
-    c5 = -84 * r0 + 39 * r1 - 7 * r2 + r3 / 2
-    c6 = 70 * r0 - 34 * r1 + 6.5 * r2 - r3 / 2
-    c7 = -20 * r0 + 10 * r1 - 2 * r2 + r3 / 6
-    return (a[0], a[1], c2, c3, c4, c5, kinks.STRAIGHT), c6, c7
+    c[0] = a[0]
+    c[1] = a[1]
+    for m in range(len(_PLACES)):
+        c[m + 2] = 0.0
+        for k in range(len(_PLACES)):
+            c[m + 2] += _FIT[m, k] * pushes[k]
+    c2 = (a[2] - pushes[0]) / 2
+    # The rest has c4 … c7 besides, from what is left of y, y' and y'' at x = 1, r0, r1 and r2.
+    r0 = b[0] - c2
+    r1 = b[1] - 2 * c2
+    r2 = b[2] - 2 * c2 - pushes[len(_PLACES) - 1]
+    for m in range(len(c)):
+        r0 -= c[m]
+        r1 -= m * c[m]
+    c[2] += c2
+    c[4] += 35 * r0 - 15 * r1 + 2.5 * r2
+    c[5] += -84 * r0 + 39 * r1 - 7 * r2
+    c[6] += 70 * r0 - 34 * r1 + 6.5 * r2
+    c[7] += -20 * r0 + 10 * r1 - 2 * r2
 
 
 @inlined
@@ -121,11 +126,9 @@ def _take_kink_away(
     scale = h * h * chain.A[i]
     near = scale * chain.inverse[i]
     far = scale * chain.inverse[i + 1]
-    d, u, a = _compression(knots, n, q, chain.rest[i])
-    end, end_u, end_a = _compression(knots, n + 1, q, chain.rest[i])
+    begin = _state(chain, knots, n, q, h)
+    over = _state(chain, knots, n + 1, q, h)
     bend = -near - far
-    begin = (d, h * u, h * h * a)
-    over = (end, h * end_u, h * h * end_a)
     found = kinks.resolved(law, ratio, begin, over, h, bend, kinks.STRAIGHT, edges)
     p = found.curve
     if p[6][1] != 0.0:
@@ -156,22 +159,24 @@ def _take_kink_away(
 
 
 @inlined
-def _add_rates(
-    chain: Chain, knots: Knots, n: int, q: int, r: int, h: float, ends: Array
+def _add_smooth_force(
+    chain: Chain, knots: Knots, n: int, q: int, r: int, h: float, pushes: Array
 ) -> None:
-    """Add the rate dF/dt of a contact's force to the jerks of its two beads, ``m y''' = ∓dF/dt``.
+    """Add a contact's force along the curve of its compression to the accelerations of its beads.
 
-    The contact is ahead of the bead of row q, which is row r of ``ends``. The step h is from knot n
-    to knot n + 1. Column j of ``ends`` holds the j-th derivative times ``h^j``, the derivative by
-    the time in units of the step: the jerk is in column 3, with the factor h³.
+    The contact is ahead of the bead of row q, which is row r of ``pushes``; these are in units of
+    the step h, from knot n to knot n + 1, and at its `_PLACES`.
     """
     i = knots.watched[q]
-    scale = h * h * h * chain.A[i]
-    for end in range(2):
-        d, speed, a = _compression(knots, n + end, q, chain.rest[i])
-        rate = scale * _rate(chain.laws[chain.law[i]], chain.r[i], d, speed, a)
-        ends[end, r, 3] -= chain.inverse[i] * rate
-        ends[end, r + 1, 3] += chain.inverse[i + 1] * rate
+    law = chain.laws[chain.law[i]]
+    begin = _state(chain, knots, n, q, h)
+    over = _state(chain, knots, n + 1, q, h)
+    p = kinks.fitted_curve(begin, over, kinks.STRAIGHT)
+    for m in range(len(_PLACES)):
+        d, slope = value_and_slope(p, _PLACES[m])
+        force = chain.A[i] * push(law, chain.r[i], d, slope / h) - chain.load[i]
+        pushes[r, m] -= h * h * chain.inverse[i] * force
+        pushes[r + 1, m] += h * h * chain.inverse[i + 1] * force
 
 
 @cached
@@ -184,6 +189,7 @@ def interpolate(
     y: Array,
     v: Array,
     ends: Array,
+    pushes: Array,
     points: Array,
     edges: Array,
 ) -> None:
@@ -203,11 +209,12 @@ def interpolate(
         Number of the step that holds each time.
     y, v : array, (R, S)
         Room for the results.
-    ends : array, (2, R, 4)
+    ends, pushes : array, (2, R, 3) and (R, 7)
         Working memory.
     points, edges : array
         Working memory, as in `Beads`.
     """
+    c = points[0, : len(_PLACES) + 2]
     last = FIRST
     while last < len(time):
         # Samples first … last - 1 lie in one step, n.
@@ -220,23 +227,21 @@ def interpolate(
         for r in range(len(rows)):
             for end in range(2):
                 state = knots.state[n + end, rows[r]]
-                # y, y', y'' and the jerk y''' in units of the step. A knot has no jerk (column 3 of
-                # its state marks a kink): the jerk is a sum over the contacts, made below.
+                # y, y' and y'' in units of the step.
                 row = ends[end, r]
                 row[0] = state[0]
                 row[1] = h * state[1]
                 row[2] = h * h * state[2]
-                row[3] = 0.0
             for s in range(first, last):
                 y[r, s] = v[r, s] = 0.0
-        # The contact between the beads of rows r and r + 1: its force changes the jerk of both, or,
-        # with a kink in the step, which no polynomial follows, its effect is set apart. The beads
-        # of the first and the last row, and those beside a gap in the rows, may lack a contact:
-        # they are there as neighbours of the beads that are wanted.
+            pushes[r] = 0.0
+        # The contact between the beads of rows r and r + 1. The beads of the first and the last
+        # row, and those beside a gap in the rows, may lack a contact: they are there as neighbours
+        # of the beads that are wanted.
         for r in range(len(rows) - 1):
             q = rows[r]
-            kink = knots.state[n + 1, q, 3] > 0.0
-            if kink:
+            kinked = knots.state[n + 1, q, 3] > 0.0
+            if kinked:
                 _take_kink_away(
                     chain,
                     knots,
@@ -254,14 +259,15 @@ def interpolate(
                     edges,
                 )
             else:
-                _add_rates(chain, knots, n, q, r, h, ends)
-        # The polynomial of degree 7 with y, y', y'' and the jerk at both ends. It is added to the
-        # effects of kinks, which y and v hold already.
+                _add_smooth_force(chain, knots, n, q, r, h, pushes)
+        # The effects of kinks are in y and v already.
         for r in range(len(rows)):
-            low, c6, c7 = _septic(ends[0, r], ends[1, r])
+            _fit_curve(ends[0, r], ends[1, r], pushes[r], c)
             for s in range(first, last):
                 x = (time[s] - start) / h
-                smooth, slope = value_and_slope(low, x)
-                x5 = x * x * x * x * x
-                y[r, s] += smooth + x5 * x * (c6 + x * c7)
-                v[r, s] += (slope + x5 * (6 * c6 + x * 7 * c7)) / h
+                smooth = slope = 0.0
+                for m in range(len(_PLACES) + 1, -1, -1):
+                    slope = slope * x + smooth
+                    smooth = smooth * x + c[m]
+                y[r, s] += smooth
+                v[r, s] += slope / h
