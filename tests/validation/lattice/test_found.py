@@ -60,12 +60,8 @@ KEEP_ENERGY = [
     ),
     # The wall's contact expands without a force, when the drive hits the bead in front of it.
     shaken((1, 1), 1.5, ("restitution", 0.5), 0.5, 0.2, 0),
-    shaken((0.409, 1.455), 2.5, ("restitution", 0.589), 0.344, 0.446, -1.643),
-    shaken((1.104, 1.106), 2.0, ("kuwabara_kono", 0.55), 0.225, 0.402, -0.0401),
     shaken((0.715, 1.488), 1.5, ("kuwabara_kono", 0.378), 0.91, 0.315, 0.039),
-    # The wall's contact, idle as damping may not pull, seems to push at some stages.
     shaken((1.361, 0.578), 3.0, ("contact", 0.395), 0.824, 0.592, -1.128),
-    shaken((1.404, 0.973), 2.5, ("contact", 0.684), 0.621, 0.391, 0.08),
     # Beyond a free end 0 times the force of no contact, which grows with time, is no number.
     *(
         chain(3, law=law, velocities=(1,), duration=3000, damping=Damping("contact", 0.1))
@@ -214,15 +210,29 @@ def test_a_record_within_steps_of_1e_8_is_that_of_an_earlier_time():
     assert np.abs(forces[1] - forces[0]).max() < 2e-8 * forces[0].max()
 
 
-def test_a_response_that_is_stronger_than_guessed_is_recorded():
-    """A piston leaves two beads, which gravity moves: all within a few steps."""
-    scene = chain(
-        (0.6, 0.3), wall=1, k=2, gravity=0.077, duration=11.5, samples=13, bead_sensors=(1,),
-        damping=Damping("kuwabara_kono", 0.063), drive=Drive(velocity=-0.055),
-    )  # fmt: skip
-    run = simulate(scene, rtol=1e-6)
-    exact = simulate(scene, rtol=1e-11, step=0.01)
-    np.testing.assert_allclose(run.bead_velocity, exact.bead_velocity, atol=1e-6)
+# A piston leaves two beads, which gravity moves, all within a few steps: the response is stronger
+# than was guessed.
+LEFT = chain(
+    (0.6, 0.3), wall=1, k=2, gravity=0.077, duration=11.5, samples=13, bead_sensors=(1,),
+    damping=Damping("kuwabara_kono", 0.063), drive=Drive(velocity=-0.055),
+)  # fmt: skip
+# The wall's contact seems to push at some stages, after the force beside it almost jumped.
+CLIPPED = chain(
+    4, wall=1, k=(1.5, 1.1, 4, 1.5), displacements=(0, -0.23), duration=3,
+    bead_sensors=range(4), damping=Damping("restitution", 0.5),
+    drive=Drive(amplitude=0.64, frequency=0.1),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("scene", "tolerances"),
+    [(LEFT, [1e-6]), (CLIPPED, np.geomspace(1e-5, 1e-10, 101))],
+)
+def test_samples_lie_on_the_motion(scene, tolerances):
+    exact = simulate(scene, rtol=1e-13, step=0.01).bead_velocity
+    for rtol in tolerances:
+        off = simulate(scene, rtol=rtol).bead_velocity - exact
+        assert np.abs(off).max() < 10 * rtol
 
 
 @pytest.mark.parametrize(
