@@ -25,7 +25,7 @@ _LINE = re.compile(r"[^\r\n]*\S[^\r\n]*")  # a line that is not blank
 # Signs with several codes, and the sign of recorders for a value beyond their range
 _SIGNS = {"μ": "µ", "−": "-", "∞": "inf"}
 HEAD = 1000
-"""Lines in which the separator and the first numbers are looked for."""
+"""Lines in which the separator and the first numbers are looked for; bytes that tell a text."""
 
 _MARKS = "\t;, "
 HEADER = re.compile(r"^(.*?) ?(?:(?:[([] ?|\bin )([^][()\s]+) ?[])]?)?$")
@@ -92,6 +92,9 @@ class Cells:
         encoding = "utf-8-sig"
         if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
             encoding = "utf-16"
+        # Recorders may pad a text with zeros at its end. JSON is what `run` stores beside CSV.
+        elif b"\0" in content[:HEAD] or content.startswith(b"{"):
+            raise SceneError("it is no table: rows of text, CSV say, are wanted")
         try:
             text = content.decode(encoding)
         except UnicodeDecodeError:

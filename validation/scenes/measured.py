@@ -6,7 +6,7 @@ Preambles, rows of units, footers and blank ends are not data; a gap inside a re
 from __future__ import annotations
 
 import csv
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import cycle
@@ -48,9 +48,10 @@ class Record:
         Times and values of the samples, (S,).
     column : int
         Number of the signal's column in its file, from 1.
-    key, inverted : str
-        Name or header under which the user states the signal's unit, and the statement that
-        changes the signal's sign.
+    key : str
+        Name or header under which the user states the signal's unit.
+    turned : mapping of str
+        The user's statements of units with the one, by ``key``, that changes the signal's sign.
     """
 
     kind: str
@@ -60,7 +61,7 @@ class Record:
     values: Array
     column: int
     key: str
-    inverted: str
+    turned: Mapping[str, str]
 
 
 class MeasuredFile(Columns):
@@ -219,7 +220,7 @@ class MeasuredFile(Columns):
             values,
             signal.number,
             signal.key,
-            f"-{given}".removeprefix("--"),
+            {**self.units, signal.key: f"-{given}".removeprefix("--")},
         )
 
     def _record(self, columns: Sequence[Column]) -> Array:

@@ -133,6 +133,7 @@ def law(
         numbers["E"] = _modulus(content, material, fit.hertz)
     units = {"k": ""}
     axes = ("peak contact force", "speed")
+    # Without units in the file the law is in the units of the masses and the spacing.
     if file.si:
         units |= {"A": f" (N/m^{fit.k.value:.3g})", "E": " (Pa)"}
         axes = ("peak contact force (N)", "speed (m/s)")
@@ -169,6 +170,7 @@ def law(
 def _pulses(file: MeasuredFile) -> tuple[Array, Array, Array | None]:
     """Return rising forces of `_FEWEST` or more pulses, their speeds and weights (None if none)."""
     errors = [n for n in ("force_error", "speed_error") if n in file.names]
+    # Files of other programs call the speed of a pulse its velocity.
     name = "speed"
     if name not in file.names and "velocity" in file.names:
         name = "velocity"
@@ -177,6 +179,7 @@ def _pulses(file: MeasuredFile) -> tuple[Array, Array, Array | None]:
     if len(force) < _FEWEST or not (force[0] > 0 and speed.min() > 0):
         wanted = f"at least {_FEWEST} pulses of positive force and speed are wanted"
         raise SceneError(f"{file.path}: {wanted}")
+    # Blows of one height tell one point of the law, however many they are.
     different = len(np.unique(force))
     if different < _FEWEST - 2:
         wanted = f"{_FEWEST - 2} or more are wanted"
@@ -309,6 +312,7 @@ def fit_power(
     SceneError
         For a k out of the range from `LEAST` to `MOST`, and for an A beyond the range of a float.
     """
+    # A power law is a line: ln V = slope · ln F + constant.
     x, y = np.log(force), np.log(speed)
     (slope, constant), middle = _fit(x, y, 1, weight)
     k, log_A = _exponent(slope), medium.log_stiffness(slope, constant - slope * middle)

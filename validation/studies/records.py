@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Unpack
@@ -70,6 +70,7 @@ def column_options(function: Any) -> Any:
             else:
                 stated[name] = value
         if fault:
+            # What is right of the statements is kept in the line that is proposed.
             wanted = f"{given.metavar} is wanted, once a name"
             change = {called(given): stated or {"time": _TIMES[called(given)]}}
             raise SceneError(f"{called(given)} is {fault}: {wanted}", **change)
@@ -115,14 +116,11 @@ class Measured:
         Whether they are in SI.
     notes : sequence of str
         Lines on their units.
-    units : mapping of str
-        The user's statements of units.
     """
 
     signals: Sequence[Record]
     si: bool
     notes: Sequence[str]
-    units: Mapping[str, str]
 
     @classmethod
     def read(
@@ -144,6 +142,7 @@ class Measured:
             constant = read_time(time_constant, "time_constant", "1 ms")
         names = [paths] if isinstance(paths, str | Path) else [*paths]
         files = [MeasuredFile.read(name, **stated) for name in names]
+        # A picture, and a comparison, has one unit for each quantity.
         for file in files:
             if file.si != files[0].si:
                 raise SceneError(
@@ -152,6 +151,7 @@ class Measured:
         records = [record for file in files for record in file.records(of, wanted)]
         signals: dict[tuple[str, int | None], Record] = {}
         for place, signal in enumerate(records, start=1):
+            # A single sensor needs no number.
             if len(records) > 1:
                 signal = replace(signal, number=signal.number or place)
             if time_constant:
@@ -161,8 +161,7 @@ class Measured:
                 raise SceneError(f"{signal.kind} {signal.number} is there twice")
             signals[signal.kind, signal.number] = signal
         notes = [note for file in files for note in file.notes]
-        units = stated.get("units") or {}
-        return cls([*signals.values()], files[0].si, notes, units)
+        return cls([*signals.values()], files[0].si, notes)
 
     def pulse(self, signal: Record) -> NoisyPulse:
         """Measure the first pulse of a record.
@@ -172,8 +171,7 @@ class Measured:
         try:
             return noisy_pulse(signal.time, signal.values, self.unit)
         except InvertedError as error:
-            turned = {**self.units, signal.key: signal.inverted}
-            raise MeasureError(str(error), units=turned) from None
+            raise MeasureError(str(error), units=signal.turned) from None
 
     @property
     def unit(self) -> str:
@@ -238,6 +236,7 @@ def pulses(
     notes = [*read.notes]
     refusals: list[MeasureError] = []
     for i, signal in enumerate(read.signals):
+        # Beads, and contacts, lie a site apart; where they begin does not matter to a speed.
         site = signal.number or 1
         along = {"speed_sites": float(site)}
         if apart is not None:
@@ -252,9 +251,8 @@ def pulses(
             found.append(replace(blank, missing=error.reason))
             refusals.append(error)
             if error.change:
-                notes.append(
-                    f"{blank.name}: --unit '{signal.key}={signal.inverted}' turns it."
-                )
+                turned = f"{signal.key}={signal.turned[signal.key]}"
+                notes.append(f"{blank.name}: --unit '{turned}' turns it.")
             continue
         reading = replace(
             blank, numbers=pulse.numbers, missing=pulse.missing, static=pulse.base
@@ -263,6 +261,7 @@ def pulses(
         hint = suggested(signal.time, signal.values, pulse, read.unit)
         if hint and not time_constant:
             notes.append(f"{blank.name}: {hint}")
+    # The first refusal may know the statement that turns an inverted record.
     if len(refusals) == len(found):
         raise MeasureError(
             f"no sensor has a pulse: {found[0].name}: {found[0].missing}",
@@ -357,6 +356,7 @@ def compare(
         theirs = dict(found[name].numbers)
         arrival = theirs["arrival"]
         doubt = arrival.error
+        # The shift has the error of the first arrival, and is part of every later one.
         if name != first:
             doubt = math.hypot(doubt, shift.error)
         theirs["arrival"] = Estimate(arrival.value + shift.value, doubt)

@@ -77,6 +77,7 @@ def report(recording: Recording, every: bool = False) -> Report:
     """
     run = recording.run
     scene = run.scene
+    # A wall takes momentum.
     momentum = "not conserved"
     if run.momentum_drift is not None:
         momentum = f"drift {run.momentum_drift:.0e}"
@@ -159,6 +160,7 @@ def reading_tables(
     number = Column("number")
     missing = Column("missing")
     columns = [Column("", "sensor"), kind, number]
+    # Columns with one value in all rows, force or pulse 1, are left out.
     if "velocity" in quantities:
         columns.append(Column("signal"))
     if every:
@@ -172,6 +174,7 @@ def reading_tables(
         Column("speed_sites", error=True),
         Column("speed", error=True),
     ]
+    # The speed from the sensor before, by the sensor at which the pulse arrives
     arriving = {(leg.kind, leg.places[1]): leg.numbers for leg in speeds}
     rows = []
     for reading in sensors:
@@ -294,6 +297,7 @@ def run(
 ) -> Report:
     """A scene from a file, TOML or JSON: arrival, peak force, FWHM and speed at its sensors."""
     chain = scenefile.read_scene(scene, enough_samples)
+    # By any name of the file: a link, say
     if (
         out is not None
         and out.exists()
@@ -304,6 +308,7 @@ def run(
             f"out is {out}: it is the scene's own file, which would be lost"
         )
     sensors = chain.bead_sensors or chain.contact_sensors
+    # A CSV holds the records alone; JSON has the result as well.
     if out is not None and out.suffix.lower() == ".csv" and not sensors:
         raise SceneError(f"out is {out}, but the scene names no sensors")
     recording = record(
@@ -316,6 +321,7 @@ def run(
     with replacing(out) as new, new.open("wb") as stream:
         if out.suffix.lower() == ".csv":
             columns = done.columns()
+            # "%s" writes the shortest text that reads back as the same float.
             rows = np.column_stack(list(columns.values()))
             np.savetxt(stream, rows, "%s", ",", header=",".join(columns), comments="")
         else:

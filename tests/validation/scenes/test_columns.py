@@ -152,7 +152,7 @@ def test_an_inverted_record_is_turned_by_the_users_own_statement(
     read, unit, units, key, turned
 ):
     (record,) = read(f"time (s),force ({unit})\n1,7\n2,8\n", units=units).records()
-    assert (record.key, record.inverted) == (key, turned)
+    assert (record.key, record.turned[key]) == (key, turned)
 
 
 HEAD = "time (s),force (N)\n"
@@ -197,7 +197,9 @@ STATED = {"columns": {"force": "2"}}
         ("time,V,V\n1,2,3\n", {"columns": {"force": "V"}}, "2 columns are 'V'"),
         (f"{HEAD}1,2\n", {"columns": {"force": "fource"}}, "near: force .N.: found"),
         ("time,force\n1,2\n", {"columns": {"bead x": "1"}}, "column is 'bead x'"),
-        ("\x00\xff\n", {"encoding": "latin-1"}, "found no numbers$"),
+        ("\x00\xff\n", {"encoding": "latin-1"}, "record.csv: it is no table"),
+        ('{"time_value": [0, 1]}', {}, "record.csv: it is no table"),
+        ("a,b\nc,d\n", {}, "found no numbers$"),
         ("time,force\n1,2\n1.5,∞\n2,3\n", {}, "line 3 holds ∞, the signal is clipped"),
         (
             "time,1 force,time\n1,5,2\n3,5,4\n",

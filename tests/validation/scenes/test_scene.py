@@ -55,9 +55,9 @@ REFUSED = [
 def test_a_bad_value_is_refused_by_name(change, named):
     """A start of half the distance in front of the wall, a bead's radius, is none inside it."""
     at_the_wall = {"spacings": (1, 2), "wall": 1, "displacements": (0, 0, 1)}
-    assert Scene(**{**GOOD, **at_the_wall}).size == 3
+    assert Scene(**GOOD | at_the_wall).size == 3
     with pytest.raises(SceneError, match=rf"^{named}[^\n]{{,200}}$"):
-        Scene(**{**GOOD, **change})
+        Scene(**GOOD | change)
 
 
 @pytest.mark.parametrize(
@@ -81,7 +81,7 @@ def test_a_bad_damping_or_drive_is_refused_by_name(kind, given, named):
 
 
 def test_contacts_that_are_alike_are_the_same_chain_however_they_are_written():
-    base = {**GOOD, "k": math.nan}
+    base = GOOD | {"k": math.nan}
     alike = Scene(**base | {"k": (1.5, "3/2"), "damping": Damping("contact", (2, 2))})
     assert alike == Scene(**GOOD, damping=Damping("contact", 2))
     power, toda = named("power", "3/2"), named("exponential", 1)
@@ -105,7 +105,7 @@ anything |= st.lists(st.floats() | words | st.none(), max_size=4)
 @given(st.sampled_from([f.name for f in dataclasses.fields(Scene)]), anything)
 def test_any_value_is_stored_or_refused(field, value):
     try:
-        scene = Scene(**{**GOOD, field: value})
+        scene = Scene(**GOOD | {field: value})
     except SceneError:
         return
     found = getattr(scene, field)

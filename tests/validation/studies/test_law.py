@@ -24,12 +24,10 @@ FORCES = np.geomspace(0.1, 10, 12)
 GIVEN = {"masses": (2,), "spacing": 3}
 
 
-@pytest.fixture(scope="module")
-def chain():
-    return Medium.of(Cell((2,), spacing=3))
+CHAIN = Medium(mass=2, spacing=3)
 
 
-def speeds(chain, k, A, force=FORCES):
+def speeds(k, A, force=FORCES, chain=CHAIN):
     """V of the lattice's wave of F = A δ^k."""
     scaled = A ** (1 / k) * force ** ((k - 1) / k)
     c2 = float(speed_ratio(k)) * 2 / ((k + 1) * chain.mass) * scaled
@@ -46,34 +44,34 @@ def test_the_speed_ratio_is_that_of_the_exact_wave():
 
 
 @pytest.mark.parametrize(("k", "A"), [(1.5, 0.7), (2.0, 3.0)])
-def test_a_power_law_is_recovered_from_its_speeds(chain, k, A):
+def test_a_power_law_is_recovered_from_its_speeds(k, A):
     noise = 1 + 1e-9 * np.random.default_rng(1).normal(size=len(FORCES))
-    fit = fit_power(chain, FORCES, speeds(chain, k, A) * noise)
+    fit = fit_power(CHAIN, FORCES, speeds(k, A) * noise)
     assert abs(fit.k.value - k) <= fit.k.error < 1e-7
     assert abs(fit.A.value - A) <= fit.A.error < 1e-6
     assert fit.one_power
     assert abs(fit.hertz.value - A) <= fit.hertz.error or k != 1.5
 
 
-def test_known_errors_weight_the_pulses(chain):
+def test_known_errors_weight_the_pulses():
     """Every second pulse has twenty times the noise: the scatter of k is its error."""
     rng = np.random.default_rng(3)
-    exact = speeds(chain, 1.5, 1.0)
+    exact = speeds(1.5, 1.0)
     noise = np.where(np.arange(len(FORCES)) % 2, 0.05, 0.0025)
     off = []
     for _ in range(40):
         force, speed = (1 + noise * rng.normal(size=(2, len(FORCES)))) * (FORCES, exact)
         weight = weights(force, speed, noise * force, noise * speed)
-        off.append(fit_power(chain, force, speed, weight).k.value - 1.5)
+        off.append(fit_power(CHAIN, force, speed, weight).k.value - 1.5)
     scatter = np.std(off)
     # Residuals of 0 do not hide the noise.
     weight = weights(FORCES, exact, noise * FORCES, noise * exact)
-    error = fit_power(chain, FORCES, exact, weight).k.error
+    error = fit_power(CHAIN, FORCES, exact, weight).k.error
     assert 1.8 * scatter < error < 2.5 * scatter
 
 
-def test_errors_in_a_file_come_in_two_positive_columns(saved, chain):
-    speed = speeds(chain, 1.5, 1.0)
+def test_errors_in_a_file_come_in_two_positive_columns(saved):
+    speed = speeds(1.5, 1.0)
     columns = (FORCES, speed, FORCES / 100, speed / 100)
     names = "force,speed,force_error,speed_error"
     for given, header in (
@@ -86,10 +84,10 @@ def test_errors_in_a_file_come_in_two_positive_columns(saved, chain):
     assert found.data["k_value"] == pytest.approx(1.5, rel=1e-9)
 
 
-def test_the_error_of_exact_data_covers_rounding(chain):
+def test_the_error_of_exact_data_covers_rounding():
     """The speeds are those of exact waves at a k where R is interpolated."""
     V = exact_wave([1], 3.4).c * FORCES ** (2.4 / 6.8)
-    fit = fit_power(Medium.of(Cell((1,), spacing=1)), FORCES, V)
+    fit = fit_power(Medium(1, 1), FORCES, V)
     for number, value in ((fit.k, 3.4), (fit.A, 1.0)):
         assert abs(number.value - value) <= number.error < 1e-9
     assert fit.k.error > 0
@@ -98,17 +96,17 @@ def test_the_error_of_exact_data_covers_rounding(chain):
     assert fit.A.error == pytest.approx(3.4 * RATIO_ERROR, rel=0.01)
 
 
-def test_a_stiffness_beyond_the_numbers_of_a_computer_is_refused(chain):
+def test_a_stiffness_beyond_the_numbers_of_a_computer_is_refused():
     """A ~ V³ at k = 3/2."""
-    V = speeds(chain, 1.5, 1.0)
-    assert fit_power(chain, FORCES, 1e100 * V).A.value == pytest.approx(1e300, rel=1e-6)
+    V = speeds(1.5, 1.0)
+    assert fit_power(CHAIN, FORCES, 1e100 * V).A.value == pytest.approx(1e300, rel=1e-6)
     with pytest.raises(SceneError, match="no number of a computer"):
-        fit_power(chain, FORCES, 1e120 * V)
+        fit_power(CHAIN, FORCES, 1e120 * V)
 
 
-def test_a_curved_law_is_not_one_power(chain):
+def test_a_curved_law_is_not_one_power():
     x = np.log(FORCES)
-    fit = fit_power(chain, FORCES, np.exp(x / 6 + 0.02 * x**2))
+    fit = fit_power(CHAIN, FORCES, np.exp(x / 6 + 0.02 * x**2))
     assert fit.curvature.value == pytest.approx(0.02, rel=1e-9)
     assert not fit.one_power
 
@@ -117,11 +115,11 @@ def test_the_example_has_blows_on_the_steel_balls_that_help_names():
     """Hertz's stiffness of balls of 19.05 mm, by the modulus of 193 GPa."""
     ball = Sphere("29e-3", "9.525e-3", Material(E="193e9", nu="0.3"))
     (stiffness,) = Cell.of_spheres([ball]).stiffnesses
-    medium = Medium.of(Cell(("29e-3",), spacing="19.05e-3"))
+    medium = Medium(29e-3, 19.05e-3)
     force, _, speed, _ = np.loadtxt(_EXAMPLE.splitlines(), delimiter=",", skiprows=1).T
     # c is proportional to A^(1/3): a percent of the speed, by its rounding and scatter.
     assert speed == pytest.approx(
-        speeds(medium, 1.5, float(stiffness), force), rel=0.01
+        speeds(1.5, float(stiffness), force, medium), rel=0.01
     )
 
 
@@ -129,7 +127,7 @@ def test_the_modulus_comes_back_from_the_speeds_of_its_spheres(folder, saved):
     """Steel of 206 GPa under another modulus; a material of no sphere is refused."""
     steel = STEEL_BEAD.material
     sphere = Cell.of_spheres([replace(STEEL_BEAD, material=replace(steel, E=206e9))])
-    V = speeds(Medium.of(sphere), 1.5, float(sphere.stiffnesses[0]))
+    V = speeds(1.5, float(sphere.stiffnesses[0]), chain=Medium.of(sphere))
     file = saved((FORCES, V), "force (N),speed (m/s)")
     ball = "[beads.ball]\nmass = 0.45e-3\nradius = 2.38e-3\nmaterial = 'steel 316'\n"
     (folder / "beads.toml").write_text(f"{ball}[chain]\ncell = ['ball']\n")
@@ -140,10 +138,10 @@ def test_the_modulus_comes_back_from_the_speeds_of_its_spheres(folder, saved):
         law(file, spheres="beads.toml", material="PTFE")
 
 
-def test_the_command(document, folder, saved, chain):
+def test_the_command(document, folder, saved):
     """Without masses and a distance the law is in their units, and a note says so."""
     noise = 1e-6 * np.random.default_rng(3).normal(size=len(FORCES))
-    V = speeds(chain, 1.5, 1.0) * (1 + noise)
+    V = speeds(1.5, 1.0) * (1 + noise)
     data = saved((FORCES, V), "force (N),speed (m/s)")
     found = document(f"law {data} --masses 2 --spacing 3 --plot law.svg")
     assert found["k_value"] == pytest.approx(1.5, abs=found["k_error_value"])
