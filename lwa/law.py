@@ -436,13 +436,13 @@ def named(name: str, *parameters: Any) -> ContactLaw:
     if len(parameters) > len(letters):
         wanted = ", ".join(letters) or "none"
         raise InputError(
-            f"law {name} has {len(parameters)} parameters: {wanted} are wanted"
+            f"law is {name} with {len(parameters)} parameters: {wanted} are wanted"
         )
     # Only the corrections of a polynomial may soften a contact.
     read = signed if name == "polynomial" else positive
     values = []
     for letter, given in zip_longest(letters, parameters):
-        place = f"{name}'s {letter}"
+        place = f"law is {name}, whose {letter}"
         value = read(letter if given is None else given, place)
         values.append(_check_parameter(value, place, DELTA))
     force = build(*values)
@@ -484,7 +484,7 @@ def _check_parameter(value: sp.Expr, name: str, delta: sp.Symbol) -> sp.Expr:
     """Return a law's parameter; raise `lwa.InputError` if it holds the compression's symbol."""
     if delta.name in {s.name for s in value.free_symbols}:
         raise InputError(
-            f"{name} {delta.name!r}: the name means the compression of a contact"
+            f"{name} is {delta.name!r}: the name means the compression of a contact"
         )
     return value
 

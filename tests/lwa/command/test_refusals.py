@@ -59,7 +59,7 @@ LINES = [
     ),
     ("derive --field center", "field is 'center'"),
     ("derive --closure full --branch optical", "the optical branch"),
-    ("derive --law hertz2:1+1", "hertz2's a"),
+    ("derive --law hertz2:1+1", "is wanted; try: lwa derive --law hertz2:1,2\n"),
     ("derive --law general --k 2", "--law and --k are both given"),
     ("wave --background 1 --force 2", "try: lwa wave --background 1\n"),
     # The example of the option is what was refused.

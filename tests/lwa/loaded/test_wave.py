@@ -41,7 +41,7 @@ def random_chain(seed):
 
 # laws that soften: B < 0
 FALLING = (Cell([1, 2], spacing=1), Power("1/2"), sp.S.Half, sp.S.One)
-CHAINS = [random_chain(seed) for seed in range(5)]
+CHAINS = [random_chain(seed) for seed in range(4)]
 
 
 @pytest.mark.parametrize(("cell", "law", "F", "load"), [*CHAINS, FALLING], ids=str)
@@ -184,7 +184,7 @@ def chain(law, second=None):
         (pair(Power(1), factor=3), 1.2, 1.0),
         (chain(HERTZ), 1.0, 0.0),
         (pair(CURVED, CURVED), 0.1, 0.0),
-        (pair(INFLECTED, INFLECTED), 1.8375, 0.0),
+        slow(pair(INFLECTED, INFLECTED), 1.8375, 0.0),
         (chain(HERTZ), 1.5, 1.0),
         slow(chain(CUBIC), 1.0, 0.0),
         slow(chain(HERTZ, "1/4"), 1.2, 1.0),
