@@ -233,7 +233,7 @@ class LoadedWave(States):
         peak = force(np.array(wave.p0 + wave.B)) - at_rest
         # The unit of the force in floats is not that of the chain; the ratio has none.
         known_peak = number(self.force - self.precompression)
-        return np.asarray(rises / peak * known_peak)
+        return rises / peak * known_peak
 
     def estimate(
         self,

@@ -251,5 +251,5 @@ class PhysicalWave(Parametric):
         if bearer == "bead" and quantity != "velocity":
             half = number(self.wave.D) / 2
             both = arch(xi - half) + arch(xi + half)
-            return np.asarray(peak * both / 2)
-        return np.asarray(peak * arch(xi))
+            return peak * both / 2
+        return peak * arch(xi)

@@ -92,8 +92,9 @@ class Cells:
         encoding = "utf-8-sig"
         if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
             encoding = "utf-16"
-        elif b"\0" in content[:HEAD]:  # recorders may pad a text with zeros at its end
-            raise SceneError("it is no text: a table as text, CSV say, is wanted")
+        # Recorders may pad a text with zeros at its end. JSON is what `run` stores beside CSV.
+        elif b"\0" in content[:HEAD] or content.startswith(b"{"):
+            raise SceneError("it is no table: rows of text, CSV say, are wanted")
         try:
             text = content.decode(encoding)
         except UnicodeDecodeError:

@@ -50,11 +50,23 @@ class LeadingPower:
 # coefficient of the widths, as the next term of the force's has the same sign, and the coefficient
 # itself for the speed, whose next term has the other one; the order of a fit is off by 3 to 4 % for
 # the widths and by 11 % for the speed, its coefficient by at most 0.4 %.
-_WIDTH = LeadingPower(1, sp.Rational(3, 20) - sp.log(2) / 15, 0.113, 0.05, 0.01)
+_WIDTH = LeadingPower(
+    order=1,
+    coefficient=sp.Rational(3, 20) - sp.log(2) / 15,
+    constant=0.113,
+    order_bound=0.05,
+    coefficient_bound=0.01,
+)
 LEADING_POWERS = {
     FORCE_WIDTH: _WIDTH,
     STRAIN_WIDTH: _WIDTH,
-    SPEED: LeadingPower(2, -sp.Rational(3, 40), 0.075, 0.15, 0.01),
+    SPEED: LeadingPower(
+        order=2,
+        coefficient=-sp.Rational(3, 40),
+        constant=0.075,
+        order_bound=0.15,
+        coefficient_bound=0.01,
+    ),
 }
 
 _COLUMNS = (
@@ -130,12 +142,14 @@ def compared(
     def order(*values: float) -> float:
         # The slope of a straight line through the logarithms.
         logs = np.log(np.abs(numbers / values - 1))
-        return float(np.polyfit(np.log(epsilon), logs, 1)[0])
+        slope, _ = np.polyfit(np.log(epsilon), logs, 1)
+        return float(slope)
 
     def coefficient(*values: float) -> float:
         ratios = (numbers / values - 1) / epsilon**law.order
         # As many terms as exponents; the last one is the limit.
-        return float(np.polyfit(epsilon, ratios, len(EXPONENTS) - 1)[-1])
+        *_, limit = np.polyfit(epsilon, ratios, len(EXPONENTS) - 1)
+        return float(limit)
 
     for k, value, number in zip(EXPONENTS, theory, lattice, strict=True):
         bound = law.constant * float(k - 1) ** law.order

@@ -430,7 +430,13 @@ def stated_errors() -> list[dict[str, Any]]:
     for (line, stated), cell in zip(STATED.items(), cells_of_lines(), strict=True):
         wave = homogenize(cell, k=HERTZ).pde.traveling_wave().at_force(peak)
         error = float(wave.fwhm("force", "time")) / fwhm - 1
-        rows.append({"line": line, "stated_error_value": stated, "error_value": error})
+        rows.append(
+            {
+                "line": line,
+                "stated_error_value": stated,
+                "error_value": error,
+            }
+        )
     return rows
 
 
@@ -461,12 +467,17 @@ def scaling(E: float, rtol: float = RTOL) -> list[dict[str, Any]]:
 def _speed_and_force(run: Run) -> dict[str, float]:
     """V_s and F_m of a run."""
     pulses = passing(run)
-    return {"speed": speed(pulses, *SENSORS), "force": mean(pulses, "peak", SENSORS)}
+    return {
+        "speed": speed(pulses, *SENSORS),
+        "force": mean(pulses, "peak", SENSORS),
+    }
 
 
 def fitted_exponent(rows: Sequence[dict[str, Any]]) -> Estimate:
     """Return the exponent of V_s as a power of F_m over the rows of `scaling`."""
-    return exponent([row["force"] for row in rows], [row["speed"] for row in rows])
+    peaks = [row["force"] for row in rows]
+    speeds = [row["speed"] for row in rows]
+    return exponent(peaks, speeds)
 
 
 def _scaling_panel(scalings: dict[float, list[dict[str, Any]]]) -> Panel:

@@ -80,13 +80,13 @@ def points_needed(masses: Pair, k: float, half_period: float) -> int:
 
 def rise(strain: Array, k: float, p0: float) -> Array:
     """Return ``(p0 + r)_+^k - p0^k``, r the strain: the dynamic force, without cancellation."""
+    total = np.maximum(p0 + strain, 0)
     if not p0:
-        return np.asarray(np.maximum(strain, 0) ** k)
+        return total**k
     relative = np.maximum(strain / p0, -1)  # -1 for an open contact
     with np.errstate(divide="ignore"):
         growth = np.expm1(k * np.log1p(relative))
     # The power of a large logarithm loses digits, the difference of unlike powers none.
-    total = np.maximum(p0 + strain, 0)
     return np.asarray(np.where(relative > 1, total**k - p0**k, p0**k * growth))
 
 

@@ -119,9 +119,13 @@ def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWa
             masses=tuple(given[:1]),
         )
     p0 = _background(background)
-    most = STEEPEST_LOADED if p0 else STEEPEST
-    wanted = f"exact waves are found for k from 1.01 to {most:g}"
-    k = between(k, "k", 1.01, most, f"{wanted} on a background" if p0 else wanted)
+    most = STEEPEST
+    where = ""
+    if p0:
+        most = STEEPEST_LOADED
+        where = " on a background"
+    wanted = f"exact waves are found for k from 1.01 to {most:g}{where}"
+    k = between(k, "k", 1.01, most, wanted)
     if given[0] == given[-1]:
         wave = _equal(k, p0)
         mass = given[0]
@@ -226,7 +230,8 @@ def solve(problem: newton.Problem, start: ExactWave | None = None) -> ExactWave:
         beta = of_equal / newton.widening(problem.masses)
         middle = (m2 - m1) / (m1 + m2) / 2
         phase = beta * (problem.xi - middle)
-        arch = np.cos(np.clip(phase, -np.pi / 2, np.pi / 2))
+        quarter = np.pi / 2  # of a period: the arch ends there
+        arch = np.cos(np.clip(phase, -quarter, quarter))
         force = arch ** (2 * k / (k - 1))
         c2 = 4 / ((k + 1) * (m1 + m2))
     # c² of the wave scaled to peak force 1, as `newton.Problem.wave` scales the forces.
