@@ -26,10 +26,7 @@ def threads(count: int | None = None, name: str = "workers") -> Iterator[Executo
     At the end, waiting tasks are dropped, and running tasks, which cannot be stopped, finish.
     Raises `lwa.InputError` for a bad count; the message calls it ``name``.
     """
-    try:
-        wanted = cores() if count is None else integer(count, name, 1, 1024)
-    except InputError as refusal:
-        raise InputError(refusal.reason, **{name: None}) from None
+    wanted = cores() if count is None else integer(count, name, 1, 1024)
     pool = ThreadPoolExecutor(wanted)
     try:
         yield pool

@@ -166,7 +166,7 @@ class Report(Pictured):
         """Draw the picture into a file; an old file is replaced only by a complete picture."""
         # In memory first: Matplotlib prints a traceback for a file that cannot be closed.
         drawn = io.BytesIO()
-        self.figure().savefig(drawn, dpi=150, format=file.suffix[1:].lower())
+        self.figure().savefig(drawn, dpi=150, format=file.suffix[1:])
         # 150 dots an inch: 900 for the width of a panel, enough for print in a column.
         with replacing(file) as new:
             new.write_bytes(drawn.getvalue())

@@ -63,6 +63,8 @@ def law_of(random, kind, loaded):
 
 
 def drive_of(random, kind, size, T):
+    if kind == "none":
+        return None
     if kind == "piston":
         return Drive(velocity=size * random.choice([-1, 1]))
     if kind == "file":
@@ -92,12 +94,12 @@ def drawn(seed, most=40):
     count = contacts if random.random() < 0.3 else 1
     loaded = bool({"gravity", "precompression"} & {*fields})
     laws = [law_of(random, kind, loaded) for _ in range(count)]
-    fields["law"] = laws if contacts else laws[0]
+    fields["law"] = laws
     if kind != "none":
         values = 10 ** random.uniform(-3, 0, count)
         if kind == "restitution":
             values = random.uniform(0.05, 0.99, count)
-        fields["damping"] = Damping(kind, values if contacts else values[0])
+        fields["damping"] = Damping(kind, values)
     y, v = np.zeros((2, n))
     if random.random() < 0.6:
         v[random.integers(0, n, 2)] = random.uniform(-1, 1, 2)
@@ -122,8 +124,6 @@ def drawn(seed, most=40):
     )  # fmt: skip
     time = Motion(scene).scales.time
     end = 10 ** random.uniform(0.5, 1.5) * (time if np.isfinite(time) else 1)
-    if kind == "none":
-        return replace(scene, duration=end)
     return replace(scene, duration=end, drive=drive_of(random, kind, size, end))
 
 

@@ -60,12 +60,8 @@ KEEP_ENERGY = [
     ),
     # The wall's contact expands without a force, when the drive hits the bead in front of it.
     shaken((1, 1), 1.5, ("restitution", 0.5), 0.5, 0.2, 0),
-    shaken((0.409, 1.455), 2.5, ("restitution", 0.589), 0.344, 0.446, -1.643),
-    shaken((1.104, 1.106), 2.0, ("kuwabara_kono", 0.55), 0.225, 0.402, -0.0401),
     shaken((0.715, 1.488), 1.5, ("kuwabara_kono", 0.378), 0.91, 0.315, 0.039),
-    # The wall's contact, idle as damping may not pull, seems to push at some stages.
     shaken((1.361, 0.578), 3.0, ("contact", 0.395), 0.824, 0.592, -1.128),
-    shaken((1.404, 0.973), 2.5, ("contact", 0.684), 0.621, 0.391, 0.08),
     # Beyond a free end 0 times the force of no contact, which grows with time, is no number.
     *(
         chain(3, law=law, velocities=(1,), duration=3000, damping=Damping("contact", 0.1))
@@ -88,22 +84,11 @@ def passed(A, gap, velocity, duration, k=1.5, damping=None):
     )  # fmt: skip
 
 
-def plate(short):
-    """Against gravity 1 a velocity of 10 reaches 50; the plate is ``short`` before the apex."""
-    return chain(
-        (1e-6, 1), stiffnesses=(1e6,), wall=1e4, gravity=1, duration=15, velocities=(0, -10),
-        drive=Drive(time=(0, 6, 13, 20), displacement=(short - 50,) * 4),
-    )  # fmt: skip
-
-
-def hard_bead(short):
-    """A bead on a two-sided spring goes ``short`` beyond a hard bead, which is at rest."""
-    return chain(
-        (1e4, 1, 1), stiffnesses=(1, 1e6), law=(SPRING, Power("3/2")),
-        displacements=(0, 0, 1 - short), velocities=(0, 1), duration=3,
-    )  # fmt: skip
-
-
+# A bead on a two-sided spring goes 1e-5 beyond a hard bead, which is at rest.
+HARD = chain(
+    (1e4, 1, 1), stiffnesses=(1, 1e6), law=(SPRING, Power("3/2")),
+    displacements=(0, 0, 1 - 1e-5), velocities=(0, 1), duration=3,
+)  # fmt: skip
 # A free bead and one on a two-sided spring: the tangents at a step's ends meet at δ < 0. A later
 # start of the free bead by 1e-9 changes its last velocity by 2e-6.
 M = 2.1142389262361596
@@ -135,11 +120,7 @@ GRAZE = passed(
 @pytest.mark.parametrize(
     ("scene", "bead", "least", "amplification"),
     [
-        (hard_bead(1e-4), 2, 3e-4, 1),
-        (hard_bead(1e-5), 2, 3e-5, 1),
-        # 5 without a collision, 5 + 2 √(2 short) at a hard plate
-        (plate(0.1), 1, 5.4, 1e3),
-        (plate(1e-4), 1, 5.014, 1e3),
+        (HARD, 2, 3e-5, 1),
         (INFLECTION, 0, -1, 2e3),
         (WAVY, 1, -0.9960454317, 10),
         # A graze that is 1e-9 deep: damping alone is felt.
@@ -229,15 +210,29 @@ def test_a_record_within_steps_of_1e_8_is_that_of_an_earlier_time():
     assert np.abs(forces[1] - forces[0]).max() < 2e-8 * forces[0].max()
 
 
-def test_a_response_that_is_stronger_than_guessed_is_recorded():
-    """A piston leaves two beads, which gravity moves: all within a few steps."""
-    scene = chain(
-        (0.6, 0.3), wall=1, k=2, gravity=0.077, duration=11.5, samples=13, bead_sensors=(1,),
-        damping=Damping("kuwabara_kono", 0.063), drive=Drive(velocity=-0.055),
-    )  # fmt: skip
-    run = simulate(scene, rtol=1e-6)
-    exact = simulate(scene, rtol=1e-11, step=0.01)
-    np.testing.assert_allclose(run.bead_velocity, exact.bead_velocity, atol=1e-6)
+# A piston leaves two beads, which gravity moves, all within a few steps: the response is stronger
+# than was guessed.
+LEFT = chain(
+    (0.6, 0.3), wall=1, k=2, gravity=0.077, duration=11.5, samples=13, bead_sensors=(1,),
+    damping=Damping("kuwabara_kono", 0.063), drive=Drive(velocity=-0.055),
+)  # fmt: skip
+# The wall's contact seems to push at some stages, after the force beside it almost jumped.
+CLIPPED = chain(
+    4, wall=1, k=(1.5, 1.1, 4, 1.5), displacements=(0, -0.23), duration=3,
+    bead_sensors=range(4), damping=Damping("restitution", 0.5),
+    drive=Drive(amplitude=0.64, frequency=0.1),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("scene", "tolerances"),
+    [(LEFT, [1e-6]), (CLIPPED, np.geomspace(1e-5, 1e-10, 101))],
+)
+def test_samples_lie_on_the_motion(scene, tolerances):
+    exact = simulate(scene, rtol=1e-13, step=0.01).bead_velocity
+    for rtol in tolerances:
+        off = simulate(scene, rtol=rtol).bead_velocity - exact
+        assert np.abs(off).max() < 10 * rtol
 
 
 @pytest.mark.parametrize(

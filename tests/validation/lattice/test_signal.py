@@ -11,6 +11,7 @@ from validation.lattice import knots
 from validation.lattice.laws import Contact
 from validation.lattice.signal import RECORDS, sensors_of
 from validation.lattice.simulate import simulate
+from validation.scenes.forcing import Damping
 from validation.scenes.scene import SceneError
 
 LINEAR = chain(
@@ -29,15 +30,29 @@ def test_a_contact_that_touches_and_closes_and_one_that_opens(rtol):
     assert np.abs(velocity.times - end).min() < 10 * rtol
 
 
-@pytest.mark.parametrize("method", ["RKN86", "symplectic", "LSODA"])
-def test_samples_are_values_of_the_signals(method):
+@pytest.mark.parametrize(
+    ("method", "damping"),
+    [
+        ("RKN86", None),
+        ("RKN86", Damping("kuwabara_kono", 0.03)),
+        ("symplectic", None),
+        ("LSODA", None),
+    ],
+)
+def test_samples_are_values_of_the_signals(method, damping):
     """Every quantity, at times of any shape; the last bead touches a wall under a load."""
-    scene = chain(
+    bare = chain(
         (1, 0.4, 2, 1), stiffnesses=(1, 3, 1), wall=2, precompression=0.3,
-        gravity=0.1, velocities=(1.5,), duration=9, samples=501,
-        contact_sensors=(0, 3), bead_sensors=(3, 1),
+        gravity=0.1, velocities=(1.5,), duration=9, samples=501, damping=damping,
     )  # fmt: skip
+    scene = replace(bare, contact_sensors=(0, 3), bead_sensors=(3, 1))
     run = simulate(scene, method=method, rtol=1e-6)
+    # Watching a bead changes no digit of the motion.
+    unwatched = simulate(bare, method=method, rtol=1e-6)
+    np.testing.assert_array_equal(unwatched.end, run.end)
+    assert unwatched.contact_force.shape == unwatched.bead_velocity.shape == (0, 501)
+    with pytest.raises(ValueError, match="read-only"):
+        run.time[0] = 1
     table = np.arange(500)[::-1].reshape(5, 100)  # in any order
     for (kind, quantity), name in RECORDS.items():
         numbers = sensors_of(scene)[kind]

@@ -9,10 +9,8 @@ from hypothesis import given, settings, strategies as st
 
 from tests.validation.lattice.scenes import chain, on_springs
 from validation.lattice.simulate import COMPILED, simulate
-from validation.lattice.steppers import METHODS
 from validation.pulses.pulse import highest_pulse, measure
 from validation.scenes.chains import struck
-from validation.scenes.forcing import Damping
 from validation.scenes.scene import Scene
 
 TIGHT = dict(rtol=1e-11)
@@ -121,35 +119,6 @@ def test_what_the_equations_of_motion_keep(scene):
     back = simulate(replace(scene, **end), **TIGHT)
     np.testing.assert_allclose(-back.velocities, scene.velocities, atol=1e-6)
     np.testing.assert_allclose(back.displacements, 0, atol=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("method", "damping"),
-    [
-        ("RKN86", None),
-        ("RKN86", Damping("kuwabara_kono", 0.03)),
-        ("symplectic", None),
-        ("DOP853", None),
-    ],
-)
-def test_sensors_change_nothing(method, damping):
-    bare = struck((1, 0.5), 12, duration=9, damping=damping)
-    some = replace(bare, contact_sensors=(7, 2, 3), bead_sensors=(0, 3, 11))
-    plain, seen = (simulate(scene, method=method) for scene in (bare, some))
-    np.testing.assert_array_equal(seen.end, plain.end)
-    assert plain.contact_force.shape == plain.bead_velocity.shape == (0, 1001)
-    with pytest.raises(ValueError, match="read-only"):
-        seen.time[0] = 1
-
-
-@pytest.mark.parametrize("method", METHODS)
-def test_the_first_sample_is_the_initial_state(method):
-    """Beads that touch at the start press nothing: rounding would turn on a contact's damping."""
-    damped = struck(
-        (1,), 2, duration=3, contact_sensors=(0,), damping=Damping("contact", 1.0)
-    )
-    run = simulate(damped, method=method)
-    assert run.contact_force[0, 0] == run.compression[0, 0] == 0.0
 
 
 @pytest.mark.parametrize("method", ["RKN86", "symplectic", "DOP853"])
