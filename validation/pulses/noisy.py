@@ -201,9 +201,7 @@ def _is_exact(f: Array) -> bool:
     bends = np.diff(before, 2)
     signs = np.sign(bends[np.abs(bends) > least])
     turns = np.count_nonzero(np.diff(signs))
-    # A front past its steepest place tells nothing of its foot, unless the foot is 0.
-    late = f[0] != 0 and -1 in signs[:1]
-    return bool(len(before) and -falls.sum() < least and turns < 2 and not late)
+    return bool(len(before) and -falls.sum() < least and turns < 2)
 
 
 def _exact(t: Array, f: Array) -> NoisyPulse:
@@ -242,16 +240,19 @@ def _front(f: Array, width: float) -> float:
     """Return the error of the first sample as the base of a record that begins in a front.
 
     width : of the pulse, in samples. A record that begins with 0 may be that of a force which
-    begins suddenly.
+    begins suddenly; the base of another one lies from 0 to its first sample.
     """
     first, second = map(float, np.diff(f[:3]))
-    if not 0 < first < second:
-        return abs(first)
-    # Differences of a + b e^{n g}, n the number of a sample, grow by the factor e^g.
-    factor = second / first
-    if f[0] == 0 and math.log(factor) * width > _SUDDEN:
-        return 0.0
-    return first / (factor - 1)
+    unknown = max(abs(float(f[0])), first)
+    if 0 < first < second:
+        # Differences of a + b e^{n g}, n the number of a sample, grow by the factor e^g.
+        factor = second / first
+        if f[0] == 0 and math.log(factor) * width > _SUDDEN:
+            return 0.0
+        risen = first / (factor - 1)
+        return risen if f[0] == 0 else min(risen, unknown)
+    # A front past its steepest place tells nothing of its foot.
+    return unknown if first > _EXACT * np.ptp(f) else abs(first)
 
 
 def in_unit(time: float, unit: str) -> str:

@@ -39,7 +39,7 @@ from validation.report.table import Column, Table
 from validation.scenes.checks import SceneError, numeric
 from validation.scenes.columns import Stated
 from validation.scenes.measured import MeasuredFile
-from validation.studies.records import column_options
+from validation.studies.records import COLUMN_OPTIONS
 from validation.studies.run import print_option
 from validation.waves.solver import exact_wave
 
@@ -92,7 +92,7 @@ _EXAMPLE = """force (N),force_error (N),speed (m/s),speed_error (m/s)
         "Print an example of DATA: blows on steel balls of 19.05 mm and 29 g.",
         is_flag=True,
     ),
-    column_options,
+    *COLUMN_OPTIONS,
     page="experiment",
     examples=(
         "lwa-validate law --example > pulses.csv",

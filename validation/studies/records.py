@@ -55,53 +55,61 @@ _COLUMN = (
 _TIMES = {"column": "1", "unit": "s"}  # examples of what is stated of a column time
 
 
-def column_options(function: Any) -> Any:
-    """Give a study that reads a measured file its options --column and --unit."""
-
-    def read(
-        context: click.Context, given: click.Parameter, pairs: Sequence[str]
-    ) -> dict[str, str]:
-        stated: dict[str, str] = {}
-        fault = ""
-        for pair in pairs:
-            name, equals, value = (part.strip() for part in pair.partition("="))
-            if not (name and equals and value) or name in stated:
-                fault = shorten(pair)
-            else:
-                stated[name] = value
-        if fault:
-            # What is right of the statements is kept in the line that is proposed.
-            wanted = f"{given.metavar} is wanted, once a name"
-            change = {called(given): stated or {"time": _TIMES[called(given)]}}
-            raise SceneError(f"{called(given)} is {fault}: {wanted}", **change)
-        return stated
-
-    for name, parameter, metavar, says in (
-        ("--unit", "units", "NAME=UNIT", _UNIT),
-        ("--column", "columns", "NAME=HEADER|NUMBER", _COLUMN),
-    ):
-        added = option(
-            name, parameter, callback=read, multiple=True, metavar=metavar, says=says
-        )
-        function = added(function)
-    return function
+def _pairs(
+    context: click.Context, given: click.Parameter, pairs: Sequence[str]
+) -> dict[str, str]:
+    """Read the texts NAME=VALUE of an option."""
+    stated: dict[str, str] = {}
+    fault = ""
+    for pair in pairs:
+        name, equals, value = (part.strip() for part in pair.partition("="))
+        if not (name and equals and value) or name in stated:
+            fault = shorten(pair)
+        else:
+            stated[name] = value
+    if fault:
+        # What is right of the statements is kept in the line that is proposed.
+        wanted = f"{given.metavar} is wanted, once a name"
+        change = {called(given): stated or {"time": _TIMES[called(given)]}}
+        raise SceneError(f"{called(given)} is {fault}: {wanted}", **change)
+    return stated
 
 
-def record_options(function: Any) -> Any:
-    """Give a study that reads records the options --step, --time-constant, --column and --unit."""
-    constant = option(
+COLUMN_OPTIONS = (
+    option(
+        "--column",
+        "columns",
+        callback=_pairs,
+        multiple=True,
+        metavar="NAME=HEADER|NUMBER",
+        says=_COLUMN,
+    ),
+    option(
+        "--unit",
+        "units",
+        callback=_pairs,
+        multiple=True,
+        metavar="NAME=UNIT",
+        says=_UNIT,
+    ),
+)
+"""Options of a study that reads a measured file."""
+
+RECORD_OPTIONS = (
+    *COLUMN_OPTIONS,
+    option(
+        "--step",
+        metavar="TIME",
+        says="Time from sample to sample, in place of a column, as in --step '0.4 ms'.",
+    ),
+    option(
         "--time-constant",
         metavar="TIME",
         says="Time in which sensors lose their charge, which is corrected, as in "
         "--time-constant '0.4 ms'.",
-    )
-    step = option(
-        "--step",
-        metavar="TIME",
-        says="Time from sample to sample, in place of a column, as in --step '0.4 ms'.",
-    )
-    function = step(constant(function))
-    return column_options(function)
+    ),
+)
+"""Options of a study that reads records."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,7 +208,7 @@ class Measured:
         type=Words(_KINDS),
         says="Where sensors sit whose columns do not say it.",
     ),
-    record_options,
+    *RECORD_OPTIONS,
     page="experiment",
     examples=(
         "lwa-validate run --example > scene.toml",
@@ -298,7 +306,7 @@ _COMPARED = (
 @study(
     click.argument("scene", type=click.Path()),
     click.argument("measured", type=click.Path(), nargs=-1, required=True),
-    record_options,
+    *RECORD_OPTIONS,
     page="experiment",
     examples=(
         "lwa-validate run --example > scene.toml",

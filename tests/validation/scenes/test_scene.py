@@ -27,6 +27,7 @@ REFUSED = [
     ({"velocities": (1, 1, 1, 1)}, "4 velocities for 3 beads"),
     ({"spacings": (1e308, 1e308)}, "the chain's length comes out as inf"),
     ({"precompression": 1}, "precompression is 1"),
+    ({"gravity": -1, "wall": 1}, "gravity is -1"),
     ({"contact_sensors": (0, 0)}, "contact_sensors have one"),
     ({"bead_sensors": (3,)}, r"bead_sensors\[0\] is 3"),
     ({"k": 0.5}, "k is 0.5"),
