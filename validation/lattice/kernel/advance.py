@@ -19,7 +19,6 @@ from validation.lattice.kernel.corrections import (
     correct_contact,
     mark_kinks,
     next_mark,
-    watch_drive,
 )
 from validation.lattice.kernel.pair import (
     begin_step,
@@ -89,8 +88,6 @@ def advance(
         beads.books[:] = 0.0
         marks = mark_kinks(chain, beads, plan, h, hi)
         i = -1
-        if chain.drive.driven:
-            marks += watch_drive(chain, beads, now.t, h)
         for _ in range(marks):
             i = next_mark(beads.marks, i + 1)
             correct_contact(chain, beads, plan, now.t, h, i)
