@@ -83,6 +83,7 @@ class KnotPath:
             v,
             # Working memory: the compiled loops allocate nothing.
             ends=np.empty((2, len(rows), 3)),
+            moved=np.empty((2, len(rows), 7)),
             pushes=np.empty((len(rows), 7)),
             points=np.empty((3, ROOM)),
             edges=np.empty(EDGES),
