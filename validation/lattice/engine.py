@@ -121,9 +121,11 @@ class _Integration:
         self.steps = rtol, longest
         self._make_plan(motion)
         self.chain = _chain(motion)
-        self.beads = _start(motion, len(self.chain.A), self.plan.scheme)
+        padded = len(self.chain.A)
+        self.beads = _start(motion, padded, self.plan.scheme)
         self.recorder = Recorder(motion, self.chain)
-        self.now = initial_progress(self.plan, _front(motion), motion.free_energy)
+        front = _front(motion)
+        self.now = initial_progress(self.plan, front, motion.free_energy)
 
     def _make_plan(self, motion: Motion) -> None:
         """Plan the steps by the scales of a motion."""
@@ -137,7 +139,8 @@ class _Integration:
         end = self.plan.end
         knots = self.recorder.knots
         # A step has some ten stages.
-        glance = 1 + int(_BETWEEN_REPORTS / (10 * max(self.plan.size, SHORTEST)))
+        size = max(self.plan.size, SHORTEST)
+        glance = 1 + int(_BETWEEN_REPORTS / (10 * size))
         go = advance if isinstance(self.plan.scheme, Pair) else advance_split
         t = 0.0
         with progress() as display:
@@ -145,10 +148,13 @@ class _Integration:
                 display(t / end)
                 t = go(self.chain, self.beads, self.plan, knots, now, glance)
                 if now["response"] > self.plan.most:
-                    self._make_plan(Motion(self.motion.scene, float(now["response"])))
+                    response = float(now["response"])
+                    self._make_plan(Motion(self.motion.scene, response))
                 if t == end or now["stored"] == len(knots.time):
-                    now["stored"] = self.recorder.take(int(now["stored"]))
-                if t < end and (now["tries"] > self.most or t + now["h"] == t):
+                    stored = int(now["stored"])
+                    now["stored"] = self.recorder.take(stored)
+                stuck = t + now["h"] == t
+                if t < end and (now["tries"] > self.most or stuck):
                     raise IntegrationError(self._failure())
 
     def _failure(self) -> str:
@@ -156,13 +162,15 @@ class _Integration:
         now = self.now
         end = self.plan.end
         where = f"t = {now['t']:g} of {end:g}"
-        if not np.isfinite(self.beads.force[1:]).all() or now["h"] == 0:
+        finite = np.isfinite(self.beads.force[1:])
+        if not finite.all() or now["h"] == 0:
             return f"a force is not a number near {where}: no step is short enough for the law"
         if now["t"] + now["h"] == now["t"]:
             length = f"its length, {now['h']:.1g}, is rounding of the time"
             return f"no step is left at {where}: {length}"
         rounding = self.motion.scales.rounding
-        if rounding * self.motion.scales.displacement > _HIDDEN * self.plan.y:
+        hidden = rounding * self.motion.scales.displacement
+        if hidden > _HIDDEN * self.plan.y:
             cause = (
                 f"rounding of the static compression, {rounding:.1g} of the motion, hides the "
                 "motion at this rtol"
@@ -182,14 +190,16 @@ class _Integration:
         work = 0.0
         if motion.scene.drive is not None:
             # The drive also accelerates its bead.
-            gained = motion.masses[0] * (beads.v[0] ** 2 - motion.start[n] ** 2) / 2
+            squares = beads.v[0] ** 2 - motion.start[n] ** 2
+            gained = motion.masses[0] * squares / 2
             work = now["work"] + gained
         end = np.concatenate((beads.y[:n], beads.v[:n], (now["lost"], work)))
         samples = self.recorder.samples
+        steps = int(now["steps"])
         if samples:
             all_samples = np.concatenate(samples, axis=2)
-            return Run(motion, end, int(now["steps"]), samples=all_samples)
-        return Run(motion, end, int(now["steps"]), self.recorder.path())
+            return Run(motion, end, steps, samples=all_samples)
+        return Run(motion, end, steps, self.recorder.path())
 
 
 def _plan(motion: Motion, scheme: Pair | Splitting, rtol: float, **steps: Any) -> Plan:
@@ -225,10 +235,13 @@ def _pair_plan(motion: Motion, rtol: float, longest: float) -> tuple[Plan, int]:
     if scene.drive is not None:
         # At least two steps for the length in which a drive has one extremum or one cubic
         longest = min(longest, scene.drive.longest_step / 2)
-        stops |= {t for t in (scene.drive.ramp, *scene.drive.time) if 0 < t < end}
-    most = step_limit(scene, "RKN86", end / min(time, longest))
+        sudden = (scene.drive.ramp, *scene.drive.time)
+        stops |= {t for t in sudden if 0 < t < end}
+    typical = min(time, longest)
+    most = step_limit(scene, "RKN86", end / typical)
     # Short scenes begin with a hundredth: a first step that is too short costs little.
-    h = min(_FIRST * rtol ** (1 / pair.order) * time, longest, end / 100)
+    accurate = _FIRST * rtol ** (1 / pair.order) * time
+    h = min(accurate, longest, end / 100)
     times = np.array(sorted(stops), float)
     plan = _plan(motion, pair, rtol, h=h, longest=longest, stops=times)
     return plan, most
@@ -239,10 +252,13 @@ def _splitting_plan(motion: Motion, rtol: float, step: float) -> tuple[Plan, int
     end = float(motion.scene.duration)
     if math.isinf(step):
         stage = min((rtol / _KINKS) ** 0.4, _COARSEST)
-        step = stage * len(BLANES_MOAN.drifts) * min(motion.scales.time, end)
+        stages = len(BLANES_MOAN.drifts)
+        time = min(motion.scales.time, end)
+        step = stage * stages * time
     most = step_limit(motion.scene, "symplectic", end / step)
     h = end / math.ceil(end / step)
-    plan = _plan(motion, BLANES_MOAN, rtol, h=h, longest=h, stops=np.array([end]))
+    stops = np.array([end])
+    plan = _plan(motion, BLANES_MOAN, rtol, h=h, longest=h, stops=stops)
     return plan, most
 
 
@@ -265,7 +281,8 @@ def _chain(motion: Motion) -> Chain:
     # The padding, of stiffness 0, has the last contact's law, so that one loop takes both; but a
     # linear one where the last contact's force may overflow as a free end moves on (`_UNBOUNDED`).
     beyond = int(motion.law_of[-1]) if contacts else 0
-    if laws[beyond].law is not None or laws[beyond].k >= _UNBOUNDED:
+    last = laws[beyond]
+    if last.law is not None or last.k >= _UNBOUNDED:
         beyond = len(laws)
         laws.append(Contact(1.0))
     law_of = np.full(padded, beyond)
@@ -273,11 +290,14 @@ def _chain(motion: Motion) -> Chain:
     law_of[:contacts] = motion.law_of
     if len(laws) > 1:
         # Contacts at which another law begins
-        places = np.append(np.flatnonzero(np.diff(law_of)) + 1, padded)
-        alike = places[np.searchsorted(places, np.arange(padded), side="right")]
+        changes = np.flatnonzero(np.diff(law_of))
+        places = np.append(changes + 1, padded)
+        following = np.searchsorted(places, np.arange(padded), side="right")
+        alike = places[following]
     for number, law in enumerate(laws):
         if law.pulls:  # it holds at every δ, and has no kink
             opens[:padded][law_of == number] = 0.0
+    rows = [_record(law) for law in laws]
     return Chain(
         inverse=inverse,
         A=A,
@@ -286,7 +306,7 @@ def _chain(motion: Motion) -> Chain:
         load=load,
         opens=opens,
         damped=motion.scene.damping is not None,
-        laws=records(np.array([_record(law) for law in laws], LAW)),
+        laws=records(np.array(rows, LAW)),
         law=law_of,
         alike=alike,
         drive=_drive(motion),
@@ -331,7 +351,8 @@ def _front(motion: Motion) -> int:
     moving, _ = moves.nonzero()
     first = 0 if motion.scene.drive is None else 1
     if len(moving):
-        first = max(first, int(moving[-1]) + 1)
+        last = int(moving[-1])
+        first = max(first, last + 1)
     return min(motion.size, MARGIN + first)
 
 
@@ -345,7 +366,8 @@ def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
         stages = len(scheme.nodes)
     rows = _lines(7 + estimates + ROOM, padded + 2)
     # Two rows, one place ahead of the others: lines begin at column 1, the force of contact 0.
-    ahead = rows.reshape(-1)[-2 * rows.shape[1] - 1 : -1]
+    columns = rows.shape[1]
+    ahead = rows.reshape(-1)[-2 * columns - 1 : -1]
     y, v, next_y, next_v, marks = rows[:5]
     y[:n] = next_y[:n] = motion.start[:n]
     v[:n] = next_v[:n] = motion.start[n : 2 * n]

@@ -101,11 +101,13 @@ class Motion:
                 self.rest = self._each(..., Contact.compressed_by, forces)
                 # The load from the rest compressions, so that equilibrium is an exact zero.
                 self.load = self.force(self.rest)
-            for name, values in (("compression", self.rest), ("force", self.load)):
+            static = {"compression": self.rest, "force": self.load}
+            for name, values in static.items():
                 _check_range(f"static {name}", values.min(), values.max())
         self.start = np.zeros(2 * n + 2)
         self.start[: len(scene.displacements)] = scene.displacements
-        self.start[n : n + len(scene.velocities)] = scene.velocities
+        end = n + len(scene.velocities)
+        self.start[n:end] = scene.velocities
         if scene.drive is not None:
             self.start[0], self.start[n], _ = scene.drive.at(0.0)
 
@@ -118,7 +120,8 @@ class Motion:
         laws: tuple[Any, ...] = ((scene.k, scene.law),)
         if isinstance(scene.k, tuple) or isinstance(scene.law, tuple):
             laws = scene.contact_laws
-        numbers = {law: n for n, law in enumerate(dict.fromkeys(laws))}
+        different = dict.fromkeys(laws)
+        numbers = {law: n for n, law in enumerate(different)}
         self.law_of = np.zeros(contacts, int)
         self.law_of[:] = [numbers[law] for law in laws]
         self.damping = np.zeros(contacts)
@@ -126,12 +129,15 @@ class Motion:
             k = np.zeros(contacts)
             k[:] = [exponent for exponent, _ in laws]
             # A wall has infinite mass.
-            inverse = np.append(1 / self.masses, 0.0)[: contacts + 1]
+            with_wall = np.append(1 / self.masses, 0.0)
+            inverse = with_wall[: contacts + 1]
             reduced = 1 / (inverse[:-1] + inverse[1:])
             self.damping = damping.coefficients(k, self.stiffnesses, reduced)
         kinds = []
         for exponent, law in numbers:
-            power = None if damping is None else float(damping.power(exponent))
+            power = None
+            if damping is not None:
+                power = float(damping.power(exponent))
             kinds.append(Contact(exponent, law, power))
         self.laws = tuple(kinds)
 
@@ -148,7 +154,8 @@ class Motion:
         result = np.empty(rows[0].shape)
         for n, law in enumerate(self.laws):
             own = self.law_of[contacts] == n
-            result[own] = evaluate(law, *(row[own] for row in rows))
+            parts = [row[own] for row in rows]
+            result[own] = evaluate(law, *parts)
         return result
 
     def rate(self, v: Array) -> Array:
@@ -160,7 +167,8 @@ class Motion:
 
     def compression(self, y: Array) -> Array:
         """Return the compressions δ_i at displacements of shape (n,) or (n, S)."""
-        return (self.rest + self.rate(y).T).T
+        change = self.rate(y)
+        return (self.rest + change.T).T
 
     def force(self, compression: Array, contacts: Any = ...) -> Array:
         """Return the elastic forces A_i F(δ_i) of all contacts, or of some."""
@@ -182,7 +190,8 @@ class Motion:
         n = self.size
         drive = self.scene.drive
         given = work = 0.0
-        y, v = state[: 2 * n].reshape(2, n).copy()
+        motions = state[: 2 * n].reshape(2, n)
+        y, v = motions.copy()
         if drive is not None:
             y[0], v[0], given = drive.at(time)
         compression = self.compression(y)
@@ -193,13 +202,16 @@ class Motion:
         # forces balance gravity and the precompression.
         push = np.zeros(n)
         push[: len(force)] = self.load - force
-        push[1:] += (force - self.load)[: n - 1]
+        excess = force - self.load
+        push[1:] += excess[: n - 1]
         acceleration = push / self.masses
         if drive is not None:
             acceleration[0] = given
             # The drive accelerates its bead and withstands the contact.
-            work = v[0] * (self.masses[0] * given - push[0])
-        lost = ((force - elastic) * rate).sum()
+            driving = self.masses[0] * given - push[0]
+            work = v[0] * driving
+        resistance = force - elastic
+        lost = (resistance * rate).sum()
         return np.concatenate((v, acceleration, (lost, work)))
 
     def energies(self, state: Array) -> tuple[Array, Array]:
@@ -213,7 +225,8 @@ class Motion:
             stored = self._each(..., Contact.energy_above, self.rest, change)
         else:
             stored = self._each(..., Contact.energy, change)
-        return self.masses * v * v / 2, self.stiffnesses * stored
+        kinetic = self.masses * v * v / 2
+        return kinetic, self.stiffnesses * stored
 
     @cached_property
     def initial_energies(self) -> tuple[Array, Array]:
@@ -233,7 +246,8 @@ class Motion:
             return self.response
         kinetic, stored = self.initial_energies
         # Where contacts attract each other, their energy may be negative.
-        energy = kinetic.sum() + np.abs(stored).sum()
+        elastic = np.abs(stored).sum()
+        energy = kinetic.sum() + elastic
         if self.scene.drive is not None:
             # A bead that a drive hits moves about as fast.
             fastest = self.scene.drive.fastest
@@ -248,7 +262,8 @@ class Motion:
         energy = self._energy_scale()
         # The energy of a velocity, or of a contact that is pressed, may underflow.
         pressed = self.compression(self.start[:n]) > self.rest
-        if energy != 0 or self.start[n:].any() or pressed.any():
+        moving = self.start[n:] != 0
+        if energy != 0 or moving.any() or pressed.any():
             _check_range("energy", energy)
         # Greatest compression, and greatest spring without the factor k of a power.
         deepest = stiffest = 0.0
@@ -268,7 +283,8 @@ class Motion:
             largest = float(stiffnesses.max())
             depth = static
             if energy > 0:
-                depth = max(depth, law.reached_by(energy / largest, static))
+                reached = law.reached_by(energy / largest, static)
+                depth = max(depth, reached)
             if not depth:
                 continue
             deepest = max(deepest, depth)
@@ -280,7 +296,8 @@ class Motion:
             _check_range("stiffest spring", largest * slope)
             stiff = law.k * slope * stiffnesses
             springs[: len(self.rest)][own] += stiff
-            springs[1 : len(self.rest) + 1][own] += stiff
+            of_contact_behind = springs[1 : len(self.rest) + 1]
+            of_contact_behind[own] += stiff
         if not deepest:  # nothing presses: any scale does
             return Scales(energy, 0.0, 1.0, 1.0, math.inf)
         squares = springs[:n] / self.masses  # of angular frequencies
@@ -297,7 +314,8 @@ class Motion:
             _check_range("velocity", v)
             # What a float cannot tell of the static compression, over the displacement y: the part
             # of the motion that rounding may hide.
-            lost = sys.float_info.epsilon * float(self.rest.max())
+            static = float(self.rest.max())
+            lost = sys.float_info.epsilon * static
             rounding = lost / y
         return Scales(energy, deepest, y, v, time, rounding)
 

@@ -27,7 +27,9 @@ _MOST_BYTES = 2**28
 
 def _with_neighbours(beads: Beads) -> NDArray[np.int_]:
     """Return the increasing numbers of beads and their neighbours."""
-    near = np.unique(np.add.outer(np.asarray(beads, int), (-1, 0, 1)))
+    numbers = np.asarray(beads, int)
+    triples = np.add.outer(numbers, (-1, 0, 1))
+    near = np.unique(triples)
     return near[near >= 0]
 
 
@@ -155,8 +157,10 @@ class Recorder:
         assert path is not None
         time = sample_times(self.motion.scene)
         done = sum(part.shape[2] for part in self.samples)
-        due = int(time.searchsorted(path.time[-1], side="right"))
-        motions = path(sensed_beads(self.motion), time[done:due])
+        last = path.time[-1]
+        due = int(time.searchsorted(last, side="right"))
+        beads = sensed_beads(self.motion)
+        motions = path(beads, time[done:due])
         self.samples.append(np.array(motions))
         self._parts.clear()
 

@@ -99,9 +99,11 @@ class Contact:
             x = change[small]
             r = rest[small]
             # ∫ (x - s) F′(r + s) ds, s = 0 … x
-            stiffness = self.stiffness(r + np.multiply.outer(_NODES, x))
+            points = r + np.multiply.outer(_NODES, x)
+            stiffness = self.stiffness(points)
             weights = _WEIGHTS * (1 - _NODES)
-            energy[small] = x * x * np.einsum("i,i...", weights, stiffness)
+            mean = np.einsum("i,i...", weights, stiffness)
+            energy[small] = x * x * mean
         return energy
 
     def damped(
@@ -124,7 +126,8 @@ class Contact:
         resisted = closed**self.damping_power * rate
         force = elastic + (damping * resisted.T).T
         if not self.sticks:
-            force = np.maximum(force, np.minimum(elastic, 0.0))
+            least = np.minimum(elastic, 0.0)
+            force = np.maximum(force, least)
         return force if self.pulls else np.where(compression > 0.0, force, 0.0)
 
     def _evaluated(self, name: str, compression: Array) -> Array:
@@ -149,7 +152,8 @@ class Contact:
         found = []
         for force in different:
             # In 40 digits, so that the compression is right to the last digit of a float.
-            found.append(float(self.law.inverse(sp.Float(force, 40))))
+            compression = self.law.inverse(sp.Float(force, 40))
+            found.append(float(compression))
         return np.array(found)[place]
 
     def reached_by(self, energy: float, start: float) -> float:
@@ -167,7 +171,8 @@ class Contact:
         high = 1e15
         for _ in range(2):
             change = np.geomspace(low, high, _TRIED)
-            work = self.energy_above(np.full(_TRIED, start), change)
+            starts = np.full(_TRIED, start)
+            work = self.energy_above(starts, change)
             # Not `work >= energy`: beyond a pole the work is NaN, and the energy is reached there.
             reached = ~(work < energy)
             if not reached.any():
@@ -196,7 +201,8 @@ class Contact:
         """Addresses of the machine code of the force, its slope and the energy; 0 for a power."""
         if self.law is None:
             return dict.fromkeys(_NAMES, 0)
-        return {name: f.address for name, f in _machine_code(self.law).items()}
+        functions = _machine_code(self.law)
+        return {name: f.address for name, f in functions.items()}
 
 
 _NAMES = ("force", "slope", "energy")
@@ -211,9 +217,11 @@ def _function(law: ContactLaw, name: str, module: str) -> Callable[..., Any]:
     elif name == "slope":
         expression = law.slope()
     else:
-        expression = law.energy - sp.limit(law.energy, law.delta, 0, "+")
+        at_zero = sp.limit(law.energy, law.delta, 0, "+")
+        expression = law.energy - at_zero
     # Exact coefficients become floats. Small compressions keep their digits in e^δ - 1.
-    prepared = optimize(sp.N(sp.sympify(expression), 20), [expm1_opt])
+    decimal = sp.N(sp.sympify(expression), 20)
+    prepared = optimize(decimal, [expm1_opt])
     function: Callable[..., Any] = sp.lambdify(law.delta, prepared, module)
     return function
 

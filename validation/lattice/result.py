@@ -77,7 +77,8 @@ class Run(Pictured):
 
     def __post_init__(self) -> None:
         # A sum is finite only if all its terms are; squares, as energies overflow, too.
-        if not math.isfinite(np.square(self.end).sum()):
+        squares = np.square(self.end)
+        if not math.isfinite(squares.sum()):
             raise IntegrationError(
                 "the motion overflows: choose other units, or a step of "
                 f"{self.step:g} is too long"
@@ -107,7 +108,8 @@ class Run(Pictured):
         for (kind, _), name in RECORDS.items():
             rows: Any = beads.searchsorted(sensors[kind])
             # Copies of whole records would take as long as the records.
-            if np.array_equal(rows, np.arange(len(found[name]))):
+            every = np.arange(len(found[name]))
+            if np.array_equal(rows, every):
                 rows = slice(None)
             records[name] = found[name][rows]
             records[name].setflags(write=False)
@@ -234,7 +236,8 @@ class Run(Pictured):
                 continue
             # Rows in the order of the chain; of too many rows, or times, every second, third, …
             rows = np.argsort(sensors)[:: math.ceil(len(sensors) / _FINEST)]
-            thinned = slice(None, None, math.ceil(len(self.time) / _FINEST))
+            each = math.ceil(len(self.time) / _FINEST)
+            thinned = slice(None, None, each)
             places = np.array(sensors, float)[rows] + 1
             values = forces[rows, thinned].T
             drawn = Map(force, places, self.time[thinned], values)

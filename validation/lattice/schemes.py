@@ -44,9 +44,13 @@ _ROUNDING = 1e-25  # of a table with thirty digits
 
 def _rows(table: str) -> Array:
     """Read exact fractions or decimals, a row a line; zeros fill the rows."""
-    rows = [[Fraction(number) for number in row.split()] for row in table.splitlines()]
+    rows = []
+    for line in table.splitlines():
+        rows.append([Fraction(number) for number in line.split()])
     size = max(map(len, rows))
-    return np.array([row + [Fraction(0)] * (size - len(row)) for row in rows])
+    for row in rows:
+        row.extend([Fraction(0)] * (size - len(row)))
+    return np.array(rows)
 
 
 def _pair(
@@ -86,17 +90,20 @@ def _padded(exact: Array) -> Array:
     weights = exact.astype(float)
     # A decimal that was rounded leaves 1e-31 in place of 0.
     weights[np.abs(weights) < _ROUNDING] = 0.0
-    return np.pad(weights, ((0, 0), (0, ROOM - exact.shape[1])))
+    missing = ROOM - exact.shape[1]
+    return np.pad(weights, ((0, 0), (0, missing)))
 
 
 def _nystrom(table: str, order: int) -> Pair:
     """Read a pair for y'' = f(y)."""
     rows = _rows(table)
-    a, (speeds, low, low_speeds) = rows[:-3], rows[-3:]
+    a = rows[:-3]
+    speeds, low, low_speeds = rows[-3:]
     impulses = np.zeros_like(a)
     impulses[-1] = speeds
     errors = np.array((a[-1] - low, speeds - low_speeds))
-    nodes = np.sqrt(2 * a.sum(axis=1).astype(float))  # Σ_j a_sj = c_s²/2
+    sums = a.sum(axis=1).astype(float)  # Σ_j a_sj = c_s²/2
+    nodes = np.sqrt(2 * sums)
     return _pair(nodes, a, impulses, errors, speeds @ a, order)
 
 
@@ -111,7 +118,8 @@ def _explicit(table: str, order: int) -> Pair:
         full = np.array([*difference, Fraction(0)])
         errors += [full @ a, full]
     nodes = a.sum(axis=1).astype(float)
-    return _pair(nodes, a @ a, a, np.array(errors), a[-1] @ a @ a, order)
+    thirds = a[-1] @ a @ a
+    return _pair(nodes, a @ a, a, np.array(errors), thirds, order)
 
 
 RKN86 = _nystrom(

@@ -64,7 +64,8 @@ def beads_at(motion: Motion, sensors: Mapping[str, Sequence[int]]) -> NDArray[np
     """Return increasing numbers of the beads on which sensors depend; bead n is the wall."""
     beads = {*sensors.get("bead", ())}
     contacts = {*sensors.get("contact", ())}
-    contacts |= beads | {i - 1 for i in beads}
+    behind = {i - 1 for i in beads}
+    contacts |= beads | behind
     for i in contacts:
         # An end bead has one contact.
         if 0 <= i < len(motion.rest):
@@ -110,7 +111,8 @@ def sensed_beads(motion: Motion) -> NDArray[np.int_]:
 def sample_times(scene: Scene) -> Array:
     """Return the sample times of a scene, (S,)."""
     # np.linspace takes three times as long
-    return np.arange(scene.samples) / (scene.samples - 1) * scene.duration
+    shares = np.arange(scene.samples) / (scene.samples - 1)
+    return shares * scene.duration
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,8 +145,10 @@ class SensorSignal:
         inside = (t >= 0) & (t <= self.times[-1])
         values = np.full(t.shape, np.nan)
         y, v = self.path(self.beads, t[inside])
-        rows = quantities(self.path.motion, self.beads, y, v)[self.record]
-        values[inside] = rows[self.number - self.beads[0]]
+        records = quantities(self.path.motion, self.beads, y, v)
+        rows = records[self.record]
+        row = self.number - self.beads[0]
+        values[inside] = rows[row]
         return values
 
 
@@ -159,16 +163,20 @@ def contact_changes(path: Path, contact: int) -> Array:
     def compression(t: Array) -> tuple[Array, Array]:
         """Return δ and dδ/dt at times within the run."""
         y, v = path(beads, t)
-        return path.motion.rest[contact] + y[0] - y[1], v[0] - v[1]
+        pressed = path.motion.rest[contact] + y[0] - y[1]
+        return pressed, v[0] - v[1]
 
     d, _ = compression(time)
     # By signs, as products of compressions over- or underflow.
     sign = np.sign(d)
-    step = np.flatnonzero(sign[1:] * sign[:-1] < 0)
+    turns = sign[1:] * sign[:-1] < 0
+    step = np.flatnonzero(turns)
     early = time[step]
     late = time[step + 1]
     # The root of the straight line through both ends of the step
-    change = early + (late - early) * d[step] / (d[step] - d[step + 1])
+    first = d[step]
+    last = d[step + 1]
+    change = early + (late - early) * first / (first - last)
     if not len(step):
         return change
     for _ in range(_NEWTON):

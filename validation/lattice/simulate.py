@@ -139,8 +139,10 @@ def simulate_many(
     with threads(count) as pool:
         while True:
             # As many scenes wait as run, so that no thread is idle while a run is looked at.
-            more = islice(waiting, 2 * count + 1 - len(ahead))
-            ahead.extend(pool.submit(simulate, scene, **options) for scene in more)
+            wanted = 2 * count + 1 - len(ahead)
+            more = islice(waiting, wanted)
+            for scene in more:
+                ahead.append(pool.submit(simulate, scene, **options))
             if not ahead:
                 return
             yield ahead.popleft().result()

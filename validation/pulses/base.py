@@ -142,7 +142,8 @@ class Base:
         for fit in fits:
             squares = np.sum(fit.noise**2)
             criteria.append(squares / scale + 2 * len(fit.sizes))
-        weights = scipy.special.softmax(-np.array(criteria) / 2)
+        exponents = -np.array(criteria) / 2
+        weights = scipy.special.softmax(exponents)
         best = fits[int(np.argmax(weights))]
         return cls(rise, width, x, fits, weights, best)
 
@@ -217,7 +218,8 @@ class Base:
         white = rng.normal(size=(size, DRAWS))
         # The products are those of both directions, and that at lag 0 counts once.
         spectrum = np.fft.rfft(products, size)
-        power = np.maximum(spectrum.real - products[0] / 2, 0.0)
+        once = spectrum.real - products[0] / 2
+        power = np.maximum(once, 0.0)
         if not power.any():
             return white[:count]
         factors = np.sqrt(power / power.mean())

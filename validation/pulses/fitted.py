@@ -86,7 +86,8 @@ def fitted(
         wanted, spline, variance = smoothed(left)
         variance = max(variance, left)
     pulse = spline(x)
-    share = math.sqrt(variance) / float(pulse.max())
+    peak = float(pulse.max())
+    share = math.sqrt(variance) / peak
     if share > _LOUDEST:
         raise MeasureError(
             f"the noise is {share:.1%} of the peak: at most {_LOUDEST:.0%} is read"
@@ -95,7 +96,8 @@ def fitted(
     drawn = _fit(x, noise, len(spline.c))
     best = spline.c[:, np.newaxis]
     coefficients = np.hstack((best, best + drawn.c))
-    found = _read(BSpline(spline.t, coefficients, _DEGREE), ends)
+    splines = BSpline(spline.t, coefficients, _DEGREE)
+    found = _read(splines, ends)
     numbers = found[0]
     off = np.abs(found[1:] - numbers)
     errors = np.quantile(off, _WITHIN, axis=0)

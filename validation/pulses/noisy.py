@@ -127,7 +127,8 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
     else:
         pulse = _noisy(t, f, step, unit)
     # Times are known to the last digit of a float: 2e-7 s if they count from 1970.
-    resolution = float(np.spacing(np.abs(t).max()))
+    farthest = np.abs(t).max()
+    resolution = float(np.spacing(farthest))
     numbers = {}
     for name, number in pulse.numbers.items():
         if name == "peak":
@@ -152,7 +153,8 @@ def _noisy(t: Array, f: Array, step: float, unit: str) -> NoisyPulse:
     start = f[:_EARLY].mean()
     rise, fall = _place(t, f - start)
     width = fall - rise
-    inside = int(np.count_nonzero((t > rise) & (t < fall)))
+    in_pulse = (t > rise) & (t < fall)
+    inside = int(np.count_nonzero(in_pulse))
     block = max(1, inside // _MOST)
     whole = len(t) // block * block
     samples = np.array((t, f))[:, :whole]
@@ -181,7 +183,8 @@ def _noisy(t: Array, f: Array, step: float, unit: str) -> NoisyPulse:
     level, later = base.at(ends).tolist()
     slope = (later - level) / width
     # Samples of correlated noise count as fewer; each of ``means`` counts as the block's.
-    noise = math.sqrt(base.best.variance * base.best.correlation_time * block)
+    correlated = base.best.variance * base.best.correlation_time
+    noise = math.sqrt(correlated * block)
     return NoisyPulse(numbers, level, missing, rise, slope, noise)
 
 
@@ -199,7 +202,8 @@ def _is_exact(f: Array) -> bool:
     # The signal may rise smoothly from the start: noise falls as well, and bends to and fro.
     falls = np.minimum(np.diff(before), 0.0)
     bends = np.diff(before, 2)
-    signs = np.sign(bends[np.abs(bends) > least])
+    clear = bends[np.abs(bends) > least]
+    signs = np.sign(clear)
     turns = np.count_nonzero(np.diff(signs))
     return bool(len(before) and -falls.sum() < least and turns < 2)
 
@@ -213,18 +217,22 @@ def _exact(t: Array, f: Array) -> NoisyPulse:
     x = t - start
     signal = spline(x, above)
     pulse = first_pulse(signal)
-    _check_top(t, f, (start + pulse.rise, start + pulse.fall), _FEWEST_EXACT)
+    sides = (start + pulse.rise, start + pulse.fall)
+    _check_top(t, f, sides, _FEWEST_EXACT)
     numbers = readings(pulse)
     errors = dict.fromkeys(numbers, 0.0)
     for first in (0, 1):
         coarse = spline(x[first::2], above[first::2])
         rough = readings(first_pulse(coarse))
         for name, value in numbers.items():
-            errors[name] = max(errors[name], abs(value - rough[name]))
+            difference = abs(value - rough[name])
+            errors[name] = max(errors[name], difference)
     # Which of two humps is the higher is unsure within the error of the peak.
     times = np.linspace(pulse.rise, pulse.fall, _GRID + 1)
-    tops, _ = find_peaks(signal(times), height=pulse.peak - errors["peak"])
-    apart = np.abs(times[tops] - pulse.arrival).max(initial=0.0)
+    least = pulse.peak - errors["peak"]
+    tops, _ = find_peaks(signal(times), height=least)
+    distances = np.abs(times[tops] - pulse.arrival)
+    apart = distances.max(initial=0.0)
     if apart > _SAME * pulse.fwhm:
         errors["arrival"] = max(errors["arrival"], apart + _SAME * pulse.fwhm)
     # A base that is off by this much moves the peak as much, and both flanks at its half.

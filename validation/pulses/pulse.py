@@ -167,7 +167,8 @@ def measure(time: ArrayLike | Signal, values: ArrayLike | None = None) -> Pulse:
         )
     pulse = highest_pulse(signal)
     t = signal.times
-    inside = np.count_nonzero((t > pulse.rise) & (t < pulse.fall))
+    in_pulse = (t > pulse.rise) & (t < pulse.fall)
+    inside = np.count_nonzero(in_pulse)
     if values is not None and inside < FEWEST:
         few = f"{inside} samples lie above half the pulse's peak"
         raise MeasureError(f"{few}: at least {FEWEST} are wanted")
@@ -214,7 +215,8 @@ def first_pulse(signal: Signal, low: float = 0.5, share: float = 0.5) -> Pulse:
         Fraction of the peak, ``low`` at least, at which the pulse rises and falls.
     """
     grid = _Grid(signal)
-    start = int(np.argmax(grid.f > low * grid.f.max()))
+    exceeds = grid.f > low * grid.f.max()
+    start = int(np.argmax(exceeds))
     f = grid.f[start:]
     highest = np.maximum.accumulate(f)
     fallen = np.append(f < low * highest, True)
@@ -234,7 +236,8 @@ class _Grid:
         self.signal = signal
         self.t = np.append(between.ravel(), times[-1])
         self.f = signal(self.t)
-        if not self.f.max() > _NOISE * np.abs(self.f).max():
+        largest = np.abs(self.f).max()
+        if not self.f.max() > _NOISE * largest:
             raise MeasureError(
                 "no pulse is in the record: its signal is nowhere positive"
             )
@@ -293,7 +296,8 @@ def _zeros(series: chebyshev.Chebyshev) -> Array:
     low, high = series.domain
     zeros = series.roots()
     inside = zeros.real.clip(low, high)
-    near = np.abs(zeros - inside) < _AT_AN_END * (high - low)
+    moved = np.abs(zeros - inside)
+    near = moved < _AT_AN_END * (high - low)
     return np.asarray(inside[near])
 
 

@@ -191,7 +191,8 @@ def record(
         peaks = [r.numbers["peak"].value + r.static for r in (first, second)]
         numbers = sorted(first.places + second.places)
         between = slice(numbers[0] - 1, numbers[1])
-        if sites * _QUICK * _time_of_a_site(motion, between, max(peaks)) > 1:
+        time = _time_of_a_site(motion, between, max(peaks))
+        if sites * _QUICK * time > 1:
             return "no wave is so fast: the sensors see different pulses"
         start = first.numbers["arrival"].value
         end = second.numbers["arrival"].value - second.numbers["fwhm"].value
@@ -228,11 +229,14 @@ def _time_of_a_site(motion: Motion, contacts: slice, force: float) -> float:
     if motion.scene.law is not None:
         return motion.scales.time
     A = motion.stiffnesses[contacts]
-    k = np.broadcast_to(motion.scene.k, len(motion.stiffnesses))[contacts]
+    exponents = np.broadcast_to(motion.scene.k, len(motion.stiffnesses))
+    k = exponents[contacts]
     springs = k * A ** (1 / k) * force ** (1 - 1 / k)
     beside = np.append(motion.masses, np.inf)  # the wall has no mass of its own
-    lighter = np.minimum(beside[:-1], beside[1:])[contacts]
-    return float(np.mean(np.sqrt(lighter[: len(A)] / springs)))
+    of_all = np.minimum(beside[:-1], beside[1:])
+    lighter = of_all[contacts]
+    times = np.sqrt(lighter[: len(A)] / springs)
+    return float(np.mean(times))
 
 
 def tracks(
@@ -298,7 +302,8 @@ def _place(scene: Scene, x: Array, kind: str, i: int) -> dict[str, float]:
     site = i + 0.5 if kind == "contact" else float(i)
     place = {"speed_sites": site}
     if scene.spacings:
-        place["speed"] = float(np.interp(site, np.arange(len(x)), x))
+        sites = np.arange(len(x))
+        place["speed"] = float(np.interp(site, sites, x))
     return place
 
 
@@ -321,7 +326,8 @@ def forces_at_start(scene: Scene) -> dict[str, float]:
     forces = {}
     for kind, numbers in sensors_of(scene).items():
         for i in numbers:
-            force = records[RECORDS[kind, "force"]][beads.searchsorted(i)]
+            rows = records[RECORDS[kind, "force"]]
+            force = rows[beads.searchsorted(i)]
             forces[f"{kind} {i + 1}"] = float(force[0])
     return forces
 
@@ -402,7 +408,8 @@ def _speeds(
         raise MeasureError("one of the two has no pulse")
     start = first.numbers["arrival"]
     end = second.numbers["arrival"]
-    time = Estimate(end.value - start.value, total(start.error, end.error))
+    error = total(start.error, end.error)
+    time = Estimate(end.value - start.value, error)
     if time.value <= time.error:
         raise MeasureError(
             "a speed needs a later second arrival, by more than its error"
@@ -411,6 +418,7 @@ def _speeds(
         raise MeasureError("a bead with one contact has a force of half a site away")
     speeds = {}
     for name, place in first.along.items():
-        V = abs(second.along[name] - place) / time.value
+        distance = abs(second.along[name] - place)
+        V = distance / time.value
         speeds[name] = Estimate(V, V * time.relative_error)
     return speeds

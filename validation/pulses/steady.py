@@ -144,13 +144,15 @@ def _measured(
     behind = near[-1] - far
     decayed = math.exp(measured["decay"].value * behind)
     expected = fine["peak"][-1] * decayed
-    higher = float(np.mean(rough["highest"][-1] / expected))
+    ratios = rough["highest"][-1] / expected
+    higher = float(np.mean(ratios))
     if not abs(higher - 1) <= STEADY:
         raise MeasureError(
             f"not steady: at {far} sites the highest pulse has {higher:.3g} times the force that "
             f"the leading pulse's decay at {place} sites predicts"
         )
-    return Point(k, omega, (place, place + chain.sites), measured)
+    ends = (place, place + chain.sites)
+    return Point(k, omega, ends, measured)
 
 
 @dataclass(frozen=True)
@@ -176,7 +178,8 @@ class StruckDimer:
         # The end is a pulse's length away as k → 1, too.
         behind = max(12, self.sites)
         masses = (1.0, self.omega)
-        scene = struck(masses, places[-1] + behind, self.k, **options)
+        length = places[-1] + behind
+        scene = struck(masses, length, self.k, **options)
         return simulate(scene, rtol=rtol)
 
     def passages(self, run: Run) -> dict[str, Array]:
@@ -222,7 +225,8 @@ class StruckDimer:
         """
         elapsed = np.diff(passages["arrival"], axis=0)
         elapsed[elapsed <= 0] = np.nan
-        fall = -np.diff(np.log(passages["peak"]), axis=0)
+        logarithms = np.log(passages["peak"])
+        fall = -np.diff(logarithms, axis=0)
         q = (self.k - 1) / (2 * self.k)
         scaled = passages["peak"] ** q
         # exprel(z) is (e^z - 1)/z.
