@@ -1,11 +1,12 @@
-"""The tests of the built book need a browser and run only if their paths are given.
+"""The tests of the built book need a browser, and Playwright: collected if their paths are given.
 
 pytest tests/book/test_pages.py tests/book/test_ends.py
 """
 
 from pathlib import Path
 
-BROWSED = [Path(__file__).with_name(f"test_{name}.py") for name in ("pages", "ends")]
+NAMES = "test_pages.py", "test_ends.py", "browser.py", "probe.py"
+BROWSED = [Path(__file__).with_name(name) for name in NAMES]
 
 
 def pytest_ignore_collect(collection_path, config):

@@ -182,7 +182,8 @@ class Table:
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         # Names do not depend on the cells: an empty row gives the header.
-        writer.writerow(self._record([None] * len(self.columns)))
+        empty = [None] * len(self.columns)
+        writer.writerow(self._record(empty))
         for row in self.rows:
             cells = []
             for value in self._record(row).values():

@@ -47,18 +47,21 @@ class Cells:
     """
 
     def __init__(self, text: str) -> None:
-        lines = [line[0] for line in islice(_LINE.finditer(text), HEAD)]
+        found = islice(_LINE.finditer(text), HEAD)
+        lines = [line[0] for line in found]
         tables = {}
         for mark in _MARKS:
             tables[mark] = [_split(line, mark) for line in lines]
 
         def record(mark: str) -> tuple[int, int]:
             # A row of numbers may hold as many texts: states, dates.
-            return longest([_share(row) >= 1 / 2 for row in tables[mark]])
+            numeric = [_share(row) >= 1 / 2 for row in tables[mark]]
+            return longest(numeric)
 
         def weight(mark: str) -> float:
             """Count the cells; texts beside the numbers of a row take some of its weight."""
-            rows = tables[mark][slice(*record(mark))]
+            start, end = record(mark)
+            rows = tables[mark][start:end]
             return sum(len(row) * _share(row) ** 2 for row in rows)
 
         self._mark = mark = max(_MARKS, key=weight)
@@ -68,7 +71,8 @@ class Cells:
         line: list[str] = []
         if end:
             # Behind the settings a line shows which columns hold the numbers of the record.
-            line = rows[min(start + _SETTINGS, end - 1)]
+            behind = min(start + _SETTINGS, end - 1)
+            line = rows[behind]
         else:
             start = len(rows)
         # Without any row of numbers all lines are above them.
@@ -80,7 +84,8 @@ class Cells:
         if mark == " ":
             # Headers of several words stand apart by several blanks.
             for i, above in enumerate(lines[:start]):
-                tabs = re.sub(r"[ \t]{2,}", "\t", above.strip("#% \t"))
+                bare = above.strip("#% \t")
+                tabs = re.sub(r"[ \t]{2,}", "\t", bare)
                 apart = _split(tabs, "\t")
                 if len(apart) == len(line):
                     self.head[i] = apart
@@ -122,10 +127,11 @@ class Cells:
         """
         if re.fullmatch(r"[1-9]\d{0,5}", header):
             return [int(header)]
+        wanted = header.lower()
         for row in reversed(self.head):
             for form in (str.lower, name_of):
                 cells = enumerate(map(form, row), start=1)
-                numbers = [number for number, cell in cells if cell == header.lower()]
+                numbers = [number for number, cell in cells if cell == wanted]
                 if numbers:
                     return numbers
         return []
@@ -177,10 +183,12 @@ class Cells:
         place = found.index((start, end))
         # A preamble may hold rows of numbers, few, and lines without any behind them.
         many = complete.sum() > (1 + _FEW) * (end - start)
-        for before, behind in pairwise(found[max(place - 1, 0) : place + 2]):
+        first = max(place - 1, 0)
+        for before, behind in pairwise(found[first : place + 2]):
             if many or numbers[before[1] : behind[0]].any():
                 raise SceneError(f"line {self._line(before[1])} is a gap in the record")
-        beyond = np.flatnonzero(np.isinf(table[start:end]).any(axis=1))
+        infinite = np.isinf(table[start:end])
+        beyond = np.flatnonzero(infinite.any(axis=1))
         if len(beyond):
             raise SceneError(
                 f"line {self._line(start + int(beyond[0]))} holds ∞, the signal is clipped: a "
@@ -190,8 +198,10 @@ class Cells:
 
     def _line(self, row: int) -> int:
         """Return the number, from 1, of a line that is counted without blank lines, from 0."""
-        above = next(islice(_LINE.finditer(self._text), row, None)).start()
-        return len(self._text[:above].splitlines()) + 1
+        lines = _LINE.finditer(self._text)
+        start = next(islice(lines, row, None)).start()
+        above = self._text[:start].splitlines()
+        return len(above) + 1
 
 
 def longest(flags: ArrayLike) -> tuple[int, int]:
@@ -205,11 +215,12 @@ def runs(flags: ArrayLike) -> list[tuple[int, int]]:
     >>> runs([False, True, True, False, True])
     [(1, 3), (4, 5)]
     """
-    edges = np.flatnonzero(
-        np.diff(np.asarray(flags, bool), prepend=False, append=False)
-    )
+    true = np.asarray(flags, bool)
+    changes = np.diff(true, prepend=False, append=False)
+    edges = np.flatnonzero(changes)
     # Rising and falling edges take turns.
-    return [(start, end) for start, end in edges.reshape(-1, 2).tolist()]
+    pairs = edges.reshape(-1, 2).tolist()
+    return [(start, end) for start, end in pairs]
 
 
 def name_of(header: str) -> str:
@@ -218,7 +229,8 @@ def name_of(header: str) -> str:
     >>> name_of("# Time [ms]"), name_of("bead 8 Dynamic force (N)")
     ('time', 'bead 8 force')
     """
-    return HEADER.sub(r"\1", header).lower().replace("dynamic ", "").strip("#% ")
+    name = HEADER.sub(r"\1", header).lower()
+    return name.replace("dynamic ", "").strip("#% ")
 
 
 def number_of(cell: str) -> float:
@@ -243,9 +255,12 @@ def _split(line: str, mark: str) -> list[str]:
     """Return the cells of a line."""
     if mark == " ":
         # The blank between a header and its unit in brackets does not separate.
-        line, mark = re.sub(r"[ \t]+(?![([])", "\t", line.strip("#% \t")), "\t"
+        mark = "\t"
+        bare = line.strip("#% \t")
+        line = re.sub(r"[ \t]+(?![([])", mark, bare)
     # Cells in quotes may hold separators.
-    cells = next(csv.reader([line], delimiter=mark, skipinitialspace=True))
+    reader = csv.reader([line], delimiter=mark, skipinitialspace=True)
+    cells = next(reader)
     return [" ".join(cell.split()) for cell in cells]
 
 

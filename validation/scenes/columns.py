@@ -156,10 +156,14 @@ class Column:
     def note(self) -> str:
         """A line on a unit that the user states otherwise than the file; "" for none."""
         statement = read_statement(self.stated, self.base)
-        if not (self.stated and self.unit and statement and statement[1]):
+        if not (self.stated and self.unit and statement):
+            return ""
+        named = statement[1]
+        if not named:
             return ""
         # Spellings of one unit are alike: us, µs, usec.
-        theirs, own = (known(unit) or unit for unit in (statement[1], self.unit))
+        theirs = known(named) or named
+        own = known(self.unit) or self.unit
         if theirs == own:
             return ""
         return f"{self.name}: {self.stated} is stated, the file says {self.unit}."
@@ -194,7 +198,8 @@ class Columns:
         """The columns in their order, behind the times that a step states."""
         names: dict[int, str] = {}
         for name, header in self.headers.items():
-            names |= dict.fromkeys(self.cells.headed(header)[:1], name)
+            numbers = self.cells.headed(header)
+            names |= dict.fromkeys(numbers[:1], name)
         columns = []
         if self.step:
             columns.append(Column("time", None, "", "", self.step))
@@ -211,12 +216,14 @@ class Columns:
         # A unit is that of the column of this name, else of all columns with this header.
         keys: dict[int, str] = {}
         for given in self.units:
-            own = [number for number, name in names.items() if name == name_of(given)]
+            wanted = name_of(given)
+            own = [number for number, name in names.items() if name == wanted]
             keys |= dict.fromkeys(own or self.cells.headed(given), given)
         for number, name in sorted(names.items()):
             key = keys.get(number, name)
             unit = found_unit(self.cells.above(number))
-            columns.append(Column(name, number, unit, key, self.units.get(key, "")))
+            stated = self.units.get(key, "")
+            columns.append(Column(name, number, unit, key, stated))
         return columns
 
     @property
@@ -229,7 +236,8 @@ class Columns:
         """Whether a unit is stated, by the file or by the user; values are in SI then."""
         texts = [column.stated or column.unit for column in self.named]
         # A number alone is a factor.
-        return bool(re.search(r"[^-+.\deE ]", "".join(texts)))
+        letter = re.search(r"[^-+.\deE ]", "".join(texts))
+        return bool(letter)
 
     def refusal(
         self, words: str, missing: Sequence[str] = (), step: str = ""
@@ -284,12 +292,14 @@ class Columns:
 def _rank(cells: Cells, steps: dict[int, Array], name: str, number: int) -> int:
     """Return the rank of a column among those for a name, 0 for the best."""
     base = BASES[name.split()[-1]]
-    unknown = in_si(found_unit(cells.above(number)), base) is None
+    unit = found_unit(cells.above(number))
+    unknown = in_si(unit, base) is None
     own = steps[number]
     if name == "time":
         # A column without a unit that rises by 1 counts the lines; times in a unit may do so.
         lines = unknown and np.all(own == 1)
-        suits = own.min(initial=0) >= 0 < own.max(initial=0) and not lines
+        rises = own.min(initial=0) >= 0 < own.max(initial=0)
+        suits = rises and not lines
     else:
         # Counts of lines, and constants, are no signals: all their steps are equal.
         suits = len(np.unique(own)) > 1
@@ -299,7 +309,8 @@ def _rank(cells: Cells, steps: dict[int, Array], name: str, number: int) -> int:
 def _steps(cells: Cells) -> dict[int, Array]:
     """Return the differences from line to line, at the beginning, of the columns of numbers."""
     steps = {}
-    for number, column in cells.columns([*cells.entries], HEAD).items():
+    columns = cells.columns([*cells.entries], HEAD)
+    for number, column in columns.items():
         start, end = longest(np.isfinite(column))
         steps[number] = np.diff(column[start:end])
     return steps
@@ -309,7 +320,8 @@ def _listed(cells: Cells) -> str:
     """Return words on the first columns of numbers: number, header and an entry."""
     found = []
     for number, entry in cells.entries.items():
-        header = " ".join(cells.above(number)[-2:])[-20:].strip()
+        above = cells.above(number)[-2:]
+        header = " ".join(above)[-20:].strip()
         found.append(f"{number} {header!r} {entry[:12]}")
     return ", ".join(found[:_LISTED]) or "no numbers"
 
@@ -334,7 +346,8 @@ def known(unit: str) -> tuple[str, float] | None:
         parts = re.fullmatch(rf"([a-zA-Zµ]*?)(?i:{spellings})", text)
         if parts:
             # M is mega and m milli, but Micro is micro.
-            power = _POWERS.get(parts[1], _POWERS.get(parts[1].lower()))
+            prefix = parts[1]
+            power = _POWERS.get(prefix, _POWERS.get(prefix.lower()))
             if power is not None:
                 return base, 10.0**power
     return None
@@ -369,7 +382,8 @@ def read_statement(text: str, base: str) -> tuple[float, str] | None:
     >>> read_statement("12.5 mN/V", "N"), read_statement("us", "s"), read_statement("us", "N")
     ((0.0125, 'V'), (1e-06, 'us'), None)
     """
-    parts = re.fullmatch(rf"(-?)({_UNSIGNED})? *(.*)", text.replace("μ", "µ").strip())
+    plain = text.replace("μ", "µ").strip()
+    parts = re.fullmatch(rf"(-?)({_UNSIGNED})? *(.*)", plain)
     assert parts is not None  # all may be empty
     # A sign alone turns an inverted signal: -N/V.
     sign, number, unit = parts.groups()
@@ -379,7 +393,8 @@ def read_statement(text: str, base: str) -> tuple[float, str] | None:
     # Behind the unit stands whatever the file calls its own, m/s^2 say.
     words = unit.split("/")
     for count in (1, 2):  # the unit of a velocity has a slash of its own
-        multiple = in_si("/".join(words[:count]).strip(), base)
+        own = "/".join(words[:count])
+        multiple = in_si(own.strip(), base)
         if multiple is not None:
             named = "/".join(words[count:])
             # A unit alone is the file's, too.

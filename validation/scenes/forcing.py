@@ -45,7 +45,8 @@ class Damping:
     def __post_init__(self) -> None:
         one_of(self.kind, DAMPINGS, "damping")
         value = one_or_each(finite)(self.value, self.kind)
-        for number in {*np.atleast_1d(value).tolist()}:
+        numbers = np.atleast_1d(value).tolist()
+        for number in {*numbers}:
             if self.kind == "restitution":
                 # At 0.01 the damping ratio ζ is 4.8: hardly any rebound is left.
                 wanted = "a coefficient from 0.01 to 1 is wanted"
@@ -80,7 +81,8 @@ class Damping:
         if self.kind != "restitution":
             return value.astype(float)
         shares, kind_of = np.unique(value, return_inverse=True)
-        ratios = np.array([damping_ratio(share) for share in shares])[kind_of]
+        ratio_of = np.array([damping_ratio(share) for share in shares])
+        ratios = ratio_of[kind_of]
         # c of the damping ratio ζ = c/√(2(k+1) m A), see `restitution`
         return np.asarray(2 * ratios * np.sqrt((k + 1) / 2 * masses * stiffnesses))
 
@@ -161,7 +163,8 @@ class Drive:
 
     def __post_init__(self) -> None:
         for name in ("time", "displacement"):
-            row = each(finite)(getattr(self, name), f"drive.{name}")
+            given = getattr(self, name)
+            row = each(finite)(given, f"drive.{name}")
             object.__setattr__(self, name, row)
         # A piston may stand still: 0 is a velocity.
         constant = self.velocity is not None
@@ -229,7 +232,9 @@ class Drive:
         The cubics are the motion except the oscillation.
         """
         if self.time:
-            return self._spline.x[:-1], np.ascontiguousarray(self._spline.c[::-1].T)
+            # SciPy has the highest power first.
+            rising = self._spline.c[::-1].T
+            return self._spline.x[:-1], np.ascontiguousarray(rising)
         return np.zeros(1), np.array([[0.0, self.velocity or 0.0, 0.0, 0.0]])
 
     @property
@@ -238,7 +243,8 @@ class Drive:
         if self.velocity is not None:
             return abs(self.velocity)
         if self.time:
-            return float(np.abs(self._spline(self.time, 1)).max())
+            velocities = self._spline(self.time, 1)
+            return float(np.abs(velocities).max())
         amplitude, w = self.oscillation
         return abs(amplitude) * w
 
@@ -248,4 +254,5 @@ class Drive:
         # Less than a quarter of a wave: a step holds at most one extremum.
         if self.frequency is not None:
             return 1 / (8 * self.frequency)
-        return float(np.diff(self.time).max(initial=0.0)) or math.inf
+        longest = np.diff(self.time).max(initial=0.0)
+        return float(longest) or math.inf

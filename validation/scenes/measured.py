@@ -97,7 +97,8 @@ class MeasuredFile(Columns):
         if step:
             read_time(step, "step", STEP)
         headers: dict[str, str] = {}
-        for given, header in (stated.get("columns") or {}).items():
+        columns = stated.get("columns") or {}
+        for given, header in columns.items():
             name = name_of(given)
             if not NAME.fullmatch(name):
                 near = similar(name, NAMES) or ["force"]
@@ -108,10 +109,12 @@ class MeasuredFile(Columns):
             # A step stands in place of a column.
             if name != "time" or not step:
                 headers[name] = str(header)
-        units = {key: str(unit) for key, unit in (stated.get("units") or {}).items()}
+        given_units = stated.get("units") or {}
+        units = {key: str(unit) for key, unit in given_units.items()}
         file = cls(source, cells, headers, units, step)
         for name, header in headers.items():
-            file._demand(header, len(cells.headed(header)), [name])
+            count = len(cells.headed(header))
+            file._demand(header, count, [name])
         # A unit may be stated by a name, or by a header of the file.
         for key in units:
             if name_of(key) not in file.names and not cells.headed(key):
@@ -146,7 +149,8 @@ class MeasuredFile(Columns):
         for name in missing:
             self._demand(name, there.count(name), missing)
         by_name = {column.name: column for column in self.named}
-        return self._record([by_name[name] for name in names])
+        columns = [by_name[name] for name in names]
+        return self._record(columns)
 
     def records(
         self, of: str = "contact", wanted: Sequence[str] = ("force",)
@@ -180,7 +184,8 @@ class MeasuredFile(Columns):
                 sensors.append(column)
         # One column of times serves all sensors, or each has its own.
         missing = []
-        if len(times) not in (1, len(sensors) or 1):
+        one_each = len(sensors) or 1
+        if len(times) not in (1, one_each):
             missing.append("time")
         if not sensors:
             missing += wanted
@@ -188,7 +193,8 @@ class MeasuredFile(Columns):
             self._demand(name, names.count(name), missing)
         records = []
         for time, signal in zip(cycle(times), sensors, strict=False):
-            records.append(self._signal(time, signal, of))
+            found = self._signal(time, signal, of)
+            records.append(found)
         # The order in which `run` writes its sensors.
         return sorted(records, key=lambda record: record.kind)
 
@@ -229,7 +235,8 @@ class MeasuredFile(Columns):
         # A record needs numbers in all wanted columns; other columns may have gaps.
         table = np.column_stack(entries)
         names = " and ".join(column.name for column in columns)
-        if np.isnan(table).any(axis=1).all():
+        gaps = np.isnan(table).any(axis=1)
+        if gaps.all():
             known = (None, *self.cells.entries)
             missing = [column.name for column in columns if column.number not in known]
             raise self.refusal(f"no row has numbers in {names}", missing)

@@ -175,8 +175,10 @@ def _pulses(file: MeasuredFile) -> tuple[Array, Array, Array | None]:
     if name not in file.names and "velocity" in file.names:
         name = "velocity"
     read = file.rows("force", name, *errors).T
-    force, speed, *deviations = read[:, np.argsort(read[0])]
-    if len(force) < _FEWEST or not (force[0] > 0 and speed.min() > 0):
+    rising = np.argsort(read[0])
+    force, speed, *deviations = read[:, rising]
+    positive = force[0] > 0 and speed.min() > 0
+    if len(force) < _FEWEST or not positive:
         wanted = f"at least {_FEWEST} pulses of positive force and speed are wanted"
         raise SceneError(f"{file.path}: {wanted}")
     # Blows of one height tell one point of the law, however many they are.
@@ -230,7 +232,8 @@ class Medium:
         """Make the medium of a chain whose cell is one bead, all numbers."""
         if cell.size > 1:
             raise SceneError(f"the cell has {cell.size} beads: equal beads are wanted")
-        return cls(numeric(cell.masses[0], "mass"), numeric(cell.spacing, "spacing"))
+        mass = numeric(cell.masses[0], "mass")
+        return cls(mass, numeric(cell.spacing, "spacing"))
 
     def log_stiffness(self, slope: Any, constant: Any) -> Array:
         """Return ln A of the contact law whose pulses have ``ln V = slope · ln F + constant``.
@@ -286,7 +289,8 @@ def weights(
     the inverse standard deviations.
     """
     slope = np.polyfit(np.log(force), np.log(speed), 1)[0]
-    return np.asarray(1 / np.hypot(speed_error / speed, slope * force_error / force))
+    deviation = np.hypot(speed_error / speed, slope * force_error / force)
+    return np.asarray(1 / deviation)
 
 
 def fit_power(
@@ -315,7 +319,9 @@ def fit_power(
     # A power law is a line: ln V = slope · ln F + constant.
     x, y = np.log(force), np.log(speed)
     (slope, constant), middle = _fit(x, y, 1, weight)
-    k, log_A = _exponent(slope), medium.log_stiffness(slope, constant - slope * middle)
+    k = _exponent(slope)
+    at_zero = constant - slope * middle
+    log_A = medium.log_stiffness(slope, at_zero)
     if not LEAST <= k[0] <= MOST:
         wanted = f"laws with k from {LEAST:g} to {MOST:g} are read"
         raise SceneError(f"k is {k[0]:.3g} by the best fit: {wanted}")
@@ -364,11 +370,13 @@ def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, 
     # with the scatter of the residuals.
     shape = covariance * max(scatter, least)
     noise = scipy.stats.multivariate_t(None, shape, freedom, allow_singular=True)
-    draws = noise.rvs(_DRAWS, random_state=0).reshape(_DRAWS, degree + 1)
+    drawn = noise.rvs(_DRAWS, random_state=0)
+    draws = drawn.reshape(_DRAWS, degree + 1)
     return np.vstack((best, best + draws)).T, middle
 
 
 def _interval(values: Array) -> Estimate:
     """Return the best fit's value, the first, with half the 95 % interval of the draws' values."""
-    error = np.ptp(np.quantile(values[1:], (0.025, 0.975))) / 2
+    ends = np.quantile(values[1:], (0.025, 0.975))
+    error = np.ptp(ends) / 2
     return Estimate(float(values[0]), float(error))

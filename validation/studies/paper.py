@@ -137,14 +137,14 @@ def bead_fwhm(wave: PhysicalWave) -> float:
         return float(wave.along(x, of="bead")) - half
 
     end = number(wave.wave.width)  # farther than the arch of the farther contact
-    return 2 * float(scipy.optimize.brentq(above_half, 0, end, xtol=1e-14 * end))
+    half_width = scipy.optimize.brentq(above_half, 0, end, xtol=1e-14 * end)
+    return 2 * float(half_width)
 
 
 def passing(run: Run, kind: str = "bead") -> dict[int, Pulse]:
     """Measure the first pulses at the "bead" or "contact" sensors of a run, by number from 1."""
-    return {
-        i + 1: first_pulse(run.signal(kind, i)) for i in sensors_of(run.scene)[kind]
-    }
+    sensors = sensors_of(run.scene)[kind]
+    return {i + 1: first_pulse(run.signal(kind, i)) for i in sensors}
 
 
 def speed(pulses: Mapping[int, Pulse], first: int, last: int) -> float:
@@ -155,7 +155,8 @@ def speed(pulses: Mapping[int, Pulse], first: int, last: int) -> float:
 
 def mean(pulses: Mapping[int, Pulse], number: str, sensors: Iterable[int]) -> float:
     """Return the mean of a number of the pulses, such as "peak", at some sensors."""
-    return float(np.mean([getattr(pulses[i], number) for i in sensors]))
+    numbers = [getattr(pulses[i], number) for i in sensors]
+    return float(np.mean(numbers))
 
 
 # --- the experiment ---
@@ -291,7 +292,8 @@ def lattice_numbers(run: Run) -> dict[str, float]:
         elif quantity.unit == "N":
             value = mean(some, "peak", quantity.sensors)
         else:
-            value = mean(some, "fwhm", quantity.sensors) * of_width[quantity.unit]
+            width = mean(some, "fwhm", quantity.sensors)
+            value = width * of_width[quantity.unit]
         found[quantity.name] = value
     return found
 
@@ -321,7 +323,8 @@ def _panel(run: Run, theory: PhysicalWave) -> Panel:
     curves = []
     pulses = passing(run)
     for i, bead in enumerate(SENSORS):
-        force = run.bead_force[run.scene.bead_sensors.index(bead - 1)]
+        place = run.scene.bead_sensors.index(bead - 1)
+        force = run.bead_force[place]
         # Peak upon peak: the theory has no time of the blow.
         wave = theory.curve(run.time - pulses[bead].arrival)
         curves.append(Curve(f"bead {bead}, lattice", run.time, force, f"C{i}-"))
@@ -428,7 +431,8 @@ def stated_errors() -> list[dict[str, Any]]:
     fwhm = mean(contacts, "fwhm", places)
     rows = []
     for (line, stated), cell in zip(STATED.items(), cells_of_lines(), strict=True):
-        wave = homogenize(cell, k=HERTZ).pde.traveling_wave().at_force(peak)
+        of_cell = homogenize(cell, k=HERTZ).pde.traveling_wave()
+        wave = of_cell.at_force(peak)
         error = float(wave.fwhm("force", "time")) / fwhm - 1
         rows.append(
             {

@@ -70,8 +70,10 @@ def _pairs(
     if fault:
         # What is right of the statements is kept in the line that is proposed.
         wanted = f"{given.metavar} is wanted, once a name"
-        change = {called(given): stated or {"time": _TIMES[called(given)]}}
-        raise SceneError(f"{called(given)} is {fault}: {wanted}", **change)
+        key = called(given)
+        example = {"time": _TIMES[key]}
+        change = {key: stated or example}
+        raise SceneError(f"{key} is {fault}: {wanted}", **change)
     return stated
 
 
@@ -189,7 +191,8 @@ class Measured:
     def panel(self, curves: Sequence[Curve]) -> Panel:
         """Return a picture of the signals."""
         axes = []
-        for quantity in ("time", *sorted({signal.quantity for signal in self.signals})):
+        quantities = {signal.quantity for signal in self.signals}
+        for quantity in ("time", *sorted(quantities)):
             axes.append(f"{quantity} ({BASES[quantity]})" if self.si else quantity)
         time, *signals = axes
         return Panel(time, ", ".join(signals), tuple(curves), legend_above=True)
@@ -357,7 +360,8 @@ def compare(
     # The first pulses at the first sensor shall arrive together.
     first, leader = next(iter(simulated.items()))
     late = found[first].numbers["arrival"]
-    shift = Estimate(leader.numbers["arrival"].value - late.value, late.error)
+    early = leader.numbers["arrival"]
+    shift = Estimate(early.value - late.value, late.error)
     rows: list[dict[str, Any]] = []
     curves: list[Curve] = []
     for i, (name, track) in enumerate(simulated.items()):

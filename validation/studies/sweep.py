@@ -197,7 +197,8 @@ def theory(points: Sequence[Point]) -> dict[tuple[str, str], Array]:
 
 def _read(part: Any, name: str) -> list[sp.Expr]:
     """Read a number, or the numbers of a range start:stop:count, exactly."""
-    numbers = [read_exact(number, name) for number in str(part).split(":")]
+    texts = str(part).split(":")
+    numbers = [read_exact(text, name) for text in texts]
     if len(numbers) == 1:
         return numbers
     if len(numbers) != 3:
@@ -207,7 +208,8 @@ def _read(part: Any, name: str) -> list[sp.Expr]:
         wanted = f"the count of a range is an integer from 2 to {_MOST}"
         raise SceneError(f"{name} is {shorten(part)}: {wanted}")
     # Exact steps: 1/10 is a value of 1/20:1:20, and a file finds the point again.
-    return [start + (stop - start) * i / (count - 1) for i in range(count)]
+    length = stop - start
+    return [start + length * i / (count - 1) for i in range(count)]
 
 
 def _values(given: str | Iterable[Any], name: str) -> tuple[Rational, ...]:

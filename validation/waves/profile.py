@@ -179,7 +179,8 @@ class ExactWave(Pictured):
         xi = np.linspace(-self.half_period, self.half_period, 2001)
         curves = []
         for name in QUANTITIES:
-            share = self._profile(name)(xi) / self.peak(name)
+            profile = self._profile(name)
+            share = profile(xi) / self.peak(name)
             curves.append(Curve(name, xi, share))
         return [Panel("ξ / D", "over its peak", tuple(curves))]
 
@@ -189,7 +190,8 @@ class ExactWave(Pictured):
         L = self.half_period
         count = len(self.series) + 1
         points = np.linspace(-L, L, count)
-        return highest_pulse(Piecewise(points, self._profile(quantity)))
+        profile = self._profile(quantity)
+        return highest_pulse(Piecewise(points, profile))
 
     def _profile(self, quantity: QuantityName) -> Callable[[ArrayLike], Array]:
         """The method of a quantity."""
@@ -254,7 +256,8 @@ def _tail(wave: ExactWave) -> float:
     count = 4 * len(wave.series)
     outside = np.linspace(OUTSIDE * L, L, count)
     # The other contact's strain is the mirror image.
-    twice_odd = wave.strain(outside) - wave.strain(outside, 1)
+    mirrored = wave.strain(outside, 1)
+    twice_odd = wave.strain(outside) - mirrored
     return float(np.abs(twice_odd).max()) / 2
 
 
