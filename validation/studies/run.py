@@ -180,7 +180,8 @@ def reading_tables(
     for reading in sensors:
         row = _row("sensor", reading)
         if reading.pulse == 1:
-            row |= arriving.get((reading.kind, reading.places[0]), {})
+            place = reading.places[0]
+            row |= arriving.get((reading.kind, place), {})
         rows.append(row)
     legs = [
         Column("", "between"),
@@ -191,9 +192,10 @@ def reading_tables(
         Column("speed", units[1], error=True),
         missing,
     ]
+    leg_rows = [_row("between", leg) for leg in speeds]
     tables = [
         Table.of(columns, rows, "sensors"),
-        Table.of(legs, [_row("between", leg) for leg in speeds], "speeds"),
+        Table.of(legs, leg_rows, "speeds"),
     ]
     lines = []
     for reading in (*sensors, *speeds):
@@ -228,7 +230,8 @@ def _digits(sensors: Sequence[Reading]) -> str:
             arrival = reading.numbers["arrival"].value
             width = reading.numbers["fwhm"].value
             late = max(late, abs(arrival) / width)
-    return str(max(6, math.ceil(math.log10(late)) + 4))
+    before_point = math.ceil(math.log10(late))
+    return str(max(6, before_point + 4))
 
 
 def print_option(
@@ -323,11 +326,13 @@ def run(
             columns = done.columns()
             # "%s" writes the shortest text that reads back as the same float.
             rows = np.column_stack(list(columns.values()))
-            np.savetxt(stream, rows, "%s", ",", header=",".join(columns), comments="")
+            header = ",".join(columns)
+            np.savetxt(stream, rows, "%s", ",", header=header, comments="")
         else:
             names = "time", *RECORDS.values()
             records = {f"{name}_value": plain(getattr(done, name)) for name in names}
-            stream.write(json.dumps({**result.document(), "records": records}).encode())
+            document = {**result.document(), "records": records}
+            stream.write(json.dumps(document).encode())
     return result
 
 

@@ -112,7 +112,8 @@ def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWa
     >>> round(wave.fwhm("force"), 6), round(wave.fwhm("strain"), 6), wave.solitary
     (1.411928, 1.725713, True)
     """
-    given = [between(m, "masses", 1e-100, 1e100) for m in items(masses, "masses")]
+    numbers = items(masses, "masses")
+    given = [between(m, "masses", 1e-100, 1e100) for m in numbers]
     if len(given) not in (1, 2):
         raise SceneError(
             f"{len(given)} masses: exact waves are found for cells of 1 or 2 beads; others are "
@@ -178,7 +179,8 @@ def _equal(k: float, p0: float) -> ExactWave:
         return solve(problem, _equal(STEEP, p0))
     if not p0:
         return solve(problem)
-    force = newton.rise(theory.along(problem.xi, "strain"), k, p0)
+    strain = theory.along(problem.xi, "strain")
+    force = newton.rise(strain, k, p0)
     return _converged(problem, force, float(theory.speed) ** 2)
 
 
@@ -287,7 +289,8 @@ def special_waves(k: float) -> Iterator[ExactWave]:
     The mass m1 is 1. Raises `SceneError` for k out of range.
     """
     for start in STARTS[: _known(k)]:
-        yield _followed(solve(SpecialRatio((1.0, start), HERTZ)), k)
+        wave = solve(SpecialRatio((1.0, start), HERTZ))
+        yield _followed(wave, k)
 
 
 def _followed(wave: ExactWave, k: float) -> ExactWave:
