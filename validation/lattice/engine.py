@@ -235,8 +235,8 @@ def _pair_plan(motion: Motion, rtol: float, longest: float) -> tuple[Plan, int]:
     if scene.drive is not None:
         # At least two steps for the length in which a drive has one extremum or one cubic
         longest = min(longest, scene.drive.longest_step / 2)
-        sudden = (scene.drive.ramp, *scene.drive.time)
-        stops |= {t for t in sudden if 0 < t < end}
+        joints = (scene.drive.ramp, *scene.drive.time)
+        stops |= {t for t in joints if 0 < t < end}
     typical = min(time, longest)
     most = step_limit(scene, "RKN86", end / typical)
     # Short scenes begin with a hundredth: a first step that is too short costs little.

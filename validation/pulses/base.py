@@ -218,8 +218,8 @@ class Base:
         white = rng.normal(size=(size, DRAWS))
         # The products are those of both directions, and that at lag 0 counts once.
         spectrum = np.fft.rfft(products, size)
-        once = spectrum.real - products[0] / 2
-        power = np.maximum(once, 0.0)
+        one_sided = spectrum.real - products[0] / 2
+        power = np.maximum(one_sided, 0.0)
         if not power.any():
             return white[:count]
         factors = np.sqrt(power / power.mean())

@@ -233,8 +233,8 @@ def _time_of_a_site(motion: Motion, contacts: slice, force: float) -> float:
     k = exponents[contacts]
     springs = k * A ** (1 / k) * force ** (1 - 1 / k)
     beside = np.append(motion.masses, np.inf)  # the wall has no mass of its own
-    of_all = np.minimum(beside[:-1], beside[1:])
-    lighter = of_all[contacts]
+    lighter_of_all = np.minimum(beside[:-1], beside[1:])
+    lighter = lighter_of_all[contacts]
     times = np.sqrt(lighter[: len(A)] / springs)
     return float(np.mean(times))
 

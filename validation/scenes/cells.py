@@ -215,8 +215,8 @@ def runs(flags: ArrayLike) -> list[tuple[int, int]]:
     >>> runs([False, True, True, False, True])
     [(1, 3), (4, 5)]
     """
-    true = np.asarray(flags, bool)
-    changes = np.diff(true, prepend=False, append=False)
+    marked = np.asarray(flags, bool)
+    changes = np.diff(marked, prepend=False, append=False)
     edges = np.flatnonzero(changes)
     # Rising and falling edges take turns.
     pairs = edges.reshape(-1, 2).tolist()
