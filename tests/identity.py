@@ -9,6 +9,7 @@ def same(left, right):
     Analytic functions that differ agree at a point only by chance, and no formula of the tests has
     these primes; SymPy's `simplify` may take a second, or fail, where this takes milliseconds.
     """
+    # Results and numbers of Python, no text from outside.
     pair = [sp.sympify(left), sp.sympify(right)]
     symbols = sorted(pair[0].free_symbols | pair[1].free_symbols, key=str)
     assert len({*map(str, symbols)}) == len(symbols), "two symbols of one name"

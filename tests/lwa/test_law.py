@@ -45,6 +45,7 @@ def test_the_power_law_comes_back_at_every_order(cell, order, kind):
         assert old.keys() == new.keys()
         for n in old:
             for jet in {*old[n], *new[n]}:
+                # A jet without a coefficient has a plain 0.
                 again = sp.sympify(new[n].get(jet, 0)).xreplace(OF_POWER)
                 assert same(old[n].get(jet, 0), again)
 

@@ -47,6 +47,7 @@ def results(m1, m2, k, D, a, b):
 def numbers(symbols):
     """The results with a number for each symbol, to 30 digits."""
     values = dict(zip(symbols, VALUES, strict=True))
+    # Some results are numbers of Python.
     found = [sp.sympify(x).xreplace(values) for x in results(*symbols)]
     own = [{s: OWN[s.name] for s in x.free_symbols} for x in found]
     return [sp.N(x.subs(letters), 30) for x, letters in zip(found, own, strict=True)]

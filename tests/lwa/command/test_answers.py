@@ -148,6 +148,7 @@ def test_a_line_gives_the_values_of_python(capsys, line):
     for path, expected in ANSWERS[line].items():
         ours = entry(found, path)
         if isinstance(expected, sp.Expr) and isinstance(ours, str):
+            # The command's own text: JSON's exact values are promised to be readable by SymPy.
             assert sp.cancel(sp.sympify(ours, locals=SYMBOLS) - expected) == 0, path
         elif isinstance(expected, sp.Expr | float):
             assert ours == pytest.approx(float(expected), rel=1e-13), path

@@ -78,6 +78,7 @@ def test_a_wave_of_spheres_has_the_values_of_python(capsys, file):
     symbolic = result(capsys, *options)
     unit = symbolic["speed_value"]
     assert unit == pytest.approx(found["speed_value"] / 10 ** (1 / 6), rel=1e-14)
+    # The command's own text, which SymPy is promised to read.
     speed = float(sp.sympify(symbolic["speed"]).subs("F", 1))
     assert speed == pytest.approx(unit, rel=1e-14)
     out = said(capsys, *options)
