@@ -186,7 +186,7 @@ class _Integration:
         motion = self.motion
         beads = self.beads
         now = self.now
-        n = self.motion.size
+        n = motion.size
         work = 0.0
         if motion.scene.drive is not None:
             # The drive also accelerates its bead.
@@ -229,7 +229,7 @@ def _pair_plan(motion: Motion, rtol: float, longest: float) -> tuple[Plan, int]:
     """Return the plan of an embedded pair, and the greatest number of steps that are tried."""
     scene = motion.scene
     time = motion.scales.time
-    end = float(motion.scene.duration)
+    end = float(scene.duration)
     pair = RKN86 if scene.damping is None else RK853
     stops = {end}
     if scene.drive is not None:

@@ -495,5 +495,5 @@ def _scaling_panel(scalings: dict[float, list[dict[str, Any]]]) -> Panel:
         theory = [row["theory_value"] for row in rows]
         curves.append(Curve(f"E = {E / 1e9:g} GPa", peaks, speeds, f"C{i}{'os'[i]}"))
         curves.append(Curve("theory, $F_m^{1/6}$", peaks, theory, f"C{i}-"))
-    axes = "peak force $F_m$ (N)", "speed $V_s$ (m/s)"
-    return Panel(*axes, tuple(curves), scale="xy")  # a power is a straight line
+    # On logarithmic axes a power is a straight line.
+    return Panel("peak force $F_m$ (N)", "speed $V_s$ (m/s)", tuple(curves), scale="xy")

@@ -196,9 +196,9 @@ class ExactWave(Pictured):
         return highest_pulse(Piecewise(points, profile))
 
     def _profile(self, quantity: QuantityName) -> Callable[[ArrayLike], Array]:
-        """The method of a quantity."""
-        profile: Callable[[ArrayLike], Array]
-        profile = getattr(self, one_of(quantity, QUANTITIES, "quantity"))
+        """The method that computes a quantity as a function of ξ."""
+        name = one_of(quantity, QUANTITIES, "quantity")
+        profile: Callable[[ArrayLike], Array] = getattr(self, name)
         return profile
 
     @cached_property
