@@ -188,7 +188,10 @@ def record(
             found += _readings(track, other, all_pulses)
 
     def doubt(first: Track, second: Track, sites: float) -> str:
-        """Return why one pulse does not pass two sensors at a speed; "" if it may."""
+        """Return the reason why two sensors do not see one pulse; "" if they may.
+
+        sites : the speed between the sensors, in sites per time.
+        """
         peaks = [r.numbers["peak"].value + r.static for r in (first, second)]
         numbers = sorted(first.places + second.places)
         between = slice(numbers[0] - 1, numbers[1])

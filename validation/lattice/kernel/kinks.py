@@ -281,9 +281,9 @@ def find_edges(
 def _find_jump(
     law: Any, r: float, c: Curve, h: float, edges: Array, count: int
 ) -> Bend:
-    """Return the last place at which the force jumps, or nearly, as the bend by ``bend = 1``.
+    """Return the last jump of the force as a `Bend` of p, for a factor 1 from force to p''.
 
-    A force that begins as ``r δ^b dδ/dt`` with a small b almost jumps.
+    A force that begins as ``r δ^b dδ/dt`` with a small b almost jumps, and counts as a jump.
     """
     found = 1.0, 0.0, 0.0
     for n in range(count):
