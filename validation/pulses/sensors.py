@@ -190,7 +190,7 @@ def record(
     def doubt(first: Track, second: Track, sites: float) -> str:
         """Return the reason why two sensors do not see one pulse; "" if they may.
 
-        sites : the speed between the sensors, in sites per time.
+        The argument ``sites`` is the speed between the sensors, in sites per time.
         """
         peaks = [r.numbers["peak"].value + r.static for r in (first, second)]
         numbers = sorted(first.places + second.places)
@@ -381,7 +381,8 @@ def speeds_between(
     total : callable
         Error of a time between two arrivals as a function of the errors of both.
     doubt : callable
-        Reason, "" if there is none, why one pulse does not pass two sensors at a speed in sites.
+        Reason why two sensors do not see one pulse, as a function of both and of the speed between
+        them in sites per time; "" if they may see one.
     """
     legs = []
     for first, second in pairwise(sensors):

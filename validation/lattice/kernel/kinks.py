@@ -194,10 +194,13 @@ def _turning_point(c: Curve, a: float, b: float) -> float:
 def _state(
     law: Any, r: float, c: Curve, h: float, x: float
 ) -> tuple[float, float, float]:
-    """Return p, p' and, for a damped contact that does not stick, the margin at a place."""
+    """Return p, p' and a number that is negative where damping would pull, at a place.
+
+    The number is the `_margin` of a damped contact that does not stick, and 1 of any other.
+    """
     p, slope = value_and_slope(c, x)
     margin = 1.0
-    # While δ rises the margin is positive.
+    # The margin can be negative only where a closed contact expands.
     if r > 0.0 and not law.sticks and p > 0.0 and slope < 0.0:
         margin = _margin(law, r, c, h, x)
     return p, slope, margin
