@@ -53,8 +53,7 @@ class Fit:
     def at(self, x: Array) -> Array:
         """Return the base at times of the pulse, without the terms that rise before the pulse."""
         line = self.sizes[:_LINE]
-        terms = _terms(x, len(line))
-        return terms @ line
+        return _terms(x, len(line)) @ line
 
     @property
     def variance(self) -> float:
