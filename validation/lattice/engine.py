@@ -65,7 +65,7 @@ from validation.lattice.schemes import BLANES_MOAN, RK853, RKN86
 # times.
 _WEAK, _STRONG, _GUESSES = 0.1, 10.0, 8
 _HIDDEN = 0.1  # rounding in units of the tolerance: more of it hides the motion
-# In units of the greatest value: a bead that moves less is still.
+# A bead is still at the start if its |y| and |v| are less than this part of the greatest ones.
 _NOISE = sys.float_info.epsilon
 # Bead evaluations between two reports of progress: some tenths of a second.
 _BETWEEN_REPORTS = 5e7
@@ -81,6 +81,7 @@ _NUMBERS = 16
 # Beyond a free end nothing presses, but 0 times the force of another law, or of so high a power,
 # may be no number.
 _UNBOUNDED = 5.0
+# No drive: one interval of zeros, no oscillation, and a first bead that moves freely
 _FREE = Drive(np.zeros(1), np.zeros((1, 4)), 0.0, 0.0, 0.0, False)
 _ANY_POWER = 0.25  # a general law may begin with δ^{1/4}
 

@@ -119,6 +119,7 @@ class Base:
     def before(cls, t: Array, f: Array, rise: float, width: float) -> Base | None:
         """Return the base before a pulse; None if the record begins too late."""
         end = rise - _BEFORE * width
+        # A short record leaves too few samples so far ahead of the pulse.
         if t[0] > end - 2.5 * width:
             end = rise - _CLOSE * width
         start = end - _LONG * width
@@ -158,7 +159,9 @@ class Base:
         noise : float
             Standard deviation of their noise.
         """
-        samples = np.array([noise, 0.0])  # of this variance, and white
+        # Two levels in place of fits, equally likely, each with the noise in a form that gives this
+        # variance and no correlation; rise and width do not matter to a level.
+        samples = np.array([noise, 0.0])
         first = f[:_GUESSED].mean()
         lowest = np.quantile(f, 0.1)
         fits = [Fit(np.array([level]), samples) for level in (first, lowest)]

@@ -246,7 +246,7 @@ def at_unit_force(problem: newton.Problem, found: newton.Found) -> ExactWave:
     )
     peak = problem.p0 + wave.peak("strain")
     wave = wave.times(1 / peak)
-    # Of equal masses the odd part is rounding.
+    # The odd part of a wave of equal masses is rounding.
     tail = 0.0 if problem.uniform else _tail(wave)
     return replace(wave, tail=tail, residual=_residual(wave))
 
