@@ -51,7 +51,7 @@ class Fit:
         return cls(sizes, f - terms @ sizes)
 
     def at(self, x: Array) -> Array:
-        """Return the base at times of the pulse, without what rises before it."""
+        """Return the base at times of the pulse, without the terms that rise before the pulse."""
         line = self.sizes[:_LINE]
         terms = _terms(x, len(line))
         return terms @ line

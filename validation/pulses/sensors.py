@@ -188,7 +188,10 @@ def record(
             found += _readings(track, other, all_pulses)
 
     def doubt(first: Track, second: Track, sites: float) -> str:
-        """Return why one pulse does not pass two sensors at a speed; "" if it may."""
+        """Return the reason why two sensors do not see one pulse; "" if they may.
+
+        The argument ``sites`` is the speed between the sensors, in sites per time.
+        """
         peaks = [r.numbers["peak"].value + r.static for r in (first, second)]
         numbers = sorted(first.places + second.places)
         between = slice(numbers[0] - 1, numbers[1])
@@ -378,7 +381,8 @@ def speeds_between(
     total : callable
         Error of a time between two arrivals as a function of the errors of both.
     doubt : callable
-        Reason, "" if there is none, why one pulse does not pass two sensors at a speed in sites.
+        Reason why two sensors do not see one pulse, as a function of both and of the speed between
+        them in sites per time; "" if they may see one.
     """
     legs = []
     for first, second in pairwise(sensors):

@@ -203,7 +203,7 @@ class ExactWave(Pictured):
 
     @cached_property
     def _strains(self) -> newton.Series:
-        """The series of a, but for the mean, as ``series`` is that of F_a."""
+        """Fourier coefficients of the strain a, without the mean; compare ``series``, of F_a."""
         m1, m2 = self.masses
         inverse = (1 / m1, 1 / m2)
         strain = newton.respond(self.series, inverse, self.half_period) / self.c2

@@ -155,7 +155,7 @@ def next_mark(marks: Array, i: int) -> int:
 
 @inlined
 def _drive_curve(beads: Beads, h: float) -> kinks.Curve:
-    """Return the motion of the driven bead over a step, from where it is."""
+    """Return the motion of the driven bead over a step, as a curve that starts at 0."""
     start = 0.0, h * beads.v[0], h * h * beads.given[0]
     moved = beads.next_y[0] - beads.y[0]
     end = moved, h * beads.next_v[0], h * h * beads.given[1]
@@ -250,7 +250,7 @@ def _steepness(law: Any, r: float, d: float, h: float) -> float:
 def _replace_estimates(
     chain: Chain, beads: Beads, plan: Plan, h: float, i: int
 ) -> None:
-    """Take a contact's share away from the pair's estimates of errors: it is corrected."""
+    """Take a corrected contact's share away from the pair's estimates of the errors."""
     for q in range(len(plan.scheme.errors)):
         seen = integral(plan.scheme.errors[q], beads.points[2])
         seen *= chain.A[i] * error_scale(plan, h, q)
