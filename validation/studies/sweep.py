@@ -345,7 +345,7 @@ def sweep(
     grid = _values(ks, "k"), _values(omegas, "omega")
     # A stretch of one cell is shorter than the pulse.
     stretch = integer(stretch, "stretch", 2, 100)
-    # Before the file: a refusal leaves none behind.
+    # Checked before the file is made: a refusal leaves no file behind.
     if address is not None and jobs is not None:
         raise InputError(f"jobs is {jobs}: a cluster has its own workers", jobs=None)
     path = MEMORY
