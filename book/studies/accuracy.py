@@ -140,10 +140,14 @@ def launched(wave: ExactWave, start: int, sites: int, **rest: Any) -> Scene:
     bead = np.arange(2 * start + sites) - start
     contact = bead[:-1] + 0.5
     is_first = bead % 2 == 0
-    return chains.carrying(
-        tuple(np.where(is_first, *wave.masses)),
-        np.where(is_first[:-1], wave.strain(contact, 0), wave.strain(contact, 1)),
-        np.where(is_first, wave.velocity(bead, 0), wave.velocity(bead, 1)),
+    behind_first, behind_second = (wave.strain(contact, kind) for kind in (0, 1))
+    strain = np.where(is_first[:-1], behind_first, behind_second)
+    return Scene(
+        masses=np.where(is_first, *wave.masses),
+        stiffnesses=(1.0,) * len(contact),
+        # Beads behind a contact have moved by the compressions of all contacts ahead.
+        displacements=np.cumsum(strain[::-1])[::-1],
+        velocities=np.where(is_first, wave.velocity(bead, 0), wave.velocity(bead, 1)),
         k=wave.k,
         **rest,
     )

@@ -49,8 +49,8 @@ from validation.pulses.pulse import Piecewise, first_pulse, highest_pulse
 from validation.pulses.sensors import tracks
 from validation.report.study import EXPONENT, Report, option, study
 from validation.report.table import Column, Finding, Table, percent
-from validation.scenes.chains import numeric_cell, struck
-from validation.scenes.checks import between, integer
+from validation.scenes.chains import struck
+from validation.scenes.checks import between, integer, numeric
 from validation.scenes.scene import Scene
 
 CHAINS = ((1,), (1, "1/2"))  # masses of the default cells
@@ -251,8 +251,10 @@ def gravity(
         "as the depth's third root, the more beads it takes to see it",
     )
     beads = integer(beads, "beads", 10 * FIRST, 20_000)
-    cells = [numeric_cell(row) for row in ([masses] if masses else CHAINS)]
+    cells = [Cell(row, spacing=1) for row in ([masses] if masses else CHAINS)]
     for cell in cells:
+        for mass in cell.masses:
+            numeric(mass, "mass")
         ratio = float(max(cell.masses) / min(cell.masses))
         between(ratio, "the largest mass over the least", 1, _UNLIKE)
     chains = [Upright(cell, k, beads) for cell in cells]
