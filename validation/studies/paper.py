@@ -360,8 +360,8 @@ def figures(progress: Progress[Any] = iter) -> Report:
     ``rows``: ``modulus_value`` of PTFE, ``height_value`` of the striker's drop, ``speed_value`` V_s
     and ``force_value`` F_m with errors, ``theory_value``, speed of the canonical wave at F_m;
     ``scaling``: ``exponent_value`` of V_s as a power of F_m by least squares, with its error, at
-    the first modulus; ``widths``: ``line``, ``stated_error_value`` and ``error_value`` of the FWHM;
-    ``forces``: ``N``, ``beads``, ``time_value``, ``force_value``.
+    the first modulus; ``widths``: ``line``, ``stated_error_value`` and ``error_value`` of the FWHM.
+    The force records are in the picture alone.
     """
     records = {N: forces(N) for N in progress([*RECORDED])}
     scalings = {E: scaling(E) for E in progress(MODULI)}
@@ -369,18 +369,9 @@ def figures(progress: Progress[Any] = iter) -> Report:
     exponents = [fitted_exponent(rows) for rows in scalings.values()]
     drops = [row for rows in scalings.values() for row in rows]
     panels = []
-    forces_document = []
     for N, run in records.items():
         (panel,) = run.pictured()
         panels.append(replace(panel, title=f"{N}:1 chain"))
-        forces_document.append(
-            {
-                "N": N,
-                "beads": RECORDED[N],
-                "time_value": run.time,
-                "force_value": run.bead_force,
-            }
-        )
     panels.append(_scaling_panel(scalings))
     fitted = " and ".join(map(str, exponents))
     return Report(
@@ -396,7 +387,6 @@ def figures(progress: Progress[Any] = iter) -> Report:
                 "exponent_value": exponents[0].value,
                 "exponent_error_value": exponents[0].error,
             },
-            "forces": forces_document,
         },
     )
 
