@@ -302,15 +302,18 @@ def accuracy(
                 largest.append(max(errors.values()))
                 times.append(seconds)
             # in milliseconds
-            spent.append((name, method, *(1e3 * cost(peaks, e) for e in WANTED)))
+            line: dict[str, Any] = {"task": name, "method": method}
+            for error in WANTED:
+                line[f"seconds_{error:.0e}"] = 1e3 * cost(peaks, error)
+            spent.append(line)
             curves.append(Curve(method, largest, times))
         # the cheapest at the smallest error first; methods that do not attain it last
-        costs += sorted(spent, key=lambda line: line[:1:-1])
+        costs += sorted(spent, key=lambda line: [*line.values()][:1:-1])
         panels.append(Panel(*_AXES, tuple(curves), "xy", name))
     tables = (
-        Table.of(_RUNS, rows, "rows"),
-        Table(_COSTS, tuple(costs), "costs", note=_NOTE, by="task"),
-        Table.of(tuple(map(Column, ("task", *READINGS))), references, "references"),
+        Table(_RUNS, rows, "rows"),
+        Table(_COSTS, costs, "costs", note=_NOTE, by="task"),
+        Table(tuple(map(Column, ("task", *READINGS))), references, "references"),
     )
     return Report("Speed against error", tables, panels=tuple(panels))
 

@@ -479,13 +479,7 @@ def _report(
     return Report(
         f"{kind.capitalize()} breathers: masses {', '.join(map(str, cell.masses))}, k = {k:g}, "
         "F0 = A = D = 1",
-        (
-            Table(
-                _COLUMNS,
-                tuple(tuple(row[c.key] for c in _COLUMNS) for row in rows),
-                "rows",
-            ),
-        ),
+        (Table(_COLUMNS, rows, "rows"),),
         tuple(_findings(rows)),
         tuple(_panels(*breathers[-1])),
         (

@@ -277,7 +277,15 @@ def _report(
                 Estimate.against(fine[2][key], rough[2][key] * (1 + _ROUNDING))
                 for fine, rough in (equation, lattice)
             )
-            rows.append((k, name, one, other, one.value / other.value - 1))
+            rows.append(
+                {
+                    "k": k,
+                    "quantity": name,
+                    "equation": one,
+                    "lattice": other,
+                    "error_value": one.value / other.value - 1,
+                }
+            )
         curves = [
             Curve(f"{label}, x = {place}", time, strain, style)
             for (time, strains, _), label, line in (
@@ -291,7 +299,7 @@ def _report(
         panels.append(Panel("time", "strain", tuple(curves), title=f"k = {k}"))
     return Report(
         f"Two pulses of strains 1 and {second:g} meet at x = 0; m = A = D = 1",
-        (Table(_COLUMNS, tuple(rows), "rows"),),
+        (Table(_COLUMNS, rows, "rows"),),
         tuple(_findings(records)),
         tuple(panels),
         (

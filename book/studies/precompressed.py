@@ -316,15 +316,10 @@ _COLUMNS = {
 
 def _report(law: ContactLaw, waves: Sequence[tuple[Wave, dict[str, Any]]]) -> Report:
     rows = [cells for _, cells in waves]
+    table = [{c.name: row.get(name) for name, c in _COLUMNS.items()} for row in rows]
     return Report(
         f"Waves on a static force F0 = {waves[0][0].load:g}: F = {law.F}, A = D = 1",
-        (
-            Table(
-                tuple(_COLUMNS.values()),
-                tuple(tuple(map(row.get, _COLUMNS)) for row in rows),
-                "rows",
-            ),
-        ),
+        (Table([*_COLUMNS.values()], table, "rows"),),
         tuple(_findings(law, rows)),
         tuple(_panels(waves)),
         (

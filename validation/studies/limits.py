@@ -92,7 +92,7 @@ def limits() -> Report:
         records += compared(quantity, expected, measured)
     return Report(
         "The theory's limit k → 1 on the lattice",
-        (Table.of(_COLUMNS, records, "rows", note=_NOTE, errors=_ERRORS),),
+        (Table(_COLUMNS, records, "rows", note=_NOTE, errors=_ERRORS),),
         tuple(map(finding, records)),
     )
 

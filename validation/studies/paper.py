@@ -273,7 +273,7 @@ def paper(
     return Report(
         f"{BEADS} beads, steel (the striker, {velocity:g} m/s) and PTFE in turn, steel wall; "
         f"sensors in beads {SENSORS[0]} and {SENSORS[1]}",
-        (Table.of(_COLUMNS, rows, "rows", note=_NOTE, errors=_COMPARED),),
+        (Table(_COLUMNS, rows, "rows", note=_NOTE, errors=_COMPARED),),
         panels=(_panel(runs[0], waves["F_m"]),),
         data={"velocity_value": velocity, "beads": BEADS, "sensors": SENSORS},
     )
@@ -377,8 +377,8 @@ def figures(progress: Progress[Any] = iter) -> Report:
     return Report(
         "Figures 2 and 3 of Porter et al. (2008)",
         (
-            Table.of(_DROPS, drops, "rows", errors=_COMPARED),
-            Table.of(_WIDTHS, stated_errors(), "widths", note=_WIDTH_NOTE),
+            Table(_DROPS, drops, "rows", errors=_COMPARED),
+            Table(_WIDTHS, stated_errors(), "widths", note=_WIDTH_NOTE),
         ),
         panels=tuple(panels),
         notes=(f"V_s ~ F_m^e: e = {fitted}; the paper fits 0.1666.",),

@@ -113,7 +113,7 @@ def report(recording: Recording, every: bool = False) -> Report:
     ]
     return Report(
         title,
-        (*tables, Table.of(columns, end, "end")),
+        (*tables, Table(columns, end, "end")),
         panels=tuple(run.pictured()),
         notes=(missing, note),
         data=data,
@@ -187,8 +187,8 @@ def reading_tables(
     ]
     leg_rows = [_row("between", leg) for leg in speeds]
     tables = [
-        Table.of(columns, rows, "sensors"),
-        Table.of(legs, leg_rows, "speeds"),
+        Table(columns, rows, "sensors"),
+        Table(legs, leg_rows, "speeds"),
     ]
     lines = []
     for reading in (*sensors, *speeds):
@@ -358,6 +358,4 @@ def materials() -> Report:
         for constant in ("E", "nu", "density"):
             row[f"{constant}_value"] = float(getattr(material, constant))
         rows.append(row)
-    return Report(
-        "Materials", (Table.of(_MATERIALS, rows, "rows", note=_MATERIALS_NOTE),)
-    )
+    return Report("Materials", (Table(_MATERIALS, rows, "rows", note=_MATERIALS_NOTE),))

@@ -104,7 +104,7 @@ def report(points: Sequence[Point], stretch: int = STRETCH) -> Report:
             missing.append(f"k = {found.k}, ω = {found.omega}: {found.missing}")
     return Report(
         "The steady pulse of a struck dimer chain",
-        (Table.of(_COLUMNS, rows, "points", by="k", note=_NOTE, errors=_ERRORS),),
+        (Table(_COLUMNS, rows, "points", by="k", note=_NOTE, errors=_ERRORS),),
         panels=tuple(_panels(rows)),
         notes=("\n".join(missing),),
         data={"stretch": stretch, "missing": len(missing)},
