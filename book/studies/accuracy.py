@@ -146,7 +146,7 @@ def launched(wave: ExactWave, start: int, sites: int, **rest: Any) -> Scene:
         masses=np.where(is_first, *wave.masses),
         stiffnesses=(1.0,) * len(contact),
         # Beads behind a contact have moved by the compressions of all contacts ahead.
-        displacements=np.cumsum(strain[::-1])[::-1],
+        displacements=np.append(np.cumsum(strain[::-1])[::-1], 0.0),
         velocities=np.where(is_first, wave.velocity(bead, 0), wave.velocity(bead, 1)),
         k=wave.k,
         **rest,
