@@ -153,7 +153,7 @@ class Run(Pictured):
     @property
     def velocities(self) -> Array:
         """Velocities of all beads at the end, shape (n,)."""
-        # The last two entries of the state are the heat and the work of the drive.
+        # A state ends with two energies, the heat and the work of the drive.
         return self.end[self.motion.size : -2]
 
     @property

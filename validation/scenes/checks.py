@@ -75,7 +75,7 @@ def alike(values: tuple[Any, ...]) -> Any:
 
 
 def check_count(value: Any, name: str, contacts: int) -> None:
-    """Raise `SceneError` for a tuple, as `one_or_each` returns it, of another length."""
+    """Raise `SceneError` for a tuple of another length; one value for all contacts passes."""
     if isinstance(value, tuple) and len(value) != contacts:
         raise SceneError(
             f"{name} has {len(value)} entries: one for all contacts is wanted, or one for each "
@@ -116,7 +116,11 @@ def _evaluable(law: ContactLaw) -> ContactLaw:
 
 
 def contact_law(k: float, law: ContactLaw | None) -> tuple[float, ContactLaw | None]:
-    """Return exponent and law of a contact, None for a power, whose exponent may be given twice."""
+    """Check exponent and law of a contact, and return both; the law is None for a power.
+
+    The user gives one of them. A scene that is copied gives both, if its law is no power: such a
+    law is kept beside the exponent 1.
+    """
     if law is None:
         if k is MISSING:
             raise SceneError("k is missing: an exponent or a law is wanted")

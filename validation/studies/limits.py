@@ -35,7 +35,7 @@ class LeadingPower:
     """Leading power of the theory's error in k - 1, and bounds of the numbers of the lattice."""
 
     order: int
-    coefficient: sp.Expr  # of ε^order
+    coefficient: sp.Expr  # the error is coefficient · ε^order + …
     constant: float  # |error| ≤ constant · ε^order at each of `EXPONENTS`
 
 
@@ -127,8 +127,9 @@ def compared(
     numbers = np.array([float(sp.N(value, 17)) for value in theory])
 
     def coefficient(*values: float) -> float:
+        """Fit the limit of ``error/ε^order`` as ``ε → 0``."""
         ratios = (numbers / values - 1) / epsilon**law.order
-        # As many terms as exponents; the last one is the limit.
+        # A polynomial through all points: its value at ε = 0 is the last coefficient.
         *_, limit = np.polyfit(epsilon, ratios, len(EXPONENTS) - 1)
         return float(limit)
 

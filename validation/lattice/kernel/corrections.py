@@ -155,7 +155,7 @@ def next_mark(marks: Array, i: int) -> int:
 
 @inlined
 def _drive_curve(beads: Beads, h: float) -> kinks.Curve:
-    """Return the motion of the driven bead over a step, from where it is."""
+    """Return the motion of the driven bead over a step, as a curve that starts at 0."""
     start = 0.0, h * beads.v[0], h * h * beads.given[0]
     moved = beads.next_y[0] - beads.y[0]
     end = moved, h * beads.next_v[0], h * h * beads.given[1]
@@ -199,6 +199,8 @@ def _follow_stages(
         ch = pair.nodes[s] * h
         rate = beads.v[i]
         y = beads.y[i] + ch * rate
+        # The middle of the step tells the interval of the drive. The push below is 0 for a driven
+        # bead, whose inverse mass is 0.
         if i == 0 and chain.drive.driven:
             y, rate, _ = drive_motion(chain.drive, t + h / 2, t + ch)
         d = chain.rest[i] + y - beads.y[i + 1] - ch * beads.v[i + 1]
@@ -248,7 +250,7 @@ def _steepness(law: Any, r: float, d: float, h: float) -> float:
 def _replace_estimates(
     chain: Chain, beads: Beads, plan: Plan, h: float, i: int
 ) -> None:
-    """Take a contact's share away from the pair's estimates of errors: it is corrected."""
+    """Take a corrected contact's share away from the pair's estimates of the errors."""
     for q in range(len(plan.scheme.errors)):
         seen = integral(plan.scheme.errors[q], beads.points[2])
         seen *= chain.A[i] * error_scale(plan, h, q)
