@@ -211,7 +211,7 @@ def draw(plot: Axes, panel: Panel) -> None:
     if not any(curve.label for curve in panel.curves):
         return
     if panel.legend_above:
-        # Its lower left corner upon the panel's upper left one.
+        # The legend's lower left corner lies upon the panel's upper left one.
         plot.legend(
             fontsize="small",
             frameon=False,

@@ -68,7 +68,7 @@ class Contact:
         if self.law is not None:
             return self._evaluated("force", compression)
         pressed = np.maximum(compression, 0.0)
-        if self.k == 1.5:
+        if self.k == 1.5:  # a root is faster than a power
             return pressed * np.sqrt(pressed)
         return pressed**self.k
 

@@ -53,8 +53,7 @@ class Fit:
     def at(self, x: Array) -> Array:
         """Return the base at times of the pulse, without the terms that rise before the pulse."""
         line = self.sizes[:_LINE]
-        terms = _terms(x, len(line))
-        return terms @ line
+        return _terms(x, len(line)) @ line
 
     @property
     def variance(self) -> float:
@@ -219,7 +218,8 @@ class Base:
         products = self.best.correlations
         size = count + len(products)
         white = rng.normal(size=(size, DRAWS))
-        # The products are those of both directions, and that at lag 0 counts once.
+        # The power spectrum sums the products at lags of both signs; lag 0 counts once. Half of it,
+        # as its scale does not matter, is the transform of the lags from 0 on less half of lag 0.
         spectrum = np.fft.rfft(products, size)
         one_sided = spectrum.real - products[0] / 2
         power = np.maximum(one_sided, 0.0)

@@ -148,8 +148,8 @@ def _measured(
         value = float(values[1 + best])
         measured[name] = Estimate(value, float(errors[name][best]))
     place = near[best + 1]
-    behind = near[-1] - far
-    decayed = math.exp(measured["decay"].value * behind)
+    farther_sites = far - near[-1]
+    decayed = math.exp(-measured["decay"].value * farther_sites)
     expected = fine["peak"][-1] * decayed
     ratios = rough["highest"][-1] / expected
     higher = float(np.mean(ratios))

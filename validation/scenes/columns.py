@@ -235,9 +235,8 @@ class Columns:
     def si(self) -> bool:
         """True if a unit is stated, by the file or by the user: values are in SI then."""
         texts = [column.stated or column.unit for column in self.named]
-        # A number alone is a factor.
-        letter = re.search(r"[^-+.\deE ]", "".join(texts))
-        return bool(letter)
+        # A number alone, with the E of its power, is a factor and states no unit.
+        return bool(re.search(r"[^-+.\deE ]", "".join(texts)))
 
     def refusal(
         self, words: str, missing: Sequence[str] = (), step: str = ""

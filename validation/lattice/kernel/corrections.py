@@ -423,7 +423,8 @@ def correct_contact(
     heated = 2.0 * resisted * abs(start[1]) / h / plan.energy
     beads.books[SQUARES] += heated * heated
     _count_error(beads.books, h * resisted / plan.y, near, far)
-    # So is the impulse of an elastic force, less so where the contact is hardly closed: half of it.
+    # The impulse of an elastic force is as wrong, but less so where the contact is hardly closed:
+    # half of that error is counted.
     missed = 0.5 * misfit * h * A * stiffness(law, depth)
     if found.jump != 0.0:
         # The jump comes too early or too late by the misfit there over the slope. The misfit
