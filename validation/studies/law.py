@@ -156,11 +156,11 @@ def law(
         "one_power": fit.one_power,
     }
     for name, number in numbers.items():
-        rows.append((name + units.get(name, ""), number))
+        rows.append({"F = A δ^k": name + units.get(name, ""), "value": number})
         values |= {f"{name}_value": number.value, f"{name}_error_value": number.error}
     return Report(
         f"{len(force)} pulses, forces {force[0]:.4g} … {force[-1]:.4g}{' N' * file.si}",
-        (Table(_POWER, tuple(rows)),),
+        (Table(_POWER, rows),),
         panels=(Panel(*axes, curves, scale="xy"),),
         notes=(*file.notes, *notes, _NOTE),
         data=values,

@@ -400,7 +400,7 @@ def compare(
     shown = f"{shift.value:.6g} {chain.units and 's'}".strip()
     return Report(
         str(chain),
-        (Table.of(_COLUMNS, rows, "rows"),),
+        (Table(_COLUMNS, rows, "rows"),),
         panels=(read.panel(curves),),
         notes=(*read.notes, _COMPARED.format(shown, leader.name)),
         data={"shift_value": shift.value},
