@@ -66,7 +66,7 @@ class Reading:
     places : tuple of int
         Number of the sensor, or of both, counted from 1.
     numbers : mapping of Estimate
-        Those of `READINGS` or of `SPEEDS` that are known, by name.
+        Known numbers by their names, which are among `READINGS` or `SPEEDS`.
     static : float
         Force at the (first) sensor from which dynamic forces count: the one at the start.
     missing : str, optional
@@ -298,11 +298,11 @@ def tracks(
 def _place(scene: Scene, x: Array, kind: str, i: int) -> dict[str, float]:
     """Return the place of a sensor by the names `SPEEDS`; empty for a bead with one contact.
 
-    x : places of the beads, and of one behind the last.
+    x : places of the beads, and of one more bead, imagined a spacing after the last.
     """
     if kind == "bead" and not 0 < i < scene.contact_count:
         return {}
-    # A contact is midway between its beads, the wall's half a spacing behind the last bead.
+    # A contact is midway between its beads; the wall's is half a spacing after the last bead.
     site = i + 0.5 if kind == "contact" else float(i)
     place = {"speed_sites": site}
     if scene.spacings:

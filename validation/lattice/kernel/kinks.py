@@ -70,9 +70,9 @@ class Integrals(NamedTuple):
     Parameters
     ----------
     impulse, moment, third : float
-        Those of ``F``, ``(1 - x) F`` and ``(1 - x)²/2 F``.
+        Integrals of ``F``, ``(1 - x) F`` and ``(1 - x)²/2 F``.
     work, driven : float
-        Those of ``F p'``, and of ``F b'`` for the motion b of a driven bead.
+        Integrals of ``F p'``, and of ``F b'`` for the motion b of a driven bead.
     rough : float
         How far p is from a solution, for a damped or driven contact and for a force that jumps: the
         force, times its effect on p'', has parts of degrees 4 and 5 in Legendre's polynomials, and
