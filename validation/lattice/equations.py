@@ -69,7 +69,7 @@ class Motion:
 
     Attributes
     ----------
-    start : array
+    start : array, (2n + 2,)
         Initial state.
     loaded : bool
         True with gravity or precompression.

@@ -20,10 +20,10 @@ import scipy
 from lwa.base.arrays import Array
 
 _BEFORE = 2.0  # widths between the samples of the base and the rise
-_CLOSE = 1.0  # likewise in a record that begins less than 2.5 widths before them
-_LONG = 10.0  # widths of the base: drift and hum are straight over such a time
-_SHORTEST = 0.9  # likewise, at least
-FEWEST = 16  # samples of the base
+_CLOSE = 1.0  # likewise in a record that would leave less than 2.5 widths for the base
+_LONG = 10.0  # widths of the longest base: drift and hum are straight over such a time
+_SHORTEST = 0.9  # widths of the shortest base
+FEWEST_FOR_BASE = 16  # samples of a base, at least
 _GROWTHS = (1.0, 2.0)  # widths in which what rises before the pulse grows e-fold
 _LINE = 2  # terms of a straight line
 _BASES = (_LINE, _LINE + len(_GROWTHS))  # terms of the bases
@@ -124,7 +124,7 @@ class Base:
         start = end - _LONG * width
         calm = (t > start) & (t < end)
         x = (t[calm] - rise) / width
-        if len(x) < FEWEST:
+        if len(x) < FEWEST_FOR_BASE:
             return None
         length = np.ptp(x)
         if length < _SHORTEST:
@@ -134,8 +134,8 @@ class Base:
             counts = (_LINE,)
         samples = f[calm]
         fits = [Fit.of(x, samples, count) for count in counts]
-        # Akaike's criterion, for the independent among the samples, with the noise that the base
-        # with all terms leaves.
+        # Akaike's criterion, with the noise that the base with all terms leaves; correlated samples
+        # count as fewer. Where no noise is left any scale will do.
         full = fits[-1]
         scale = full.variance * full.correlation_time or 1.0
         criteria = []

@@ -51,7 +51,8 @@ class Record:
     key : str
         Name or header under which the user states the signal's unit.
     turned : mapping of str
-        The user's statements of units with the one, by ``key``, that changes the signal's sign.
+        The user's statements of units, but with the opposite sign in that of ``key``: they turn an
+        inverted signal upright.
     """
 
     kind: str
