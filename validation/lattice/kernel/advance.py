@@ -11,6 +11,7 @@ from validation.lattice.kernel.arrays import (
     SQUARES,
     Beads,
     Chain,
+    Forcing,
     Knots,
     Plan,
 )
@@ -49,7 +50,13 @@ def advance_front(beads: Beads, plan: Plan, now: Any) -> None:
 
 @cached
 def advance(
-    chain: Chain, beads: Beads, plan: Plan, knots: Knots, now: Any, tries: int
+    chain: Chain,
+    forcing: Forcing | None,
+    beads: Beads,
+    plan: Plan,
+    knots: Knots,
+    now: Any,
+    tries: int,
 ) -> float:
     """Integrate to the end, or for at most ``tries`` tried steps, or until the knots are full.
 
@@ -77,18 +84,18 @@ def advance(
                 return float(now.t)
             hi = moving(now)
             now.tries += 1
-        evaluate_stages(chain, beads, plan, now.t, h, hi, again)
+        evaluate_stages(chain, forcing, beads, plan, now.t, h, hi, again)
         made = again
         if again:
             again = False
         else:
             estimate_errors(beads, plan, h, hi)
             beads.books[:] = 0.0
-            marks = mark_kinks(chain, beads, plan, h, hi)
+            marks = mark_kinks(chain, forcing, beads, plan, h, hi)
             i = -1
             for _ in range(marks):
                 i = next_mark(beads.marks, i + 1)
-                correct_contact(chain, beads, plan, now.t, h, i)
+                correct_contact(chain, forcing, beads, plan, now.t, h, i)
                 if beads.books[SQUARES] > 1.0:
                     break  # the step is refused, whatever the other contacts add
             error = step_error(beads, plan, h, hi)
@@ -97,4 +104,4 @@ def advance(
         if made and not again:
             begin_step(beads, hi)
             advance_front(beads, plan, now)
-            store_knot(chain, beads, knots, now)
+            store_knot(forcing, beads, knots, now)

@@ -20,6 +20,7 @@ from validation.lattice.kernel.arrays import (
     WORK_ERROR,
     Beads,
     Chain,
+    Forcing,
     Plan,
 )
 from validation.lattice.kernel.compiled import (
@@ -91,7 +92,14 @@ def integral(row: Array, values: Array) -> float:
 
 @inlined
 def evaluate_stages(
-    chain: Chain, beads: Beads, plan: Plan, t: float, h: float, hi: int, again: bool
+    chain: Chain,
+    forcing: Forcing | None,
+    beads: Beads,
+    plan: Plan,
+    t: float,
+    h: float,
+    hi: int,
+    again: bool,
 ) -> None:
     """Compute the accelerations of beads 0 … hi-1 at the stages of a step h that begins at time t.
 
@@ -125,16 +133,18 @@ def evaluate_stages(
                     next_y[i] = y[i] + ch * v[i]
                 _add_stages(next_y, h * h, pair.moments[s], s, push, lo, up)
                 # Forces depend on velocities with damping alone; the end has them in any case.
-                if chain.damped or s == stages - 1:
+                if s == stages - 1 or (forcing is not None and forcing.damped):
                     for i in range(index(lo), index(up)):
                         next_v[i] = v[i]
                     _add_stages(next_v, h, pair.impulses[s], s, push, lo, up)
                 # The motion of a driven bead is given. Steps end where intervals of the drive's
                 # file meet: the middle of the step tells its interval, also for a stage at an end.
-                if chain.drive.driven and lo == 0:
-                    given = drive_motion(chain.drive, t + h / 2, t + ch)
+                if forcing is not None and forcing.driven and lo == 0:
+                    given = drive_motion(forcing, t + h / 2, t + ch)
                     next_y[0], next_v[0], beads.given[1] = given
-            contact_forces(chain, beads, plan, next_y, next_v, s, first, behind)
+            contact_forces(
+                chain, forcing, beads, plan, next_y, next_v, s, first, behind
+            )
             # The stages share a row of forces: the last one of a tile is kept for the next tile.
             if first > 0:
                 force[first] = beads.border[s]
