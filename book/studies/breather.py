@@ -495,7 +495,7 @@ def _report(
 
 
 def _findings(rows: Sequence[dict[str, Any]]) -> Iterator[Finding]:
-    """The theory's error is of the order of the detuning."""
+    """Findings on the theory's error, which is of the order of the detuning."""
     worst = max(
         abs(row["amplitude_off_value"]) / abs(row["detuning_value"]) for row in rows
     )

@@ -171,8 +171,11 @@ class Upright:
     def fitted(
         self, x: Array, width: Array, coarse: Array
     ) -> tuple[Estimate, Estimate]:
-        """`fit` with errors: its largest change with the other correction, from the deeper half of
-        the places, or in the less accurate run."""
+        """`fit` with errors, each the largest of three changes.
+
+        The fit changes with the other correction, with the deeper half of the places alone, and
+        with the less accurate run.
+        """
         half, rest = len(x) // 2, (3 - self.k) / 3
         power, other = 2 * rest / (self.k + 1), rest / self.k
         values = self.fit(x, width, power)
@@ -186,8 +189,11 @@ class Upright:
         return exponent, prefactor
 
     def pulses(self, velocity: float) -> list[dict[str, float]]:
-        """Dynamic force over load, FWHM in sites, and FWHM of the solitary wave of this force on
-        this load, at each place; means over a cell."""
+        """Force and width of the pulse at each place, beside the solitary wave; means over a cell.
+
+        The force is dynamic, over the load. Both widths are FWHM in sites, the wave's at this force
+        and load.
+        """
         size = len(self.masses)
         contacts = np.add.outer(self.places(_TOP, _FEW), np.arange(2 * size))
         scene = self.blown(velocity, contact_sensors=np.unique(contacts).tolist())

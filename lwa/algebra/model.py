@@ -195,7 +195,7 @@ class Model(Parametric):
             for name in self.parameters:
                 found.append(generator(context, name))
             return found
-        # Those of a power are (k-1) … (k-n+1).
+        # The φ_n of a power are (k-1) … (k-n+1).
         if self.k.is_Rational:
             k = context.constant(to_flint(self.k))
         else:

@@ -232,7 +232,7 @@ class EpsilonSeries(Value):
 
 
 def _transformed(coefficients: Sequence[sp.Expr]) -> list[mpmath.mpf]:
-    """Coefficients b_n of x^n from those of ε^n."""
+    """Coefficients ``b_n`` of ``x^n`` from the coefficients of ``ε^n``."""
     a = decimals(coefficients, TERM_DIGITS)
     b = a[:1]
     for n in range(1, len(a)):
@@ -278,7 +278,8 @@ def radiated(cell: Cell, k: sp.Expr) -> float:
     I = float(chain.I / cell.spacing**2)
     optical = float(chain.bands.branches(0.0)[1]) ** 2
     s = I * max(optical - 1, 0.0) / epsilon
-    # Contacts soften at the pulse's ends, the more the larger ε: K and the decay with √s are less.
+    # The four numbers are those of the fit. Contacts soften at the pulse's ends, the more the
+    # larger ε: K, and the decay with √s, become less.
     height = 0.3 + 0.35 / epsilon
     decay = 0.7 + 0.2 / epsilon
     contrast = max(4 * I - 1 / 3, 0.0)

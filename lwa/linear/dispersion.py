@@ -131,7 +131,7 @@ class Dispersion(Parametric):
             raise InputError(
                 f"the optical series needs a cell of 2 masses, not {self.cell.size}"
             )
-        # The trace is 2 - 4 Ω² + 4Π Ω⁴, and the two roots have the sum 1/Π.
+        # The trace is 2 - 4 Ω² + 4Π Ω⁴, listed by powers of Ω²; its two roots have the sum 1/Π.
         Pi = self._expression(self._bloch.trace(2)[2]) / 4
         acoustic = self.acoustic(order).items()
         return {0: 1 / Pi} | {n: -coefficient for n, coefficient in acoustic}
@@ -142,7 +142,7 @@ class Dispersion(Parametric):
 
         It is that of the acoustic branch ``Ω² = κ² (1 - (I/D²) κ² + …)``.
         """
-        fourth = self.acoustic(4)[4]
+        fourth = self.acoustic(4)[4]  # the coefficient of κ⁴
         return -fourth * self.cell.spacing**2
 
     @cached_property
@@ -154,8 +154,9 @@ class Dispersion(Parametric):
         return Bloch(self._model)
 
     def _expression(self, polynomial: fmpq_mpoly) -> sp.Expr:
+        """A polynomial of the ring as an expression in the cell's symbols."""
         terms = list(polynomial.terms())
-        # Compliances enter as 1/A.
+        # One fraction: compliances enter as 1/A.
         return sp.together(self._model.expression(terms))
 
     def _length(self, order: Any) -> int:

@@ -107,7 +107,7 @@ class Arch(Parametric):
         """The two p for which ``v = z^p`` removes ``z_ξ³``.
 
         If k and the cell are numbers, the first root is the paper's. With symbols the order of the
-        roots may differ, as √x² is written x, whatever the sign of x.
+        roots may differ, as ``√x²`` is written x, whatever the sign of x.
         """
         # The equation of p, divided by I, is A p² - B p + 2 = 0.
         _, h = self._ratios

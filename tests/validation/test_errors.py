@@ -99,10 +99,14 @@ sensors = {contacts = [1, 5, 10, 15, 16, 17, 20, 25, 29, 30], beads = [15, 16, 1
 
 
 def test_errors_cover_the_rounding_of_a_broad_crest():
-    """Both runs err alike in its time; twice their difference left 5 of 81 outside."""
-    found = np.array([*ratios(scenefile.scene(tomllib.loads(REFLECTED)), 1e-10)])
-    assert np.sum(found < 1) <= 2
-    assert np.sum(found > LARGEST) <= 4
+    """Both runs err alike in its time; twice their difference left one in sixteen outside."""
+    found = []
+    for speed in ("0.9", "0.99", "1.05", "1.1"):
+        struck = tomllib.loads(REFLECTED.replace("0.99", speed))
+        found += ratios(scenefile.scene(struck), 1e-10)
+    # 2 to 7 of these 327, by the rounding of the run: 36 of 1,638 at ten speeds.
+    assert np.mean(np.array(found) < 1) < 0.04
+    assert np.mean(np.array(found) > LARGEST) < 0.05
 
 
 def test_the_error_of_a_speed_is_that_of_both_arrivals():

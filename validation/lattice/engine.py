@@ -66,7 +66,7 @@ from validation.scenes.forcing import Drive
 # times.
 _WEAK, _STRONG, _GUESSES = 0.1, 10.0, 8
 _HIDDEN = 0.1  # rounding in units of the tolerance: more of it hides the motion
-# In units of the greatest value: a bead that moves less is still.
+# A bead is still at the start if its |y| and |v| are less than this part of the greatest ones.
 _NOISE = sys.float_info.epsilon
 # Bead evaluations between two reports of progress: some tenths of a second.
 _BETWEEN_REPORTS = 5e7

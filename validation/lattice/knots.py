@@ -21,7 +21,7 @@ from validation.lattice.signal import Beads, sample_times, sensed_beads
 
 # Numbers that the engine stores between two calls of `take`: 2 MB, which a cache holds.
 BUFFER = 2**18
-# Of the motion that a run keeps: a small part of a machine's memory.
+# Largest motion that a run keeps: a small part of a machine's memory.
 _MOST_BYTES = 2**28
 
 
@@ -141,7 +141,7 @@ class Recorder:
         times, states, watched = self.knots
         if not len(watched):
             return 0
-        # Its first knot is also the last one of the part before.
+        # The first knot of a part is also the last knot of the part before.
         part = times[:count].copy(), states[:count].copy()
         self._parts.append(part)
         self._bytes += part[1].nbytes

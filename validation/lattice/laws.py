@@ -68,7 +68,7 @@ class Contact:
         if self.law is not None:
             return self._evaluated("force", compression)
         pressed = np.maximum(compression, 0.0)
-        if self.k == 1.5:
+        if self.k == 1.5:  # a root is faster than a power
             return pressed * np.sqrt(pressed)
         return pressed**self.k
 
@@ -151,7 +151,7 @@ class Contact:
         different, place = np.unique(forces, return_inverse=True)
         found = []
         for force in different:
-            # In 40 digits, so that the compression is right to the last digit of a float.
+            # Solved in 40 digits, so that the compression is right to the last digit of a float.
             compression = self.law.inverse(sp.Float(force, 40))
             found.append(float(compression))
         return np.array(found)[place]

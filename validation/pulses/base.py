@@ -51,10 +51,9 @@ class Fit:
         return cls(sizes, f - terms @ sizes)
 
     def at(self, x: Array) -> Array:
-        """Return the base at times of the pulse, without what rises before it."""
+        """Return the base at times of the pulse, without the terms that rise before the pulse."""
         line = self.sizes[:_LINE]
-        terms = _terms(x, len(line))
-        return terms @ line
+        return _terms(x, len(line)) @ line
 
     @property
     def variance(self) -> float:
@@ -119,6 +118,7 @@ class Base:
     def before(cls, t: Array, f: Array, rise: float, width: float) -> Base | None:
         """Return the base before a pulse; None if the record begins too late."""
         end = rise - _BEFORE * width
+        # A short record leaves too few samples so far ahead of the pulse.
         if t[0] > end - 2.5 * width:
             end = rise - _CLOSE * width
         start = end - _LONG * width
@@ -158,7 +158,9 @@ class Base:
         noise : float
             Standard deviation of their noise.
         """
-        samples = np.array([noise, 0.0])  # of this variance, and white
+        # Two levels in place of fits, equally likely, each with the noise in a form that gives this
+        # variance and no correlation; rise and width do not matter to a level.
+        samples = np.array([noise, 0.0])
         first = f[:_GUESSED].mean()
         lowest = np.quantile(f, 0.1)
         fits = [Fit(np.array([level]), samples) for level in (first, lowest)]
@@ -216,7 +218,8 @@ class Base:
         products = self.best.correlations
         size = count + len(products)
         white = rng.normal(size=(size, DRAWS))
-        # The products are those of both directions, and that at lag 0 counts once.
+        # The power spectrum sums the products at lags of both signs; lag 0 counts once. Half of it,
+        # as its scale does not matter, is the transform of the lags from 0 on less half of lag 0.
         spectrum = np.fft.rfft(products, size)
         one_sided = spectrum.real - products[0] / 2
         power = np.maximum(one_sided, 0.0)

@@ -191,7 +191,7 @@ def _noisy(t: Array, f: Array, step: float, unit: str) -> NoisyPulse:
 
 
 def _is_exact(f: Array) -> bool:
-    """Whether a record is without noise before it first exceeds half of its maximum."""
+    """True for a record without noise before it first exceeds half of its maximum."""
     swing = f - f[0]
     if swing.max() < _UPRIGHT * -swing.min():
         return False  # the moving mean tells that it is inverted
@@ -266,7 +266,7 @@ def _front(f: Array, width: float) -> float:
 
 
 def in_unit(time: float, unit: str) -> str:
-    """Return a time with the prefix of its unit that suits it."""
+    """Return a time as text, with a prefix of its unit that suits its size."""
     suited = fitting(unit, time)
     return f"{time / suited.size:.3g} {suited.name}".strip()
 

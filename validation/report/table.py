@@ -217,7 +217,7 @@ class Table:
         return text
 
     def _parts(self) -> dict[str, list[list[str]]]:
-        """The printed lines of each part, the labels first, by its heading, "" for a whole."""
+        """The printed lines of each part, labels first, by heading; "" heads an undivided table."""
         # One prefix for all parts of a column, so that its numbers can be compared.
         units = [self._unit(place) for place in range(len(self.columns))]
         labels = [unit.name for unit in units if unit.name]

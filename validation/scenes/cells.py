@@ -129,8 +129,8 @@ class Cells:
     def headed(self, header: str) -> list[int]:
         """Return the numbers of the columns of a header, or the number that is given instead.
 
-        The lowest row with such a header counts, and a cell that is all of it before one with a
-        unit behind it.
+        The lowest row with such a header counts. In a row, cells that are the header itself go
+        before cells that are the header and a unit.
         """
         if re.fullmatch(r"[1-9]\d{0,5}", header):
             return [int(header)]
@@ -148,7 +148,7 @@ class Cells:
     ) -> dict[int, Array]:
         """Return columns, (lines,), by their rising numbers; NaN for a cell without a number.
 
-        Blank lines are left out, and lines behind the first ``most``.
+        Blank lines are left out, and lines after the first ``most``.
         """
         table = np.empty((0, len(numbers)))
         if self.entries and numbers:
@@ -171,7 +171,7 @@ class Cells:
         for line in _LINE.finditer(self._text):
             text = line[0]
             if '"' in text:
-                # NumPy takes quotes right behind a separator; a single one would join lines.
+                # NumPy takes quotes right after a separator; a single one would join lines.
                 text = text.replace(f'{self._mark} "', f'{self._mark}"')
                 if text.count('"') % 2:
                     text = text.replace('"', "'")
@@ -188,12 +188,14 @@ class Cells:
         start, end = longest(complete)
         found = runs(complete)
         place = found.index((start, end))
-        # A preamble may hold rows of numbers, few, and lines without any behind them.
+        # A preamble may hold a few rows of numbers, if lines without any number follow. Any other
+        # run of rows beside the record is a part of it, beyond a gap.
         many = complete.sum() > (1 + _FEW) * (end - start)
         first = max(place - 1, 0)
-        for before, behind in pairwise(found[first : place + 2]):
-            if many or numbers[before[1] : behind[0]].any():
-                raise SceneError(f"line {self._line(before[1])} is a gap in the record")
+        for before, after in pairwise(found[first : place + 2]):
+            _, gap = before
+            if many or numbers[gap : after[0]].any():
+                raise SceneError(f"line {self._line(gap)} is a gap in the record")
         infinite = np.isinf(table[start:end])
         beyond = np.flatnonzero(infinite.any(axis=1))
         if len(beyond):
@@ -231,7 +233,7 @@ def runs(flags: ArrayLike) -> list[tuple[int, int]]:
 
 
 def name_of(header: str) -> str:
-    """Return a header without its unit, as it is compared.
+    """Return a header without its unit, in the form in which headers are compared.
 
     >>> name_of("# Time [ms]"), name_of("bead 8 Dynamic force (N)")
     ('time', 'bead 8 force')

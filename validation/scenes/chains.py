@@ -75,7 +75,8 @@ def carrying(
     return Scene(
         masses=masses,
         stiffnesses=(1.0,) * len(strain),
-        # The beads behind have moved by all compressions before them.
+        # The last bead stays in its place. Each other bead is displaced by the compressions of all
+        # contacts between it and the last bead.
         displacements=np.append(np.cumsum(strain[::-1])[::-1], 0.0),
         velocities=velocity,
         **rest,

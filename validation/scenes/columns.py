@@ -3,9 +3,9 @@
 A column is named by its header, in whatever line the header stands, or by its number, from 1.
 
 Units are stated, never guessed, in the spellings of recorders and with any SI prefix: by the file,
-in brackets behind a header, as in "Force (mN)", or in a row of units; or by the user, whose word
+in brackets after a header, as in "Force (mN)", or in a row of units; or by the user, whose word
 stands above the file's. A statement of the user such as "12.5 N/V" holds a number, a unit, and
-behind the first slash the file's own name of its unit. All but one of the parts may be left out:
+after the first slash the file's own name of its unit. All but one of the parts may be left out:
 "us", "0.04 us", "N/V"; a number alone, "4e-8", is the value in SI of an entry 1.
 
 Values are in SI. A file whose named columns have no unit at all is in the scene's own numbers; if
@@ -122,13 +122,13 @@ class Column:
 
     @property
     def base(self) -> str:
-        """Unit of its quantity in SI."""
+        """SI unit of the column's quantity."""
         # The quantity is the last word of a name such as "bead 8 force".
         return BASES[self.name.split()[-1]]
 
     @property
     def size(self) -> float | None:
-        """Value in SI of an entry 1; None without a unit of its quantity."""
+        """Value in SI of an entry 1; None if the column has no unit of its quantity."""
         if not self.stated:
             return in_si(self.unit, self.base)
         statement = read_statement(self.stated, self.base)
@@ -137,7 +137,7 @@ class Column:
     @property
     def proposed(self) -> str:
         """A statement that is valid, in place of a unit that is missing or of another quantity."""
-        # Behind the slash stands the file's own name of its unit.
+        # After the slash stands the file's own name of its unit.
         return f"1 {self.base}/{self.unit}" if self.unit else self.base
 
     @property
@@ -233,11 +233,10 @@ class Columns:
 
     @property
     def si(self) -> bool:
-        """Whether a unit is stated, by the file or by the user; values are in SI then."""
+        """True if a unit is stated, by the file or by the user: values are in SI then."""
         texts = [column.stated or column.unit for column in self.named]
-        # A number alone is a factor.
-        letter = re.search(r"[^-+.\deE ]", "".join(texts))
-        return bool(letter)
+        # A number alone, with the E of its power, is a factor and states no unit.
+        return bool(re.search(r"[^-+.\deE ]", "".join(texts)))
 
     def refusal(
         self, words: str, missing: Sequence[str] = (), step: str = ""
@@ -337,7 +336,7 @@ def in_si(unit: str, base: str) -> float | None:
 
 
 def known(unit: str) -> tuple[str, float] | None:
-    """Return the base unit of a unit and its multiple, or None for an unknown unit."""
+    """Return the base unit of a unit, and the unit's size in it; None for an unknown unit."""
     for base, spellings in _SPELLINGS.items():
         text = unit
         # Recorders that write in capitals mean ms by MS; MN may well be a meganewton.

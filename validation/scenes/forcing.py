@@ -57,7 +57,7 @@ class Damping:
 
     @property
     def undamped(self) -> float:
-        """The ``value`` that means no damping: the restitution 1, or the coefficient γ = 0."""
+        """The ``value`` that means no damping: the restitution 1, or ``γ = 0``."""
         return 1.0 if self.kind == "restitution" else 0.0
 
     def power(self, k: Any) -> Any:
@@ -208,6 +208,7 @@ class Drive:
 
     @cached_property
     def _spline(self) -> Any:
+        """The displacement of a file as a cubic spline of time."""
         from scipy.interpolate import CubicSpline  # start-up
 
         return CubicSpline(self.time, self.displacement)

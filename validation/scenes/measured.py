@@ -123,7 +123,17 @@ class MeasuredFile(Columns):
         return file
 
     def _demand(self, header: str, count: int, missing: Sequence[str]) -> None:
-        """Refuse a header, or a name, unless one column has it."""
+        """Refuse a header, or a name, unless one column has it.
+
+        Parameters
+        ----------
+        header : str
+            The header.
+        count : int
+            Number of columns that have it.
+        missing : sequence of str
+            Names for which columns are proposed.
+        """
         if count == 1:
             return
         words = f"{count} columns are {shorten(header)}"

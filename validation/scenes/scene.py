@@ -385,6 +385,7 @@ _READERS: dict[str, Reader] = {
 
 
 def _sensors(values: Any, name: str, count: int) -> tuple[int, ...]:
+    """Read the numbers of sensors, each once, from 0 to ``count`` - 1."""
     given = items(values, name)
     if given and not count:
         raise SceneError(f"{name} is {shorten(given)}: this chain has none")

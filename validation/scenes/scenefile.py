@@ -45,10 +45,9 @@ from validation.scenes.forcing import DAMPINGS, Damping, Drive
 from validation.scenes.measured import MeasuredFile
 from validation.scenes.scene import Scene, contacts_of
 
-# So many beads are read in 2 s and 40 MB.
-MOST_BEADS = 1_000_000
-_STATED = ("columns", "units", "step")  # of the file of a drive
-_OTHER = ("like", "mass")  # of a bead that is unlike the others at its place
+MOST_BEADS = 1_000_000  # they are read in 2 s and 40 MB
+_STATED = ("columns", "units", "step")  # keys on the file of a drive
+_OTHER = ("like", "mass")  # keys of a striker, or a defect, that is unlike the other beads
 
 
 def read_scene(
@@ -70,6 +69,7 @@ def read_scene(
     """
 
     def read(content: Any) -> Scene:
+        """Read the scene of a file's content, with a number of samples if it gives none."""
         found = scene(content, Path(path).parent)
         if samples is None or "samples" in content:
             return found
@@ -102,7 +102,7 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     materials = read_materials(file)
     beads = read_beads(file, materials)
     row = read_row(file, beads)
-    # Such a chain would fill the memory before it is refused.
+    # Counted before the beads are made: a chain too long would fill the memory.
     if row.size > MOST_BEADS:
         made = f"chain.cell and repeat make {shorten(row.size)} beads"
         raise SceneError(f"{made}: at most {MOST_BEADS} are wanted")
@@ -193,12 +193,13 @@ def _sensors(count: int) -> Reader:
 
 
 def _per_contact(reader: Reader, period: int, contacts: int) -> Reader:
-    """Return a reader of one value, which stays one, or of a list, which becomes one a contact.
+    """Return a reader of a value for all contacts, or of a list.
 
-    The list is that of a cell, which repeats, or of the whole chain.
+    A list has an entry for each bead of a cell, and is repeated, or for each contact of the chain.
     """
 
     def read(value: Any, name: str) -> Any:
+        """Read one value, or a list, which is returned with an entry for each contact."""
         if not isinstance(value, list):
             return reader(value, name)
         values = each(reader)(value, name)

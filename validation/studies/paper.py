@@ -122,7 +122,7 @@ def recorded_chain(
 
 
 def of_momentum(wave: CompactWave, momentum: float) -> PhysicalWave:
-    """Return the theory's wave with a given momentum, a positive one."""
+    """Return the theory's wave with a given, positive momentum."""
     of_unit_force = number(PhysicalWave(wave, sp.S.One).momentum)
     # The momentum is proportional to F^{(k + 1)/(2k)}.
     power = number(2 * wave.k / (wave.k + 1))

@@ -306,7 +306,7 @@ def run(
 ) -> Report:
     """A scene from a file, TOML or JSON: arrival, peak force, FWHM and speed at its sensors."""
     chain = scenefile.read_scene(scene, enough_samples)
-    # By any name of the file: a link, say
+    # The files are compared, not their names: one may be a link to the other.
     if (
         out is not None
         and out.exists()

@@ -228,7 +228,7 @@ class Problem:
     @cached_property
     def _responses(self) -> tuple[Array, Array]:
         """Matrices of the strains c² a, linear in the forces, by 1/m1 and by 1/m2."""
-        unit_forces = np.eye(self.count)  # of the columns, at a grid point each
+        unit_forces = np.eye(self.count)  # each row a force 1 at one grid point
         by_first = self._strains(unit_forces, (1, 0)).T
         by_second = self._strains(unit_forces, (0, 1)).T
         return by_first, by_second
@@ -247,7 +247,7 @@ class Problem:
         force = unknowns[:-2]
         c2, inverse = unknowns[-2:]
         first = 1 / self.masses[0]
-        # Not by the matrices below, whose rounding shows in long waves on a background.
+        # Not computed by the matrices below, whose rounding shows in long waves on a background.
         a = self._strains(force, (first, inverse)) / c2
         missed = force - rise(a, self.k, self.p0)
         closing, of_closing = self._closing(force, inverse)

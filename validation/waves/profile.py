@@ -203,7 +203,7 @@ class ExactWave(Pictured):
 
     @cached_property
     def _strains(self) -> newton.Series:
-        """The series of a, but for the mean, as ``series`` is that of F_a."""
+        """Fourier coefficients of the strain a, without the mean; compare ``series``, of F_a."""
         m1, m2 = self.masses
         inverse = (1 / m1, 1 / m2)
         strain = newton.respond(self.series, inverse, self.half_period) / self.c2
@@ -246,7 +246,7 @@ def at_unit_force(problem: newton.Problem, found: newton.Found) -> ExactWave:
     )
     peak = problem.p0 + wave.peak("strain")
     wave = wave.times(1 / peak)
-    # Of equal masses the odd part is rounding.
+    # The odd part of a wave of equal masses is rounding.
     tail = 0.0 if problem.uniform else _tail(wave)
     return replace(wave, tail=tail, residual=_residual(wave))
 

@@ -13,7 +13,7 @@ from lwa.base.arrays import Array
 Numbers = NDArray[np.int_]
 
 MARGIN = 4  # still beads that are moved ahead of the front
-SHORTEST = 32  # beads below which the vector loops take no less time
+SHORTEST = 16  # beads that are moved at least: two of the widest registers
 BLOCK = 8  # doubles in the widest vector register; the number of moved beads is a multiple of BLOCK
 # Beads whose memory stays in the processor's cache throughout a step. Measured for 20,000 beads:
 # 128 and 256 take the same time, 512 a tenth more, 1,024 a fifth more.

@@ -164,7 +164,7 @@ def next_mark(marks: Array, i: int) -> int:
 
 @inlined
 def _drive_curve(beads: Beads, h: float) -> kinks.Curve:
-    """Return the motion of the driven bead over a step, from where it is."""
+    """Return the motion of the driven bead over a step, as a curve that starts at 0."""
     start = 0.0, h * beads.v[0], h * h * beads.given[0]
     moved = beads.next_y[0] - beads.y[0]
     end = moved, h * beads.next_v[0], h * h * beads.given[1]
@@ -271,7 +271,7 @@ def _steepness(law: Any, r: float, d: float, h: float) -> float:
 def _replace_estimates(
     chain: Chain, beads: Beads, plan: Plan, h: float, i: int
 ) -> None:
-    """Take a contact's share away from the pair's estimates of errors: it is corrected."""
+    """Take a corrected contact's share away from the pair's estimates of the errors."""
     for q in range(len(plan.scheme.errors)):
         seen = integral(plan.scheme.errors[q], beads.points[2])
         seen *= chain.A[i] * error_scale(plan, h, q)
@@ -455,7 +455,8 @@ def correct_contact(
         beads.books[SQUARES] += heated * heated
         _count_error(beads.books, h * resisted / plan.y, near, far)
     depth = top + misfit
-    # So is the impulse of an elastic force, less so where the contact is hardly closed: half of it.
+    # The impulse of an elastic force is as wrong, but less so where the contact is hardly closed:
+    # half of that error is counted.
     missed = 0.5 * misfit * h * A * stiffness(law, depth)
     if found.jump != 0.0:
         # The jump comes too early or too late by the misfit there over the slope. The misfit

@@ -122,9 +122,9 @@ def _loop(value: Any) -> Any:
 def _damped_loop(value: Any, resistance: Any) -> Any:
     """Compile a loop over contacts with the force A (value + r resistance(p, d) dδ/dt).
 
-    least : contacts have a force where δ > least; -∞ if they pull. none : 0 if damping may not
-    pull, else -∞. The loop returns the dissipated power. While a contact that has
-    stopped pushing expands, its elastic energy turns into heat.
+    Contacts have a force where ``δ > least``: the loop's ``least`` is 0, or nearly, and -∞ if they
+    pull. Its ``none`` is the least force with damping: 0, or -∞ if damping may pull. While a
+    contact that has stopped pushing expands, its elastic energy turns into heat.
     """
 
     @summed
@@ -139,6 +139,7 @@ def _damped_loop(value: Any, resistance: Any) -> Any:
         least: float,
         none: float,
     ) -> float:
+        """Compute the forces of contacts lo … hi - 1 and return the power that they dissipate."""
         A = chain.A
         rest = chain.rest
         load = chain.load
@@ -184,6 +185,10 @@ def tile_bounds(tile: int, s: int, hi: int) -> tuple[int, int, int, int]:
 
     All stages of a step go through a tile before the next tile. The contact of a tile's last bead
     waits for the bead ahead, so each stage ends one bead behind the stage before.
+
+    The beads are the first number up to the second, which is left out; the contacts, those behind
+    and ahead of these beads, are the third up to the fourth. At the end of the chain no next tile
+    takes the last contact.
     """
     lo = max(tile - s, 0)
     up = min(tile + TILE - s, hi)

@@ -196,10 +196,13 @@ def _turning_point(c: Curve, a: float, b: float) -> float:
 def _state(
     law: Any, r: float, c: Curve, h: float, x: float
 ) -> tuple[float, float, float]:
-    """Return p, p' and, for a damped contact that does not stick, the margin at a place."""
+    """Return p, p' and a number that is negative where damping would pull, at a place.
+
+    The number is the `_margin` of a damped contact that does not stick, and 1 of any other.
+    """
     p, slope = value_and_slope(c, x)
     margin = 1.0
-    # While δ rises the margin is positive.
+    # The margin can be negative only where a closed contact expands.
     if r > 0.0 and not law.sticks and p > 0.0 and slope < 0.0:
         margin = _margin(law, r, c, h, x)
     return p, slope, margin
@@ -283,13 +286,14 @@ def find_edges(
 def _find_jump(
     law: Any, r: float, c: Curve, h: float, edges: Array, count: int
 ) -> Bend:
-    """Return the last place at which the force jumps, or nearly, as the bend by ``bend = 1``.
+    """Return the last jump of the force as a `Bend` of p, for a factor 1 from force to p''.
 
-    A force that begins as ``r δ^b dδ/dt`` with a small b almost jumps.
+    A force that begins as ``r δ^b dδ/dt`` with a small b almost jumps, and counts as a jump.
     """
     found = 1.0, 0.0, 0.0
     for n in range(count):
         p, slope = value_and_slope(c, edges[n])
+        # This edge is a root of p, within 1e-9 of a step; at others only damping begins or ceases.
         if abs(p) < 1e-9 * abs(slope):
             force = push(law, r, OPENS, slope / h)
             if slope > 0.0 and r > 0.0 and law.p > 0.0 and law.p < 1.0:

@@ -81,6 +81,41 @@ def _add_stages(
             )
 
 
+@alone
+def _add_stages_twice(
+    y: Array,
+    v: Array,
+    y_scale: float,
+    v_scale: float,
+    y_weights: Array,
+    v_weights: Array,
+    count: int,
+    push: Array,
+    lo: int,
+    hi: int,
+) -> None:
+    """Add stages to beads of two rows y and v, each with its own weights, as `_add_stages` does.
+
+    What both rows need is read once: two thirds of the time.
+    """
+    for s in range(index(0), index(count), index(GROUP)):
+        a = y_scale * y_weights[s]
+        b = y_scale * y_weights[s + ONE]
+        c = y_scale * y_weights[s + index(2)]
+        d = y_scale * y_weights[s + index(3)]
+        e = v_scale * v_weights[s]
+        f = v_scale * v_weights[s + ONE]
+        g = v_scale * v_weights[s + index(2)]
+        k = v_scale * v_weights[s + index(3)]
+        for i in range(index(lo), index(hi)):
+            first = push[s, i]
+            second = push[s + ONE, i]
+            third = push[s + index(2), i]
+            fourth = push[s + index(3), i]
+            y[i] += a * first + b * second + c * third + d * fourth
+            v[i] += e * first + f * second + g * third + k * fourth
+
+
 @summed
 def integral(row: Array, values: Array) -> float:
     """Return ``Σ row[s] values[s]`` over the stages s."""
@@ -129,14 +164,27 @@ def evaluate_stages(
                 continue
             if not again:
                 ch = pair.nodes[s] * h
-                for i in range(index(lo), index(up)):
-                    next_y[i] = y[i] + ch * v[i]
-                _add_stages(next_y, h * h, pair.moments[s], s, push, lo, up)
                 # Forces depend on velocities with damping alone; the end has them in any case.
                 if s == stages - 1 or (forcing is not None and forcing.damped):
                     for i in range(index(lo), index(up)):
+                        next_y[i] = y[i] + ch * v[i]
                         next_v[i] = v[i]
-                    _add_stages(next_v, h, pair.impulses[s], s, push, lo, up)
+                    _add_stages_twice(
+                        next_y,
+                        next_v,
+                        h * h,
+                        h,
+                        pair.moments[s],
+                        pair.impulses[s],
+                        s,
+                        push,
+                        lo,
+                        up,
+                    )
+                else:
+                    for i in range(index(lo), index(up)):
+                        next_y[i] = y[i] + ch * v[i]
+                    _add_stages(next_y, h * h, pair.moments[s], s, push, lo, up)
                 # The motion of a driven bead is given. Steps end where intervals of the drive's
                 # file meet: the middle of the step tells its interval, also for a stage at an end.
                 if forcing is not None and forcing.driven and lo == 0:
@@ -166,14 +214,24 @@ def estimate_errors(beads: Beads, plan: Plan, h: float, hi: int) -> None:
     """Compute the pair's estimates of the errors of beads 0 … hi-1, in units of the tolerance."""
     for lo in range(0, hi, TILE):
         up = min(lo + TILE, hi)
-        for q in range(len(beads.errors)):
-            weights = plan.scheme.errors[q]
-            errors = beads.errors[q]
+        for q in range(0, len(beads.errors), 2):
+            y = beads.errors[q]
+            v = beads.errors[q + 1]
             for i in range(index(lo), index(up)):
-                errors[i] = 0.0
-            scale = error_scale(plan, h, q)
-            stages = len(plan.scheme.nodes)
-            _add_stages(errors, scale, weights, stages, beads.push, lo, up)
+                y[i] = 0.0
+                v[i] = 0.0
+            _add_stages_twice(
+                y,
+                v,
+                error_scale(plan, h, 0),
+                error_scale(plan, h, 1),
+                plan.scheme.errors[q],
+                plan.scheme.errors[q + 1],
+                len(plan.scheme.nodes),
+                beads.push,
+                lo,
+                up,
+            )
 
 
 @summed
