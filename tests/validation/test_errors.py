@@ -123,7 +123,10 @@ def test_paper():
     by_chance = 0
     for velocity in (0.001, 1.37, 60):
         found, finer = (
-            {row[0]: row[2] for row in paper.paper(velocity, rtol=rtol).tables[0].rows}
+            {
+                row["quantity"]: row["lattice"]
+                for row in paper.paper(velocity, rtol=rtol).tables[0].rows
+            }
             for rtol in (1e-9, FINER)
         )
         held(found, finer)
@@ -145,7 +148,8 @@ def test_widths(monkeypatch):
     for rtol in (widths.RTOL, FINER):
         monkeypatch.setattr(widths, "RTOL", rtol)
         rows = widths.widths().tables[0].rows
-        found.append(measurements(dict(enumerate(chain.from_iterable(rows)))))
+        cells = chain.from_iterable(row.values() for row in rows)
+        found.append(measurements(dict(enumerate(cells))))
     held(*found)
 
 

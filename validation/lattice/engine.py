@@ -282,7 +282,7 @@ def _chain(motion: Motion) -> Chain:
     rest[:contacts] = motion.rest
     load[:contacts] = motion.load
     opens[:contacts] = 1.0
-    laws = list(motion.laws)
+    laws = [*motion.laws] or [Contact(1.0)]  # of a single bead: the padding's
     # The padding, of stiffness 0, has the last contact's law, so that one loop takes both; but a
     # linear one where the last contact's force may overflow as a free end moves on (`_UNBOUNDED`).
     beyond = int(motion.law_of[-1]) if contacts else 0

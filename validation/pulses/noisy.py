@@ -42,7 +42,7 @@ from validation.scenes.cells import longest
 
 _EARLY = 5  # samples at the start of the record that locate its base
 _FEWEST = 16  # samples above half the peak; with 12 the errors no longer cover
-_FEWEST_EXACT = 6  # likewise in a record without noise
+_FEWEST_EXACT = 6  # samples above half the peak in a record without noise
 _MOST = 400  # samples above half the peak; of more, neighbours are averaged
 _SMOOTH = 0.01  # noise of the moving mean over the peak
 # Share of the peak below which a pulse has fallen. It is less than a half: with a half, noise on
@@ -52,16 +52,19 @@ _LOW = 0.45
 # are equal.
 _EQUAL = 1e-6
 _CONSTANT = 1e-8  # range of a signal without pulses, over its size
-_SUDDEN = 11.0  # growth, in a width, of a force that begins: two widths before a Gaussian's top
+# Logarithm of the growth in a width from which on a force begins suddenly: that of a Gaussian two
+# widths before its top.
+_SUDDEN = 11.0
 _GRID = 400  # intervals in which the maxima of a pulse are looked for
 _SAME = 0.01  # distance, over the width, of two readings of one maximum
 _EXACT = 1e-4  # noise over the peak of a record without noise
-_UPRIGHT = 0.1  # rise over fall of a record that may be upright, at least
+_UPRIGHT = 0.1  # least rise of a record over its fall; with less the record is inverted
 # Widths behind the arrival: ends of two stretches that are searched for an undershoot
 _BEHIND = (1.5, 2.5, 3.5)
-_SURE = 4.0  # mean of a stretch below the base, in its standard deviations, at least
-_SHALLOWEST = 0.002  # likewise over the peak
-_ALIKE = 1.5  # ratio of the constants that two stretches tell, at most
+# Least depth of an undershoot, the mean of a stretch, in standard deviations.
+_SURE = 4.0
+_SHALLOWEST = 0.002  # least depth over the peak
+_ALIKE = 1.5  # largest ratio of the time constants by the two stretches
 
 
 class InvertedError(MeasureError):

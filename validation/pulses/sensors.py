@@ -46,8 +46,8 @@ _QUICK = 0.9
 # Samples in the shortest time √(m/spring) of a bead between two contacts. The force of two beads
 # that collide, or of a Hertz chain's wave, has 1.5 or 1.9 √(m/spring) of one contact above half.
 _RESOLVED = 22.0
-_MOST_SAMPLES = 100_000  # spare memory
-_HIDDEN = 0.5  # relative error of the peak from which on rounding may make the pulse
+_MOST_SAMPLES = 100_000  # of more samples a run would take much memory
+_HIDDEN = 0.5  # relative error of the peak from which on a pulse may be rounding alone
 _LOOKS = 200  # times at which a sensor is searched for an earlier pulse
 
 

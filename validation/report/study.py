@@ -63,8 +63,8 @@ class Report(Pictured):
     Examples
     --------
     >>> from validation.report.table import Column
-    >>> row = Table((Column("n", "sites"), Column("c_value", "speed", format=".3f")), ((8, 1.25),))
-    >>> Report("one chain", (row,))
+    >>> columns = (Column("n", "sites"), Column("c_value", "speed", format=".3f"))
+    >>> Report("one chain", (Table(columns, [{"n": 8, "c_value": 1.25}]),))
     one chain
     <BLANKLINE>
     sites  speed
