@@ -33,6 +33,9 @@ POINTS = 12  # of the rule: three of the machine's vectors
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(POINTS)
 _U, _W = (1 + _NODES) / 2, _WEIGHTS / 2
 STRAIGHT = (1.0, 0.0, 0.0)  # no bend
+NO_CURVE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, STRAIGHT)
+# A plain False is a type of its own, for which numba would compile `integrals` once more.
+NOT_DRIVEN: Any = np.bool_(False)
 _PLACES = 8  # parts of a step at whose ends a contact is looked at
 # Each part has at most one turning point of p, and on both sides of it a contact that closes or
 # opens and begins or ceases to be damped; beside these the step's ends.
