@@ -92,7 +92,7 @@ class ContactLaw(Value):
 
     @property
     def exponent(self) -> sp.Expr:
-        """The k of the ``A_i^{-1/k}`` by which unlike contacts share the strain, if any: else 1."""
+        """Exponent of a power law, by which unlike contacts share the strain; 1 for other laws."""
         return sp.S.One
 
     def slope(self, n: int = 1) -> sp.Expr:

@@ -180,7 +180,7 @@ def svg(panels: Sequence[Panel]) -> str:
 
 def figure(panels: Sequence[Panel]) -> Figure:
     """Return a figure of all panels, two in a row."""
-    # Not by pyplot, which would need the user's display. Loading Matplotlib takes half a second.
+    # Pyplot would need the user's display. Loading Matplotlib takes half a second.
     from matplotlib.figure import Figure
 
     columns = min(2, len(panels))

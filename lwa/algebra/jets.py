@@ -100,7 +100,8 @@ class JetAlgebra:
         self._s0 = self._r1 + weight
         self.r = [self.one, *generators[self._r1 : self._s0]]
         self.s = list(generators[self._s0 :])
-        # Of the parameters the φ_n alone, which come first, depend on x; k is a number.
+        # The φ_n, which come first among the parameters, depend on x; other parameters, and k, are
+        # constants.
         first_constant = len(model.parameters) if model.highest else 0
         self._constants = range(first_constant, self._r1)
         # The jets that stand in the derivative of the jet below them, highest first: r_1 and s_0
@@ -268,9 +269,9 @@ class GradedSeries:
     ) -> None:
         self.algebra = algebra
         self.exponent = exponent
-        # Of each term the list of its derivatives in x so far, from the term itself on
+        # A list for each term: the term itself, and its derivatives in x as far as computed
         self._derivatives = [[f_n] for f_n in terms]
-        # Of each term the derivatives ∂f_n/∂s_i by the jets of the velocity, for `dt`
+        # The derivatives ∂f_n/∂s_i of each term by the jets of the velocity, for `dt`
         self._velocity_slopes = cache(lambda n: algebra.velocity_slopes(self[n]))
 
     def __getitem__(self, n: int) -> fmpq_mpoly:
@@ -314,6 +315,6 @@ class GradedSeries:
         total = self.algebra.dt(self[n - 1], self.exponent)
         for m in range(1, n):
             for i, slope in self._velocity_slopes(m):
-                # In ∂_τ s_i stands ∂_x^i u_ττ.
+                # The part of ∂_τ s_i that `JetAlgebra.dt` leaves out is ∂_x^i u_ττ.
                 total = total + slope * E.dx(n - m, i)
         return total

@@ -143,7 +143,7 @@ class Model(Parametric):
     @cached_property
     def masses(self) -> Partition:
         """The mass fractions ``m̂_i``, whose sum is 1."""
-        return Partition(self.cell.masses, 1, "mu")
+        return Partition(self.cell.masses, total=1, letter="mu")
 
     @cached_property
     def contacts(self) -> Partition:
@@ -156,9 +156,10 @@ class Model(Parametric):
         """
         if self.branch == "optical":
             # The forces of a bead's two contacts add up: so do their shares, to 1.
-            return Partition(self.cell.stiffnesses, 1, "c")
+            return Partition(self.cell.stiffnesses, total=1, letter="c")
         # u_x is the mean of the strains C_i u_x of the contacts: the mean of the C_i is 1.
-        return Partition(self.cell.compliances(self.law.exponent), self.cell.size, "c")
+        compliances = self.cell.compliances(self.law.exponent)
+        return Partition(compliances, total=self.cell.size, letter="c")
 
     @cached_property
     def parameters(self) -> dict[str, sp.Expr]:
@@ -194,7 +195,7 @@ class Model(Parametric):
             for name in self.parameters:
                 found.append(generator(context, name))
             return found
-        # Those of a power are (k-1) … (k-n+1).
+        # The φ_n of a power are (k-1) … (k-n+1).
         if self.k.is_Rational:
             k = context.constant(to_flint(self.k))
         else:

@@ -222,7 +222,8 @@ def named(reader: Reader) -> Reader:
 def items(values: Any, name: str) -> tuple[Any, ...]:
     """Read a sequence of any kind but a text; its items are not checked."""
     if not isinstance(values, str | bytes | Mapping | Set):
-        with suppress(TypeError):  # of a single value, also as an array without an axis
+        # A single value has no items; nor has an array without an axis.
+        with suppress(TypeError):
             return tuple(values)
     raise InputError(f"{name} is {shorten(values)}: a sequence is wanted")
 

@@ -60,7 +60,7 @@ class Scale:
             ones[symbol] = -1 if symbol.is_negative else 1
         # Thirty digits, twice those of a float, so that the float is the nearest one.
         number = evaluated(value.subs(ones), 30)
-        # Of numbers nearer to the ends of a float's range a product with a unit may be lost.
+        # Nearer to the ends of a float's range the product of number and unit may be lost.
         if not number.is_real or not (number == 0 or 1e-300 < abs(number) < 1e300):
             return None
         return Estimate(float(number), 0.0)
@@ -379,6 +379,7 @@ class Answer:
         return "\n".join(lines)
 
     def _equations(self) -> Iterator[str]:
+        """LaTeX of the results shown and of the rows with a symbol, one equation each."""
         for result in self.shown:
             yield from result.latex_rows() if isinstance(result, Shown) else result
         for row in self.rows:

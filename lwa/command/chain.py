@@ -93,7 +93,7 @@ class ChainInput:
         """A note on a force that presses spheres too much for Hertz's contact; [] for others."""
         if not self.si or self.law.exponent != EXPONENT or force.free_symbols:
             return []
-        # Of unlike contacts the mean: a note is no measurement.
+        # The mean compression stands for those of unlike contacts: a note is no measurement.
         strain = float(self.law.compression(self.cell, force) / self.cell.spacing)
         if strain < HERTZIAN:
             return []
@@ -148,6 +148,7 @@ def read_chain(path: str) -> ChainInput:
 
 
 def _chain(content: Any) -> ChainInput:
+    """Read the chain of a file's content."""
     file = Table(content, "", FILE)
     beads = read_beads(file, read_materials(file))
     row = read_row(file, beads)

@@ -85,7 +85,7 @@ def strike(
     if mass is None:
         mass = chain.striker.get("mass", cell.masses[0])
     pulse = pulse_of_strike(cell, mass, velocity, drop=drop, k=chain.law.exponent)
-    # A mass in front of the wave's numbers: the striker decides how good they are.
+    # First the two masses, whose ratio decides how exact the pulse's numbers below are.
     rows: Lines = [
         f"chain of equal beads; F = A δ^k, k = {chain.law.exponent}",
         Row("", "mass of the beads (kg)", cell.masses[0]),

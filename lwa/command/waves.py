@@ -231,15 +231,18 @@ def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
 
 
 _BEST = 0.25
-"""Relative error from which on the compact wave, wrong by a sixth at most where that was measured,
-may be as near to the lattice."""
+"""Relative error below which the lattice's own wave stands before the compact wave.
+
+The compact wave is wrong by a sixth at most where its error was measured: beside a wave with a
+larger error than a quarter, the compact one may be the nearer one.
+"""
 
 
 def _put_lattice(rows: Lines, chain: ChainInput, force: sp.Expr | None) -> list[str]:
     """Put the lattice's own wave, where it is known, among the rows of the compact wave.
 
-    Behind the line on the chain if every error is known and below `_BEST`, else at the end.
-    Returns a note where the lattice has no such wave.
+    The wave stands first, after the line on the chain, if all its errors are known and below
+    `_BEST`; else it stands at the end. Returns a note where the lattice has no such wave.
     """
     cell = chain.cell
     if not cell.uniform and any(m.free_symbols for m in cell.masses):

@@ -93,6 +93,7 @@ class PDE(OfClosure):
         return values
 
     def _at_third_order(self, letter: str) -> sp.Expr:
+        """One of the coefficients G, H and I; raises `lwa.InputError` where there is none."""
         if not self.acoustic:
             raise InputError(
                 "branch is 'optical': G, H and I are those of the acoustic branch",

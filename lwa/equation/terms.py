@@ -43,9 +43,9 @@ class BasePower(NamedTuple):
         return BasePower(self.a - strains - halves, self.b - halves)
 
 
-FORCE = BasePower(0, 1)
-STRAIN = BasePower(1, 0)
-ENERGY = BasePower(1, 1)
+FORCE = BasePower(a=0, b=1)
+STRAIN = BasePower(a=1, b=0)
+ENERGY = BasePower(a=1, b=1)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

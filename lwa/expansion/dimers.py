@@ -62,15 +62,19 @@ class FollowingRecursion(Recursion):
     """
 
     def _dispersion(self) -> fmpq_mpoly:
-        # In a free dimer the two contacts of the light bead are strained unequally, which adds m̂_2²
-        # to I. A bead that is held midway strains both alike.
+        """The coefficient I of a dimer whose light bead is held midway.
+
+        In a free dimer the two contacts of the light bead are strained unequally, which adds m̂_2²
+        to I. A bead that is held midway strains both alike.
+        """
         return super()._dispersion() - self.mu[1] ** 2
 
     def _next_force(self, i: int, n: int) -> fmpq_mpoly:
-        # In the equations both contacts have the mean force.
+        """Coefficient of t^n in the force of contact i: both contacts have the mean force."""
         return self.force[0].series[n]
 
     def _last_force(self, n: int) -> fmpq_mpoly:
+        """Coefficient of t^n in the force on the next cell, with half of the inertia of bead 1."""
         return super()._last_force(n) + self._inertia(1, n) / 2
 
 
@@ -90,7 +94,7 @@ def exponent_of_light_beads(quantity: str) -> sp.Expr:
     leading = _LEADING.get(quantity, 1.5)
 
     def exponent(epsilon: mpmath.mpf) -> mpmath.mpf:
-        """e, the leading term's, less d ln Q/dω of the series behind that term."""
+        """The exponent e: that of the leading term, less d ln Q/dω of the rest of the series."""
         change = power_series(light, epsilon) / power_series(heavy, epsilon) - 1
         return leading - change / LIGHT
 

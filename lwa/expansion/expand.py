@@ -93,7 +93,7 @@ class Expansion(Parametric):
     @cached_property
     def c2(self) -> EpsilonSeries:
         """The square c² of the speed in sites per unit of time."""
-        return self._series("c2", self._sound, sp.S.Zero)
+        return self._series("c2", self._sound, power=sp.S.Zero)
 
     def fwhm(
         self, quantity: QuantityName = "strain", contact: Any = 0
@@ -116,21 +116,22 @@ class Expansion(Parametric):
         known_quantity(quantity)
         # The Gaussian F = e^{-Z²/4}, Z = √(ε/I) ξ, is 1/2 at Z = 2√log 2.
         unit = 4 * sp.sqrt(self._observables.I * sp.log(2))
-        return self._series(quantity, unit, -sp.S.Half, i)
+        return self._series(quantity, unit, power=-sp.S.Half, contact=i)
 
     @cached_property
     def momentum(self) -> EpsilonSeries:
         """Momentum ``Σ m v``, mean mass times c times the displacement behind the wave."""
         # ∫ e^{-Z²/4} dξ = 2√(πI/ε), times ā (M/P) c = 1/c.
         unit = 2 * sp.sqrt(sp.pi * self._observables.I / self._sound)
-        return self._series("momentum", unit, -sp.S.Half)
+        return self._series("momentum", unit, power=-sp.S.Half)
 
     @cached_property
     def energy(self) -> EpsilonSeries:
         """Kinetic and elastic energy of the chain."""
-        # ā ∫ e^{-Z²/2} dξ
+        # Kinetic and elastic energy are equal at leading order: together ā ∫ F² dξ, with the
+        # Gaussian F = e^{-Z²/4}, is ā √(2πI/ε).
         unit = self.compliance * sp.sqrt(2 * sp.pi * self._observables.I)
-        return self._series("energy", unit, -sp.S.Half)
+        return self._series("energy", unit, power=-sp.S.Half)
 
     @cached_property
     def effective_mass(self) -> EpsilonSeries:
@@ -138,7 +139,7 @@ class Expansion(Parametric):
         # The square of the unit of momentum over twice that of energy
         unit = sp.sqrt(2 * sp.pi * self._observables.I)
         unit *= self.cell.mass / self.cell.size
-        return self._series("effective_mass", unit, -sp.S.Half)
+        return self._series("effective_mass", unit, power=-sp.S.Half)
 
     @cached_property
     def _sound(self) -> sp.Expr:
@@ -149,7 +150,7 @@ class Expansion(Parametric):
     def _series(
         self, quantity: str, unit: sp.Expr, power: sp.Expr, contact: int = 0
     ) -> EpsilonSeries:
-        """The series of a quantity; the contact matters to widths alone."""
+        """The series ``unit · ε^power · Σ a_n ε^n`` of a quantity; only widths need a contact."""
         coefficients = self._observables.coefficients(quantity, contact)
         return EpsilonSeries(unit, power, coefficients, self.k, self.cell, quantity)
 

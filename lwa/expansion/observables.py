@@ -73,7 +73,7 @@ class Observables:
     def momentum(self) -> Series:
         """Momentum, mean mass · c · displacement behind the wave, divided by its leading term."""
         # e^{-Z²/4} is a normal distribution of variance 2.
-        return product(self.speed, moments(self.wave.mean, 2))
+        return product(self.speed, moments(self.wave.mean, variance=2))
 
     @cached_property
     def energy(self) -> Series:
@@ -94,7 +94,7 @@ class Observables:
         for c, force, strain in zip(wave.c, wave.force, wave.strain, strict=True):
             for n, term in enumerate(product(force.series, strain.series)):
                 work[n] = work[n] + c * term
-        return product(share, moments(work, 1))
+        return product(share, moments(work, variance=1))
 
     @cached_property
     def effective_mass(self) -> Series:

@@ -18,19 +18,19 @@ Series = list[fmpq_mpoly]
 def log_term(S: Series, log: Series) -> fmpq_mpoly:
     """The next coefficient of ``log Σ S_n t^n``, where S_0 is 1."""
     n = len(log)
-    return S[n] - _less(log, S, n)
+    return S[n] - _products(log, S, n)
 
 
 def exp_term(log: Series, S: Series) -> fmpq_mpoly:
     """The next coefficient of ``exp Σ log_n t^n``, where log_0 is 0."""
     n = len(S)
-    return log[n] + _less(log, S, n)
+    return log[n] + _products(log, S, n)
 
 
-def _less(log: Series, S: Series, n: int) -> fmpq_mpoly | int:
-    """The difference ``S_n - log_n`` by lower coefficients of a series and of its logarithm.
+def _products(log: Series, S: Series, n: int) -> fmpq_mpoly | int:
+    """The sum ``Σ j log_j S_{n-j} / n``, 0 < j < n, which is the difference ``S_n - log_n``.
 
-    It is ``Σ j log_j S_{n-j}/n``, 0 < j < n, as ``S′ = S (log S)′``.
+    The coefficients of a series and of its logarithm are related by ``S′ = S (log S)′``.
     """
     # At the order of the Gaussian S_0 is 1, and its logarithm S_0 - 1.
     if n == 0:

@@ -278,7 +278,8 @@ def radiated(cell: Cell, k: sp.Expr) -> float:
     I = float(chain.I / cell.spacing**2)
     optical = float(chain.bands.branches(0.0)[1]) ** 2
     s = I * max(optical - 1, 0.0) / epsilon
-    # Contacts soften at the pulse's ends, the more the larger ε: K and the decay with √s are less.
+    # The four numbers are those of the fit. Contacts soften at the pulse's ends, the more the
+    # larger ε: K, and the decay with √s, become less.
     height = 0.3 + 0.35 / epsilon
     decay = 0.7 + 0.2 / epsilon
     contrast = max(4 * I - 1 / 3, 0.0)

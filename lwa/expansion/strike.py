@@ -115,7 +115,10 @@ class Strike(Value):
 
     @property
     def _error(self) -> float:
-        """Relative error of the force, at most 1.1 times the largest of a mass and an exponent."""
+        """Relative error of the force: a bound fitted to the deviations of struck chains.
+
+        The bound covers all chains of `MEASURED`; the numbers below are the fit.
+        """
         least, most = MEASURED
         epsilon = float(self.k) - 1
         ratio = self._ratio

@@ -154,8 +154,9 @@ class Dispersion(Parametric):
         return Bloch(self._model)
 
     def _expression(self, polynomial: fmpq_mpoly) -> sp.Expr:
+        """A polynomial of the ring as an expression in the cell's symbols."""
         terms = list(polynomial.terms())
-        # Compliances enter as 1/A.
+        # One fraction: compliances enter as 1/A.
         return sp.together(self._model.expression(terms))
 
     def _length(self, order: Any) -> int:

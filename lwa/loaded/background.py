@@ -217,7 +217,7 @@ class KdV(Value):
     @property
     def rise(self) -> sp.Symbol:
         """The symbol B: positive, or negative where α < 0, as waves have the sign of α."""
-        return FALL if (self.nonlinearity * self.sound_speed).is_negative else RISE
+        return FALL if self.nonlinearity.is_negative else RISE
 
     def _read_rise(self, B: Any) -> sp.Expr:
         """Read the rise of a wave, of the sign of α; the symbol B where none is given."""

@@ -376,4 +376,5 @@ def hexagonal(
         far = Link(0, 2, law)
         return Lattice([mass], [near, far], spacing=a / 2)
     cosine = sp.sqrt(3) / 2  # of 30°
-    return Lattice([mass], [Link(0, 1, law, 2, cosine)], spacing=a * cosine)
+    near = Link(0, 1, law, factor=2, cosine=cosine)
+    return Lattice([mass], [near], spacing=a * cosine)

@@ -103,7 +103,8 @@ class Grid:
 
     def strains(self, p0: float, B: float) -> Array:
         """The strains at the nodes."""
-        # From p0 or p0 + B, whichever is nearer: p has its digits next to a pole at either.
+        # Counted from p0 or from p0 + B, whichever is nearer: next to a pole at either end the
+        # distance to the pole keeps its digits.
         from_peak = (p0 + B) - B * self.rest
         from_foot = p0 + B * self.s
         return np.where(self.rest < 0.5, from_peak, from_foot)
@@ -345,8 +346,8 @@ class Nodes:
         g = self.grid
         # Rise of the force from node to node, over B
         dF = self.law.slope * g.ds
-        # By how much the force is less than at the peak, in parts of its rise, from 0 at the peak
-        # on: `to_peak` sums dF from each row's node to the peak.
+        # The fall of the force from its peak to each row's node, in parts of the whole rise:
+        # `to_peak` sums dF from the node to the peak.
         fall = g.peak_first(g.to_peak @ dF) / dF.sum()
         # ξ as a function of the fall, at one half
         return _interpolated(fall, self.places, np.array([0.5]))

@@ -178,6 +178,7 @@ class Statics:
 
     def values(self, delta: Array, n: int) -> Array:
         """The n-th derivative of each link's force at compressions of shape (…, links)."""
+        # A trial step may lie beyond a law's pole or range: inf and NaN there are answers.
         with np.errstate(all="ignore"):
             columns = [law[n](delta[..., i]) for i, law in enumerate(self.laws)]
             return np.stack(columns, axis=-1) * self.factors

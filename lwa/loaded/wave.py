@@ -60,7 +60,9 @@ from lwa.loaded.quadrature import Quadrature
 from lwa.loaded.states import States
 from lwa.loaded.statics import Function, Samples
 
-_FASTEST = 1.2  # least ω0 D/(2πV) of a resonator at which the relation holds (`struck`)
+# Least ω0 D/(2πV) of a resonator for which the relation between speed and width is promised, by
+# measurements in struck chains (`book/studies/struck.py`): slower resonators take energy away.
+_SLOWEST = 1.2
 _FOOT = 1e-40  # part of the rise at which the sound ahead of the wave is computed
 
 EstimatedName = Literal["speed", "fwhm"]
@@ -89,6 +91,8 @@ class LoadedWave(States):
                 self.law.exponent - 1, self.background, self.strain
             )
         elif self.symbols or (self.law is not None and self.law.formless):
+            # Nothing to check: only numbers, under a law with an expression, tell whether there is
+            # a wave, and whether a resonator is fast enough.
             return
         else:
             reason = self._quadrature.refusal()
@@ -102,10 +106,10 @@ class LoadedWave(States):
         for resonator in self.lattice.resonators:
             rate = number(self.speed / self.chain.spacing)  # V/D
             ratio = self.lattice.resonance(resonator) / (2 * pi * rate)
-            if ratio < _FASTEST:
+            if ratio < _SLOWEST:
                 raise InputError(
                     f"a resonator's ω0 is {ratio:.3g} times 2πV/D: the relation holds from "
-                    f"{_FASTEST} times on"
+                    f"{_SLOWEST} times on"
                 )
 
     def __repr__(self) -> str:

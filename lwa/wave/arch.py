@@ -104,12 +104,16 @@ class Arch(Parametric):
 
     @cached_property
     def roots(self) -> tuple[sp.Expr, sp.Expr]:
-        """The two p for which ``v = z^p`` removes ``z_ξ³``; in numbers the paper's is the first."""
-        # The equation of p over I is A p² - B p + 2 = 0.
+        """The two p for which ``v = z^p`` removes ``z_ξ³``.
+
+        If k and the cell are numbers, the first root is the paper's. With symbols the order of the
+        roots may differ, as ``√x²`` is written x, whatever the sign of x.
+        """
+        # The equation of p, divided by I, is A p² - B p + 2 = 0.
+        _, h = self._ratios
         A = factored(self.coefficient_sum * self.D**2 / self.I)
-        B = factored(self._ratios[1] + 3)
+        B = factored(h + 3)
         root = square_root(factored(B**2 - 8 * A))
-        # With symbols √x² is x, whatever its sign: the order may be the other one, as at k = 2.
         root = root.replace(sp.Abs, lambda x: x)
         first = (B - root) / (2 * A)
         second = (B + root) / (2 * A)
@@ -121,14 +125,15 @@ class Arch(Parametric):
         Parameters
         ----------
         root : {0, 1}
-            Index of the root; in numbers the paper has the first.
+            Index of the root; if k and the cell are numbers, the paper's root is the first.
         V : number or str
             Speed dx/dτ of the wave.
         """
         k = self.k
         I = self.I
         p = self.roots[integer(root, "root", 0, 1)]
-        a = factored(3 + self._ratios[1] - k) * p - 2  # 1 - kp + 3 (p - 1) + p H/I
+        _, h = self._ratios
+        a = factored(3 + h - k) * p - 2  # 1 - kp + 3 (p - 1) + p H/I
         eta = 1 + p - k * p
         return Reduction(
             p,

@@ -160,6 +160,7 @@ def module(
     names = _names(functions, taken)
 
     def text(value: sp.Basic) -> str:
+        """Write an expression in the language."""
         new: dict[sp.Basic, sp.Basic] = {**names}
         for number in value.atoms(sp.Rational, sp.NumberSymbol):
             # Printers write π, and long integers, in ways that C does not know.

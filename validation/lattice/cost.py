@@ -68,9 +68,9 @@ def check_memory(scene: Scene, method: str, rows: int, more: float = 0) -> None:
     method : str
         Name of the method, for the message.
     rows : int
-        Numbers stored for each sensor and sample.
+        Numbers that the method holds at a time for each sensor and sample.
     more : float
-        Further bytes.
+        Further bytes of the method.
     """
     sensors = len(scene.contact_sensors) + len(scene.bead_sensors)
     samples = scene.samples * (rows * sensors + _PER_SAMPLE)

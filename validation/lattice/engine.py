@@ -65,7 +65,7 @@ from validation.lattice.schemes import BLANES_MOAN, RK853, RKN86
 # times.
 _WEAK, _STRONG, _GUESSES = 0.1, 10.0, 8
 _HIDDEN = 0.1  # rounding in units of the tolerance: more of it hides the motion
-# In units of the greatest value: a bead that moves less is still.
+# A bead is still at the start if its |y| and |v| are less than this part of the greatest ones.
 _NOISE = sys.float_info.epsilon
 # Bead evaluations between two reports of progress: some tenths of a second.
 _BETWEEN_REPORTS = 5e7
@@ -81,6 +81,7 @@ _NUMBERS = 16
 # Beyond a free end nothing presses, but 0 times the force of another law, or of so high a power,
 # may be no number.
 _UNBOUNDED = 5.0
+# No drive: one interval of zeros, no oscillation, and a first bead that moves freely
 _FREE = Drive(np.zeros(1), np.zeros((1, 4)), 0.0, 0.0, 0.0, False)
 _ANY_POWER = 0.25  # a general law may begin with δ^{1/4}
 
@@ -117,7 +118,7 @@ class _Integration:
     ) -> None:
         self.motion = motion
         self.method = method
-        check_memory(motion.scene, method, _NUMBERS)
+        check_memory(motion.scene, method, rows=_NUMBERS)
         self.steps = rtol, longest
         self._make_plan(motion)
         self.chain = _chain(motion)
@@ -128,10 +129,10 @@ class _Integration:
         self.now = initial_progress(self.plan, front, motion.free_energy)
 
     def _make_plan(self, motion: Motion) -> None:
-        """Plan the steps by the scales of a motion."""
+        """Plan the steps by the scales of a motion, and set their greatest number."""
         self.motion = motion
-        made = _splitting_plan if self.method == "symplectic" else _pair_plan
-        self.plan, self.most = made(motion, *self.steps)
+        planned = _splitting_plan if self.method == "symplectic" else _pair_plan
+        self.plan, self.most_tries = planned(motion, *self.steps)
 
     def advance(self, progress: RunProgress) -> None:
         """Integrate to the end; a stronger response than was guessed loosens the tolerance."""
@@ -154,7 +155,7 @@ class _Integration:
                     stored = int(now["stored"])
                     now["stored"] = self.recorder.take(stored)
                 stuck = t + now["h"] == t
-                if t < end and (now["tries"] > self.most or stuck):
+                if t < end and (now["tries"] > self.most_tries or stuck):
                     raise IntegrationError(self._failure())
 
     def _failure(self) -> str:
@@ -186,7 +187,7 @@ class _Integration:
         motion = self.motion
         beads = self.beads
         now = self.now
-        n = self.motion.size
+        n = motion.size
         work = 0.0
         if motion.scene.drive is not None:
             # The drive also accelerates its bead.
@@ -226,10 +227,10 @@ def _plan(motion: Motion, scheme: Pair | Splitting, rtol: float, **steps: Any) -
 
 
 def _pair_plan(motion: Motion, rtol: float, longest: float) -> tuple[Plan, int]:
-    """Return the plan of an embedded pair, and the greatest number of steps."""
+    """Return the plan of an embedded pair, and the greatest number of steps that are tried."""
     scene = motion.scene
     time = motion.scales.time
-    end = float(motion.scene.duration)
+    end = float(scene.duration)
     pair = RKN86 if scene.damping is None else RK853
     stops = {end}
     if scene.drive is not None:
@@ -267,6 +268,7 @@ def _chain(motion: Motion) -> Chain:
     """Build the kernel's chain, padded by beads of infinite mass; the first of them is the wall."""
     n = motion.size
     contacts = len(motion.rest)
+    # Room for the loops, which move `SHORTEST` beads or more, in whole blocks.
     padded = n + 2 * SHORTEST
     inverse, A, r, rest, load, opens = _lines(6, padded)
     inverse[:n] = 1 / motion.masses
@@ -289,7 +291,8 @@ def _chain(motion: Motion) -> Chain:
     alike = np.full(padded, padded)
     law_of[:contacts] = motion.law_of
     if len(laws) > 1:
-        # Contacts at which another law begins
+        # Contacts at which another law begins: for each contact the first of them ahead of it, up
+        # to which a loop may take the contacts together
         changes = np.flatnonzero(np.diff(law_of))
         places = np.append(changes + 1, padded)
         following = np.searchsorted(places, np.arange(padded), side="right")
@@ -314,7 +317,7 @@ def _chain(motion: Motion) -> Chain:
 
 
 def _record(law: Contact) -> tuple[Any, ...]:
-    """Return a law as a record of `LAW`."""
+    """Return a law as a record, a tuple in the order of the fields of `LAW`."""
     kinds = law.law is not None, law.pulls, law.sticks
     numbers = law.k, law.damping_power or 0.0, _exponent(law)
     return (*numbers, *kinds, *law.addresses.values())
@@ -345,8 +348,9 @@ def _exponent(law: Contact) -> float:
 
 @lru_cache(maxsize=1)
 def _front(motion: Motion) -> int:
-    """Return the number of the first bead at rest, plus a margin."""
-    motions = np.abs(motion.start[:-2].reshape(2, -1))  # |y| and |v|
+    """Return the number of the first bead ahead of all motion at the start, plus a margin."""
+    # Rows |y| and |v| of the state, without its last two entries, heat and work
+    motions = np.abs(motion.start[:-2].reshape(2, -1))
     moves = _NOISE * motions.max(axis=1) < motions.T
     moving, _ = moves.nonzero()
     first = 0 if motion.scene.drive is None else 1

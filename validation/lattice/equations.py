@@ -69,7 +69,7 @@ class Motion:
 
     Attributes
     ----------
-    start : array
+    start : array, (2n + 2,)
         Initial state.
     loaded : bool
         True with gravity or precompression.
@@ -298,7 +298,8 @@ class Motion:
             springs[: len(self.rest)][own] += stiff
             of_contact_behind = springs[1 : len(self.rest) + 1]
             of_contact_behind[own] += stiff
-        if not deepest:  # nothing presses: any scale does
+        if not deepest:
+            # Nothing presses: displacement and velocity have any scale, 1, and no time is short.
             return Scales(energy, 0.0, 1.0, 1.0, math.inf)
         squares = springs[:n] / self.masses  # of angular frequencies
         time = 1 / math.sqrt(squares.max())

@@ -21,7 +21,7 @@ from validation.lattice.signal import Beads, sample_times, sensed_beads
 
 # Numbers that the engine stores between two calls of `take`: 2 MB, which a cache holds.
 BUFFER = 2**18
-# Of the motion that a run keeps: a small part of a machine's memory.
+# Largest motion that a run keeps: a small part of a machine's memory.
 _MOST_BYTES = 2**28
 
 

@@ -151,7 +151,7 @@ class Contact:
         different, place = np.unique(forces, return_inverse=True)
         found = []
         for force in different:
-            # In 40 digits, so that the compression is right to the last digit of a float.
+            # Solved in 40 digits, so that the compression is right to the last digit of a float.
             compression = self.law.inverse(sp.Float(force, 40))
             found.append(float(compression))
         return np.array(found)[place]

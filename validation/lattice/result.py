@@ -153,7 +153,7 @@ class Run(Pictured):
     @property
     def velocities(self) -> Array:
         """Velocities of all beads at the end, shape (n,)."""
-        # The last two entries of the state are the heat and the work of the drive.
+        # A state ends with two energies, the heat and the work of the drive.
         return self.end[self.motion.size : -2]
 
     @property
@@ -193,7 +193,7 @@ class Run(Pictured):
         if self.scene.wall is not None or self.scene.drive is not None:
             return None
         masses = self.motion.masses
-        before = self.motion.start[self.motion.size : -2]
+        before = self.motion.start[self.motion.size : -2]  # the velocities at the start
         # No scalar product: BLAS starts threads, which cost more than they gain.
         total = np.sum(masses * np.abs(self.velocities))
         change = np.sum(masses * (self.velocities - before))

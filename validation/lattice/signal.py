@@ -167,7 +167,7 @@ def contact_changes(path: Path, contact: int) -> Array:
         return pressed, v[0] - v[1]
 
     d, _ = compression(time)
-    # By signs, as products of compressions over- or underflow.
+    # Signs are compared, as products of compressions over- or underflow.
     sign = np.sign(d)
     turns = sign[1:] * sign[:-1] < 0
     step = np.flatnonzero(turns)

@@ -53,9 +53,12 @@ def integrate(motion: Motion, method: str, rtol: float, longest: float) -> Run:
     if scene.drive is not None:
         longest = min(longest, scene.drive.longest_step)
     step_limit(scene, method, scene.duration / min(scales.time, longest))
-    # Implicit methods store a Jacobian, of 8 bytes an entry.
-    jacobian = 8 * (2 * n + 2) ** 2 * (method in METHODS[3:])
-    check_memory(scene, method, 4, jacobian)
+    # Implicit methods store a Jacobian, of 8 bytes an entry. Dense output gives the motion of all
+    # beads at the samples, and a copy with a wall's.
+    numbers = 2 * n + 2
+    jacobian = 8 * numbers**2 * (method in METHODS[3:])
+    dense = 8 * 2 * numbers * scene.samples
+    check_memory(scene, method, rows=4, more=jacobian + dense)
     found = scipy.integrate.solve_ivp(
         motion,
         (0.0, scene.duration),

@@ -20,10 +20,10 @@ import scipy
 from lwa.base.arrays import Array
 
 _BEFORE = 2.0  # widths between the samples of the base and the rise
-_CLOSE = 1.0  # likewise in a record that begins less than 2.5 widths before them
-_LONG = 10.0  # widths of the base: drift and hum are straight over such a time
-_SHORTEST = 0.9  # likewise, at least
-FEWEST = 16  # samples of the base
+_CLOSE = 1.0  # likewise in a record that would leave less than 2.5 widths for the base
+_LONG = 10.0  # widths of the longest base: drift and hum are straight over such a time
+_SHORTEST = 0.9  # widths of the shortest base
+FEWEST_FOR_BASE = 16  # samples of a base, at least
 _GROWTHS = (1.0, 2.0)  # widths in which what rises before the pulse grows e-fold
 _LINE = 2  # terms of a straight line
 _BASES = (_LINE, _LINE + len(_GROWTHS))  # terms of the bases
@@ -119,12 +119,13 @@ class Base:
     def before(cls, t: Array, f: Array, rise: float, width: float) -> Base | None:
         """Return the base before a pulse; None if the record begins too late."""
         end = rise - _BEFORE * width
+        # A short record leaves too few samples so far ahead of the pulse.
         if t[0] > end - 2.5 * width:
             end = rise - _CLOSE * width
         start = end - _LONG * width
         calm = (t > start) & (t < end)
         x = (t[calm] - rise) / width
-        if len(x) < FEWEST:
+        if len(x) < FEWEST_FOR_BASE:
             return None
         length = np.ptp(x)
         if length < _SHORTEST:
@@ -134,8 +135,8 @@ class Base:
             counts = (_LINE,)
         samples = f[calm]
         fits = [Fit.of(x, samples, count) for count in counts]
-        # Akaike's criterion, for the independent among the samples, with the noise that the base
-        # with all terms leaves.
+        # Akaike's criterion, with the noise that the base with all terms leaves; correlated samples
+        # count as fewer. Where no noise is left any scale will do.
         full = fits[-1]
         scale = full.variance * full.correlation_time or 1.0
         criteria = []
@@ -158,7 +159,9 @@ class Base:
         noise : float
             Standard deviation of their noise.
         """
-        samples = np.array([noise, 0.0])  # of this variance, and white
+        # Two levels in place of fits, equally likely, each with the noise in a form that gives this
+        # variance and no correlation; rise and width do not matter to a level.
+        samples = np.array([noise, 0.0])
         first = f[:_GUESSED].mean()
         lowest = np.quantile(f, 0.1)
         fits = [Fit(np.array([level]), samples) for level in (first, lowest)]

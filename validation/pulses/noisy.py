@@ -28,7 +28,7 @@ from scipy.signal import find_peaks
 from lwa.base.arrays import Array
 from lwa.base.frozen import Estimate
 from lwa.spheres.units import fitting
-from validation.pulses.base import FEWEST, Base
+from validation.pulses.base import FEWEST_FOR_BASE, Base
 from validation.pulses.fitted import fitted
 from validation.pulses.pulse import (
     READINGS,
@@ -155,6 +155,7 @@ def _noisy(t: Array, f: Array, step: float, unit: str) -> NoisyPulse:
     width = fall - rise
     in_pulse = (t > rise) & (t < fall)
     inside = int(np.count_nonzero(in_pulse))
+    # Means of blocks of neighbours stand for the samples of a record with many.
     block = max(1, inside // _MOST)
     whole = len(t) // block * block
     samples = np.array((t, f))[:, :whole]
@@ -165,7 +166,8 @@ def _noisy(t: Array, f: Array, step: float, unit: str) -> NoisyPulse:
     if base is None:
         base = Base.guessed(means, _noise_by_neighbours(means))
         spacing = float(np.median(np.diff(t)))
-        wanted = max(2 * width, FEWEST * spacing)
+        # About as much as `Base.before` needs: the shortest base, and a width up to the rise.
+        wanted = max(2 * width, FEWEST_FOR_BASE * spacing)
         missing = (
             f"no peak: the record starts {in_unit(rise - t[0], unit)} before the pulse, and "
             f"{in_unit(wanted, unit)} are wanted for its base"
@@ -284,12 +286,15 @@ def _step(f: Array) -> float:
     """Return the distance of the levels to which a recorder rounds; 0 if there are none."""
     gaps = np.diff(np.unique(f))
     swing = np.ptp(f)
-    # A million samples or more may leave no gap: the one level that is left is none.
+    # More than a million different values may leave no gap above `_EQUAL`: that record has no
+    # levels, and as one gap, the range, it is found below to have none.
     least = min(gaps[gaps > _EQUAL * swing], default=swing)
-    # Printed levels are rounded, too: their distance is told best by all of them.
+    # Printed levels are rounded, too: the range, of many levels, gives their distance best.
     step = swing / round(swing / least)
     levels = (f - f.min()) / step
     off = np.abs(levels - levels.round())
+    # Values that have nothing to do with the levels are up to half a step off, rounded levels
+    # far less: a quarter tells them apart.
     if off.max() > 0.25:
         return 0.0
     return float(step)

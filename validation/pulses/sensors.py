@@ -41,7 +41,7 @@ from validation.scenes.scene import Scene
 
 TOLERANCE = 1e-10  # default tolerance of the accurate run
 _ROUNDING = 10  # rounding of the static compression over rtol; with more, steps follow the noise
-# Of the time in which a small wave passes a site (`_time_of_a_site`): no pulse takes less.
+# Least time in which a pulse passes a site, over that of a small wave (`_time_of_a_site`).
 _QUICK = 0.9
 # Samples in the shortest time √(m/spring) of a bead between two contacts. The force of two beads
 # that collide, or of a Hertz chain's wave, has 1.5 or 1.9 √(m/spring) of one contact above half.
@@ -178,6 +178,7 @@ def record(
     both = tolerances(rtol, lost)
     runs = repeated(scene, both, method=method, progress=progress)
     run, check = runs
+    # Splines through half of the samples show the error of the splines, too.
     checks = tracks(check, velocities, 2)
     firsts: list[Track] = []
     found: list[Track] = []
@@ -253,8 +254,8 @@ def tracks(
     velocities : container of str
         Names of bead sensors, such as "bead 15", whose velocity is returned, not the force.
     every : int
-        Samples that count, each one or each second one, where the motion takes too much memory
-        to be kept and the signals are splines through the samples.
+        Step from sample to sample of the splines that are the signals where the motion takes too
+        much memory to be kept: 1 for all samples, 2 for each second one.
     """
     scene = run.scene
     levels = forces_at_start(scene)
@@ -320,7 +321,7 @@ def forces_at_start(scene: Scene) -> dict[str, float]:
     """
     motion = Motion(scene)
     beads = sensed_beads(motion)
-    y = np.append(motion.start[: scene.size], 0.0)  # of the wall
+    y = np.append(motion.start[: scene.size], 0.0)  # the wall stays at 0
     at_rest = np.zeros((len(beads), 1))
     records = quantities(motion, beads, y[beads, np.newaxis], at_rest)
     forces = {}

@@ -61,7 +61,7 @@ class Point:
 
     k: sp.Rational
     omega: sp.Rational
-    # From the struck bead to both ends of the measured stretch
+    # Distances of both ends of the measured stretch from the struck bead
     sites: tuple[int, int] | None
     numbers: Mapping[str, Estimate]  # by the names `LABELS`
     missing: str | None = None  # reason without numbers
@@ -102,6 +102,11 @@ def point(
 def _measured(
     k: sp.Rational, omega: sp.Rational, stretch: int, farther: float
 ) -> Point:
+    """Strike the chain and return the measured point; raise `MeasureError` if it is not steady.
+
+    A rough run reaches the far stretch, and an accurate one the places near the striker. The
+    numbers are those of the stretch with the least error.
+    """
     cells = cells_apart(float(k), stretch)
     chain = StruckDimer(float(k), float(omega), 2 * cells)
     near = [n * chain.sites for n in range(1, PLACES + 1)]
@@ -109,7 +114,8 @@ def _measured(
     rtol, less = TOLERANCES
     distant = [*near, far - chain.sites, far]
     rough = chain.passages(chain.run(distant, chain.crossing(far), less))
-    # A place's time more: the front of a later, slower pulse is no leading pulse.
+    # The accurate run ends when the leading pulse has passed all places, and a place's time later:
+    # the front of a later, slower pulse is no leading pulse.
     passed = float(rough["end"][:PLACES].max())
     until = (1 + 1 / PLACES) * passed
     fine = chain.passages(chain.run(near, until, rtol))
@@ -127,7 +133,8 @@ def _measured(
         )
         error = np.abs(differences).max(axis=0)
         errors[name] = error
-        # The decay's error is that of the force after a stretch.
+        # The decay may be 0: its error is compared with a decay that would change the force e-fold
+        # over the stretch.
         scale = values[1:]
         if name == "decay":
             scale = np.full_like(scale, 1 / chain.sites)

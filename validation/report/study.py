@@ -164,7 +164,7 @@ class Report(Pictured):
 
     def save(self, file: Path) -> None:
         """Draw the picture into a file; an old file is replaced only by a complete picture."""
-        # In memory first: Matplotlib prints a traceback for a file that cannot be closed.
+        # Drawn in memory first: Matplotlib prints a traceback for a file that cannot be closed.
         drawn = io.BytesIO()
         self.figure().savefig(drawn, dpi=150, format=file.suffix[1:])
         # 150 dots an inch: 900 for the width of a panel, enough for print in a column.
@@ -309,10 +309,10 @@ def option(
         Further settings of `click.option`.
     """
     settings.setdefault("show_default", default is not None and default is not False)
-    # By the type itself: the False of a flag is an instance of int.
+    # The type itself counts: the False of a flag is an instance of int, but no count.
     read = read or {float: number, int: count}.get(type(default))
     if read:
-        # As a text, which the reader takes, and which a refusal proposes.
+        # The default becomes a text, which the reader takes and a refusal proposes.
         default = default and str(default)
         settings |= {"type": Read(read, default), "metavar": READERS[read]}
     return click.option(*names, default=default, help=says, **settings)
@@ -336,7 +336,7 @@ def output_file(name: str, path: str, suffixes: Sequence[str]) -> Path:
         For another ending, and where no file can be written.
     """
     file = Path(path)
-    # In the current folder, which most likely takes files.
+    # A refusal proposes the current folder, which most likely takes files.
     proposed = file.name
     try:
         if file.suffix.lower() not in suffixes:
@@ -364,8 +364,9 @@ def replacing(file: Path) -> Iterator[Path]:
     """
     target = file.resolve()
     try:
-        # In the same folder: a file is moved at once only within one disk. The folder lets the new
-        # file have a short name where the old one's is as long as a disk allows.
+        # The temporary folder lies beside the target: a file is moved at once only within one disk.
+        # In a folder of its own the new file has a short name, where the old one's is as long as a
+        # disk allows.
         with tempfile.TemporaryDirectory(prefix=".", dir=target.parent) as folder:
             new = Path(folder, "new")
             yield new

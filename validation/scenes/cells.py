@@ -25,7 +25,10 @@ _LINE = re.compile(r"[^\r\n]*\S[^\r\n]*")  # a line that is not blank
 # Signs with several codes, and the sign of recorders for a value beyond their range
 _SIGNS = {"μ": "µ", "−": "-", "∞": "inf"}
 HEAD = 1000
-"""Lines in which the separator and the first numbers are looked for; bytes that tell a text."""
+"""Lines at the start of a text in which the separator and the first row of numbers are looked for.
+
+As many bytes at the start of a file show whether the file is a text, without a zero byte.
+"""
 
 _MARKS = "\t;, "
 HEADER = re.compile(r"^(.*?) ?(?:(?:[([] ?|\bin )([^][()\s]+) ?[])]?)?$")
@@ -54,12 +57,16 @@ class Cells:
             tables[mark] = [_split(line, mark) for line in lines]
 
         def record(mark: str) -> tuple[int, int]:
+            """Return start and end of the longest run of rows of numbers, with this separator."""
             # A row of numbers may hold as many texts: states, dates.
             numeric = [_share(row) >= 1 / 2 for row in tables[mark]]
             return longest(numeric)
 
         def weight(mark: str) -> float:
-            """Count the cells; texts beside the numbers of a row take some of its weight."""
+            """Count the numbers of the record, each weighted by the share of numbers in its row.
+
+            Without the weight a separator that also cuts texts into pieces would count as good.
+            """
             start, end = record(mark)
             rows = tables[mark][start:end]
             return sum(len(row) * _share(row) ** 2 for row in rows)
@@ -68,27 +75,27 @@ class Cells:
         self._text = text
         rows = tables[mark]
         start, end = record(mark)
-        line: list[str] = []
+        typical: list[str] = []
         if end:
-            # Behind the settings a line shows which columns hold the numbers of the record.
-            behind = min(start + _SETTINGS, end - 1)
-            line = rows[behind]
+            # Which columns hold numbers is read from one row of the record, after the settings.
+            place = min(start + _SETTINGS, end - 1)
+            typical = rows[place]
         else:
+            # Without any row of numbers all lines are the head.
             start = len(rows)
-        # Without any row of numbers all lines are above them.
         self.head = rows[:start]
         self.entries = {}
-        for number, cell in enumerate(line, start=1):
+        for number, cell in enumerate(typical, start=1):
             if not math.isnan(number_of(cell)):
                 self.entries[number] = cell
         if mark == " ":
-            # Headers of several words stand apart by several blanks.
+            # A header of several words, in a table of blanks: two blanks or more part the headers.
             for i, above in enumerate(lines[:start]):
                 bare = above.strip("#% \t")
                 tabs = re.sub(r"[ \t]{2,}", "\t", bare)
-                apart = _split(tabs, "\t")
-                if len(apart) == len(line):
-                    self.head[i] = apart
+                headers = _split(tabs, "\t")
+                if len(headers) == len(typical):
+                    self.head[i] = headers
 
     @classmethod
     def read(cls, path: str | Path) -> Cells:
@@ -122,8 +129,8 @@ class Cells:
     def headed(self, header: str) -> list[int]:
         """Return the numbers of the columns of a header, or the number that is given instead.
 
-        The lowest row with such a header counts, and a cell that is all of it before one with a
-        unit behind it.
+        The lowest row with such a header counts. In a row, cells that are the header itself go
+        before cells that are the header and a unit.
         """
         if re.fullmatch(r"[1-9]\d{0,5}", header):
             return [int(header)]
@@ -141,7 +148,7 @@ class Cells:
     ) -> dict[int, Array]:
         """Return columns, (lines,), by their rising numbers; NaN for a cell without a number.
 
-        Blank lines are left out, and lines behind the first ``most``.
+        Blank lines are left out, and lines after the first ``most``.
         """
         table = np.empty((0, len(numbers)))
         if self.entries and numbers:
@@ -164,7 +171,7 @@ class Cells:
         for line in _LINE.finditer(self._text):
             text = line[0]
             if '"' in text:
-                # NumPy takes quotes right behind a separator; a single one would join lines.
+                # NumPy takes quotes right after a separator; a single one would join lines.
                 text = text.replace(f'{self._mark} "', f'{self._mark}"')
                 if text.count('"') % 2:
                     text = text.replace('"', "'")
@@ -181,12 +188,14 @@ class Cells:
         start, end = longest(complete)
         found = runs(complete)
         place = found.index((start, end))
-        # A preamble may hold rows of numbers, few, and lines without any behind them.
+        # A preamble may hold a few rows of numbers, if lines without any number follow. Any other
+        # run of rows beside the record is a part of it, beyond a gap.
         many = complete.sum() > (1 + _FEW) * (end - start)
         first = max(place - 1, 0)
-        for before, behind in pairwise(found[first : place + 2]):
-            if many or numbers[before[1] : behind[0]].any():
-                raise SceneError(f"line {self._line(before[1])} is a gap in the record")
+        for before, after in pairwise(found[first : place + 2]):
+            _, gap = before
+            if many or numbers[gap : after[0]].any():
+                raise SceneError(f"line {self._line(gap)} is a gap in the record")
         infinite = np.isinf(table[start:end])
         beyond = np.flatnonzero(infinite.any(axis=1))
         if len(beyond):

@@ -116,7 +116,11 @@ def _evaluable(law: ContactLaw) -> ContactLaw:
 
 
 def contact_law(k: float, law: ContactLaw | None) -> tuple[float, ContactLaw | None]:
-    """Return exponent and law of a contact, None for a power, whose exponent may be given twice."""
+    """Check exponent and law of a contact, and return both; the law is None for a power.
+
+    The user gives one of them. A scene that is copied gives both, if its law is no power: such a
+    law is kept beside the exponent 1.
+    """
     if law is None:
         if k is MISSING:
             raise SceneError("k is missing: an exponent or a law is wanted")

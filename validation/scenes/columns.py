@@ -3,9 +3,9 @@
 A column is named by its header, in whatever line the header stands, or by its number, from 1.
 
 Units are stated, never guessed, in the spellings of recorders and with any SI prefix: by the file,
-in brackets behind a header, as in "Force (mN)", or in a row of units; or by the user, whose word
+in brackets after a header, as in "Force (mN)", or in a row of units; or by the user, whose word
 stands above the file's. A statement of the user such as "12.5 N/V" holds a number, a unit, and
-behind the first slash the file's own name of its unit. All but one of the parts may be left out:
+after the first slash the file's own name of its unit. All but one of the parts may be left out:
 "us", "0.04 us", "N/V"; a number alone, "4e-8", is the value in SI of an entry 1.
 
 Values are in SI. A file whose named columns have no unit at all is in the scene's own numbers; if

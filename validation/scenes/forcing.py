@@ -56,8 +56,8 @@ class Damping:
         object.__setattr__(self, "value", value)
 
     @property
-    def idle(self) -> float:
-        """The value of a contact without damping."""
+    def undamped(self) -> float:
+        """The ``value`` that means no damping: the restitution 1, or ``γ = 0``."""
         return 1.0 if self.kind == "restitution" else 0.0
 
     def power(self, k: Any) -> Any:
@@ -208,6 +208,7 @@ class Drive:
 
     @cached_property
     def _spline(self) -> Any:
+        """The displacement of a file as a cubic spline of time."""
         from scipy.interpolate import CubicSpline  # start-up
 
         return CubicSpline(self.time, self.displacement)

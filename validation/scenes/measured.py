@@ -51,7 +51,8 @@ class Record:
     key : str
         Name or header under which the user states the signal's unit.
     turned : mapping of str
-        The user's statements of units with the one, by ``key``, that changes the signal's sign.
+        The user's statements of units, but with the opposite sign in that of ``key``: they turn an
+        inverted signal upright.
     """
 
     kind: str
@@ -122,7 +123,17 @@ class MeasuredFile(Columns):
         return file
 
     def _demand(self, header: str, count: int, missing: Sequence[str]) -> None:
-        """Refuse a header, or a name, unless one column has it."""
+        """Refuse a header, or a name, unless one column has it.
+
+        Parameters
+        ----------
+        header : str
+            The header.
+        count : int
+            Number of columns that have it.
+        missing : sequence of str
+            Names for which columns are proposed.
+        """
         if count == 1:
             return
         words = f"{count} columns are {shorten(header)}"

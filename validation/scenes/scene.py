@@ -194,7 +194,8 @@ class Scene:
         count = 1
         if isinstance(k, tuple) or isinstance(law, tuple):
             count = self.contact_count
-        read = cache(contact_law)  # a chain has few kinds of contacts
+        # `contact_law` returns the pair (k, law) of a contact. A chain has few kinds of contacts.
+        read = cache(contact_law)
         contacts = [*map(read, _row(k, count), _row(law, count))]
         object.__setattr__(self, "k", alike(tuple(k for k, _ in contacts)))
         object.__setattr__(self, "law", alike(tuple(law for _, law in contacts)))
@@ -230,7 +231,7 @@ class Scene:
             return
         values = _row(damping.value, count)
         for law, value in zip(_row(self.law, count), values, strict=True):
-            if law is not None and value != damping.idle:
+            if law is not None and value != damping.undamped:
                 raise SceneError(
                     f"damping is {damping.kind}: it is known for powers only, not for {law.text}"
                 )
@@ -384,6 +385,7 @@ _READERS: dict[str, Reader] = {
 
 
 def _sensors(values: Any, name: str, count: int) -> tuple[int, ...]:
+    """Read the numbers of sensors, each once, from 0 to ``count`` - 1."""
     given = items(values, name)
     if given and not count:
         raise SceneError(f"{name} is {shorten(given)}: this chain has none")

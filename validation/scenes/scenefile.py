@@ -70,6 +70,7 @@ def read_scene(
     """
 
     def read(content: Any) -> Scene:
+        """Read the scene of a file's content, with a number of samples if it gives none."""
         found = scene(content, Path(path).parent)
         if samples is None or "samples" in content:
             return found
@@ -193,12 +194,13 @@ def _sensors(count: int) -> Reader:
 
 
 def _per_contact(reader: Reader, period: int, contacts: int) -> Reader:
-    """Return a reader of one value, which stays one, or of a list, which becomes one a contact.
+    """Return a reader of a value for all contacts, or of a list.
 
-    The list is that of a cell, which repeats, or of the whole chain.
+    A list has an entry for each bead of a cell, and is repeated, or for each contact of the chain.
     """
 
     def read(value: Any, name: str) -> Any:
+        """Read one value, or a list, which is returned with an entry for each contact."""
         if not isinstance(value, list):
             return reader(value, name)
         values = each(reader)(value, name)

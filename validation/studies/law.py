@@ -161,7 +161,7 @@ def law(
     return Report(
         f"{len(force)} pulses, forces {force[0]:.4g} … {force[-1]:.4g}{' N' * file.si}",
         (Table(_POWER, tuple(rows)),),
-        panels=(Panel(*axes, curves, "xy"),),
+        panels=(Panel(*axes, curves, scale="xy"),),
         notes=(*file.notes, *notes, _NOTE),
         data=values,
     )

@@ -35,10 +35,10 @@ class LeadingPower:
     """Leading power of the theory's error in k - 1, and bounds of the numbers of the lattice."""
 
     order: int
-    coefficient: sp.Expr  # of ε^order
+    coefficient: sp.Expr  # the error is coefficient · ε^order + …
     constant: float  # |error| ≤ constant · ε^order at each of `EXPONENTS`
-    order_bound: float  # relative, for the fitted order
-    coefficient_bound: float  # relative, for the fitted coefficient
+    order_bound: float  # largest relative error of the fitted order
+    coefficient_bound: float  # largest relative error of the fitted coefficient
 
 
 # Powers and coefficients are derived, not fitted. Let v(x) be the strain of the wave with peak 1,
@@ -140,14 +140,15 @@ def compared(
     numbers = np.array([float(sp.N(value, 17)) for value in theory])
 
     def order(*values: float) -> float:
-        # The slope of a straight line through the logarithms.
+        """Fit the power of ε, the slope of the error's logarithm over ln ε."""
         logs = np.log(np.abs(numbers / values - 1))
         slope, _ = np.polyfit(np.log(epsilon), logs, 1)
         return float(slope)
 
     def coefficient(*values: float) -> float:
+        """Fit the limit of ``error/ε^order`` as ``ε → 0``."""
         ratios = (numbers / values - 1) / epsilon**law.order
-        # As many terms as exponents; the last one is the limit.
+        # A polynomial through all points: its value at ε = 0 is the last coefficient.
         *_, limit = np.polyfit(epsilon, ratios, len(EXPONENTS) - 1)
         return float(limit)
 

@@ -63,7 +63,8 @@ HERTZ = sp.Rational(3, 2)
 BEADS = 38
 SENSORS = (15, 34)  # beads, counted from the striker, 1
 VELOCITY = 1.37  # of the striker, in m/s
-RTOL = 1e-10  # numbers of the pulse err by up to 0.009 of it, of the 2:1 chain by 0.025
+# Relative errors of the pulse's numbers are up to 0.009 RTOL, in the 2:1 chain up to 0.025 RTOL.
+RTOL = 1e-10
 
 RECORDED = {1: (15, 24, 33), 2: (16, 24, 34)}  # N → beads of figure 2; 24 is PTFE
 HEIGHTS = (0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2)  # drop heights of figure 3a, in m
@@ -494,4 +495,5 @@ def _scaling_panel(scalings: dict[float, list[dict[str, Any]]]) -> Panel:
         theory = [row["theory_value"] for row in rows]
         curves.append(Curve(f"E = {E / 1e9:g} GPa", peaks, speeds, f"C{i}{'os'[i]}"))
         curves.append(Curve("theory, $F_m^{1/6}$", peaks, theory, f"C{i}-"))
-    return Panel("peak force $F_m$ (N)", "speed $V_s$ (m/s)", tuple(curves), "xy")
+    # On logarithmic axes a power is a straight line.
+    return Panel("peak force $F_m$ (N)", "speed $V_s$ (m/s)", tuple(curves), scale="xy")

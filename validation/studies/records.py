@@ -176,7 +176,11 @@ class Measured:
     def pulse(self, signal: Record) -> NoisyPulse:
         """Measure the first pulse of a record.
 
-        Raises `MeasureError`, for an inverted record with the statement that turns it.
+        Raises
+        ------
+        MeasureError
+            For a record without a whole pulse. For an inverted record the error proposes the
+            user's statements of units with the sign changed, which turn the record upright.
         """
         try:
             return noisy_pulse(signal.time, signal.values, self.unit)

@@ -152,7 +152,9 @@ def reading_tables(
     every : bool
         True if later pulses are among them: the table has their numbers in a column ``pulse``.
     """
-    units = ("s", "m/s", " (s)") if si else ("time", "length/time", "")
+    time, speed, in_time = "time", "length/time", ""
+    if si:
+        time, speed, in_time = "s", "m/s", " (s)"
     quantities = sorted({reading.quantity for reading in sensors})
     if si:
         peak = f"{peak} ({', '.join(BASES[quantity] for quantity in quantities)})"
@@ -166,9 +168,9 @@ def reading_tables(
     if every:
         columns.append(Column("pulse", "pulse"))
     columns += [
-        Column("arrival", f"arrival{units[2]}", _digits(sensors), error=True),
+        Column("arrival", f"arrival{in_time}", _arrival_format(sensors), error=True),
         Column("peak", peak, error=True),
-        Column("fwhm", f"FWHM{units[2]}", error=True),
+        Column("fwhm", f"FWHM{in_time}", error=True),
         Column("static_force_value"),
         missing,
         Column("speed_sites", error=True),
@@ -188,8 +190,8 @@ def reading_tables(
         kind,
         Column("from"),
         Column("to"),
-        Column("speed_sites", f"sites/{units[0]}", error=True),
-        Column("speed", units[1], error=True),
+        Column("speed_sites", f"sites/{time}", error=True),
+        Column("speed", speed, error=True),
         missing,
     ]
     leg_rows = [_row("between", leg) for leg in speeds]
@@ -222,8 +224,12 @@ def _row(label: str, reading: Reading) -> dict[str, Any]:
     }
 
 
-def _digits(sensors: Sequence[Reading]) -> str:
-    """Return the most digits of arrivals: of late ones to a ten-thousandth of their width."""
+def _arrival_format(sensors: Sequence[Reading]) -> str:
+    """Return the number of digits of arrivals, as the format of their column.
+
+    Six digits, or as many as show a ten-thousandth of a pulse's width in its arrival: late pulses
+    are thousands of widths away from time 0.
+    """
     late = 1.0
     for reading in sensors:
         if "fwhm" in reading.numbers:
@@ -300,7 +306,7 @@ def run(
 ) -> Report:
     """A scene from a file, TOML or JSON: arrival, peak force, FWHM and speed at its sensors."""
     chain = scenefile.read_scene(scene, enough_samples)
-    # By any name of the file: a link, say
+    # The files are compared, not their names: one may be a link to the other.
     if (
         out is not None
         and out.exists()

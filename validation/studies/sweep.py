@@ -68,7 +68,7 @@ _COLUMNS = (
     Column("error.canonical.speed_value", "canonical", format=percent),
     Column("decay", "decay per site", error=True),
     Column("sites", "sites", format="{0[0]} … {0[1]}".format),
-    # From here on for JSON and CSV alone, as a terminal has no room.
+    # The columns from here on are for JSON and CSV alone: a terminal has no room.
     Column("strain_width", error=True),
     Column("missing"),
     *(

@@ -2,8 +2,8 @@
 
 Beads of masses m1 and m2 alternate at distance 1, and contacts push with ``F = r_+^k``
 (``A = D = 1``). In a wave of speed c all quantities depend on ``ξ = x - ct`` alone. a(ξ) is the
-strain of the contacts behind beads m1, b(ξ) the strain of the other contacts, ``F_a = a_+^k`` and
-``F_b = b_+^k``. The equations of motion are::
+strain of the contacts ahead of beads m1, b(ξ) the strain of the contacts ahead of beads m2,
+``F_a = a_+^k`` and ``F_b = b_+^k``. The equations of motion are::
 
     c² a'' = -Σ F_a(ξ) + F_b(ξ-1)/m1 + F_b(ξ+1)/m2,      Σ = 1/m1 + 1/m2,
 
@@ -57,13 +57,16 @@ def widening(masses: Pair) -> float:
 
 def ample_half_period(masses: Pair, k: float) -> float:
     """Return a half period L: a pulse of equal masses ends within L, a dimer's within 0.6 L."""
-    # The strain divided by its peak falls like exp(-3 (k-1) ξ²) near k = 1, like exp(-k^ξ) above:
-    # at 3.7 of these lengths it is below 1e-17.
+    # The strain falls like exp(-3 (k-1) ξ²) near k = 1, and doubly exponentially, with exponents
+    # like k^ξ, at large k. Measured at k = 1.02 … 30: one site before this L it is at most 4e-15
+    # of its peak, and at L it is rounding.
     steepness = k - 1 if k < 2 else math.log2(k)
     length = 1 + 3.7 / math.sqrt(steepness)
     if masses[0] == masses[1]:
         return length
-    # The oscillations behind a dimer's pulse need some sites to be seen.
+    # Eight sites or more show the oscillations behind a dimer's pulse. The factor 1.15 makes 0.6 L
+    # enough for the pulse: from there on the strain of waves at special ratios (k = 1.1 … 5) is at
+    # most 3e-13 of its peak.
     return max(8.0, 1.15 * length * widening(masses))
 
 
@@ -108,10 +111,10 @@ def respond(force: Series, inverse: Pair, half_period: float) -> Series:
     q = np.pi * np.arange(count) / half_period
     # The right side nearly cancels at small q. Without the difference of large terms it is
     # (1/m1 + 1/m2)(f - f*) - [(e^{-iq} - 1)/m1 + (e^{iq} - 1)/m2] f*, and f - f* = 2i Im f.
-    ahead = inverse[0] * np.expm1(-1j * q)
-    behind = inverse[1] * np.expm1(1j * q)
+    by_first = inverse[0] * np.expm1(-1j * q)
+    by_second = inverse[1] * np.expm1(1j * q)
     twice_odd = 2j * force.imag
-    mirrored = (ahead + behind) * force.conj()
+    mirrored = (by_first + by_second) * force.conj()
     strain = sum(inverse) * twice_odd - mirrored
     strain[..., 0] = 0
     q[0] = q[1]  # no division by 0: the mean is 0 already
@@ -225,7 +228,7 @@ class Problem:
     @cached_property
     def _responses(self) -> tuple[Array, Array]:
         """Matrices of the strains c² a, linear in the forces, by 1/m1 and by 1/m2."""
-        unit_forces = np.eye(self.count)  # of the columns, at a grid point each
+        unit_forces = np.eye(self.count)  # each row a force 1 at one grid point
         by_first = self._strains(unit_forces, (1, 0)).T
         by_second = self._strains(unit_forces, (0, 1)).T
         return by_first, by_second
@@ -244,7 +247,7 @@ class Problem:
         force = unknowns[:-2]
         c2, inverse = unknowns[-2:]
         first = 1 / self.masses[0]
-        # Not by the matrices below, whose rounding shows in long waves on a background.
+        # Not computed by the matrices below, whose rounding shows in long waves on a background.
         a = self._strains(force, (first, inverse)) / c2
         missed = force - rise(a, self.k, self.p0)
         closing, of_closing = self._closing(force, inverse)
@@ -270,7 +273,10 @@ class SpecialRatio(Problem):
 
     def _closing(self, force: Array, inverse: float) -> tuple[float, Array]:
         """Return the error of the condition that no strain is left behind, and its derivatives."""
-        # c² T = Δ ∫_0^∞ E dξ + 2Σ ∫_0^∞ ξ O dξ = ∫ [(ξ - 1/2)/m1 + (ξ + 1/2)/m2] F_a dξ.
+        # At small q the coefficient of o is T/q, that of O is q ∫_0^∞ ξ O dξ and that of E is
+        # ∫_0^∞ E dξ: the second equation (1) gives c² T = Δ ∫_0^∞ E dξ + 2Σ ∫_0^∞ ξ O dξ. E and O
+        # are the even and the odd part of F_a, so that both integrals over 0 … ∞ are half of those
+        # of F_a and ξ F_a over all ξ: c² T = ∫ [(ξ - 1/2)/m1 + (ξ + 1/2)/m2] F_a dξ.
         # The force at the grid's end ξ = L is 0.
         places = np.where(self.xi < self.L, self.xi, 0)
         step = self.L / self.n

@@ -134,7 +134,7 @@ class ExactWave(Pictured):
         )
 
     def strain(self, xi: ArrayLike, contact: int = 0) -> Array:
-        """Strain a(ξ) of the contacts behind beads m1 (contact 0), or b(ξ) of the others (1)."""
+        """Strain a(ξ) of the contacts ahead of beads m1 (contact 0), or b(ξ) of the others (1)."""
         at = finite(xi, "xi")
         if integer(contact, "contact", 0) % 2:
             at = -at  # b is the mirror image of a
@@ -149,11 +149,13 @@ class ExactWave(Pictured):
         """Velocity of beads m1 (bead 0) or m2 (bead 1) at ξ, 0 at the end of the period."""
         kind = integer(bead, "bead", 0) % 2
         at = finite(xi, "xi")
-        # Of the contacts behind beads m1, or of the others.
-        behind = self.series.conj() if kind else self.series
+        # The contact half a site behind a bead m2 has the force F_a, whose series is known; the one
+        # behind a bead m1 has F_b, the mirror image of F_a, with the conjugate coefficients.
+        behind = self.series if kind else self.series.conj()
         q = self._wavenumbers[1:]
-        # m c v' is the force behind less the force ahead, its mirror image, a sum of sin qξ.
-        shifted = behind[1:].conj() * np.exp(-0.5j * q)
+        # m c v' is the force half a site ahead less the force half a site behind. The two are
+        # mirror images, Re g e^{∓iqξ}: their difference is 2 Im g sin qξ, and v a sum of cosines.
+        shifted = behind[1:] * np.exp(-0.5j * q)
         momenta = -2 * shifted.imag / (q * self.c)
         velocities = np.append(0.0, momenta) / self.masses[kind]
         return self._fading(at, velocities)
@@ -194,9 +196,9 @@ class ExactWave(Pictured):
         return highest_pulse(Piecewise(points, profile))
 
     def _profile(self, quantity: QuantityName) -> Callable[[ArrayLike], Array]:
-        """The method of a quantity."""
-        profile: Callable[[ArrayLike], Array]
-        profile = getattr(self, one_of(quantity, QUANTITIES, "quantity"))
+        """The method that computes a quantity as a function of ξ."""
+        name = one_of(quantity, QUANTITIES, "quantity")
+        profile: Callable[[ArrayLike], Array] = getattr(self, name)
         return profile
 
     @cached_property
@@ -205,7 +207,7 @@ class ExactWave(Pictured):
         m1, m2 = self.masses
         inverse = (1 / m1, 1 / m2)
         strain = newton.respond(self.series, inverse, self.half_period) / self.c2
-        # A sine that is 0 at every point of the grid.
+        # The imaginary part belongs to a sine that is 0 at every point of the grid.
         strain[-1] = strain[-1].real
         return strain
 
@@ -244,7 +246,7 @@ def at_unit_force(problem: newton.Problem, found: newton.Found) -> ExactWave:
     )
     peak = problem.p0 + wave.peak("strain")
     wave = wave.times(1 / peak)
-    # Of equal masses the odd part is rounding.
+    # The odd part of a wave of equal masses is rounding.
     tail = 0.0 if problem.uniform else _tail(wave)
     return replace(wave, tail=tail, residual=_residual(wave))
 

@@ -205,6 +205,8 @@ def _follow_stages(
         ch = pair.nodes[s] * h
         rate = beads.v[i]
         y = beads.y[i] + ch * rate
+        # The middle of the step tells the interval of the drive. The push below is 0 for a driven
+        # bead, whose inverse mass is 0.
         if i == 0 and chain.drive.driven:
             y, rate, _ = drive_motion(chain.drive, t + h / 2, t + ch)
         d = chain.rest[i] + y - beads.y[i + 1] - ch * beads.v[i + 1]

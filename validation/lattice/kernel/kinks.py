@@ -291,6 +291,7 @@ def _find_jump(
     found = 1.0, 0.0, 0.0
     for n in range(count):
         p, slope = value_and_slope(c, edges[n])
+        # This edge is a root of p, within 1e-9 of a step; at others only damping begins or ceases.
         if abs(p) < 1e-9 * abs(slope):
             force = push(law, r, OPENS, slope / h)
             if slope > 0.0 and r > 0.0 and law.p > 0.0 and law.p < 1.0:

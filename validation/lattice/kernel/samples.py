@@ -38,7 +38,11 @@ NOT_DRIVEN: Any = np.bool_(False)
 
 @part
 def store_knot(chain: Chain, beads: Beads, knots: Knots, now: Any) -> None:
-    """Store the present motion of the watched beads as the next knot."""
+    """Store the present motion of the watched beads as the next knot.
+
+    The four entries of a state are those of `Knots`. The acceleration is that of the first stage,
+    at the start of the next step. A driven bead, of infinite mass, has a given acceleration.
+    """
     if len(knots.watched) == 0:
         return
     knots.time[now.stored] = now.t
