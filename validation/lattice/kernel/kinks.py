@@ -390,6 +390,7 @@ def _place_points(
     scale = abs(span) * (1.0 - start)
     for m in range(index(POINTS)):
         u = start + (1.0 - start) * _U[m]
+        # The derivative q u^{q-1} of u^q
         pace = 1.0 if q == 1.0 else (2.0 * u if q == 2.0 else 4.0 * u * u * u)
         points[0, m] = zero + span * u * pace / q
         points[1, m] = scale * _W[m] * pace
@@ -483,7 +484,7 @@ def integrals(
                     odd += fifth * (bend * force - w[m] * known)
                 if driven:
                     given += value_and_slope(bead, x[m])[1] * force
-    # A kink has no part of degree 4 at some places; there it has one of degree 5, whose part
-    # in p is about half as large.
+    # ``even`` and ``odd`` are the parts of degrees 4 and 5 that p'' lacks. At some places of a kink
+    # the part of degree 4 is 0 and that of degree 5 is not; the latter changes p half as much.
     rough = math.hypot(even, 0.5 * odd)
     return Integrals(once, twice, third, work, given, rough, closed)
