@@ -121,7 +121,7 @@ class Grid:
 
         The rows next to the foot go: there integrals by `to_peak` are not right.
         """
-        # These rows have less than half a window of nodes behind them.
+        # The rows next to the foot have less than half a window of nodes on one side.
         first = _WINDOW // 2
         return values[first:][::-1]
 
@@ -136,7 +136,7 @@ def _cumulated(count: int) -> Array:
     The integral over a cell is that of the polynomial through the `_WINDOW` nearest places; the
     function vanishes beyond the ends.
     """
-    # The cell from 0 to 1, with as many places before it as behind it
+    # The cell from 0 to 1, with as many places before it as after it
     before = _WINDOW // 2 - 1
     places = np.arange(-before, _WINDOW - before, dtype=float)
     # Gauss's rule of this many nodes is exact for the polynomial.
@@ -338,7 +338,7 @@ class Nodes:
 
     def half_width(self) -> Array:
         """The distance from the peak at which the strain has half of its rise."""
-        # There s is 1/2, at the middle one of all nodes.
+        # At half of the rise s is 1/2, at the middle one of all nodes.
         return np.asarray(self.places[len(self.grid.s) // 2])
 
     def half_width_of_force(self) -> Array:
@@ -359,5 +359,5 @@ class Nodes:
         logs = g.peak_first(g.logs[g.rows])
         last = self.places[-1]
         inside = _interpolated(self.places, logs, np.minimum(places, last))
-        # Behind the last node v is below what grids may differ by, or they are refined.
+        # Beyond the last node v is less than two grids may differ by: else the grid is refined.
         return np.where(places > last, 0.0, np.exp(inside))

@@ -34,6 +34,8 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(POINTS)
 _U, _W = (1 + _NODES) / 2, _WEIGHTS / 2
 STRAIGHT = (1.0, 0.0, 0.0)  # no bend
 NO_CURVE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, STRAIGHT)
+# A plain False is a type of its own, for which numba would compile `integrals` once more.
+NOT_DRIVEN: Any = np.bool_(False)
 _PLACES = 8  # parts of a step at whose ends a contact is looked at
 # Each part has at most one turning point of p, and on both sides of it a contact that closes or
 # opens and begins or ceases to be damped; beside these the step's ends.
@@ -71,14 +73,16 @@ class Integrals(NamedTuple):
     Parameters
     ----------
     impulse, moment, third : float
-        Those of ``F``, ``(1 - x) F`` and ``(1 - x)²/2 F``.
+        Integrals of ``F``, ``(1 - x) F`` and ``(1 - x)²/2 F``.
     work, driven : float
-        Those of ``F p'``, and of ``F b'`` for the motion b of a driven bead.
+        Integrals of ``F p'``, and of ``F b'`` for the motion b of a driven bead.
     rough : float
         How far p is from a solution, for a damped or driven contact and for a force that jumps: the
         force, times its effect on p'', has parts of degrees 4 and 5 in Legendre's polynomials, and
         the second derivative of a quintic, a cubic, has none. The size of these parts, without
         those of the bend that p has besides.
+    closed : float
+        Length of the intervals in which the contact pushes.
     """
 
     impulse: float
@@ -87,6 +91,7 @@ class Integrals(NamedTuple):
     work: float
     driven: float
     rough: float
+    closed: float
 
 
 @part
@@ -194,10 +199,13 @@ def _turning_point(c: Curve, a: float, b: float) -> float:
 def _state(
     law: Any, r: float, c: Curve, h: float, x: float
 ) -> tuple[float, float, float]:
-    """Return p, p' and, for a damped contact that does not stick, the margin at a place."""
+    """Return p, p' and a number that is negative where damping would pull, at a place.
+
+    The number is the `_margin` of a damped contact that does not stick, and 1 of any other.
+    """
     p, slope = value_and_slope(c, x)
     margin = 1.0
-    # While δ rises the margin is positive.
+    # The margin can be negative only where a closed contact expands.
     if r > 0.0 and not law.sticks and p > 0.0 and slope < 0.0:
         margin = _margin(law, r, c, h, x)
     return p, slope, margin
@@ -281,9 +289,9 @@ def find_edges(
 def _find_jump(
     law: Any, r: float, c: Curve, h: float, edges: Array, count: int
 ) -> Bend:
-    """Return the last place at which the force jumps, or nearly, as the bend by ``bend = 1``.
+    """Return the last jump of the force as a `Bend` of p, for a factor 1 from force to p''.
 
-    A force that begins as ``r δ^b dδ/dt`` with a small b almost jumps.
+    A force that begins as ``r δ^b dδ/dt`` with a small b almost jumps, and counts as a jump.
     """
     found = 1.0, 0.0, 0.0
     for n in range(count):
@@ -382,6 +390,7 @@ def _place_points(
     scale = abs(span) * (1.0 - start)
     for m in range(index(POINTS)):
         u = start + (1.0 - start) * _U[m]
+        # The derivative q u^{q-1} of u^q
         pace = 1.0 if q == 1.0 else (2.0 * u if q == 2.0 else 4.0 * u * u * u)
         points[0, m] = zero + span * u * pace / q
         points[1, m] = scale * _W[m] * pace
@@ -436,7 +445,7 @@ def integrals(
     c = found.curve
     x = points[0]
     w = points[1]
-    once = twice = third = work = given = even = odd = 0.0
+    once = twice = third = work = given = even = odd = closed = 0.0
     for n in range(found.intervals):
         a = edges[n]
         b = edges[n + 1]
@@ -447,6 +456,7 @@ def integrals(
         low = _root(c, a, -1.0)
         high = _root(c, b, 1.0)
         b = min(b, until)
+        closed += b - a
         middle = 0.5 * (a + b)
         if math.isnan(high):
             middle = b
@@ -474,7 +484,7 @@ def integrals(
                     odd += fifth * (bend * force - w[m] * known)
                 if driven:
                     given += value_and_slope(bead, x[m])[1] * force
-    # A kink has no part of degree 4 at some places; there it has one of degree 5, whose part
-    # in p is about half as large.
+    # ``even`` and ``odd`` are the parts of degrees 4 and 5 that p'' lacks. At some places of a kink
+    # the part of degree 4 is 0 and that of degree 5 is not; the latter changes p half as much.
     rough = math.hypot(even, 0.5 * odd)
-    return Integrals(once, twice, third, work, given, rough)
+    return Integrals(once, twice, third, work, given, rough, closed)
