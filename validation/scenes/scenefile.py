@@ -47,7 +47,10 @@ from validation.scenes.scene import Scene, contacts_of
 
 MOST_BEADS = 1_000_000  # they are read in 2 s and 40 MB
 _STATED = ("columns", "units", "step")  # keys on the file of a drive
-_OTHER = ("like", "mass")  # keys of a striker, or a defect, that is unlike the other beads
+_OTHER = (
+    "like",
+    "mass",
+)  # keys of a striker, or a defect, that is unlike the other beads
 
 
 def read_scene(
