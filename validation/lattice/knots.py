@@ -75,7 +75,7 @@ class KnotPath:
             self.chain,
             self.knots,
             rows,
-            time,
+            np.array(time),  # numba compiles once more for an array that is read-only
             step,
             y,
             v,

@@ -24,10 +24,11 @@ _CLOSE = 1.0  # likewise in a record that would leave less than 2.5 widths for t
 _LONG = 10.0  # widths of the longest base: drift and hum are straight over such a time
 _SHORTEST = 0.9  # widths of the shortest base
 FEWEST_FOR_BASE = 16  # samples of a base, at least
-_GROWTHS = (1.0, 2.0)  # widths in which what rises before the pulse grows e-fold
+# Widths in which the terms that rise before the pulse grow e-fold.
+_GROWTHS = (1.0, 2.0)
 _LINE = 2  # terms of a straight line
 _BASES = (_LINE, _LINE + len(_GROWTHS))  # terms of the bases
-_SLOW = 5.0  # widths of a base, at least, that tells a slow rise from a level
+_SLOW = 5.0  # widths of the shortest base in which a slow rise differs from a line
 _GUESSED = 5  # samples at the start of a record that begins too late
 DRAWS = 200  # records that are drawn for an error
 

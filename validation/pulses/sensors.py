@@ -46,8 +46,8 @@ _QUICK = 0.9
 # Samples in the shortest time √(m/spring) of a bead between two contacts. The force of two beads
 # that collide, or of a Hertz chain's wave, has 1.5 or 1.9 √(m/spring) of one contact above half.
 _RESOLVED = 22.0
-_MOST_SAMPLES = 100_000  # spare memory
-_HIDDEN = 0.5  # relative error of the peak from which on rounding may make the pulse
+_MOST_SAMPLES = 100_000  # of more samples a run would take much memory
+_HIDDEN = 0.5  # relative error of the peak from which on a pulse may be rounding alone
 _LOOKS = 200  # times at which a sensor is searched for an earlier pulse
 
 
@@ -295,11 +295,11 @@ def tracks(
 def _place(scene: Scene, x: Array, kind: str, i: int) -> dict[str, float]:
     """Return the place of a sensor as in `Reading.along`; empty for a bead with one contact.
 
-    x : places of the beads, and of one behind the last.
+    x : places of the beads, and of one more bead, imagined a spacing after the last.
     """
     if kind == "bead" and not 0 < i < scene.contact_count:
         return {}
-    # A contact is midway between its beads, the wall's half a spacing behind the last bead.
+    # A contact is midway between its beads; the wall's is half a spacing after the last bead.
     site = i + 0.5 if kind == "contact" else float(i)
     place = {"speed_sites": site}
     if scene.spacings:

@@ -14,7 +14,7 @@ from lwa.spheres.hertz import Material, Sphere
 from validation.scenes.scene import Scene
 
 STEEL, PTFE = Material.named("steel 316"), Material.named("PTFE")
-DIAMETER = 4.76e-3  # of all beads, in m
+DIAMETER = 4.76e-3  # diameter of all beads, in m
 STEEL_BEAD = Sphere("0.45e-3", DIAMETER / 2, STEEL)
 PTFE_BEAD = Sphere("0.123e-3", DIAMETER / 2, PTFE)
 

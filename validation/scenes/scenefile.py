@@ -47,10 +47,8 @@ from validation.scenes.scene import Scene, contacts_of
 
 MOST_BEADS = 1_000_000  # they are read in 2 s and 40 MB
 _STATED = ("columns", "units", "step")  # keys on the file of a drive
-_OTHER = (
-    "like",
-    "mass",
-)  # keys of a striker, or a defect, that is unlike the other beads
+# Keys of a striker or a defect that is a bead unlike the others
+_OTHER = ("like", "mass")
 
 
 def read_scene(

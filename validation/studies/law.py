@@ -43,12 +43,12 @@ from validation.studies.records import COLUMN_OPTIONS
 from validation.studies.run import print_option
 from validation.waves.solver import exact_wave
 
-_DRAWS = 1000  # of the coefficients of ln V, for the errors
+_DRAWS = 1000  # times that the coefficients of ln V are drawn, for the errors
 _HERTZ = 1.5
 # Exponents that are read: below, speeds do not depend on force; beyond, R is not known.
 LEAST = 1.01
 MOST = 4.0
-LARGEST = 700.0  # |ln A|, at most
+LARGEST = 700.0  # largest |ln A|: floats end at e^709
 RATIO_ERROR = 1e-10
 """Relative error of R(k), measured between the nodes of its interpolant."""
 _POWER = (Column("", "F = A δ^k"), Column("", "value", error=True))

@@ -52,7 +52,7 @@ _COLUMN = (
     "repeatable. Names: time, bead 8 force, contact 8 force, bead 8 velocity, force, speed."
 )
 
-_TIMES = {"column": "1", "unit": "s"}  # examples of what is stated of a column time
+_TIMES = {"column": "1", "unit": "s"}  # examples of statements on the column of times
 
 
 def _pairs(

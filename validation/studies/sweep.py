@@ -325,7 +325,7 @@ def sweep(
     1.4119
     """
     grid = _values(ks, "k"), _values(omegas, "omega")
-    # Before the file: a refusal leaves none behind.
+    # Checked before the file is made: a refusal leaves no file behind.
     if address is not None and jobs is not None:
         raise InputError(f"jobs is {jobs}: a cluster has its own workers", jobs=None)
     path = MEMORY

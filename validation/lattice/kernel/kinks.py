@@ -33,6 +33,9 @@ POINTS = 12  # of the rule: three of the machine's vectors
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(POINTS)
 _U, _W = (1 + _NODES) / 2, _WEIGHTS / 2
 STRAIGHT = (1.0, 0.0, 0.0)  # no bend
+NO_CURVE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, STRAIGHT)
+# A plain False is a type of its own, for which numba would compile `integrals` once more.
+NOT_DRIVEN: Any = np.bool_(False)
 _PLACES = 8  # parts of a step at whose ends a contact is looked at
 # Each part has at most one turning point of p, and on both sides of it a contact that closes or
 # opens and begins or ceases to be damped; beside these the step's ends.
@@ -70,9 +73,9 @@ class Integrals(NamedTuple):
     Parameters
     ----------
     impulse, moment, third : float
-        Those of ``F``, ``(1 - x) F`` and ``(1 - x)²/2 F``.
+        Integrals of ``F``, ``(1 - x) F`` and ``(1 - x)²/2 F``.
     work, driven : float
-        Those of ``F p'``, and of ``F b'`` for the motion b of a driven bead.
+        Integrals of ``F p'``, and of ``F b'`` for the motion b of a driven bead.
     rough : float
         How far p is from a solution, for a damped or driven contact and for a force that jumps: the
         force, times its effect on p'', has parts of degrees 4 and 5 in Legendre's polynomials, and
