@@ -41,7 +41,7 @@ class Beside(NamedTuple):
 
     @property
     def off(self) -> float:
-        """The difference, ours less theirs."""
+        """This project's number less the published one, or the relative difference in percent."""
         if self.unit == "%":
             return 100 * (self.here / self.there - 1)
         return self.here - self.there

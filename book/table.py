@@ -15,17 +15,16 @@ def table(
     """Rows under heads; a head may come with the format of its column."""
     pairs = [head if isinstance(head, tuple) else (head, "") for head in heads]
     # formatted here and not by the column, because a form may print None
-    shown = (
-        tuple(
-            form(cell) if callable(form) else cell
-            for (_, form), cell in zip(pairs, row, strict=True)
-        )
-        for row in rows
-    )
-    columns = tuple(
+    shown = []
+    for row in rows:
+        cells = {}
+        for (name, form), cell in zip(pairs, row, strict=True):
+            cells[name] = form(cell) if callable(form) else cell
+        shown.append(cells)
+    columns = [
         Column("", name, format="" if callable(form) else form) for name, form in pairs
-    )
-    return Report("", (Table(columns, tuple(shown)),))
+    ]
+    return Report("", (Table(columns, shown),))
 
 
 def percent(digits: int = 1) -> Callable[[float | None], str]:

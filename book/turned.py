@@ -41,7 +41,7 @@ class Script(str):
 
 
 def script(name: str, value: Any) -> Script:
-    """A script element that defines a constant; NaN stands for what is refused."""
+    """A script element that defines a constant; NaN stands for a refused value."""
     return Script(f"<script>const {name} = {json.dumps(value)};</script>")
 
 

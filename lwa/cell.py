@@ -248,7 +248,7 @@ class Parametric(Value):
         return self.replaced(substitution(values, symbols, cell))
 
     def _parts(self) -> list[Any]:
-        """The fields, with those of results in place of the results."""
+        """Values of all fields; a field that is a result gives the values of its own fields."""
         parts: list[Any] = []
         for field in fields(self):
             part = getattr(self, field.name)
@@ -279,7 +279,7 @@ def Dimer(
     N : int
         Number of particles m1 before the one particle m2.
     stiffnesses, spacing
-        As those of `Cell`.
+        Stiffnesses and spacing, as of a `Cell`.
 
     Returns
     -------

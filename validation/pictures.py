@@ -211,7 +211,7 @@ def draw(plot: Axes, panel: Panel) -> None:
     if not any(curve.label for curve in panel.curves):
         return
     if panel.legend_above:
-        # Its lower left corner upon the panel's upper left one.
+        # The legend's lower left corner lies upon the panel's upper left one.
         plot.legend(
             fontsize="small",
             frameon=False,
@@ -224,7 +224,7 @@ def draw(plot: Axes, panel: Panel) -> None:
 
 
 def _draw_curve(plot: Axes, curve: Curve, number: int) -> None:
-    """Draw the curve of a number in its panel, from 0, which chooses its style."""
+    """Draw a curve; its number in the panel, from 0, chooses its style."""
     # Floats: Matplotlib does not draw SymPy's numbers.
     x = np.asarray(curve.x, float)
     y = np.asarray(curve.y, float)
@@ -253,7 +253,7 @@ def _draw_map(plot: Axes, colours: Map) -> None:
 
 
 def _label(axis: Axis, label: str, logarithmic: bool) -> None:
-    """Label an axis and its ticks, in a unit with a prefix where plain numbers stand there."""
+    """Label an axis and its ticks; the unit has a prefix if the ticks are plain numbers."""
     low, high = sorted(axis.get_view_interval())
     largest = max(abs(low), abs(high))
     unit = labelled(label, largest)
@@ -274,7 +274,7 @@ def _in_unit(value: float, unit: Unit) -> str:
 
 
 def _is_short(low: float, high: float) -> bool:
-    """Whether a logarithmic axis has few decades of plain numbers, where powers of ten overlap."""
+    """True for a logarithmic axis of few decades, where plain numbers fit and powers overlap."""
     return low >= 1e-3 and high <= 1e5 and high < 1e3 * low
 
 

@@ -49,8 +49,7 @@ from lwa.command.options import quantities
 from validation.pictures import Curve, Panel
 from validation.report.study import EXPONENT, Report, option, study
 from validation.report.table import Column, Finding, Table, percent
-from validation.scenes.chains import numeric_cell
-from validation.scenes.checks import SceneError, between, integer
+from validation.scenes.checks import SceneError, between, integer, numeric
 
 HARMONICS = 5  # H; 8 change amplitude and width by less than their errors
 MOST_STEPS = 30  # of Newton's method
@@ -109,7 +108,10 @@ def breather(
     Raises `lwa.InputError` for parameters out of range, among them detunings at which contacts open
     or which want more beads.
     """
-    cell, beads = numeric_cell(masses), integer(beads, "beads", 21, 2001)
+    cell = Cell(masses, spacing=1)
+    for mass in cell.masses:
+        numeric(mass, "mass")
+    beads = integer(beads, "beads", 21, 2001)
     if cell.size > 2:
         raise SceneError(
             f"masses are {cell.size}: breathers are found in cells of one or two"
@@ -477,13 +479,7 @@ def _report(
     return Report(
         f"{kind.capitalize()} breathers: masses {', '.join(map(str, cell.masses))}, k = {k:g}, "
         "F0 = A = D = 1",
-        (
-            Table(
-                _COLUMNS,
-                tuple(tuple(row[c.key] for c in _COLUMNS) for row in rows),
-                "rows",
-            ),
-        ),
+        (Table(_COLUMNS, rows, "rows"),),
         tuple(_findings(rows)),
         tuple(_panels(*breathers[-1])),
         (
@@ -495,7 +491,7 @@ def _report(
 
 
 def _findings(rows: Sequence[dict[str, Any]]) -> Iterator[Finding]:
-    """The theory's error is of the order of the detuning."""
+    """Findings on the theory's error, which is of the order of the detuning."""
     worst = max(
         abs(row["amplitude_off_value"]) / abs(row["detuning_value"]) for row in rows
     )

@@ -200,15 +200,18 @@ def _report(
         key="decay_change",
     )
     bars = [m.value for m in means], "C0o", [m.error for m in means]
-    beads = tuple((e, loss, loss.value / e**2 if e else None) for e, loss in single)
+    beads = []
+    for e, loss in single:
+        share = loss.value / e**2 if e else None
+        beads.append({"excess_value": e, "loss": loss, "loss/e²": share})
+    rows = []
+    for row in zip(places.tolist(), means, scatter, local, line, strict=True):
+        names = [column.name for column in _ROWS]
+        rows.append(dict(zip(names, row, strict=True)))
     return Report(
         f"{title}; decay of ln F per site: {mean}, mean loss at a single bead: {theory:.3g}",
         (
-            Table(
-                _ROWS,
-                tuple(zip(places.tolist(), means, scatter, local, line, strict=True)),
-                "rows",
-            ),
+            Table(_ROWS, rows, "rows"),
             Table(
                 _SINGLE,
                 beads,

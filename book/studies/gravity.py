@@ -49,8 +49,8 @@ from validation.pulses.pulse import Piecewise, first_pulse, highest_pulse
 from validation.pulses.sensors import tracks
 from validation.report.study import EXPONENT, Report, option, study
 from validation.report.table import Column, Finding, Table, percent
-from validation.scenes.chains import numeric_cell, struck
-from validation.scenes.checks import between, integer
+from validation.scenes.chains import struck
+from validation.scenes.checks import between, integer, numeric
 from validation.scenes.scene import Scene
 
 CHAINS = ((1,), (1, "1/2"))  # masses of the default cells
@@ -171,8 +171,11 @@ class Upright:
     def fitted(
         self, x: Array, width: Array, coarse: Array
     ) -> tuple[Estimate, Estimate]:
-        """`fit` with errors: its largest change with the other correction, from the deeper half of
-        the places, or in the less accurate run."""
+        """`fit` with errors, each the largest of three changes.
+
+        The fit changes with the other correction, with the deeper half of the places alone, and
+        with the less accurate run.
+        """
         half, rest = len(x) // 2, (3 - self.k) / 3
         power, other = 2 * rest / (self.k + 1), rest / self.k
         values = self.fit(x, width, power)
@@ -186,8 +189,11 @@ class Upright:
         return exponent, prefactor
 
     def pulses(self, velocity: float) -> list[dict[str, float]]:
-        """Dynamic force over load, FWHM in sites, and FWHM of the solitary wave of this force on
-        this load, at each place; means over a cell."""
+        """Force and width of the pulse at each place, beside the solitary wave; means over a cell.
+
+        The force is dynamic, over the load. Both widths are FWHM in sites, the wave's at this force
+        and load.
+        """
         size = len(self.masses)
         contacts = np.add.outer(self.places(_TOP, _FEW), np.arange(2 * size))
         scene = self.blown(velocity, contact_sensors=np.unique(contacts).tolist())
@@ -251,8 +257,10 @@ def gravity(
         "as the depth's third root, the more beads it takes to see it",
     )
     beads = integer(beads, "beads", 10 * FIRST, 20_000)
-    cells = [numeric_cell(row) for row in ([masses] if masses else CHAINS)]
+    cells = [Cell(row, spacing=1) for row in ([masses] if masses else CHAINS)]
     for cell in cells:
+        for mass in cell.masses:
+            numeric(mass, "mass")
         ratio = float(max(cell.masses) / min(cell.masses))
         between(ratio, "the largest mass over the least", 1, _UNLIKE)
     chains = [Upright(cell, k, beads) for cell in cells]
@@ -297,7 +305,15 @@ def _report(
         x, width, coarse = measured[chain, WEAK]
         exponent, prefactor = chain.fitted(x, width, coarse)
         theory = chain.prefactor
-        weak.append((names, exponent, prefactor, theory, theory / prefactor.value - 1))
+        weak.append(
+            {
+                "masses": names,
+                "exponent": exponent,
+                "prefactor": prefactor,
+                "prefactor_theory_value": theory,
+                "error_value": theory / prefactor.value - 1,
+            }
+        )
         sites = np.geomspace(_TOP, chain.beads, 50)
         curves = [
             Curve("weak blow", x, width, "C0o"),
@@ -305,10 +321,10 @@ def _report(
         ]
         for blow, colour in zip(STRONG, ("C1", "C2", "C3"), strict=True):
             pulses = measured[chain, blow]
-            strong += [
-                (names, blow, *p.values(), theory * math.cbrt(p["site"]))
-                for p in pulses
-            ]
+            for pulse in pulses:
+                row = {"masses": names, "blow_value": blow}
+                row |= {f"{name}_value": number for name, number in pulse.items()}
+                strong.append(row | {"front_value": theory * math.cbrt(pulse["site"])})
             at, width, solitary = (
                 [p[n] for p in pulses] for n in ("site", "width", "solitary")
             )
@@ -322,8 +338,8 @@ def _report(
     return Report(
         f"Chains of {chains[0].beads} beads under their own weight, k = {chains[0].k:g}",
         (
-            Table(_WEAK, tuple(weak), "rows", note=_WEAK_NOTE),
-            Table(_STRONG, tuple(strong), "strong", note=_STRONG_NOTE),
+            Table(_WEAK, weak, "rows", note=_WEAK_NOTE),
+            Table(_STRONG, strong, "strong", note=_STRONG_NOTE),
         ),
         tuple(_findings(weak, strong)),
         tuple(panels),
@@ -332,19 +348,21 @@ def _report(
 
 
 def _findings(
-    weak: Sequence[tuple[Any, ...]], strong: Sequence[tuple[Any, ...]]
+    weak: Sequence[dict[str, Any]], strong: Sequence[dict[str, Any]]
 ) -> Iterator[Finding]:
     """The front's power law, and how much narrower than two waves strong pulses are."""
-    for names, exponent, prefactor, theory, _ in weak:
-        of = ", ".join(names)
+    for row in weak:
+        of = ", ".join(row["masses"])
+        exponent = row["exponent"]
         low, high = 1 / 3 - 0.02, 1 / 3 + 0.02
         yield Finding(f"{of}: exponent", exponent.value, low, high, exponent.error)
-        over = prefactor * (1 / theory)
+        over = row["prefactor"] * (1 / row["prefactor_theory_value"])
         yield Finding(f"{of}: prefactor/theory", over.value, 0.97, 1.03, over.error)
     narrower = []
-    for masses, *_, width, solitary, front in strong:
-        if len(masses) == 1:
-            narrower.append(1 - width / min(solitary, front))
+    for row in strong:
+        if len(row["masses"]) == 1:
+            other = min(row["solitary_value"], row["front_value"])
+            narrower.append(1 - row["width_value"] / other)
     if narrower:
         than = "equal beads: narrower than the narrower of solitary wave and front"
         # Measured at all k that are taken: -0.02 to 0.26, at 1,000 and 3,000 beads

@@ -186,7 +186,7 @@ def ulps() -> Report:
     at_k = [row[np.isfinite(row)].max() for row in printed]
     curve = Curve("β as printed", EXPONENTS - 1, at_k)
     panel = Panel("k - 1", "largest loss of β, in ulps", (curve,), "xy")
-    table = Table.of(columns, records)
+    table = Table(columns, records)
     return Report(ulps.__doc__ or "", (table,), findings, (panel,))
 
 
@@ -397,12 +397,13 @@ def hard(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:
     for name in progress(wanted):
         report = CASES[name]()
         title = f"{name}\n{report.title}"
-        rows += [(title, *row) for row in findings_table(report.findings).rows]
+        for row in findings_table(report.findings).rows:
+            rows.append({"case": title, **row})
         tables += report.tables
         findings += report.findings
         panels += [replace(panel, title=name) for panel in report.panels]
     columns = Column("case"), *FINDING_COLUMNS
-    measured = Table(columns, tuple(rows), "rows", by="case")
+    measured = Table(columns, rows, "rows", by="case")
     return Report("Hard cases", (measured, *tables), tuple(findings), tuple(panels))
 
 

@@ -371,10 +371,10 @@ def _report(rows: Sequence[tuple[Chain, dict[str, Any]]]) -> Report:
             findings.append(
                 Finding(f"{chain.name}: FWHM by I at rest", constant, high=-0.15)
             )
-    table = tuple(tuple(row[key] for key in _COLUMNS) for _, row in rows)
+    table = [{c.name: row[name] for name, c in _COLUMNS.items()} for _, row in rows]
     return Report(
         "Exact waves of lattices, beside the relation that knows the static energy and I",
-        (Table(tuple(_COLUMNS.values()), table, "rows", by="case"),),
+        (Table([*_COLUMNS.values()], table, "rows", by="case"),),
         tuple(findings),
         tuple(_panels([row for _, row in rows])),
         (

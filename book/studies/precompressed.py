@@ -45,8 +45,7 @@ from validation.pulses.pulse import (
 from validation.pulses.sensors import tracks
 from validation.report.study import EXPONENT, Report, option, study
 from validation.report.table import Column, Finding, Table, percent
-from validation.scenes.chains import carrying, numeric_cell
-from validation.scenes.checks import SceneError, between
+from validation.scenes.checks import SceneError, between, numeric
 from validation.scenes.scene import Scene
 from validation.waves.profile import ExactWave
 from validation.waves.solver import exact_wave
@@ -98,7 +97,10 @@ def precompressed(
     Raises `SceneError` for parameters out of range and `MeasureError` if a pulse does not arrive
     whole, as strong waves in cells of three and four.
     """
-    cells = [numeric_cell(row) for row in ([masses] if masses else CHAINS)]
+    cells = [Cell(row, spacing=1) for row in ([masses] if masses else CHAINS)]
+    for cell in cells:
+        for mass in cell.masses:
+            numeric(mass, "mass")
     between(k, "k", 1.01, 8)
     wanted = [between(ratio, "ratio", _WEAKEST, _STRONGEST) for ratio in ratios]
     if not wanted:
@@ -221,10 +223,13 @@ class Wave:
                 self.exact.velocity(bead),
             )
         sensors = tuple(place + i for place in places for i in range(size))
-        return carrying(
-            np.resize(self.masses, beads).tolist(),
-            strain,
-            velocity,
+        # Beads behind a contact have moved by the compressions of all contacts ahead.
+        displacements = np.cumsum(strain[::-1])[::-1]
+        return Scene(
+            masses=np.resize(self.masses, beads),
+            stiffnesses=(1.0,) * (beads - 1),
+            displacements=displacements,
+            velocities=velocity,
             law=self.law,
             wall=1.0,
             precompression=self.load,
@@ -311,15 +316,10 @@ _COLUMNS = {
 
 def _report(law: ContactLaw, waves: Sequence[tuple[Wave, dict[str, Any]]]) -> Report:
     rows = [cells for _, cells in waves]
+    table = [{c.name: row.get(name) for name, c in _COLUMNS.items()} for row in rows]
     return Report(
         f"Waves on a static force F0 = {waves[0][0].load:g}: F = {law.F}, A = D = 1",
-        (
-            Table(
-                tuple(_COLUMNS.values()),
-                tuple(tuple(map(row.get, _COLUMNS)) for row in rows),
-                "rows",
-            ),
-        ),
+        (Table([*_COLUMNS.values()], table, "rows"),),
         tuple(_findings(law, rows)),
         tuple(_panels(waves)),
         (

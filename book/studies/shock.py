@@ -167,25 +167,26 @@ class Driven:
         """Speed s₋ of the trailing edge; None where the theory gives none."""
         return _number(attempt(lambda: self.theory.trailing_speed))
 
-    def row(self, run: Run) -> tuple[Any, ...]:
+    def row(self, run: Run) -> dict[str, Any]:
         """Table row: plateau, speed and peak on the lattice, with the theories' errors."""
         chain, strain = self.theory, float(self.theory.behind)
         plateau = float(run.compression[0][-len(run.time) // 10 :].mean())
         speed, peak = leading(run)
-        cells: list[Any] = []
+        cells: dict[str, Any] = {
+            "law": _name(chain.law),
+            "behind_value": strain,
+            "ahead_value": float(chain.ahead),
+            "ratio_value": float(chain.ratio) if chain.ahead else math.inf,
+            "plateau_value": plateau,
+            "plateau_error_value": plateau / strain - 1,
+            "speed": speed,
+            "peak": peak,
+        }
         for name, (s, p) in self.theories.items():
-            cells += [s, _off(s, speed.value)]
-            cells += [] if name == "dispersion" else [p, _off(p, peak.value)]
-        ratio = float(chain.ratio) if chain.ahead else math.inf
-        head = (
-            _name(chain.law),
-            strain,
-            float(chain.ahead),
-            ratio,
-            plateau,
-            plateau / strain - 1,
-        )
-        return (*head, speed, peak, *cells)
+            for quantity, value, own in (("speed", s, speed), ("peak", p, peak)):
+                cells[f"{name}_value.{quantity}"] = value
+                cells[f"{name}_error_value.{quantity}"] = _off(value, own.value)
+        return cells
 
     def panels(self) -> tuple[Panel, Panel]:
         """Strain over position and time, and the profile at the end, with the edges drawn in."""
@@ -337,11 +338,9 @@ _COLUMNS = (
 )
 
 
-def _report(driven: Sequence[Driven], rows: Sequence[tuple[Any, ...]]) -> Report:
-    keys = [column.key for column in _COLUMNS]
+def _report(driven: Sequence[Driven], rows: Sequence[dict[str, Any]]) -> Report:
     findings = []
-    for chain, row in zip(driven, rows, strict=True):
-        cells = dict(zip(keys, row, strict=True))
+    for chain, cells in zip(driven, rows, strict=True):
         bound = 0.001 if _toda(chain.theory.law) else 0.006
         bounds = {
             f"{letter} by the rule": (f"doubling_error_value.{quantity}", bound)
@@ -355,7 +354,7 @@ def _report(driven: Sequence[Driven], rows: Sequence[tuple[Any, ...]]) -> Report
                 findings.append(Finding(name, error, -most, most))
     return Report(
         "Chains driven by a piston: lattice and theory",
-        (Table(_COLUMNS, tuple(rows), "rows"),),
+        (Table(_COLUMNS, rows, "rows"),),
         tuple(findings),
         max(
             driven, key=lambda chain: (chain.trailing is not None, chain.theory.ratio)

@@ -375,10 +375,10 @@ def _report(blows: Sequence[tuple[Blow, dict[str, Any]]]) -> Report:
                     Finding(f"{at}: {name}, error", row[f"{name} error"], -bound, bound)
                 )
     rows = [row for _, row in blows]
-    table = tuple(tuple(map(row.get, _COLUMNS)) for row in rows)
+    table = [{c.name: row.get(name) for name, c in _COLUMNS.items()} for row in rows]
     return Report(
         "Struck lattices without load, beside the relation that knows the static energy and I",
-        (Table(tuple(_COLUMNS.values()), table, "rows", by="case"),),
+        (Table([*_COLUMNS.values()], table, "rows", by="case"),),
         tuple(findings),
         tuple(_panels(rows)),
         (

@@ -146,7 +146,9 @@ def wall(
     delays, ratios = (
         [number.value for number in numbers] for numbers in zip(*found, strict=True)
     )
-    rows = tuple((E, *numbers) for E, numbers in zip(tried, found, strict=True))
+    rows = []
+    for E, (late, ratio) in zip(tried, found, strict=True):
+        rows.append({"modulus_value": E, "delay": late, "ratio": ratio})
     return Report(
         f"{beads} steel spheres struck at {velocity:g} m/s, a wall, contact {sensor}",
         (Table(_ROWS, rows, "rows", note="±: change in a less accurate run."),),

@@ -74,11 +74,19 @@ class Definition:
         )
 
     @property
-    def cells(self) -> tuple[Any, ...]:
+    def cells(self) -> dict[str, Any]:
         """Table row: quantity, unit, average, errors, and the stated lines reproduced."""
-        unit = "s" if self.time else "sites"
-        shown = (errors[line] for errors in self.errors.values() for line in STATED)
-        return self.quantity, unit, self.average, self.errors, *shown, self.reproduced
+        row: dict[str, Any] = {
+            "quantity": self.quantity,
+            "unit": "s" if self.time else "sites",
+            "average": self.average,
+            "error_value": self.errors,
+            "reproduced": self.reproduced,
+        }
+        for closure, errors in self.errors.items():
+            for line in STATED:
+                row[f"{line}, {closure}"] = errors[line]
+        return row
 
 
 _COLUMNS = (
@@ -142,7 +150,7 @@ def widths() -> Report:
         f"Theory over the average from bead {FIRST_BEAD} on, less 1, for equal contacts and "
         f"equal force;\nthe paper states {stated}"
     )
-    rows = tuple(definition.cells for definition in definitions)
+    rows = [definition.cells for definition in definitions]
     return Report(
         title,
         (Table(_COLUMNS, rows, "definitions"),),

@@ -108,7 +108,7 @@ def run(
 
 
 def _status(command: click.Command, name: str, arguments: Sequence[str]) -> int:
-    """Run a command and return its exit status; what it refuses is one line on standard error."""
+    """Run a command and return its exit status; a refusal is one line on standard error."""
     output = sys.stdout
     status = 2
     try:

@@ -271,16 +271,16 @@ def _beside(
     force: sp.Expr | None,
     scale: Scale,
 ) -> Answer:
-    """Speed and widths of another wave, at B = 1 without a force; momentum and energy with one.
+    """Speed and widths of another wave, at ``B = 1`` or at a force, there with momentum and energy.
 
     Parameters
     ----------
     name, title : str
-        What the wave is called in JSON and LaTeX, and in text.
+        Name of the wave in JSON and LaTeX, and in text.
     wave : CompactWave or LatticeWave
         The wave.
     speed : str
-        Its method that gives V_s by B.
+        Name of the wave's method that gives V_s by B.
     force : Expr, optional
         The peak contact force.
     scale : Scale

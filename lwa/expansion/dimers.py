@@ -146,19 +146,20 @@ def dimer_error(quantity: str, k_value: sp.Expr, ratio: sp.Expr) -> float:
     rows = _deviations()
     if k_value > rows[-1, 0]:
         return math.nan
-    # Interpolated are the points with a steady pulse; what these weigh is divided out.
+    # Points without a steady pulse have no deviation: the mean is that over the other points.
     own = np.nan_to_num(rows[:, 2 + list(FORMS).index(quantity)])
     weight = steadiness(k_value, ratio)
     mean = _mean(own, k_value, ratio) / weight
     square = _mean(own**2, k_value, ratio) / weight
-    # Rounding may leave less than nothing.
+    # Rounding may leave a negative difference.
     spread = math.sqrt(max(square - mean**2, 0))
     return MARGIN * abs(mean) + SPREAD * spread
 
 
 def steadiness(k_value: sp.Expr, ratio: sp.Expr) -> float:
-    """1 where the pulse of a struck chain is steady, 0 where light beads resonate and it decays.
+    """Share of steady pulses of struck chains about a point.
 
-    Between points of the grid the share of those that are steady.
+    The points of the grid have the share 1, or 0 where the pulse decays, as light beads resonate;
+    between these points the share is interpolated.
     """
     return _mean(np.isfinite(_deviations()[:, 2]), k_value, ratio)

@@ -54,7 +54,7 @@ class Expansion(Parametric):
     def __post_init__(self) -> None:
         read_cell(self.cell)
         self._set(order=integer(self.order, "order", 1), k=exponent(self.k))
-        # Text and LaTeX call the series' own parameter so.
+        # These names are those of the series' own parameter in text and LaTeX.
         for symbol in {*self.cell.symbols, *self.k.free_symbols}:
             if symbol.name in EPSILON_NAMES:
                 raise InputError(

@@ -91,7 +91,7 @@ class LatticeWave(Parametric):
         if self.k.is_number and not self.k > 1:
             raise NoSolitaryWave(f"k is {self.k}: a solitary wave needs k > 1")
         ratio = self.mass_ratio
-        # The nearest of the measured pulses decide, by the share of those that are steady.
+        # A wave is refused if half or more of the measured pulses next to it were not steady.
         if ratio.is_number and self.k.is_number and steadiness(self.k, ratio) <= 0.5:
             raise NoSolitaryWave(
                 f"m2/m1 is {shorten(ratio)} at k = {self.k}: the light beads resonate with the "

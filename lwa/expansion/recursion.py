@@ -114,7 +114,8 @@ class Recursion:
     def _dispersion(self) -> fmpq_mpoly:
         """Coefficient I in the dispersion Ω² = κ² - I κ⁴ + … of the linear chain."""
         I = self.zero
-        for exponents, coefficient in Bloch(self.model).acoustic(2)[2].terms():
+        *_, fourth = Bloch(self.model).acoustic(2)  # coefficients of 1, κ² and κ⁴
+        for exponents, coefficient in fourth.terms():
             # The ring of the wave has Z before the generators of the cell.
             powers = (0, *map(int, exponents))
             I = I - self.context.from_dict({powers: coefficient})

@@ -232,7 +232,7 @@ class EpsilonSeries(Value):
 
 
 def _transformed(coefficients: Sequence[sp.Expr]) -> list[mpmath.mpf]:
-    """Coefficients b_n of x^n from those of ε^n."""
+    """Coefficients ``b_n`` of ``x^n`` from the coefficients of ``ε^n``."""
     a = decimals(coefficients, TERM_DIGITS)
     b = a[:1]
     for n in range(1, len(a)):

@@ -131,7 +131,7 @@ class Dispersion(Parametric):
             raise InputError(
                 f"the optical series needs a cell of 2 masses, not {self.cell.size}"
             )
-        # The trace is 2 - 4 Ω² + 4Π Ω⁴, and the two roots have the sum 1/Π.
+        # The trace is 2 - 4 Ω² + 4Π Ω⁴, listed by powers of Ω²; its two roots have the sum 1/Π.
         Pi = self._expression(self._bloch.trace(2)[2]) / 4
         acoustic = self.acoustic(order).items()
         return {0: 1 / Pi} | {n: -coefficient for n, coefficient in acoustic}
@@ -142,7 +142,7 @@ class Dispersion(Parametric):
 
         It is that of the acoustic branch ``Ω² = κ² (1 - (I/D²) κ² + …)``.
         """
-        fourth = self.acoustic(4)[4]
+        fourth = self.acoustic(4)[4]  # the coefficient of κ⁴
         return -fourth * self.cell.spacing**2
 
     @cached_property

@@ -25,7 +25,7 @@ from typing import NamedTuple
 
 from lwa.loaded.lattice import Lattice
 
-# Part of V² that the wave adds to the sound's from which on there is no load
+# A wave is without load if it adds more than this part of V² to the square of the sound's speed.
 _BARE = 1 - 1e-6
 
 
@@ -86,13 +86,13 @@ def bounds(
     dict
         Bounds of the "speed", and of the width of each quantity by its name.
     """
-    # Part of V² that the wave adds to the sound's
+    # Part of V² that the wave adds to the square of the sound's speed
     added = 1 - slope_at_rest / square
     rule = _rule(lattice, bare=added > _BARE)
     delta = log(slope_at_peak / square)
     if not rises or delta > rule.largest:
         rule = UNKNOWN
-    # The rules' unit of an error of V², relative. That of V is half of it.
+    # The rules count the error of V² in this unit, relative to V². The error of V is half as large.
     stiffening = (slope_at_peak - slope_at_rest) / square
     width = rule.width * delta
     return {

@@ -121,7 +121,7 @@ class Grid:
 
         The rows next to the foot go: there integrals by `to_peak` are not right.
         """
-        # These rows have less than half a window of nodes behind them.
+        # The rows next to the foot have less than half a window of nodes on one side.
         first = _WINDOW // 2
         return values[first:][::-1]
 
@@ -338,7 +338,7 @@ class Nodes:
 
     def half_width(self) -> Array:
         """The distance from the peak at which the strain has half of its rise."""
-        # There s is 1/2, at the middle one of all nodes.
+        # At half of the rise s is 1/2, at the middle one of all nodes.
         return np.asarray(self.places[len(self.grid.s) // 2])
 
     def half_width_of_force(self) -> Array:

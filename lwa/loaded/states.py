@@ -20,7 +20,7 @@ from lwa.law import ContactLaw
 from lwa.loaded.background import Background
 from lwa.loaded.lattice import Lattice
 
-_DIGITS = 20  # of results that have no closed form: more than a double holds
+_DIGITS = 20  # digits of results without a closed form: more than a double holds
 
 
 @dataclass(frozen=True)

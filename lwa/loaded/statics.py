@@ -19,9 +19,10 @@ from lwa.base.arrays import Array
 from lwa.base.exact import InputError
 from lwa.linear.springs import Network, solved
 
-_MOST = 100  # steps of Newton's method; strongly unlike links take ten
+_MOST = 100  # most steps of Newton's method; strongly unlike links take ten
 _ROUNDING = 1e-14  # last step of Newton's method, over the mean compression
-_HALVINGS = 60  # of a step of Newton's method; the last one is lost in rounding
+# Most halvings of a step of Newton's method; the last one is lost in rounding.
+_HALVINGS = 60
 # Spring constant of an open link in Newton's method, over the largest one, for a regular matrix
 _OPEN = 1e-9
 # Largest ratio of spring constants. The solution for I loses as many digits, and the result of a
@@ -39,7 +40,7 @@ _BOLDEST = 3.0
 _LARGEST = 1e6
 _LEAST = 1e-14  # least mean compression over the largest of a wave
 _SMALL = 0.1  # rise over e from which on a difference of compressions has 15 digits
-_NODES = 10  # of Gauss's rule: laws with a singularity at δ = 0 err by 1e-20 over such a rise
+_NODES = 10  # nodes of Gauss's rule, by which laws singular at δ = 0 err by 1e-20 over such a rise
 
 Function = Callable[[Array], Array]
 
@@ -97,8 +98,9 @@ class Statics:
         To first order link l has at ln f the compression ``δ_l + g_l (ln f - logs_l)``, with
         ``g_l = dδ_l/d ln f`` and ``logs_l`` the ln f that belongs to the present ``δ_l``.
 
-        Logarithms keep the digits of a compression that is far smaller than the mean. A step to
-        where a law does not rise, as beyond a pole, is halved in the logarithm; other links wait.
+        Logarithms keep the digits of a compression that is far smaller than the mean. If a step
+        takes a link to where its law does not rise, as beyond a pole, this link goes half of the
+        way in the logarithm back to its last compression inside; the other links wait.
         """
         spans = self.network.spans  # the cosines: each link joins neighbours
         total = self.network.size * e

@@ -204,7 +204,7 @@ def spheres(content: Any) -> list[Sphere]:
 
 
 def _material(value: Any, name: str) -> Material:
-    """Read a material: a material like it, E, ν and the density."""
+    """Read a material: E, ν and the density, or a known material and the numbers that differ."""
     entries = Table(value, name, ("like", "E", "nu", "density"))
     # Density is needed by beads without a mass alone, which ask for it.
     needed = {"E", "nu"}

@@ -45,7 +45,7 @@ def fitting(unit: str, magnitude: float) -> Unit:
     magnitude : float
         The largest absolute value, in that unit.
     """
-    # Nothing has no prefix, and neither has what is not finite.
+    # No prefix suits 0, or a magnitude that is not finite.
     if unit not in PREFIXED or not 0 < magnitude < math.inf:
         return Unit(unit)
     own = 1.0

@@ -39,7 +39,7 @@ def shown(capsys, found, *arguments):
 @pytest.mark.parametrize("most", [1.0, 0.1])
 def test_a_study_prints_its_result(capsys, most):
     """A result that fails is printed too, and ends with 1; text has findings that fail alone."""
-    rows = (Table((Column("n", "sites"),), ((8,),), "rows"),)
+    rows = (Table((Column("n", "sites"),), [{"n": 8}], "rows"),)
     findings = (Finding("drift", 0.5, 0.0, 1.0), Finding("loss", 0.5, high=most))
     found = Report("one", rows, findings)
     ok = most > 0.5
@@ -59,7 +59,8 @@ def test_text_is_as_wide_as_the_terminal_and_a_pipe_gets_100(monkeypatch):
             return True
 
     columns = tuple(Column("", f"a long label {i}") for i in range(9))
-    wide = Report("wide", (Table(columns, (tuple(range(9)),)),), notes=("word " * 60,))
+    row = {column.label: i for i, column in enumerate(columns)}
+    wide = Report("wide", (Table(columns, [row]),), notes=("word " * 60,))
     texts = {100: study.printed_as("text", wide)}
     monkeypatch.setattr("sys.stdout", Screen())
     for width in (80, 60):

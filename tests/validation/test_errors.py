@@ -99,10 +99,14 @@ sensors = {contacts = [1, 5, 10, 15, 16, 17, 20, 25, 29, 30], beads = [15, 16, 1
 
 
 def test_errors_cover_the_rounding_of_a_broad_crest():
-    """Both runs err alike in its time; twice their difference left 5 of 81 outside."""
-    found = np.array([*ratios(scenefile.scene(tomllib.loads(REFLECTED)), 1e-10)])
-    assert np.sum(found < 1) <= 2
-    assert np.sum(found > LARGEST) <= 4
+    """Both runs err alike in its time; twice their difference left one in sixteen outside."""
+    found = []
+    for speed in ("0.9", "0.99", "1.05", "1.1"):
+        struck = tomllib.loads(REFLECTED.replace("0.99", speed))
+        found += ratios(scenefile.scene(struck), 1e-10)
+    # 2 to 7 of these 327, by the rounding of the run: 36 of 1,638 at ten speeds.
+    assert np.mean(np.array(found) < 1) < 0.04
+    assert np.mean(np.array(found) > LARGEST) < 0.05
 
 
 def test_the_error_of_a_speed_is_that_of_both_arrivals():
@@ -119,7 +123,10 @@ def test_paper():
     by_chance = 0
     for velocity in (0.001, 1.37, 60):
         found, finer = (
-            {row[0]: row[2] for row in paper.paper(velocity, rtol=rtol).tables[0].rows}
+            {
+                row["quantity"]: row["lattice"]
+                for row in paper.paper(velocity, rtol=rtol).tables[0].rows
+            }
             for rtol in (1e-9, FINER)
         )
         held(found, finer)
@@ -141,7 +148,8 @@ def test_widths(monkeypatch):
     for rtol in (widths.RTOL, FINER):
         monkeypatch.setattr(widths, "RTOL", rtol)
         rows = widths.widths().tables[0].rows
-        found.append(measurements(dict(enumerate(chain.from_iterable(rows)))))
+        cells = chain.from_iterable(row.values() for row in rows)
+        found.append(measurements(dict(enumerate(cells))))
     held(*found)
 
 

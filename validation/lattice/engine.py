@@ -46,7 +46,7 @@ from validation.lattice.kernel.arrays import (
     SHORTEST,
     Beads,
     Chain,
-    Drive,
+    Forcing,
     Pair,
     Plan,
     Splitting,
@@ -59,6 +59,7 @@ from validation.lattice.knots import Recorder
 from validation.lattice.laws import Contact
 from validation.lattice.result import Run
 from validation.lattice.schemes import BLANES_MOAN, RK853, RKN86
+from validation.scenes.forcing import Drive
 
 # The response of a drive is guessed: a run is made again where its energy turns out less than _WEAK
 # times, or more than _STRONG times, the energy that sets the tolerance, and no more than _GUESSES
@@ -81,8 +82,7 @@ _NUMBERS = 16
 # Beyond a free end nothing presses, but 0 times the force of another law, or of so high a power,
 # may be no number.
 _UNBOUNDED = 5.0
-# No drive: one interval of zeros, no oscillation, and a first bead that moves freely
-_FREE = Drive(np.zeros(1), np.zeros((1, 4)), 0.0, 0.0, 0.0, False)
+_STILL = Drive(velocity=0.0)  # numba knows no tuple without numbers
 _LOOSER = 1e4  # factor of a tolerance that is proposed; a run for errors has 1/100 of the user's
 _ANY_POWER = 0.25  # a general law may begin with δ^{1/4}
 
@@ -123,6 +123,7 @@ class _Integration:
         self.steps = rtol, longest
         self._make_plan(motion)
         self.chain = _chain(motion)
+        self.forcing = _forcing(motion)
         padded = len(self.chain.A)
         self.beads = _start(motion, padded, self.plan.scheme)
         self.recorder = Recorder(motion, self.chain)
@@ -148,7 +149,9 @@ class _Integration:
         with progress() as display:
             while t < end:
                 display(t / end)
-                t = go(self.chain, self.beads, self.plan, knots, now, glance)
+                t = go(
+                    self.chain, self.forcing, self.beads, self.plan, knots, now, glance
+                )
                 if now["response"] > self.plan.most:
                     response = float(now["response"])
                     self._make_plan(Motion(self.motion.scene, response))
@@ -281,7 +284,7 @@ def _chain(motion: Motion) -> Chain:
     rest[:contacts] = motion.rest
     load[:contacts] = motion.load
     opens[:contacts] = 1.0
-    laws = list(motion.laws)
+    laws = [*motion.laws] or [Contact(1.0)]  # of a single bead: the padding's
     # The padding, of stiffness 0, has the last contact's law, so that one loop takes both; but a
     # linear one where the last contact's force may overflow as a free end moves on (`_UNBOUNDED`).
     beyond = int(motion.law_of[-1]) if contacts else 0
@@ -310,11 +313,9 @@ def _chain(motion: Motion) -> Chain:
         rest=rest,
         load=load,
         opens=opens,
-        damped=motion.scene.damping is not None,
         laws=records(np.array(rows, LAW)),
         law=law_of,
         alike=alike,
-        drive=_drive(motion),
     )
 
 
@@ -325,13 +326,22 @@ def _record(law: Contact) -> tuple[Any, ...]:
     return (*numbers, *kinds, *law.addresses.values())
 
 
-def _drive(motion: Motion) -> Drive:
-    """Build the kernel's drive."""
-    drive = motion.scene.drive
-    if drive is None:
-        return _FREE
+def _forcing(motion: Motion) -> Forcing | None:
+    """Return damping and drive for the kernel; None for a chain with neither."""
+    scene = motion.scene
+    damped = scene.damping is not None
+    if scene.drive is None and not damped:
+        return None
+    drive = scene.drive or _STILL
     amplitude, w = drive.oscillation
-    return Drive(*drive.cubics, float(amplitude), w, float(drive.ramp), True)
+    return Forcing(
+        *drive.cubics,
+        float(amplitude),
+        w,
+        float(drive.ramp),
+        driven=scene.drive is not None,
+        damped=damped,
+    )
 
 
 def _exponent(law: Contact) -> float:

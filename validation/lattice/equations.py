@@ -116,18 +116,13 @@ class Motion:
         scene = self.scene
         damping = scene.damping
         contacts = len(self.stiffnesses)
-        # Contacts that are all alike are one entry, which fills all rows.
-        laws: tuple[Any, ...] = ((scene.k, scene.law),)
-        if isinstance(scene.k, tuple) or isinstance(scene.law, tuple):
-            laws = scene.contact_laws
+        laws = scene.contact_laws
         different = dict.fromkeys(laws)
         numbers = {law: n for n, law in enumerate(different)}
-        self.law_of = np.zeros(contacts, int)
-        self.law_of[:] = [numbers[law] for law in laws]
+        self.law_of = np.array([numbers[law] for law in laws], int)
         self.damping = np.zeros(contacts)
         if damping is not None:
-            k = np.zeros(contacts)
-            k[:] = [exponent for exponent, _ in laws]
+            k = np.array([exponent for exponent, _ in laws])
             # A wall has infinite mass.
             with_wall = np.append(1 / self.masses, 0.0)
             inverse = with_wall[: contacts + 1]
@@ -271,13 +266,9 @@ class Motion:
         # a wall, which has no equation of motion and is left out below.
         springs = np.zeros(n + 1)
         for number, law in enumerate(self.laws):
-            own: Any = slice(None)  # takes no copies, of a chain with one law
-            if len(self.laws) > 1:
-                own = self.law_of == number
+            own = self.law_of == number
             rest = self.rest[own]
             stiffnesses = self.stiffnesses[own]
-            if not rest.size:  # a single bead without a wall
-                continue
             # Scale of the compression: all the energy in the stiffest contact of this law.
             static = float(rest.max())
             largest = float(stiffnesses.max())

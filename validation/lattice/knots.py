@@ -79,7 +79,7 @@ class KnotPath:
             self.chain,
             self.knots,
             rows,
-            time,
+            np.array(time),  # numba compiles once more for an array that is read-only
             step,
             y,
             v,
@@ -141,7 +141,7 @@ class Recorder:
         times, states, watched = self.knots
         if not len(watched):
             return 0
-        # Its first knot is also the last one of the part before.
+        # The first knot of a part is also the last knot of the part before.
         part = times[:count].copy(), states[:count].copy()
         self._parts.append(part)
         self._bytes += part[1].nbytes

@@ -24,7 +24,7 @@ from validation.scenes.checks import SceneError
 # The energy of a smaller change, in units of the rest compression, is integrated: its digits cancel
 # in the difference of two energies. Eight points integrate powers up to 20 to 1e-16 up to here.
 _SMALL = 0.05
-_TRIED = 7000  # compressions at which an energy is looked for
+_TRIED = 7000  # compressions that are tried at a time, 1 % apart over thirty decades
 _OPENS = 1e-100  # a compression at which a contact is about to open, in any units
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 _NODES, _WEIGHTS = (1 + _NODES) / 2, _WEIGHTS / 2  # of an integral from 0 to 1
@@ -68,7 +68,7 @@ class Contact:
         if self.law is not None:
             return self._evaluated("force", compression)
         pressed = np.maximum(compression, 0.0)
-        if self.k == 1.5:
+        if self.k == 1.5:  # a root is faster than a power
             return pressed * np.sqrt(pressed)
         return pressed**self.k
 

@@ -43,7 +43,7 @@ _FINEST = 1000  # places, and times, of a map: a picture has some thousand pixel
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Run(Pictured):
-    """Records of the sensors in a simulation, its final state, and the drift of its invariants.
+    """Records of the sensors in a simulation, its final state, and the drift of its energy.
 
     Forces are total: the static force of gravity and precompression is included. S is the number of
     samples; all arrays are read-only.
@@ -186,18 +186,6 @@ class Run(Pictured):
         ):
             change += float(after.sum() - before.sum())
         return change / (motion.scales.energy or math.inf)
-
-    @cached_property
-    def momentum_drift(self) -> float | None:
-        """Change of the momentum over ``Σ m|v|`` at the end; None with a wall or a drive."""
-        if self.scene.wall is not None or self.scene.drive is not None:
-            return None
-        masses = self.motion.masses
-        before = self.motion.start[self.motion.size : -2]  # the velocities at the start
-        # No scalar product: BLAS starts threads, which cost more than they gain.
-        total = np.sum(masses * np.abs(self.velocities))
-        change = np.sum(masses * (self.velocities - before))
-        return float(change / (total or math.inf))
 
     def __repr__(self) -> str:
         sensors = len(self.scene.bead_sensors) + len(self.scene.contact_sensors)

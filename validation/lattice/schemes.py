@@ -39,7 +39,7 @@ import numpy as np
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import ROOM, Pair, Splitting
 
-_ROUNDING = 1e-25  # of a table with thirty digits
+_ROUNDING = 1e-25  # weights below are rounding, in a table of thirty digits
 
 
 def _rows(table: str) -> Array:

@@ -10,9 +10,8 @@ stores the motion of the beads near its sensors only.
 from __future__ import annotations
 
 import math
-from collections import deque
 from collections.abc import Iterable, Iterator
-from concurrent.futures import Future
+from functools import partial
 from itertools import islice
 from typing import Any
 
@@ -31,6 +30,8 @@ from validation.scenes.scene import Scene
 
 COMPILED = tuple(SCHEMES)
 """The engine's: an adaptive Runge–Kutta–Nyström pair, the default, and a symplectic splitting."""
+
+_PART = 8  # scenes a thread that wait at once; at the end of a part a thread waits for half a run
 
 
 def simulate(
@@ -112,11 +113,11 @@ def simulate_many(
     Parameters
     ----------
     scenes : iterable of Scene
-        Scenes, of which only some are taken ahead of the runs.
+        Scenes, of which some are taken at a time.
     workers : int, optional
         Number of threads, by default one for each core; compiled methods run in parallel.
     **options
-        Those of `simulate`.
+        Options of `simulate`.
 
     Yields
     ------
@@ -133,19 +134,12 @@ def simulate_many(
     """
     if not isinstance(scenes, Iterable):
         raise SceneError(f"scenes is {shorten(scenes)}: several scenes are wanted")
-    ahead: deque[Future[Run]] = deque()
     waiting = iter(scenes)
     count = cores() if workers is None else workers
     with threads(count) as pool:
-        while True:
-            # As many scenes wait as run, so that no thread is idle while a run is looked at.
-            wanted = 2 * count + 1 - len(ahead)
-            more = islice(waiting, wanted)
-            for scene in more:
-                ahead.append(pool.submit(simulate, scene, **options))
-            if not ahead:
-                return
-            yield ahead.popleft().result()
+        # A part at a time: runs that nobody has looked at yet take memory.
+        while part := [*islice(waiting, _PART * count)]:
+            yield from pool.map(partial(simulate, **options), part)
 
 
 def repeated(
@@ -162,6 +156,6 @@ def repeated(
     tolerances : iterable of float
         Tolerances.
     **options
-        Those of `simulate`.
+        Options of `simulate`.
     """
     return tuple(simulate(scene, rtol=rtol, **options) for rtol in tolerances)

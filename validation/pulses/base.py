@@ -24,10 +24,11 @@ _CLOSE = 1.0  # likewise in a record that would leave less than 2.5 widths for t
 _LONG = 10.0  # widths of the longest base: drift and hum are straight over such a time
 _SHORTEST = 0.9  # widths of the shortest base
 FEWEST_FOR_BASE = 16  # samples of a base, at least
-_GROWTHS = (1.0, 2.0)  # widths in which what rises before the pulse grows e-fold
+# Widths in which the terms that rise before the pulse grow e-fold.
+_GROWTHS = (1.0, 2.0)
 _LINE = 2  # terms of a straight line
 _BASES = (_LINE, _LINE + len(_GROWTHS))  # terms of the bases
-_SLOW = 5.0  # widths of a base, at least, that tells a slow rise from a level
+_SLOW = 5.0  # widths of the shortest base in which a slow rise differs from a line
 _GUESSED = 5  # samples at the start of a record that begins too late
 DRAWS = 200  # records that are drawn for an error
 
@@ -51,10 +52,9 @@ class Fit:
         return cls(sizes, f - terms @ sizes)
 
     def at(self, x: Array) -> Array:
-        """Return the base at times of the pulse, without what rises before it."""
+        """Return the base at times of the pulse, without the terms that rise before the pulse."""
         line = self.sizes[:_LINE]
-        terms = _terms(x, len(line))
-        return terms @ line
+        return _terms(x, len(line)) @ line
 
     @property
     def variance(self) -> float:
@@ -219,7 +219,8 @@ class Base:
         products = self.best.correlations
         size = count + len(products)
         white = rng.normal(size=(size, DRAWS))
-        # The products are those of both directions, and that at lag 0 counts once.
+        # The power spectrum sums the products at lags of both signs; lag 0 counts once. Half of it,
+        # as its scale does not matter, is the transform of the lags from 0 on less half of lag 0.
         spectrum = np.fft.rfft(products, size)
         one_sided = spectrum.real - products[0] / 2
         power = np.maximum(one_sided, 0.0)

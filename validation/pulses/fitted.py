@@ -24,20 +24,20 @@ from lwa.base.frozen import Estimate
 from validation.pulses.base import Base
 from validation.pulses.pulse import READINGS, MeasureError
 
-_BESIDE = 0.3  # widths in front of the rise and behind the fall that the fit takes in
-_READ = 0.1  # widths likewise in which the spline is read: its ends follow the noise
-_DEGREE = 5  # of the spline
-_LOWEST = 8  # coefficients
+_BESIDE = 0.3  # widths before the rise and after the fall that the fit takes in
+_READ = 0.1  # widths before and after in which the spline is read: its ends follow the noise
+_DEGREE = 5  # degree of the spline
+_LOWEST = 8  # fewest coefficients of the spline
 _HIGHEST = 120
 _RATIO = 1.2  # of numbers of coefficients that are tried
 # Coefficients in the end over the best number. With 1.5 the arrivals of records of 8 bits with
 # little noise are off by their scatter; with 2 the arrivals of loud records cover 59 %.
 _FINER = 1.7
-_DENSEST = 0.8  # coefficients over samples, at most
-_COARSER = 1.3  # coefficients over those of the spline that shows what is not resolved
+_DENSEST = 0.8  # most coefficients over samples
+_COARSER = 1.3  # ratio of the coefficients to those of a coarser spline, which shows what is missed
 _WITHIN = 0.7  # 0.68 and a little: the number of coefficients depends on the noise
 _GRID = 400  # intervals on which splines are read
-_MISFIT = 2.0  # residuals over σ², from which on they are the noise
+_MISFIT = 2.0  # mean squared residual over σ² from which on the residuals are the noise
 _LOUDEST = 0.05  # greatest noise over the peak, for which the pulse is located
 
 
@@ -119,7 +119,7 @@ def _smoothed(
     """Return the wanted number of coefficients, the spline with at most ``most`` of them, and the
     variance of its residuals.
 
-    correlation_time, variance : of the noise, the time in samples.
+    The noise has the ``variance`` and the ``correlation_time``, in samples.
     """
     ratios = math.log(most / _LOWEST) / math.log(_RATIO)
     tries = math.ceil(ratios) + 1

@@ -42,7 +42,7 @@ from validation.scenes.cells import longest
 
 _EARLY = 5  # samples at the start of the record that locate its base
 _FEWEST = 16  # samples above half the peak; with 12 the errors no longer cover
-_FEWEST_EXACT = 6  # likewise in a record without noise
+_FEWEST_EXACT = 6  # samples above half the peak in a record without noise
 _MOST = 400  # samples above half the peak; of more, neighbours are averaged
 _SMOOTH = 0.01  # noise of the moving mean over the peak
 # Share of the peak below which a pulse has fallen. It is less than a half: with a half, noise on
@@ -52,16 +52,19 @@ _LOW = 0.45
 # are equal.
 _EQUAL = 1e-6
 _CONSTANT = 1e-8  # range of a signal without pulses, over its size
-_SUDDEN = 11.0  # growth, in a width, of a force that begins: two widths before a Gaussian's top
+# Logarithm of the growth in a width from which on a force begins suddenly: that of a Gaussian two
+# widths before its top.
+_SUDDEN = 11.0
 _GRID = 400  # intervals in which the maxima of a pulse are looked for
 _SAME = 0.01  # distance, over the width, of two readings of one maximum
 _EXACT = 1e-4  # noise over the peak of a record without noise
-_UPRIGHT = 0.1  # rise over fall of a record that may be upright, at least
+_UPRIGHT = 0.1  # least rise of a record over its fall; with less the record is inverted
 # Widths behind the arrival: ends of two stretches that are searched for an undershoot
 _BEHIND = (1.5, 2.5, 3.5)
-_SURE = 4.0  # mean of a stretch below the base, in its standard deviations, at least
-_SHALLOWEST = 0.002  # likewise over the peak
-_ALIKE = 1.5  # ratio of the constants that two stretches tell, at most
+# Least depth of an undershoot, the mean of a stretch, in standard deviations.
+_SURE = 4.0
+_SHALLOWEST = 0.002  # least depth over the peak
+_ALIKE = 1.5  # largest ratio of the time constants by the two stretches
 
 
 class InvertedError(MeasureError):
@@ -72,10 +75,22 @@ class InvertedError(MeasureError):
 class NoisyPulse:
     """A pulse of a record.
 
-    numbers : arrival, peak above the base, fwhm, by these names; without the peak if the record
-    begins too late for a base. base : value below the pulse, at the time rise. missing : words on
-    the number that is missing. slope : growth of the base in time. noise : standard deviation,
-    times ``√n``, of the mean noise of n samples; 0 in a record without noise.
+    Parameters
+    ----------
+    numbers : mapping of Estimate
+        Arrival, peak above the base and fwhm, by these names; without the peak if the record begins
+        too late for a base.
+    base : float
+        Value below the pulse, at the time ``rise``.
+    missing : str, optional
+        Words on the number that is missing.
+    rise : float
+        Time at which the pulse rises through half of its peak.
+    slope : float
+        Growth of the base in time.
+    noise : float
+        Standard deviation, times ``√n``, of the mean noise of n samples; 0 in a record without
+        noise.
     """
 
     numbers: Mapping[str, Estimate]
@@ -148,7 +163,7 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
 def _noisy(t: Array, f: Array, step: float, unit: str) -> NoisyPulse:
     """Measure the first pulse of a record with noise.
 
-    step : distance of the levels to which samples are rounded. unit : of the times.
+    Samples are rounded to levels at the distance ``step``; times have the ``unit``.
     """
     start = f[:_EARLY].mean()
     rise, fall = _place(t, f - start)
@@ -191,7 +206,7 @@ def _noisy(t: Array, f: Array, step: float, unit: str) -> NoisyPulse:
 
 
 def _is_exact(f: Array) -> bool:
-    """Whether a record is without noise before it first exceeds half of its maximum."""
+    """True for a record without noise before it first exceeds half of its maximum."""
     swing = f - f[0]
     if swing.max() < _UPRIGHT * -swing.min():
         return False  # the moving mean tells that it is inverted
@@ -249,7 +264,7 @@ def _exact(t: Array, f: Array) -> NoisyPulse:
 def _front(f: Array, width: float) -> float:
     """Return the error of the first sample as the base of a record that begins in a front.
 
-    width : of the pulse, in samples. A record that begins with 0 may be that of a force which
+    The pulse has the ``width`` in samples. A record that begins with 0 may be that of a force which
     begins suddenly; the base of another one lies from 0 to its first sample.
     """
     first, second = map(float, np.diff(f[:3]))
@@ -266,7 +281,7 @@ def _front(f: Array, width: float) -> float:
 
 
 def in_unit(time: float, unit: str) -> str:
-    """Return a time with the prefix of its unit that suits it."""
+    """Return a time as text, with a prefix of its unit that suits its size."""
     suited = fitting(unit, time)
     return f"{time / suited.size:.3g} {suited.name}".strip()
 
@@ -383,7 +398,7 @@ def corrected(t: Array, signal: Array, constant: float) -> Array:
 def suggested(t: Array, signal: Array, pulse: NoisyPulse, unit: str) -> str:
     """Return a line on an undershoot behind a pulse, with the time constant; "" without any.
 
-    Waves behind a pulse rarely swing alike in both stretches. unit : of the times.
+    Waves behind a pulse rarely swing alike in both stretches. Times have the ``unit``.
     """
     arrival = pulse.numbers["arrival"].value
     width = pulse.numbers["fwhm"].value

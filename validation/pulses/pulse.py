@@ -31,8 +31,9 @@ FEWEST = 8  # samples above half the peak; a record with fewer is too coarse
 _POINTS = 4  # grid points in each smooth interval
 # Degree of an interpolant, over half an interval at most: error about 1e-16.
 _DEGREE = 10
-_AT_AN_END = 1e-6  # of an interval: a zero that is farther away is none of the signal's
-_NOISE = 1e-6  # of the largest |signal|: less may be rounding, or a spline's overshoot
+_AT_AN_END = 1e-6  # part of an interval beyond its ends in which a zero is the signal's
+# Part of the largest |signal| that may be rounding, or a spline's overshoot.
+_NOISE = 1e-6
 _LEAST = 0.01  # smallest prominence of a pulse over the highest peak
 # Tolerance, over that of a run, of a second run whose differences give the errors, and the factor
 # of a difference. The error of a step is nearly random: the difference to a less accurate run may
@@ -42,7 +43,7 @@ _LEAST = 0.01  # smallest prominence of a pulse over the highest peak
 # for a fifth less time, 5 and 1 %.
 FINER = 0.01
 SHARE = 2.0
-_FINEST = 1e-13  # tolerance: rounding hides less
+_FINEST = 1e-13  # smallest tolerance: rounding hides a smaller one
 # The time of a broad crest is known to some 1e-12, as rounding of the slope moves it: both runs may
 # then err alike, and a smaller difference is small by chance. At rtol 1e-10 this factor leaves 15
 # of 2,208 errors too small, the one above 45.

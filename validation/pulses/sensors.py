@@ -46,8 +46,8 @@ _QUICK = 0.9
 # Samples in the shortest time √(m/spring) of a bead between two contacts. The force of two beads
 # that collide, or of a Hertz chain's wave, has 1.5 or 1.9 √(m/spring) of one contact above half.
 _RESOLVED = 22.0
-_MOST_SAMPLES = 100_000  # spare memory
-_HIDDEN = 0.5  # relative error of the peak from which on rounding may make the pulse
+_MOST_SAMPLES = 100_000  # of more samples a run would take much memory
+_HIDDEN = 0.5  # relative error of the peak from which on a pulse may be rounding alone
 _LOOKS = 200  # times at which a sensor is searched for an earlier pulse
 
 
@@ -66,7 +66,7 @@ class Reading:
     places : tuple of int
         Number of the sensor, or of both, counted from 1.
     numbers : mapping of Estimate
-        Those of `READINGS` or of `SPEEDS` that are known, by name.
+        Known numbers by their names, which are among `READINGS` or `SPEEDS`.
     static : float
         Force at the (first) sensor from which dynamic forces count: the one at the start.
     missing : str, optional
@@ -188,7 +188,10 @@ def record(
             found += _readings(track, other, all_pulses)
 
     def doubt(first: Track, second: Track, sites: float) -> str:
-        """Return why one pulse does not pass two sensors at a speed; "" if it may."""
+        """Return the reason why two sensors do not see one pulse; "" if they may.
+
+        The argument ``sites`` is the speed between the sensors, in sites per time.
+        """
         peaks = [r.numbers["peak"].value + r.static for r in (first, second)]
         numbers = sorted(first.places + second.places)
         between = slice(numbers[0] - 1, numbers[1])
@@ -295,11 +298,11 @@ def tracks(
 def _place(scene: Scene, x: Array, kind: str, i: int) -> dict[str, float]:
     """Return the place of a sensor by the names `SPEEDS`; empty for a bead with one contact.
 
-    x : places of the beads, and of one behind the last.
+    x : places of the beads, and of one more bead, imagined a spacing after the last.
     """
     if kind == "bead" and not 0 < i < scene.contact_count:
         return {}
-    # A contact is midway between its beads, the wall's half a spacing behind the last bead.
+    # A contact is midway between its beads; the wall's is half a spacing after the last bead.
     site = i + 0.5 if kind == "contact" else float(i)
     place = {"speed_sites": site}
     if scene.spacings:
@@ -378,7 +381,8 @@ def speeds_between(
     total : callable
         Error of a time between two arrivals as a function of the errors of both.
     doubt : callable
-        Reason, "" if there is none, why one pulse does not pass two sensors at a speed in sites.
+        Reason why two sensors do not see one pulse, as a function of both and of the speed between
+        them in sites per time; "" if they may see one.
     """
     legs = []
     for first, second in pairwise(sensors):

@@ -46,11 +46,14 @@ LABELS = {  # measured numbers and their labels
 }
 PLACES = 10  # cells at which the pulse is recorded
 STRETCH = 4  # default number of cells from one place to the next, for k ≥ 3/2
-TOLERANCES = (1e-6, 1e-5)  # of the accurate run and of the one that gives its error
-FARTHER = 4  # times as far as the last place: where the pulse must still be the highest
+# Tolerances of the accurate run and of the run that gives its error.
+TOLERANCES = (1e-6, 1e-5)
+# Far stretch over the last place: there the pulse must still be the highest.
+FARTHER = 4
 STEADY = 0.1  # largest difference from the force that the decay predicts there, over this force
 _WEAKEST = 1 / 50  # peak force of the slowest pulse for which a run is long enough
-VERSION = 5  # of a file of points, changes with the definition of a quantity
+# Version of a file of points: another one for another definition of a quantity.
+VERSION = 5
 
 Key = tuple[sp.Rational, sp.Rational]  # k and ω of a point
 
@@ -148,8 +151,8 @@ def _measured(
         value = float(values[1 + best])
         measured[name] = Estimate(value, float(errors[name][best]))
     place = near[best + 1]
-    behind = near[-1] - far
-    decayed = math.exp(measured["decay"].value * behind)
+    farther_sites = far - near[-1]
+    decayed = math.exp(-measured["decay"].value * farther_sites)
     expected = fine["peak"][-1] * decayed
     ratios = rough["highest"][-1] / expected
     higher = float(np.mean(ratios))

@@ -16,7 +16,7 @@ To add a study, write one file in `validation.studies`, its test, a line in ``ST
         '''First line: what the study computes. The first paragraph is the help.'''
         rows = [{"n": n, "power_value": n**k} for n in (1, 2, 3)]
         columns = (Column("n", "n"), Column("power_value", "n^k"))
-        return Report(f"powers, k = {k:g}", (Table.of(columns, rows, "rows"),))
+        return Report(f"powers, k = {k:g}", (Table(columns, rows, "rows"),))
 
 A number with an error is an `lwa.Estimate` in a `Column` with ``error=True``; what must hold is a
 `Finding`; a picture is a `Panel` of curves. Text, JSON, CSV, ``--plot``, the progress and the exit

@@ -47,7 +47,7 @@ class Report(Pictured):
     Parameters
     ----------
     title : str
-        What was computed, in one or a few lines.
+        Description of the computation, in one line or a few.
     tables : tuple of Table
         Tables; text shows those with column labels. JSON has a table under its key, and tables
         without a key in the list ``tables``.
@@ -63,8 +63,8 @@ class Report(Pictured):
     Examples
     --------
     >>> from validation.report.table import Column
-    >>> row = Table((Column("n", "sites"), Column("c_value", "speed", format=".3f")), ((8, 1.25),))
-    >>> Report("one chain", (row,))
+    >>> columns = (Column("n", "sites"), Column("c_value", "speed", format=".3f"))
+    >>> Report("one chain", (Table(columns, [{"n": 8, "c_value": 1.25}]),))
     one chain
     <BLANKLINE>
     sites  speed
@@ -294,7 +294,7 @@ def option(
     Parameters
     ----------
     *names : str
-        Its flags, and the parameter's name where it differs from them.
+        Flags of the option, and the parameter's name where it differs from them.
     default : object
         Default value, shown in the help.
     says : str

@@ -20,8 +20,8 @@ from lwa.spheres.units import Unit, labelled
 WIDTH = 100
 """Characters of a printed line, at most, where the terminal's width is not known."""
 
-Row = Sequence[Any]
-"""Cells of a table, one for each column."""
+Row = Mapping[str, Any]
+"""Cells of a table by the keys of its columns, or by the label of a column that has no key."""
 
 Lines = Sequence[Sequence[str]]
 """Lines of cells as texts, the first of them the column labels."""
@@ -51,6 +51,11 @@ class Column:
     label: str = ""
     format: str | Callable[[Any], str] = ""
     error: bool = False
+
+    @property
+    def name(self) -> str:
+        """Key of its cells in a row."""
+        return self.key or self.label
 
     def text(self, cell: Any, size: float = 1.0) -> str:
         """Format one cell, in a unit of a size; ``-`` for None, NaN and ∞, as JSON has null."""
@@ -91,10 +96,11 @@ class Table:
 
     Parameters
     ----------
-    columns : tuple of Column
+    columns : sequence of Column
         Columns. If no column has a key, the labels are the names in JSON and CSV.
-    rows : tuple of sequences
-        Cells, one for each column.
+    rows : sequence of mappings
+        Cells by the column's key, or by its label if it has no key. A cell that is missing, where
+        the number does not exist, is None.
     key : str
         JSON name of the table.
     note : str
@@ -103,62 +109,37 @@ class Table:
         Meaning of ±, printed below the table.
     by : str
         Key of a column by whose values the printed table is divided; its text heads each part.
+
+    Examples
+    --------
+    >>> cubes = Table((Column("n", "n"), Column("", "n³")), [{"n": 2, "n³": 8}])
+    >>> print(cubes.text())
+    n  n³
+    2   8
     """
 
-    columns: tuple[Column, ...]
-    rows: tuple[Row, ...]
+    columns: Sequence[Column]
+    rows: Sequence[Row]
     key: str = ""
     note: str = ""
     errors: str = ""
     by: str = ""
 
-    @classmethod
-    def of(
-        cls,
-        columns: Sequence[Column],
-        records: Iterable[Mapping[str, Any]],
-        key: str = "",
-        **texts: str,
-    ) -> Table:
-        """Make a table of rows that are mappings.
-
-        Parameters
-        ----------
-        columns : sequence of Column
-            Columns.
-        records : iterable of mappings
-            Cells by the column's key, or by its label if it has no key. A cell that is missing is
-            None.
-        key, **texts
-            Further fields of the table.
-
-        Examples
-        --------
-        >>> cubes = Table.of((Column("n", "n"), Column("", "n³")), [{"n": 2, "n³": 8}])
-        >>> cubes.rows
-        ((2, 8),)
-        """
-        names = [column.key or column.label for column in columns]
-        # A row lacks a cell where the number does not exist, such as a speed to the first sensor.
-        rows = [tuple(map(record.get, names)) for record in records]
-        return cls(tuple(columns), tuple(rows), key, **texts)
-
     def _record(self, row: Row) -> dict[str, Any]:
         """The JSON names (with their dots) and values of a row, in the order of columns."""
-        names = [column.key for column in self.columns]
-        if not any(names):
-            names = [column.label for column in self.columns]
+        keyed = any(column.key for column in self.columns)
         record: dict[str, Any] = {}
-        for name, column, cell in zip(names, self.columns, row, strict=True):
-            if name:  # a column without a key, beside others with one, is only printed
-                record |= column.values(name, cell)
+        for column in self.columns:
+            # A column without a key, beside others with one, is only printed.
+            if column.key or not keyed:
+                record |= column.values(column.name, row.get(column.name))
         return record
 
     def document(self) -> list[dict[str, Any]]:
         """The rows for JSON.
 
-        >>> Table((Column("k"), Column("a_value.x"), Column("a_value.y")), ((2, 3, 4),)).document()
-        [{'k': 2, 'a_value': {'x': 3, 'y': 4}}]
+        >>> Table((Column("k"), Column("a_value.x")), [{"k": 2, "a_value.x": 3}]).document()
+        [{'k': 2, 'a_value': {'x': 3}}]
         """
         documents = []
         for row in self.rows:
@@ -175,15 +156,14 @@ class Table:
     def csv(self) -> str:
         """The table as CSV: a header of names and a line for each row, with empty cells for None.
 
-        >>> print(Table((Column("k"), Column("c", error=True)), ((2, None),)).csv(), end="")
+        >>> print(Table((Column("k"), Column("c", error=True)), [{"k": 2}]).csv(), end="")
         k,c_value,c_error_value
         2,,
         """
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         # Names do not depend on the cells: an empty row gives the header.
-        empty = [None] * len(self.columns)
-        writer.writerow(self._record(empty))
+        writer.writerow(self._record({}))
         for row in self.rows:
             cells = []
             for value in self._record(row).values():
@@ -217,15 +197,16 @@ class Table:
         return text
 
     def _parts(self) -> dict[str, list[list[str]]]:
-        """The printed lines of each part, the labels first, by its heading, "" for a whole."""
+        """The printed lines of each part, labels first, by heading; "" heads an undivided table."""
         # One prefix for all parts of a column, so that its numbers can be compared.
-        units = [self._unit(place) for place in range(len(self.columns))]
+        units = [self._unit(column) for column in self.columns]
         labels = [unit.name for unit in units if unit.name]
         parts: dict[str, list[list[str]]] = {}
         for row in self.rows:
             heading = ""
             cells = []
-            for column, cell, unit in zip(self.columns, row, units, strict=True):
+            for column, unit in zip(self.columns, units, strict=True):
+                cell = row.get(column.name)
                 if self.by and column.key == self.by:
                     heading = column.text(cell)
                 if column.label:
@@ -234,15 +215,15 @@ class Table:
             parts.setdefault(heading, [labels]).append(cells)
         return parts
 
-    def _unit(self, place: int) -> Unit:
+    def _unit(self, column: Column) -> Unit:
         """The label of a column in text, with its unit fitted to the largest cell."""
         largest = 0.0
         for row in self.rows:
-            number = without_error(row[place])
+            number = without_error(row.get(column.name))
             # Counts and exact numbers have no unit that a prefix would suit.
             if isinstance(number, float) and math.isfinite(number):
                 largest = max(largest, abs(number))
-        return labelled(self.columns[place].label, largest)
+        return labelled(column.label, largest)
 
 
 @dataclass(frozen=True)
@@ -317,7 +298,7 @@ def findings_table(findings: Iterable[Finding]) -> Table:
                 "ok": finding.ok,
             }
         )
-    return Table.of(FINDING_COLUMNS, records)
+    return Table(FINDING_COLUMNS, records)
 
 
 def without_error(cell: Any) -> Any:

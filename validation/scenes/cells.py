@@ -264,7 +264,7 @@ def runs(flags: ArrayLike) -> list[tuple[int, int]]:
 
 
 def name_of(header: str) -> str:
-    """Return a header without its unit, as it is compared.
+    """Return a header without its unit, in the form in which headers are compared.
 
     >>> name_of("# Time [ms]"), name_of("bead 8 Dynamic force (N)")
     ('time', 'bead 8 force')

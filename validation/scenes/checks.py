@@ -75,7 +75,7 @@ def alike(values: tuple[Any, ...]) -> Any:
 
 
 def check_count(value: Any, name: str, contacts: int) -> None:
-    """Raise `SceneError` for a tuple, as `one_or_each` returns it, of another length."""
+    """Raise `SceneError` for a tuple of another length; one value for all contacts passes."""
     if isinstance(value, tuple) and len(value) != contacts:
         raise SceneError(
             f"{name} has {len(value)} entries: one for all contacts is wanted, or one for each "

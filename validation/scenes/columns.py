@@ -105,9 +105,9 @@ class Column:
     Parameters
     ----------
     name : str
-        Its name, such as "time" or "bead 8 force".
+        Name of the column, such as "time" or "bead 8 force".
     number : int or None
-        Its number in the file, from 1; None for the times that a step states.
+        Number of the column in the file, from 1; None for times that a step states.
     unit : str
         Unit that the file states, "" for none.
     key, stated : str
@@ -122,13 +122,13 @@ class Column:
 
     @property
     def base(self) -> str:
-        """Unit of its quantity in SI."""
+        """SI unit of the column's quantity."""
         # The quantity is the last word of a name such as "bead 8 force".
         return BASES[self.name.split()[-1]]
 
     @property
     def size(self) -> float | None:
-        """Value in SI of an entry 1; None without a unit of its quantity."""
+        """Value in SI of an entry 1; None if the column has no unit of its quantity."""
         if not self.stated:
             return in_si(self.unit, self.base)
         statement = read_statement(self.stated, self.base)
@@ -137,7 +137,7 @@ class Column:
     @property
     def proposed(self) -> str:
         """A statement that is valid, in place of a unit that is missing or of another quantity."""
-        # Behind the slash stands the file's own name of its unit.
+        # After the slash stands the file's own name of its unit.
         return f"1 {self.base}/{self.unit}" if self.unit else self.base
 
     @property
@@ -233,11 +233,10 @@ class Columns:
 
     @property
     def si(self) -> bool:
-        """Whether a unit is stated, by the file or by the user; values are in SI then."""
+        """True if a unit is stated, by the file or by the user: values are in SI then."""
         texts = [column.stated or column.unit for column in self.named]
-        # A number alone is a factor.
-        letter = re.search(r"[^-+.\deE ]", "".join(texts))
-        return bool(letter)
+        # A number alone, with the E of its power, is a factor and states no unit.
+        return bool(re.search(r"[^-+.\deE ]", "".join(texts)))
 
     def refusal(
         self, words: str, missing: Sequence[str] = (), step: str = ""
@@ -247,7 +246,7 @@ class Columns:
         Parameters
         ----------
         words : str
-            What is wrong.
+            Description of the fault.
         missing : sequence of str
             Names for which columns are proposed, the time first.
         step : str
@@ -337,7 +336,7 @@ def in_si(unit: str, base: str) -> float | None:
 
 
 def known(unit: str) -> tuple[str, float] | None:
-    """Return the base unit of a unit and its multiple, or None for an unknown unit."""
+    """Return the base unit of a unit, and the unit's size in it; None for an unknown unit."""
     for base, spellings in _SPELLINGS.items():
         text = unit
         # Recorders that write in capitals mean ms by MS; MN may well be a meganewton.

@@ -147,7 +147,7 @@ class Drive:
     velocity : float, optional
         Constant velocity of a piston.
     amplitude, frequency : float, optional
-        Those of the oscillation ``amplitude sin(2π frequency t)``.
+        Amplitude and frequency of the motion ``amplitude sin(2π frequency t)``.
     ramp : float, optional
         Time within which the oscillation grows smoothly to its full size.
     time, displacement : sequence of float, optional

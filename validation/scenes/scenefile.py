@@ -47,13 +47,13 @@ from validation.scenes.forcing import DAMPINGS, Damping, Drive
 from validation.scenes.measured import MeasuredFile
 from validation.scenes.scene import Scene, contacts_of
 
-# So many beads are read in 2 s and 40 MB.
-MOST_BEADS = 1_000_000
-_STATED = ("columns", "units", "step")  # of the file of a drive
+MOST_BEADS = 1_000_000  # they are read in 2 s and 40 MB
+_STATED = ("columns", "units", "step")  # keys on the file of a drive
+# Keys of a striker or a defect that is a bead unlike the others
+_OTHER = ("like", "mass")
 _ABOUT = re.compile(
     r"([\w.]+) is (missing|unknown|.*: a (?:number|list|sequence) is wanted)(?:: .*)?"
 )
-_OTHER = ("like", "mass")  # of a bead that is unlike the others at its place
 
 
 def read_scene(
@@ -111,7 +111,7 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     materials = read_materials(file)
     beads = read_beads(file, materials)
     row = read_row(file, beads)
-    # Such a chain would fill the memory before it is refused.
+    # Counted before the beads are made: a chain too long would fill the memory.
     if row.size > MOST_BEADS:
         made = f"chain.cell and repeat make {shorten(row.size)} beads"
         raise SceneError(f"{made}: at most {MOST_BEADS} are wanted")

@@ -71,8 +71,8 @@ def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
         rows.append({"of": quantity, "amplitude": amplitude, "fwhm": fwhm})
         found |= {f"amplitude.{quantity}": amplitude, f"fwhm.{quantity}": fwhm}
     columns = [Column(name, error=True) for name in found]
-    data |= Table.of(columns, [found]).document()[0]
-    table = Table.of(_COLUMNS, rows, "rows", note=_NOTE, errors=_ERRORS)
+    data |= Table(columns, [found]).document()[0]
+    table = Table(_COLUMNS, rows, "rows", note=_NOTE, errors=_ERRORS)
     # The wave's own masses: a ratio that was given in seven digits is a special one.
     return Report(
         f"masses {wave.masses[0]:.6g}, {wave.masses[1]:.6g}; k = {wave.k:g}; A = D = 1\n"
@@ -113,12 +113,19 @@ def resonances(k: float, count: int) -> Report:
     rows = []
     curves = []
     for wave in waves:
-        rows.append((wave.omega, wave.c2, wave.tail, wave.residual))
+        rows.append(
+            {
+                "mass_ratio_value": wave.omega,
+                "c2_value": wave.c2,
+                "tail_value": wave.tail,
+                "residual_value": wave.residual,
+            }
+        )
         # Solid lines, whose colours tell them apart: dashes would hide the humps.
         curves.append(Curve(f"m2/m1 = {wave.omega:.4f}", xi, wave.force(xi), "-"))
     return Report(
         f"k = {waves[0].k:g}: dimers with a solitary wave",
-        (Table(_RATIOS, tuple(rows), "rows"),),
+        (Table(_RATIOS, rows, "rows"),),
         panels=(Panel("ξ / D", "force of a contact", tuple(curves)),),
         data={
             "k_value": waves[0].k,

@@ -43,12 +43,12 @@ from validation.studies.records import COLUMN_OPTIONS
 from validation.studies.run import print_option
 from validation.waves.solver import exact_wave
 
-_DRAWS = 1000  # of the coefficients of ln V, for the errors
+_DRAWS = 1000  # times that the coefficients of ln V are drawn, for the errors
 _HERTZ = 1.5
 # Exponents that are read: below, speeds do not depend on force; beyond, R is not known.
 LEAST = 1.01
 MOST = 4.0
-LARGEST = 700.0  # |ln A|, at most
+LARGEST = 700.0  # largest |ln A|: floats end at e^709
 RATIO_ERROR = 1e-10
 """Relative error of R(k), measured between the nodes of its interpolant."""
 _POWER = (Column("", "F = A δ^k"), Column("", "value", error=True))
@@ -156,11 +156,11 @@ def law(
         "one_power": fit.one_power,
     }
     for name, number in numbers.items():
-        rows.append((name + units.get(name, ""), number))
+        rows.append({"F = A δ^k": name + units.get(name, ""), "value": number})
         values |= {f"{name}_value": number.value, f"{name}_error_value": number.error}
     return Report(
         f"{len(force)} pulses, forces {force[0]:.4g} … {force[-1]:.4g}{' N' * file.si}",
-        (Table(_POWER, tuple(rows)),),
+        (Table(_POWER, rows),),
         panels=(Panel(*axes, curves, scale="xy"),),
         notes=(*file.notes, *notes, _NOTE),
         data=values,

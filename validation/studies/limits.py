@@ -37,8 +37,6 @@ class LeadingPower:
     order: int
     coefficient: sp.Expr  # the error is coefficient · ε^order + …
     constant: float  # |error| ≤ constant · ε^order at each of `EXPONENTS`
-    order_bound: float  # largest relative error of the fitted order
-    coefficient_bound: float  # largest relative error of the fitted coefficient
 
 
 # Powers and coefficients are derived, not fitted. Let v(x) be the strain of the wave with peak 1,
@@ -48,26 +46,15 @@ class LeadingPower:
 # 1 - ε/2 + 2ε²/5 for the lattice against 2/(k+1) for the theory. Errors: theory/lattice - 1.
 # The bounds are those errors and the terms behind the leading one: constants are 9 % above the
 # coefficient of the widths, as the next term of the force's has the same sign, and the coefficient
-# itself for the speed, whose next term has the other one; the order of a fit is off by 3 to 4 % for
-# the widths and by 11 % for the speed, its coefficient by at most 0.4 %.
-_WIDTH = LeadingPower(
-    order=1,
-    coefficient=sp.Rational(3, 20) - sp.log(2) / 15,
-    constant=0.113,
-    order_bound=0.05,
-    coefficient_bound=0.01,
-)
+# itself for the speed, whose next term has the other one.
+_WIDTH = LeadingPower(1, sp.Rational(3, 20) - sp.log(2) / 15, constant=0.113)
 LEADING_POWERS = {
     FORCE_WIDTH: _WIDTH,
     STRAIN_WIDTH: _WIDTH,
-    SPEED: LeadingPower(
-        order=2,
-        coefficient=-sp.Rational(3, 40),
-        constant=0.075,
-        order_bound=0.15,
-        coefficient_bound=0.01,
-    ),
+    SPEED: LeadingPower(2, -sp.Rational(3, 40), constant=0.075),
 }
+COEFFICIENT_BOUND = 0.01
+"""Relative, for a fitted coefficient, which errs by 0.4 %; of another order there is no limit."""
 
 _COLUMNS = (
     Column("quantity", "quantity"),
@@ -80,8 +67,8 @@ _COLUMNS = (
     Column("ok", "holds"),
 )
 _NOTE = """\
-Peak contact force 1, m = A = D = 1; error: theory/lattice - 1. From all k: the order n of the error
-in k - 1, and its limit: of error/(k-1)^n as k → 1."""
+Peak contact force 1, m = A = D = 1; error: theory/lattice - 1. Limit, from all k: of error/(k-1)^n
+as k → 1, n = 1 for the widths and 2 for the speed."""
 _ERRORS = "residual of the lattice's wave, and rounding"
 
 Record = dict[str, Any]
@@ -105,7 +92,7 @@ def limits() -> Report:
         records += compared(quantity, expected, measured)
     return Report(
         "The theory's limit k → 1 on the lattice",
-        (Table.of(_COLUMNS, records, "rows", note=_NOTE, errors=_ERRORS),),
+        (Table(_COLUMNS, records, "rows", note=_NOTE, errors=_ERRORS),),
         tuple(map(finding, records)),
     )
 
@@ -133,17 +120,11 @@ def lattice_numbers(k: sp.Expr) -> dict[str, Estimate]:
 def compared(
     quantity: str, theory: Sequence[sp.Expr], lattice: Sequence[Estimate]
 ) -> Iterator[Record]:
-    """Compare a quantity at each of `EXPONENTS`, and its error's order and coefficient as ε → 0."""
+    """Compare a quantity at each of `EXPONENTS`, and the coefficient of its error as ε → 0."""
     law = LEADING_POWERS[quantity]
     epsilon = np.array([float(k - 1) for k in EXPONENTS])
     # Seventeen digits, those of a float: evalf's default is fifteen.
     numbers = np.array([float(sp.N(value, 17)) for value in theory])
-
-    def order(*values: float) -> float:
-        """Fit the power of ε, the slope of the error's logarithm over ln ε."""
-        logs = np.log(np.abs(numbers / values - 1))
-        slope, _ = np.polyfit(np.log(epsilon), logs, 1)
-        return float(slope)
 
     def coefficient(*values: float) -> float:
         """Fit the limit of ``error/ε^order`` as ``ε → 0``."""
@@ -155,12 +136,8 @@ def compared(
     for k, value, number in zip(EXPONENTS, theory, lattice, strict=True):
         bound = law.constant * float(k - 1) ** law.order
         yield _row(quantity, value, number, bound) | {"k": k}
-    name = f"{quantity} order"
-    fitted = derived(order, *lattice)
-    yield _row(name, sp.Integer(law.order), fitted, law.order_bound)
-    name = f"{quantity} limit"
     fitted = derived(coefficient, *lattice)
-    yield _row(name, law.coefficient, fitted, law.coefficient_bound)
+    yield _row(f"{quantity} limit", law.coefficient, fitted, COEFFICIENT_BOUND)
 
 
 def _row(quantity: str, theory: sp.Expr, number: Estimate, bound: float) -> Record:

@@ -122,7 +122,7 @@ def recorded_chain(
 
 
 def of_momentum(wave: CompactWave, momentum: float) -> PhysicalWave:
-    """Return the theory's wave with a given momentum, a positive one."""
+    """Return the theory's wave with a given, positive momentum."""
     of_unit_force = number(PhysicalWave(wave, sp.S.One).momentum)
     # The momentum is proportional to F^{(k + 1)/(2k)}.
     power = number(2 * wave.k / (wave.k + 1))
@@ -274,7 +274,7 @@ def paper(
     return Report(
         f"{BEADS} beads, steel (the striker, {velocity:g} m/s) and PTFE in turn, steel wall; "
         f"sensors in beads {SENSORS[0]} and {SENSORS[1]}",
-        (Table.of(_COLUMNS, rows, "rows", note=_NOTE, errors=_COMPARED),),
+        (Table(_COLUMNS, rows, "rows", note=_NOTE, errors=_COMPARED),),
         panels=(_panel(runs[0], waves["F_m"]),),
         data={"velocity_value": velocity, "beads": BEADS, "sensors": SENSORS},
     )
@@ -361,8 +361,8 @@ def figures(progress: Progress[Any] = iter) -> Report:
     ``rows``: ``modulus_value`` of PTFE, ``height_value`` of the striker's drop, ``speed_value`` V_s
     and ``force_value`` F_m with errors, ``theory_value``, speed of the canonical wave at F_m;
     ``scaling``: ``exponent_value`` of V_s as a power of F_m by least squares, with its error, at
-    the first modulus; ``widths``: ``line``, ``stated_error_value`` and ``error_value`` of the FWHM;
-    ``forces``: ``N``, ``beads``, ``time_value``, ``force_value``.
+    the first modulus; ``widths``: ``line``, ``stated_error_value`` and ``error_value`` of the FWHM.
+    The force records are in the picture alone.
     """
     records = {N: forces(N) for N in progress([*RECORDED])}
     scalings = {E: scaling(E) for E in progress(MODULI)}
@@ -370,25 +370,16 @@ def figures(progress: Progress[Any] = iter) -> Report:
     exponents = [fitted_exponent(rows) for rows in scalings.values()]
     drops = [row for rows in scalings.values() for row in rows]
     panels = []
-    forces_document = []
     for N, run in records.items():
         (panel,) = run.pictured()
         panels.append(replace(panel, title=f"{N}:1 chain"))
-        forces_document.append(
-            {
-                "N": N,
-                "beads": RECORDED[N],
-                "time_value": run.time,
-                "force_value": run.bead_force,
-            }
-        )
     panels.append(_scaling_panel(scalings))
     fitted = " and ".join(map(str, exponents))
     return Report(
         "Figures 2 and 3 of Porter et al. (2008)",
         (
-            Table.of(_DROPS, drops, "rows", errors=_COMPARED),
-            Table.of(_WIDTHS, stated_errors(), "widths", note=_WIDTH_NOTE),
+            Table(_DROPS, drops, "rows", errors=_COMPARED),
+            Table(_WIDTHS, stated_errors(), "widths", note=_WIDTH_NOTE),
         ),
         panels=tuple(panels),
         notes=(f"V_s ~ F_m^e: e = {fitted}; the paper fits 0.1666.",),
@@ -397,7 +388,6 @@ def figures(progress: Progress[Any] = iter) -> Report:
                 "exponent_value": exponents[0].value,
                 "exponent_error_value": exponents[0].error,
             },
-            "forces": forces_document,
         },
     )
 

@@ -52,7 +52,7 @@ _COLUMN = (
     "repeatable. Names: time, bead 8 force, contact 8 force, bead 8 velocity, force, speed."
 )
 
-_TIMES = {"column": "1", "unit": "s"}  # examples of what is stated of a column time
+_TIMES = {"column": "1", "unit": "s"}  # examples of statements on the column of times
 
 
 def _pairs(
@@ -400,7 +400,7 @@ def compare(
     shown = f"{shift.value:.6g} {chain.units and 's'}".strip()
     return Report(
         str(chain),
-        (Table.of(_COLUMNS, rows, "rows"),),
+        (Table(_COLUMNS, rows, "rows"),),
         panels=(read.panel(curves),),
         notes=(*read.notes, _COMPARED.format(shown, leader.name)),
         data={"shift_value": shift.value},

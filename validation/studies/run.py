@@ -72,21 +72,14 @@ def report(recording: Recording, every: bool = False) -> Report:
     ``speeds``: ``kind``, ``from``, ``to``, ``speed_sites_value``, ``speed_value`` (null without
     spacings), ``missing``; ``end`` of the bead sensors: ``bead``, ``velocity_value`` and
     ``displacement_value`` at the end; each value with its error, as ``arrival_error_value``, and
-    null where ``missing`` is the reason; ``energy_drift_value``, and ``momentum_drift_value``, null
-    with a wall; with damping the energy ``dissipated_value``, with a drive its ``work_value``.
+    null where ``missing`` is the reason; ``energy_drift_value``; with damping the energy
+    ``dissipated_value``, with a drive its ``work_value``.
     """
     run = recording.run
     scene = run.scene
-    # A wall takes momentum.
-    momentum = "not conserved"
-    if run.momentum_drift is not None:
-        momentum = f"drift {run.momentum_drift:.0e}"
     title = f"{scene}, energy drift {run.energy_drift:.0e}"
     joule = scene.units and " J"
-    data = {
-        "energy_drift_value": run.energy_drift,
-        "momentum_drift_value": run.momentum_drift,
-    }
+    data = {"energy_drift_value": run.energy_drift}
     if scene.damping is not None:
         data["dissipated_value"] = run.dissipated
         title += f", dissipated {run.dissipated:.6g}{joule}"
@@ -119,8 +112,8 @@ def report(recording: Recording, every: bool = False) -> Report:
         for bead, state in recording.end.items()
     ]
     return Report(
-        f"{title}, momentum {momentum}",
-        (*tables, Table.of(columns, end, "end")),
+        title,
+        (*tables, Table(columns, end, "end")),
         panels=tuple(run.pictured()),
         notes=(missing, note),
         data=data,
@@ -196,8 +189,8 @@ def reading_tables(
     ]
     leg_rows = [_row("between", leg) for leg in speeds]
     tables = [
-        Table.of(columns, rows, "sensors"),
-        Table.of(legs, leg_rows, "speeds"),
+        Table(columns, rows, "sensors"),
+        Table(legs, leg_rows, "speeds"),
     ]
     lines = []
     for reading in (*sensors, *speeds):
@@ -371,6 +364,4 @@ def materials() -> Report:
         for constant in ("E", "nu", "density"):
             row[f"{constant}_value"] = float(getattr(material, constant))
         rows.append(row)
-    return Report(
-        "Materials", (Table.of(_MATERIALS, rows, "rows", note=_MATERIALS_NOTE),)
-    )
+    return Report("Materials", (Table(_MATERIALS, rows, "rows", note=_MATERIALS_NOTE),))

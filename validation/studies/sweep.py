@@ -14,7 +14,6 @@ from concurrent.futures import (
     BrokenExecutor,
     CancelledError,
     Executor,
-    Future,
     as_completed,
 )
 from contextlib import AbstractContextManager
@@ -48,11 +47,10 @@ RANGES = {
 CLOSURES = {"linear": "paper's closure", "canonical": "full closure, canonical field"}
 """Theories beside the lattice, with their labels."""
 
-_MOST = 1000  # values of an axis; a grid of 10⁶ points takes days
+_MOST = 1000  # values of an axis; a grid of 10⁶ points takes days, and waits in 2 GB
 MEMORY = Path(":memory:")
 """SQLite's name of a database that is not kept, of a sweep without a file."""
 
-AHEAD = 1000  # points that wait for a worker, at most, whatever the size of the grid
 Axis = Sequence[Rational]
 
 _LABELS = {"k": "k", "omega": "ω = m2/m1"}
@@ -106,7 +104,7 @@ def report(points: Sequence[Point], stretch: int = STRETCH) -> Report:
             missing.append(f"k = {found.k}, ω = {found.omega}: {found.missing}")
     return Report(
         "The steady pulse of a struck dimer chain",
-        (Table.of(_COLUMNS, rows, "points", by="k", note=_NOTE, errors=_ERRORS),),
+        (Table(_COLUMNS, rows, "points", by="k", note=_NOTE, errors=_ERRORS),),
         panels=tuple(_panels(rows)),
         notes=("\n".join(missing),),
         data={"stretch": stretch, "missing": len(missing)},
@@ -240,19 +238,11 @@ def measured(
     with workers as executor, file.opened() as (points, keep):
         # Points of an earlier sweep with this file are not computed again.
         missing = [key for key in product(ks, omegas) if key not in points]
-
-        def finished() -> Iterator[Future[Point]]:
-            # An executor keeps all that it is given: it is given so many points at once.
-            for start in range(0, len(missing), AHEAD):
-                waiting = [
-                    executor.submit(point, *key, file.stretch)
-                    for key in missing[start : start + AHEAD]
-                ]
-                # The first that is done, whatever its place in the grid.
-                yield from as_completed(waiting)
-
         try:
-            for _, future in zip(progress(missing), finished(), strict=True):
+            waiting = [executor.submit(point, *key, file.stretch) for key in missing]
+            # The first that is done, whatever its place in the grid.
+            finished = as_completed(waiting)
+            for _, future in zip(progress(missing), finished, strict=True):
                 new = future.result()
                 points[new.k, new.omega] = new
                 keep(new)
@@ -345,7 +335,7 @@ def sweep(
     grid = _values(ks, "k"), _values(omegas, "omega")
     # A stretch of one cell is shorter than the pulse.
     stretch = integer(stretch, "stretch", 2, 100)
-    # Before the file: a refusal leaves none behind.
+    # Checked before the file is made: a refusal leaves no file behind.
     if address is not None and jobs is not None:
         raise InputError(f"jobs is {jobs}: a cluster has its own workers", jobs=None)
     path = MEMORY

@@ -37,12 +37,13 @@ from numpy.typing import NDArray
 
 from lwa.base.arrays import Array
 
-MOST_STEPS = 25  # of Newton's method, which takes 4 to 12 where it converges
-FEWEST = 40  # points on 0 … L
+MOST_STEPS = 25  # most steps of Newton's method, which takes 4 to 12 where it converges
+FEWEST = 40  # fewest points on 0 … L
 # Share of an unknown's size. With longer steps a far start is lost, or leads to any special ratio;
 # most starts of special ratios take fewer steps than with 0.3.
 _LONGEST_STEP = 0.1
-_CONVERGED = 1e-12  # step over the unknowns' sizes; Newton's next one would be rounding
+# Step over the unknowns' sizes after which a further step would be rounding.
+_CONVERGED = 1e-12
 _STALLED = 1e-9  # step below which a fall of less than four means rounding
 Pair = tuple[float, float]  # m1 and m2, or their inverses
 Series = NDArray[np.complex128]  # coefficients of e^{iqξ}, q = 0, π/L, …, πn/L

@@ -203,7 +203,7 @@ class ExactWave(Pictured):
 
     @cached_property
     def _strains(self) -> newton.Series:
-        """The series of a, but for the mean, as ``series`` is that of F_a."""
+        """Fourier coefficients of the strain a, without the mean; compare ``series``, of F_a."""
         m1, m2 = self.masses
         inverse = (1 / m1, 1 / m2)
         strain = newton.respond(self.series, inverse, self.half_period) / self.c2
@@ -265,7 +265,7 @@ def _tail(wave: ExactWave) -> float:
 
 def _residual(wave: ExactWave) -> float:
     """The error in the equations of motion, see `ExactWave.residual`."""
-    # Strains that follow from the forces of the strains: of a solution the same ones.
+    # The strains give forces, and the forces give strains: for a solution the same strains.
     twice = 2 * (len(wave.series) - 1)
     xi = newton.periodic_grid(wave.half_period, twice)
     series = newton.coefficients(wave.force(xi))

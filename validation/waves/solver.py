@@ -50,8 +50,8 @@ SHALLOWEST = 1e-4  # rise of a wave on a background over the peak strain, at lea
 # on higher ones the theory's is.
 STEEP = 3.0
 HIGH = 0.5
-STEEPEST = 60.0  # k: beyond, 1200 points take a second
-STEEPEST_LOADED = 8.0  # k on a background, where narrower waves were not tried
+STEEPEST = 60.0  # largest k: 1200 points take a second there
+STEEPEST_LOADED = 8.0  # largest k on a background, where narrower waves were not tried
 NEAR = 1e-7  # relative difference from a special mass ratio: ratios are given in seven digits
 FOLLOWED = (1.15, 1.2, 1.25, 1.3)
 """Least k of the third to the sixth special ratio, measured: below, the strain T that tells a

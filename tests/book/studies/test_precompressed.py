@@ -12,7 +12,6 @@ from lwa import Cell, Power
 from lwa.linear.dispersion import LoadedChain
 from tests.commands import ended
 from validation.lattice.simulate import simulate
-from validation.scenes.chains import numeric_cell
 
 
 def rows(**options):
@@ -72,7 +71,7 @@ def test_masses_matter_to_widths_only():
 
 def test_why_dimers_are_worse():
     """At the frequency of the tail the optical branch's phase speed is the speed of the wave."""
-    wave = Wave(numeric_cell((1, "1/2")), Power("3/2"), 1.0)
+    wave = Wave(Cell((1, "1/2"), spacing=1), Power("3/2"), 1.0)
     run = simulate(wave.scene, method="symplectic", rtol=1e-7)
     found = wave.read(run, 1)
     assert found["decay"] > 1e-5

@@ -43,7 +43,6 @@ def test_any_scene_gives_finite_numbers_or_one_line(seed, factors, changed, meth
     numbers = [
         run.end,
         run.energy_drift,
-        run.momentum_drift or 0,
         *run.columns().values(),
     ]
     for reading in (*made.sensors, *made.speeds):

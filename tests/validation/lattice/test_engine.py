@@ -60,7 +60,7 @@ def test_a_chain_of_several_tiles_moves_as_its_mirror_image(method, damping):
 
 def test_many_scenes_run_as_single_ones_and_are_taken_lazily():
     scenes = [
-        struck((1,), 40, duration=d, contact_sensors=(20,)) for d in range(10, 40)
+        struck((1,), 40, duration=d, contact_sensors=(20,)) for d in range(10, 45)
     ]
     waiting = iter(scenes)
     runs = simulate_many(waiting, workers=2)

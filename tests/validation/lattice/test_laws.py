@@ -9,7 +9,7 @@ import pytest
 from lwa.law import named
 from validation.lattice.laws import Contact
 from validation.lattice.simulate import simulate
-from validation.scenes.chains import carrying
+from validation.scenes.scene import Scene
 
 
 def test_todas_soliton_runs_through_200_beads_at_its_own_speed():
@@ -21,8 +21,10 @@ def test_todas_soliton_runs_through_200_beads_at_its_own_speed():
         return np.log1p((c / np.cosh(kappa * (i - first) - c * t)) ** 2)
 
     v = c * np.diff(np.tanh(kappa * (np.arange(-1, n) - first)))
-    scene = carrying(
-        (1,) * n, compression(np.arange(n - 1), 0), v, law=named("exponential", 1),
+    strain = compression(np.arange(n - 1), 0)
+    scene = Scene(
+        masses=(1,) * n, stiffnesses=(1,) * (n - 1), law=named("exponential", 1),
+        displacements=np.cumsum(strain[::-1])[::-1], velocities=v,
         duration=140 * kappa / c, contact_sensors=(90, 150), samples=501,
     )  # fmt: skip
     run = simulate(scene, rtol=1e-12)

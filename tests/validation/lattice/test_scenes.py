@@ -2,7 +2,10 @@
 
 import pytest
 
-from tests.validation.lattice.scenes import errors
+from tests.validation.lattice.scenes import drawn, errors
+from validation.lattice.kernel.advance import advance
+from validation.lattice.kernel.samples import interpolate
+from validation.lattice.simulate import simulate
 
 # All dampings and drives, laws that pull, open and jump, contacts of their own.
 FEW = 5, 6, 7, 19, 22, 24, 42
@@ -18,3 +21,13 @@ def test_random_scenes(seed):
     assert motion.max() < 10
     # At 1e-10 one is at 20, by such an almost jump beside a driven bead, and one at 16.
     assert energy.max() < 30
+
+
+def test_numba_compiles_for_two_kinds_of_scenes_only():
+    """Chains with damping or a drive, and all others; samples and signals have one program."""
+    for seed in FEW:
+        run = simulate(drawn(seed), rtol=1e-6)
+        assert len(run.bead_force) == run.scene.size  # samples
+        run.signal("bead", 0)  # finds when the bead's contacts open
+    assert len(advance.signatures) == 2
+    assert len(interpolate.signatures) == 1

@@ -52,7 +52,8 @@ def test_a_chain_at_rest_has_no_pulses():
     """Rounding moves beads that carry their weight."""
     at_rest = replace(scene(tomllib.loads(example("vertical"))), velocities=())
     for reading in record(at_rest, every=True).sensors:
-        assert reading.missing.startswith("no pulse: the force is the static one")
+        # By its rounding the dynamic force is nowhere positive, or it is the static one.
+        assert reading.missing.startswith("no pulse")
 
 
 @pytest.mark.parametrize(

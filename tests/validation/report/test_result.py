@@ -11,15 +11,15 @@ from validation.pictures import Curve, Panel
 from validation.report.study import Report
 from validation.report.table import Column, Finding, Table
 
-TABLE = Table((Column("n", "sites"),), ((8,),))
+TABLE = Table((Column("n", "sites"),), [{"n": 8}])
 PANEL = Panel("x", "y", (Curve("c", [1], [3]),))
 PART = Report("a part", (TABLE,), (Finding("drift", 0.5, 0.0, 1.0),), (PANEL,))
 
 
 def test_a_table_without_keys_is_in_json_and_csv():
     """Its labels are the names; the CSV is the first table that has rows."""
-    cubes = Table.of((Column("", "n"), Column("", "n³")), [{"n": 2, "n³": 8}])
-    report = Report("cubes", (Table((Column("k"),), ()), cubes))
+    cubes = Table((Column("", "n"), Column("", "n³")), [{"n": 2, "n³": 8}])
+    report = Report("cubes", (Table((Column("k"),), []), cubes))
     assert report.document() == {"tables": [[], [{"n": 2, "n³": 8}]]}
     assert report.csv() == "n,n³\n2,8\n"
 

@@ -21,11 +21,14 @@ TABLE = Table(
         Column("error_value.F_m", "by F_m", format="+.1%"),
         Column("", "unit"),
     ),
-    (
-        (sp.Rational(3, 2), "a", Estimate(4e-4, 0.5e-5), 0.25, "m/s"),
-        (sp.Integer(2), "b", None, -0.5, "<m/s>"),
-        (sp.Integer(3), "a", Estimate(2e-7, 0.25e-7), math.nan, "m/s"),
-    ),
+    [
+        dict(zip(("k", "chain", "time", "error_value.F_m", "unit"), cells, strict=True))
+        for cells in (
+            (sp.Rational(3, 2), "a", Estimate(4e-4, 0.5e-5), 0.25, "m/s"),
+            (sp.Integer(2), "b", None, -0.5, "<m/s>"),
+            (sp.Integer(3), "a", Estimate(2e-7, 0.25e-7), math.nan, "m/s"),
+        )
+    ],
     "rows",
     errors="a deviation",
     by="chain",
@@ -61,7 +64,7 @@ def test_text_falls_into_parts_and_has_one_prefix_a_column():
 
 
 def test_a_table_without_labels_is_for_programs():
-    silent = Table((Column("k"),), ((1,),), "rows", note="alone")
+    silent = Table((Column("k"),), [{"k": 1}], "rows", note="alone")
     assert (silent.text(), silent.csv()) == ("", "k\n1\n")
 
 

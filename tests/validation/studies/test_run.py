@@ -49,12 +49,8 @@ def test_a_report_states_what_is_conserved_and_what_is_lost():
     free = struck((1.0, 0.5), 20, duration=20, contact_sensors=(8, 12))
     shown = report(record(free, rtol=1e-9)).document()
     assert abs(shown["energy_drift_value"]) < 1e-8
-    assert (
-        abs(shown["momentum_drift_value"]) < 1e-13
-    )  # by Newton's third law, to rounding
     damped = replace(free, wall=1.0, gravity=0.01, damping=Damping("contact", 0.05))
     shown = report(found := record(damped, rtol=1e-8))
-    assert shown.document()["momentum_drift_value"] is None
     assert shown.document()["dissipated_value"] == found.run.dissipated > 0
     assert f"dissipated {found.run.dissipated:.6g}" in " ".join(shown.text().split())
     assert "work_value" not in shown.document()

@@ -31,10 +31,8 @@ KS, OMEGAS = (R(3),), (R(1, 4), R(1, 2), R(3, 4), R(1))
 
 @pytest.fixture(scope="module")
 def reference():
-    """Four points, of which three wait for a worker at most."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("validation.studies.sweep.AHEAD", 3)
-        return measured(KS, OMEGAS, PointFile(MEMORY, 2), threads(1), iter)
+    """Four points."""
+    return measured(KS, OMEGAS, PointFile(MEMORY, 2), threads(1), iter)
 
 
 def numbers(found):

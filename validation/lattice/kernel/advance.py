@@ -11,6 +11,7 @@ from validation.lattice.kernel.arrays import (
     SQUARES,
     Beads,
     Chain,
+    Forcing,
     Knots,
     Plan,
 )
@@ -24,7 +25,6 @@ from validation.lattice.kernel.pair import (
     begin_step,
     end_step,
     estimate_errors,
-    evaluate_end,
     evaluate_stages,
     step_error,
 )
@@ -50,7 +50,13 @@ def advance_front(beads: Beads, plan: Plan, now: Any) -> None:
 
 @cached
 def advance(
-    chain: Chain, beads: Beads, plan: Plan, knots: Knots, now: Any, tries: int
+    chain: Chain,
+    forcing: Forcing | None,
+    beads: Beads,
+    plan: Plan,
+    knots: Knots,
+    now: Any,
+    tries: int,
 ) -> float:
     """Integrate to the end, or for at most ``tries`` tried steps, or until the knots are full.
 
@@ -58,41 +64,44 @@ def advance(
     be added, and where the response is greater than ``plan.most``.
     """
     until = now.tries + tries
+    h = now.h
     hi = plan.size  # beads that are moved; all of them at the start
-    # ``made``: the beads are at a new time, whose knot is not stored yet. ``corrected``: and the
-    # forces there are not those of the last stage. Both hold at the start of a run; a call that
-    # goes on finds a stored knot.
-    made = corrected = now.tries == 0
+    # The forces at the time reached are computed once more after a step that was corrected, and
+    # first of all at the start of a run. A call that goes on finds them, and a stored knot.
+    again = now.tries == 0
     while True:
-        if made:
-            if corrected:
-                evaluate_end(chain, beads, plan, hi)
+        if not again:
+            full = now.stored == len(knots.time)
+            if now.t == plan.end or full or now.response > plan.most:
+                return float(now.t)
+            h = now.h
+            left = plan.stops[now.stop] - now.t
+            # A rest of rounding would be a step of no length.
+            stopping = h > left - 1e-9 * h
+            if stopping:
+                h = left
+            if now.tries == until or now.t + h == now.t:
+                return float(now.t)
+            hi = moving(now)
+            now.tries += 1
+        evaluate_stages(chain, forcing, beads, plan, now.t, h, hi, again)
+        made = again
+        if again:
+            again = False
+        else:
+            estimate_errors(beads, plan, h, hi)
+            beads.books[:] = 0.0
+            marks = mark_kinks(chain, forcing, beads, plan, h, hi)
+            i = -1
+            for _ in range(marks):
+                i = next_mark(beads.marks, i + 1)
+                correct_contact(chain, forcing, beads, plan, now.t, h, i)
+                if beads.books[SQUARES] > 1.0:
+                    break  # the step is refused, whatever the other contacts add
+            error = step_error(beads, plan, h, hi)
+            made = end_step(beads, plan, now, h, error, stopping)
+            again = made and marks > 0
+        if made and not again:
             begin_step(beads, hi)
             advance_front(beads, plan, now)
-            store_knot(chain, beads, knots, now)
-        full = now.stored == len(knots.time)
-        if now.t == plan.end or full or now.response > plan.most:
-            return float(now.t)
-        h = now.h
-        left = plan.stops[now.stop] - now.t
-        # A rest of rounding would be a step of no length.
-        stopping = h > left - 1e-9 * h
-        if stopping:
-            h = left
-        if now.tries == until or now.t + h == now.t:
-            return float(now.t)
-        hi = moving(now)
-        now.tries += 1
-        evaluate_stages(chain, beads, plan, now.t, h, hi)
-        estimate_errors(beads, plan, h, hi)
-        beads.books[:] = 0.0
-        marks = mark_kinks(chain, beads, plan, h, hi)
-        i = -1
-        for _ in range(marks):
-            i = next_mark(beads.marks, i + 1)
-            correct_contact(chain, beads, plan, now.t, h, i)
-            if beads.books[SQUARES] > 1.0:
-                break  # the step is refused, whatever the other contacts add
-        error = step_error(beads, plan, h, hi)
-        made = end_step(beads, plan, now, h, error, stopping)
-        corrected = marks > 0
+            store_knot(forcing, beads, knots, now)

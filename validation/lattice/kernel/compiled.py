@@ -124,7 +124,7 @@ class _Announcement(Listener):
             and sys.stderr.isatty()
         ):
             print(
-                "the engine is compiled for this machine, once",
+                "the engine is compiled for scenes of this kind, once",
                 file=sys.stderr,
                 flush=True,
             )

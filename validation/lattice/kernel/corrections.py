@@ -27,6 +27,7 @@ from validation.lattice.kernel.arrays import (
     WORK_ERROR,
     Beads,
     Chain,
+    Forcing,
     Pair,
     Plan,
 )
@@ -91,7 +92,14 @@ def _ends(
 
 
 @inlined
-def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int:
+def mark_kinks(
+    chain: Chain,
+    forcing: Forcing | None,
+    beads: Beads,
+    plan: Plan,
+    h: float,
+    hi: int,
+) -> int:
     """Mark the contacts of beads 0 … hi-1 that open or close within a step, or nearly do.
 
     There F(δ) has no smooth derivatives (a kink), and the pair's quadrature errs. A contact whose
@@ -114,7 +122,8 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
     # squared errors of all beads, so that each contact may have a share of 1/√hi.
     least = _SLIGHT * plan.v * plan.lightest / (h * math.sqrt(hi))
     count = 0
-    near = _NEAR_DAMPED if chain.damped else _NEAR
+    damped = forcing is not None and forcing.damped
+    near = _NEAR_DAMPED if damped else _NEAR
     for i in range(index(hi)):
         before = rest[i] + y[i] - y[i + ONE]
         after = rest[i] + next_y[i] - next_y[i + ONE]
@@ -129,8 +138,8 @@ def mark_kinks(chain: Chain, beads: Beads, plan: Plan, h: float, hi: int) -> int
         nearly_open = (most > 0.0) & (min(before, after) < share * most)
         # A damping force can begin or end with a jump, which matters however weak the force is at
         # the step's ends, and while δ > 0, as damping may not pull.
-        parted = chain.damped & ((before > 0.0) != (after > 0.0))
-        changed = chain.damped & ((first > 0.0) != (then > 0.0))
+        parted = damped & ((before > 0.0) != (after > 0.0))
+        changed = damped & ((first > 0.0) != (then > 0.0))
         # A contact that is open at both ends can close in between if the tangent of δ at an end
         # comes to δ > 0 within the step: with one inflection at most δ lies below one of both
         # tangents where it is greatest. The motion of a driven bead has no more in a step
@@ -155,7 +164,7 @@ def next_mark(marks: Array, i: int) -> int:
 
 @inlined
 def _drive_curve(beads: Beads, h: float) -> kinks.Curve:
-    """Return the motion of the driven bead over a step, from where it is."""
+    """Return the motion of the driven bead over a step, as a curve that starts at 0."""
     start = 0.0, h * beads.v[0], h * h * beads.given[0]
     moved = beads.next_y[0] - beads.y[0]
     end = moved, h * beads.next_v[0], h * h * beads.given[1]
@@ -163,10 +172,10 @@ def _drive_curve(beads: Beads, h: float) -> kinks.Curve:
 
 
 @inlined
-def _drive_misfit(chain: Chain, beads: Beads, t: float, h: float) -> float:
+def _drive_misfit(forcing: Forcing, beads: Beads, t: float, h: float) -> float:
     """Return the distance of a driven bead's motion in a step from its quintic."""
     curved, _ = kinks.value_and_slope(_drive_curve(beads, h), _OFF_MIDDLE)
-    given, _, _ = drive_motion(chain.drive, t + h / 2, t + _OFF_MIDDLE * h)
+    given, _, _ = drive_motion(forcing, t + h / 2, t + _OFF_MIDDLE * h)
     return float(abs(given - beads.y[0] - curved))
 
 
@@ -188,7 +197,13 @@ def _follow_curve(
 
 @alone
 def _follow_stages(
-    chain: Chain, beads: Beads, pair: Pair, t: float, h: float, i: int
+    chain: Chain,
+    forcing: Forcing | None,
+    beads: Beads,
+    pair: Pair,
+    t: float,
+    h: float,
+    i: int,
 ) -> None:
     """Compute a contact's δ, δ' and force by the stages' own motion; they go to ``beads.points``.
 
@@ -201,8 +216,8 @@ def _follow_stages(
         y = beads.y[i] + ch * rate
         # The middle of the step tells the interval of the drive. The push below is 0 for a driven
         # bead, whose inverse mass is 0.
-        if i == 0 and chain.drive.driven:
-            y, rate, _ = drive_motion(chain.drive, t + h / 2, t + ch)
+        if forcing is not None and forcing.driven and i == 0:
+            y, rate, _ = drive_motion(forcing, t + h / 2, t + ch)
         d = chain.rest[i] + y - beads.y[i + 1] - ch * beads.v[i + 1]
         slope = h * (rate - beads.v[i + 1])
         for j in range(s):
@@ -216,7 +231,13 @@ def _follow_stages(
 
 @inlined
 def _clipped(
-    chain: Chain, beads: Beads, pair: Pair, t: float, h: float, n: int
+    chain: Chain,
+    forcing: Forcing,
+    beads: Beads,
+    pair: Pair,
+    t: float,
+    h: float,
+    n: int,
 ) -> float:
     """Return the impulse that contact n misses, as a force beside it jumps and damping cannot pull.
 
@@ -226,7 +247,7 @@ def _clipped(
     """
     law = chain.laws[chain.law[n]]
     last = len(pair.nodes) - 1
-    _follow_stages(chain, beads, pair, t, h, n)
+    _follow_stages(chain, forcing, beads, pair, t, h, n)
     d, slope, force = beads.points
     missed = 0.0
     if not d[0] > 0.0:
@@ -250,7 +271,7 @@ def _steepness(law: Any, r: float, d: float, h: float) -> float:
 def _replace_estimates(
     chain: Chain, beads: Beads, plan: Plan, h: float, i: int
 ) -> None:
-    """Take a contact's share away from the pair's estimates of errors: it is corrected."""
+    """Take a corrected contact's share away from the pair's estimates of the errors."""
     for q in range(len(plan.scheme.errors)):
         seen = integral(plan.scheme.errors[q], beads.points[2])
         seen *= chain.A[i] * error_scale(plan, h, q)
@@ -301,6 +322,7 @@ def _count_error(books: Array, missed: float, near: float, far: float) -> None:
 @inlined
 def _correct_neighbour(
     chain: Chain,
+    forcing: Forcing | None,
     beads: Beads,
     plan: Plan,
     t: float,
@@ -319,7 +341,7 @@ def _correct_neighbour(
     """
     law = chain.laws[chain.law[n]]
     A = chain.A[n]
-    r = chain.r[n]
+    r = 0.0 if forcing is None else chain.r[n]
     near = chain.inverse[n]
     far = chain.inverse[n + 1]
     d = chain.rest[n] + beads.next_y[n] - beads.next_y[n + 1]
@@ -331,8 +353,8 @@ def _correct_neighbour(
         shift = _UNBENT * h * h * abs(jump * share)
         missed = own * min(shift / max(fast, kinks.OPENS), h)
         _count_error(beads.books, missed / plan.v, near, far)
-    elif jump != 0.0 and r > 0.0 and not law.sticks:
-        missed = _clipped(chain, beads, plan.scheme, t, h, n)
+    elif forcing is not None and jump != 0.0 and r > 0.0 and not law.sticks:
+        missed = _clipped(chain, forcing, beads, plan.scheme, t, h, n)
         heated = missed * (beads.v[n] - beads.v[n + 1]) / plan.energy
         beads.books[SQUARES] += heated * heated
         _count_error(beads.books, missed / plan.v, near, far)
@@ -356,21 +378,30 @@ def _correct_neighbour(
 
 @inlined
 def correct_contact(
-    chain: Chain, beads: Beads, plan: Plan, t: float, h: float, i: int
+    chain: Chain,
+    forcing: Forcing | None,
+    beads: Beads,
+    plan: Plan,
+    t: float,
+    h: float,
+    i: int,
 ) -> None:
     """Correct a step for the pair's error at contact i, which opens or closes."""
     pair = plan.scheme
     last = len(pair.nodes) - 1
     law = chain.laws[chain.law[i]]
     A = chain.A[i]
-    r = chain.r[i]
+    r = 0.0 if forcing is None else chain.r[i]
     near = chain.inverse[i]
     far = chain.inverse[i + 1]
     both = near + far
     bend = -A * h * h * both  # of the curve by a force of 1
     start, end = _ends(chain, beads, h, i)
-    driven = i == 0 and chain.drive.driven
-    drive = _drive_curve(beads, h)
+    driven = kinks.NOT_DRIVEN
+    drive = kinks.NO_CURVE
+    if forcing is not None:
+        driven = i == 0 and forcing.driven
+        drive = _drive_curve(beads, h)
     force = beads.points[2]
     impulse = moment = change = steepness = top = 0.0
     known = kinks.STRAIGHT
@@ -388,7 +419,7 @@ def correct_contact(
         if found.jump == 0.0:
             _follow_curve(law, r, found.curve, pair, h, beads.points)
         else:
-            _follow_stages(chain, beads, pair, t, h, i)
+            _follow_stages(chain, forcing, beads, pair, t, h, i)
         before = impulse
         impulse = h * A * (sums.impulse - integral(pair.impulses[last], force))
         moment = h * h * A * (sums.moment - integral(pair.moments[last], force))
@@ -409,21 +440,23 @@ def correct_contact(
     beads.next_v[i + 1] += impulse * far
     beads.next_y[i] -= moment * near
     beads.next_y[i + 1] += moment * far
-    if chain.damped:
-        stored = kinks.stored(law, corrected[0]) - kinks.stored(law, start[0])
-        _correct_heat(chain, beads, pair, i, sums.work, stored)
-    if driven:
-        _correct_work(chain, beads, pair, drive, sums.driven)
     misfit = _MISFIT * sums.rough
-    if driven:
-        misfit += _drive_misfit(chain, beads, t, h)
+    resisted = 0.0
+    if forcing is not None:
+        if forcing.damped:
+            stored = kinks.stored(law, corrected[0]) - kinks.stored(law, start[0])
+            _correct_heat(chain, beads, pair, i, sums.work, stored)
+        if driven:
+            _correct_work(chain, beads, pair, drive, sums.driven)
+            misfit += _drive_misfit(forcing, beads, t, h)
+        # The moment ∫ (1 - x) F dx and the heat ∫ r δ^p (dδ/dt)² dt of damping are as wrong as p.
+        resisted = misfit * A * r * drag(law, top + misfit)
+        heated = 2.0 * resisted * abs(start[1]) / h / plan.energy
+        beads.books[SQUARES] += heated * heated
+        _count_error(beads.books, h * resisted / plan.y, near, far)
     depth = top + misfit
-    # The moment ∫ (1 - x) F dx and the heat ∫ r δ^p (dδ/dt)² dt of damping are as wrong as p is.
-    resisted = misfit * A * r * drag(law, depth)
-    heated = 2.0 * resisted * abs(start[1]) / h / plan.energy
-    beads.books[SQUARES] += heated * heated
-    _count_error(beads.books, h * resisted / plan.y, near, far)
-    # So is the impulse of an elastic force, less so where the contact is hardly closed: half of it.
+    # The impulse of an elastic force is as wrong, but less so where the contact is hardly closed:
+    # half of that error is counted.
     missed = 0.5 * misfit * h * A * stiffness(law, depth)
     if found.jump != 0.0:
         # The jump comes too early or too late by the misfit there over the slope. The misfit
@@ -448,4 +481,6 @@ def correct_contact(
     jump = A * found.jump
     for n, share in ((i - 1, -near), (i + 1, -far)):
         if n >= 0:
-            _correct_neighbour(chain, beads, plan, t, h, n, share, moment, third, jump)
+            _correct_neighbour(
+                chain, forcing, beads, plan, t, h, n, share, moment, third, jump
+            )

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from lwa.base.arrays import Array
-from validation.lattice.kernel.arrays import TILE, Beads, Chain, Drive, Plan
+from validation.lattice.kernel.arrays import TILE, Beads, Chain, Forcing, Plan
 from validation.lattice.kernel.compiled import ONE, call, index, part, summed
 from validation.scenes.forcing import oscillation
 
@@ -122,9 +122,9 @@ def _loop(value: Any) -> Any:
 def _damped_loop(value: Any, resistance: Any) -> Any:
     """Compile a loop over contacts with the force A (value + r resistance(p, d) dδ/dt).
 
-    least : contacts have a force where δ > least; -∞ if they pull. none : 0 if damping may not
-    pull, else -∞. The loop returns the dissipated power. While a contact that has
-    stopped pushing expands, its elastic energy turns into heat.
+    Contacts have a force where ``δ > least``: the loop's ``least`` is 0, or nearly, and -∞ if they
+    pull. Its ``none`` is the least force with damping: 0, or -∞ if damping may pull. While a
+    contact that has stopped pushing expands, its elastic energy turns into heat.
     """
 
     @summed
@@ -139,6 +139,10 @@ def _damped_loop(value: Any, resistance: Any) -> Any:
         least: float,
         none: float,
     ) -> float:
+        """Compute the forces of contacts lo … hi - 1 and return the power that they dissipate.
+
+        The arguments ``least`` and ``none`` are those of `_damped_loop`.
+        """
         A = chain.A
         rest = chain.rest
         load = chain.load
@@ -184,6 +188,10 @@ def tile_bounds(tile: int, s: int, hi: int) -> tuple[int, int, int, int]:
 
     All stages of a step go through a tile before the next tile. The contact of a tile's last bead
     waits for the bead ahead, so each stage ends one bead behind the stage before.
+
+    The beads are the first number up to the second, which is left out; the contacts, those behind
+    and ahead of these beads, are the third up to the fourth. At the end of the chain no next tile
+    takes the last contact.
     """
     lo = max(tile - s, 0)
     up = min(tile + TILE - s, hi)
@@ -192,7 +200,15 @@ def tile_bounds(tile: int, s: int, hi: int) -> tuple[int, int, int, int]:
 
 @part
 def contact_forces(
-    chain: Chain, beads: Beads, plan: Plan, y: Array, v: Array, s: Any, lo: int, hi: int
+    chain: Chain,
+    forcing: Forcing | None,
+    beads: Beads,
+    plan: Plan,
+    y: Array,
+    v: Array,
+    s: Any,
+    lo: int,
+    hi: int,
 ) -> None:
     """Compute the forces of the contacts ahead of beads lo … hi-1, less the static forces.
 
@@ -201,7 +217,7 @@ def contact_forces(
 
     Parameters
     ----------
-    chain, beads, plan : Chain, Beads, Plan
+    chain, forcing, beads, plan : Chain, Forcing or None, Beads, Plan
         The integration.
     y, v : array
         Displacements and velocities.
@@ -219,7 +235,7 @@ def contact_forces(
         least = -math.inf if law.pulls else NEGLIGIBLE * plan.deepest
         none = -math.inf if law.sticks else 0.0
         fast = is_quarters(law.k) and not law.generated
-        if chain.damped:
+        if forcing is not None and forcing.damped:
             if fast and law.k in (1.0, 1.5) and law.p in (0.0, 0.25, 0.5):
                 lost += _damped_hertz(chain, law, y, v, f, lo, up, least, none)
             elif fast and is_quarters(law.p):
@@ -234,17 +250,17 @@ def contact_forces(
             _other(chain, law, y, f, lo, up, least)
         lo = up
     beads.power[0, s] = lost
-    if chain.drive.driven and start == 0:
+    if forcing is not None and forcing.driven and start == 0:
         beads.power[1, s] = v[0] * f[1]
 
 
 @part
-def drive_motion(drive: Drive, middle: float, t: float) -> tuple[float, float, float]:
+def drive_motion(drive: Forcing, middle: float, t: float) -> tuple[float, float, float]:
     """Return displacement, velocity and acceleration of the driven bead at t.
 
     Parameters
     ----------
-    drive : Drive
+    drive : Forcing
         The drive.
     middle : float
         A time inside the interval of the drive's file that holds t; bisection finds the interval.

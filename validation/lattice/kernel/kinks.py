@@ -34,6 +34,8 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(POINTS)
 _U, _W = (1 + _NODES) / 2, _WEIGHTS / 2
 STRAIGHT = (1.0, 0.0, 0.0)  # no bend
 NO_CURVE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, STRAIGHT)
+# A plain False is a type of its own, for which numba would compile `integrals` once more.
+NOT_DRIVEN: Any = np.bool_(False)
 _PLACES = 8  # parts of a step at whose ends a contact is looked at
 # Each part has at most one turning point of p, and on both sides of it a contact that closes or
 # opens and begins or ceases to be damped; beside these the step's ends.
@@ -71,9 +73,9 @@ class Integrals(NamedTuple):
     Parameters
     ----------
     impulse, moment, third : float
-        Those of ``F``, ``(1 - x) F`` and ``(1 - x)²/2 F``.
+        Integrals of ``F``, ``(1 - x) F`` and ``(1 - x)²/2 F``.
     work, driven : float
-        Those of ``F p'``, and of ``F b'`` for the motion b of a driven bead.
+        Integrals of ``F p'``, and of ``F b'`` for the motion b of a driven bead.
     rough : float
         How far p is from a solution, for a damped or driven contact and for a force that jumps: the
         force, times its effect on p'', has parts of degrees 4 and 5 in Legendre's polynomials, and
@@ -194,10 +196,13 @@ def _turning_point(c: Curve, a: float, b: float) -> float:
 def _state(
     law: Any, r: float, c: Curve, h: float, x: float
 ) -> tuple[float, float, float]:
-    """Return p, p' and, for a damped contact that does not stick, the margin at a place."""
+    """Return p, p' and a number that is negative where damping would pull, at a place.
+
+    The number is the `_margin` of a damped contact that does not stick, and 1 of any other.
+    """
     p, slope = value_and_slope(c, x)
     margin = 1.0
-    # While δ rises the margin is positive.
+    # The margin can be negative only where a closed contact expands.
     if r > 0.0 and not law.sticks and p > 0.0 and slope < 0.0:
         margin = _margin(law, r, c, h, x)
     return p, slope, margin
@@ -281,9 +286,9 @@ def find_edges(
 def _find_jump(
     law: Any, r: float, c: Curve, h: float, edges: Array, count: int
 ) -> Bend:
-    """Return the last place at which the force jumps, or nearly, as the bend by ``bend = 1``.
+    """Return the last jump of the force as a `Bend` of p, for a factor 1 from force to p''.
 
-    A force that begins as ``r δ^b dδ/dt`` with a small b almost jumps.
+    A force that begins as ``r δ^b dδ/dt`` with a small b almost jumps, and counts as a jump.
     """
     found = 1.0, 0.0, 0.0
     for n in range(count):

@@ -21,7 +21,7 @@ import numpy as np
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel import kinks
-from validation.lattice.kernel.arrays import Beads, Chain, Knots, Numbers
+from validation.lattice.kernel.arrays import Beads, Chain, Forcing, Knots, Numbers
 from validation.lattice.kernel.compiled import FIRST, cached, inlined, part
 from validation.lattice.kernel.force import push
 from validation.lattice.kernel.kinks import State, value_and_slope
@@ -32,12 +32,10 @@ from validation.lattice.kernel.kinks import State, value_and_slope
 _PLACES = np.linspace(0.0, 1.0, 7)
 _POWERS = np.arange(len(_PLACES))[:, None]
 _FIT = np.linalg.inv(_PLACES[:, None] ** _POWERS.T) / (_POWERS + 1) / (_POWERS + 2)
-# A plain False is a type of its own, for which numba would compile `kinks.integrals` once more.
-NOT_DRIVEN: Any = np.bool_(False)
 
 
 @part
-def store_knot(chain: Chain, beads: Beads, knots: Knots, now: Any) -> None:
+def store_knot(forcing: Forcing | None, beads: Beads, knots: Knots, now: Any) -> None:
     """Store the present motion of the watched beads as the next knot.
 
     The four entries of a state are those of `Knots`. The acceleration is that of the first stage,
@@ -52,7 +50,7 @@ def store_knot(chain: Chain, beads: Beads, knots: Knots, now: Any) -> None:
         state[0] = beads.y[j]
         state[1] = beads.v[j]
         state[2] = beads.push[0, j]
-        if j == 0 and chain.drive.driven:
+        if j == 0 and forcing is not None and forcing.driven:
             state[2] = beads.given[0]
         state[3] = beads.marks[j]
     now.stored += 1
@@ -119,7 +117,7 @@ def _effect(
 ) -> tuple[float, float]:
     """Return ``∫ (x - s) F ds`` and ``∫ F ds`` over a contact's force F up to the place x."""
     sums = kinks.integrals(
-        law, r, found, h, x, bend, points, edges, NOT_DRIVEN, found.curve
+        law, r, found, h, x, bend, points, edges, kinks.NOT_DRIVEN, found.curve
     )
     return sums.moment - (1.0 - x) * sums.impulse, sums.impulse
 

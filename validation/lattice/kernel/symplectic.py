@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from validation.lattice.kernel.advance import advance_front, moving
-from validation.lattice.kernel.arrays import TILE, Beads, Chain, Knots, Plan
+from validation.lattice.kernel.arrays import TILE, Beads, Chain, Forcing, Knots, Plan
 from validation.lattice.kernel.compiled import FIRST, ONE, cached, index
 from validation.lattice.kernel.force import contact_forces, tile_bounds
 from validation.lattice.kernel.samples import store_knot
@@ -17,7 +17,13 @@ from validation.lattice.kernel.samples import store_knot
 
 @cached
 def advance_split(
-    chain: Chain, beads: Beads, plan: Plan, knots: Knots, now: Any, tries: int
+    chain: Chain,
+    forcing: Forcing | None,
+    beads: Beads,
+    plan: Plan,
+    knots: Knots,
+    now: Any,
+    tries: int,
 ) -> float:
     """Integrate to the end, or for at most ``tries`` steps, or until the knots are full.
 
@@ -33,11 +39,11 @@ def advance_split(
     force = beads.force[1]
     inverse = chain.inverse
     push = beads.push[0]
-    contact_forces(chain, beads, plan, y, v, FIRST, FIRST, plan.size)
+    contact_forces(chain, forcing, beads, plan, y, v, FIRST, FIRST, plan.size)
     if now.tries == 0:
         for i in range(index(plan.size)):
             push[i] = (force[i] - force[i + ONE]) * inverse[i]
-        store_knot(chain, beads, knots, now)
+        store_knot(forcing, beads, knots, now)
     while now.t < plan.end and now.tries < until and now.stored < len(knots.time):
         hi = moving(now)
         for tile in range(0, hi + last, TILE):
@@ -51,7 +57,7 @@ def advance_split(
                     u = v[i] + b * (force[i] - force[i + ONE]) * inverse[i]
                     v[i] = u
                     y[i] = y[i] + a * u
-                contact_forces(chain, beads, plan, y, v, FIRST, first, behind)
+                contact_forces(chain, forcing, beads, plan, y, v, FIRST, first, behind)
         b = h * kicks[last]
         for i in range(index(hi)):
             push[i] = (force[i] - force[i + ONE]) * inverse[i]
@@ -61,5 +67,5 @@ def advance_split(
         # No sum of steps: equal steps are rounded to one side, 1e-10 after 1e5 of them.
         now.t = now.steps * h if now.t + 1.5 * h < plan.end else plan.end
         advance_front(beads, plan, now)
-        store_knot(chain, beads, knots, now)
+        store_knot(forcing, beads, knots, now)
     return float(now.t)
