@@ -166,6 +166,7 @@ class Recorder:
 
     def path(self) -> KnotPath | None:
         """Return the motion of the whole run; None if it takes more than `_MOST_BYTES` bytes."""
+        # Parts that took too much memory have become samples.
         if not self._parts:
             return None
         times, states = zip(*self._parts, strict=True)
