@@ -33,14 +33,17 @@ from validation.scenes.checks import SceneError
 
 BASES = {
     "time": "s",
+    "arrival": "s",
+    "FWHM": "s",
     "displacement": "m",
+    "compression": "m",
     "force": "N",
     "velocity": "m/s",
     "speed": "m/s",
     "force_error": "N",
     "speed_error": "m/s",
 }
-"""Units of the quantities that are read."""
+"""SI units of the quantities that are read and written."""
 
 # Other spellings; upper and lower case are alike.
 _SPELLINGS = {
