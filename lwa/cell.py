@@ -279,7 +279,7 @@ def Dimer(
     N : int
         Number of particles m1 before the one particle m2.
     stiffnesses, spacing
-        As those of `Cell`.
+        Stiffnesses and spacing, as of a `Cell`.
 
     Returns
     -------

@@ -64,7 +64,7 @@ class ContactLaw(Value):
     delta : symbol
         The compression δ.
     name, parameters : str, tuple
-        Those of `named`; "" and () for a law without a name.
+        Name and parameters, as `named` takes them; "" and () for a law without a name.
     homogeneous : bool
         True if ``F(sδ) = s^k F(δ)``, that is for a power.
     """
@@ -343,7 +343,7 @@ class Law(ContactLaw):
     delta : symbol
         The symbol of the compression in F.
     name, parameters : str, tuple
-        Those of `named`.
+        Name and parameters, as `named` takes them.
 
     Raises
     ------
@@ -458,7 +458,7 @@ def read_law(value: Any, name: str) -> ContactLaw:
     Parameters
     ----------
     value : str
-        Such as "hertz2:1,2" or "power".
+        Name and parameters, such as "hertz2:1,2" or "power".
     name : str
         Name of the value in messages.
 

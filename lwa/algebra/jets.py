@@ -233,7 +233,7 @@ class JetAlgebra:
         return f - self._linear_part(f, self._r1) * self.r[1]
 
     def _linear_part(self, f: fmpq_mpoly, index: int) -> fmpq_mpoly:
-        """Coefficient of a jet, linear, in the terms of f without this and higher jets beside."""
+        """Coefficient of a jet in the terms of f that hold the jet once and no later generator."""
         others = self.context.names()[index:]
         return f.derivative(index).subs(dict.fromkeys(others, 0))
 

@@ -151,7 +151,7 @@ class Table:
     name : str
         The full key of the table; "" for the file itself.
     known : collection of str
-        Its keys.
+        Keys that the table may hold.
 
     Examples
     --------

@@ -84,7 +84,7 @@ class Scale:
         number : Estimate
             The number.
         unit : str
-            Its unit in SI, or powers of symbols.
+            SI unit of the number, or powers of symbols.
         most : int
             Digits of a number without an error.
         """
@@ -149,7 +149,7 @@ class Row:
         *arguments
             Arguments of a method.
         key, symbol : str
-            Those of the row.
+            Key and symbol of the row.
         """
         value = attempt(getattr, result, name)
         if callable(value):

@@ -192,7 +192,7 @@ def value(
     name : str
         The option with its dashes.
     says : str
-        Its help.
+        Help of the option.
     example : str
         A valid text, for refusals of other texts.
     read : callable

@@ -103,7 +103,7 @@ class Expansion(Parametric):
         Parameters
         ----------
         quantity : {"strain", "force", "velocity"}
-            The strain or force of a contact, or the velocity of the bead before the contact.
+            The strain or force of a contact, or the velocity of the bead with the contact's number.
         contact : int
             Number of the contact in the cell. Contacts of unlike stiffness have unlike widths.
 

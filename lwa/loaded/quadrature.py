@@ -136,7 +136,7 @@ def _cumulated(count: int) -> Array:
     The integral over a cell is that of the polynomial through the `_WINDOW` nearest places; the
     function vanishes beyond the ends.
     """
-    # The cell from 0 to 1, with as many places before it as behind it
+    # The cell from 0 to 1, with as many places before it as after it
     before = _WINDOW // 2 - 1
     places = np.arange(-before, _WINDOW - before, dtype=float)
     # Gauss's rule of this many nodes is exact for the polynomial.
@@ -359,5 +359,5 @@ class Nodes:
         logs = g.peak_first(g.logs[g.rows])
         last = self.places[-1]
         inside = _interpolated(self.places, logs, np.minimum(places, last))
-        # Behind the last node v is below what grids may differ by, or they are refined.
+        # Beyond the last node v is less than two grids may differ by: else the grid is refined.
         return np.where(places > last, 0.0, np.exp(inside))

@@ -98,8 +98,9 @@ class Statics:
         To first order link l has at ln f the compression ``δ_l + g_l (ln f - logs_l)``, with
         ``g_l = dδ_l/d ln f`` and ``logs_l`` the ln f that belongs to the present ``δ_l``.
 
-        Logarithms keep the digits of a compression that is far smaller than the mean. A step to
-        where a law does not rise, as beyond a pole, is halved in the logarithm; other links wait.
+        Logarithms keep the digits of a compression that is far smaller than the mean. If a step
+        takes a link to where its law does not rise, as beyond a pole, this link goes half of the
+        way in the logarithm back to its last compression inside; the other links wait.
         """
         spans = self.network.spans  # the cosines: each link joins neighbours
         total = self.network.size * e

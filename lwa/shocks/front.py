@@ -106,7 +106,7 @@ def piston(
     Raises
     ------
     InputError
-        As `shock`, and for a velocity that the law does not reach.
+        For input that `shock` refuses, and for a velocity that the law does not reach.
 
     Examples
     --------

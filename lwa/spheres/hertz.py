@@ -170,7 +170,7 @@ def stiffness(sphere: Sphere, other: Sphere | Material) -> sp.Expr:
     Parameters
     ----------
     sphere : Sphere
-        The one side of the contact.
+        One side of the contact.
     other : Sphere or Material
         The other side: a sphere, or the material of a wall.
 

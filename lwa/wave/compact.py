@@ -134,7 +134,7 @@ class CompactWave(Arch):
         Parameters
         ----------
         missing : {"raise", "nan"}
-            What is done where there is no wave; see `lwa.wave.numeric.NumericWave`.
+            Result where there is no wave: an error, or NaN; see `lwa.wave.numeric.NumericWave`.
 
         Raises
         ------

@@ -117,7 +117,7 @@ def simulate_many(
     workers : int, optional
         Number of threads, by default one for each core; compiled methods run in parallel.
     **options
-        Those of `simulate`.
+        Options of `simulate`.
 
     Yields
     ------
@@ -156,6 +156,6 @@ def repeated(
     tolerances : iterable of float
         Tolerances.
     **options
-        Those of `simulate`.
+        Options of `simulate`.
     """
     return tuple(simulate(scene, rtol=rtol, **options) for rtol in tolerances)

@@ -119,7 +119,7 @@ def _smoothed(
     """Return the wanted number of coefficients, the spline with at most ``most`` of them, and the
     variance of its residuals.
 
-    correlation_time, variance : of the noise, the time in samples.
+    The noise has the ``variance`` and the ``correlation_time``, in samples.
     """
     ratios = math.log(most / _LOWEST) / math.log(_RATIO)
     tries = math.ceil(ratios) + 1

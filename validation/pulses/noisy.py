@@ -75,10 +75,22 @@ class InvertedError(MeasureError):
 class NoisyPulse:
     """A pulse of a record.
 
-    numbers : arrival, peak above the base, fwhm, by these names; without the peak if the record
-    begins too late for a base. base : value below the pulse, at the time rise. missing : words on
-    the number that is missing. slope : growth of the base in time. noise : standard deviation,
-    times ``√n``, of the mean noise of n samples; 0 in a record without noise.
+    Parameters
+    ----------
+    numbers : mapping of Estimate
+        Arrival, peak above the base and fwhm, by these names; without the peak if the record begins
+        too late for a base.
+    base : float
+        Value below the pulse, at the time ``rise``.
+    missing : str, optional
+        Words on the number that is missing.
+    rise : float
+        Time at which the pulse rises through half of its peak.
+    slope : float
+        Growth of the base in time.
+    noise : float
+        Standard deviation, times ``√n``, of the mean noise of n samples; 0 in a record without
+        noise.
     """
 
     numbers: Mapping[str, Estimate]
@@ -151,7 +163,7 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
 def _noisy(t: Array, f: Array, step: float, unit: str) -> NoisyPulse:
     """Measure the first pulse of a record with noise.
 
-    step : distance of the levels to which samples are rounded. unit : of the times.
+    Samples are rounded to levels at the distance ``step``; times have the ``unit``.
     """
     start = f[:_EARLY].mean()
     rise, fall = _place(t, f - start)
@@ -252,7 +264,7 @@ def _exact(t: Array, f: Array) -> NoisyPulse:
 def _front(f: Array, width: float) -> float:
     """Return the error of the first sample as the base of a record that begins in a front.
 
-    width : of the pulse, in samples. A record that begins with 0 may be that of a force which
+    The pulse has the ``width`` in samples. A record that begins with 0 may be that of a force which
     begins suddenly; the base of another one lies from 0 to its first sample.
     """
     first, second = map(float, np.diff(f[:3]))
@@ -386,7 +398,7 @@ def corrected(t: Array, signal: Array, constant: float) -> Array:
 def suggested(t: Array, signal: Array, pulse: NoisyPulse, unit: str) -> str:
     """Return a line on an undershoot behind a pulse, with the time constant; "" without any.
 
-    Waves behind a pulse rarely swing alike in both stretches. unit : of the times.
+    Waves behind a pulse rarely swing alike in both stretches. Times have the ``unit``.
     """
     arrival = pulse.numbers["arrival"].value
     width = pulse.numbers["fwhm"].value

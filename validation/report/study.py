@@ -47,7 +47,7 @@ class Report(Pictured):
     Parameters
     ----------
     title : str
-        What was computed, in one or a few lines.
+        Description of the computation, in one line or a few.
     tables : tuple of Table
         Tables; text shows those with column labels. JSON has a table under its key, and tables
         without a key in the list ``tables``.
@@ -297,7 +297,7 @@ def option(
     Parameters
     ----------
     *names : str
-        Its flags, and the parameter's name where it differs from them.
+        Flags of the option, and the parameter's name where it differs from them.
     default : object
         Default value, shown in the help.
     says : str

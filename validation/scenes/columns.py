@@ -33,14 +33,17 @@ from validation.scenes.checks import SceneError
 
 BASES = {
     "time": "s",
+    "arrival": "s",
+    "FWHM": "s",
     "displacement": "m",
+    "compression": "m",
     "force": "N",
     "velocity": "m/s",
     "speed": "m/s",
     "force_error": "N",
     "speed_error": "m/s",
 }
-"""Units of the quantities that are read."""
+"""SI units of the quantities that are read and written."""
 
 # Other spellings; upper and lower case are alike.
 _SPELLINGS = {
@@ -105,9 +108,9 @@ class Column:
     Parameters
     ----------
     name : str
-        Its name, such as "time" or "bead 8 force".
+        Name of the column, such as "time" or "bead 8 force".
     number : int or None
-        Its number in the file, from 1; None for the times that a step states.
+        Number of the column in the file, from 1; None for times that a step states.
     unit : str
         Unit that the file states, "" for none.
     key, stated : str
@@ -246,7 +249,7 @@ class Columns:
         Parameters
         ----------
         words : str
-            What is wrong.
+            Description of the fault.
         missing : sequence of str
             Names for which columns are proposed, the time first.
         step : str

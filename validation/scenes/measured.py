@@ -181,7 +181,7 @@ class MeasuredFile(Columns):
         Raises
         ------
         SceneError
-            As `rows` does, and for columns of time that are not as many as the sensors.
+            For a record that `rows` refuses, and for fewer or more columns of time than sensors.
         """
         names = self.names
         times = []

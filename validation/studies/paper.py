@@ -326,7 +326,7 @@ def _panel(run: Run, theory: PhysicalWave) -> Panel:
     for i, bead in enumerate(SENSORS):
         place = run.scene.bead_sensors.index(bead - 1)
         force = run.bead_force[place]
-        # Peak upon peak: the theory has no time of the blow.
+        # The theory's peak is put upon the lattice's: the theory knows no time of the blow.
         wave = theory.curve(run.time - pulses[bead].arrival)
         curves.append(Curve(f"bead {bead}, lattice", run.time, force, f"C{i}-"))
         curves.append(Curve(f"bead {bead}, theory by F_m", run.time, wave, f"C{i}--"))

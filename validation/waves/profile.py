@@ -265,7 +265,7 @@ def _tail(wave: ExactWave) -> float:
 
 def _residual(wave: ExactWave) -> float:
     """The error in the equations of motion, see `ExactWave.residual`."""
-    # Strains that follow from the forces of the strains: of a solution the same ones.
+    # The strains give forces, and the forces give strains: for a solution the same strains.
     twice = 2 * (len(wave.series) - 1)
     xi = newton.periodic_grid(wave.half_period, twice)
     series = newton.coefficients(wave.force(xi))

@@ -121,7 +121,7 @@ class Beads(NamedTuple):
     y, v : array, (padded + 1,)
         Displacements and velocities.
     next_y, next_v : array, (padded + 1,)
-        Those after the step that is tried.
+        Displacements and velocities after the step that is tried.
     force : array, (2, padded + 1)
         Force on each bead from behind, less the static force, at the start of the step and at the
         stage that was computed last.
@@ -288,9 +288,9 @@ def initial_progress(plan: Plan, front: int, energy: float) -> Any:
     Returns
     -------
     record
-        Its fields: the time t and its rounding error, late; the next step h; the numbers of steps
-        that were made and tried; the first bead ahead of the motion, front; the number of stored
-        knots; the number of the next of ``plan.stops``, stop; the integral of
+        The record's fields: the time t and its rounding error, late; the next step h; the numbers
+        of steps that were made and tried; the first bead ahead of the motion, front; the number of
+        stored knots; the number of the next of ``plan.stops``, stop; the integral of
         ``v (F - static force)`` of a driven bead, work; the dissipated energy, lost; and the
         greatest energy on the way, response.
     """

@@ -45,6 +45,12 @@ _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the t
 # A contact is corrected so often, or until the correction changes by less than _SETTLED times the
 # tolerance. Measured: without the rounds damped gases err by up to ten times as much.
 _ROUNDS, _SETTLED = 4, 0.02
+# A contact that closes x before a step's end moves there by -x when the velocity at the end is
+# corrected by 1. Its impulse then changes by its greatest stiffness, times the square of the part
+# of the step in which it pushes, times 1/(k (k + 1)), 0.27 with Hertz's exponent k. With this share
+# the greatest energy drift in 1,520 runs of colliding balls is 1.5 rtol, without a second round
+# 36 rtol. With a share of 0.25 it is 2.1, and dimers take 2 to 5 % longer.
+_FELT = 0.125
 # A contact is nearly open at a step's one end if δ there is less than _NEAR times δ at the other. A
 # weak contact, whose force is less than _STRONG times the least that counts, is nearly open below
 # _VERY_NEAR, as the pair's own error is smaller there. Measured: with _STRONG = 1e3 chains take up
@@ -431,7 +437,8 @@ def correct_contact(
             # The next round changes the correction by about this share of the change.
             change *= min(1.0, abs(bend) * steepness)
         elif found.jump == 0.0:
-            change = 0.0  # an elastic force hardly depends on the correction
+            # An elastic force feels the correction only while the contact pushes.
+            change *= _FELT * abs(bend) * steepness * sums.closed * sums.closed
         if abs(change) * both < _SETTLED * plan.v:
             break
     third = h * h * h * A * (sums.third - integral(pair.thirds, force))

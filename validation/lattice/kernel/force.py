@@ -139,7 +139,10 @@ def _damped_loop(value: Any, resistance: Any) -> Any:
         least: float,
         none: float,
     ) -> float:
-        """Compute the forces of contacts lo … hi - 1 and return the power that they dissipate."""
+        """Compute the forces of contacts lo … hi - 1 and return the power that they dissipate.
+
+        The arguments ``least`` and ``none`` are those of `_damped_loop`.
+        """
         A = chain.A
         rest = chain.rest
         load = chain.load

@@ -73,14 +73,16 @@ class Integrals(NamedTuple):
     Parameters
     ----------
     impulse, moment, third : float
-        Those of ``F``, ``(1 - x) F`` and ``(1 - x)²/2 F``.
+        Integrals of ``F``, ``(1 - x) F`` and ``(1 - x)²/2 F``.
     work, driven : float
-        Those of ``F p'``, and of ``F b'`` for the motion b of a driven bead.
+        Integrals of ``F p'``, and of ``F b'`` for the motion b of a driven bead.
     rough : float
         How far p is from a solution, for a damped or driven contact and for a force that jumps: the
         force, times its effect on p'', has parts of degrees 4 and 5 in Legendre's polynomials, and
         the second derivative of a quintic, a cubic, has none. The size of these parts, without
         those of the bend that p has besides.
+    closed : float
+        Length of the intervals in which the contact pushes.
     """
 
     impulse: float
@@ -89,6 +91,7 @@ class Integrals(NamedTuple):
     work: float
     driven: float
     rough: float
+    closed: float
 
 
 @part
@@ -387,6 +390,7 @@ def _place_points(
     scale = abs(span) * (1.0 - start)
     for m in range(index(POINTS)):
         u = start + (1.0 - start) * _U[m]
+        # The derivative q u^{q-1} of u^q
         pace = 1.0 if q == 1.0 else (2.0 * u if q == 2.0 else 4.0 * u * u * u)
         points[0, m] = zero + span * u * pace / q
         points[1, m] = scale * _W[m] * pace
@@ -441,7 +445,7 @@ def integrals(
     c = found.curve
     x = points[0]
     w = points[1]
-    once = twice = third = work = given = even = odd = 0.0
+    once = twice = third = work = given = even = odd = closed = 0.0
     for n in range(found.intervals):
         a = edges[n]
         b = edges[n + 1]
@@ -452,6 +456,7 @@ def integrals(
         low = _root(c, a, -1.0)
         high = _root(c, b, 1.0)
         b = min(b, until)
+        closed += b - a
         middle = 0.5 * (a + b)
         if math.isnan(high):
             middle = b
@@ -479,7 +484,7 @@ def integrals(
                     odd += fifth * (bend * force - w[m] * known)
                 if driven:
                     given += value_and_slope(bead, x[m])[1] * force
-    # A kink has no part of degree 4 at some places; there it has one of degree 5, whose part
-    # in p is about half as large.
+    # ``even`` and ``odd`` are the parts of degrees 4 and 5 that p'' lacks. At some places of a kink
+    # the part of degree 4 is 0 and that of degree 5 is not; the latter changes p half as much.
     rough = math.hypot(even, 0.5 * odd)
-    return Integrals(once, twice, third, work, given, rough)
+    return Integrals(once, twice, third, work, given, rough, closed)
