@@ -29,6 +29,7 @@ import numpy as np
 import scipy
 import sympy as sp
 
+from lwa.base import Refusal
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError, read_exact
 from lwa.base.frozen import Estimate
@@ -291,7 +292,7 @@ def stored(path: Path) -> Iterator[tuple[dict[Key, Point], Callable[[Point], Non
                 points[key] = Point(*key, ends, numbers, entry["missing"])
             yield points, keep
     except (sqlite3.Error, ValueError, TypeError, LookupError) as error:
-        if isinstance(error, InputError):
+        if isinstance(error, Refusal):
             raise
         # The first name beside the file that is free
         number = 2

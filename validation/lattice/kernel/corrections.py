@@ -361,8 +361,6 @@ def _correct_neighbour(
         _count_error(beads.books, missed / plan.v, near, far)
     elif forcing is not None and jump != 0.0 and r > 0.0 and not law.sticks:
         missed = _clipped(chain, forcing, beads, plan.scheme, t, h, n)
-        heated = missed * (beads.v[n] - beads.v[n + 1]) / plan.energy
-        beads.books[SQUARES] += heated * heated
         _count_error(beads.books, missed / plan.v, near, far)
     pressed = beads.force[1, n + 1] + chain.load[n]
     if beads.marks[n] == 0.0 and (d > 0.0) != (pressed > 0.0):
