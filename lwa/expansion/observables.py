@@ -66,7 +66,7 @@ class Observables:
         return half_width(self.wave.strain[contact].log)
 
     def velocity(self, contact: int = 0) -> Series:
-        """Full width at half maximum of the velocity of the bead before a contact."""
+        """Full width at half maximum of the velocity of the bead with a contact's number."""
         return half_width(logarithm(self.wave.slope[contact]))
 
     @cached_property

@@ -33,13 +33,6 @@ def _with_neighbours(beads: Beads) -> NDArray[np.int_]:
     return near[near >= 0]
 
 
-def set_addresses(laws: Any, motion: Motion) -> None:
-    """Write the addresses of the laws' machine code, which differ in each process."""
-    for row, law in zip(laws, motion.laws, strict=False):
-        for name, address in law.addresses.items():
-            row[name] = address
-
-
 @dataclass(frozen=True, eq=False)
 class KnotPath:
     """A `validation.lattice.signal.Path` through knots (`validation.lattice.kernel.samples`).
@@ -66,7 +59,10 @@ class KnotPath:
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Restore a pickled path: a law's machine code has another address in each process."""
         self.__dict__.update(state)
-        set_addresses(self.chain.laws, self.motion)
+        # The padding may have a law of its own behind those of the motion, a linear one.
+        for row, law in zip(self.chain.laws, self.motion.laws, strict=False):
+            for name, address in law.addresses.items():
+                row[name] = address
 
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]:
         """Return displacements and velocities (beads, S) at times (S,) within the run."""

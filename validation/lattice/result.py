@@ -25,17 +25,9 @@ from validation.lattice.signal import (
 )
 from validation.pictures import Curve, Map, Panel, Pictured
 from validation.scenes.checks import SceneError, one_of
+from validation.scenes.columns import BASES
 from validation.scenes.scene import Scene
 
-_SI = {
-    "time": "s",
-    "arrival": "s",
-    "FWHM": "s",
-    "force": "N",
-    "compression": "m",
-    "displacement": "m",
-    "velocity": "m/s",
-}
 # Sensors of one kind that are drawn as curves, in ten colours; more make a map.
 _MOST = 10
 _FINEST = 1000  # places, and times, of a map: a picture has some thousand pixels a side
@@ -197,7 +189,7 @@ class Run(Pictured):
         """Return the name of a quantity, such as "bead 1 velocity", with its unit in a SI scene."""
         if not self.scene.units:
             return quantity
-        return f"{quantity} ({_SI[quantity.split()[-1]]})"
+        return f"{quantity} ({BASES[quantity.split()[-1]]})"
 
     def columns(self) -> dict[str, Array]:
         """Return time and all records, each (S,), by names such as "bead 15 force (N)"."""

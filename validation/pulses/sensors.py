@@ -51,10 +51,6 @@ _HIDDEN = 0.5  # relative error of the peak from which on a pulse may be roundin
 _LOOKS = 200  # times at which a sensor is searched for an earlier pulse
 
 
-SPEEDS = ("speed_sites", "speed")
-"""Names of its speeds between two sensors, in sites per time and in length per time."""
-
-
 @dataclass(frozen=True)
 class Reading:
     """Measured numbers of a pulse at a sensor, or its speeds between two sensors.
@@ -66,7 +62,8 @@ class Reading:
     places : tuple of int
         Number of the sensor, or of both, counted from 1.
     numbers : mapping of Estimate
-        Known numbers by their names, which are among `READINGS` or `SPEEDS`.
+        Those of `READINGS` that are known, by name; of speeds ``speed_sites``, in sites per time,
+        and ``speed``, in length per time.
     static : float
         Force at the (first) sensor from which dynamic forces count: the one at the start.
     missing : str, optional
@@ -76,7 +73,7 @@ class Reading:
     quantity : {"force", "velocity"}
         The measured signal.
     along : mapping of float
-        Place of the sensor along the chain, by the names `SPEEDS`; empty where it has none.
+        Place of the sensor along the chain by the names of the speeds; empty where it has none.
     """
 
     kind: str
@@ -296,7 +293,7 @@ def tracks(
 
 
 def _place(scene: Scene, x: Array, kind: str, i: int) -> dict[str, float]:
-    """Return the place of a sensor by the names `SPEEDS`; empty for a bead with one contact.
+    """Return the place of a sensor as in `Reading.along`; empty for a bead with one contact.
 
     x : places of the beads, and of one more bead, imagined a spacing after the last.
     """
@@ -405,7 +402,7 @@ def speeds_between(
 def _speeds(
     first: Reading, second: Reading, total: Callable[[float, float], float]
 ) -> dict[str, Estimate]:
-    """Return the speeds from one arrival to a later one by the names `SPEEDS`.
+    """Return the speeds from one arrival to a later one, by name.
 
     Raises `MeasureError` if there are none.
     """

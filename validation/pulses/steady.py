@@ -29,6 +29,7 @@ import numpy as np
 import scipy
 import sympy as sp
 
+from lwa.base import Refusal
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError, read_exact
 from lwa.base.frozen import Estimate
@@ -45,7 +46,7 @@ LABELS = {  # measured numbers and their labels
     "decay": "decay of the peak force per site",
 }
 PLACES = 10  # cells at which the pulse is recorded
-STRETCH = 4  # default number of cells from one place to the next, for k ≥ 3/2
+STRETCH = 4  # number of cells from one place to the next, for k ≥ 3/2
 # Tolerances of the accurate run and of the run that gives its error. Of 80 numbers of 20 points
 # none is outside its error and 7 have one more than thirty times too large; with 1e-6 they are 0
 # and 21, with 3e-6 they are 4 and 4.
@@ -85,7 +86,7 @@ def cells_apart(k: float, stretch: int) -> int:
 
 
 def point(
-    k: sp.Rational, omega: sp.Rational, stretch: int, farther: float = FARTHER
+    k: sp.Rational, omega: sp.Rational, stretch: int = STRETCH, farther: float = FARTHER
 ) -> Point:
     """Strike the chain and return the measured point; after a failure its ``missing`` says why.
 
@@ -255,64 +256,48 @@ class StruckDimer:
         return {name: values.mean(axis=1) for name, values in numbers.items()}
 
 
-@dataclass(frozen=True)
-class PointFile:
-    """A file of points measured with the same ``stretch``, an SQLite database.
+@contextmanager
+def stored(path: Path) -> Iterator[tuple[dict[Key, Point], Callable[[Point], None]]]:
+    """Yield the finished points of a file, and a function that stores a point on the disk.
 
-    Its one table has a row for each finished point, the `Point` in JSON. The table's name holds
-    `VERSION` and the stretch.
+    The file is an SQLite database. Its one table has a row for each finished point, the `Point` in
+    JSON; the table's name holds `VERSION` and `STRETCH`. Raises `lwa.InputError` for another
+    sweep's file, one that is damaged or cannot be written, and one that another process has opened.
     """
+    try:
+        with closing(sqlite3.connect(path, timeout=0, isolation_level=None)) as data:
+            data.execute("pragma locking_mode = exclusive")
+            data.execute("begin exclusive")
+            own = f"points_{VERSION}_{STRETCH}"
+            data.execute(f"create table if not exists {own} (point)")
+            (tables,) = data.execute("select count(*) from sqlite_master").fetchone()
+            if tables > 1:
+                raise ValueError("it holds other data than points of this definition")
+            data.execute("commit")
 
-    path: Path
-    stretch: int
+            def keep(point: Point) -> None:
+                row = json.dumps(asdict(point), default=str)
+                data.execute(f"insert into {own} values (?)", [row])
 
-    @contextmanager
-    def opened(self) -> Iterator[tuple[dict[Key, Point], Callable[[Point], None]]]:
-        """Yield the finished points, and a function that stores a point on the disk.
-
-        Raises `lwa.InputError` for another sweep's file, one that is damaged or cannot be written,
-        and one that another process has opened.
-        """
-        try:
-            with closing(
-                sqlite3.connect(self.path, timeout=0, isolation_level=None)
-            ) as data:
-                data.execute("pragma locking_mode = exclusive")
-                data.execute("begin exclusive")
-                own = f"points_{VERSION}_{self.stretch}"
-                data.execute(f"create table if not exists {own} (point)")
-                (tables,) = data.execute(
-                    "select count(*) from sqlite_master"
-                ).fetchone()
-                if tables > 1:
-                    raise ValueError(
-                        "it holds other data than points of this stretch and definition"
-                    )
-                data.execute("commit")
-
-                def keep(point: Point) -> None:
-                    row = json.dumps(asdict(point), default=str)
-                    data.execute(f"insert into {own} values (?)", [row])
-
-                points = {}
-                for (row,) in data.execute(f"select point from {own}"):
-                    stored = json.loads(row)
-                    numbers = {}
-                    for name, number in stored["numbers"].items():
-                        numbers[name] = Estimate(**number)
-                    sites = stored["sites"]
-                    key = (
-                        read_exact(stored["k"], "k"),
-                        read_exact(stored["omega"], "omega"),
-                    )
-                    ends = sites and (sites[0], sites[1])
-                    points[key] = Point(*key, ends, numbers, stored["missing"])
-                yield points, keep
-        except (sqlite3.Error, ValueError, TypeError, LookupError) as error:
-            if isinstance(error, InputError):
-                raise
-            # The first name beside the file that is free
-            number = 2
-            while (free := self.path.with_stem(f"{self.path.stem}-{number}")).exists():
-                number += 1
-            raise InputError(f"file is {self.path}: {error}", file=str(free)) from None
+            points = {}
+            for (row,) in data.execute(f"select point from {own}"):
+                entry = json.loads(row)
+                numbers = {}
+                for name, number in entry["numbers"].items():
+                    numbers[name] = Estimate(**number)
+                sites = entry["sites"]
+                key = (
+                    read_exact(entry["k"], "k"),
+                    read_exact(entry["omega"], "omega"),
+                )
+                ends = sites and (sites[0], sites[1])
+                points[key] = Point(*key, ends, numbers, entry["missing"])
+            yield points, keep
+    except (sqlite3.Error, ValueError, TypeError, LookupError) as error:
+        if isinstance(error, Refusal):
+            raise
+        # The first name beside the file that is free
+        number = 2
+        while (free := path.with_stem(f"{path.stem}-{number}")).exists():
+            number += 1
+        raise InputError(f"file is {path}: {error}", file=str(free)) from None

@@ -33,14 +33,17 @@ from validation.scenes.checks import SceneError
 
 BASES = {
     "time": "s",
+    "arrival": "s",
+    "FWHM": "s",
     "displacement": "m",
+    "compression": "m",
     "force": "N",
     "velocity": "m/s",
     "speed": "m/s",
     "force_error": "N",
     "speed_error": "m/s",
 }
-"""Units of the quantities that are read."""
+"""SI units of the quantities that are read and written."""
 
 # Other spellings; upper and lower case are alike.
 _SPELLINGS = {
@@ -356,9 +359,11 @@ def found_unit(cells: Sequence[str]) -> str:
     """Return the unit that the cells above a column state, "" for none; the lowest one counts."""
     for cell in reversed(cells):
         header = HEADER.fullmatch(cell)
-        if header and header[2]:
-            return header[2]
-    return next(filter(known, reversed(cells)), "")
+        if header and (header[2] or header[3]):
+            return header[2] or header[3]
+    # A row of units stands below names: the V of a single header is a speed, say.
+    below = [*filter(None, cells)][1:]
+    return next(filter(known, reversed(below)), "")
 
 
 def read_statement(text: str, base: str) -> tuple[float, str] | None:

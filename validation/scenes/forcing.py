@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -80,9 +80,7 @@ class Damping:
         # γ is a factor itself, whatever the masses.
         if self.kind != "restitution":
             return value.astype(float)
-        shares, kind_of = np.unique(value, return_inverse=True)
-        ratio_of = np.array([damping_ratio(share) for share in shares])
-        ratios = ratio_of[kind_of]
+        ratios = np.array([damping_ratio(share) for share in value.tolist()])
         # c of the damping ratio ζ = c/√(2(k+1) m A), see `restitution`
         return np.asarray(2 * ratios * np.sqrt((k + 1) / 2 * masses * stiffnesses))
 
@@ -106,6 +104,7 @@ def restitution(ratio: float) -> float:
     return math.exp(-ratio / turn * phase)
 
 
+@cache  # a long chain has few kinds of contacts
 def damping_ratio(share: float) -> float:
     """Return the damping ratio of a coefficient of restitution, the inverse of `restitution`."""
     from scipy.optimize import brentq  # start-up

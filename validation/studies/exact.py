@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import sympy as sp
 
 from lwa import Estimate
 from lwa.base.words import QUANTITIES
 from lwa.command.options import quantities
-from validation.pictures import Curve, Panel
 from validation.report.study import EXPONENT, Report, option, study
 from validation.report.table import Column, Table
 from validation.waves.profile import Number
@@ -99,7 +97,7 @@ _RATIOS = (
     # Two are published (Jayaprakash et al. 2011); the third shows how the row goes on.
     option("--count", default=3, says="Number of mass ratios, from the largest down."),
     page="exact",
-    examples=("lwa-validate resonances --count 1 --plot waves.svg",),
+    examples=("lwa-validate resonances --count 1",),
 )
 def resonances(k: float, count: int) -> Report:
     """Mass ratios m2/m1 < 1 of the dimers with a solitary wave.
@@ -108,10 +106,7 @@ def resonances(k: float, count: int) -> Report:
     ``mass_ratio_value``, ``c2_value``, ``tail_value``, ``residual_value``.
     """
     waves = special_ratios(k, count)
-    # A pulse of a dimer at peak force 1 is three sites wide, and rests on no tail.
-    xi = np.linspace(-5, 5, 1001)
     rows = []
-    curves = []
     for wave in waves:
         rows.append(
             {
@@ -121,12 +116,9 @@ def resonances(k: float, count: int) -> Report:
                 "residual_value": wave.residual,
             }
         )
-        # Solid lines, whose colours tell them apart: dashes would hide the humps.
-        curves.append(Curve(f"m2/m1 = {wave.omega:.4f}", xi, wave.force(xi), "-"))
     return Report(
         f"k = {waves[0].k:g}: dimers with a solitary wave",
         (Table(_RATIOS, rows, "rows"),),
-        panels=(Panel("ξ / D", "force of a contact", tuple(curves)),),
         data={
             "k_value": waves[0].k,
             "mass_ratios": [wave.omega for wave in waves],

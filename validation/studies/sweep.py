@@ -33,10 +33,10 @@ from lwa.base.progress import Progress
 from lwa.command.options import count
 from validation.lattice.threads import cluster, threads
 from validation.pictures import Curve, Panel
-from validation.pulses.steady import LABELS, STRETCH, Key, Point, PointFile, point
+from validation.pulses.steady import LABELS, Key, Point, point, stored
 from validation.report.study import Report, option, output_file, study
 from validation.report.table import Column, Table, percent
-from validation.scenes.checks import Failure, SceneError, integer, items
+from validation.scenes.checks import Failure, SceneError, items
 
 RANGES = {
     "k": (Rational(21, 20), Rational(6)),
@@ -91,7 +91,7 @@ Row = Mapping[str, Any]
 """Cells of a point by the keys of columns."""
 
 
-def report(points: Sequence[Point], stretch: int = STRETCH) -> Report:
+def report(points: Sequence[Point]) -> Report:
     """Return the report of points, in rising order of k, then of ω, beside the theories.
 
     Table ``points`` has the missing values' reasons.
@@ -107,7 +107,7 @@ def report(points: Sequence[Point], stretch: int = STRETCH) -> Report:
         (Table(_COLUMNS, rows, "points", by="k", note=_NOTE, errors=_ERRORS),),
         panels=tuple(_panels(rows)),
         notes=("\n".join(missing),),
-        data={"stretch": stretch, "missing": len(missing)},
+        data={"missing": len(missing)},
     )
 
 
@@ -230,16 +230,16 @@ def _values(given: str | Iterable[Any], name: str) -> tuple[Rational, ...]:
 def measured(
     ks: Axis,
     omegas: Axis,
-    file: PointFile,
+    path: Path,
     workers: AbstractContextManager[Executor],
     progress: Progress[Key],
 ) -> list[Point]:
     """Measure the points of a grid that are not yet in the file, by the executor of ``workers``."""
-    with workers as executor, file.opened() as (points, keep):
+    with workers as executor, stored(path) as (points, keep):
         # Points of an earlier sweep with this file are not computed again.
         missing = [key for key in product(ks, omegas) if key not in points]
         try:
-            waiting = [executor.submit(point, *key, file.stretch) for key in missing]
+            waiting = [executor.submit(point, *key) for key in missing]
             # The first that is done, whatever its place in the grid.
             finished = as_completed(waiting)
             for _, future in zip(progress(missing), finished, strict=True):
@@ -250,8 +250,8 @@ def measured(
             gone = "the workers are gone before the sweep is done: killed, or out of memory?"
             raise Failure(gone) from error
         except KeyboardInterrupt:
-            kept = f"the same line goes on from {file.path}"
-            if file.path == MEMORY:
+            kept = f"the same line goes on from {path}"
+            if path == MEMORY:
                 kept = "--file points.sqlite keeps finished points for the same line"
             raise KeyboardInterrupt(kept) from None
     return [points[key] for key in product(ks, omegas)]
@@ -264,11 +264,6 @@ _RANGES = "values and ranges start:stop:count, separated by commas."
     option("--k", "ks", default="5/4:3:8", says=f"Exponents of F = δ^k: {_RANGES}"),
     option(
         "--omega", "omegas", default="1/20:1:20", says=f"Mass ratios m2/m1: {_RANGES}"
-    ),
-    option(
-        "--stretch",
-        default=STRETCH,
-        says="Cells between two measurements; more at k < 3/2.",
     ),
     option(
         "--file",
@@ -296,7 +291,6 @@ _RANGES = "values and ranges start:stop:count, separated by commas."
 def sweep(
     ks: str | Iterable[Any],
     omegas: str | Iterable[Any],
-    stretch: int = STRETCH,
     file: str | Path | None = None,
     jobs: int | None = None,
     address: str | None = None,
@@ -309,8 +303,6 @@ def sweep(
     ----------
     ks, omegas : str or iterable of numbers
         Texts such as "5/4:3:8, 4", or exact numbers; floats count as their decimals.
-    stretch : int
-        Cells between places of measurement; more below k of 3/2, see `validation.pulses.steady`.
     file : path, optional
         File of finished points (.sqlite), which are not computed again.
     jobs : int, optional
@@ -333,8 +325,6 @@ def sweep(
     1.4119
     """
     grid = _values(ks, "k"), _values(omegas, "omega")
-    # A stretch of one cell is shorter than the pulse.
-    stretch = integer(stretch, "stretch", 2, 100)
     # Checked before the file is made: a refusal leaves no file behind.
     if address is not None and jobs is not None:
         raise InputError(f"jobs is {jobs}: a cluster has its own workers", jobs=None)
@@ -342,5 +332,4 @@ def sweep(
     if file is not None:
         path = output_file("file", str(file), (".sqlite",))
     workers = threads(jobs, "jobs") if address is None else cluster(address)
-    points = measured(*grid, PointFile(path, stretch), workers, progress)
-    return report(points, stretch)
+    return report(measured(*grid, path, workers, progress))

@@ -6,7 +6,7 @@ import sympy as sp
 
 from lwa import Cell, Dimer, NoSolitaryWave, lattice_wave
 from lwa.cell import k as symbol_k
-from lwa.expansion.dimers import exponent_of_light_beads
+from lwa.expansion.dimers import dimer_error, exponent_of_light_beads
 from lwa.expansion.joined import FORMS, phi_series
 from tests.lwa.expansion.test_exact_waves import lattice
 from tests.lwa.wave.test_source import LANGUAGE, answers
@@ -135,6 +135,14 @@ def test_the_error_of_a_dimers_wave(engine, k, omega):
     if omega < sp.S.Half:  # whichever bead is listed first
         other = lattice_wave(Dimer(omega, 1, spacing=1), k=k)
         assert other.speed == wave.speed
+
+
+def test_beside_ratios_without_a_steady_pulse_the_error_is_that_of_the_steady_one():
+    """At k = 3/2 no pulse is steady for m2/m1 from 0.5 to 0.7; the grid's next ratio is 0.75."""
+    steady, between = (
+        dimer_error("force", sp.Rational("3/2"), ratio) for ratio in (0.75, 0.73)
+    )
+    assert between == pytest.approx(steady, rel=1e-6)  # the root of a rounded 0 counts
 
 
 def test_the_nearest_theory_has_a_name():

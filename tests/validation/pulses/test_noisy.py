@@ -223,6 +223,13 @@ def test_a_sudden_force_on_a_load_may_begin_at_its_first_sample():
     assert abs(peak.value - 2) < peak.error < 22
 
 
+def test_a_sudden_force_that_begins_at_0_has_a_base():
+    """It begins as Hertz's law does, with t^{3/2}."""
+    struck = np.clip(np.sin(N / 30), 0, None) ** 1.5 * (N < 95)
+    peak = noisy_pulse(N, struck).numbers["peak"]
+    assert abs(peak.value - 1) < peak.error < 1e-5
+
+
 def test_a_front_that_has_just_begun_has_a_foot_below_the_first_sample():
     """An arch that has risen to 0.4 % of its peak: a sudden front begins at 0."""
     places = np.clip((N - 75) / 90, -1, 1)
@@ -325,6 +332,14 @@ def test_the_arrival_of_two_humps_is_unsure_by_their_distance(samples, noise, co
         earlier += off[0] < -0.5
     assert earlier > 0
     assert np.all(np.mean(within, axis=0) >= covered)
+
+
+def test_noise_alone_has_no_rise():
+    """Two more terms lower Akaike's criterion where χ² of two is above 4: in 14 of 100 draws."""
+    rng = np.random.default_rng(0)
+    draws = rng.normal(size=(60, 400))
+    terms = [len(Base.before(N, f, 380.0, 33.0).best.sizes) for f in draws]
+    assert terms.count(2) > 0.7 * len(draws)
 
 
 def test_the_doubt_between_two_bases_is_in_the_drawn_errors():

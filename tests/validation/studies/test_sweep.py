@@ -19,20 +19,20 @@ from lwa.base import INTERRUPTED
 from tests.commands import ended
 from validation import cli
 from validation.lattice.threads import cluster, threads
-from validation.pulses.steady import LABELS, Point, PointFile
+from validation.pulses.steady import LABELS, Point, stored
 from validation.report import study
 from validation.scenes.checks import Failure
 from validation.studies.sweep import MEMORY, measured, report, sweep, theory
 
 R = sp.Rational
-QUICK = {"stretch": 2, "jobs": 1}  # the shortest chains, one after another
+QUICK = {"jobs": 1}  # one after another
 KS, OMEGAS = (R(3),), (R(1, 4), R(1, 2), R(3, 4), R(1))
 
 
 @pytest.fixture(scope="module")
 def reference():
     """Four points."""
-    return measured(KS, OMEGAS, PointFile(MEMORY, 2), threads(1), iter)
+    return measured(KS, OMEGAS, MEMORY, threads(1), iter)
 
 
 def numbers(found):
@@ -53,7 +53,7 @@ def stopped(error):
 def file(reference, tmp_path):
     """A sweep's file of two points with numbers and one that has none."""
     path = tmp_path / "s.sqlite"
-    with PointFile(path, 2).opened() as (_, keep):
+    with stored(path) as (_, keep):
         for point in (*reference[:2], Point(R(4), R(1), None, {}, "it “broke”\n")):
             keep(point)
     return path
@@ -61,7 +61,7 @@ def file(reference, tmp_path):
 
 def test_an_interrupted_sweep_resumes_and_grows(capsys, file, reference):
     """Finished points come back bit for bit; new ones alone are computed, each value once."""
-    computed, wanted = [], numbers(report(reference, 2))
+    computed, wanted = [], numbers(report(reference))
     with pytest.raises(KeyboardInterrupt):
         sweep(KS, OMEGAS, file=file, progress=stopped(KeyboardInterrupt), **QUICK)
 
@@ -73,7 +73,7 @@ def test_an_interrupted_sweep_resumes_and_grows(capsys, file, reference):
     assert numbers(sweep(KS, OMEGAS, **options)) == wanted
     assert computed == [(3, 1)]
     assert numbers(sweep([4], [1], **options))[0]["missing"] == "it “broke”\n"
-    line = f"sweep --k 3 --omega 0.25:1:4,1/4 --stretch 2 --file {file} --format json"
+    line = f"sweep --k 3 --omega 0.25:1:4,1/4 --file {file} --format json"
     status, out, err = ended(capsys, cli.main, *line.split())
     assert (status, err) == (0, "")
     assert json.loads(out)["points"] == wanted
@@ -85,7 +85,7 @@ def test_an_interrupted_sweep_resumes_and_grows(capsys, file, reference):
 )
 def test_ctrl_c_says_how_points_are_kept(capsys, folder, monkeypatch, options, says):
     monkeypatch.setattr(study, "progress", stopped(KeyboardInterrupt))
-    line = f"sweep --k 3 --omega 1,3/4 --stretch 2 --jobs 1 {options}"
+    line = f"sweep --k 3 --omega 1,3/4 --jobs 1 {options}"
     status, out, err = ended(capsys, cli.main, *line.split())
     assert (status, out) == (INTERRUPTED, "")
     assert err.startswith("\nlwa-validate: interrupted: ")
@@ -95,8 +95,8 @@ def test_ctrl_c_says_how_points_are_kept(capsys, folder, monkeypatch, options, s
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ("alter table points_5_2 rename to points_5_3", "other data than points"),
-        ("update points_5_2 set point = replace(point, '\"4\"', '\"f(0)\"')", "k is"),
+        ("alter table points_5_4 rename to points_5_3", "other data than points"),
+        ("update points_5_4 set point = replace(point, '\"4\"', '\"f(0)\"')", "k is"),
     ],
 )
 def test_another_database_is_refused_and_left_alone(file, change, words):
@@ -113,7 +113,7 @@ def refused(file, words):
 
 
 def test_a_file_that_is_open_or_of_another_kind_is_refused(file):
-    with PointFile(file, 2).opened():
+    with stored(file):
         refused(file, r"s\.sqlite: .*locked")
     file.write_bytes(100 * b"a,b,c,d,e\n")
     refused(file, "not a database")
@@ -139,10 +139,8 @@ def test_a_cluster_that_loses_a_worker_loses_no_point(reference):
                     os.kill(pids[0], signal.SIGKILL)
                 yield key
 
-        found = sweep(
-            KS, OMEGAS, stretch=2, address=local.scheduler_address, progress=progress
-        )
-    assert numbers(found) == numbers(report(reference, 2))
+        found = sweep(KS, OMEGAS, address=local.scheduler_address, progress=progress)
+    assert numbers(found) == numbers(report(reference))
 
 
 @with_dask
@@ -177,7 +175,7 @@ def points():
 
 def test_the_document_is_json_and_complete(points):
     found = json.loads(json.dumps(report(points).document(), allow_nan=False))
-    assert (found["stretch"], found["missing"]) == (4, 1)
+    assert found["missing"] == 1
     none, last = found["points"][4::4]
     assert {none[f"{name}_value"] for name in LABELS} == {none["sites"], None}
     assert (none["missing"], last["missing"], last["sites"]) == (
