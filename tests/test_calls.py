@@ -38,7 +38,7 @@ ODD = (
 # function returns: no user calls them, and they may fail in any way.
 OWN = {
     "CompactWave", "LatticeWave", "InputError", "LoadedWave", "NoSolitaryWave", "SceneError",
-    "MeasureError", "check_strain", "compression", "Expansion", "latex_rows",
+    "MeasureError", "IntegrationError", "check_strain", "compression", "Expansion", "latex_rows",
     "of_strain", "phi", "replaced", "ExactWave", "Pulse", "Run",
     "plot", "simulate_many",  # these two take objects of others
 }  # fmt: skip

@@ -56,6 +56,9 @@ EXAMPLES = (
 _ENVIRONMENT = {
     # Figures go to files: a display, or a notebook's shell, has no part in them.
     "MPLBACKEND": "agg",
+    # Linear systems are small: on a busy machine a second thread only waits for the first
+    # (`resonances --k 5` took 49 s of CPU time, not 6).
+    "OPENBLAS_NUM_THREADS": "1",
     # Runs are parallel by Python's threads; numba refuses to load for a number below 1.
     "NUMBA_NUM_THREADS": "1",
 }

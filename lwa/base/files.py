@@ -118,6 +118,8 @@ def reason(error: Exception) -> str:
 def finite(value: Any, name: str) -> float:
     """Read one finite number."""
     number = None
+    if value is None:
+        raise InputError(f"{name} is missing")
     # A masked array's float is NaN, or the number behind the mask.
     if not isinstance(value, str | bytes | bool) and not hasattr(value, "mask"):
         with suppress(TypeError, ValueError, OverflowError):

@@ -14,6 +14,7 @@ import sympy as sp
 
 from lwa.base.exact import InputError
 from lwa.base.files import Reader, Table, among, finite, load, positive, table
+from lwa.base.frozen import RISE, SPEED
 from lwa.cell import Cell, D
 from lwa.command.answer import Row, Scale
 from lwa.law import ContactLaw, Power, for_cell, read_law
@@ -131,12 +132,23 @@ def take_chain(options: dict[str, Any]) -> ChainInput:
             f"the chain is read from a file by --spheres; try: {STRIKER_FILE}"
         )
     cell = Cell(masses, stiffnesses or (), spacing or D)
-    # D = 1 would then set k, too.
-    if cell.spacing.is_Symbol and k == cell.spacing:
-        raise InputError(
-            f"k is {cell.spacing}: the name is that of the spacing, a unit of length"
-        )
-    return ChainInput(cell, for_cell(law, cell, k), load)
+    contacts = for_cell(law, cell, k)
+    # A name with two meanings would be one symbol: D = 1 would then set a mass D, too.
+    taken = {RISE: "a wave's peak strain", SPEED: "a wave's speed"}
+    for option, values in {
+        "spacing": (cell.spacing,),
+        "k" if law is None else "law": contacts.symbols,
+        "masses": cell.masses,
+        "stiffnesses": cell.stiffnesses,
+    }.items():
+        for symbol in taken.keys() & {*values}:
+            raise InputError(
+                f"{option} is {symbol}: the name is that of {taken[symbol]}"
+            )
+        # A mass and a stiffness may well be one number.
+        if option not in ("masses", "stiffnesses"):
+            taken |= {value: f"--{option}" for value in values if value.is_Symbol}
+    return ChainInput(cell, contacts, load)
 
 
 def read_chain(path: str) -> ChainInput:

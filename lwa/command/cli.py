@@ -152,8 +152,9 @@ def next_step(
     """The reason of a refusal and, behind "; try:", a whole line to paste.
 
     The line is the user's own with the arguments of `Refusal.change`, or with the example of the
-    option that the reason names; else the last example of the command's help, or of those before
-    the refused one.
+    option that the reason names. Without either, the fault is in a file of the line, if there is
+    one: the user's own line reads a record again, and the keys of a scene are shown. Else it is the
+    last example of the command's help, or of those before the refused one.
     """
     if TRY in refusal.reason:  # the reason has a line of its own, on a file
         return refusal.reason
@@ -168,15 +169,17 @@ def next_step(
     # A file stands in place of the options of a chain: a wrong one is left out.
     if "--spheres" in line and change.keys() & CHAIN:
         change = {name: None for name in change if f"--{name}" in line}
-        if not change:
-            return cut(f"{refusal.reason}; change it in the file{TRY}{KEYS}")
+    reason = refusal.reason
+    files = [*filter(os.path.isfile, line)]
+    if files and not change and files[-1].endswith((".toml", ".json")):
+        return cut(f"{reason}; change it in the file{TRY}{KEYS}")
     examples = re.findall(rf"^  ({name} .*)", chosen.epilog or "", re.MULTILINE)
     refused = shlex.join([name, *arguments])
     if refused in examples:
         # The example before it writes its file.
         examples = examples[: examples.index(refused)]
     proposed = [f"{name} --help", *examples][-1]
-    if change:
+    if change or files:
         changes = _changed(line, change)
         whole = shlex.join([name, *line, *changes])
         # A message is cut in its middle: the whole line stands at its end, or is not there.
@@ -185,7 +188,7 @@ def next_step(
         elif changes:
             proposed = shlex.join(changes)
     room = LONGEST_MESSAGE - len(f"{name}: {TRY}{proposed}")
-    return f"{cut(refusal.reason, room)}{TRY}{proposed}"
+    return f"{cut(reason, room)}{TRY}{proposed}"
 
 
 def _changed(line: list[str], change: Mapping[str, object]) -> list[str]:

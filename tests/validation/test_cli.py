@@ -226,6 +226,19 @@ def test_bad_input_prints_one_line_to_paste_with_status_2_and_leaves_no_file(
     assert not again.startswith(refusal)
 
 
+def test_a_fault_in_a_file_ends_in_the_users_own_line(capsys, folder):
+    """Or, if the file is a scene, in the list of its keys."""
+    Path("r.csv").write_text("time,force\n1,2\n2,3\n")
+    Path("s.toml").write_text(SCENE.replace("30", "1e12"))
+    for line, proposed in (
+        ("pulses r.csv --of bead",) * 2,
+        ("run s.toml", "run --keys"),
+    ):
+        status, _, err = run(capsys, *line.split())
+        assert status == 2
+        assert err.endswith(f"; try: lwa-validate {proposed}\n")
+
+
 def test_without_arguments_the_commands_are_listed(capsys):
     status, out, err = run(capsys)
     assert (status, out, "Commands:" in err) == (2, "", True)

@@ -29,6 +29,7 @@ import numpy as np
 import scipy
 import sympy as sp
 
+from lwa.base import Refusal
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError, read_exact
 from lwa.base.frozen import Estimate
@@ -46,8 +47,10 @@ LABELS = {  # measured numbers and their labels
 }
 PLACES = 10  # cells at which the pulse is recorded
 STRETCH = 4  # number of cells from one place to the next, for k ≥ 3/2
-# Tolerances of the accurate run and of the run that gives its error.
-TOLERANCES = (1e-6, 1e-5)
+# Tolerances of the accurate run and of the run that gives its error. Of 80 numbers of 20 points
+# none is outside its error and 7 have one more than thirty times too large; with 1e-6 they are 0
+# and 21, with 3e-6 they are 4 and 4.
+TOLERANCES = (2e-6, 1e-5)
 # Far stretch over the last place: there the pulse must still be the highest.
 FARTHER = 4
 STEADY = 0.1  # largest difference from the force that the decay predicts there, over this force
@@ -291,7 +294,7 @@ def stored(path: Path) -> Iterator[tuple[dict[Key, Point], Callable[[Point], Non
                 points[key] = Point(*key, ends, numbers, entry["missing"])
             yield points, keep
     except (sqlite3.Error, ValueError, TypeError, LookupError) as error:
-        if isinstance(error, InputError):
+        if isinstance(error, Refusal):
             raise
         # The first name beside the file that is free
         number = 2

@@ -29,7 +29,7 @@ from lwa.command.cli import HELP, called, help_end, run as run_command
 from lwa.command.options import Read, Reader, Words, count, quantities
 from validation.pictures import SUFFIXES, Panel, Pictured
 from validation.report.table import WIDTH, Finding, Table, findings_table, plain, wrap
-from validation.scenes.checks import Failure, finite
+from validation.scenes.checks import finite
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -234,13 +234,10 @@ class Study(Generic[P]):
             values["progress"] = progress
         if "run_progress" in parameters:
             values["run_progress"] = run_progress
-        try:
-            with warnings.catch_warnings():
-                # NumPy warns of an overflow, which is then refused or NaN.
-                warnings.simplefilter("ignore", RuntimeWarning)
-                return function(**values)
-        except Failure as error:
-            raise click.ClickException(str(error)) from None
+        with warnings.catch_warnings():
+            # NumPy warns of an overflow, which is then refused or NaN.
+            warnings.simplefilter("ignore", RuntimeWarning)
+            return function(**values)
 
     def main(self, arguments: Sequence[str] | None = None) -> None:
         """Run the command as a program, for a file that defines one study and is executed."""

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 
 from lwa.base import files
 from lwa.base.arrays import Array
+from lwa.base.exact import shorten
 from validation.scenes.checks import SceneError
 
 _LINE = re.compile(r"[^\r\n]*\S[^\r\n]*")  # a line that is not blank
@@ -31,10 +32,22 @@ As many bytes at the start of a file show whether the file is a text, without a 
 """
 
 _MARKS = "\t;, "
-HEADER = re.compile(r"^(.*?) ?(?:(?:[([] ?|\bin )([^][()\s]+) ?[])]?)?$")
-"""Pattern of the name and the unit of a column: "Force (N)", "Force [N]", "Force in N"."""
+_UNIT = r"[pnuµmckMG]?(?:m/s|[smNV])"  # units that are told without brackets
+HEADER = re.compile(
+    rf"^(.*?) ?(?:(?:[([] ?|\bin )([^][()\s]+) ?[])]?|(?<=\w)[ _/]({_UNIT}))?$"
+)
+"""Pattern of the name and the unit of a column: "Force (N)", "Force [N]", "Force in N"; "Force N",
+"Force_N" and "Force/N" end in a usual unit."""
+
+# What recorders write in place of a value beyond their range, and the numbers that SCPI has for it
+# and for no number (SCPI-99, vol. 1, 7.2.1)
+_BEYOND = re.compile(r"[-+]?o(l|vld?|ver(load|flow|range)?)", re.IGNORECASE)
+_SCPI = {9.9e37: math.inf, -9.9e37: -math.inf, 9.91e37: math.nan}
 
 _FEW = 0.1  # rows of numbers outside of the record, at most, over those of the record
+_LEAST = (
+    1 / 3
+)  # share of numbers in a row of a record: a date and a time may stand in front
 _SETTINGS = 20  # lines in whose first columns recorders write settings
 
 
@@ -58,8 +71,7 @@ class Cells:
 
         def record(mark: str) -> tuple[int, int]:
             """Return start and end of the longest run of rows of numbers, with this separator."""
-            # A row of numbers may hold as many texts: states, dates.
-            numeric = [_share(row) >= 1 / 2 for row in tables[mark]]
+            numeric = [_share(row) >= _LEAST for row in tables[mark]]
             return longest(numeric)
 
         def weight(mark: str) -> float:
@@ -84,6 +96,10 @@ class Cells:
             # Without any row of numbers all lines are the head.
             start = len(rows)
         self.head = rows[:start]
+        self._texts = set()
+        for line, row in zip(lines, self.head, strict=False):
+            if any(row) and not _share(row):
+                self._texts.add(line)
         self.entries = {}
         for number, cell in enumerate(typical, start=1):
             if not math.isnan(number_of(cell)):
@@ -168,7 +184,7 @@ class Cells:
         """Yield the lines, with so many cells more that the reader finds all columns."""
         # The reader refuses a line that is too short.
         more = f"{self._mark}nan" * count
-        for line in _LINE.finditer(self._text):
+        for line in self._data():
             text = line[0]
             if '"' in text:
                 # NumPy takes quotes right after a separator; a single one would join lines.
@@ -176,6 +192,20 @@ class Cells:
                 if text.count('"') % 2:
                     text = text.replace('"', "'")
             yield text + more
+
+    def _data(self) -> Iterator[re.Match[str]]:
+        """Yield the lines, without comments among the numbers and without repeated headers.
+
+        A recorder may write its header again after each block.
+        """
+        seen = set()
+        for place, line in enumerate(_LINE.finditer(self._text)):
+            text = line[0]
+            comment = text.startswith("#") and place >= len(self.head)
+            if not comment and text not in seen:
+                yield line
+            if text in self._texts:
+                seen.add(text)
 
     def rows(self, table: Array) -> tuple[int, int]:
         """Return start and end of the record in a table of columns: the rows without any NaN.
@@ -195,22 +225,23 @@ class Cells:
         for before, after in pairwise(found[first : place + 2]):
             _, gap = before
             if many or numbers[gap : after[0]].any():
-                raise SceneError(f"line {self._line(gap)} is a gap in the record")
+                at, text = self._line(gap)
+                raise SceneError(f"line {at} is a gap in the record: {shorten(text)}")
         infinite = np.isinf(table[start:end])
         beyond = np.flatnonzero(infinite.any(axis=1))
         if len(beyond):
+            at, _ = self._line(start + int(beyond[0]))
             raise SceneError(
-                f"line {self._line(start + int(beyond[0]))} holds ∞, the signal is clipped: a "
-                "larger range of the recorder is wanted"
+                f"line {at} holds ∞, the signal is clipped: a larger range of the recorder is "
+                "wanted"
             )
         return start, end
 
-    def _line(self, row: int) -> int:
-        """Return the number, from 1, of a line that is counted without blank lines, from 0."""
-        lines = _LINE.finditer(self._text)
-        start = next(islice(lines, row, None)).start()
-        above = self._text[:start].splitlines()
-        return len(above) + 1
+    def _line(self, row: int) -> tuple[int, str]:
+        """Return the number, from 1, and the text of the line of a row of `columns`."""
+        line = next(islice(self._data(), row, None))
+        above = self._text[: line.start()].splitlines()
+        return len(above) + 1, line[0]
 
 
 def longest(flags: ArrayLike) -> tuple[int, int]:
@@ -245,15 +276,20 @@ def name_of(header: str) -> str:
 def number_of(cell: str) -> float:
     """Return the number in a cell; NaN for other text.
 
-    >>> [number_of(cell) for cell in ("-1,5", "1.5D-3", "+ 4", "12:03")]
-    [-1.5, 0.0015, 4.0, nan]
+    >>> [number_of(cell) for cell in ("-1,5", "1.5D-3", "+ 4", "12:03", "1_0", "-OL")]
+    [-1.5, 0.0015, 4.0, nan, nan, -inf]
     """
+    if "_" in cell:  # Python reads 1_0 as 10
+        return math.nan
     plain = cell.replace(",", ".")
     try:
-        return float(plain)
+        value = float(plain)
+        return _SCPI.get(value, value)
     except ValueError:
         # Fortran writes 1.5D-3, and some loggers write + 1.5.
         plain = plain.replace("D", "e").replace("+ ", "+").replace("- ", "-")
+    if _BEYOND.fullmatch(plain):
+        return -math.inf if plain.startswith("-") else math.inf
     try:
         return float(plain)
     except ValueError:

@@ -9,7 +9,7 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.base import files
+from lwa.base import Refusal, files
 from lwa.base.exact import InputError, one_of as one_of, shorten
 from lwa.base.files import Reader
 from lwa.cell import exponent
@@ -32,7 +32,7 @@ MISSING = math.nan
 _OTHER_CASES = sp.Max, sp.Min, sp.Abs, sp.sign, sp.Heaviside, sp.floor, sp.ceiling
 
 
-class Failure(RuntimeError):
+class Failure(Refusal):
     """A computation with valid input that could not go on; the message says where and why."""
 
 

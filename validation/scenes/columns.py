@@ -359,9 +359,11 @@ def found_unit(cells: Sequence[str]) -> str:
     """Return the unit that the cells above a column state, "" for none; the lowest one counts."""
     for cell in reversed(cells):
         header = HEADER.fullmatch(cell)
-        if header and header[2]:
-            return header[2]
-    return next(filter(known, reversed(cells)), "")
+        if header and (header[2] or header[3]):
+            return header[2] or header[3]
+    # A row of units stands below names: the V of a single header is a speed, say.
+    below = [*filter(None, cells)][1:]
+    return next(filter(known, reversed(below)), "")
 
 
 def read_statement(text: str, base: str) -> tuple[float, str] | None:

@@ -13,6 +13,8 @@ Every fault is one line that names the key.
 
 from __future__ import annotations
 
+import json
+import re
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -49,6 +51,9 @@ MOST_BEADS = 1_000_000  # they are read in 2 s and 40 MB
 _STATED = ("columns", "units", "step")  # keys on the file of a drive
 # Keys of a striker or a defect that is a bead unlike the others
 _OTHER = ("like", "mass")
+_ABOUT = re.compile(
+    r"([\w.]+) is (missing|unknown|.*: a (?:number|list|sequence) is wanted)(?:: .*)?"
+)
 
 
 def read_scene(
@@ -71,7 +76,10 @@ def read_scene(
 
     def read(content: Any) -> Scene:
         """Read the scene of a file's content, with a number of samples if it gives none."""
-        found = scene(content, Path(path).parent)
+        try:
+            found = scene(content, Path(path).parent)
+        except SceneError as fault:
+            raise SceneError(f"{fault}{_line(str(fault))}") from None
         if samples is None or "samples" in content:
             return found
         return replace(found, samples=samples(found))
@@ -152,6 +160,29 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
         bead_sensors=sensors.read("beads", _sensors(row.size), ()),
         contact_sensors=sensors.read("contacts", _sensors(contacts), ()),
     )
+
+
+def _line(fault: str) -> str:
+    """Return the example, in the list of keys, of the key that a fault is about; "" for none.
+
+    The key is missing, has a value of another type, or stands in a table, not above all tables.
+    """
+    about = _ABOUT.fullmatch(fault)
+    if about is None:
+        return ""
+    *tables, key = about[1].split(".")
+    if about[2] == "unknown":
+        tables = []
+    found: Any = _known()
+    for name in tables:
+        # Names of beads and of materials are free.
+        found = found.get(name) or next(iter(found.values()))
+    value = found.get(key)
+    if value is None or isinstance(value, dict):
+        return ""
+    where = f"in [{'.'.join(tables)}]" if tables else "above all tables"
+    # A number, a text or a list of them is written in TOML as in JSON.
+    return f"; try: {key} = {json.dumps(value)}  # {where}"
 
 
 @cache

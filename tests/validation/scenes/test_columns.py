@@ -36,7 +36,11 @@ def read(tmp_path):
             "latin-1",
         ),
         ("% time(ms)  force (N)\n 1.5 −2e3\n 2.5   4\n\n", "utf-8"),
-        ("Zeit;Kraft\ntime [ms];force in N\n1,5;-2000,0;x\n2,5;4;y\n", "latin-1"),
+        ("Zeit;Kraft\ntime/ms;force in N\n1,5;-2000,0;x\n2,5;4;y\n", "latin-1"),
+        (
+            "D,T,time_ms,force N\na,1:0,1.5,-2e3\n# x\nD,T,time_ms,force N\na,1:1,2.5,4\n",
+            "utf-8",
+        ),
         ('time (ms), "force (N)"\n"1,5", "-2D3"\n"2,5", + 4\n5",x\n', "utf-8"),
     ],
 )
@@ -53,8 +57,8 @@ def test_rows_of_numbers_above_a_record_belong_to_the_preamble(read):
     assert file.rows("force").ravel().tolist() == list(range(0, 80, 2))
     columns = {"time": "1", "force": "2"}
     for rest in (f"7,\n{record}", f'"1,300.5",7\n{record}', "7,\n8,9\n"):
-        file = read(f"t,CH1\n{record}{rest}", columns=columns)
-        with pytest.raises(InputError, match="line 42 is a gap"):
+        file = read(f"t,CH1\n{record}t,CH1\n{rest}", columns=columns)
+        with pytest.raises(InputError, match="line 43 is a gap"):
             file.rows("time", "force")
 
 
@@ -207,6 +211,9 @@ STATED = {"columns": {"force": "2"}}
             "2 columns are 'time': .* columns={'time': '1'}",
         ),
         (f"{HEAD}1,2\n", {"columns": {"force": "9"}}, "no row .*'2'}$"),
+        (f"{HEAD}1,2\n2,+OL\n3,4\n", {}, "line 3 holds ∞"),
+        (f"{HEAD}1,2\n2,9.9E37\n3,4\n", {}, "line 3 holds ∞"),
+        (f"{HEAD}1,2\n2,1_0\n3,4\n", {}, "line 3 is a gap in the record: '2,1_0'"),
         (f"{HEAD}1,2\n", {"step": "x"}, "step is 'x': .* step='1 us'$"),
     ],
 )

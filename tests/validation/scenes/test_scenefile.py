@@ -188,6 +188,21 @@ FILES = [
         b"chain = {cell = [1], k = 2}\nstriker = {velocity = 1}",
         "duration is missing",
     ),
+    (
+        "s.toml",
+        b"chain = {cell = [1, 1], k = 2}\ndrive = {amplitude = 1}\nduration = 1",
+        r"drive.frequency is missing; try: frequency = 5000.0 # in \[drive\]$",
+    ),
+    (
+        "s.toml",
+        b"beads = {b = {mass = '1 g', radius = 1, material = 'PTFE'}}",
+        r"beads.b.mass is '1 g': .* try: mass = 0.00045 # in \[beads.b\]$",
+    ),
+    (
+        "s.toml",
+        b"striker = {duration = 1}",
+        "striker.duration is unknown: .* try: duration = 0.001 # above all tables$",
+    ),
     ("s.toml", b"x = " + DEEP, "nested too deeply"),
     ("s.toml", "# Länge\nduration = 1".encode("latin-1"), "not a text in UTF-8"),
     ("s.toml", b"#" * (files.MOST_BYTES[".toml"] + 1), "more than [0-9]+ bytes"),

@@ -160,6 +160,7 @@ ROWS = "".join(f"{n},{n}\n" for n in range(1, 9))
     ("text", "options", "named"),
     [
         ("force,time\n1,2\n", {}, "no column is .speed."),
+        ("F,V\n" + ROWS, {}, "columns={'force': '1', 'speed': '2'}$"),
         ("force,speed\n1,2\n", {}, "at least 6 pulses"),
         ("force,speed\n" + "-1,2\n" * 9, {}, "positive force and speed"),
         ("force,speed\n" + "1,2\n" * 9, {}, "1 different forces"),
