@@ -132,23 +132,23 @@ def take_chain(options: dict[str, Any]) -> ChainInput:
             f"the chain is read from a file by --spheres; try: {STRIKER_FILE}"
         )
     cell = Cell(masses, stiffnesses or (), spacing or D)
-    contacts = for_cell(law, cell, k)
-    # A name with two meanings would be one symbol: D = 1 would then set a mass D, too.
-    taken = {RISE: "a wave's peak strain", SPEED: "a wave's speed"}
-    for option, values in {
-        "spacing": (cell.spacing,),
-        "k" if law is None else "law": contacts.symbols,
-        "masses": cell.masses,
-        "stiffnesses": cell.stiffnesses,
-    }.items():
-        for symbol in taken.keys() & {*values}:
+    law = for_cell(law, cell, k)
+    # A name with two meanings would be one symbol: D = 1 would then set a mass D, too. A mass and a
+    # stiffness may well be one number.
+    names = (
+        RISE,
+        SPEED,
+        cell.spacing,
+        *law.symbols,
+        *set(cell.masses + cell.stiffnesses),
+    )
+    for name in names:
+        if name.is_Symbol and names.count(name) > 1:
             raise InputError(
-                f"{option} is {symbol}: the name is that of {taken[symbol]}"
+                f"{name} has two meanings: beside the law's symbols {cell.spacing} is the spacing, "
+                f"{RISE} and {SPEED} are a wave's peak strain and speed"
             )
-        # A mass and a stiffness may well be one number.
-        if option not in ("masses", "stiffnesses"):
-            taken |= {value: f"--{option}" for value in values if value.is_Symbol}
-    return ChainInput(cell, contacts, load)
+    return ChainInput(cell, law, load)
 
 
 def read_chain(path: str) -> ChainInput:

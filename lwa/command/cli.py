@@ -169,10 +169,9 @@ def next_step(
     # A file stands in place of the options of a chain: a wrong one is left out.
     if "--spheres" in line and change.keys() & CHAIN:
         change = {name: None for name in change if f"--{name}" in line}
-    reason = refusal.reason
     files = [*filter(os.path.isfile, line)]
     if files and not change and files[-1].endswith((".toml", ".json")):
-        return cut(f"{reason}; change it in the file{TRY}{KEYS}")
+        return cut(f"{refusal.reason}; change it in the file{TRY}{KEYS}")
     examples = re.findall(rf"^  ({name} .*)", chosen.epilog or "", re.MULTILINE)
     refused = shlex.join([name, *arguments])
     if refused in examples:
@@ -188,7 +187,7 @@ def next_step(
         elif changes:
             proposed = shlex.join(changes)
     room = LONGEST_MESSAGE - len(f"{name}: {TRY}{proposed}")
-    return f"{cut(reason, room)}{TRY}{proposed}"
+    return f"{cut(refusal.reason, room)}{TRY}{proposed}"
 
 
 def _changed(line: list[str], change: Mapping[str, object]) -> list[str]:
