@@ -169,7 +169,7 @@ def next_mark(marks: Array, i: int) -> int:
     return i
 
 
-@inlined
+@part
 def _drive_curve(beads: Beads, h: float) -> kinks.Curve:
     """Return the motion of the driven bead over a step, as a curve that starts at 0."""
     start = 0.0, h * beads.v[0], h * h * beads.given[0]
@@ -178,7 +178,7 @@ def _drive_curve(beads: Beads, h: float) -> kinks.Curve:
     return kinks.fitted_curve(start, end, kinks.STRAIGHT)
 
 
-@inlined
+@alone
 def _drive_misfit(forcing: Forcing, beads: Beads, t: float, h: float) -> float:
     """Return the distance of a driven bead's motion in a step from its quintic."""
     curved, _ = kinks.value_and_slope(_drive_curve(beads, h), _OFF_MIDDLE)
@@ -236,7 +236,7 @@ def _follow_stages(
         points[2, s] = push(chain.laws[chain.law[i]], chain.r[i], d, slope / h)
 
 
-@inlined
+@alone
 def _clipped(
     chain: Chain,
     forcing: Forcing,
@@ -286,7 +286,7 @@ def _replace_estimates(
         beads.errors[q, i + 1] -= seen * chain.inverse[i + 1]
 
 
-@inlined
+@part
 def _correct_heat(
     chain: Chain, beads: Beads, pair: Pair, i: int, work: float, stored: float
 ) -> None:
@@ -302,7 +302,7 @@ def _correct_heat(
     beads.books[HEAT] += chain.A[i] * heat
 
 
-@inlined
+@alone
 def _correct_work(
     chain: Chain, beads: Beads, pair: Pair, drive: kinks.Curve, work: float
 ) -> None:
