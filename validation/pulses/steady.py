@@ -47,8 +47,10 @@ LABELS = {  # measured numbers and their labels
 }
 PLACES = 10  # cells at which the pulse is recorded
 STRETCH = 4  # number of cells from one place to the next, for k ≥ 3/2
-# Tolerances of the accurate run and of the run that gives its error.
-TOLERANCES = (1e-6, 1e-5)
+# Tolerances of the accurate run and of the run that gives its error. Of 80 numbers of 20 points
+# none is outside its error and 7 have one more than thirty times too large; with 1e-6 they are 0
+# and 21, with 3e-6 they are 4 and 4.
+TOLERANCES = (2e-6, 1e-5)
 # Far stretch over the last place: there the pulse must still be the highest.
 FARTHER = 4
 STEADY = 0.1  # largest difference from the force that the decay predicts there, over this force

@@ -65,6 +65,8 @@ STARTS = (0.248, 0.1238, 0.0758, 0.0533, 0.0401, 0.0309)
 # differ by 11 % or more there: a change below 4 % is that of the ratio itself. Measured at 21 k
 # from 1.1 to 5, all ratios; with 0.3 and 5 % two waves were those of neighbours.
 _FARTHEST = 0.175
+# Above k = 3/2 ratios change less: at k from 1.7 to 5 all six are the same by either step.
+_FARTHEST_STEEP = 0.36
 _NEARER = 0.04
 _SHORTEST = 1e-3  # a wave that a shorter step does not reach is lost
 _EQUAL = (1.0, 1.0)
@@ -299,7 +301,8 @@ def _followed(wave: ExactWave, k: float) -> ExactWave:
     A step that loses the wave, or leads to another ratio, is divided in two.
     """
     length = abs(math.log((k - 1) / (wave.k - 1)))
-    if length < _FARTHEST:
+    farthest = _FARTHEST if k < HERTZ else _FARTHEST_STEEP
+    if length < farthest:
         with suppress(NoWave):
             following = solve(SpecialRatio(wave.masses, k), wave)
             # The frequency of the light beads is proportional to √(m1/m2).

@@ -113,7 +113,7 @@ def measured(monkeypatch, width, peak):
     [
         (lambda n, rtol: 1 + n**-0.5, 80**-0.5),  # what is left at the last place
         (lambda n, rtol: 1 + 0.01 * (n // 8 % 2), 0.01),
-        (lambda n, rtol: 1 + 0.01 * ((rtol > 1e-6) & (n <= 80)), 0.01),
+        (lambda n, rtol: 1 + 0.01 * ((rtol > steady.TOLERANCES[0]) & (n <= 80)), 0.01),
     ],
 )
 def test_the_error_is_the_largest_difference(monkeypatch, width, error):
