@@ -113,3 +113,13 @@ def test_the_work_of_a_shaken_wall_is_the_heat():
     )
     # By the pair's three solutions, without a least error of integrals, it was 27 tolerances.
     assert abs(simulate(scene, rtol=1e-10).energy_drift) < 12e-10
+
+
+def test_a_bounce_heats_as_much_as_it_slows():
+    scene = chain(
+        (0.73,), wall=1, k=2, displacements=(-0.07,), velocities=(0.98,), duration=10,
+        damping=Damping("kuwabara_kono", 0.69),
+    )  # fmt: skip
+    # Were the error of the contact's curve not in that of the heat, 8 of these were above 5.
+    for rtol in np.geomspace(1e-5, 1e-10, 61):
+        assert abs(simulate(scene, rtol=rtol).energy_drift) < 5 * rtol

@@ -62,8 +62,6 @@ KEEP_ENERGY = [
     shaken((1, 1), 1.5, ("restitution", 0.5), 0.5, 0.2, 0),
     shaken((0.715, 1.488), 1.5, ("kuwabara_kono", 0.378), 0.91, 0.315, 0.039),
     shaken((1.361, 0.578), 3.0, ("contact", 0.395), 0.824, 0.592, -1.128),
-    # Damping heats by as much more as the curve of its contact errs.
-    shaken((0.78, 0.25, 1.06), 1.5, ("kuwabara_kono", 0.35), 0.93, 0.38, 0.98),
     # Beyond a free end 0 times the force of no contact, 2,090^100 at last, is no number.
     *(
         chain(3, law=law, velocities=(1,), duration=3000, damping=Damping("contact", 0.1))
@@ -75,8 +73,7 @@ KEEP_ENERGY = [
 @pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10])
 @pytest.mark.parametrize("scene", KEEP_ENERGY)
 def test_the_energy_is_kept(scene, rtol):
-    """At 81 tolerances the last of the shaken beads drift by 3 in the middle, by 25 at most."""
-    assert abs(simulate(scene, rtol=rtol).energy_drift) < 30 * rtol
+    assert abs(simulate(scene, rtol=rtol).energy_drift) < 20 * rtol
 
 
 def test_a_contact_that_closes_late_in_a_long_step():
