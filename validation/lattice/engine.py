@@ -402,7 +402,7 @@ def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
         marks=marks,
         power=np.zeros((2, ROOM)),
         given=given,
-        books=np.zeros(5),
+        books=np.zeros(6),
         points=np.zeros((3, ROOM)),
         edges=np.zeros(EDGES),
     )

@@ -21,7 +21,7 @@ TILE = 256
 GROUP = 4  # stages that `pair` adds up at a time
 ROOM = 4 * GROUP  # most stages of a pair
 # Entries of `Beads.books`; rows of `Beads.power` are HEAT and WORK.
-HEAT, WORK, HEAT_ERROR, WORK_ERROR, SQUARES = range(5)
+HEAT, WORK, HEAT_ERROR, WORK_ERROR, SQUARES, AFTER = range(6)
 
 
 class Forcing(NamedTuple):
@@ -138,9 +138,10 @@ class Beads(NamedTuple):
         Power that all contacts dissipate, and power of the drive, by stage.
     given : array, (2,)
         Accelerations of a driven bead at the step's ends.
-    books : array, (5,)
-        Corrections at kinks: heat, work of the drive, errors of both, and the sum of the squared
-        errors of the corrections themselves, in units of the tolerance.
+    books : array, (6,)
+        Corrections at kinks: heat, work of the drive, errors of both, the sum of the squared errors
+        of the corrections themselves, in units of the tolerance, and the share of the step after
+        the first kink of a damped contact.
     points : array, (3, `ROOM`)
         Places in a step, their weights, and the forces there.
     edges : array, (`kinks.EDGES`,)

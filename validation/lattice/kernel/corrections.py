@@ -20,6 +20,7 @@ from typing import Any
 from lwa.base.arrays import Array
 from validation.lattice.kernel import kinks
 from validation.lattice.kernel.arrays import (
+    AFTER,
     HEAT,
     HEAT_ERROR,
     SQUARES,
@@ -439,6 +440,13 @@ def correct_contact(
             change *= _FELT * abs(bend) * steepness * sums.closed * sums.closed
         if abs(change) * both < _SETTLED * plan.v:
             break
+    if r > 0.0:
+        after = 0.0
+        if found.intervals > 1:
+            after = 1.0 - beads.edges[1]
+        elif start[0] < end[0]:
+            after = 1.0  # the contact has just closed
+        beads.books[AFTER] = max(beads.books[AFTER], after)
     third = h * h * h * A * (sums.third - integral(pair.thirds, force))
     _replace_estimates(chain, beads, plan, h, i)
     beads.next_v[i] -= impulse * near

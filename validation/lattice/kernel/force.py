@@ -55,6 +55,8 @@ def power(x: float, d: float) -> float:
         return float(d * np.sqrt(d))
     if x == 0.5:
         return float(np.sqrt(d))
+    if x == 0.25:
+        return float(np.sqrt(np.sqrt(d)))
     if x == 0.0:
         return 1.0  # where a contact pulls, too, at d < 0
     if is_quarters(x):

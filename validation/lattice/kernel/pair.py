@@ -11,6 +11,7 @@ from typing import Any
 
 from lwa.base.arrays import Array
 from validation.lattice.kernel.arrays import (
+    AFTER,
     GROUP,
     HEAT,
     HEAT_ERROR,
@@ -41,6 +42,11 @@ from validation.lattice.kernel.force import contact_forces, drive_motion, tile_b
 # nine scenes at 1e-6 … 1e-10: the work for the same error is the same to 4 % for a safety of 0.8 to
 # 0.95 and a growth of 1.5 to 10; a safety of 0.7 costs 8 % more, 0.98 costs 11 % more.
 _SAFETY, _GROWTH, _SHRINKAGE = 0.9, 5.0, 0.1
+# The error of a step with a kink of a damped contact is mostly that of the part after the kink, of
+# about this order: the next try ends a little after the kink. Measured on chains of 10 to 60 beads:
+# a tenth to a fifth fewer tries for the same error than by the pair's order alone, and the same to
+# 5 % for orders of 2.5 to 4.
+_KINK_SAFETY, _KINK_ORDER = 0.8, 2.5
 # In units of the tolerance: the power says nothing of such an error, or of NaN.
 _HOPELESS = 1e9
 # A third solution of low order, where a pair has one, weighs so much in the estimate of the error
@@ -278,6 +284,10 @@ def end_step(
     wanted = now.h
     if error < _HOPELESS:
         factor = _SAFETY * max(error, 1e-9) ** (-1.0 / pair.order)
+        after = beads.books[AFTER]
+        if error > 1.0 and after > 0.0:
+            kept = _KINK_SAFETY * error ** (-1.0 / _KINK_ORDER)
+            factor = min(factor, 1.0 - after + after * kept)
     now.h = h * min(_GROWTH, max(_SHRINKAGE, factor))
     if not error <= 1.0:
         if factor == 0.0:
