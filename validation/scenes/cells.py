@@ -45,9 +45,8 @@ _BEYOND = re.compile(r"[-+]?o(l|vld?|ver(load|flow|range)?)", re.IGNORECASE)
 _SCPI = {9.9e37: math.inf, -9.9e37: -math.inf, 9.91e37: math.nan}
 
 _FEW = 0.1  # rows of numbers outside of the record, at most, over those of the record
-_LEAST = (
-    1 / 3
-)  # share of numbers in a row of a record: a date and a time may stand in front
+# Least share of numbers in a row of a record: a date and a time may stand in front.
+_LEAST = 1 / 3
 _SETTINGS = 20  # lines in whose first columns recorders write settings
 
 
