@@ -128,6 +128,9 @@ BOUNCED = passed(
     39202662.22056781, 5.774159872283946e-05, 0.9984346342144845, 0.2,
     damping=Damping("kuwabara_kono", 0.08661124734081216),
 )  # fmt: skip
+BRIEF = passed(
+    4157908.151795557, 2.942557258678451, -0.9312122237740694, 3.5110333088754055, k=1.25
+)  # fmt: skip
 GRAZE = passed(
     224.74561040028715, 0.24763140564507657, 0.5956896767371712, 6.821425172704302, k=2,
     damping=Damping("contact", 0.326),
@@ -142,6 +145,8 @@ GRAZE = passed(
         (WAVY, 1, -0.9960454317, 10),
         # A graze that is 1e-9 deep: damping alone is felt.
         (GRAZE, 1, 0.595, 10),
+        # A hard contact is closed briefly; its curve, once corrected, misses it.
+        (BRIEF, 1, -0.931, 1e3),
         # A contact that closes early in a long step, along no quintic
         (CLOSED, 1, -0.03, 10),
         # The curve of a hard bounce, once corrected, misses its contact.

@@ -408,7 +408,7 @@ def correct_contact(
         driven = i == 0 and forcing.driven
         drive = _drive_curve(beads, h)
     force = beads.points[2]
-    impulse = moment = change = steepness = top = 0.0
+    impulse = moment = change = steepness = top = closed = 0.0
     known = kinks.STRAIGHT
     # The force also depends on the corrected end, all the more the later it jumps.
     for _ in range(_ROUNDS):
@@ -430,6 +430,7 @@ def correct_contact(
         moment = h * h * A * (sums.moment - integral(pair.moments[last], force))
         # A corrected curve may miss the contact that it is corrected for.
         top = max(top, found.top)
+        closed = max(closed, sums.closed)
         steepness = _steepness(law, r, top, h)
         change = impulse - before
         if r > 0.0 and abs(elastic(law, kinks.OPENS)) < _NO_JUMP:
@@ -437,7 +438,7 @@ def correct_contact(
             change *= min(1.0, abs(bend) * steepness)
         elif found.jump == 0.0:
             # An elastic force feels the correction only while the contact pushes.
-            change *= _FELT * abs(bend) * steepness * sums.closed * sums.closed
+            change *= _FELT * abs(bend) * steepness * closed * closed
         if abs(change) * both < _SETTLED * plan.v:
             break
     if r > 0.0:
