@@ -140,8 +140,8 @@ def launched(wave: ExactWave, start: int, sites: int, **rest: Any) -> Scene:
     bead = np.arange(2 * start + sites) - start
     contact = bead[:-1] + 0.5
     is_first = bead % 2 == 0
-    behind_first, behind_second = (wave.strain(contact, kind) for kind in (0, 1))
-    strain = np.where(is_first[:-1], behind_first, behind_second)
+    ahead_of_first, ahead_of_second = (wave.strain(contact, kind) for kind in (0, 1))
+    strain = np.where(is_first[:-1], ahead_of_first, ahead_of_second)
     return Scene(
         masses=np.where(is_first, *wave.masses),
         stiffnesses=(1.0,) * len(contact),
