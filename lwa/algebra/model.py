@@ -306,7 +306,7 @@ class Conversion:
             powers.append(self._sum(factor) ** int(e))
         for divisor, e in divisors:
             powers.append(self._sum(divisor) ** -int(e))
-        # One product: a number times a lone sum would be multiplied out.
+        # One `Mul` of all factors: SymPy multiplies out a number times a single sum.
         return sp.Mul(to_sympy(above / below), *powers)
 
     def _sum(self, polynomial: fmpq_mpoly) -> sp.Expr:

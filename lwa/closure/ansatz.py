@@ -32,8 +32,8 @@ def acoustic(model: Model, progress: Progress[int] = iter) -> Solution:
     algebra = JetAlgebra(model, max(model.order - 1, 1))
     mu = algebra.mu  # mass fractions
     c = algebra.c  # strain shares
-    right = Force(algebra)  # of the contact inside the cell
-    left = Force(algebra)  # of the contact to the next cell
+    right = Force(algebra)  # the force of the contact inside the cell
+    left = Force(algebra)  # the force of the contact to the next cell
     first = GradedSeries(algebra, algebra.k, [algebra.zero])  # E by equation 1
     second = GradedSeries(algebra, algebra.k, [algebra.zero])  # E by equation 2
     # At the leading order w - u is the strain of the first contact: its share C_0 of D u_x.

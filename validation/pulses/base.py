@@ -20,7 +20,7 @@ import scipy
 from lwa.base.arrays import Array
 
 _BEFORE = 2.0  # widths between the samples of the base and the rise
-_CLOSE = 1.0  # likewise in a record that would leave less than 2.5 widths for the base
+_CLOSE = 1.0  # the same in a record that would leave less than 2.5 widths for the base
 _LONG = 10.0  # widths of the longest base: drift and hum are straight over such a time
 _SHORTEST = 0.9  # widths of the shortest base
 FEWEST_FOR_BASE = 16  # samples of a base, at least
