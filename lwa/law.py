@@ -324,8 +324,8 @@ class Power(ContactLaw):
         return sp.ff(self.k - 1, integer(n, "n", 1) - 1)
 
     def of_strain(self, p: sp.Expr, D: sp.Expr, n: int = 0) -> sp.Expr:
-        # The unit of a power's τ takes up the spacing and the k of F′ (`Cell.time_scale`): what is
-        # left is F′ = p^{k-1}, as of the spacing 1 over k.
+        # A power's unit of τ takes up the spacing and the factor k of F′ (`Cell.time_scale`). The
+        # force that is left, with F′ = p^{k-1}, is that of the spacing 1, divided by k.
         return super().of_strain(p, sp.S.One, n) / self.k
 
     def inverse(self, force: sp.Expr) -> sp.Expr:

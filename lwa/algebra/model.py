@@ -273,12 +273,17 @@ class Conversion:
         return self._context.from_dict(terms)
 
     def __call__(self, terms: Sequence[Term]) -> sp.Expr:
-        """Convert the polynomial that has these terms in the ring's generators."""
-        # Degrees in the fractions of each partition
+        """Convert the polynomial that has these terms in the ring's generators.
+
+        The fractions f of masses and contacts become quotients ``total · w/S`` of the caller's
+        weights w and their sum S, all over one denominator, a power of S (see the class).
+        """
+        # The polynomial's degree in the fractions of each partition
         degrees = []
         for block in self._blocks:
             of_terms = [sum(exponents[block]) for exponents, _ in terms]
             degrees.append(max(of_terms, default=0))
+        # A term of a lower degree gets the power of S that it lacks.
         homogeneous = {}
         for exponents, coefficient in terms:
             row = list(exponents)

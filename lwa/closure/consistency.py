@@ -127,7 +127,9 @@ class Closure(Parametric):
             D = latex.power(self.model.cell.spacing, n)
             parts.append(f"b_{{{n}}} {D} {latex.derivative(n)}")
             rows.append(latex.row(f"b_{{{n}}}", b))
-        # Where no number is left out, λ makes one row more than numbers.
+        # Dots: the full closure has nonlinear terms besides, and b_n above ``most`` are left out.
+        # The rows are that of λ and those of the b_n written: if none is left out, they are more
+        # than the b_n.
         if self.name == "full" or len(rows) <= len(self.b):
             parts.append(r"\cdots")
         ansatz = latex.total((sp.S.One, part) for part in parts)

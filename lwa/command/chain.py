@@ -75,15 +75,17 @@ class ChainInput:
     @property
     def text(self) -> str:
         """One line of text with the masses, the contacts and the spacing of the chain."""
-        # The exponent with which a force begins gives the unit of A.
-        k = self.law.exponent
+        # The unit of A is that of force over F, which under another law depends on its parameters.
         force = f"A F, F = {self.law.F}"
+        stiffness = "A"
         if self.law.homogeneous:
+            k = self.law.exponent
             force = f"A δ^k, k = {k}"
+            stiffness = f"A (N/m^({k}))"
         parts = []
         for label, value in {
             "masses (kg)": self.cell.masses,
-            f"A (N/m^({k}))": self.cell.stiffnesses,
+            stiffness: self.cell.stiffnesses,
             "spacing D (m)": self.cell.spacing,
         }.items():
             parts.append(Row("", label, value).text(self.scale))

@@ -341,13 +341,14 @@ class LoadedMode(Parametric):
         )
 
     def _scaled(self, contacts: Contacts) -> Mode:
-        """The mode by contacts in units of their own."""
+        """The mode and its response in the units of these contacts, in floats or closed form."""
         if self.floats:
             rows = (contacts.masses, contacts.K2, contacts.K3, contacts.K4)
             for value in (*np.concatenate(rows), self.wavenumber):
                 demand_numbers(value.free_symbols, "floats need numbers")
             numbers = Contacts(*(row.astype(float) for row in rows))
             return numbers.mode(float(self.wavenumber), self.branch)
+        # `lwa.envelope` leaves two exact cases: two unlike beads at κ = π, and one bead at any κ.
         if self.cell.size > 1:
             return lone_bead(contacts, self.branch)
         if self.wavenumber.is_zero:

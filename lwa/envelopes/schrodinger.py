@@ -181,7 +181,10 @@ class Envelope(LoadedMode):
 
     @property
     def opening(self) -> sp.Expr:
-        """The ``|Ψ|²`` at which a contact's compression reaches its static one; ∞ if it pulls."""
+        """The ``|Ψ|²`` at which the first contact opens; ∞ for a law that pulls, or is no formula.
+
+        A contact opens where the mode takes away its static compression.
+        """
         if self.law.pulls or self.law.formless:
             return sp.oo
         smallest = sp.oo

@@ -157,7 +157,7 @@ class PDE(OfClosure):
 
     def _summands(self, write: Callable[[Terms, Jet], str]) -> list[str]:
         """The leading term and those of G, H, I, written by `Terms.text` or `Terms.latex`."""
-        # Terms know how to write a jet; these terms are none.
+        # `Terms` has the notation of jets; without coefficients, which the letters do not need.
         notation = Terms(self.closure.model, {})
         if not self.acoustic:
             return [f"-{write(notation, Jet(()))}"]
@@ -177,7 +177,10 @@ class PDE(OfClosure):
 
     @property
     def headline(self) -> str:
-        """The equation as one line of text, with dots for the terms of other orders."""
+        """The equation as one line of text: its leading term, those of G, H and I, and dots.
+
+        The dots stand for the terms of all other orders, where there are any.
+        """
         summands = self._summands(Terms.text)
         if any(self._without_letters.values()):
             summands.append("…")
@@ -240,15 +243,16 @@ class PDE(OfClosure):
         Raises
         ------
         NoSolitaryWave
-            For numbers without a wave.
+            For numbers with which k - 1, G + H + I or V² is not positive.
         InputError
             If the closed form does not apply: the law is no power, the order is below 4, the branch
             optical, or ``D^{k+2}`` does not vanish (the linear closure with unequal contacts).
         """
+        # Called for its refusal of a law that is no power
         power_exponent(self.law, self.cell, symbol_k, POWERS_ALONE)
         # G, H, I refuse an order below 4 and the optical branch.
         wave = CompactWave(self.cell, self.k, self.G, self.H, self.I)
-        # u_x^{k-2} u_xx² breaks the symmetry x → -x, u → -u, which an even pulse has.
+        # The term at D^{k+2}, u_x^{k-2} u_xx², breaks the symmetry x → -x, u → -u of an even pulse.
         if 2 not in self.vanishing:
             raise InputError(
                 "unequal stiffnesses leave a term at D^(k+2): no wave in closed form"

@@ -47,7 +47,8 @@ ORDER = 4
 """Order in ε of e, which gives its approximant [2/2]."""
 
 LIGHT = sp.Rational(1, 10**14)
-"""A mass ratio near 0, at which e is a quotient of differences with an error as small."""
+"""A mass ratio near 0: e, a derivative by the ratio at 0, is a quotient of differences, between the
+chains of the ratios 0 and `LIGHT`, with an error of about `LIGHT`."""
 
 # At k = 1, c² goes as 1/(1 + ω), and I as (1 + ω)^{-3}.
 _LEADING = {"speed": 0.5, "momentum": 1.0}
@@ -80,7 +81,7 @@ class FollowingRecursion(Recursion):
 
 @cache
 def _light() -> Observables:
-    """The quantities of the reduced chain of masses 1 and `LIGHT`."""
+    """The quantities of the reduced chain of masses 1 and `LIGHT`, for derivatives at ratio 0."""
     # k does not matter to the shares of equal contacts.
     model = shares_model(Cell((1, LIGHT)), sp.S.One)
     return Observables(FollowingRecursion(model, ORDER))

@@ -146,7 +146,8 @@ class LatticeWave(Parametric):
     def _error(self, quantity: str) -> float:
         """The relative error of a quantity; NaN if unknown."""
         error = joined_error(quantity, self.k)
-        # Each is a bound of its own part of the deviation.
+        # The closed form of equal beads has an error, and what a dimer adds to it has another one:
+        # both are bounds, so that their sum is one.
         if self.mass_ratio != 1:
             error += dimer_error(quantity, self.k, self.mass_ratio)
         return error

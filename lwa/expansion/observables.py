@@ -17,7 +17,7 @@ from lwa.cell import Cell
 from lwa.expansion.pulse import (
     Series,
     by_degree,
-    half_width,
+    full_width,
     logarithm,
     moments,
     power,
@@ -59,15 +59,15 @@ class Observables:
 
     def force(self, contact: int = 0) -> Series:
         """Full width at half maximum of a contact's force."""
-        return half_width(self.wave.force[contact].log)
+        return full_width(self.wave.force[contact].log)
 
     def strain(self, contact: int = 0) -> Series:
         """Full width at half maximum of a contact's strain."""
-        return half_width(self.wave.strain[contact].log)
+        return full_width(self.wave.strain[contact].log)
 
     def velocity(self, contact: int = 0) -> Series:
-        """Full width at half maximum of the velocity of the bead with a contact's number."""
-        return half_width(logarithm(self.wave.slope[contact]))
+        """Full width at half maximum of the velocity of bead i, the bead behind contact i."""
+        return full_width(logarithm(self.wave.slope[contact]))
 
     @cached_property
     def momentum(self) -> Series:

@@ -97,13 +97,13 @@ def moments(series: Series, variance: int) -> Series:
     return means
 
 
-def half_width(log: Series) -> Series:
-    """Coefficients h_n of the width of a pulse ``e^{-Z²/4 + Σ log_n t^n}``, where log_0 is 0.
+def full_width(log: Series) -> Series:
+    """Coefficients h_n of the full width of a pulse ``e^{-Z²/4 + Σ log_n t^n}``, where log_0 is 0.
 
-    The full width at ``e^{-y²}`` of the peak is ``4y Σ h_n t^n``; in the h_n, polynomials in y², Z
-    stands for y. Order by order the place becomes a function of a coordinate z in which the
-    exponent, counted from the peak, is ``-z²/4``. The pulse falls to ``e^{-y²}`` at
-    ``z = ±2y``, and the width is the difference of these two places.
+    The full width at ``e^{-y²}`` of the peak is ``4y Σ h_n t^n``, so that h_0 is 1; the h_n are
+    polynomials in y², in which Z stands for y. Order by order the place becomes a function of a
+    coordinate z in which the exponent, counted from the peak, is ``-z²/4``. The pulse falls to
+    ``e^{-y²}`` at ``z = ±2y``, and the width is the difference of these two places.
     """
     Z = log[0].context().gen(0)
     exponent = [-(Z**2) / 4, *log[1:]]

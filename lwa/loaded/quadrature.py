@@ -219,7 +219,8 @@ class Quadrature:
     def refusal(self) -> str:
         """Reason why there is no wave; "" for a wave.
 
-        A wave has ``0 < F′ < ∞``, ``BQ′(B) > 0``, ``Q(v) < Q(B)`` and ``J > 0``.
+        A wave has ``0 < F′ < ∞``, ``BQ′(B) > 0``, ``Q(v) < Q(B)`` and ``J > 0``. As ``R V⁴``
+        is not negative, J fails to be positive only where I does.
         """
         g = grid(_STEPS[0], _FAR)
         with np.errstate(all="ignore"):

@@ -275,9 +275,13 @@ class Shock(Parametric):
         return self.replaced(dict.fromkeys(self.cell.symbols, sp.S.One))
 
     def _relative_error(self, name: EstimatedName, rule: RuleName) -> float:
-        """The relative error of a result of a shock."""
+        """The relative error of a result of a shock: bounds of what the driven chains showed.
+
+        The module names these chains; ρ measures how steep a pulse is.
+        """
         rho = self._pulse.rho
-        # The second term is the canonical wave's: 5 % too fast for cubic contacts without load.
+        # The first term is the doubling rule's own error. The second is that of the canonical wave,
+        # which is 5 % too fast for cubic contacts without load.
         doubling = 0.01 * rho + 0.08 * rho**3
         if name == "leading_speed" and rule == "doubling":
             return doubling
@@ -286,7 +290,7 @@ class Shock(Parametric):
             by_dispersion = self.leading_speed("dispersion")
             difference = abs(float(by_doubling / by_dispersion) - 1)
             if name == "leading_speed":
-                # The doubling rule stands between: its own error is known.
+                # From dispersion to the doubling rule, and from there to the chain
                 return difference + (1 + difference) * doubling
             # The error in c₋, measured up to 5.3 times the difference at the leading edge; 2 % is
             # what the runs resolve.

@@ -165,7 +165,7 @@ class Contact:
         if self.law is None:
             # δ^{k+1}/(k+1) = energy, without the factor k + 1, which no scale needs
             return float(energy ** (1 / (self.k + 1)))
-        # The first of many places at which the energy is reached, or a pole: 1 % apart, then 1e-6,
+        # The first of many places at which the energy is reached, or a pole: 1 % apart, then 3e-6,
         # as the motion near a pole is the faster the nearer it comes.
         low = 1e-15
         high = 1e15

@@ -48,16 +48,18 @@ def cluster(address: str, patience: float = 5.0) -> Iterator[Executor]:
             "cluster needs Dask: pip install 'lwa[cluster]'", cluster=None
         ) from None
 
-    async def call() -> None:  # a client hangs where a stranger accepts its call
+    # A client hangs if another program answers at the address: a plain call comes first, which
+    # fails after ``patience`` seconds.
+    async def call() -> None:
         await (await asyncio.wait_for(distributed.connect(address), patience)).close()
 
     with ExitStack() as stack:
         for name in ("distributed", "distributed.client", "tornado.application"):
-            log = logging.getLogger(name)  # of a lost scheduler they print tracebacks
+            log = logging.getLogger(name)  # prints tracebacks when a scheduler is lost
             stack.callback(log.setLevel, log.level)
             log.setLevel(logging.CRITICAL)
         try:
-            # A notebook's own thread runs a loop already.
+            # A loop of asyncio in a thread of its own: a notebook's thread runs one already.
             with ThreadPoolExecutor(1) as thread:
                 thread.submit(asyncio.run, call()).result()
             client = distributed.Client(address, timeout=patience, set_as_default=False)

@@ -195,11 +195,13 @@ class Base:
         rng = np.random.default_rng(0)
         count = len(self.x)
         noise = self._noise(rng, count + len(t))
+        # The first rows of the noise are in the samples of the base, the others in the pulse.
         calm = noise[:count] * self.best.noise.std()
-        # Rounding has the variance step²/12.
+        # Rounding has the variance step²/12, and the noise before it what is left of the variance.
         unrounded = max(0.0, variance - step**2 / 12)
         added = noise[count:] * math.sqrt(unrounded)
         if step:
+            # Without noise the samples of the base are alike, all at one place between two levels.
             calm = _rounding(calm, np.zeros(1), step, rng)
             added = _rounding(added, pulse, step, rng)
         x = (t - self.rise) / self.width
@@ -208,6 +210,8 @@ class Base:
         for i, fit in enumerate(self.fits):
             draws = chosen == i
             samples = calm[:, draws]
+            # A base of as many terms is fitted to the drawn samples. Its error is that of this fit,
+            # and the distance of the base, the mean of all fits, from the fit that was drawn.
             drawn = Fit.of(self.x, samples, len(fit.sizes))
             apart = mean - fit.at(x)
             added[:, draws] += apart[:, np.newaxis]

@@ -268,12 +268,14 @@ def _front(f: Array, width: float) -> float:
     begins suddenly; the base of another one lies from 0 to its first sample.
     """
     first, second = map(float, np.diff(f[:3]))
+    # Without any knowledge of the foot: the base lies from 0 to the first sample, or a step below.
     unknown = max(abs(float(f[0])), first)
     if 0 < first < second:
         # Differences of a + b e^{n g}, n the number of a sample, grow by the factor e^g.
         factor = second / first
         if f[0] == 0 and math.log(factor) * width > _SUDDEN:
             return 0.0
+        # b e^{n g} at the first sample: how far the exponential has risen above its base a
         risen = first / (factor - 1)
         return risen if f[0] == 0 else min(risen, unknown)
     # A front past its steepest place tells nothing of its foot.

@@ -126,11 +126,15 @@ class Table:
     by: str = ""
 
     def _record(self, row: Row) -> dict[str, Any]:
-        """The JSON names (with their dots) and values of a row, in the order of columns."""
+        """The JSON names (with their dots) and values of a row, in the order of columns.
+
+        A column's JSON name is its key, or its label where no column of the table has a key.
+        """
         keyed = any(column.key for column in self.columns)
         record: dict[str, Any] = {}
         for column in self.columns:
-            # A column without a key, beside others with one, is only printed.
+            # A column without a key, beside others with one, is only printed. A column of estimates
+            # has two values, the number and its error (`Column.values`).
             if column.key or not keyed:
                 record |= column.values(column.name, row.get(column.name))
         return record

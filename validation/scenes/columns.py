@@ -161,7 +161,8 @@ class Column:
         statement = read_statement(self.stated, self.base)
         if not (self.stated and self.unit and statement):
             return ""
-        named = statement[1]
+        # The file's own name of its unit, by the user's statement: the V of "12.5 N/V"
+        _, named = statement
         if not named:
             return ""
         # Spellings of one unit are alike: us, µs, usec.
@@ -274,19 +275,21 @@ class Columns:
         proposed = replace(self, headers=headers, step=step or self.step)
         units = {}
         for column in proposed.named:
-            # The unit of the times that a step states is its own.
+            # Times that a step states, which have no number of a column, bring their own unit. Of a
+            # column without a unit of its quantity one is proposed; others keep the user's word.
             if column.number is not None:
                 if column.size is None and proposed.si:
                     units[column.key] = column.proposed
                 elif column.stated:
                     units[column.key] = column.stated
+        # The options that the error proposes, by their names on the command line
         change: dict[str, object] = {}
         for option, given, wanted in (
             ("columns", self.headers, headers),
             ("step", self.step, proposed.step),
             ("units", self.units, units),
         ):
-            if given or wanted:  # an empty one takes the user's away
+            if given or wanted:  # an empty proposal takes the user's own statement away
                 change[option] = wanted
         return SceneError(f"{self.path}: {words}: found {_listed(cells)}", **change)
 

@@ -169,7 +169,8 @@ class MeasuredFile(Columns):
         """Return the records of all sensors, those of beads first.
 
         One column "time" is that of all sensors; of several columns the first is that of the first
-        sensor, and so on. The velocity of a bead whose force is there is left out.
+        sensor, and so on. A bead with both a force and a velocity has one record, that of its
+        force, as both show the same pulses.
 
         Parameters
         ----------
@@ -193,7 +194,7 @@ class MeasuredFile(Columns):
                 times.append(column)
             elif quantity == "force" or (quantity == "velocity" and force not in names):
                 sensors.append(column)
-        # One column of times serves all sensors, or each has its own.
+        # One column of times serves all sensors, or each sensor has a column of its own.
         missing = []
         one_each = len(sensors) or 1
         if len(times) not in (1, one_each):
@@ -206,7 +207,7 @@ class MeasuredFile(Columns):
         for time, signal in zip(cycle(times), sensors, strict=False):
             found = self._signal(time, signal, of)
             records.append(found)
-        # The order in which `run` writes its sensors.
+        # "bead" before "contact": the order in which `run` writes its sensors.
         return sorted(records, key=lambda record: record.kind)
 
     def _signal(self, time: Column, signal: Column, of: str) -> Record:
@@ -227,7 +228,8 @@ class MeasuredFile(Columns):
                 step = f"{np.ptp(t) / (len(t) - 1):.6g}{' s' * self.si}"
             words = "time must increase, --step states it of evenly spaced samples"
             raise self.refusal(words, ["time"], step)
-        # The user's own calibration, with the other sign, turns an inverted signal.
+        # The last entry, `Record.turned`: the user's calibration of this signal, "2 N/V" say, with
+        # the other sign, "-2 N/V"; without one the file's unit, or the number 1.
         given = signal.stated or signal.unit or "1"
         return Record(
             kind or of,

@@ -66,6 +66,16 @@ def test_the_cell_is_the_smallest_one_and_lengths_may_have_no_unit(file):
     assert found.cell.spacing.is_Symbol
 
 
+def test_a_stiffness_has_a_unit_under_powers_alone(file):
+    bare = {name: value for name, value in CHAIN.items() if name != "k"}
+    for law, stiffness in (
+        ("hertz", "8.4e+07 N/m^(3/2);"),
+        ("hertz2:1,2", "8.4e+07;"),
+    ):
+        chain = bare | {"law": law}
+        assert f"A = {stiffness}" in read_chain(file(MASSES | {"chain": chain})).text
+
+
 def test_a_wave_of_spheres_has_the_values_of_python(capsys, file):
     options = ("wave", "--spheres", file(STEEL_AND_PTFE))
     cell = read_chain(options[-1]).cell

@@ -30,7 +30,8 @@ from validation.lattice.kernel.pair import (
 )
 from validation.lattice.kernel.samples import store_knot
 
-# In units of the greatest compression: beads that have moved less are still.
+# In units of the greatest compression: beads that have moved less are still. With `MARGIN` beads
+# besides this is far below the least rtol (`validation.lattice.kernel.arrays` has a measurement).
 _STILL = 1e-13
 
 
@@ -42,7 +43,7 @@ def moving(now: Any) -> int:
 
 @inlined
 def advance_front(beads: Beads, plan: Plan, now: Any) -> None:
-    """Move the front to the first bead that is still."""
+    """Move the front ahead until the last `MARGIN` beads before it are still, or to the end."""
     still = _STILL * plan.deepest
     while now.front < plan.size and abs(beads.y[now.front - MARGIN]) > still:
         now.front += 1

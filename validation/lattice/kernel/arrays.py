@@ -12,9 +12,12 @@ from lwa.base.arrays import Array
 
 Numbers = NDArray[np.int_]
 
-MARGIN = 4  # still beads that are moved ahead of the front
+# Still beads that are moved besides, the last ones before the front. Measured on struck chains of
+# 200 beads, k = 1.05 to 3: velocities differ from those of a run that moves all beads by a fiftieth
+# of rtol at most; with 2 such beads by a sixth.
+MARGIN = 4
 SHORTEST = 16  # beads that are moved at least: two of the widest registers
-BLOCK = 8  # doubles in the widest vector register; the number of moved beads is a multiple of BLOCK
+BLOCK = 8  # doubles in the widest vector register; the number of moved beads is a multiple of it
 # Beads whose memory stays in the processor's cache throughout a step. Measured for 20,000 beads:
 # 128 and 256 take the same time, 512 a tenth more, 1,024 a fifth more.
 TILE = 256

@@ -171,7 +171,9 @@ def next_mark(marks: Array, i: int) -> int:
 
 @part
 def _drive_curve(beads: Beads, h: float) -> kinks.Curve:
-    """Return the motion of the driven bead over a step, as a curve that starts at 0."""
+    """Return the motion of the driven bead, bead 0, over a step: a quintic that starts at 0."""
+    # Entries 0 and 1 of ``beads.given`` are the bead's accelerations at the step's two ends. A
+    # curve of a step of length 1 has the velocities times h and the accelerations times h².
     start = 0.0, h * beads.v[0], h * h * beads.given[0]
     moved = beads.next_y[0] - beads.y[0]
     end = moved, h * beads.next_v[0], h * h * beads.given[1]
@@ -246,11 +248,13 @@ def _clipped(
     h: float,
     n: int,
 ) -> float:
-    """Return the impulse that contact n misses, as a force beside it jumps and damping cannot pull.
+    """Return the error of contact n's impulse by stages at which its damping is cut off wrongly.
 
-    The stages after the jump have velocities so far off that the contact may push at some of them
-    although it does not push in the step, or the reverse. Elsewhere its force is linear in the
-    velocity, and the errors of the stages cancel.
+    Contact n is beside a corrected contact, whose force jumps in the step. Damping may not pull, so
+    the force of a contact is cut off at 0. At the stages after the jump the velocities are so far
+    off that the force may be cut off although it is not in the step, or the reverse. Without the
+    cut the force is linear in the velocity, and the errors of the stages cancel: this force, or 0
+    throughout for a contact that does not push at the step's start, is taken for the true one.
     """
     law = chain.laws[chain.law[n]]
     last = len(pair.nodes) - 1

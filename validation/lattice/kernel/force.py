@@ -229,11 +229,13 @@ def contact_forces(
         Range of the contacts.
     """
     f = beads.force[1]
+    # The tiles of a step come in their order: that of the first contact begins the sum of the heat.
     lost = beads.power[0, s] if lo > 0 else 0.0
     start = lo
     while lo < hi:
         law = chain.laws[chain.law[lo]]
         up = min(hi, chain.alike[lo])
+        # A contact pushes where δ > least, and with damping by at least none (`_damped_loop`).
         least = -math.inf if law.pulls else NEGLIGIBLE * plan.deepest
         none = -math.inf if law.sticks else 0.0
         fast = is_quarters(law.k) and not law.generated
