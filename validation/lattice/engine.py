@@ -193,13 +193,8 @@ class _Integration:
         beads = self.beads
         now = self.now
         n = motion.size
-        work = 0.0
-        if motion.scene.drive is not None:
-            # The drive also accelerates its bead.
-            squares = beads.v[0] ** 2 - motion.start[n] ** 2
-            gained = motion.masses[0] * squares / 2
-            work = now["work"] + gained
-        end = np.concatenate((beads.y[:n], beads.v[:n], (now["lost"], work)))
+        balance = now["lost"], now["work"]
+        end = np.concatenate((beads.y[:n], beads.v[:n], balance))
         samples = self.recorder.samples
         steps = int(now["steps"])
         if samples:

@@ -57,7 +57,8 @@ class Scales:
 class Motion:
     """The time derivative of a scene's state, and its invariants.
 
-    The state is ``(y_0 … y_{n-1}, v_0 … v_{n-1}, dissipated energy, work of the drive)``.
+    The state is ``(y_0 … y_{n-1}, v_0 … v_{n-1}, dissipated energy, work of the drive)``, the work
+    without that by which the driven bead itself gains speed.
 
     Parameters
     ----------
@@ -202,9 +203,7 @@ class Motion:
         acceleration = push / self.masses
         if drive is not None:
             acceleration[0] = given
-            # The drive accelerates its bead and withstands the contact.
-            driving = self.masses[0] * given - push[0]
-            work = v[0] * driving
+            work = -v[0] * push[0]
         resistance = force - elastic
         lost = (resistance * rate).sum()
         return np.concatenate((v, acceleration, (lost, work)))

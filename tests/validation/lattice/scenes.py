@@ -108,9 +108,9 @@ def drawn(seed, most=40):
     if random.random() < 0.3:  # gaps
         y += np.cumsum((random.random(n) < 0.2) * random.uniform(0, 0.3, n))
     # A contact that touches at the start, with a force that jumps there, is neither open nor
-    # closed.
+    # closed: no two beads touch, and the last one touches a wall with a power's force alone.
     y += np.cumsum(random.uniform(0, 1e-3, n))
-    y -= y[-1] if "wall" in fields else y[0]
+    y -= y[-1] + 1e-3 * (laws[-1] in LAWS) if "wall" in fields else y[0]
     kind = random.choice(["none", "none", "piston", "harmonic", "ramp", "file"])
     size = 10 ** random.uniform(-1.5, 0)
     if kind != "none":
