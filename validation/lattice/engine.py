@@ -90,10 +90,11 @@ _ANY_POWER = 0.25  # a general law may begin with δ^{1/4}
 def integrate(
     motion: Motion, method: str, rtol: float, longest: float, progress: RunProgress
 ) -> Run:
-    """Integrate a scene by a method of `SCHEMES`, in steps of at most ``longest``.
+    """Integrate a scene by a compiled method, in steps of at most ``longest``.
 
-    A splitting's steps have this length, unless it is infinite. A run whose tolerance is set by a
-    drive, and whose response turns out far weaker, is made again.
+    The method is one of `validation.lattice.schemes.SCHEMES`. The steps of a splitting have the
+    length ``longest``, unless it is infinite. A run whose tolerance is set by a drive, and whose
+    response turns out far weaker, is made again.
     """
     for _ in range(_GUESSES):
         run = _Integration(motion, method, rtol, longest)

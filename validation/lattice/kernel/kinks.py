@@ -325,7 +325,7 @@ def resolved(
     Parameters
     ----------
     law : record
-        The law, a record of `LAW`.
+        The law, a record of `validation.lattice.kernel.arrays.LAW`.
     r : float
         Damping coefficient over stiffness.
     start, end : tuple of float
@@ -424,7 +424,7 @@ def integrals(
     Parameters
     ----------
     law : record
-        The law, a record of `LAW`.
+        The law, a record of `validation.lattice.kernel.arrays.LAW`.
     r : float
         Damping coefficient over stiffness.
     found : Kinks
@@ -450,6 +450,7 @@ def integrals(
         a = edges[n]
         b = edges[n + 1]
         p, slope = value_and_slope(c, 0.5 * (a + b))
+        # Idle: the contact does not push in this interval, and c[6][1], the bend of p, is 0.
         idle = push(law, r, p, slope / h) == 0.0 and c[6][1] == 0.0
         if idle or not a < min(b, until):
             continue
