@@ -363,6 +363,7 @@ def _root(c: Curve, x: float, side: float) -> float:
     p, slope = value_and_slope(c, x)
     # The tangent's root is at x - p/slope. None is looked for if this is farther than 1.5 steps (a
     # root within one step is wanted; the half more is a margin, as p bends), or on the inner side.
+    # A root within 1e-9 of a step is at x itself, but for rounding and the search (`_CLOSE`).
     if not abs(p) < 1.5 * abs(slope) or (
         side * p * slope > 0.0 and abs(p) > 1e-9 * abs(slope)
     ):
