@@ -51,7 +51,7 @@ def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
     ``amplitude_value``, ``fwhm_value``; ``rows``, the printed table.
     """
     wave = exact_wave(masses, k)
-    # What text says in the title, by name.
+    # The numbers that text has in its title, under their names in JSON
     data: dict[str, Any] = {
         "k_value": wave.k,
         "masses_value": wave.masses,
