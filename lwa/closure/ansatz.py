@@ -88,6 +88,8 @@ def optical(model: Model, progress: Progress[int] = iter) -> Solution:
         shifted = k * stiffness[1] * left.increment(-2, n)
         lacking = shifted + _applied(b, first, n)
         b.append(-algebra.slope(lacking, n) / k)
+        # With w = λ (u + Σ b_n D^n ∂_x^n u) and λ = -m̂_0/m̂_1: Y_n = m̂_0 b_n r_n, and Z_n has the
+        # n-th term of u(x + 2D) besides.
         strain = mu[0] * b[n]
         right.append(strain * r_n)
         strain = strain + mu[1] * taylor(2, n)

@@ -188,7 +188,7 @@ class LatticeWave(Parametric):
         return self._result("speed")
 
     def scaled_speed(self, B: Any = RISE) -> sp.Expr:
-        """The speed ``V_s = dx/dτ`` of the wave whose strain peaks at B, as `CompactWave.speed`."""
+        """Speed ``V_s = dx/dτ`` of the wave whose strain peaks at B, as `lwa.CompactWave.speed`."""
         scale = power(positive(B, "B"), (self.k - 1) / 2)
         # τ/t = √(k A D^{k+1}/m)
         return self._value("speed") * scale / sp.sqrt(self.k)

@@ -163,7 +163,7 @@ class Base:
         # variance and no correlation; rise and width do not matter to a level.
         samples = np.array([noise, 0.0])
         first = f[:_GUESSED].mean()
-        lowest = np.quantile(f, 0.1)
+        lowest = np.quantile(f, 0.1)  # not the least value, which is that of the noise
         fits = [Fit(np.array([level]), samples) for level in (first, lowest)]
         nowhere = np.zeros(0)
         alike = np.full(2, 0.5)

@@ -63,8 +63,8 @@ class Reading:
     places : tuple of int
         Number of the sensor, or of both, counted from 1.
     numbers : mapping of Estimate
-        Those of `READINGS` that are known, by name; of speeds ``speed_sites``, in sites per time,
-        and ``speed``, in length per time.
+        Numbers of a pulse that are known, by their names in `validation.pulses.pulse.READINGS`; of
+        speeds ``speed_sites``, in sites per time, and ``speed``, in length per time.
     static : float
         Force at the (first) sensor from which dynamic forces count: the one at the start.
     missing : str, optional

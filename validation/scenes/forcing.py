@@ -254,5 +254,6 @@ class Drive:
         # Less than a quarter of a wave: a step holds at most one extremum.
         if self.frequency is not None:
             return 1 / (8 * self.frequency)
+        # In an interval of a file the motion is a cubic, with one inflection.
         longest = np.diff(self.time).max(initial=0.0)
         return float(longest) or math.inf

@@ -450,7 +450,7 @@ def correct_contact(
         own = push(law, r, d, rise / h) - push(law, r, end[0], end[1] / h)
         corrected = d, rise, end[2] + bend * own
         found = kinks.resolved(law, r, start, corrected, h, bend, known, beads.edges)
-        known = found.curve[6]
+        known = found.curve[6]  # the bend, for the next round
         sums = kinks.integrals(
             law, r, found, h, 1.0, bend, beads.points, beads.edges, driven, drive
         )
@@ -477,7 +477,7 @@ def correct_contact(
     if r > 0.0:
         after = 0.0
         if found.intervals > 1:
-            after = 1.0 - beads.edges[1]
+            after = 1.0 - beads.edges[1]  # from the first place inside the step on
         elif start[0] < end[0]:
             after = 1.0  # the contact has just closed
         beads.books[AFTER] = max(beads.books[AFTER], after)
@@ -508,7 +508,7 @@ def correct_contact(
     if found.jump != 0.0:
         # The jump comes too early or too late by the misfit there over the slope. The misfit
         # of `_MISFIT` is 2.2 times its mean in the middle of the step.
-        place = known[0]
+        place = known[0]  # where the bend begins
         _, slope = kinks.value_and_slope(found.curve, place)
         arch = 4.0 * place * (1.0 - place)
         shift = 2.2 * misfit * arch * arch * arch / max(abs(slope), kinks.OPENS)
