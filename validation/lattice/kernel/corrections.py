@@ -44,8 +44,8 @@ from validation.lattice.kernel.pair import error_scale, integral
 
 _SLIGHT = 10.0  # least effect of a contact that is corrected, in units of the tolerance
 # A damped contact is marked also where its damping may begin or end, however weak its force. It is
-# left out if a bound of its impulse is less than _FAINT tolerances, as half of the contacts at the
-# front of a pulse are.
+# left out if bounds of its impulse and of its heat are less than _FAINT tolerances, as half of the
+# contacts at the front of a pulse are.
 _FAINT = 0.01
 # A contact is corrected so often, or until the correction changes by less than _SETTLED times the
 # tolerance. Measured: without the rounds damped gases err by up to ten times as much.
@@ -168,9 +168,7 @@ def mark_kinks(
 
 
 @inlined
-def _unmark_faint(
-    chain: Chain, beads: Beads, plan: Plan, h: float, count: int
-) -> int:
+def _unmark_faint(chain: Chain, beads: Beads, plan: Plan, h: float, count: int) -> int:
     """Take away the marks of contacts that cannot push enough to matter; return how many stay."""
     left = 0
     i = -1
@@ -180,10 +178,11 @@ def _unmark_faint(
         start, end = _ends(chain, beads, h, i)
         deepest = max(start[0], end[0], start[0] + start[1], end[0] - end[1])
         fastest = max(abs(start[1]), abs(end[1]))
-        most = push(law, chain.r[i], deepest, fastest / h)
-        lighter = max(chain.inverse[i], chain.inverse[i + 1])
+        most = chain.A[i] * push(law, chain.r[i], deepest, fastest / h)
+        kicked = h * most * max(chain.inverse[i], chain.inverse[i + 1]) / plan.v
+        heated = most * (deepest + fastest) / plan.energy
         # The force of a law that is no power may be greater before.
-        if not law.generated and h * chain.A[i] * most * lighter < _FAINT * plan.v:
+        if not law.generated and max(kicked, heated) < _FAINT:
             beads.marks[i] = 0.0
         else:
             left += 1
