@@ -16,7 +16,7 @@ MOST_BYTES = 4e9
 # rtol^(-1/7)/4, which is 18 at the smallest tolerance; RK23, of the lowest order, 200 at 1e-9.
 _DENSEST = 1000
 _DOUBLE = 8  # bytes of a number
-# Numbers of a bead, a bound: the engine's 26 rows of state and stages and 8 of the chain, those of
+# Numbers of a bead, a bound: the engine's 27 rows of state and stages and 8 of the chain, those of
 # the equations, and NumPy's copies. Numbers of a sample without sensors: times, steps and copies.
 _PER_BEAD, _PER_SAMPLE = 80, 20
 
