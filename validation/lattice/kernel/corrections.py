@@ -162,31 +162,7 @@ def mark_kinks(
         mark = (seen | unseen) & (opens[i] > 0.0)
         marks[i] = mark
         count += mark
-    if damped and count > 0:
-        count = _unmark_faint(chain, beads, plan, h, count)
     return count
-
-
-@inlined
-def _unmark_faint(chain: Chain, beads: Beads, plan: Plan, h: float, count: int) -> int:
-    """Take away the marks of contacts that cannot push enough to matter; return how many stay."""
-    left = 0
-    i = -1
-    for _ in range(count):
-        i = next_mark(beads.marks, i + 1)
-        law = chain.laws[chain.law[i]]
-        start, end = _ends(chain, beads, h, i)
-        deepest = max(start[0], end[0], start[0] + start[1], end[0] - end[1])
-        fastest = max(abs(start[1]), abs(end[1]))
-        most = chain.A[i] * push(law, chain.r[i], deepest, fastest / h)
-        kicked = h * most * max(chain.inverse[i], chain.inverse[i + 1]) / plan.v
-        heated = most * (deepest + fastest) / plan.energy
-        # The force of a law that is no power may be greater before.
-        if not law.generated and max(kicked, heated) < _FAINT:
-            beads.marks[i] = 0.0
-        else:
-            left += 1
-    return left
 
 
 @inlined
@@ -413,6 +389,22 @@ def _correct_neighbour(
         beads.books[HEAT] += A * max(elastic(law, d), 0.0) * moment * share
 
 
+@part
+def _is_faint(
+    chain: Chain, plan: Plan, h: float, i: int, start: kinks.State, end: kinks.State
+) -> bool:
+    """Return True for a contact that cannot push enough to matter, between a step's two ends."""
+    law = chain.laws[chain.law[i]]
+    deepest = max(start[0], end[0], start[0] + start[1], end[0] - end[1])
+    fastest = max(abs(start[1]), abs(end[1]))
+    most = chain.A[i] * push(law, chain.r[i], deepest, fastest / h)
+    kicked = h * most * max(chain.inverse[i], chain.inverse[i + 1]) / plan.v
+    # While a contact opens, its elastic energy can turn into heat without a push.
+    heated = most * (deepest + fastest) / plan.energy
+    # The force of a law that is no power may be greater before.
+    return not law.generated and max(kicked, heated) < _FAINT
+
+
 @inlined
 def correct_contact(
     chain: Chain,
@@ -422,8 +414,11 @@ def correct_contact(
     t: float,
     h: float,
     i: int,
-) -> None:
-    """Correct a step for the pair's error at contact i, which opens or closes."""
+) -> bool:
+    """Correct a step for the pair's error at contact i, which opens or closes.
+
+    Returns False for a damped contact that is too faint to be corrected; its mark is taken away.
+    """
     pair = plan.scheme
     last = len(pair.nodes) - 1
     law = chain.laws[chain.law[i]]
@@ -434,6 +429,10 @@ def correct_contact(
     both = near + far
     bend = -A * h * h * both  # of the curve by a force of 1
     start, end = _ends(chain, beads, h, i)
+    damped = forcing is not None and forcing.damped
+    if damped and _is_faint(chain, plan, h, i, start, end):
+        beads.marks[i] = 0.0
+        return False
     driven = kinks.NOT_DRIVEN
     drive = kinks.NO_CURVE
     if forcing is not None:
@@ -530,3 +529,4 @@ def correct_contact(
             _correct_neighbour(
                 chain, forcing, beads, plan, t, h, n, share, moment, third, jump
             )
+    return True
