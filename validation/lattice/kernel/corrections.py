@@ -143,6 +143,8 @@ def mark_kinks(
         first = abs(start[i + ONE] + load[i])
         then = abs(end[i + ONE] + load[i])
         force = max(first, then)
+        # Damping has stopped the force of a contact that expands: all its energy turns into heat.
+        force = force if force > 0.0 else math.inf
         most = max(before, after)
         # The error of a kink grows with the force: a strong contact is corrected from farther away.
         share = near if force > _STRONG * least else _VERY_NEAR
@@ -488,6 +490,11 @@ def correct_contact(
     misfit = _MISFIT * sums.rough
     resisted = 0.0
     if forcing is not None:
+        # Heat and work see the stages' velocities, which err where a contact opens or closes: up to
+        # 1,500 tolerances of energy. Where a neighbour does, too, its jump bends this curve, of
+        # which the stages know. Entry -1 of the marks, before contact 0, is padding: 0.
+        if sums.closed < 1.0 and beads.marks[i - 1] + beads.marks[i + 1] == 0.0:
+            _follow_stages(chain, forcing, beads, pair, t, h, i)
         if forcing.damped:
             stored = kinks.stored(law, corrected[0]) - kinks.stored(law, start[0])
             _correct_heat(chain, beads, pair, i, sums.work, stored)
