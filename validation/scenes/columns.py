@@ -77,7 +77,8 @@ STEP = "1 us"
 
 # A number without a sign
 _UNSIGNED = r"(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-# Columns in a message, which is to have 300 characters at most
+# Columns in a message, which is to have 300 characters at most: of a column its number, up to 20
+# characters of its header and up to 12 of an entry
 _LISTED = 4
 _UNLIKE = 2  # least rank of a column that does not behave like a quantity
 
@@ -205,7 +206,7 @@ class Columns:
         names: dict[int, str] = {}
         for name, header in self.headers.items():
             numbers = self.cells.headed(header)
-            names |= dict.fromkeys(numbers[:1], name)
+            names |= dict.fromkeys(numbers, name)
         columns = []
         if self.step:
             columns.append(Column("time", None, "", "", self.step))
@@ -272,8 +273,13 @@ class Columns:
             if name == "time" and (step or best is None or rank(best) >= _UNLIKE):
                 step = step or STEP
             elif best is not None:
-                free.remove(best)
-                headers[name] = str(best)
+                # Each sensor may have a time of its own.
+                alike = [number for number in free if rank(number) == rank(best)]
+                taken = [best]
+                if name == "time" and len(alike) == len(used):
+                    taken = alike
+                free = [number for number in free if number not in taken]
+                headers[name] = ",".join(map(str, taken))
         proposed = replace(self, headers=headers, step=step or self.step)
         units = {}
         for column in proposed.named:
@@ -297,7 +303,11 @@ class Columns:
 
 
 def _rank(cells: Cells, steps: dict[int, Array], name: str, number: int) -> int:
-    """Return the rank of a column among those for a name, 0 for the best."""
+    """Return the rank of a column among those for a name, 0 for the best.
+
+    A column that does not behave like the quantity ranks behind all that do; among equals one with
+    a unit of the quantity is the better.
+    """
     base = BASES[name.split()[-1]]
     unit = found_unit(cells.above(number))
     unknown = in_si(unit, base) is None
@@ -344,7 +354,10 @@ def in_si(unit: str, base: str) -> float | None:
 
 
 def known(unit: str) -> tuple[str, float] | None:
-    """Return the base unit of a unit, and the unit's size in it; None for an unknown unit."""
+    """Return the base unit of a unit, and the unit's size in it; None for an unknown unit.
+
+    For "ms" they are "s" and 0.001.
+    """
     for base, spellings in _SPELLINGS.items():
         text = unit
         # Recorders that write in capitals mean ms by MS; MN may well be a meganewton.
@@ -390,6 +403,8 @@ def read_statement(text: str, base: str) -> tuple[float, str] | None:
     --------
     >>> read_statement("12.5 mN/V", "N"), read_statement("us", "s"), read_statement("us", "N")
     ((0.0125, 'V'), (1e-06, 'us'), None)
+    >>> read_statement("10 mV/N", "N")
+    (0.1, 'mV')
     """
     plain = text.replace("μ", "µ").strip()
     parts = re.fullmatch(rf"(-?)({_UNSIGNED})? *(.*)", plain)
@@ -408,6 +423,11 @@ def read_statement(text: str, base: str) -> tuple[float, str] | None:
             named = "/".join(words[count:])
             # A unit alone is the file's, too.
             return size * multiple, named or ("" if number else unit)
+    # A sensitivity, as of a data sheet, is the other way around: 10 mV/N.
+    *theirs, ours = unit.split("/")
+    multiple = in_si(ours.strip(), base)
+    if theirs and multiple and size:
+        return multiple / size, "/".join(theirs)
     return None
 
 

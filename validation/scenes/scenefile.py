@@ -97,6 +97,12 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
         The parsed file.
     folder : Path
         Folder of the measured files that the content names.
+
+    Notes
+    -----
+    The tables of beads and the chain give the fields of all contacts between beads (`_chain`). The
+    wall, exponents or laws, damping, start, units, drive and duration follow, in this order: each
+    needs what stands before it.
     """
     known = _known()
     file = Table(content, "", known)
@@ -340,7 +346,8 @@ def _drive(given: Table, units: str, folder: Path) -> Drive:
             motion["time"], motion["displacement"] = file.rows("time", "displacement").T
         except SceneError as error:
             # A dictionary of Python is a table of TOML but for its colons.
-            raise SceneError(str(error).replace("': '", "' = '")) from None
+            fault = str(error).replace("': '", "' = '")
+            raise SceneError(fault.replace("; try ", "; try: ")) from None
     return Drive(**motion)
 
 
