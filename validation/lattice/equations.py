@@ -192,8 +192,9 @@ class Motion:
     def __call__(self, time: float, state: Array) -> Array:
         """Return the time derivative of a state, which ``scipy.integrate`` takes as it is.
 
-        The derivative of (y, v, heat, work) is (v, acceleration, Σ (F_i - elastic force) dδ_i/dt,
-        ``-v_0`` times the excess force of contact 0 on the driven bead).
+        The derivatives of y and v are v and the accelerations; that of the heat is the sum of
+        damping force times dδ_i/dt over the contacts; that of the drive's work is its speed times
+        the dynamic force of contact 0, which it overcomes.
         """
         n = self.size
         drive = self.scene.drive

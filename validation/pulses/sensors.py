@@ -49,7 +49,7 @@ _QUICK = 0.9
 _RESOLVED = 22.0
 _MOST_SAMPLES = 100_000  # of more samples a run would take much memory
 _HIDDEN = 0.5  # relative error of the peak from which on a pulse may be rounding alone
-# Chosen: of a pulse as wide as a tenth of the way between the sensors twenty times see the top.
+# Chosen: a pulse with a FWHM of a tenth of the time between is above its half at twenty of them.
 _LOOKS = 200  # times at which a sensor is searched for an earlier pulse
 
 
