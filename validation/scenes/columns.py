@@ -90,7 +90,8 @@ class Stated(TypedDict, total=False):
     ----------
     columns : mapping of str
         Headers, with or without their units, or numbers of columns, by the names "time",
-        "bead 8 force", "bead 8 velocity", "contact 8 force", "force", "speed", ….
+        "bead 8 force", "bead 8 velocity", "contact 8 force", "force", "speed", …; numbers of
+        several times, one for each sensor, have commas.
     units : mapping of str
         Statements by name, header or number of a column.
     step : str
