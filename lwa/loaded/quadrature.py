@@ -361,8 +361,7 @@ class Nodes:
         g = self.grid
         # ln s is interpolated instead of s = v/B: the tail, an exponential, is a line in ξ.
         logs = g.peak_first(g.logs[g.rows])
-        # Places beyond the last row get its v, on the finest grid 3e-13 B instead of 0. On two coarser
-        # grids the last rows differ by more than `Quadrature.profile` allows, and the grid is
-        # refined.
+        # Places beyond the last row get its v, on the finest grid 3e-13 B. The last rows of
+        # two coarser grids differ by more than `Quadrature.profile` allows: the grid is refined.
         reached = np.minimum(places, self.places[-1])
         return np.exp(_interpolated(self.places, logs, reached))
