@@ -85,7 +85,11 @@ class Run(Pictured):
 
     @cached_property
     def _records(self) -> dict[str, Array]:
-        """All records, by their names in `RECORDS`."""
+        """All records, by their names in `RECORDS`.
+
+        The quantities are computed for all beads near sensors, from the path or the stored samples,
+        and the rows of the sensors are picked out.
+        """
         beads = sensed_beads(self.motion)
         samples: Any = self.samples
         if self.path is not None:
@@ -192,6 +196,7 @@ class Run(Pictured):
         """Return the name of a quantity, such as "bead 1 velocity", with its unit in a SI scene."""
         if not self.scene.units:
             return quantity
+        # The last word, such as "force", is the key of the unit.
         return f"{quantity} ({BASES[quantity.split()[-1]]})"
 
     def columns(self) -> dict[str, Array]:
@@ -262,6 +267,7 @@ class Run(Pictured):
                 f"number is {number!r}: the scene has no sensor at this {kind}"
             )
         beads = beads_at(self.motion, {kind: [number]})
+        # Contact i joins beads i and i + 1: the contacts between the beads begin at all but one.
         changes = [contact_changes(self.path, int(contact)) for contact in beads[:-1]]
         times = np.unique(np.concatenate((self.path.time, *changes)))
         return SensorSignal(times, self.path, beads, RECORDS[kind, quantity], number)

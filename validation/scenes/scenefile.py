@@ -47,7 +47,7 @@ from validation.scenes.forcing import DAMPINGS, Damping, Drive
 from validation.scenes.measured import MeasuredFile
 from validation.scenes.scene import Scene, contacts_of
 
-MOST_BEADS = 1_000_000  # they are read in 2 s and 40 MB
+MOST_BEADS = 1_000_000  # so many are read in 2 s and 40 MB
 _STATED = ("columns", "units", "step")  # keys on the file of a drive
 # Keys of a striker or a defect that is a bead unlike the others
 _OTHER = ("like", "mass")
@@ -97,6 +97,12 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
         The parsed file.
     folder : Path
         Folder of the measured files that the content names.
+
+    Notes
+    -----
+    The tables of beads and the chain give the fields of all contacts between beads (`_chain`). The
+    wall, exponents or laws, damping, start, units, drive and duration follow, in this order: each
+    needs what stands before it.
     """
     known = _known()
     file = Table(content, "", known)

@@ -43,6 +43,7 @@ from validation.studies.records import COLUMN_OPTIONS
 from validation.studies.run import print_option
 from validation.waves.solver import exact_wave
 
+# Chosen: 25 draws are beyond either end of a 95 % interval.
 _DRAWS = 1000  # times that the coefficients of ln V are drawn, for the errors
 _HERTZ = 1.5
 # Exponents that are read: below `LEAST` speeds hardly depend on force; beyond `MOST` the
@@ -169,7 +170,11 @@ def law(
 
 
 def _pulses(file: MeasuredFile) -> tuple[Array, Array, Array | None]:
-    """Return rising forces of `_FEWEST` or more pulses, their speeds and weights (None if none)."""
+    """Return rising forces of `_FEWEST` or more pulses, their speeds and weights (None if none).
+
+    Refused are fewer pulses or forces, numbers that are not positive, which have no logarithm, and
+    standard deviations of the forces or of the speeds alone.
+    """
     errors = [n for n in ("force_error", "speed_error") if n in file.names]
     # Files of other programs call the speed of a pulse its velocity.
     name = "speed"
@@ -341,6 +346,7 @@ def fit_power(
             raise SceneError(
                 f"A is e^({log}) by the best fit: this is no number of a computer"
             )
+        # The larger one of the two distances, which are unequal, from A to the ends of the interval
         A = math.exp(log.value)
         return Estimate(A, A * math.expm1(error))
 
