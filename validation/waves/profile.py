@@ -123,8 +123,9 @@ class ExactWave(Pictured):
 
     def times(self, s: float) -> ExactWave:
         """Return the wave with all strains, the background's too, multiplied by s."""
-        # Within these limits s^k is a float up to k = 10.
-        s = between(s, "s", 1e-30, 1e30)
+        # s^k is a float within these limits.
+        most = 10 ** (300 / self.k)
+        s = between(s, "s", 1 / most, most)
         force = s**self.k
         stiffness = force / s
         return replace(

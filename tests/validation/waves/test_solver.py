@@ -210,3 +210,9 @@ def test_the_report_holds_every_number_of_a_wave(hertz):
 def test_bad_input(masses, options, named):
     with pytest.raises(SceneError, match=rf"^{re.escape(named)}\W"):
         exact_wave(masses, **{"k": 1.5} | options)
+
+
+def test_a_multiple_beyond_floats_is_refused():
+    """s^20 of s = 1e30 is no float."""
+    with pytest.raises(ValueError, match="^s is 1e"):
+        exact_wave([1], 20).times(1e30)
