@@ -37,7 +37,7 @@ from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import measure
 from validation.report.study import Report, option, study
-from validation.report.table import Column, Finding, Table, percent
+from validation.report.table import Column, Estimates, Finding, Table, percent
 from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
 from validation.waves.solver import exact_wave
@@ -261,8 +261,8 @@ def _numbers(time: Array, strains: Array, speed: float, d: int) -> dict[str, flo
 _COLUMNS = (
     Column("k", "k", format=str),
     Column("quantity", "quantity"),
-    Column("equation", "equation", error=True),
-    Column("lattice", "lattice", error=True),
+    Estimates("equation", "equation"),
+    Estimates("lattice", "lattice"),
     Column("error_value", "equation off by", format=percent),
 )
 

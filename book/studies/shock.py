@@ -39,7 +39,7 @@ from validation.lattice.result import Run
 from validation.lattice.simulate import simulate, simulate_many
 from validation.pictures import Curve, Map, Panel
 from validation.report.study import Report, option, study
-from validation.report.table import Column, Finding, Table
+from validation.report.table import Column, Estimates, Finding, Table
 from validation.scenes.checks import between
 from validation.scenes.forcing import Drive
 from validation.scenes.scene import Scene
@@ -330,8 +330,8 @@ _COLUMNS = (
     Column("ratio_value", "c₋/c₊", format=".4g"),
     Column("plateau_value", "plateau", format=".5g"),
     Column("plateau_error_value", "over p₋", format=_PERCENT),
-    Column("speed", "s₊", error=True),
-    Column("peak", "peak", error=True),
+    Estimates("speed", "s₊"),
+    Estimates("peak", "peak"),
     *_theory_columns("doubling", "rule:", "speed", "peak"),
     *_theory_columns("canonical", "canonical:", "speed", "peak"),
     *_theory_columns("dispersion", "El:", "speed"),

@@ -30,7 +30,7 @@ from validation.pictures import Curve, Panel
 from validation.pulses.pulse import MeasureError
 from validation.pulses.sensors import record
 from validation.report.study import Report, option, study
-from validation.report.table import Column, Table
+from validation.report.table import Column, Estimates, Table
 from validation.scenes.checks import SceneError, integer, items, positive
 from validation.scenes.scene import Scene
 from validation.studies.paper import of_momentum
@@ -107,8 +107,8 @@ def modulus(delay: Estimate, nu: float = 0.3, **chain: Any) -> Estimate:
 
 _ROWS = (
     Column("modulus_value", "E of the wall (Pa)", format=".3g"),
-    Column("delay", "delay (s)", error=True),
-    Column("ratio", "peak/first", error=True),
+    Estimates("delay", "delay (s)"),
+    Estimates("ratio", "peak/first"),
 )
 
 

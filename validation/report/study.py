@@ -24,11 +24,21 @@ import click
 
 from lwa.base.exact import InputError, read_exact
 from lwa.base.files import reason
+from lwa.base.frozen import Estimate
 from lwa.base.progress import bar, shown
 from lwa.command.cli import HELP, called, help_end, run as run_command
 from lwa.command.options import Read, Reader, Words, count, quantities
 from validation.pictures import SUFFIXES, Panel, Pictured
-from validation.report.table import WIDTH, Finding, Table, findings_table, plain, wrap
+from validation.report.table import (
+    WIDTH,
+    Column,
+    Estimates,
+    Finding,
+    Table,
+    findings_table,
+    plain,
+    wrap,
+)
 from validation.scenes.checks import finite
 
 P = ParamSpec("P")
@@ -58,7 +68,8 @@ class Report(Pictured):
     notes : tuple of str
         Explanations below the tables.
     data : mapping
-        Entries that go to JSON unchanged.
+        Entries of JSON by the names of columns: estimates become two numbers, and a dot stands for
+        an entry of a mapping.
 
     Examples
     --------
@@ -126,7 +137,11 @@ class Report(Pictured):
 
         With findings: ``ok``, ``findings``, and KEY_value of each finding that has a key.
         """
-        result: dict[str, Any] = dict(plain(self.data))
+        columns = []
+        for name, value in self.data.items():
+            kind = Estimates if isinstance(value, Estimate) else Column
+            columns.append(kind(name))
+        (result,) = Table(columns, [self.data]).document()
         unnamed = []
         for table in self.tables:
             if table.key:

@@ -35,7 +35,7 @@ from lwa.command.options import quantities
 from lwa.spheres.beads import FILE, read_materials, spheres as read_spheres
 from validation.pictures import Curve, Panel
 from validation.report.study import Report, option, study
-from validation.report.table import Column, Table
+from validation.report.table import Column, Estimates, Table
 from validation.scenes.checks import SceneError, numeric
 from validation.scenes.columns import Stated
 from validation.scenes.measured import MeasuredFile
@@ -51,7 +51,7 @@ MOST = 4.0
 LARGEST = 700.0  # largest |ln A|: floats end at e^709
 RATIO_ERROR = 1e-10
 """Relative error of R(k), measured between the nodes of its interpolant."""
-_POWER = (Column("", "F = A δ^k"), Column("", "value", error=True))
+_POWER = (Column("", "F = A δ^k"), Estimates("", "value"))
 _UNITS = "A bead's mass or the distance is 1 as none is given: see --masses, --spacing, --spheres."
 _NOTE = "±: 95 % intervals by the scatter of the data."
 _FEWEST = 6  # pulses: three more than the coefficients of the curvature's fit
@@ -151,19 +151,18 @@ def law(
     if not spheres and not (masses and spacing):
         notes.append(_UNITS)
     rows = []
-    values = {
-        "correlation_value": fit.correlation,
-        "one_power": fit.one_power,
-    }
     for name, number in numbers.items():
         rows.append({"F = A δ^k": name + units.get(name, ""), "value": number})
-        values |= {f"{name}_value": number.value, f"{name}_error_value": number.error}
     return Report(
         f"{len(force)} pulses, forces {force[0]:.4g} … {force[-1]:.4g}{' N' * file.si}",
         (Table(_POWER, rows),),
         panels=(Panel(*axes, curves, scale="xy"),),
         notes=(*file.notes, *notes, _NOTE),
-        data=values,
+        data={
+            "correlation_value": fit.correlation,
+            "one_power": fit.one_power,
+            **numbers,
+        },
     )
 
 

@@ -54,7 +54,7 @@ from validation.pulses.pulse import (
     tolerances,
 )
 from validation.report.study import Report, option, study
-from validation.report.table import Column, Table, percent
+from validation.report.table import Column, Estimates, Table, percent
 from validation.scenes.chains import DIAMETER, PTFE, PTFE_BEAD, STEEL, STEEL_BEAD
 from validation.scenes.checks import between
 from validation.scenes.scene import Scene
@@ -195,7 +195,7 @@ QUANTITIES = (
 _COLUMNS = (
     Column("quantity", "quantity"),
     Column("unit", "unit"),
-    Column("lattice", "lattice", error=True),
+    Estimates("lattice", "lattice"),
     Column("theory_value.F_m", "by F_m", format=".5g"),
     Column("error_value.F_m", "error", format=percent),
     Column("theory_value.striker", "by striker", format=".5g"),
@@ -338,8 +338,8 @@ def _panel(run: Run, theory: PhysicalWave) -> Panel:
 _DROPS = (
     Column("modulus_value", "E of PTFE (Pa)"),
     Column("height_value", "drop height (m)"),
-    Column("speed", "V_s (m/s)", error=True),
-    Column("force", "F_m (N)", error=True),
+    Estimates("speed", "V_s (m/s)"),
+    Estimates("force", "F_m (N)"),
     Column("theory_value", "V_s theory (m/s)", format=".5g"),
 )
 _WIDTHS = (

@@ -26,7 +26,7 @@ from validation.pulses.noisy import (
 from validation.pulses.pulse import MeasureError
 from validation.pulses.sensors import Reading, forces_at_start, record, speeds_between
 from validation.report.study import Report, number, option, study
-from validation.report.table import Column, Table
+from validation.report.table import Column, Estimates, Table
 from validation.scenes.checks import SceneError, one_of, positive
 from validation.scenes.columns import BASES, Stated, read_time
 from validation.scenes.measured import MeasuredFile, Record
@@ -299,9 +299,9 @@ _COLUMNS = (
     Column("kind"),
     Column("number"),
     Column("quantity"),
-    Column("simulated", "simulated", error=True),
-    Column("measured", "measured", error=True),
-    Column("difference", "difference", error=True),
+    Estimates("simulated", "simulated"),
+    Estimates("measured", "measured"),
+    Estimates("difference", "difference"),
 )
 _COMPARED = (
     "First pulses of dynamic forces. Measured times are shifted by {}, so that the pulses arrive "

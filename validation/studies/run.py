@@ -32,7 +32,7 @@ from validation.pulses.sensors import (
     record,
 )
 from validation.report.study import Report, option, output_option, replacing, study
-from validation.report.table import Column, Table, plain
+from validation.report.table import Column, Estimates, Table, plain
 from validation.scenes import scenefile
 from validation.scenes.checks import SceneError
 from validation.scenes.columns import BASES
@@ -104,8 +104,8 @@ def report(recording: Recording, every: bool = False) -> Report:
     columns = (
         Column("", "at the end"),
         Column("bead"),
-        Column("velocity", run.label("velocity"), error=True),
-        Column("displacement", run.label("displacement"), error=True),
+        Estimates("velocity", run.label("velocity")),
+        Estimates("displacement", run.label("displacement")),
     )
     end = [
         {"at the end": f"bead {bead}", "bead": bead, **state}
@@ -161,13 +161,13 @@ def reading_tables(
     if every:
         columns.append(Column("pulse", "pulse"))
     columns += [
-        Column("arrival", f"arrival{in_time}", _arrival_format(sensors), error=True),
-        Column("peak", peak, error=True),
-        Column("fwhm", f"FWHM{in_time}", error=True),
+        Estimates("arrival", f"arrival{in_time}", _arrival_format(sensors)),
+        Estimates("peak", peak),
+        Estimates("fwhm", f"FWHM{in_time}"),
         Column("static_force_value"),
         missing,
-        Column("speed_sites", error=True),
-        Column("speed", error=True),
+        Estimates("speed_sites"),
+        Estimates("speed"),
     ]
     # The speed from the sensor before, by the sensor at which the pulse arrives
     arriving = {(leg.kind, leg.places[1]): leg.numbers for leg in speeds}
@@ -183,8 +183,8 @@ def reading_tables(
         kind,
         Column("from"),
         Column("to"),
-        Column("speed_sites", f"sites/{time}", error=True),
-        Column("speed", speed, error=True),
+        Estimates("speed_sites", f"sites/{time}"),
+        Estimates("speed", speed),
         missing,
     ]
     leg_rows = [_row("between", leg) for leg in speeds]

@@ -35,7 +35,7 @@ from validation.lattice.threads import cluster, threads
 from validation.pictures import Curve, Panel
 from validation.pulses.steady import LABELS, Key, Point, point, stored
 from validation.report.study import Report, option, output_file, study
-from validation.report.table import Column, Table, percent
+from validation.report.table import Column, Estimates, Table, percent
 from validation.scenes.checks import Failure, SceneError, items
 
 RANGES = {
@@ -58,16 +58,16 @@ _COLUMNS = (
     # Heads a part of the table.
     Column("k", format="k = {}".format),
     Column("omega", _LABELS["omega"]),
-    Column("width", "width", error=True),
+    Estimates("width", "width"),
     Column("error.linear.width_value", "linear", format=percent),
     Column("error.canonical.width_value", "canonical", format=percent),
-    Column("speed", "speed", error=True),
+    Estimates("speed", "speed"),
     Column("error.linear.speed_value", "linear", format=percent),
     Column("error.canonical.speed_value", "canonical", format=percent),
-    Column("decay", "decay per site", error=True),
+    Estimates("decay", "decay per site"),
     Column("sites", "sites", format="{0[0]} … {0[1]}".format),
     # The columns from here on are for JSON and CSV alone: a terminal has no room.
-    Column("strain_width", error=True),
+    Estimates("strain_width"),
     Column("missing"),
     *(
         Column(f"theory.{closure}.{quantity}_value")

@@ -81,7 +81,7 @@ def test_errors_in_a_file_come_in_two_positive_columns(saved):
         with pytest.raises(SceneError, match="together, and positive"):
             law(saved(given, header))
     found = law(saved(columns, names), **GIVEN)
-    assert found.data["k_value"] == pytest.approx(1.5, rel=1e-9)
+    assert found.data["k"].value == pytest.approx(1.5, rel=1e-9)
 
 
 def test_the_error_of_exact_data_covers_rounding():
