@@ -125,7 +125,12 @@ def law(
     else:
         content = load(spheres, "a list of spheres", lambda x: entries(x, "the file"))
         cell = Cell.of_spheres(read_spheres(content))
-    fit = fit_power(Medium.of(cell), force, speed, weight)
+    if cell.size > 1:
+        raise SceneError(f"the cell has {cell.size} beads: equal beads are wanted")
+    mass = numeric(cell.masses[0], "mass")
+    # V²/D² · m does not depend on the units of mass and length.
+    unit_speed = numeric(cell.spacing, "spacing") / math.sqrt(mass)
+    fit = fit_power(force, speed / unit_speed, weight)
     numbers = {"k": fit.k, "A": fit.A}
     if material is not None:
         if spheres is None:
@@ -219,35 +224,21 @@ def speed_ratio(k: Any) -> Array:
     return np.asarray(_series()(np.clip(k, 1, 4)))
 
 
-@dataclass(frozen=True, eq=False)
-class Medium:
-    """Mass and spacing of the chain of equal beads in which pulses were measured."""
+def log_stiffness(slope: Any, constant: Any) -> Array:
+    """Return ln A of the contact law whose pulses have ``ln V = slope · ln F + constant``.
 
-    mass: float  # m
-    spacing: float  # D
+    V is the speed and F the peak contact force of a pulse, in a chain of mass and spacing 1. The
+    speed law of the module's docstring, ``V² = R(k) 2/(k+1) A^{1/k} F^{(k-1)/k}``, has the
+    logarithm::
 
-    @classmethod
-    def of(cls, cell: Cell) -> Medium:
-        """Make the medium of a chain whose cell is one bead, all numbers."""
-        if cell.size > 1:
-            raise SceneError(f"the cell has {cell.size} beads: equal beads are wanted")
-        mass = numeric(cell.masses[0], "mass")
-        return cls(mass, numeric(cell.spacing, "spacing"))
+        ln V = ln(R(k) 2/(k+1))/2 + ln A/(2k) + (k-1)/(2k) ln F,
 
-    def log_stiffness(self, slope: Any, constant: Any) -> Array:
-        """Return ln A of the contact law whose pulses have ``ln V = slope · ln F + constant``.
-
-        V is the speed and F the peak contact force of a pulse. The speed law of the module's
-        docstring, ``V²/D² = R(k) 2/((k+1) m) A^{1/k} F^{(k-1)/k}``, has the logarithm::
-
-            ln V = ln D + ln(R(k) 2/((k+1) m))/2 + ln A/(2k) + (k-1)/(2k) ln F,
-
-        where all but the last term is the constant. This is solved for ln A.
-        """
-        k = _exponent(slope)
-        # ln(V/D) at A = F = 1
-        log_rate = np.log(2 * speed_ratio(k) / ((k + 1) * self.mass)) / 2
-        return np.asarray(2 * k * (constant - math.log(self.spacing) - log_rate))
+    where all but the last term is the constant. This is solved for ln A.
+    """
+    k = _exponent(slope)
+    # ln V at A = F = 1
+    log_speed = np.log(2 * speed_ratio(k) / (k + 1)) / 2
+    return np.asarray(2 * k * (constant - log_speed))
 
 
 def _exponent(slope: Any) -> Any:
@@ -292,17 +283,13 @@ def weights(
     return np.asarray(1 / deviation)
 
 
-def fit_power(
-    medium: Medium, force: Array, speed: Array, weight: Array | None = None
-) -> PowerFit:
+def fit_power(force: Array, speed: Array, weight: Array | None = None) -> PowerFit:
     """Fit one power ``F = A δ^k`` to pulses by least squares of ln V.
 
     Parameters
     ----------
-    medium : Medium
-        The chain.
     force, speed : array
-        Peak contact forces and speeds (N,) of four or more pulses.
+        Peak contact forces F and speeds ``V √m/D`` (N,) of four or more pulses.
     weight : array, optional
         Weights (N,), see `weights`; by default all pulses weigh the same.
 
@@ -320,7 +307,7 @@ def fit_power(
     (slope, constant), middle = _fit(x, y, 1, weight)
     k = _exponent(slope)
     at_zero = constant - slope * middle
-    log_A = medium.log_stiffness(slope, at_zero)
+    log_A = log_stiffness(slope, at_zero)
     if not LEAST <= k[0] <= MOST:
         wanted = f"laws with k from {LEAST:g} to {MOST:g} are read"
         raise SceneError(f"k is {k[0]:.3g} by the best fit: {wanted}")
@@ -344,7 +331,7 @@ def fit_power(
         _interval(k),
         stiffness(log_A, float(k[0])),
         float(np.corrcoef(k, log_A)[0, 1]),
-        stiffness(medium.log_stiffness(sixth, hertz), _HERTZ),
+        stiffness(log_stiffness(sixth, hertz), _HERTZ),
         _interval(curvature),
     )
 
