@@ -86,7 +86,7 @@ class Fit:
         power = np.abs(spectrum) ** 2
         products = np.fft.irfft(power)[:count] / count
         unlike = np.append(products, 0.0) <= 0
-        first = int(np.argmax(unlike))
+        first = np.argmax(unlike)
         return products[: max(1, first)]
 
 
@@ -145,7 +145,7 @@ class Base:
             criteria.append(squares / scale + 2 * len(fit.sizes))
         exponents = -np.array(criteria) / 2
         weights = scipy.special.softmax(exponents)
-        best = fits[int(np.argmax(weights))]
+        best = fits[np.argmax(weights)]
         return cls(rise, width, x, fits, weights, best)
 
     @classmethod

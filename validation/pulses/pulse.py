@@ -248,19 +248,19 @@ class _Grid:
     ) -> Pulse:
         """Measure the highest pulse between two grid points, at a fraction of its peak."""
         part = self.f[start:stop]
-        top = start + int(np.argmax(part))
+        top = start + np.argmax(part)
         if top in (0, len(self.f) - 1):
             end = "end" if top else "start"
             raise MeasureError(f"{_PARTLY} it peaks at the {end} of the record")
         arrival, peak = self._crest(self.t[top - 1], self.t[top + 1])
         level = share * peak
         below = start + np.flatnonzero(part <= level)
-        place = int(np.searchsorted(below, top))
+        place = np.searchsorted(below, top)
         if place in (0, len(below)):
             side = "back" if place else "front"
             raise MeasureError(f"{_PARTLY} its {side} does not pass half its peak")
-        rise = self._crossing(int(below[place - 1]), level)
-        fall = self._crossing(int(below[place]) - 1, level)
+        rise = self._crossing(below[place - 1], level)
+        fall = self._crossing(below[place] - 1, level)
         return Pulse(arrival, peak, rise, fall)
 
     def _crossing(self, i: int, level: float) -> float:
@@ -282,8 +282,8 @@ class _Grid:
             flat = _zeros(series.deriv())
             times = np.append(flat, (a, b))
             values = series(times)
-            best = int(np.argmax(values))
-            tops.append((float(values[best]), float(times[best])))
+            best = np.argmax(values)
+            tops.append((values[best], times[best]))
         peak, arrival = max(tops)
         return arrival, peak
 

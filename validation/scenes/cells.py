@@ -229,7 +229,7 @@ class Cells:
         infinite = np.isinf(table[start:end])
         beyond = np.flatnonzero(infinite.any(axis=1))
         if len(beyond):
-            at, _ = self._line(start + int(beyond[0]))
+            at, _ = self._line(start + beyond[0])
             raise SceneError(
                 f"line {at} holds ∞, the signal is clipped: a larger range of the recorder is "
                 "wanted"

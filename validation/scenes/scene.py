@@ -211,7 +211,7 @@ class Scene:
         distances = (*self.spacings, self.spacings[-1] / 2)[: self.contact_count]
         passed = -np.diff(y)[: self.contact_count] > distances
         if passed.any():
-            i = int(np.argmax(passed))
+            i = np.argmax(passed)
             raise SceneError(
                 f"displacements[{i}] is {y[i]:g}, positive towards the wall: bead {i + 1} would "
                 f"start behind bead {i + 2}, or inside the wall, {distances[i]:g} from it"

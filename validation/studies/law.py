@@ -347,7 +347,7 @@ def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, 
         w = weight
         least = 1.0
     # Slope and constant are uncorrelated about it.
-    middle = float(np.average(x, weights=w**2))
+    middle = np.average(x, weights=w**2)
     best, covariance = np.polyfit(x - middle, y, degree, w=w, cov="unscaled")
     freedom = len(x) - degree - 1
     residuals = y - np.polyval(best, x - middle)
