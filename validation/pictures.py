@@ -91,7 +91,7 @@ class Panel:
     ----------
     x, y : str
         Labels of the axes.
-    curves : tuple of Curve
+    curves : sequence of Curve
         Curves.
     scale : {"", "x", "y", "xy"}
         Logarithmic axes.
@@ -105,7 +105,7 @@ class Panel:
 
     x: str
     y: str
-    curves: tuple[Curve, ...] = ()
+    curves: Sequence[Curve] = ()
     scale: str = ""
     title: str = ""
     map: Map | None = None

@@ -74,22 +74,17 @@ _FEWER = 0.75  # beads of the chain that gives the errors, over those of the cha
 
 @study(
     option(
-        "--masses",
-        read=quantities,
-        default="1,1/2",
-        says="Masses of a cell, one or two.",
+        "--masses", "Masses of a cell, one or two.", read=quantities, default="1,1/2"
     ),
     EXPONENT,
     option(
         "--detunings",
+        "Detunings 1 - f/f0, f0 the frequency of the band's edge.",
         read=quantities,
         default=DETUNINGS,
-        says="Detunings 1 - f/f0, f0 the frequency of the band's edge.",
     ),
     option(
-        "--beads",
-        default=601,
-        says="Largest number of beads; short breathers take fewer.",
+        "--beads", "Largest number of beads; short breathers take fewer.", default=601
     ),
 )
 def breather(

@@ -67,15 +67,13 @@ Records = tuple[
 @study(
     option(
         "--k",
-        "exponents",
+        "Exponents of F = δ^k.",
+        to="exponents",
         read=quantities,
         default="11/10,3/2",
-        says="Exponents of F = δ^k.",
     ),
     option(
-        "--second",
-        default=0.5,
-        says="Peak strain of the second pulse; the first has 1.",
+        "--second", "Peak strain of the second pulse; the first has 1.", default=0.5
     ),
 )
 def collision(

@@ -57,14 +57,10 @@ _CLOSE = 1e-4  # largest change of ln F at ten times the tolerance
 
 @study(
     EXPONENT,
-    option(
-        "--spread", default=0.1, says="Masses lie between 1 - spread and 1 + spread."
-    ),
-    option("--chains", default=20, says="Number of random chains."),
-    option(
-        "--sites", default=200, says="Sites from the struck bead to the last place."
-    ),
-    option("--seed", default=1, says="Seed of the random numbers."),
+    option("--spread", "Masses lie between 1 - spread and 1 + spread.", default=0.1),
+    option("--chains", "Number of random chains.", default=20),
+    option("--sites", "Sites from the struck bead to the last place.", default=200),
+    option("--seed", "Seed of the random numbers.", default=1),
 )
 def disorder(
     k: float = 1.5,

@@ -227,10 +227,10 @@ class Upright:
     EXPONENT,
     option(
         "--masses",
+        "Masses of a cell, such as 1,1/2; by default two chains.",
         read=quantities,
-        says="Masses of a cell, such as 1,1/2; by default two chains.",
     ),
-    option("--beads", default=3000, says="Number of beads."),
+    option("--beads", "Number of beads.", default=3000),
 )
 def gravity(
     k: float = 1.5,

@@ -66,14 +66,14 @@ _WEAKEST, _STRONGEST = 1e-3, 1e4
     law_option("Contact law in place of δ^k, such as hertz2:1,2."),
     option(
         "--masses",
+        "Masses of a cell, such as 1,1/2; by default three chains.",
         read=quantities,
-        says="Masses of a cell, such as 1,1/2; by default three chains.",
     ),
     option(
         "--ratios",
+        "Dynamic forces divided by the static force.",
         read=quantities,
         default=",".join(map(str, RATIOS)),
-        says="Dynamic forces divided by the static force.",
     ),
 )
 def precompressed(

@@ -58,19 +58,15 @@ Pair = tuple[float | None, float | None]  # speed and peak strain of the leading
 
 
 @study(
-    option(
-        "--k",
-        read=read_exact,
-        says="Exponent of F = δ^k; by default Toda, 3/2 and 2.",
-    ),
+    option("--k", "Exponent of F = δ^k; by default Toda, 3/2 and 2.", read=read_exact),
     option(
         "--jumps",
+        "Strains behind the front over that ahead; if that is 0, strains behind.",
         read=quantities,
         default=",".join(map(str, JUMPS)),
-        says="Strains behind the front over that ahead; if that is 0, strains behind.",
     ),
-    option("--ahead", read=read_exact, default="1", says="Strain ahead of the front."),
-    option("--duration", default=2500.0, says="Time for which the piston moves."),
+    option("--ahead", "Strain ahead of the front.", read=read_exact, default="1"),
+    option("--duration", "Time for which the piston moves.", default=2500.0),
 )
 def shock(
     k: Any = None,

@@ -114,17 +114,12 @@ _ROWS = (
 
 @study(
     option(
-        "--moduli",
-        read=quantities,
-        default="1e9,3e9,10e9,30e9,70e9,200e9",
-        says="In Pa.",
+        "--moduli", "In Pa.", read=quantities, default="1e9,3e9,10e9,30e9,70e9,200e9"
     ),
-    option("--nu", default=0.3, says="Poisson's ratio of the wall."),
-    option("--velocity", default=0.5, says="Velocity of the struck bead in m/s."),
-    option("--beads", default=20, says="Number of beads."),
-    option(
-        "--sensor", default=10, says="Contact at which the pulses are measured, from 1."
-    ),
+    option("--nu", "Poisson's ratio of the wall.", default=0.3),
+    option("--velocity", "Velocity of the struck bead in m/s.", default=0.5),
+    option("--beads", "Number of beads.", default=20),
+    option("--sensor", "Contact at which the pulses are measured, from 1.", default=10),
 )
 def wall(
     moduli: Sequence[Any] = MODULI,

@@ -119,17 +119,17 @@ class Recording:
     ----------
     run : Run
         The run.
-    sensors : tuple of Track
+    sensors : sequence of Track
         Dynamic forces at the sensors, and their pulses.
-    speeds : tuple of Reading
+    speeds : sequence of Reading
         Speeds between sensors.
     end : mapping
         Velocity and displacement at the end, by these names, of the bead sensors, counted from 1.
     """
 
     run: Run
-    sensors: tuple[Track, ...]
-    speeds: tuple[Reading, ...]
+    sensors: Sequence[Track]
+    speeds: Sequence[Reading]
     end: Mapping[int, Mapping[str, Estimate]]
 
 
@@ -184,8 +184,8 @@ def record(
         if every:
             found += _readings(track, other, all_pulses)
 
-    def doubt(first: Track, second: Track, sites: float) -> str:
-        """Return the reason why two sensors do not see one pulse; "" if they may.
+    def doubt(first: Track, second: Track, sites: float) -> None:
+        """Raise `MeasureError` if two sensors do not see one pulse.
 
         The argument ``sites`` is the speed between the sensors, in sites per time.
         """
@@ -194,13 +194,12 @@ def record(
         between = slice(numbers[0] - 1, numbers[1])
         time = _time_of_a_site(motion, between, max(peaks))
         if sites * _QUICK * time > 1:
-            return "no wave is so fast: the sensors see different pulses"
+            raise MeasureError("no wave is so fast: the sensors see different pulses")
         start = first.numbers["arrival"].value
         end = second.numbers["arrival"].value - second.numbers["fwhm"].value
         looks = np.linspace(start, end, _LOOKS)
         if end > start and second.force(looks).max() > peaks[0] / 2:
-            return "another pulse passes the second sensor before"
-        return ""
+            raise MeasureError("another pulse passes the second sensor before")
 
     # Errors of both arrivals are added: in the other run's speed they may cancel.
     speeds = speeds_between(firsts, operator.add, doubt)
@@ -208,7 +207,7 @@ def record(
         i + 1: compared(partial(_state_at_end, bead=i), runs)
         for i in scene.bead_sensors
     }
-    return Recording(run, tuple(found or firsts), speeds, end)
+    return Recording(run, found or firsts, speeds, end)
 
 
 def _state_at_end(run: Run, bead: int) -> dict[str, float]:
@@ -244,7 +243,7 @@ def tracks(
     run: Run,
     velocities: Container[str] = (),
     every: int = 1,
-) -> tuple[Track, ...]:
+) -> list[Track]:
     """Return the dynamic forces at the sensors of a run; beads first.
 
     Parameters
@@ -274,9 +273,6 @@ def tracks(
                 signal: Signal = spline(run.time[::every], samples[::every])
             else:
                 signal = run.signal(kind, i, quantity)
-            dynamic = signal
-            if static:
-                dynamic = _above(signal, static)
             place = _place(scene, x, kind, i)
             found.append(
                 Track(
@@ -286,10 +282,10 @@ def tracks(
                     static,
                     quantity=quantity,
                     along=place,
-                    force=dynamic,
+                    force=_above(signal, static),
                 )
             )
-    return tuple(found)
+    return found
 
 
 def _place(scene: Scene, x: Array, kind: str, i: int) -> dict[str, float]:
@@ -367,8 +363,8 @@ def _delay(pulse: Pulse, other: Pulse) -> float:
 def speeds_between(
     sensors: Sequence[Reading],
     total: Callable[[float, float], float],
-    doubt: Callable[[Any, Any, float], str] = lambda *_: "",
-) -> tuple[Reading, ...]:
+    doubt: Callable[[Any, Any, float], object] = lambda *_: None,
+) -> list[Reading]:
     """Return the speeds of the pulse from each sensor to the next one of its kind.
 
     Parameters
@@ -378,8 +374,8 @@ def speeds_between(
     total : callable
         Error of a time between two arrivals as a function of the errors of both.
     doubt : callable
-        Reason why two sensors do not see one pulse, as a function of both and of the speed between
-        them in sites per time; "" if they may see one.
+        Function of two sensors and of the speed between them in sites per time, which raises
+        `MeasureError` if they do not see one pulse.
     """
     legs = []
     for first, second in pairwise(sensors):
@@ -389,14 +385,12 @@ def speeds_between(
         leg = replace(first, places=both, numbers={}, missing=None)
         try:
             speeds = _speeds(first, second, total)
-            reason = doubt(first, second, speeds["speed_sites"].value)
-            if reason:
-                raise MeasureError(reason)
+            doubt(first, second, speeds["speed_sites"].value)
             leg = replace(leg, numbers=speeds)
         except MeasureError as error:
             leg = replace(leg, missing=str(error))
         legs.append(leg)
-    return tuple(legs)
+    return legs
 
 
 def _speeds(

@@ -296,8 +296,5 @@ def stored(path: Path) -> Iterator[tuple[dict[Key, Point], Callable[[Point], Non
     except (sqlite3.Error, ValueError, TypeError, LookupError) as error:
         if isinstance(error, Refusal):
             raise
-        # The first name beside the file that is free
-        number = 2
-        while (free := path.with_stem(f"{path.stem}-{number}")).exists():
-            number += 1
-        raise InputError(f"file is {path}: {error}", file=str(free)) from None
+        beside = path.with_stem(f"{path.stem}-2")
+        raise InputError(f"file is {path}: {error}", file=str(beside)) from None

@@ -8,7 +8,7 @@ To add a study, write one file in `validation.studies`, its test, a line in ``ST
 
 
     @study(
-        option("--k", default=1.5, says="Exponent."),
+        option("--k", "Exponent.", default=1.5),
         page="reference",
         examples=["lwa-validate cubes --k 2"],
     )

@@ -27,10 +27,7 @@ _ERRORS = "residual, tail and rounding"
 @study(
     EXPONENT,
     option(
-        "--masses",
-        read=quantities,
-        default="1",
-        says="Mass of all beads, or two in turn.",
+        "--masses", "Mass of all beads, or two in turn.", read=quantities, default="1"
     ),
     page="exact",
     examples=(
@@ -73,7 +70,7 @@ def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
         f"c² = {data['c2']}, c = {data['c']}\n"
         f"solitary: tail {wave.tail:.0e} of the peak strain, residual {wave.residual:.0e}",
         (table,),
-        panels=tuple(wave.pictured()),
+        panels=wave.pictured(),
         data=data,
     )
 
@@ -91,7 +88,7 @@ _RATIOS = (
 @study(
     EXPONENT,
     # Two are published (Jayaprakash et al. 2011); the third shows how the row goes on.
-    option("--count", default=3, says="Number of mass ratios, from the largest down."),
+    option("--count", "Number of mass ratios, from the largest down.", default=3),
     page="exact",
     examples=("lwa-validate resonances --count 1",),
 )

@@ -69,22 +69,18 @@ _EXAMPLE = """force (N),force_error (N),speed (m/s),speed_error (m/s)
 
 @study(
     click.argument("data", type=click.Path()),
-    option("--masses", read=quantities, says="Mass of a bead; by default 1."),
+    option("--masses", "Mass of a bead; by default 1.", read=quantities),
     option(
-        "--spacing",
-        read=read_exact,
-        says="Distance between bead centers; by default 1.",
+        "--spacing", "Distance between bead centers; by default 1.", read=read_exact
     ),
     option(
         "--spheres",
+        "File of equal spheres, in place of --masses.",
         metavar="FILE",
         type=click.Path(),
-        says="File of equal spheres, in place of --masses.",
     ),
     option(
-        "--material",
-        metavar="NAME",
-        says="Material in this file whose modulus E is wanted.",
+        "--material", "Material in this file whose modulus E is wanted.", metavar="NAME"
     ),
     print_option(
         "--example",

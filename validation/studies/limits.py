@@ -93,7 +93,7 @@ def limits() -> Report:
     return Report(
         "The theory's limit k → 1 on the lattice",
         (Table(_COLUMNS, records, "rows", note=_NOTE, errors=_ERRORS),),
-        tuple(map(finding, records)),
+        [*map(finding, records)],
     )
 
 

@@ -114,7 +114,7 @@ def report(recording: Recording, every: bool = False) -> Report:
     return Report(
         title,
         (*tables, Table(columns, end, "end")),
-        panels=tuple(run.pictured()),
+        panels=run.pictured(),
         notes=(missing, note),
         data=data,
     )
@@ -126,7 +126,7 @@ def reading_tables(
     peak: str,
     si: bool,
     every: bool = False,
-) -> tuple[tuple[Table, ...], str]:
+) -> tuple[list[Table], str]:
     """Return the tables ``sensors`` and ``speeds``, and lines on the numbers that are missing.
 
     The table of the sensors, which is the CSV, also holds the speeds of the first pulses from the
@@ -196,7 +196,7 @@ def reading_tables(
     for reading in (*sensors, *speeds):
         if reading.missing:
             lines.append(f"{reading.name}: {reading.missing}")
-    return tuple(tables), "\n".join(lines)
+    return tables, "\n".join(lines)
 
 
 def _row(label: str, reading: Reading) -> dict[str, Any]:
@@ -244,7 +244,7 @@ def print_option(
             context.exit()
 
     settings |= {"is_eager": True, "expose_value": False, "callback": show}
-    return option(name, says=says, **settings)
+    return option(name, says, **settings)
 
 
 SUFFIXES = (".json", ".csv")
@@ -275,13 +275,13 @@ _RTOL = "Relative tolerance. Errors are differences to a more accurate run."
         SUFFIXES,
         "Store the records in a file: .csv or, with the result, .json.",
     ),
-    option("--method", default=COMPILED[0], type=_METHODS, says=_INTEGRATOR),
-    option("--rtol", default=TOLERANCE, says=_RTOL),
+    option("--method", _INTEGRATOR, default=COMPILED[0], type=_METHODS),
+    option("--rtol", _RTOL, default=TOLERANCE),
     option(
         "--pulses",
+        "Measure all pulses at each sensor, not only the first.",
         is_flag=True,
         default=False,
-        says="Measure all pulses at each sensor, not only the first.",
     ),
     page="recipes",
     examples=(

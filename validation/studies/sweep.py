@@ -105,7 +105,7 @@ def report(points: Sequence[Point]) -> Report:
     return Report(
         "The steady pulse of a struck dimer chain",
         (Table(_COLUMNS, rows, "points", by="k", note=_NOTE, errors=_ERRORS),),
-        panels=tuple(_panels(rows)),
+        panels=[*_panels(rows)],
         notes=("\n".join(missing),),
         data={"missing": len(missing)},
     )
@@ -162,7 +162,7 @@ def _panels(rows: Sequence[Row]) -> Iterator[Panel]:
                 line = [row[f"theory.{closure}.{quantity}_value"] for row in rows]
                 curves.append(Curve(name, axis, line))
         scale = "y" if quantity == "decay" else ""
-        yield Panel(_LABELS[x], label, tuple(curves), scale)
+        yield Panel(_LABELS[x], label, curves, scale)
 
 
 _NONE = Estimate(math.nan, math.nan)
@@ -261,26 +261,22 @@ _RANGES = "values and ranges start:stop:count, separated by commas."
 
 
 @study(
-    option("--k", "ks", default="5/4:3:8", says=f"Exponents of F = δ^k: {_RANGES}"),
+    option("--k", f"Exponents of F = δ^k: {_RANGES}", to="ks", default="5/4:3:8"),
     option(
-        "--omega", "omegas", default="1/20:1:20", says=f"Mass ratios m2/m1: {_RANGES}"
+        "--omega", f"Mass ratios m2/m1: {_RANGES}", to="omegas", default="1/20:1:20"
     ),
     option(
         "--file",
+        "File of finished points (.sqlite), to be continued.",
         metavar="FILE",
         type=click.Path(),
-        says="File of finished points (.sqlite), to be continued.",
     ),
-    option(
-        "--jobs",
-        read=count,
-        says="Number of threads; by default one a processor.",
-    ),
+    option("--jobs", "Number of threads; by default one a processor.", read=count),
     option(
         "--cluster",
-        "address",
+        "Dask scheduler, in place of threads.",
+        to="address",
         metavar="ADDRESS",
-        says="Dask scheduler, in place of threads.",
     ),
     page="recipes",
     examples=(
