@@ -179,7 +179,7 @@ class Cell(Value):
 
     def compliances(self, k: Any = k) -> tuple[sp.Expr, ...]:
         """The ``A_i^{-1/k}``, strains of the contacts up to a common factor."""
-        # One force A_i δ_i^k for all contacts
+        # All contacts carry one force A_i δ_i^k, so that δ_i goes as A_i^{-1/k}.
         k = exponent(k)
         return tuple(power(A, -1 / k) for A in self.stiffnesses)
 

@@ -303,13 +303,13 @@ class Conversion:
         below, divisors = (denominator / common).factor()
         powers = []
         for factor, e in factors:
-            powers.append(self._sum(factor) ** int(e))
+            powers.append(self._expression(factor) ** int(e))
         for divisor, e in divisors:
-            powers.append(self._sum(divisor) ** -int(e))
-        # One product: a number times a lone sum would be multiplied out.
+            powers.append(self._expression(divisor) ** -int(e))
+        # One `Mul` of all factors: SymPy multiplies out a number times a single sum.
         return sp.Mul(to_sympy(above / below), *powers)
 
-    def _sum(self, polynomial: fmpq_mpoly) -> sp.Expr:
+    def _expression(self, polynomial: fmpq_mpoly) -> sp.Expr:
         """Convert a polynomial to a sum of products of the caller's expressions."""
         products = []
         for exponents, coefficient in polynomial.terms():

@@ -190,7 +190,7 @@ class Table:
 
     def one(self, *keys: str) -> str:
         """Return the key that is present; exactly one of the keys must be."""
-        # Which of several keys is right is not guessed.
+        # Of two keys that exclude each other none is chosen: both are refused.
         present = [key for key in keys if key in self]
         if len(present) == 1:
             return present[0]

@@ -30,6 +30,7 @@ def align(rows: list[str]) -> str:
 
 
 def _aligned(rows: list[str], unnumbered: str = "") -> str:
+    """Lines of rows that align at their first "="; ``unnumbered`` ends lines that go on."""
     lines = (f"{unnumbered} \\\\\n&\\quad ".join(_broken(row)) for row in rows)
     return " \\\\\n".join(line.replace("=", "&=", 1) for line in lines)
 

@@ -32,8 +32,8 @@ def acoustic(model: Model, progress: Progress[int] = iter) -> Solution:
     algebra = JetAlgebra(model, max(model.order - 1, 1))
     mu = algebra.mu  # mass fractions
     c = algebra.c  # strain shares
-    right = Force(algebra)  # of the contact inside the cell
-    left = Force(algebra)  # of the contact to the next cell
+    right = Force(algebra)  # the force of the contact inside the cell
+    left = Force(algebra)  # the force of the contact to the next cell
     first = GradedSeries(algebra, algebra.k, [algebra.zero])  # E by equation 1
     second = GradedSeries(algebra, algebra.k, [algebra.zero])  # E by equation 2
     # At the leading order w - u is the strain of the first contact: its share C_0 of D u_x.
@@ -88,6 +88,8 @@ def optical(model: Model, progress: Progress[int] = iter) -> Solution:
         shifted = k * stiffness[1] * left.increment(-2, n)
         lacking = shifted + _applied(b, first, n)
         b.append(-algebra.slope(lacking, n) / k)
+        # With w = λ (u + Σ b_n D^n ∂_x^n u) and λ = -m̂_0/m̂_1: Y_n = m̂_0 b_n r_n, and Z_n has the
+        # n-th term of u(x + 2D) besides.
         strain = mu[0] * b[n]
         right.append(strain * r_n)
         strain = strain + mu[1] * taylor(2, n)

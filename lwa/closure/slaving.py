@@ -52,7 +52,7 @@ class Force:
         self.Phi = GradedSeries(algebra, algebra.k, [algebra.zero])
         # The first derivative of F(p) over p F′: r_1
         self._slope = GradedSeries(algebra, algebra.k, [algebra.r[1]])
-        # Each term is computed once: the series of the powers share them.
+        # Cached, as the terms of a power are made from those of all lower powers
         self._power = cache(self._term_of_power)
 
     @property

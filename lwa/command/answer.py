@@ -154,7 +154,7 @@ class Row:
         value = attempt(getattr, result, name)
         if callable(value):
             value = attempt(value, *arguments)
-        # One form of errors: a result that knows them has this method.
+        # A result that knows the errors of its numbers has a method `estimate`.
         estimate = None
         if hasattr(result, "estimate"):
             estimate = attempt(result.estimate, name, *arguments)
@@ -337,7 +337,7 @@ class Answer:
                 result[row.key] = row.document()
             elif isinstance(row, Row) and row.key:
                 if row.unit:
-                    # One unit for a row: "_value" and "_error_value" have the same.
+                    # The entries "_value" and "_error_value" of a row have one unit.
                     _put(units, row.key, "", row.unit)
                 if isinstance(row.value, InputError):
                     notes.append(str(row.value))

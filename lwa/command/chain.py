@@ -108,7 +108,7 @@ class ChainInput:
 
 def take_chain(options: dict[str, Any]) -> ChainInput:
     """Remove the options that describe a chain from a command's options and return the chain."""
-    # What is left in the options belongs to the theory of the chain.
+    # Options that do not describe the chain stay: they belong to its theory.
     masses = options.pop("masses", None)
     stiffnesses = options.pop("stiffnesses", None)
     spacing = options.pop("spacing", None)

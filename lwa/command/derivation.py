@@ -18,7 +18,7 @@ UNKNOWNS = {
 }
 """Meaning of the unknown u by the name of the field."""
 
-FIRST = "from field to field G and H differ; in the canonical field, whichever bead is the first:"
+FIRST = "G and H depend on the field u; in the canonical field, whichever bead is the first:"
 """Heading of the canonical equation's coefficients beside those of a first field."""
 
 
@@ -44,7 +44,7 @@ def closure_lines(theory: Theory) -> list[str]:
     """Lines of text with the closure and the unknown, and why a closure was chosen."""
     closure = theory.closure
     lines = [f"closure {closure.name}; {UNKNOWNS[closure.field]}"]
-    # Who names a closure knows it; a choice of the program is said.
+    # The program says which closure it chose; a closure that the user names needs no words.
     if theory.cell.size > 2 and not given("closure"):
         lines.append(
             f"{theory.cell.size} beads in a cell: the paper's closure is that of one or two, the "
@@ -126,7 +126,8 @@ def _lines(theory: Theory) -> Iterator[str]:
         for n, b in theory.ansatz.items():
             yield f"  b{n} = {b}"
         yield ""
-    # What the full closure adds. The canonical field is no particle's: every particle has one.
+    # The fields of the full closure. The first field is the first particle's own, which is left
+    # out; the canonical field is no particle's, and every particle has one.
     for i, orders in theory.slaved.items():
         title = f"field of particle {i + 1}, less u"
         if i == 1:  # its linear part is the ansatz
@@ -142,7 +143,7 @@ def _lines(theory: Theory) -> Iterator[str]:
     else:
         yield "all equations of motion are satisfied at every order shown"
     if pde.acoustic and not pde.conservative:
-        # Each way out has its own words: another closure, or another field.
+        # The way to an equation in conservation form is another closure, or another field.
         way_out = " in this field; see --field center"
         if theory.closure.name == "linear":
             way_out = (

@@ -56,7 +56,7 @@ def strike(
     neglected in the chain.
     """
     cell = chain.cell
-    # Each refusal has its own line to paste: for a simulation, which has what the rule lacks.
+    # Refusals propose a simulation of the file, which takes what the rule lacks.
     simulation = f"try: lwa-validate run {shlex.quote(chain.file)}"
     # The relation of a strike rests on the wave without load, which scales with the force.
     if chain.precompression is not None:

@@ -144,6 +144,7 @@ def command(
     """
 
     def decorate(function: Function) -> click.Command:
+        """Turn a function of a chain into a command."""
         # Literals of reStructuredText have no marks on a terminal.
         says = inspect.cleandoc(function.__doc__ or "").replace("``", "")
 

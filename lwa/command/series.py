@@ -61,7 +61,7 @@ def expansion(chain: ChainInput, order: int | None) -> Answer:
         "order": expanded.order,
         "c2": [expanded.c2.prefactor * a for a in expanded.c2.coefficients],
     }
-    # Each series under its name in JSON, with its name in text.
+    # Series and their names in text, by their names in JSON
     series = {"c2": ("c²", expanded.c2)}
     # Unlike contacts have unlike widths; series with symbols are long enough for one.
     contacts = 1
@@ -97,7 +97,7 @@ def expansion(chain: ChainInput, order: int | None) -> Answer:
 def _series_lines(series: Mapping[str, tuple[str, EpsilonSeries]]) -> Iterator[str]:
     """Lines of text with the coefficients of each series."""
     for label, part in series.values():
-        factors = []  # of the whole series
+        factors = []  # before the sum
         if part.prefactor != 1:
             factors.append(str(part.prefactor))
         if part.power != 0:

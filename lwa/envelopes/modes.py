@@ -249,7 +249,7 @@ def lone_bead(contacts: Contacts, branch: int) -> Mode:
     mean = -2 * K3 * size / K2  # e0
     # a contact's part of 2ω χ, with e2 = 0
     of_contact = 3 * K4 * size**2 + 2 * K3 * size * mean
-    phi = [sp.S.Zero, sp.S.Zero]
+    phi = [sp.S.Zero] * 2
     phi[bead] = 1 / sp.sqrt(m)
     return Mode(
         square=2 * K2 / m,

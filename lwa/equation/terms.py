@@ -43,6 +43,7 @@ class BasePower(NamedTuple):
         return BasePower(self.a - strains - halves, self.b - halves)
 
 
+# The powers p^k, p and p^{k+1} of the base p, by which forces, strains and energies are written
 FORCE = BasePower(a=0, b=1)
 STRAIN = BasePower(a=1, b=0)
 ENERGY = BasePower(a=1, b=1)

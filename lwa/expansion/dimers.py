@@ -95,7 +95,7 @@ def exponent_of_light_beads(quantity: str) -> sp.Expr:
     leading = _LEADING.get(quantity, 1.5)
 
     def exponent(epsilon: mpmath.mpf) -> mpmath.mpf:
-        """The exponent e: that of the leading term, less d ln Q/dω of the rest of the series."""
+        """The exponent e: the leading term's exponent, less d ln Q/dω of the rest of the series."""
         change = power_series(light, epsilon) / power_series(heavy, epsilon) - 1
         return leading - change / LIGHT
 

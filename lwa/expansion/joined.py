@@ -206,8 +206,8 @@ def pade(terms: Sequence[mpmath.mpf], n: int) -> sp.Expr:
         parts = []
         for coefficients in mpmath.pade(terms, len(terms) - 1 - n, n):
             part = sp.S.Zero
-            for n, value in enumerate(coefficients):
-                part += sp.Float(mpmath.nstr(value, SHOWN)) * EPSILON**n
+            for degree, value in enumerate(coefficients):
+                part += sp.Float(mpmath.nstr(value, SHOWN)) * EPSILON**degree
             parts.append(part)
     return parts[0] / parts[1]
 

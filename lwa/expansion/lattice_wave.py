@@ -1,8 +1,8 @@
 """The lattice's own solitary wave in closed form, in the units of the cell.
 
-Of equal beads in closed form (`lwa.expansion.joined`) for every k > 1, and of dimers
-(`lwa.expansion.dimers`): for m2/m1 < 0.75 the light beads follow, from there on the pulse is that
-of equal beads of the mean mass.
+The wave of equal beads has closed forms for every k > 1 (`lwa.expansion.joined`), and so has that
+of dimers (`lwa.expansion.dimers`): for m2/m1 < 0.75 the light beads follow their neighbours, from
+there on the pulse is that of equal beads of the mean mass.
 
 Errors are bounds of measured deviations (`LatticeWave.estimate`). Where the light beads resonate,
 above k of 1.2 from m2/m1 of 0.5 to 0.75 and at some smaller ratios, the pulse of a struck chain
@@ -40,7 +40,8 @@ _PARTS = {
     "effective_mass": ("momentum", "momentum", "energy"),
     "fwhm": (),
 }
-"""Quantities in a result besides its arguments; their relative errors add up."""
+"""The quantities of which a result is a product or a quotient: their relative errors add up. The
+quantity of `fwhm` is its argument."""
 
 
 _TITLE = (
@@ -108,9 +109,9 @@ class LatticeWave(Parametric):
     @property
     def mass_ratio(self) -> sp.Expr:
         """The lesser of two beads' masses over the other; of symbols, the second over the first."""
-        # A cell of equal beads has one.
+        # A cell of equal beads has one mass: the ratio is 1.
         ratio = self.cell.masses[-1] / self.cell.masses[0]
-        # Which of two symbols is less is not known.
+        # Of two symbols nobody knows which is less: the second counts as the lesser one.
         if ratio.is_number and ratio > 1:
             return 1 / ratio
         return ratio
@@ -187,7 +188,7 @@ class LatticeWave(Parametric):
         return self._result("speed")
 
     def scaled_speed(self, B: Any = RISE) -> sp.Expr:
-        """The speed ``V_s = dx/dτ`` of the wave whose strain peaks at B, as `CompactWave.speed`."""
+        """Speed ``V_s = dx/dτ`` of the wave whose strain peaks at B, as `lwa.CompactWave.speed`."""
         scale = power(positive(B, "B"), (self.k - 1) / 2)
         # τ/t = √(k A D^{k+1}/m)
         return self._value("speed") * scale / sp.sqrt(self.k)
@@ -195,7 +196,8 @@ class LatticeWave(Parametric):
     @property
     def short_speed(self) -> sp.Expr:
         """The `speed` of equal beads by ``c = c₂ [1 + (π/√8 - 1) 4^{1-k}]``, to 0.2 %."""
-        # e^{-εφ} with ln 4 for φ, which is 1.539 at k = 1 and 1.226 in the limit of large k
+        # e^{-εφ} of `lwa.expansion.joined` with ln 4, 1.386, for φ, which is 1.539 at k = 1 and
+        # 1.226 in the limit of large k
         rest = (sp.pi / sp.sqrt(8) - 1) * 4 ** (1 - self.k)
         c = FORMS["speed"].two_bodies.subs(symbol_k, self.k) * (1 + rest)
         return self.speed * c / self._value("speed")
@@ -303,7 +305,7 @@ class LatticeWave(Parametric):
         )
         demand_numbers(self.k.free_symbols, why)
         cell = self.cell
-        # Each function has those of these arguments that it depends on, in this order.
+        # A function has as arguments, in this order, the symbols on which it depends.
         functions = Functions(self.force, *cell.masses, *cell.stiffnesses, cell.spacing)
         for name, meaning in _MEANINGS.items():
             functions.define(name, meaning, getattr(self, name).n(_DIGITS))

@@ -141,6 +141,7 @@ def shares_model(cell: Cell, k: sp.Expr) -> Model:
 # An order of 80 holds 11 MB.
 @lru_cache(maxsize=4)
 def _equal_beads(order: int) -> Observables:
+    """The quantities of the chain of equal beads, to this order."""
     return Observables(Recursion(shares_model(Cell((1,)), sp.S.One), order))
 
 

@@ -99,7 +99,7 @@ class Recursion:
         self.c = model.contacts.elements(self.context)
         self.P = model.cell.size
         self.I = self._dispersion()
-        # -I times the logarithmic slope of the Gaussian
+        # -I times the logarithmic slope -Z/2 of the Gaussian e^{-Z²/4}
         self._fall = self.I * self.Z / 2
         # (ε/I)^{1/2} = I t, so that ε = I³ t²
         self.epsilon = self.I**3

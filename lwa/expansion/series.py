@@ -6,9 +6,9 @@ x)`` moves this point to infinity (Hardy, *Divergent Series*, 1949, chapter 8)::
 
     Σ a_n ε^n = Σ b_n x^n,    b_0 = a_0,    b_n = Σ_{m=1}^n C(n-1, m-1) a_m,
 
-and ``x = 1 - 1/k`` lies between 0 and 1 for every k > 1. The b_n of equal beads are below 1 up to n
-= `LAST`, from where on they grow: the series is asymptotic. A sum that ends with ``x^n`` misses
-``b_{n+1} x^{n+1} + …``; its error is estimated as::
+and ``x = 1 - 1/k`` lies between 0 and 1 for every k > 1. The b_n of equal beads are at most 1 up to
+the order `LAST`, from where on they grow: the series is asymptotic. A sum that ends with ``x^n``
+misses ``b_{n+1} x^{n+1} + …``; its error is estimated as::
 
     max(`SAFETY`, `REST` k) b x^{n+1},    b the largest of the last `WINDOW` coefficients,
 

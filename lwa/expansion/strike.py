@@ -85,7 +85,7 @@ class Strike(Value):
 
     @cached_property
     def wave(self) -> LatticeWave:
-        """The chain's wave of the same peak force; its errors leave out that of the rule."""
+        """The chain's wave of the same peak force; its errors leave out the error of the rule."""
         unit = lattice_wave(self.chain, k=self.k)
         particle = float(self.chain.masses[0])
         # η as measured behind equal strikers at six exponents, to 4e-4

@@ -155,9 +155,9 @@ class Dispersion(Parametric):
 
     def _expression(self, polynomial: fmpq_mpoly) -> sp.Expr:
         """A polynomial of the ring as an expression in the cell's symbols."""
-        terms = list(polynomial.terms())
-        # One fraction: compliances enter as 1/A.
-        return sp.together(self._model.expression(terms))
+        expression = self._model.expression(list(polynomial.terms()))
+        # Compliances enter as 1/A: the result is put over one denominator.
+        return sp.together(expression)
 
     def _length(self, order: Any) -> int:
         """Return the number of powers of κ² up to κ^order; raise `lwa.InputError` for too many.
@@ -181,7 +181,7 @@ class Dispersion(Parametric):
     @cached_property
     def bands(self) -> Bands:
         """The bands in floats, Ω by κ; raises `lwa.InputError` for symbols."""
-        # Here: `import lwa` does not load NumPy.
+        # Imported here, as `import lwa` does not load NumPy
         import numpy as np
 
         from lwa.linear.springs import Bands

@@ -52,7 +52,7 @@ class Rule(NamedTuple):
 
 # Equal particles and nearest links, with and without a load
 ALIKE = Rule(square=0.03, width=0.12, largest=1.8, velocity=0.26)
-# One particle a cell, links to farther ones
+# One particle a cell, with links to farther particles
 FARTHER = Rule(square=0.03, width=0.3, largest=1.8)
 # Two unlike masses or links under a load
 LOADED_PAIR = Rule(square=0.25, width=1.1, largest=0.3)

@@ -30,7 +30,8 @@ from lwa.base.exact import InputError
 from lwa.loaded.statics import Samples
 
 # Nodes per unit of t, tried one after the other; 20 are too few for the width of a force. Twice as
-# many nodes err by the square: a result equal to `_CLOSE` by half as many is right to rounding.
+# many nodes err by the square: a result that agrees to `_CLOSE` with that of half as many nodes is
+# right to rounding.
 _STEPS = (20, 28, 56, 112)
 _CLOSE = 1e-8
 _END = 4.0  # the largest |t|: s or 1 - s is 6e-38 there

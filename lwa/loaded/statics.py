@@ -229,10 +229,10 @@ class Statics:
         return float(e[-1])
 
     def rise(self, e: float, force: float, added: float) -> float:
-        """The rise of the mean compression from e to that under a force, which is larger by added.
+        """The rise of the mean compression from e to that under ``force``.
 
-        A small difference of compressions has lost its digits: the force added over the mean ``F′``
-        between them, by Gauss's rule, has not.
+        The lattice at e carries ``force`` less ``added``. A small difference of compressions has
+        lost its digits; ``added`` over the mean ``F′`` between them, by Gauss's rule, has not.
         """
         rough = self.mean_compression(force) - e
         if abs(rough) > _SMALL * e:

@@ -135,8 +135,8 @@ def _front(cell: Cell, law: ContactLaw, behind: sp.Expr, ahead: sp.Expr) -> Shoc
             raise InputError(
                 f"{name} is 0 and k {law.exponent}: a front without load wants k > 1"
             )
-    # Equal strains are refused below, with the words for equal speeds of sound. Of springs the jump
-    # may be a number where the strains are not.
+    # Equal strains are refused below, with the words for equal speeds of sound. Strains in symbols
+    # may differ by a number, such as p and p + 1: their ratio is not known.
     jump = abs(behind - ahead)
     numbers = not sp.Tuple(behind, ahead).free_symbols
     if numbers and 0 < jump < SMALLEST * max(abs(behind), abs(ahead)):

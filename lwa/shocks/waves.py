@@ -142,6 +142,7 @@ def demand_one_sign(field: Background, start: sp.Expr, end: sp.Expr) -> None:
     curve = real_function(sp.lambdify(x, bend, "mpmath"))
     with mpmath.workdps(DIGITS):
         ends = [mpmath.mpf(sp.N(p, DIGITS)) for p in (start, end)]
+        # Without the two ends, where F″ may be 0 or infinite
         for before, after in pairwise(mpmath.linspace(*ends, _PLACES)[1:-1]):
             if mpmath.sign(curve(before)) != mpmath.sign(curve(after)):
                 raise InputError(

@@ -130,7 +130,6 @@ class Arch(Parametric):
             Speed dx/dτ of the wave.
         """
         k = self.k
-        I = self.I
         p = self.roots[integer(root, "root", 0, 1)]
         _, h = self._ratios
         a = factored(3 + h - k) * p - 2  # 1 - kp + 3 (p - 1) + p H/I
@@ -138,9 +137,9 @@ class Arch(Parametric):
         return Reduction(
             p,
             a,
-            mu=positive(V, "V") ** 2 / (I * (p + a)),
+            mu=positive(V, "V") ** 2 / (self.I * (p + a)),
             eta=eta,
-            sigma=1 / (I * (k * p + a)),
+            sigma=1 / (self.I * (k * p + a)),
             s=2 / (1 - eta),
         )
 

@@ -78,7 +78,7 @@ class NumericWave(Value):
     def _compiled(self) -> Mapping[str, Callable[..., Any]]:
         """The functions of the wave by their names."""
         compiled: dict[str, Callable[..., Any]] = {}
-        # Each function may call those before it.
+        # A function may call the functions before it: they are compiled first.
         for f in self._functions.values():
             modules = [dict(compiled), "numpy"]
             compiled[f.name] = sp.lambdify(f.arguments, f.value, modules, cse=True)

@@ -61,9 +61,9 @@ from validation.lattice.result import Run
 from validation.lattice.schemes import BLANES_MOAN, RK853, RKN86
 from validation.scenes.forcing import Drive
 
-# The response of a drive is guessed: a run is made again where its energy turns out less than _WEAK
-# times, or more than _STRONG times, the energy that sets the tolerance, and no more than _GUESSES
-# times.
+# The response of a drive is guessed. Where its energy turns out less than _WEAK times the energy
+# that sets the tolerance, the run is made again, no more than _GUESSES times in all; where it grows
+# to more than _STRONG times, the run goes on with the tolerance of the greater energy.
 _WEAK, _STRONG, _GUESSES = 0.1, 10.0, 8
 _HIDDEN = 0.1  # rounding in units of the tolerance: more of it hides the motion
 # A bead is still at the start if its |y| and |v| are less than this part of the greatest ones.
@@ -90,10 +90,11 @@ _ANY_POWER = 0.25  # a general law may begin with δ^{1/4}
 def integrate(
     motion: Motion, method: str, rtol: float, longest: float, progress: RunProgress
 ) -> Run:
-    """Integrate a scene by a method of `SCHEMES`, in steps of at most ``longest``.
+    """Integrate a scene by a compiled method, in steps of at most ``longest``.
 
-    A splitting's steps have this length, unless it is infinite. A run whose tolerance is set by a
-    drive, and whose response turns out far weaker, is made again.
+    The method is one of `validation.lattice.schemes.SCHEMES`. The steps of a splitting have the
+    length ``longest``, unless it is infinite. A run whose tolerance is set by a drive, and whose
+    response turns out far weaker, is made again.
     """
     for _ in range(_GUESSES):
         run = _Integration(motion, method, rtol, longest)

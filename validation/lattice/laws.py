@@ -159,8 +159,8 @@ class Contact:
     def reached_by(self, energy: float, start: float) -> float:
         """Return a scale of the compression that an energy reaches from ``start``.
 
-        The scale of a power is the compression that the energy reaches from 0, whatever the start:
-        `Motion.scales` takes the greater one of this scale and the start.
+        The scale of a power is the compression that the energy reaches from 0, whatever the start.
+        `validation.lattice.equations.Motion.scales` takes the greater of this scale and the start.
         """
         if self.law is None:
             # δ^{k+1}/(k+1) = energy, without the factor k + 1, which no scale needs

@@ -20,7 +20,7 @@ METHODS = ("DOP853", "RK45", "RK23", "LSODA", "Radau", "BDF")
 
 @dataclass(frozen=True, eq=False)
 class DensePath:
-    """Dense output of `solve_ivp`; a `signal.Path`."""
+    """Dense output of `solve_ivp`; a `validation.lattice.signal.Path`."""
 
     motion: Motion
     solution: Any

@@ -20,7 +20,7 @@ import scipy
 from lwa.base.arrays import Array
 
 _BEFORE = 2.0  # widths between the samples of the base and the rise
-_CLOSE = 1.0  # likewise in a record that would leave less than 2.5 widths for the base
+_CLOSE = 1.0  # the same in a record that would leave less than 2.5 widths for the base
 _LONG = 10.0  # widths of the longest base: drift and hum are straight over such a time
 _SHORTEST = 0.9  # widths of the shortest base
 FEWEST_FOR_BASE = 16  # samples of a base, at least
@@ -161,7 +161,7 @@ class Base:
         # variance and no correlation; rise and width do not matter to a level.
         samples = np.array([noise, 0.0])
         first = f[:_GUESSED].mean()
-        lowest = np.quantile(f, 0.1)
+        lowest = np.quantile(f, 0.1)  # not the least value, which is that of the noise
         fits = [Fit(np.array([level]), samples) for level in (first, lowest)]
         nowhere = np.zeros(0)
         alike = np.full(2, 0.5)

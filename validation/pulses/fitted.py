@@ -28,8 +28,8 @@ _BESIDE = 0.3  # widths before the rise and after the fall that the fit takes in
 _READ = 0.1  # widths before and after in which the spline is read: its ends follow the noise
 _DEGREE = 5  # degree of the spline
 _LOWEST = 8  # fewest coefficients of the spline
-_HIGHEST = 120
-_RATIO = 1.2  # of numbers of coefficients that are tried
+_HIGHEST = 120  # most coefficients
+_RATIO = 1.2  # number of coefficients that is tried over the one before
 # Coefficients in the end over the best number. With 1.5 the arrivals of records of 8 bits with
 # little noise are off by their scatter; with 2 the arrivals of loud records cover 59 %.
 _FINER = 1.7

@@ -248,12 +248,15 @@ class _Grid:
     ) -> Pulse:
         """Measure the highest pulse between two grid points, at a fraction of its peak."""
         part = self.f[start:stop]
+        # The highest point; at an end of the record the signal may go on to rise.
         top = start + np.argmax(part)
         if top in (0, len(self.f) - 1):
             end = "end" if top else "start"
             raise MeasureError(f"{_PARTLY} it peaks at the {end} of the record")
         arrival, peak = self._crest(self.t[top - 1], self.t[top + 1])
         level = share * peak
+        # The last point before the top, and the first one behind, at which the signal is below the
+        # level: between each of them and its neighbour the signal passes the level.
         below = start + np.flatnonzero(part <= level)
         place = np.searchsorted(below, top)
         if place in (0, len(below)):
@@ -268,7 +271,7 @@ class _Grid:
         low, high = self.t[i : i + 2]
         series = self._interpolant(low, high)
         passed = _zeros(series - level)
-        # Without a zero the signal jumps at the end: a damped contact opens.
+        # Without a zero the signal jumps at the later point: a damped contact opens.
         return float(min(passed, default=high))
 
     def _crest(self, low: float, high: float) -> tuple[float, float]:

@@ -44,7 +44,8 @@ _ROUNDING = 10  # rounding of the static compression over rtol; with more, steps
 # Least time in which a pulse passes a site, over that of a small wave (`_time_of_a_site`).
 _QUICK = 0.9
 # Samples in the shortest time √(m/spring) of a bead between two contacts. The force of two beads
-# that collide, or of a Hertz chain's wave, has 1.5 or 1.9 √(m/spring) of one contact above half.
+# that collide, or of a Hertz chain's wave, has 1.5 or 1.9 √(m/spring) of one contact above half:
+# some 33 and 42 samples.
 _RESOLVED = 22.0
 _MOST_SAMPLES = 100_000  # of more samples a run would take much memory
 _HIDDEN = 0.5  # relative error of the peak from which on a pulse may be rounding alone
@@ -62,8 +63,8 @@ class Reading:
     places : tuple of int
         Number of the sensor, or of both, counted from 1.
     numbers : mapping of Estimate
-        Those of `READINGS` that are known, by name; of speeds ``speed_sites``, in sites per time,
-        and ``speed``, in length per time.
+        Numbers of a pulse that are known, by their names in `validation.pulses.pulse.READINGS`; of
+        speeds ``speed_sites``, in sites per time, and ``speed``, in length per time.
     static : float
         Force at the (first) sensor from which dynamic forces count: the one at the start.
     missing : str, optional
@@ -180,7 +181,7 @@ def record(
     firsts: list[Track] = []
     found: list[Track] = []
     for track, other in zip(tracks(run, velocities), checks, strict=True):
-        firsts += _readings(track, other, _first)
+        firsts += _readings(track, other, lambda signal: [first_pulse(signal)])
         if every:
             found += _readings(track, other, all_pulses)
 
@@ -191,10 +192,13 @@ def record(
         """
         peaks = [r.numbers["peak"].value + r.static for r in (first, second)]
         numbers = sorted(first.places + second.places)
+        # The contacts from one sensor to the other; sensors count from 1
         between = slice(numbers[0] - 1, numbers[1])
         time = _time_of_a_site(motion, between, max(peaks))
-        if sites * _QUICK * time > 1:
+        # From site to site the pulse takes 1/sites.
+        if 1 / sites < _QUICK * time:
             raise MeasureError("no wave is so fast: the sensors see different pulses")
+        # From the arrival at the first sensor until a width before that at the second one
         start = first.numbers["arrival"].value
         end = second.numbers["arrival"].value - second.numbers["fwhm"].value
         looks = np.linspace(start, end, _LOOKS)
@@ -231,6 +235,7 @@ def _time_of_a_site(motion: Motion, contacts: slice, force: float) -> float:
     A = motion.stiffnesses[contacts]
     exponents = np.broadcast_to(motion.scene.k, len(motion.stiffnesses))
     k = exponents[contacts]
+    # dF/dδ of F = A δ^k at the force F
     springs = k * A ** (1 / k) * force ** (1 - 1 / k)
     beside = np.append(motion.masses, np.inf)  # the wall has no mass of its own
     lighter_of_all = np.minimum(beside[:-1], beside[1:])
@@ -258,6 +263,7 @@ def tracks(
     """
     scene = run.scene
     levels = forces_at_start(scene)
+    # Places of the beads, and of one more, imagined a spacing after the last
     x = np.cumsum((0.0, *scene.spacings, *scene.spacings[-1:]))
     found = []
     for kind, numbers in sensors_of(scene).items():
@@ -268,6 +274,7 @@ def tracks(
             if name in velocities:
                 quantity = "velocity"
                 static = 0.0
+            # A motion too long to be kept leaves its samples.
             if run.path is None:
                 samples = getattr(run, RECORDS[kind, quantity])[row]
                 signal: Signal = spline(run.time[::every], samples[::every])
@@ -329,11 +336,6 @@ def forces_at_start(scene: Scene) -> dict[str, float]:
     return forces
 
 
-def _first(signal: Signal) -> list[Pulse]:
-    """Measure the first pulse alone."""
-    return [first_pulse(signal)]
-
-
 def _readings(
     track: Track, other: Track, pulses: Callable[[Signal], list[Pulse]]
 ) -> list[Track]:
@@ -344,8 +346,8 @@ def _readings(
         return [replace(track, missing=str(error))]
     found: list[Track] = []
     for pulse in measured:
-        # Another run may see a pulse less, or one more.
-        same = min(known, key=partial(_delay, pulse))
+        # One run may see a pulse more: those that arrive at nearly one time are the same pulse.
+        same = min(known, key=lambda other: abs(other.arrival - pulse.arrival))
         numbers = compared(readings, [pulse, same])
         if numbers["peak"].relative_error < _HIDDEN:
             found.append(replace(track, numbers=numbers, pulse=len(found) + 1))
@@ -353,11 +355,6 @@ def _readings(
         reason = "no pulse: the force is the static one, but for errors"
         return [replace(track, missing=reason)]
     return found
-
-
-def _delay(pulse: Pulse, other: Pulse) -> float:
-    """Return the time between the arrivals of two pulses."""
-    return abs(other.arrival - pulse.arrival)
 
 
 def speeds_between(

@@ -188,7 +188,8 @@ class StruckDimer:
         """Strike the chain and record the two contacts of each place, up to the last one."""
         sensors = tuple(place + side for place in places for side in (0, 1))
         options = {"contact_sensors": sensors, "duration": duration, "samples": 2}
-        # The end is a pulse's length away as k → 1, too.
+        # The chain goes on behind the last place: by 12 sites, twice the five of a pulse of spheres
+        # and two more, or by a stretch, which grows as pulses do for k → 1.
         behind = max(12, self.sites)
         masses = (1.0, self.omega)
         length = places[-1] + behind
@@ -270,6 +271,7 @@ def stored(path: Path) -> Iterator[tuple[dict[Key, Point], Callable[[Point], Non
             data.execute("begin exclusive")
             own = f"points_{VERSION}_{STRETCH}"
             data.execute(f"create table if not exists {own} (point)")
+            # Points of another version, or with another stretch, are in a table of another name.
             (tables,) = data.execute("select count(*) from sqlite_master").fetchone()
             if tables > 1:
                 raise ValueError("it holds other data than points of this definition")
@@ -285,6 +287,7 @@ def stored(path: Path) -> Iterator[tuple[dict[Key, Point], Callable[[Point], Non
                 numbers = {}
                 for name, number in entry["numbers"].items():
                     numbers[name] = Estimate(**number)
+                # A tuple is a list in JSON, and exact numbers are texts.
                 sites = entry["sites"]
                 key = (
                     read_exact(entry["k"], "k"),

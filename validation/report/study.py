@@ -219,6 +219,7 @@ class Study(Generic[P]):
         """The Click command, named like the function; its exit status is 1 if a finding fails."""
 
         def run(style: str, plot: Path | None, **values: Any) -> int:
+            """Print the report, draw it if asked to, and return the exit status."""
             report = self._report(values)
             # Before the picture: a form that the result lacks leaves no file behind.
             printed = printed_as(style, report)

@@ -23,9 +23,6 @@ WIDTH = 100
 Row = Mapping[str, Any]
 """Cells of a table by the keys of its columns, or by the label of a column that has no key."""
 
-Lines = Sequence[Sequence[str]]
-"""Lines of cells as texts, the first of them the column labels."""
-
 
 @dataclass(frozen=True)
 class Column:
@@ -328,7 +325,7 @@ def plain(value: Any) -> Any:
     return value
 
 
-def aligned(lines: Lines, width: int = WIDTH) -> str:
+def aligned(lines: Sequence[Sequence[str]], width: int = WIDTH) -> str:
     """Align columns of text: the first one left, the others right.
 
     Columns beyond the width of a line follow in a block of their own, after the first column.

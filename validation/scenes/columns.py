@@ -200,6 +200,8 @@ class Columns:
     @cached_property
     def named(self) -> list[Column]:
         """The columns in their order, behind the times that a step states."""
+        # Names by the numbers of their columns. Of columns with one header the first is taken here;
+        # `validation.scenes.measured` refuses a header that is not unique.
         names: dict[int, str] = {}
         for name, header in self.headers.items():
             numbers = self.cells.headed(header)

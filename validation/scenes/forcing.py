@@ -181,7 +181,7 @@ class Drive:
         if constant:
             finite(self.velocity, "drive.velocity")
         if harmonic:
-            # Neither has a default.
+            # An oscillation needs both numbers: neither has a default.
             finite(self.amplitude, "drive.amplitude")
             positive(self.frequency, "drive.frequency")
         if recorded:
@@ -232,7 +232,7 @@ class Drive:
         The cubics are the motion except the oscillation.
         """
         if self.time:
-            # SciPy has the highest power first.
+            # SciPy's array (4, intervals) has the highest power first.
             rising = self._spline.c[::-1].T
             return self._spline.x[:-1], np.ascontiguousarray(rising)
         return np.zeros(1), np.array([[0.0, self.velocity or 0.0, 0.0, 0.0]])
@@ -254,5 +254,6 @@ class Drive:
         # Less than a quarter of a wave: a step holds at most one extremum.
         if self.frequency is not None:
             return 1 / (8 * self.frequency)
+        # In an interval of a file the motion is a cubic, with one inflection.
         longest = np.diff(self.time).max(initial=0.0)
         return float(longest) or math.inf

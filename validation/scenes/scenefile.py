@@ -52,6 +52,7 @@ MOST_BEADS = 1_000_000  # they are read in 2 s and 40 MB
 _STATED = ("columns", "units", "step")  # keys on the file of a drive
 # Keys of a striker or a defect that is a bead unlike the others
 _OTHER = ("like", "mass")
+# Faults of a key for which its example helps: it is missing or unknown, or of another type.
 _ABOUT = re.compile(
     r"([\w.]+) is (missing|unknown|.*: a (?:number|list|sequence) is wanted)(?:: .*)?"
 )

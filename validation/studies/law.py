@@ -45,7 +45,8 @@ from validation.waves.solver import exact_wave
 
 _DRAWS = 1000  # times that the coefficients of ln V are drawn, for the errors
 _HERTZ = 1.5
-# Exponents that are read: below, speeds do not depend on force; beyond, R is not known.
+# Exponents that are read: below `LEAST` speeds hardly depend on force; beyond `MOST` the
+# interpolant of R ends.
 LEAST = 1.01
 MOST = 4.0
 LARGEST = 700.0  # largest |ln A|: floats end at e^709
@@ -314,8 +315,10 @@ def fit_power(force: Array, speed: Array, weight: Array | None = None) -> PowerF
     (curvature, *_), _ = _fit(x, y, 2, weight)
 
     def stiffness(log_A: Array, k: float) -> Estimate:
+        """Return A from ln A by the best fit and the draws; refuse a number beyond the floats."""
         log = _interval(log_A)
-        error = log.error + k * RATIO_ERROR  # A goes as R(k)^{-k}
+        # A goes as R(k)^{-k}: the relative error of R(k) counts k times.
+        error = log.error + k * RATIO_ERROR
         if not abs(log.value) + error < LARGEST:
             raise SceneError(
                 f"A is e^({log}) by the best fit: this is no number of a computer"
@@ -337,7 +340,7 @@ def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, 
     # On data without scatter the rounding of ln F, of ln V and of the fit is left.
     rounding = 2 * np.finfo(float).eps * (1 + np.abs(x) + np.abs(y))
     w = np.ones_like(x)
-    # Scatter of the residuals over their known deviations, at least
+    # Least scatter of the residuals: that of rounding; of residuals over known deviations, 1
     least = float(np.sum(rounding**2))
     if weight is not None:
         w = weight

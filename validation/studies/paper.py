@@ -61,8 +61,8 @@ from validation.scenes.chains import DIAMETER, PTFE, PTFE_BEAD, STEEL, STEEL_BEA
 from validation.scenes.checks import between
 from validation.scenes.scene import Scene
 
-HERTZ = sp.Rational(3, 2)
-BEADS = 38
+HERTZ = sp.Rational(3, 2)  # exponent of the contacts of spheres
+BEADS = 38  # in the chain, the striker included
 SENSORS = (15, 34)  # beads, counted from the striker, 1
 VELOCITY = 1.37  # of the striker, in m/s
 # Relative errors of the pulse's numbers are up to 0.009 RTOL, in the 2:1 chain up to 0.025 RTOL.
@@ -74,7 +74,7 @@ MODULI = (1.46e9, 0.6e9)  # of PTFE, in Pa: dynamic, as in the paper, and nomina
 STATED = {"m1 ≫ m2": 0.092, "m2/m1 = 0.27": 0.025, "m1 = m2": 0.228}
 """Lines of figure 3b → errors of the FWHM that the paper states, without a sign."""
 
-# From here on the width no longer changes on its way: the average starts here.
+# From this bead on the pulse's width no longer changes on the way: averages begin here.
 FIRST_BEAD = 10
 _COMPARED = "differences to a more accurate run"
 
@@ -412,7 +412,7 @@ def stated_errors() -> list[dict[str, Any]]:
 
     The FWHM is a time, of the contacts' force from bead `FIRST_BEAD` on, at an equal peak force.
     """
-    # Where the pulse has passed before the wave reaches the wall.
+    # These contacts the whole pulse has passed before its front reaches the wall.
     places = range(FIRST_BEAD, BEADS - 2)
     run = simulate(recorded_chain(places), rtol=RTOL)
     contacts = passing(run, "contact")

@@ -68,7 +68,7 @@ def _pairs(
         else:
             stated[name] = value
     if fault:
-        # What is right of the statements is kept in the line that is proposed.
+        # The line that is proposed keeps the valid pairs, and has an example if there are none.
         wanted = f"{given.metavar} is wanted, once a name"
         key = called(given)
         example = {"time": _TIMES[key]}
@@ -147,7 +147,7 @@ class Measured:
             constant = read_time(time_constant, "time_constant", "1 ms")
         names = [paths] if isinstance(paths, str | Path) else [*paths]
         files = [MeasuredFile.read(name, **stated) for name in names]
-        # A picture, and a comparison, has one unit for each quantity.
+        # A picture, or a comparison, has one unit for each quantity: all files have units, or none.
         for file in files:
             if file.si != files[0].si:
                 raise SceneError(
@@ -346,6 +346,7 @@ def compare(
             found[name] = read.pulse(signal)
         except MeasureError as error:
             raise MeasureError(f"{name}: {error.reason}", **error.change) from None
+    # The simulation has the quantity that was measured at each sensor.
     velocities = [name for name, s in signals.items() if s.quantity == "velocity"]
     simulation = record(chain, velocities=velocities, progress=run_progress)
     run = simulation.run
@@ -356,7 +357,8 @@ def compare(
             if track.missing:
                 raise SceneError(f"{track.name}: {track.missing}")
             simulated[name] = track
-    # The first pulses at the first sensor shall arrive together.
+    # A recorder starts at any time: measured times are shifted so that the first pulses arrive
+    # together at the first sensor.
     first, leader = next(iter(simulated.items()))
     late = found[first].numbers["arrival"]
     early = leader.numbers["arrival"]
@@ -367,7 +369,8 @@ def compare(
         theirs = dict(found[name].numbers)
         arrival = theirs["arrival"]
         doubt = arrival.error
-        # The shift has the error of the first arrival, and is part of every later one.
+        # The shift has the error of the first arrival, and is a part of the arrivals at the other
+        # sensors.
         if name != first:
             doubt = math.hypot(doubt, shift.error)
         theirs["arrival"] = Estimate(arrival.value + shift.value, doubt)
@@ -387,6 +390,8 @@ def compare(
                     "difference": Estimate(off, ours.error + measured_number.error),
                 }
             )
+        # In the picture both are dynamic: measured signals less their base, simulated ones less the
+        # force at the start.
         ours_drawn = track.force(run.time)
         curves.append(Curve(f"{track.name}, simulated", run.time, ours_drawn, f"C{i}-"))
         times = signals[name].time + shift.value

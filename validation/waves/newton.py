@@ -313,6 +313,7 @@ def newton(change: Callable[[Array], Array], x: Array, sizes: Array) -> Array:
         if size > _LONGEST_STEP:
             step *= _LONGEST_STEP / size
         x = x - step
+        # Steps that no longer shrink as Newton's do are rounding.
         stalled = size < _STALLED and size > before / 4
         if size < _CONVERGED or stalled:
             return x

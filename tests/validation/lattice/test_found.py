@@ -14,6 +14,7 @@ from tests.validation.lattice.scenes import (
     TODA,
     X,
     chain,
+    drawn,
     on_springs,
 )
 from validation.lattice.simulate import simulate
@@ -64,6 +65,13 @@ KEEP_ENERGY = [
     shaken((1, 1), 1.5, ("restitution", 0.5), 0.5, 0.2, 0),
     shaken((0.715, 1.488), 1.5, ("kuwabara_kono", 0.378), 0.91, 0.315, 0.039),
     shaken((1.361, 0.578), 3.0, ("contact", 0.395), 0.824, 0.592, -1.128),
+    # A contact without a force nearly opens: its energy, all of it, turns into heat.
+    chain(
+        1, wall=1, duration=20, damping=Damping("contact", 0.22),
+        drive=Drive(amplitude=0.7, frequency=0.6),
+    ),
+    # Damping stops a force within a step, whose stages' velocities err.
+    drawn(30073),
     # Beyond a free end 0 times the force of no contact, 2,090^100 at last, is no number.
     *(
         chain(3, law=law, velocities=(1,), duration=3000, damping=Damping("contact", 0.1))

@@ -94,6 +94,7 @@ def cached(function: Function) -> Function:
     keep = cache.save_overload
 
     def load_if_possible(signature: Any, context: Any) -> Any:
+        """Load the machine code; without one that can be used numba compiles anew."""
         try:
             return known(signature, context)
         except Exception:  # pickled by another version of this package, or damaged
@@ -101,6 +102,7 @@ def cached(function: Function) -> Function:
             return None
 
     def keep_if_possible(signature: Any, code: Any) -> None:
+        """Store the machine code; say so if the disk takes none."""
         try:
             keep(signature, code)
         except OSError as error:

@@ -139,6 +139,8 @@ def mark_kinks(
         first = abs(start[i + ONE] + load[i])
         then = abs(end[i + ONE] + load[i])
         force = max(first, then)
+        # Damping has stopped the force of a contact that expands: all its energy turns into heat.
+        force = force if force > 0.0 else math.inf
         most = max(before, after)
         # The error of a kink grows with the force: a strong contact is corrected from farther away.
         share = near if force > _STRONG * least else _VERY_NEAR
@@ -421,7 +423,7 @@ def correct_contact(
         own = push(law, r, d, rise / h) - push(law, r, end[0], end[1] / h)
         corrected = d, rise, end[2] + bend * own
         found = kinks.resolved(law, r, start, corrected, h, bend, known, beads.edges)
-        known = found.curve[6]
+        known = found.curve[6]  # the bend, for the next round
         sums = kinks.integrals(
             law, r, found, h, 1.0, bend, beads.points, beads.edges, driven, drive
         )
@@ -448,7 +450,7 @@ def correct_contact(
     if r > 0.0:
         after = 0.0
         if found.intervals > 1:
-            after = 1.0 - beads.edges[1]
+            after = 1.0 - beads.edges[1]  # from the first place inside the step on
         elif start[0] < end[0]:
             after = 1.0  # the contact has just closed
         beads.books[AFTER] = max(beads.books[AFTER], after)
@@ -461,6 +463,11 @@ def correct_contact(
     misfit = _MISFIT * sums.rough
     resisted = 0.0
     if forcing is not None:
+        # Heat and work see the stages' velocities, which err where a contact opens or closes: up to
+        # 1,500 tolerances of energy. Where a neighbour does, too, its jump bends this curve, of
+        # which the stages know. Entry -1 of the marks, before contact 0, is padding: 0.
+        if sums.closed < 1.0 and beads.marks[i - 1] + beads.marks[i + 1] == 0.0:
+            _follow_stages(chain, forcing, beads, pair, t, h, i)
         if forcing.damped:
             stored = kinks.stored(law, corrected[0]) - kinks.stored(law, start[0])
             _correct_heat(chain, beads, pair, i, sums.work, stored)
@@ -479,7 +486,7 @@ def correct_contact(
     if found.jump != 0.0:
         # The jump comes too early or too late by the misfit there over the slope. The misfit
         # of `_MISFIT` is 2.2 times its mean in the middle of the step.
-        place = known[0]
+        place = known[0]  # where the bend begins
         _, slope = kinks.value_and_slope(found.curve, place)
         arch = 4.0 * place * (1.0 - place)
         shift = 2.2 * misfit * arch * arch * arch / max(abs(slope), kinks.OPENS)

@@ -325,7 +325,7 @@ def resolved(
     Parameters
     ----------
     law : record
-        The law, a record of `LAW`.
+        The law, a record of `validation.lattice.kernel.arrays.LAW`.
     r : float
         Damping coefficient over stiffness.
     start, end : tuple of float
@@ -363,6 +363,7 @@ def _root(c: Curve, x: float, side: float) -> float:
     p, slope = value_and_slope(c, x)
     # The tangent's root is at x - p/slope. None is looked for if this is farther than 1.5 steps (a
     # root within one step is wanted; the half more is a margin, as p bends), or on the inner side.
+    # A root within 1e-9 of a step is at x itself, but for rounding and the search (`_CLOSE`).
     if not abs(p) < 1.5 * abs(slope) or (
         side * p * slope > 0.0 and abs(p) > 1e-9 * abs(slope)
     ):
@@ -424,7 +425,7 @@ def integrals(
     Parameters
     ----------
     law : record
-        The law, a record of `LAW`.
+        The law, a record of `validation.lattice.kernel.arrays.LAW`.
     r : float
         Damping coefficient over stiffness.
     found : Kinks
@@ -450,6 +451,7 @@ def integrals(
         a = edges[n]
         b = edges[n + 1]
         p, slope = value_and_slope(c, 0.5 * (a + b))
+        # Idle: the contact does not push in this interval, and c[6][1], the bend of p, is 0.
         idle = push(law, r, p, slope / h) == 0.0 and c[6][1] == 0.0
         if idle or not a < min(b, until):
             continue

@@ -283,6 +283,7 @@ def end_step(
     factor = 0.0
     wanted = now.h
     if error < _HOPELESS:
+        # An error of 0 has no such power; from 1e-9 down `_GROWTH` is less than the factor.
         factor = _SAFETY * max(error, 1e-9) ** (-1.0 / pair.order)
         after = beads.books[AFTER]
         if error > 1.0 and after > 0.0:

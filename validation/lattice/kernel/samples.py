@@ -158,6 +158,7 @@ def _take_kink_away(
     bend = -near - far
     found = kinks.resolved(law, ratio, begin, over, h, bend, kinks.STRAIGHT, edges)
     p = found.curve
+    # A force that jumps bends the curve: a second call knows the bend, p[6], of the size p[6][1].
     if p[6][1] != 0.0:
         found = kinks.resolved(law, ratio, begin, over, h, bend, p[6], edges)
         p = found.curve
