@@ -322,6 +322,7 @@ def _record(law: Contact) -> tuple[Any, ...]:
     return (*numbers, *kinds, *law.addresses.values())
 
 
+@lru_cache(maxsize=1)
 def _forcing(motion: Motion) -> Forcing | None:
     """Return damping and drive for the kernel; None for a chain with neither."""
     scene = motion.scene

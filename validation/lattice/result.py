@@ -69,8 +69,7 @@ class Run(Pictured):
 
     def __post_init__(self) -> None:
         # A sum is finite only if all its terms are; squares, as energies overflow, too.
-        squares = np.square(self.end)
-        if not math.isfinite(squares.sum()):
+        if not math.isfinite(self.end @ self.end):
             raise IntegrationError(
                 "the motion overflows: choose other units, or a step of "
                 f"{self.step:g} is too long"

@@ -43,6 +43,8 @@ HEADER = re.compile(
 # What recorders write in place of a value beyond their range, and the numbers that SCPI has for it
 # and for no number (SCPI-99, vol. 1, 7.2.1)
 _BEYOND = re.compile(r"[-+]?o(l|vld?|ver(load|flow|range)?)", re.IGNORECASE)
+_CLOCK = re.compile(r"(?:[-\d./]+[T ])?(\d\d):(\d\d):(\d\d\.?\d*)Z?")
+"""Pattern of a time of day, also behind a date."""
 _SCPI = {9.9e37: math.inf, -9.9e37: -math.inf, 9.91e37: math.nan}
 
 _FEW = 0.1  # rows of numbers outside of the record, at most, over those of the record
@@ -143,13 +145,13 @@ class Cells:
         return [row[number - 1] for row in self.head if 0 < number <= len(row)]
 
     def headed(self, header: str) -> list[int]:
-        """Return the numbers of the columns of a header, or the number that is given instead.
+        """Return the numbers of the columns of a header, or the numbers that are given instead.
 
         The lowest row with such a header counts. In a row, cells that are the header itself go
         before cells that are the header and a unit.
         """
-        if re.fullmatch(r"[1-9]\d{0,5}", header):
-            return [int(header)]
+        if re.fullmatch(r"([1-9]\d{0,5},?)+", header):
+            return [int(number) for number in header.strip(",").split(",")]
         wanted = header.lower()
         for row in reversed(self.head):
             for form in (str.lower, name_of):
@@ -271,10 +273,12 @@ def name_of(header: str) -> str:
 
 
 def number_of(cell: str) -> float:
-    """Return the number in a cell; NaN for other text.
+    """Return the number in a cell, of a time of day its seconds; NaN for other text.
 
     >>> [number_of(cell) for cell in ("-1,5", "1.5D-3", "+ 4", "12:03", "1_0", "-OL")]
     [-1.5, 0.0015, 4.0, nan, nan, -inf]
+    >>> number_of("2026-11-28T00:02:03.5Z")
+    123.5
     """
     if "_" in cell:  # Python reads 1_0 as 10
         return math.nan
@@ -287,6 +291,10 @@ def number_of(cell: str) -> float:
         plain = plain.replace("D", "e").replace("+ ", "+").replace("- ", "-")
     if _BEYOND.fullmatch(plain):
         return -math.inf if plain.startswith("-") else math.inf
+    clock = _CLOCK.fullmatch(plain)
+    if clock:
+        hours, minutes, seconds = map(float, clock.groups())
+        return 3600 * hours + 60 * minutes + seconds
     try:
         return float(plain)
     except ValueError:

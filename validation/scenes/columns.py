@@ -205,7 +205,7 @@ class Columns:
         names: dict[int, str] = {}
         for name, header in self.headers.items():
             numbers = self.cells.headed(header)
-            names |= dict.fromkeys(numbers[:1], name)
+            names |= dict.fromkeys(numbers, name)
         columns = []
         if self.step:
             columns.append(Column("time", None, "", "", self.step))
@@ -272,8 +272,13 @@ class Columns:
             if name == "time" and (step or best is None or rank(best) >= _UNLIKE):
                 step = step or STEP
             elif best is not None:
-                free.remove(best)
-                headers[name] = str(best)
+                # Each sensor may have a time of its own.
+                alike = [number for number in free if rank(number) == rank(best)]
+                taken = [best]
+                if name == "time" and len(alike) == len(used):
+                    taken = alike
+                free = [number for number in free if number not in taken]
+                headers[name] = ",".join(map(str, taken))
         proposed = replace(self, headers=headers, step=step or self.step)
         units = {}
         for column in proposed.named:
@@ -390,6 +395,8 @@ def read_statement(text: str, base: str) -> tuple[float, str] | None:
     --------
     >>> read_statement("12.5 mN/V", "N"), read_statement("us", "s"), read_statement("us", "N")
     ((0.0125, 'V'), (1e-06, 'us'), None)
+    >>> read_statement("10 mV/N", "N")
+    (0.1, 'mV')
     """
     plain = text.replace("μ", "µ").strip()
     parts = re.fullmatch(rf"(-?)({_UNSIGNED})? *(.*)", plain)
@@ -408,6 +415,11 @@ def read_statement(text: str, base: str) -> tuple[float, str] | None:
             named = "/".join(words[count:])
             # A unit alone is the file's, too.
             return size * multiple, named or ("" if number else unit)
+    # A sensitivity, as of a data sheet, is the other way around: 10 mV/N.
+    *theirs, ours = unit.split("/")
+    multiple = in_si(ours.strip(), base)
+    if theirs and multiple and size:
+        return multiple / size, "/".join(theirs)
     return None
 
 

@@ -115,7 +115,9 @@ class MeasuredFile(Columns):
         file = cls(source, cells, headers, units, step)
         for name, header in headers.items():
             count = len(cells.headed(header))
-            file._demand(header, count, [name])
+            # Each sensor may have a time of its own.
+            if count == 0 or name != "time":
+                file._demand(header, count, [name])
         # A unit may be stated by a name, or by a header of the file.
         for key in units:
             if name_of(key) not in file.names and not cells.headed(key):
@@ -222,10 +224,12 @@ class MeasuredFile(Columns):
         if quantity == "velocity":
             kind = "bead"  # contacts have none
         t, values = self._record([time, signal]).T
-        if len(t) > 1 and np.diff(t).min() <= 0:
+        steps = np.diff(t)
+        if np.any(steps <= 0):
             step = ""
-            if np.ptp(t):
-                step = f"{np.ptp(t) / (len(t) - 1):.6g}{' s' * self.si}"
+            # Times of few digits repeat; those of a second part of the file begin anew.
+            if steps.max() > 0:
+                step = f"{steps[steps >= 0].mean():.6g}{' s' * self.si}"
             words = "time must increase, --step states it of evenly spaced samples"
             raise self.refusal(words, ["time"], step)
         # The last entry, `Record.turned`: the user's calibration of this signal, "2 N/V" say, with

@@ -338,7 +338,8 @@ def _drive(given: Table, units: str, folder: Path) -> Drive:
             motion["time"], motion["displacement"] = file.rows("time", "displacement").T
         except SceneError as error:
             # A dictionary of Python is a table of TOML but for its colons.
-            raise SceneError(str(error).replace("': '", "' = '")) from None
+            fault = str(error).replace("': '", "' = '")
+            raise SceneError(fault.replace("; try ", "; try: ")) from None
     return Drive(**motion)
 
 

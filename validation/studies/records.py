@@ -44,8 +44,8 @@ _PULSES = (
 )
 _UNIT = (
     "Unit of a column, as in --unit time=us, --unit 'time=0.04 us' (of an entry 1), --unit "
-    "'CH1=12.5 N/V' or, in SI, --unit CH1=12.5; repeatable. It stands above the file's own. If one "
-    "unit is stated, all are wanted."
+    "'CH1=12.5 N/V', 'CH1=80 mV/N' or, in SI, --unit CH1=12.5; repeatable. It stands above the "
+    "file's own. If one unit is stated, all are wanted."
 )
 _COLUMN = (
     "Header or number, from 1, of a column, as in --column time=1 --column 'bead 8 force=CH1'; "
@@ -146,7 +146,16 @@ class Measured:
         if time_constant:
             constant = read_time(time_constant, "time_constant", "1 ms")
         names = [paths] if isinstance(paths, str | Path) else [*paths]
-        files = [MeasuredFile.read(name, **stated) for name in names]
+        # Files of one sensor each may have one header: its names are those of the files in turn.
+        by_header: dict[str, list[str]] = {}
+        for name, header in (stated.get("columns") or {}).items():
+            by_header.setdefault(header, []).append(name)
+        files = []
+        for place, path in enumerate(names):
+            columns = {
+                own[place % len(own)]: header for header, own in by_header.items()
+            }
+            files.append(MeasuredFile.read(path, **stated | {"columns": columns}))
         # A picture, or a comparison, has one unit for each quantity: all files have units, or none.
         for file in files:
             if file.si != files[0].si:

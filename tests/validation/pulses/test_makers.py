@@ -74,7 +74,7 @@ def test_pulses_are_read_within_three_errors(capsys, record, folder, layout):
     found = json.loads(out)
     both = "14 force" in stated + LAYOUTS[layout]["head"]
     assert [row["kind"] for row in found["sensors"]] == ["bead"] * (1 + both)
-    start = TRIGGER - CLOCK * (layout == "DEWESoft")
+    start = TRIGGER - LAYOUTS[layout].get("clock", 0)
     if "--step" in stated:
         start = 0.0
     for row in found["sensors"]:
@@ -119,9 +119,15 @@ def test_sensors_without_numbers_are_numbered_in_the_order_of_files_and_columns(
     header = "time (s),force (N),force (N)"
     np.savetxt("c.csv", np.c_[time, *forces], delimiter=",", header=header)
     stated = {"columns": {"time": "1", "force": "2"}, "units": {"time": "s", "2": "N"}}
-    for given, options in ((files, stated), ("c.csv", {})):
+    # Names of one column are those of the files in turn.
+    turns = {**stated, "columns": {"time": "1", "8 force": "2", "14 force": "2"}}
+    for given, options, numbers in (
+        (files, stated, [1, 2]),
+        (files, turns, [8, 14]),
+        ("c.csv", {}, [1, 2]),
+    ):
         found = pulses(given, **options).document()["sensors"]
-        assert [row["number"] for row in found] == [1, 2]
+        assert [row["number"] for row in found] == numbers
         peaks = [row["peak_value"] for row in found]
         assert peaks == pytest.approx([*PEAKS.values()], rel=0.01)
     with pytest.raises(SceneError, match="bead 3 is there twice"):

@@ -281,6 +281,14 @@ def test_a_sensor_that_loses_its_charge_is_told_by_its_undershoot(constant):
     assert hint(pulse) == hint(pulse - 0.02 * x) == ""
 
 
+@pytest.mark.parametrize("seed", [3, 7, 9, 17])
+def test_an_error_of_the_base_is_no_undershoot(seed):
+    """By the noise behind the pulse alone these four of eighty records have one."""
+    x = np.arange(-8.6, 22, 1 / WIDTH)
+    f = white(0.004)(x, gaussian(x), np.random.default_rng(seed))
+    assert suggested(x, f, noisy_pulse(x, f), "") == ""
+
+
 PULSE = gaussian((N - 300) / 33.3)
 
 

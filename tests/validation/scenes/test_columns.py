@@ -85,6 +85,7 @@ def test_units_with_any_prefix_in_the_spellings_of_recorders(unit, base, size):
     [
         ("time (s),CH1", {"force": "kN"}, 1e3),
         ("time (s),CH1 (V)", {"ch1": "1.5 kN/V"}, 1.5e3),
+        ("time (s),CH1 (mV)", {"ch1": "10 mV/N"}, 0.1),
         ("time (s),CH1", {"2": "-2"}, -2),
         ("time (s),CH1 (m/s^2)", {"CH1": "0.029 N/m/s^2"}, 0.029),
         ("time (s),CH1\nms,kN", {}, 1e3),  # a header's unit stands above a row's
@@ -144,6 +145,11 @@ def test_one_time_is_that_of_all_sensors_or_the_first_that_of_the_first(
     assert [record.values[0] for record in found if record.number == 1] in ([5], [6])
 
 
+def test_times_of_the_sensors_are_stated_by_the_numbers_of_their_columns(read):
+    file = read("a,1 force,b,2 force\n1,5,2,6\n", columns={"time": "1,3"})
+    assert [record.time.item() for record in file.records()] == [1, 2]
+
+
 @pytest.mark.parametrize(
     ("unit", "units", "key", "turned"),
     [
@@ -198,6 +204,13 @@ STATED = {"columns": {"force": "2"}}
             "try columns={'force': '2'}, step='1 us', units={'force': 'N'}$",
         ),
         ("time (s),V (N)\n0,2\n0,3\n1,4\n", STATED, "increase.* step='0.5 s'$"),
+        # A second part of a file begins anew.
+        ("time (s),V (N)\n0,2\n1,3\n0,4\n", STATED, "increase.* step='1 s'$"),
+        (
+            "t1,a,t2,b\n0,2,5,1\n3,5,7,3\n4,4,8,2\n",
+            {"columns": {"1 force": "2", "2 force": "4"}},
+            "try columns={'1 force': '2', '2 force': '4', 'time': '1,3'}$",
+        ),
         ("time,V,V\n1,2,3\n", {"columns": {"force": "V"}}, "2 columns are 'V'"),
         (f"{HEAD}1,2\n", {"columns": {"force": "fource"}}, "near: force .N.: found"),
         ("time,force\n1,2\n", {"columns": {"bead x": "1"}}, "column is 'bead x'"),

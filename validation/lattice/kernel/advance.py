@@ -93,15 +93,17 @@ def advance(
             estimate_errors(beads, plan, h, hi)
             beads.books[:] = 0.0
             marks = mark_kinks(chain, forcing, beads, plan, h, hi)
+            corrected = False
             i = -1
             for _ in range(marks):
                 i = next_mark(beads.marks, i + 1)
-                correct_contact(chain, forcing, beads, plan, now.t, h, i)
+                if correct_contact(chain, forcing, beads, plan, now.t, h, i):
+                    corrected = True
                 if beads.books[SQUARES] > 1.0:
                     break  # the step is refused, whatever the other contacts add
             error = step_error(beads, plan, h, hi)
             made = end_step(beads, plan, now, h, error, stopping)
-            again = made and marks > 0
+            again = made and corrected
         if made and not again:
             begin_step(beads, hi)
             advance_front(beads, plan, now)
