@@ -192,6 +192,7 @@ class Run(Pictured):
         """Return the name of a quantity, such as "bead 1 velocity", with its unit in a SI scene."""
         if not self.scene.units:
             return quantity
+        # The last word, such as "force", is the key of the unit.
         return f"{quantity} ({BASES[quantity.split()[-1]]})"
 
     def columns(self) -> dict[str, Array]:
@@ -262,6 +263,7 @@ class Run(Pictured):
                 f"number is {number!r}: the scene has no sensor at this {kind}"
             )
         beads = beads_at(self.motion, {kind: [number]})
+        # Contact i joins beads i and i + 1: the contacts between the beads begin at all but one.
         changes = [contact_changes(self.path, int(contact)) for contact in beads[:-1]]
         times = np.unique(np.concatenate((self.path.time, *changes)))
         return SensorSignal(times, self.path, beads, RECORDS[kind, quantity], number)

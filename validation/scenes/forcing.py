@@ -46,6 +46,7 @@ class Damping:
     def __post_init__(self) -> None:
         one_of(self.kind, DAMPINGS, "damping")
         value = one_or_each(finite)(self.value, self.kind)
+        # `between` and `positive` are called for their refusals alone.
         numbers = np.atleast_1d(value).tolist()
         for number in {*numbers}:
             if self.kind == "restitution":
@@ -62,7 +63,10 @@ class Damping:
         return 1.0 if self.kind == "restitution" else 0.0
 
     def power(self, k: Any) -> Any:
-        """Return the exponent of δ in front of the rate dδ/dt; k a number or an array."""
+        """Return the exponent of δ in front of the rate dδ/dt, by the kind (see `Damping`).
+
+        k is a number or an array, and the exponent has its shape.
+        """
         if self.kind == "contact":
             return 0.0 * k
         return k - 1 if self.kind == "kuwabara_kono" else (k - 1) / 2
@@ -94,7 +98,7 @@ def restitution(ratio: float) -> float:
     2011, EPL 94, 50004, for spheres). As contacts do not pull, it ends where the force is zero
     (Schwager and Pöschel 2007, Granular Matter 9, 465).
     """
-    if ratio == 1:
+    if ratio == 1:  # the limit of what follows, which is 0/0
         return math.exp(-2)
     # s = e^{-ζτ} sin(√(1-ζ²) τ)/√(1-ζ²) in units of time of the undamped oscillator; its second
     # derivative, proportional to the force, vanishes at τ = 2 arccos(ζ)/√(1-ζ²), also for ζ > 1,
@@ -178,6 +182,7 @@ class Drive:
         if ramp and not harmonic:
             wrong = "it belongs to amplitude and frequency"
             raise SceneError(f"drive.ramp is {ramp:g}: {wrong}")
+        # Read for their refusals alone.
         if constant:
             finite(self.velocity, "drive.velocity")
         if harmonic:
@@ -188,8 +193,9 @@ class Drive:
             self._check_record()
 
     def _check_record(self) -> None:
-        """Check times and displacements."""
+        """Refuse times and displacements through which no spline goes."""
         times, places = len(self.time), len(self.displacement)
+        # A cubic spline without conditions at its ends takes four points.
         if times != places or times < 4:
             wanted = "equally many, four or more, are wanted"
             raise SceneError(
@@ -198,6 +204,7 @@ class Drive:
         if self.time[0] != 0 or min(np.diff(self.time)) <= 0:
             raise SceneError("drive.time must begin with 0 and increase")
         try:
+            # Called for a refusal alone: the spline is made here.
             with np.errstate(all="ignore"):
                 self.at(0.0)
         except ValueError:  # SciPy's, of slopes that overflow
