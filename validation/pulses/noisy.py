@@ -207,7 +207,11 @@ def _noisy(t: Array, f: Array, step: float, unit: str) -> NoisyPulse:
 
 
 def _is_exact(f: Array) -> bool:
-    """True for a record without noise before it first exceeds half of its maximum."""
+    """True for a record without noise before it first exceeds half of its maximum.
+
+    Such a record is, within `_EXACT` of its range, constant at its start, or rises without a fall
+    and with at most one change of the sign of its curvature.
+    """
     swing = f - f[0]
     if swing.max() < _UPRIGHT * -swing.min():
         return False  # the moving mean tells that it is inverted

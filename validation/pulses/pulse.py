@@ -277,7 +277,10 @@ class _Grid:
         return float(min(passed, default=high))
 
     def _crest(self, low: float, high: float) -> tuple[float, float]:
-        """Return the time and value of the signal's maximum between two times."""
+        """Return the time and value of the signal's maximum between two times.
+
+        The maximum of each smooth part is at an end or at a zero of its interpolant's derivative.
+        """
         # The signal is smooth between its times alone, and only there a polynomial follows it.
         times = self.signal.times
         inside = times[(times > low) & (times < high)]

@@ -40,7 +40,7 @@ HEADER = re.compile(
 """Pattern of the name and the unit of a column: "Force (N)", "Force [N]", "Force in N"; "Force N",
 "Force_N" and "Force/N" end in a usual unit."""
 
-# What recorders write in place of a value beyond their range, and the numbers that SCPI has for it
+# Texts of recorders in place of a value beyond their range, and the numbers that SCPI has for it
 # and for no number (SCPI-99, vol. 1, 7.2.1)
 _BEYOND = re.compile(r"[-+]?o(l|vld?|ver(load|flow|range)?)", re.IGNORECASE)
 _CLOCK = re.compile(r"(?:[-\d./]+[T ])?(\d\d):(\d\d):(\d\d\.?\d*)Z?")

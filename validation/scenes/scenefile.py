@@ -48,7 +48,7 @@ from validation.scenes.forcing import DAMPINGS, Damping, Drive
 from validation.scenes.measured import MeasuredFile
 from validation.scenes.scene import Scene, contacts_of
 
-MOST_BEADS = 1_000_000  # they are read in 2 s and 40 MB
+MOST_BEADS = 1_000_000  # so many are read in 2 s and 40 MB
 _STATED = ("columns", "units", "step")  # keys on the file of a drive
 # Keys of a striker or a defect that is a bead unlike the others
 _OTHER = ("like", "mass")

@@ -170,7 +170,11 @@ def law(
 
 
 def _pulses(file: MeasuredFile) -> tuple[Array, Array, Array | None]:
-    """Return rising forces of `_FEWEST` or more pulses, their speeds and weights (None if none)."""
+    """Return rising forces of `_FEWEST` or more pulses, their speeds and weights (None if none).
+
+    Refused are fewer pulses or forces, numbers that are not positive, which have no logarithm, and
+    standard deviations of the forces or of the speeds alone.
+    """
     errors = [n for n in ("force_error", "speed_error") if n in file.names]
     # Files of other programs call the speed of a pulse its velocity.
     name = "speed"

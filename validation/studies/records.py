@@ -420,7 +420,11 @@ def compare(
 def _by_sensor(
     read: Measured, sensors: Sequence[str], stated: Stated
 ) -> dict[str, Record]:
-    """Return the measured signals by the names of a scene's sensors, at least one."""
+    """Return the measured signals by the names of a scene's sensors, at least one.
+
+    Signals at other sensors are left out. If none is left, the error proposes the file's signals
+    for the scene's first sensors.
+    """
     named = {}
     for signal in read.signals:
         name = f"{signal.kind} {signal.number}"

@@ -199,7 +199,7 @@ def theory(points: Sequence[Point]) -> dict[tuple[str, str], Array]:
 
 
 def _read(part: Any, name: str) -> list[sp.Expr]:
-    """Read a number, or the numbers of a range start:stop:count, exactly."""
+    """Read a number, or the numbers of a range start:stop:count, both ends included, exactly."""
     texts = str(part).split(":")
     numbers = [read_exact(text, name) for text in texts]
     if len(numbers) == 1:
