@@ -319,7 +319,7 @@ def newton(change: Callable[[Array], Array], x: Array, sizes: Array) -> Array:
     for _ in range(MOST_STEPS):
         step = change(x)
         shares = np.abs(step) / sizes
-        size = float(shares.max())
+        size = shares.max()
         if not math.isfinite(size):
             break
         if size > _LONGEST_STEP:
