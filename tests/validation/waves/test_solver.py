@@ -214,5 +214,5 @@ def test_bad_input(masses, options, named):
 
 def test_a_multiple_beyond_floats_is_refused():
     """s^20 of s = 1e30 is no float."""
-    with pytest.raises(ValueError, match="^s is 1e"):
+    with pytest.raises(ValueError, match=r"^s is 1e"):
         exact_wave([1], 20).times(1e30)
