@@ -146,6 +146,7 @@ class Theory(OfClosure):
         return rows
 
     def _repr_latex_(self) -> str:
+        # The paper's wave equation goes to D^{k+3}.
         return latex.display(self.latex_rows(3))
 
 
@@ -203,6 +204,7 @@ def homogenize(
     >>> theory.pde.H
     D**2*(k - 1)*(2*m1 - m2)/(3*(m1 + m2))
     """
+    # `read_cell` and `one_of` are called for their refusals: valid values stay as they are.
     read_cell(cell)
     law = for_cell(law, cell, k)
     one_of(branch, BRANCHES, "branch")

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 SUFFIXES = (".pdf", ".png", ".svg")
 """Endings of a picture's file."""
 
+# Marker and dashes of the curves of a panel, in turn.
 _STYLES = ("o-", "s--", "^:", "D-.", "v-", "x--", "P:", "*-.")
 _FEW = 40  # points of a curve; markers at more of them would cover the curve
 _ACROSS = 3  # names in a row of a legend above the panel
@@ -275,6 +276,7 @@ def _in_unit(value: float, unit: Unit) -> str:
 
 def _is_short(low: float, high: float) -> bool:
     """True for a logarithmic axis of few decades, where plain numbers fit and powers overlap."""
+    # Three decades at most, in labels of at most six characters: 0.0015 to 100000.
     return low >= 1e-3 and high <= 1e5 and high < 1e3 * low
 
 
@@ -282,6 +284,7 @@ def _set_plain_ticks(axis: Axis, low: float, high: float) -> None:
     """Put ticks on a logarithmic axis of few decades where plain numbers do not overlap."""
     from matplotlib.ticker import LogLocator, NullFormatter
 
+    # Factors of the powers of ten at which ticks stand: more of them within one decade.
     subs = (1, 1.5, 2, 3, 4, 6, 8) if high < 10 * low else (1, 2, 5)
     axis.set_major_locator(LogLocator(subs=subs))
     axis.set_minor_formatter(NullFormatter())

@@ -101,7 +101,7 @@ class Closure(Parametric):
 
     @cached_property
     def b(self) -> dict[int, sp.Expr]:
-        """Mapping from n, which starts at 1, to ``b_n`` of the ansatz."""
+        """Mapping from n, from 1 on, to ``b_n`` of the ansatz ``w = λ (u + Σ b_n D^n ∂_x^n u)``."""
         algebra = self.solution.algebra
         found = {}
         for n, b in enumerate(self.solution.ansatz[1:], start=1):
@@ -136,6 +136,7 @@ class Closure(Parametric):
         return [rf"w = \lambda \left({ansatz}\right)", *rows]
 
     def _repr_latex_(self) -> str:
+        # The ansatz of the paper's wave equation, to D^{k+3}, goes to D^4.
         return latex.display(self.latex_rows(4))
 
     def __repr__(self) -> str:

@@ -362,7 +362,7 @@ class Answer:
                 lines += row
             elif row.label:
                 lines.append(f"  {row.text(self.scale)}")
-        # What ± means is said once, below the rows, and only where one is.
+        # The meaning of ± is said once, below the rows, and only if a row holds a ±.
         if self.errors and "±" in "".join(lines):
             lines.append(f"±: {self.errors}; at least one in the last digit shown")
         for note in self.notes:

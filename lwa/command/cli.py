@@ -68,7 +68,8 @@ class Commands(click.Group):
     def __init__(
         self, package: str, table: Mapping[str, tuple[str, str]], **settings: Any
     ) -> None:
-        # Click lists these placeholders, and suggests their names for a mistyped one.
+        # Click lists these placeholders, and suggests their names for a mistyped one. Their modules
+        # are left out here: `resolve_command` loads the one that is called.
         commands = {
             name: click.Command(name, short_help=summary)
             for name, (_, summary) in table.items()
@@ -246,6 +247,7 @@ def _change(
     if change or subject is None:
         return change
     near = re.search(r"did you mean ([\w-]+)", refusal.reason)
+    # The word behind each word, such as the value behind an option
     values = dict(pairwise(line))
     for option in options:
         name = called(option)
@@ -257,7 +259,8 @@ def _change(
         # A refusal of the example itself is about something else.
         if meant and example != text:
             change[name] = example
-    if subject[2] == "F" and not change:  # the symbol of a force that is not given
+    # F is the symbol of a force that is not given; 10 is the example of --force.
+    if subject[2] == "F" and not change:
         change["force"] = "10"
     return change
 

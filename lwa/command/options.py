@@ -77,6 +77,7 @@ quantities = row(read_exact)
 
 
 def _exponent(text: str, name: str) -> sp.Expr:
+    """Read an exponent k, a positive number or a name."""
     return exponent(positive(text, name))
 
 

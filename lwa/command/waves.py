@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from lwa.loaded.background import Background, KdV
 
 CANONICAL = "the canonical field, whichever bead is the first"
+"""Heading of the canonical wave beside the wave of a first field."""
 
 SPEED = "speed dx/dt (m/s)"
 """Label of a speed in space and time, beside V_s in the time τ of the wave equation."""
@@ -186,7 +187,12 @@ def pulse_rows(wave: Any, prefix: str) -> Iterator[Row]:
 
 
 def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
-    """The compact wave of a peak contact force, or of any amplitude: V_s by B, and B by V_s."""
+    """The compact wave of a peak contact force, or of any amplitude: V_s by B, and B by V_s.
+
+    Its shape stands first. With a force its numbers in space and time follow, without one V_s by B
+    and the paper's reduction. The canonical wave, where the field's wave depends on the first bead,
+    and the lattice's own wave stand beside it.
+    """
     wave = _compact(theory)
     rows: Lines = [
         chain.text,
@@ -224,6 +230,7 @@ def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
             rows.append(Row.of(reduction, name, name if short else ""))
     if depends_on_first(theory):
         canonical = canonical_wave(theory.cell, theory.k)
+        # `CompactWave.speed` gives V_s by B.
         part = _beside("canonical", CANONICAL, canonical, "speed", force, chain.scale)
         rows.append(part)
     notes += _put_lattice(rows, chain, force)

@@ -41,9 +41,11 @@ from lwa.linear.springs import compressions
 
 Matrix = NDArray[Any]
 
-# Relative difference of squared frequencies that counts as none
+# Difference of squared frequencies, over the largest K2 by the least mass, that counts as none;
+# rounding leaves up to 4e-15 of it (random cells of 2 to 100 beads, against singular values)
 _CLOSE = 1e-11
-# Force on a mode, over the largest on a contact, that counts as none
+# Force on a mode, over the largest on a contact, that counts as none; rounding leaves 2e-16 where
+# no force drives the second harmonic (two unlike beads at κ = π)
 _ROUNDING = 1e-7
 # 1 - (c_g/c_0)² from which on floats give the mean flow to six digits (_CLOSE/_SLOWER)
 _SLOWER = 1e-5

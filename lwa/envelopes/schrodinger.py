@@ -100,6 +100,7 @@ class Envelope(LoadedMode):
         """Group velocity ``dω/dκ``, in cells per unit of time."""
         if sp.sin(self.wavenumber).is_zero:  # the edge of a band, in floats as well
             return sp.S.Zero
+        # dω²/dκ = 2ω dω/dκ
         return self._tidy(self._mode.slope / (2 * self.frequency))
 
     @cached_property
@@ -109,11 +110,13 @@ class Envelope(LoadedMode):
         >>> envelope(Cell(["m"], ["K"]), k=1, background="p0", wavenumber="q").dispersion
         -sqrt(K)*sin(q/2)/(2*sqrt(m))
         """
+        # The mode's curvature is ω ω″.
         return self._tidy(self._mode.curvature / self.frequency)
 
     @cached_property
     def nonlinearity(self) -> sp.Expr:
         """Nonlinear coefficient χ: the amplitude Ψ raises the frequency by ``χ|Ψ|²``."""
+        # The mode's cubic coefficient is 2ωχ.
         return self._tidy(self._mode.cubic / (2 * self.frequency))
 
     @cached_property
@@ -139,7 +142,7 @@ class Envelope(LoadedMode):
             raise InputError(
                 "the dispersion or the nonlinearity vanishes: no envelope has a shape"
             )
-        # Only then is the sign of an expression in symbols known.
+        # SymPy knows the sign of more expressions once their factors stand apart.
         sign = self._tidy(sign)
         if sign.is_negative is None:
             demand_numbers(sign.free_symbols, "bright or dark depends on it")
@@ -229,6 +232,7 @@ class Breather(Value):
     kind: KindName
 
     def __post_init__(self) -> None:
+        # Called for its refusal of another word
         one_of(self.kind, get_args(KindName), "kind")
         # With symbols every condition is taken to hold.
         if self.detuning.is_number and self.detuning >= 1:
@@ -395,6 +399,7 @@ def envelope(
     kappa = signed(wavenumber, "wavenumber")
     if kappa.is_number and not 0 <= kappa <= sp.pi:
         raise InputError(f"wavenumber is {shorten(kappa)}: 0 … pi per cell is wanted")
+    # Called for its refusal of two symbols of one name, such as a mass and a wavenumber q
     by_name({*cell.symbols, *law.symbols, *load.free_symbols, *kappa.free_symbols})
     number = _branch_number(branch, cell)
     # A bead between equal contacts swings alone there; other modes are floats.

@@ -231,6 +231,7 @@ class PDE(OfClosure):
         ]
 
     def _repr_latex_(self) -> str:
+        # The paper's wave equation goes to D^{k+3}.
         return latex.display(self.latex_rows(3))
 
     def traveling_wave(self) -> CompactWave:

@@ -145,9 +145,11 @@ def _mean(values: Array, k_value: sp.Expr, ratio: sp.Expr) -> float:
 def dimer_error(quantity: str, k_value: sp.Expr, ratio: sp.Expr) -> float:
     """Relative error of a closed form of dimers; NaN for k beyond the measurement."""
     rows = _deviations()
+    # The last row has the largest k of the measurement.
     if k_value > rows[-1, 0]:
         return math.nan
     # Points without a steady pulse have no deviation: the mean is that over the other points.
+    # A row begins with k and ω, and its deviations stand in the order of `FORMS`.
     own = np.nan_to_num(rows[:, 2 + list(FORMS).index(quantity)])
     weight = steadiness(k_value, ratio)
     mean = _mean(own, k_value, ratio) / weight
@@ -163,4 +165,5 @@ def steadiness(k_value: sp.Expr, ratio: sp.Expr) -> float:
     The points of the grid have the share 1, or 0 where the pulse decays, as light beads resonate;
     between these points the share is interpolated.
     """
+    # The speed's deviation, the first one, is NaN where no pulse is steady.
     return _mean(np.isfinite(_deviations()[:, 2]), k_value, ratio)

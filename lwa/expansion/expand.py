@@ -52,9 +52,9 @@ class Expansion(Parametric):
     k: sp.Expr = symbol_k
 
     def __post_init__(self) -> None:
-        read_cell(self.cell)
+        read_cell(self.cell)  # for its refusal of anything else
         self._set(order=integer(self.order, "order", 1), k=exponent(self.k))
-        # These names are those of the series' own parameter in text and LaTeX.
+        # The series' own parameter k - 1 has these names in text and in LaTeX.
         for symbol in {*self.cell.symbols, *self.k.free_symbols}:
             if symbol.name in EPSILON_NAMES:
                 raise InputError(
@@ -81,7 +81,8 @@ class Expansion(Parametric):
 
     @cached_property
     def numeric(self) -> bool:
-        """True if the series can be summed: k and the cell are numbers."""
+        """True if the series can be summed: k, the masses and the stiffnesses are numbers."""
+        # Lengths are in D: a spacing does not enter.
         values = sp.Tuple(*self.cell.masses, *self.cell.stiffnesses, self.k)
         return not values.free_symbols
 
@@ -113,7 +114,7 @@ class Expansion(Parametric):
             A length in D.
         """
         i = integer(contact, "contact", 0, self.cell.size - 1)
-        known_quantity(quantity)
+        known_quantity(quantity)  # refuses any other word
         # The Gaussian F = e^{-Z²/4}, Z = √(ε/I) ξ, is 1/2 at Z = 2√log 2.
         unit = 4 * sp.sqrt(self._observables.I * sp.log(2))
         return self._series(quantity, unit, power=-sp.S.Half, contact=i)
@@ -136,7 +137,8 @@ class Expansion(Parametric):
     @cached_property
     def effective_mass(self) -> EpsilonSeries:
         """The mass P²/(2E) of a particle with the wave's momentum P and energy E, at any force."""
-        # The square of the unit of momentum over twice that of energy
+        # The square of the unit of momentum over twice that of energy, 4πI/(c² ε) over
+        # 2 ā √(2πI/ε), where c² ā is the number of beads in a cell over the mass of the cell
         unit = sp.sqrt(2 * sp.pi * self._observables.I)
         unit *= self.cell.mass / self.cell.size
         return self._series("effective_mass", unit, power=-sp.S.Half)

@@ -259,7 +259,7 @@ class LatticeWave(Parametric):
         lwa.InputError
             For another name, and if the wave holds symbols.
         """
-        one_of(name, _PARTS, "name")
+        one_of(name, _PARTS, "name")  # refuses any other name
         spacing = self.cell.spacing
         if spacing.is_Symbol and not self.force.has(spacing):
             return self.at(**{spacing.name: 1}).estimate(name, *arguments)

@@ -142,6 +142,7 @@ def shares_model(cell: Cell, k: sp.Expr) -> Model:
 @lru_cache(maxsize=4)
 def _equal_beads(order: int) -> Observables:
     """The quantities of the chain of equal beads, to this order."""
+    # The shares of equal contacts do not depend on k: any exponent makes the same model.
     return Observables(Recursion(shares_model(Cell((1,)), sp.S.One), order))
 
 

@@ -149,6 +149,8 @@ class Recursion:
         It is ``γ Σ m̂_i s_i(ξ) - (1/P) ∫_0^P f_{P-1}(ξ - x) dx``, without the coefficient
         γ_{n+2}, which is not known yet.
         """
+        # All fields are as long as `mean`: `_put` cuts them behind t^{n-1}; if q_{n-1} was 0, they
+        # go on to t^{n+1}. The residual at t^{n+2} needs their terms up to t^{n+2}.
         for m in range(len(self.mean), n + 3):
             self._append(m)
         residual = self.zero

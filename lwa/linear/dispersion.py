@@ -70,7 +70,7 @@ class Dispersion(Parametric):
     k: sp.Expr = sp.S.One
 
     def __post_init__(self) -> None:
-        read_cell(self.cell)
+        read_cell(self.cell)  # for its refusal of anything else
         self._set(k=exponent(self.k))
 
     def __repr__(self) -> str:
@@ -147,10 +147,12 @@ class Dispersion(Parametric):
 
     @cached_property
     def _model(self) -> Model:
+        """The cell under a power law, with the ring of the coefficients."""
         return Model(self.cell, Power(self.k))
 
     @cached_property
     def _bloch(self) -> Bloch:
+        """Bloch's relation of the cell over the ring of `_model`."""
         return Bloch(self._model)
 
     def _expression(self, polynomial: fmpq_mpoly) -> sp.Expr:
@@ -224,6 +226,7 @@ class LoadedChain(Value):
     precompression: sp.Expr
 
     def __post_init__(self) -> None:
+        # Called for its refusal of unlike contacts under a law that is no power
         for_cell(self.law, self.cell)
         self._set(precompression=positive(self.precompression, "precompression"))
 

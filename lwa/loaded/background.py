@@ -74,6 +74,7 @@ class Background(Value):
     p0: Any
 
     def __post_init__(self) -> None:
+        # Called for its refusal of unlike contacts under a law that is no power
         for_cell(self.law, self.cell)
         # Floats in an expression keep the digits of a shock's strains.
         read = real if isinstance(self.p0, sp.Expr) else read_exact

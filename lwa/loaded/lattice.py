@@ -40,7 +40,8 @@ from lwa.law import ContactLaw, Power, for_cell
 from lwa.linear.springs import Bond, Network
 from lwa.loaded.statics import Statics
 
-# Stiffness of a lattice of springs 1 that carries no load, but for rounding
+# Stiffness of a lattice of springs 1 that carries no load, but for rounding: 2e-14 at most in rows
+# of up to 50 particles without a link to the next cell; with the link a row has the stiffness 1
 _NO_LOAD = 1e-9
 
 DirectionName = Literal["across", "along"]
@@ -120,7 +121,7 @@ class Resonator(Value):
     stiffness: sp.Expr
 
     def __post_init__(self) -> None:
-        integer(self.bead, "a resonator's bead", 0)
+        integer(self.bead, "a resonator's bead", 0)  # for its refusal of other values
         self._set(
             mass=positive(self.mass, "resonator's mass"),
             stiffness=positive(self.stiffness, "resonator's stiffness"),
@@ -204,6 +205,7 @@ class Lattice(Value):
     @classmethod
     def of_cell(cls, cell: Cell, law: ContactLaw) -> Self:
         """The chain of a cell whose contacts share a law."""
+        # Called for its refusal of unlike contacts under a law that is no power
         for_cell(law, cell)
         factors = enumerate(cell.stiffnesses)
         links = [Link(i, i + 1, law, factor=A) for i, A in factors]
@@ -367,6 +369,7 @@ def hexagonal(
     >>> hexagonal(1.5, "along").spacing
     1/2
     """
+    # Called for its refusal of another word
     one_of(direction, get_args(DirectionName), "direction")
     law = law if isinstance(law, ContactLaw) else Power(law)
     a = positive(diameter, "diameter")

@@ -238,7 +238,7 @@ class Quadrature:
             )
         if not np.all(self.B * gaps > 0):
             return "the law does not stiffen towards p0 + B: a smaller wave would be as fast"
-        # Closer to the foot I may be a rounding error.
+        # Each hundredth of the rise; closer to the foot I may be a rounding error.
         parts = np.linspace(0.01, 1, 100)
         law = self.law(self.p0 + self.B * parts)
         if not np.all(self.inertia(law) > 0):
@@ -309,7 +309,9 @@ class Nodes:
         first = g.ds * g.rest
         second = g.ds * g.rest**2
         change = self.wave.B / 3 * (self.law.bend @ second) / second.sum()
-        if abs(change) < F1[0] / 4:  # a small wave, whose V² - F′(p0) has its digits
+        # A small wave, whose V² - F′(p0) has its digits; a change below a quarter cancels none of
+        # the digits of F′(p0).
+        if abs(change) < F1[0] / 4:
             return np.asarray(F1[0] + change)
         return np.asarray((F1 @ first) / first.sum())
 
@@ -359,7 +361,7 @@ class Nodes:
         g = self.grid
         # ln s is interpolated instead of s = v/B: the tail, an exponential, is a line in ξ.
         logs = g.peak_first(g.logs[g.rows])
-        last = self.places[-1]
-        inside = _interpolated(self.places, logs, np.minimum(places, last))
-        # Beyond the last node v is less than two grids may differ by: else the grid is refined.
-        return np.where(places > last, 0.0, np.exp(inside))
+        # Places beyond the last row get its v, on the finest grid 3e-13 B. The last rows of
+        # two coarser grids differ by more than `Quadrature.profile` allows: the grid is refined.
+        reached = np.minimum(places, self.places[-1])
+        return np.exp(_interpolated(self.places, logs, reached))

@@ -30,9 +30,12 @@ _OPEN = 1e-9
 _RIGID = 1e8
 # Relative rounding of forces that are differences, such as exp(δ) - 1
 _NOISE = 1e-9
-# Powers of 2 between which the mean compression under a force is sought
+# Exponents of the powers of 2, the last one left out, among which the first bounds of a mean
+# compression are sought: 8e-31 to 5e11 in the unit of length
 _REACH = (-100, 40)
-_PARTS = 65  # places between two bounds, of which the next bounds are neighbours
+# Places between two bounds, of which the next bounds are neighbours: 64 steps are six bits, and
+# nine rounds the 52 bits of a double
+_PARTS = 65
 # Largest step of ln δ: 1 to 5 find the states of the same random cells in as many steps, 10 fails
 _BOLDEST = 3.0
 # Compression of a link in series over the least that it may have at first: 10 to 1e15 do as well,

@@ -63,7 +63,8 @@ from lwa.loaded.statics import Function, Samples
 # Least ω0 D/(2πV) of a resonator for which the relation between speed and width is promised, by
 # measurements in struck chains (`book/studies/struck.py`): slower resonators take energy away.
 _SLOWEST = 1.2
-_FOOT = 1e-40  # part of the rise at which the sound ahead of the wave is computed
+# Part of the rise at which the sound ahead of the wave is computed: a law may have no slope at 0
+_FOOT = 1e-40
 
 EstimatedName = Literal["speed", "fwhm"]
 """A result with a measured error."""
@@ -267,7 +268,7 @@ class LoadedWave(States):
         >>> abs(speed.value - lattice) < speed.error < 30 * abs(speed.value - lattice)
         True
         """
-        one_of(name, get_args(EstimatedName), "name")
+        one_of(name, get_args(EstimatedName), "name")  # refuses any other name
         spacing = self.chain.spacing
         if spacing.is_Symbol and not self.exact_compression.has(spacing):
             return self.at(**{spacing.name: 1}).estimate(name, quantity, extent)

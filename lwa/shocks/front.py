@@ -18,7 +18,10 @@ from lwa.shocks.riemann import Shock
 from lwa.shocks.waves import WORKING, demand_one_sign, strain
 
 SHORT = 64
-"""Largest numerator and denominator of numbers whose powers are kept exact."""
+"""Largest numerator and denominator of numbers whose powers are kept exact.
+
+The longest of these powers, ``64^64``, has 116 digits.
+"""
 
 SMALLEST = sp.Rational(1, 10**15)
 """Smallest jump of the strain, relative; half of the digits of results are left there."""

@@ -198,7 +198,7 @@ class Shock(Parametric):
         InputError
             For dispersion without sound ahead, and for unequal beads.
         """
-        one_of(rule, RULES, "rule")
+        one_of(rule, RULES, "rule")  # refuses any other word
         if self._sound_gain.is_negative:
             return self.sound(self.ahead)
         if rule == "doubling":
@@ -251,7 +251,7 @@ class Shock(Parametric):
         >>> abs(speed.value - lattice) < speed.error < 30 * abs(speed.value - lattice)
         True
         """
-        one_of(name, get_args(EstimatedName), "name")
+        one_of(name, get_args(EstimatedName), "name")  # refuses any other name
         front = self._unscaled
         if name == "leading_speed":
             value = number(front.leading_speed(rule))
@@ -369,8 +369,9 @@ class Shock(Parametric):
         if self.cell.spacing.is_Symbol and not self.law.homogeneous:
             gain = gain.xreplace({self.cell.spacing: sp.S.One})  # its unit of length
         if not gain.free_symbols:
-            return sp.N(gain, 5)
-        return sp.simplify(gain)  # only then is its sign known beside symbols
+            return sp.N(gain, 5)  # its sign is wanted alone
+        # SymPy knows the sign of an expression in symbols in simple forms alone.
+        return sp.simplify(gain)
 
 
 def _evaluated(value: sp.Expr) -> sp.Expr:

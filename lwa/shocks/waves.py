@@ -40,7 +40,9 @@ WORKING = 60
 DIGITS = 30
 """Digits of results that are floats: a jump of 1e-15 of the strain loses 30 in a pulse's work."""
 
-_PLACES = 129  # strains at which the sign of F″ is checked
+# Strains at which the sign of F″ is checked, in 128 equal steps; two inflections within one step
+# are not seen
+_PLACES = 129
 
 
 def velocity(field: Background, p: sp.Expr) -> sp.Expr:

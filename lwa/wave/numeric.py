@@ -60,7 +60,7 @@ class NumericWave(Value):
     missing: Missing = "raise"
 
     def __post_init__(self) -> None:
-        one_of(self.missing, get_args(Missing), "missing")
+        one_of(self.missing, get_args(Missing), "missing")  # refuses any other word
         symbols = {self.wave.k, *self.wave.cell.masses}
         held = sp.Tuple(self.wave.coefficient_sum, self.wave.speed_factor).free_symbols
         named = all(x.is_Symbol for x in symbols)
@@ -72,6 +72,7 @@ class NumericWave(Value):
 
     @cached_property
     def _functions(self) -> Functions:
+        """The wave's functions as expressions, by their names."""
         return wave_functions(self.wave)
 
     @cached_property

@@ -8,8 +8,9 @@ from contextlib import AbstractContextManager, nullcontext
 from validation.scenes.checks import Failure, SceneError
 from validation.scenes.scene import Scene
 
-# The fastest steps, those of the splitting, take 0.2 µs for 2 beads and 1.1 µs for 1,000: so many
-# take four and eighteen minutes. A usual machine has more memory than this.
+# The fastest steps, those of the splitting at k = 3/2, take 0.2 µs for 2 beads and 6 µs for 1,000
+# that all move (measured): so many take four minutes and an hour and three quarters. A usual
+# machine has more memory than this.
 MOST_STEPS = 1e9
 MOST_BYTES = 4e9
 # Most steps of an adaptive method in the scene's shortest time √(m/spring). RKN86 takes about

@@ -103,6 +103,7 @@ def integrate(
             return run.finished()
         energy = run.motion.scales.energy
         response = float(run.now["response"])
+        # A response of no more than eight roundings of the energy is no scale of a new run.
         if not 8 * _NOISE * energy < response < _WEAK * energy:
             return run.finished()
         motion = Motion(motion.scene, response)
@@ -144,6 +145,7 @@ class _Integration:
         knots = self.recorder.knots
         # A step has some ten stages.
         size = max(self.plan.size, SHORTEST)
+        # Steps that are tried between two reports of progress
         glance = 1 + int(_BETWEEN_REPORTS / (10 * size))
         go = advance if isinstance(self.plan.scheme, Pair) else advance_split
         t = 0.0
@@ -322,6 +324,7 @@ def _record(law: Contact) -> tuple[Any, ...]:
     return (*numbers, *kinds, *law.addresses.values())
 
 
+@lru_cache(maxsize=1)
 def _forcing(motion: Motion) -> Forcing | None:
     """Return damping and drive for the kernel; None for a chain with neither."""
     scene = motion.scene
@@ -376,6 +379,7 @@ def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
     if isinstance(scheme, Pair):
         estimates = len(scheme.errors)
         stages = len(scheme.nodes)
+    # Five rows that have names below, the errors, room for the stages, and two rows of forces
     rows = _lines(7 + estimates + ROOM, padded + 2)
     # Two rows, one place ahead of the others: lines begin at column 1, the force of contact 0.
     columns = rows.shape[1]
@@ -407,8 +411,11 @@ def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
 def _lines(rows: int, columns: int) -> Array:
     """Return an array of zeros whose rows begin at lines of the cache.
 
-    A row has an odd number of lines, so that rows do not compete for the same places in the cache.
+    A line is 64 bytes, eight numbers. A row has an odd number of lines, so that rows do not compete
+    for the same places in the cache.
     """
+    # -(-a // 8) rounds up to whole lines, and | 1 makes their number odd. ``start`` counts the
+    # numbers from the memory's first byte to the next line.
     width = 8 * (-(-columns // 8) | 1)
     memory = np.zeros(8 + rows * width)
     start = -memory.ctypes.data // 8 % 8

@@ -103,13 +103,16 @@ class Motion:
                 # The load from the rest compressions, so that equilibrium is an exact zero.
                 self.load = self.force(self.rest)
             static = {"compression": self.rest, "force": self.load}
+            # Called for their refusals alone.
             for name, values in static.items():
                 _check_range(f"static {name}", values.min(), values.max())
+        # Displacements, velocities, dissipated energy and the drive's work, 0 at the start.
         self.start = np.zeros(2 * n + 2)
         self.start[: len(scene.displacements)] = scene.displacements
         end = n + len(scene.velocities)
         self.start[n:end] = scene.velocities
         if scene.drive is not None:
+            # A drive tells displacement, velocity and acceleration; a state has none of the last.
             self.start[0], self.start[n], _ = scene.drive.at(0.0)
 
     def _read_laws(self) -> None:
@@ -117,6 +120,7 @@ class Motion:
         scene = self.scene
         damping = scene.damping
         contacts = len(self.stiffnesses)
+        # Pairs: an exponent, and a law in place of the power, or None
         laws = scene.contact_laws
         different = dict.fromkeys(laws)
         numbers = {law: n for n, law in enumerate(different)}
@@ -167,7 +171,11 @@ class Motion:
         return (self.rest + change.T).T
 
     def force(self, compression: Array, contacts: Any = ...) -> Array:
-        """Return the elastic forces A_i F(δ_i) of all contacts, or of some."""
+        """Return the elastic forces A_i F(δ_i) of all contacts, or of some.
+
+        The compressions have the shape (contacts,) or (contacts, S), and so have the forces. NumPy
+        multiplies along the last axis, which the transposes make that of the contacts.
+        """
         forces = self._each(contacts, Contact.force, compression)
         stiffnesses: Array = self.stiffnesses[contacts]
         return (stiffnesses * forces.T).T
@@ -182,11 +190,17 @@ class Motion:
         return self._each(contacts, Contact.damped, *rows)
 
     def __call__(self, time: float, state: Array) -> Array:
-        """Return the time derivative of a state, which ``scipy.integrate`` takes as it is."""
+        """Return the time derivative of a state, which ``scipy.integrate`` takes as it is.
+
+        The derivatives of y and v are v and the accelerations; that of the heat is the sum of
+        damping force times dδ_i/dt over the contacts; that of the drive's work is its speed times
+        the dynamic force of contact 0, which it overcomes.
+        """
         n = self.size
         drive = self.scene.drive
         given = work = 0.0
         motions = state[: 2 * n].reshape(2, n)
+        # A copy: the state is SciPy's, and a driven bead's entries are set below.
         y, v = motions.copy()
         if drive is not None:
             y[0], v[0], given = drive.at(time)

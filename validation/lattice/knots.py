@@ -7,6 +7,7 @@ at one of the scene's sample times, interpolated between knots.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,12 @@ def _with_neighbours(beads: Beads) -> NDArray[np.int_]:
     triples = np.add.outer(numbers, (-1, 0, 1))
     near = np.unique(triples)
     return near[near >= 0]
+
+
+@lru_cache(maxsize=1)
+def _watched(motion: Motion) -> NDArray[np.int_]:
+    """Return the numbers of the beads whose motion a run stores."""
+    return _with_neighbours(sensed_beads(motion))
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +122,7 @@ class Recorder:
     def __init__(self, motion: Motion, chain: Chain) -> None:
         self.motion = motion
         self.chain = chain
-        watched = _with_neighbours(sensed_beads(motion))
+        watched = _watched(motion)
         most = 2  # the ends of a step
         if len(watched):
             # A knot: four numbers a bead, and its time.

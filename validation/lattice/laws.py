@@ -122,10 +122,13 @@ class Contact:
         """
         if self.damping_power is None:
             return elastic
+        # A law that pulls has k = 1 and so p = 0 (`validation.scenes.checks.contact_law`): no power
+        # of a negative compression is taken.
         closed = compression if self.pulls else np.maximum(compression, 0.0)
         resisted = closed**self.damping_power * rate
         force = elastic + (damping * resisted.T).T
         if not self.sticks:
+            # Damping may weaken a push to 0, and add nothing to the pull of a law that attracts.
             least = np.minimum(elastic, 0.0)
             force = np.maximum(force, least)
         return force if self.pulls else np.where(compression > 0.0, force, 0.0)

@@ -69,8 +69,7 @@ class Run(Pictured):
 
     def __post_init__(self) -> None:
         # A sum is finite only if all its terms are; squares, as energies overflow, too.
-        squares = np.square(self.end)
-        if not math.isfinite(squares.sum()):
+        if not math.isfinite(self.end @ self.end):
             raise IntegrationError(
                 "the motion overflows: choose other units, or a step of "
                 f"{self.step:g} is too long"
@@ -193,6 +192,7 @@ class Run(Pictured):
         """Return the name of a quantity, such as "bead 1 velocity", with its unit in a SI scene."""
         if not self.scene.units:
             return quantity
+        # The last word, such as "force", is the key of the unit.
         return f"{quantity} ({BASES[quantity.split()[-1]]})"
 
     def columns(self) -> dict[str, Array]:
@@ -263,6 +263,7 @@ class Run(Pictured):
                 f"number is {number!r}: the scene has no sensor at this {kind}"
             )
         beads = beads_at(self.motion, {kind: [number]})
+        # Contact i joins beads i and i + 1: the contacts between the beads begin at all but one.
         changes = [contact_changes(self.path, int(contact)) for contact in beads[:-1]]
         times = np.unique(np.concatenate((self.path.time, *changes)))
         return SensorSignal(times, self.path, beads, RECORDS[kind, quantity], number)

@@ -86,7 +86,11 @@ def _pair(
 
 
 def _padded(exact: Array) -> Array:
-    """Return weights as floats, with zeros up to `ROOM` stages, which `pair` reads in groups."""
+    """Return the weights of each row's stages as floats, with zeros up to `ROOM` columns.
+
+    The compiled loops add up `validation.lattice.kernel.arrays.GROUP` stages at a time, and so read
+    weights beyond the last stage.
+    """
     weights = exact.astype(float)
     # A decimal that was rounded leaves 1e-31 in place of 0.
     weights[np.abs(weights) < _ROUNDING] = 0.0
@@ -111,6 +115,8 @@ def _explicit(table: str, order: int) -> Pair:
     """Read a pair for y'' = f(y, y')."""
     rows = _rows(table)
     stages = rows.shape[1] + 1
+    # Fractions, so that the products below are exact. The last row is the step's end, whose stage
+    # has no weight: its column stays 0.
     a = np.zeros((stages, stages), object) + Fraction(0)
     a[:, :-1] = rows[:stages]
     errors = []
@@ -159,6 +165,8 @@ RK853 = _explicit(
 
 _KICKS = 0.0829844064174052, 0.396309801498368, -0.0390563049223486
 _DRIFTS = 0.245298957184271, 0.604872665711080
+# Kicks add up to 1, drifts too, and both read the same backwards: the middle kick and the middle
+# drifts, which are equal, follow from the others.
 _HALF = [*_DRIFTS, 0.5 - sum(_DRIFTS)]
 BLANES_MOAN = Splitting(
     np.array([*_KICKS, 1 - 2 * sum(_KICKS), *_KICKS[::-1]]),

@@ -147,6 +147,8 @@ class SensorSignal:
         y, v = self.path(self.beads, t[inside])
         records = quantities(self.path.motion, self.beads, y, v)
         rows = records[self.record]
+        # Row r belongs to bead ``beads[0] + r``, or to the contact ahead of it: the beads are
+        # neighbours.
         row = self.number - self.beads[0]
         values[inside] = rows[row]
         return values

@@ -66,9 +66,11 @@ def integrate(motion: Motion, method: str, rtol: float, longest: float) -> Run:
         method,
         dense_output=True,
         rtol=rtol,
+        # Displacements and velocities of n beads, and two energies
         atol=rtol * np.repeat([y, v, scales.energy or 1.0], [n, n, 2]),
         max_step=longest,
-        # SciPy's own guess depends on the units.
+        # SciPy's own guess depends on the units. Here: a thousandth of the time in which a bead
+        # with the scale of the velocity moves by that of the displacement.
         first_step=min(1e-3 * y / v, scene.duration),
     )
     if not found.success:

@@ -26,6 +26,7 @@ def threads(count: int | None = None, name: str = "workers") -> Iterator[Executo
     At the end, waiting tasks are dropped, and running tasks, which cannot be stopped, finish.
     Raises `lwa.InputError` for a bad count; the message calls it ``name``.
     """
+    # More than 1,024 threads are taken for a slip.
     wanted = cores() if count is None else integer(count, name, 1, 1024)
     pool = ThreadPoolExecutor(wanted)
     try:

@@ -34,6 +34,7 @@ _DEGREE = 10
 _AT_AN_END = 1e-6  # part of an interval beyond its ends in which a zero is the signal's
 # Part of the largest |signal| that may be rounding, or a spline's overshoot.
 _NOISE = 1e-6
+# Chosen: what is lower counts as a ripple.
 _LEAST = 0.01  # smallest prominence of a pulse over the highest peak
 # Tolerance, over that of a run, of a second run whose differences give the errors, and the factor
 # of a difference. The error of a step is nearly random: the difference to a less accurate run may
@@ -248,6 +249,7 @@ class _Grid:
     ) -> Pulse:
         """Measure the highest pulse between two grid points, at a fraction of its peak."""
         part = self.f[start:stop]
+        # A point is named by its number in the whole grid, not in the part.
         # The highest point; at an end of the record the signal may go on to rise.
         top = start + int(np.argmax(part))
         if top in (0, len(self.f) - 1):

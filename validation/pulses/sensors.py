@@ -49,6 +49,7 @@ _QUICK = 0.9
 _RESOLVED = 22.0
 _MOST_SAMPLES = 100_000  # of more samples a run would take much memory
 _HIDDEN = 0.5  # relative error of the peak from which on a pulse may be rounding alone
+# Chosen: a pulse with a FWHM of a tenth of the time between is above its half at twenty of them.
 _LOOKS = 200  # times at which a sensor is searched for an earlier pulse
 
 
@@ -316,7 +317,7 @@ def _place(scene: Scene, x: Array, kind: str, i: int) -> dict[str, float]:
 
 
 def _above(force: Signal, static: float) -> Piecewise:
-    """Return the dynamic force."""
+    """Return the force less the static force, on the same smooth intervals."""
     return Piecewise(force.times, lambda t: force(t) - static)
 
 

@@ -51,7 +51,8 @@ STRETCH = 4  # number of cells from one place to the next, for k ≥ 3/2
 # none is outside its error and 7 have one more than thirty times too large; with 1e-6 they are 0
 # and 21, with 3e-6 they are 4 and 4.
 TOLERANCES = (2e-6, 1e-5)
-# Far stretch over the last place: there the pulse must still be the highest.
+# Distance of the far stretch over that of the last place: there the pulse must still be the
+# highest. At four times the distance a number that nears its limit like n^{-1/2} is half way to it.
 FARTHER = 4
 STEADY = 0.1  # largest difference from the force that the decay predicts there, over this force
 _WEAKEST = 1 / 50  # peak force of the slowest pulse for which a run is long enough
@@ -278,6 +279,7 @@ def stored(path: Path) -> Iterator[tuple[dict[Key, Point], Callable[[Point], Non
             data.execute("commit")
 
             def keep(point: Point) -> None:
+                # Exact numbers, which JSON lacks, become texts.
                 row = json.dumps(asdict(point), default=str)
                 data.execute(f"insert into {own} values (?)", [row])
 

@@ -85,6 +85,7 @@ class Column:
         # The endings belong to the name of the mapping, not to its entries.
         head, dot, entry = name.partition(".")
         return {
+            # A cell of None has neither number, and both are null.
             f"{head}_value{dot}{entry}": plain(getattr(cell, "value", None)),
             f"{head}_error_value{dot}{entry}": plain(getattr(cell, "error", None)),
         }

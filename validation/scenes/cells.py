@@ -46,6 +46,7 @@ _CLOCK = re.compile(r"(?:[-\d./]+[T ])?(\d\d):(\d\d):(\d\d\.?\d*)Z?")
 """Pattern of a time of day, also behind a date."""
 _SCPI = {9.9e37: math.inf, -9.9e37: -math.inf, 9.91e37: math.nan}
 
+# Chosen: a preamble with numbers is short beside its record.
 _FEW = 0.1  # rows of numbers outside of the record, at most, over those of the record
 # Least share of numbers in a row of a record: a date and a time may stand in front.
 _LEAST = 1 / 3
@@ -319,7 +320,7 @@ def _split(line: str, mark: str) -> list[str]:
 
 
 def _share(row: Sequence[str]) -> float:
-    """Return the share of numbers among the cells of a row that are not blank."""
+    """Return the share of numbers among the cells of a row that are not blank, or 0."""
     filled = [*filter(None, row)]
     numbers = [cell for cell in filled if not math.isnan(number_of(cell))]
     return len(numbers) / max(len(filled), 1)

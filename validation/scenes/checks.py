@@ -37,7 +37,10 @@ class Failure(Refusal):
 
 
 def between(value: Any, name: str, low: float, high: float, wanted: str = "") -> float:
-    """Return a finite number between two limits; ``wanted`` ends the message of a `SceneError`."""
+    """Return a finite number from ``low`` to ``high``; `SceneError` for another value.
+
+    The message names the value by ``name`` and ends with ``wanted``, by default with the limits.
+    """
     number = finite(value, name)
     # NaN is refused by `finite`.
     if not low <= number <= high:

@@ -77,7 +77,8 @@ STEP = "1 us"
 
 # A number without a sign
 _UNSIGNED = r"(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-# Columns in a message, which is to have 300 characters at most
+# Columns in a message, which is to have 300 characters at most: of a column its number, up to 20
+# characters of its header and up to 12 of an entry
 _LISTED = 4
 _UNLIKE = 2  # least rank of a column that does not behave like a quantity
 
@@ -89,7 +90,8 @@ class Stated(TypedDict, total=False):
     ----------
     columns : mapping of str
         Headers, with or without their units, or numbers of columns, by the names "time",
-        "bead 8 force", "bead 8 velocity", "contact 8 force", "force", "speed", ….
+        "bead 8 force", "bead 8 velocity", "contact 8 force", "force", "speed", …; numbers of
+        several times, one for each sensor, have commas.
     units : mapping of str
         Statements by name, header or number of a column.
     step : str
@@ -302,7 +304,11 @@ class Columns:
 
 
 def _rank(cells: Cells, steps: dict[int, Array], name: str, number: int) -> int:
-    """Return the rank of a column among those for a name, 0 for the best."""
+    """Return the rank of a column among those for a name, 0 for the best.
+
+    A column that does not behave like the quantity ranks behind all that do; among equals one with
+    a unit of the quantity is the better.
+    """
     base = BASES[name.split()[-1]]
     unit = found_unit(cells.above(number))
     unknown = in_si(unit, base) is None
@@ -349,7 +355,10 @@ def in_si(unit: str, base: str) -> float | None:
 
 
 def known(unit: str) -> tuple[str, float] | None:
-    """Return the base unit of a unit, and the unit's size in it; None for an unknown unit."""
+    """Return the base unit of a unit, and the unit's size in it; None for an unknown unit.
+
+    For "ms" they are "s" and 0.001.
+    """
     for base, spellings in _SPELLINGS.items():
         text = unit
         # Recorders that write in capitals mean ms by MS; MN may well be a meganewton.

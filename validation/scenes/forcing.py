@@ -45,6 +45,7 @@ class Damping:
     def __post_init__(self) -> None:
         one_of(self.kind, DAMPINGS, "damping")
         value = one_or_each(finite)(self.value, self.kind)
+        # `between` and `positive` are called for their refusals alone.
         numbers = np.atleast_1d(value).tolist()
         for number in {*numbers}:
             if self.kind == "restitution":
@@ -61,7 +62,10 @@ class Damping:
         return 1.0 if self.kind == "restitution" else 0.0
 
     def power(self, k: Any) -> Any:
-        """Return the exponent of δ in front of the rate dδ/dt; k a number or an array."""
+        """Return the exponent of δ in front of the rate dδ/dt, by the kind (see `Damping`).
+
+        k is a number or an array, and the exponent has its shape.
+        """
         if self.kind == "contact":
             return 0.0 * k
         return k - 1 if self.kind == "kuwabara_kono" else (k - 1) / 2
@@ -99,7 +103,9 @@ def restitution(ratio: float) -> float:
         turn = math.sqrt(1 - ratio * ratio)
         phase = math.pi - math.atan2(2 * ratio * turn, 1 - 2 * ratio * ratio)
         return math.exp(-ratio / turn * phase)
-    turn = math.sqrt(ratio * ratio - 1) or 1e-8  # the limit is e^{-2}
+    # At ζ = 1 the phase over ``turn`` is 0/0, with the limit 2: the share is e^{-2}. A turn of 1e-8
+    # gives it to 2e-9.
+    turn = math.sqrt(ratio * ratio - 1) or 1e-8
     phase = math.log((ratio + turn) / (ratio - turn))
     return math.exp(-ratio / turn * phase)
 
@@ -178,6 +184,7 @@ class Drive:
         if ramp and not harmonic:
             wrong = "it belongs to amplitude and frequency"
             raise SceneError(f"drive.ramp is {ramp:g}: {wrong}")
+        # Read for their refusals alone.
         if constant:
             finite(self.velocity, "drive.velocity")
         if harmonic:
@@ -188,8 +195,9 @@ class Drive:
             self._check_record()
 
     def _check_record(self) -> None:
-        """Check times and displacements."""
+        """Refuse times and displacements through which no spline goes."""
         times, places = len(self.time), len(self.displacement)
+        # A cubic spline without conditions at its ends takes four points.
         if times != places or times < 4:
             wanted = "equally many, four or more, are wanted"
             raise SceneError(
@@ -198,6 +206,7 @@ class Drive:
         if self.time[0] != 0 or min(np.diff(self.time)) <= 0:
             raise SceneError("drive.time must begin with 0 and increase")
         try:
+            # Called for a refusal alone: the spline is made here.
             with np.errstate(all="ignore"):
                 self.at(0.0)
         except ValueError:  # SciPy's, of slopes that overflow

@@ -189,6 +189,7 @@ class Scene:
         if k is not MISSING:
             k = one_or_each(read_exponent)(k, "k")
         law = one_or_each(read_contact_law)(self.law, "law")
+        # Called for their refusals alone.
         check_count(k, "k", self.contact_count)
         check_count(law, "law", self.contact_count)
         count = 1
@@ -218,7 +219,11 @@ class Scene:
             )
 
     def _check_damping(self) -> None:
-        """Check the damping."""
+        """Refuse damping with too many or too few values, and of a law for which none is known.
+
+        The coefficients of all kinds but "contact" belong to the exponent of a power. Beside other
+        laws such a kind may say no damping alone, ``damping.undamped``.
+        """
         damping = self.damping
         if damping is None:
             return
@@ -237,7 +242,7 @@ class Scene:
                 )
 
     def _check_drive(self) -> None:
-        """Check the drive."""
+        """Refuse a drive of a bead with a start of its own, and a record of another duration."""
         drive = self.drive
         if drive is None:
             return

@@ -97,6 +97,12 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
         The parsed file.
     folder : Path
         Folder of the measured files that the content names.
+
+    Notes
+    -----
+    The tables of beads and the chain give the fields of all contacts between beads (`_chain`). The
+    wall, exponents or laws, damping, start, units, drive and duration follow, in this order: each
+    needs what stands before it.
     """
     known = _known()
     file = Table(content, "", known)

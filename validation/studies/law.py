@@ -43,6 +43,7 @@ from validation.studies.records import COLUMN_OPTIONS
 from validation.studies.run import print_option
 from validation.waves.solver import exact_wave
 
+# Chosen: 25 draws are beyond either end of a 95 % interval.
 _DRAWS = 1000  # times that the coefficients of ln V are drawn, for the errors
 _HERTZ = 1.5
 # Exponents that are read: below `LEAST` speeds hardly depend on force; beyond `MOST` the
@@ -341,6 +342,7 @@ def fit_power(
             raise SceneError(
                 f"A is e^({log}) by the best fit: this is no number of a computer"
             )
+        # The larger one of the two distances, which are unequal, from A to the ends of the interval
         A = math.exp(log.value)
         return Estimate(A, A * math.expm1(error))
 

@@ -105,7 +105,7 @@ def recorded_chain(
     """
     momentum = float(STEEL_BEAD.mass) * velocity
     pulse = of_momentum(canonical_wave(chain_cell(N, ptfe), HERTZ), momentum)
-    cells = ([STEEL_BEAD] * N + [ptfe]) * BEADS  # more than enough
+    cells = ([STEEL_BEAD] * N + [ptfe]) * BEADS  # more beads than are taken below
     # From 0 on, bead 15 is number 14, between the contacts 13 and 14.
     contacts = {bead - 1 for bead in sensors} | {bead - 2 for bead in sensors}
     return Scene.of_beads(
@@ -138,6 +138,7 @@ def bead_fwhm(wave: PhysicalWave) -> float:
         return float(wave.along(x, of="bead")) - half
 
     end = number(wave.wave.width)  # farther than the arch of the farther contact
+    # The wave is even: half of its width is the root on one side, to some fifty roundings.
     half_width = scipy.optimize.brentq(above_half, 0, end, xtol=1e-14 * end)
     return 2 * float(half_width)
 
@@ -245,6 +246,7 @@ def paper(
     ``lattice_value``, ``lattice_error_value``, and by the quantity that sets the theory's amplitude
     (``F_m``, ``striker``) ``theory_value`` {…} and ``error_value`` {…}, theory over lattice - 1.
     """
+    # Chosen far from the experiment's 1.37 m/s: other values are taken for slips of the unit.
     velocity = between(velocity, "velocity", 1e-6, 1000)
     scene = recorded_chain((15, 16, 33, 34), velocity)  # all beads of `QUANTITIES`
     # A run, and another whose difference to it is the error.

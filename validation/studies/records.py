@@ -143,9 +143,10 @@ class Measured:
     ) -> Measured:
         """Read files; records of sensors with a time constant are corrected.
 
-        Several sensors without a number are numbered in the order of files and columns. The
-        ``wanted`` names are proposed for columns of files without sensors. Raises `SceneError` for
-        files of which some have no units, and for a sensor that is there twice.
+        Several sensors without a number are numbered in the order of files and columns. Several
+        names of one column are those of the files in turn. The ``wanted`` names are proposed for
+        columns of files without sensors. Raises `SceneError` for files of which some have no units,
+        and for a sensor that is there twice.
         """
         constant = math.inf
         if time_constant:

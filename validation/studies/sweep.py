@@ -112,7 +112,12 @@ def report(points: Sequence[Point]) -> Report:
 
 
 def _rows(points: Sequence[Point]) -> list[Row]:
-    """Return the row of each point: its numbers, the theory's, and the theory's errors."""
+    """Return the row of each point: its numbers, the theory's, and the theory's errors.
+
+    The keys are those of `_COLUMNS`: ``sites`` are both ends of the measured stretch, ``missing``
+    is the reason why a point has no numbers, "linear" and "canonical" name the `CLOSURES`, and an
+    error is theory/lattice - 1.
+    """
     waves = theory(points)
     rows: list[Row] = []
     for i, found in enumerate(points):
@@ -140,7 +145,7 @@ def _panels(rows: Sequence[Row]) -> Iterator[Panel]:
     """
     x, of_curve = "omega", "k"
     if len({row["omega"] for row in rows}) == 1:
-        x, of_curve = of_curve, x
+        x, of_curve = of_curve, x  # exchanged
     groups: dict[str, list[Row]] = {}
     for row in rows:
         name = f"{_LABELS[of_curve]} = {row[of_curve]}"

@@ -50,7 +50,11 @@ Series = NDArray[np.complex128]  # coefficients of e^{iqξ}, q = 0, π/L, …, �
 
 
 def widening(masses: Pair) -> float:
-    """Return the canonical wave's width divided by its width at equal masses, ``√(12 I/D²)``."""
+    """Return the canonical wave's width divided by its width at equal masses, ``√(12 I/D²)``.
+
+    D is 1, and I the coefficient in the dispersion ``Ω² = κ² (1 - (I/D²) κ² + …)`` of the linear
+    chain: ``I/D² = (m1² - m1 m2 + m2²)/(3 (m1 + m2)²)``, which is 1/12 at equal masses.
+    """
     m1, m2 = masses
     square = m1**2 - m1 * m2 + m2**2
     return 2 * math.sqrt(square) / (m1 + m2)
@@ -182,7 +186,8 @@ class Problem:
         self.uniform = masses[0] == masses[1]
         self.k = k
         self.p0 = p0
-        self.height = 1.0  # F_a(0), 1 - p0^k
+        # F_a(0), 1 - p0^k, without cancellation where p0 is near 1
+        self.height = 1.0
         if p0:
             self.height = -math.expm1(k * math.log(p0))
         self.L = half_period or ample_half_period(masses, k)
@@ -248,7 +253,8 @@ class Problem:
         force = unknowns[:-2]
         c2, inverse = unknowns[-2:]
         first = 1 / self.masses[0]
-        # Not computed by the matrices below, whose rounding shows in long waves on a background.
+        # The strain is not computed by the matrices below, whose rounding shows in long waves on a
+        # background.
         a = self._strains(force, (first, inverse)) / c2
         missed = force - rise(a, self.k, self.p0)
         closing, of_closing = self._closing(force, inverse)

@@ -123,6 +123,7 @@ class ExactWave(Pictured):
 
     def times(self, s: float) -> ExactWave:
         """Return the wave with all strains, the background's too, multiplied by s."""
+        # Within these limits s^k is a float up to k = 10.
         s = between(s, "s", 1e-30, 1e30)
         force = s**self.k
         stiffness = force / s

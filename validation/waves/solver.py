@@ -115,6 +115,7 @@ def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWa
     (1.411928, 1.725713, True)
     """
     numbers = items(masses, "masses")
+    # Squares and inverses of masses within these limits are floats.
     given = [between(m, "masses", 1e-100, 1e100) for m in numbers]
     if len(given) not in (1, 2):
         raise SceneError(
@@ -140,6 +141,7 @@ def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWa
         )
     light, heavy = sorted(given)
     ratio = "the ratio of two masses lies between 0.01 and 1"
+    # Called for a refusal alone. The smallest special ratios that are found lie above 0.01.
     between(light / heavy, "masses", 0.01, 1, ratio)
     wave = _dimer((given[0], given[1]), k)
     if given[0] == heavy:
@@ -204,7 +206,7 @@ def _dimer(pair: newton.Pair, k: float) -> ExactWave:
     raise NoWave(
         f"no solitary wave {_parameters(pair, k)}: the nearest ratio with one is {nearest:g} "
         f"(resonances); lwa-validate sweep --k {k:.10g} --omega {ratio:.10g} measures a pulse",
-        masses=masses,
+        masses=masses,  # of a valid call, which the command's message proposes
     )
 
 
@@ -312,5 +314,6 @@ def _followed(wave: ExactWave, k: float) -> ExactWave:
     if length < _SHORTEST:
         lost = _parameters(wave.masses, wave.k)
         raise NoWave(f"the special ratio is lost {lost}")
+    # Half way in ln(k - 1)
     middle = 1 + math.sqrt((k - 1) * (wave.k - 1))
     return _followed(_followed(wave, middle), k)

@@ -300,7 +300,12 @@ def _replace_estimates(
 def _correct_heat(
     chain: Chain, beads: Beads, pair: Pair, i: int, work: float, stored: float
 ) -> None:
-    """Correct the heat of a step: the work of a contact's force, less the energy it stores."""
+    """Correct the heat of a step: the work of a contact's force, less the energy it stores.
+
+    ``work`` and ``stored`` are accurate. The pair's quadrature of the heat over the stages, which
+    `validation.lattice.kernel.pair.end_step` adds, is taken away; the weights are those of an
+    impulse, in the last row of ``impulses`` and row 1 of ``errors``.
+    """
     law = chain.laws[chain.law[i]]
     last = len(pair.nodes) - 1
     heat = work - stored
@@ -316,7 +321,11 @@ def _correct_heat(
 def _correct_work(
     chain: Chain, beads: Beads, pair: Pair, drive: kinks.Curve, work: float
 ) -> None:
-    """Correct the work of the drive, which moves the first bead along a curve, in a step."""
+    """Correct the work of the drive, which moves the first bead along a curve, in a step.
+
+    ``work`` is accurate, for unit stiffness. The pair's quadrature of the power over the stages is
+    taken away, as in `_correct_heat`; row 2 of ``beads.points`` is the contact's force there.
+    """
     last = len(pair.nodes) - 1
     A = chain.A[0]
     beads.books[WORK] = A * work
@@ -420,6 +429,12 @@ def correct_contact(
     """Correct a step for the pair's error at contact i, which opens or closes.
 
     Returns False for a damped contact that is too faint to be corrected; its mark is taken away.
+
+    The error is the pair's quadrature of the contact's force less the accurate integral. Both are
+    taken along the curve of the compression, which ends where the corrected beads are: the rounds
+    repeat the correction from its own end. Then the contact's beads and its neighbours are
+    corrected, and what is left is counted as error: the misfit of the curve (``misfit``), the last
+    change of the impulse (``change``) and part of the effect on the contact itself.
     """
     pair = plan.scheme
     last = len(pair.nodes) - 1

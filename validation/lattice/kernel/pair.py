@@ -47,7 +47,7 @@ _SAFETY, _GROWTH, _SHRINKAGE = 0.9, 5.0, 0.1
 # a tenth to a fifth fewer tries for the same error than by the pair's order alone, and the same to
 # 5 % for orders of 2.5 to 4.
 _KINK_SAFETY, _KINK_ORDER = 0.8, 2.5
-# In units of the tolerance: the power says nothing of such an error, or of NaN.
+# Error, in units of the tolerance, of which the power says nothing; nor does it of NaN.
 _HOPELESS = 1e9
 # A third solution of low order, where a pair has one, weighs so much in the estimate of the error
 # (Hairer, Nørsett and Wanner, II.10).
@@ -253,7 +253,11 @@ def _squared_error(errors: Array, row: int, hi: int) -> float:
 
 @inlined
 def step_error(beads: Beads, plan: Plan, h: float, hi: int) -> float:
-    """Return the error of a step in units of the tolerance: of all beads, the heat and the work."""
+    """Return the error of a step in units of the tolerance: of all beads, the heat and the work.
+
+    e is the root of the sum of the squares. With a third solution, whose difference is d, the
+    estimate is ``e²/√(e² + 0.01 d²)``; ``total`` is its square.
+    """
     weights = plan.scheme.errors
     books = beads.books
     total = least = 0.0

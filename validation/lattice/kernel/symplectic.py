@@ -64,7 +64,8 @@ def advance_split(
             v[i] = v[i] + b * push[i]
         now.tries += 1
         now.steps += 1
-        # No sum of steps: equal steps are rounded to one side, 1e-10 after 1e5 of them.
+        # No sum of steps: equal steps are rounded to one side, 1e-10 after 1e5 of them. Half a step
+        # more keeps rounding from adding a step.
         now.t = now.steps * h if now.t + 1.5 * h < plan.end else plan.end
         advance_front(beads, plan, now)
         store_knot(forcing, beads, knots, now)
