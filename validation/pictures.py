@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 
 from lwa.base.arrays import Array
 from lwa.base.exact import InputError
-from lwa.spheres.units import Unit, labelled
+from lwa.spheres.units import labelled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -92,7 +92,7 @@ class Panel:
     ----------
     x, y : str
         Labels of the axes.
-    curves : tuple of Curve
+    curves : sequence of Curve
         Curves.
     scale : {"", "x", "y", "xy"}
         Logarithmic axes.
@@ -106,7 +106,7 @@ class Panel:
 
     x: str
     y: str
-    curves: tuple[Curve, ...] = ()
+    curves: Sequence[Curve] = ()
     scale: str = ""
     title: str = ""
     map: Map | None = None
@@ -259,25 +259,19 @@ def _label(axis: Axis, label: str, logarithmic: bool) -> None:
     largest = max(abs(low), abs(high))
     unit = labelled(label, largest)
     if logarithmic:
-        if not _is_short(low / unit.size, high / unit.size):
+        # Plain numbers fit an axis of few decades, where powers of ten would overlap.
+        # Three decades at most, in labels of at most six characters: 0.0015 to 100000.
+        short = 1e-3 * unit.size <= low and high <= 1e5 * unit.size and high < 1e3 * low
+        if not short:
             return  # Matplotlib's powers of ten, in the data's own unit
         _set_plain_ticks(axis, low, high)
     elif high - low < _SHORTEST * largest:
         return
     if logarithmic or unit.size != 1:
         axis.set_label_text(unit.name)
-        axis.set_major_formatter(lambda value, _: _in_unit(value, unit))
-
-
-def _in_unit(value: float, unit: Unit) -> str:
-    """The label of a tick: a value of the data in another unit."""
-    return f"{value / unit.size:g}".replace("-", "\N{MINUS SIGN}")
-
-
-def _is_short(low: float, high: float) -> bool:
-    """True for a logarithmic axis of few decades, where plain numbers fit and powers overlap."""
-    # Three decades at most, in labels of at most six characters: 0.0015 to 100000.
-    return low >= 1e-3 and high <= 1e5 and high < 1e3 * low
+        axis.set_major_formatter(
+            lambda value, _: f"{value / unit.size:g}".replace("-", "\N{MINUS SIGN}")
+        )
 
 
 def _set_plain_ticks(axis: Axis, low: float, high: float) -> None:

@@ -260,10 +260,10 @@ _AXES = "largest relative error of arrival, peak, FWHM", "CPU time (s)"
 @study(
     option(
         "--task",
-        "names",
+        "Only this task; repeatable.",
+        to="names",
         multiple=True,
         type=click.Choice([*TASKS]),
-        says="Only this task; repeatable.",
     )
 )
 def accuracy(

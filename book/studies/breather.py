@@ -48,7 +48,7 @@ from lwa.base.progress import Progress
 from lwa.command.options import quantities
 from validation.pictures import Curve, Panel
 from validation.report.study import EXPONENT, Report, option, study
-from validation.report.table import Column, Finding, Table, percent
+from validation.report.table import Column, Estimates, Finding, Table, percent
 from validation.scenes.checks import SceneError, between, integer, numeric
 
 HARMONICS = 5  # H; 8 change amplitude and width by less than their errors
@@ -74,22 +74,17 @@ _FEWER = 0.75  # beads of the chain that gives the errors, over those of the cha
 
 @study(
     option(
-        "--masses",
-        read=quantities,
-        default="1,1/2",
-        says="Masses of a cell, one or two.",
+        "--masses", "Masses of a cell, one or two.", read=quantities, default="1,1/2"
     ),
     EXPONENT,
     option(
         "--detunings",
+        "Detunings 1 - f/f0, f0 the frequency of the band's edge.",
         read=quantities,
         default=DETUNINGS,
-        says="Detunings 1 - f/f0, f0 the frequency of the band's edge.",
     ),
     option(
-        "--beads",
-        default=601,
-        says="Largest number of beads; short breathers take fewer.",
+        "--beads", "Largest number of beads; short breathers take fewer.", default=601
     ),
 )
 def breather(
@@ -460,10 +455,10 @@ class Standing:
 _COLUMNS = (
     Column("detuning_value", "Δ", format="g"),
     Column("frequency_value", "frequency", format=".6f"),
-    Column("amplitude", "amplitude", error=True),
+    Estimates("amplitude", "amplitude"),
     Column("amplitude_theory_value", "theory", format=".5f"),
     Column("amplitude_off_value", "off", format=percent),
-    Column("width", "width (cells)", error=True),
+    Estimates("width", "width (cells)"),
     Column("width_theory_value", "theory", format=".4f"),
     Column("width_off_value", "off", format=percent),
     Column("multiplier_value", "largest |multiplier|", format=".6f"),

@@ -37,7 +37,7 @@ from validation.lattice.simulate import simulate
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import measure
 from validation.report.study import Report, option, study
-from validation.report.table import Column, Finding, Table, percent
+from validation.report.table import Column, Estimates, Finding, Table, percent
 from validation.scenes.checks import SceneError, between
 from validation.scenes.scene import Scene
 from validation.waves.solver import exact_wave
@@ -67,15 +67,13 @@ Records = tuple[
 @study(
     option(
         "--k",
-        "exponents",
+        "Exponents of F = δ^k.",
+        to="exponents",
         read=quantities,
         default="11/10,3/2",
-        says="Exponents of F = δ^k.",
     ),
     option(
-        "--second",
-        default=0.5,
-        says="Peak strain of the second pulse; the first has 1.",
+        "--second", "Peak strain of the second pulse; the first has 1.", default=0.5
     ),
 )
 def collision(
@@ -261,8 +259,8 @@ def _numbers(time: Array, strains: Array, speed: float, d: int) -> dict[str, flo
 _COLUMNS = (
     Column("k", "k", format=str),
     Column("quantity", "quantity"),
-    Column("equation", "equation", error=True),
-    Column("lattice", "lattice", error=True),
+    Estimates("equation", "equation"),
+    Estimates("lattice", "lattice"),
     Column("error_value", "equation off by", format=percent),
 )
 

@@ -35,7 +35,7 @@ from validation.lattice.simulate import simulate, simulate_many
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import highest_pulse
 from validation.report.study import EXPONENT, Report, option, study
-from validation.report.table import Column, Finding, Table
+from validation.report.table import Column, Estimates, Finding, Table
 from validation.scenes.chains import struck
 from validation.scenes.checks import between, integer
 from validation.scenes.scene import Scene
@@ -57,14 +57,10 @@ _CLOSE = 1e-4  # largest change of ln F at ten times the tolerance
 
 @study(
     EXPONENT,
-    option(
-        "--spread", default=0.1, says="Masses lie between 1 - spread and 1 + spread."
-    ),
-    option("--chains", default=20, says="Number of random chains."),
-    option(
-        "--sites", default=200, says="Sites from the struck bead to the last place."
-    ),
-    option("--seed", default=1, says="Seed of the random numbers."),
+    option("--spread", "Masses lie between 1 - spread and 1 + spread.", default=0.1),
+    option("--chains", "Number of random chains.", default=20),
+    option("--sites", "Sites from the struck bead to the last place.", default=200),
+    option("--seed", "Seed of the random numbers.", default=1),
 )
 def disorder(
     k: float = 1.5,
@@ -161,14 +157,14 @@ def _struck(masses: Sequence[float], k: float, sensors: Sequence[int]) -> Scene:
 
 _ROWS = (
     Column("site", "site"),
-    Column("log_force", "ln F less its first", error=True),
+    Estimates("log_force", "ln F less its first"),
     Column("scatter_value", "scatter over chains", format=".2e"),
-    Column("decay", "decay per site, local", error=True),
+    Estimates("decay", "decay per site, local"),
     Column("theory_value", "ln F, theory", format=".5f"),
 )
 _SINGLE = (
     Column("excess_value", "excess e", format="+.4f"),
-    Column("loss", "loss of ln F", error=True),
+    Estimates("loss", "loss of ln F"),
     Column("", "loss/e²", format=".4f"),
 )
 

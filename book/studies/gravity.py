@@ -48,7 +48,7 @@ from validation.pictures import Curve, Panel
 from validation.pulses.pulse import Piecewise, first_pulse, highest_pulse
 from validation.pulses.sensors import tracks
 from validation.report.study import EXPONENT, Report, option, study
-from validation.report.table import Column, Finding, Table, percent
+from validation.report.table import Column, Estimates, Finding, Table, percent
 from validation.scenes.chains import struck
 from validation.scenes.checks import between, integer, numeric
 from validation.scenes.scene import Scene
@@ -227,10 +227,10 @@ class Upright:
     EXPONENT,
     option(
         "--masses",
+        "Masses of a cell, such as 1,1/2; by default two chains.",
         read=quantities,
-        says="Masses of a cell, such as 1,1/2; by default two chains.",
     ),
-    option("--beads", default=3000, says="Number of beads."),
+    option("--beads", "Number of beads.", default=3000),
 )
 def gravity(
     k: float = 1.5,
@@ -274,8 +274,8 @@ def gravity(
 
 _WEAK = (
     Column("masses", "masses", format=", ".join),
-    Column("exponent", "exponent", error=True),
-    Column("prefactor", "prefactor", error=True),
+    Estimates("exponent", "exponent"),
+    Estimates("prefactor", "prefactor"),
     Column("prefactor_theory_value", "theory", format=".4f"),
     Column("error_value", "off", format=percent),
 )

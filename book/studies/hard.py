@@ -371,10 +371,10 @@ CASES: Mapping[str, Callable[[], Report]] = {
 @study(
     option(
         "--case",
-        "names",
+        "Only this case; repeatable.",
+        to="names",
         multiple=True,
         type=click.Choice([*CASES]),
-        says="Only this case; repeatable.",
     )
 )
 def hard(names: Collection[str] = (), progress: Progress[str] = iter) -> Report:

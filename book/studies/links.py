@@ -72,7 +72,7 @@ WIDTHS, SHORTEST = 5.0, 25.0
 LONGER = np.arange(0, 2, 0.4)  # over a wavelength of the optical tail, about 2 sites
 
 
-@study(option("--case", default="all", says="unlike, neighbours, dispersion or all."))
+@study(option("--case", "unlike, neighbours, dispersion or all.", default="all"))
 def links(case: str = "all", progress: Progress[Any] = iter) -> Report:
     """Exact waves in lattices of unlike links or farther neighbours (ten seconds).
 

@@ -44,7 +44,7 @@ from validation.pulses.pulse import (
 )
 from validation.pulses.sensors import tracks
 from validation.report.study import EXPONENT, Report, option, study
-from validation.report.table import Column, Finding, Table, percent
+from validation.report.table import Column, Estimates, Finding, Table, percent
 from validation.scenes.checks import SceneError, between, numeric
 from validation.scenes.scene import Scene
 from validation.waves.profile import ExactWave
@@ -66,14 +66,14 @@ _WEAKEST, _STRONGEST = 1e-3, 1e4
     law_option("Contact law in place of δ^k, such as hertz2:1,2."),
     option(
         "--masses",
+        "Masses of a cell, such as 1,1/2; by default three chains.",
         read=quantities,
-        says="Masses of a cell, such as 1,1/2; by default three chains.",
     ),
     option(
         "--ratios",
+        "Dynamic forces divided by the static force.",
         read=quantities,
         default=",".join(map(str, RATIOS)),
-        says="Dynamic forces divided by the static force.",
     ),
 )
 def precompressed(
@@ -300,14 +300,14 @@ class Wave:
 _COLUMNS = {
     "masses": Column("masses", "masses", format=", ".join),
     "force": Column("ratio_value", "F/F0", format=".4g"),
-    "speed": Column("speed", "V/c0", error=True),
+    "speed": Estimates("speed", "V/c0"),
     "speed theory": Column("theory_value", "theory", format=".5f"),
     "speed off": Column("error_value", "off", format=percent),
     "exact": Column("exact_value"),
-    "fwhm": Column("fwhm", "FWHM (sites)", error=True),
+    "fwhm": Estimates("fwhm", "FWHM (sites)"),
     "fwhm theory": Column("fwhm_theory_value", "theory", format=".3f"),
     "fwhm off": Column("fwhm_off_value", "off", format=percent),
-    "peak": Column("peak", "bead velocity", error=True),
+    "peak": Estimates("peak", "bead velocity"),
     "peak theory": Column("peak_theory_value"),
     "peak off": Column("peak_off_value", "off", format=percent),
     "decay": Column("decay_value", "decay per site", format=".0e"),

@@ -39,7 +39,7 @@ from validation.lattice.result import Run
 from validation.lattice.simulate import simulate, simulate_many
 from validation.pictures import Curve, Map, Panel
 from validation.report.study import Report, option, study
-from validation.report.table import Column, Finding, Table
+from validation.report.table import Column, Estimates, Finding, Table
 from validation.scenes.checks import between
 from validation.scenes.forcing import Drive
 from validation.scenes.scene import Scene
@@ -58,19 +58,15 @@ Pair = tuple[float | None, float | None]  # speed and peak strain of the leading
 
 
 @study(
-    option(
-        "--k",
-        read=read_exact,
-        says="Exponent of F = δ^k; by default Toda, 3/2 and 2.",
-    ),
+    option("--k", "Exponent of F = δ^k; by default Toda, 3/2 and 2.", read=read_exact),
     option(
         "--jumps",
+        "Strains behind the front over that ahead; if that is 0, strains behind.",
         read=quantities,
         default=",".join(map(str, JUMPS)),
-        says="Strains behind the front over that ahead; if that is 0, strains behind.",
     ),
-    option("--ahead", read=read_exact, default="1", says="Strain ahead of the front."),
-    option("--duration", default=2500.0, says="Time for which the piston moves."),
+    option("--ahead", "Strain ahead of the front.", read=read_exact, default="1"),
+    option("--duration", "Time for which the piston moves.", default=2500.0),
 )
 def shock(
     k: Any = None,
@@ -330,8 +326,8 @@ _COLUMNS = (
     Column("ratio_value", "c₋/c₊", format=".4g"),
     Column("plateau_value", "plateau", format=".5g"),
     Column("plateau_error_value", "over p₋", format=_PERCENT),
-    Column("speed", "s₊", error=True),
-    Column("peak", "peak", error=True),
+    Estimates("speed", "s₊"),
+    Estimates("peak", "peak"),
     *_theory_columns("doubling", "rule:", "speed", "peak"),
     *_theory_columns("canonical", "canonical:", "speed", "peak"),
     *_theory_columns("dispersion", "El:", "speed"),

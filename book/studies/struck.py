@@ -60,7 +60,7 @@ Rates = Callable[[Array], Array]
 Places = NDArray[np.intp]
 
 
-@study(option("--case", default="all", says="unlike, resonators, packings or all."))
+@study(option("--case", "unlike, resonators, packings or all.", default="all"))
 def struck(
     case: str = "all", least: float = 0.0, progress: Progress[Any] = iter
 ) -> Report:

@@ -30,7 +30,7 @@ from validation.pictures import Curve, Panel
 from validation.pulses.pulse import MeasureError
 from validation.pulses.sensors import record
 from validation.report.study import Report, option, study
-from validation.report.table import Column, Table
+from validation.report.table import Column, Estimates, Table
 from validation.scenes.checks import SceneError, integer, items, positive
 from validation.scenes.scene import Scene
 from validation.studies.paper import of_momentum
@@ -107,24 +107,19 @@ def modulus(delay: Estimate, nu: float = 0.3, **chain: Any) -> Estimate:
 
 _ROWS = (
     Column("modulus_value", "E of the wall (Pa)", format=".3g"),
-    Column("delay", "delay (s)", error=True),
-    Column("ratio", "peak/first", error=True),
+    Estimates("delay", "delay (s)"),
+    Estimates("ratio", "peak/first"),
 )
 
 
 @study(
     option(
-        "--moduli",
-        read=quantities,
-        default="1e9,3e9,10e9,30e9,70e9,200e9",
-        says="In Pa.",
+        "--moduli", "In Pa.", read=quantities, default="1e9,3e9,10e9,30e9,70e9,200e9"
     ),
-    option("--nu", default=0.3, says="Poisson's ratio of the wall."),
-    option("--velocity", default=0.5, says="Velocity of the struck bead in m/s."),
-    option("--beads", default=20, says="Number of beads."),
-    option(
-        "--sensor", default=10, says="Contact at which the pulses are measured, from 1."
-    ),
+    option("--nu", "Poisson's ratio of the wall.", default=0.3),
+    option("--velocity", "Velocity of the struck bead in m/s.", default=0.5),
+    option("--beads", "Number of beads.", default=20),
+    option("--sensor", "Contact at which the pulses are measured, from 1.", default=10),
 )
 def wall(
     moduli: Sequence[Any] = MODULI,

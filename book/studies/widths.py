@@ -21,7 +21,7 @@ from validation.lattice.simulate import repeated
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import compared, tolerances
 from validation.report.study import Report, study
-from validation.report.table import Column, Table, percent
+from validation.report.table import Column, Estimates, Table, percent
 from validation.scenes.chains import DIAMETER
 from validation.studies.paper import (
     BEADS,
@@ -92,7 +92,7 @@ class Definition:
 _COLUMNS = (
     Column("quantity", "FWHM of"),
     Column("unit", "in"),
-    Column("average", "average", error=True),
+    Estimates("average", "average"),
     Column("error_value"),
     *(
         Column("", f"{line}, {closure}", format=percent)

@@ -54,7 +54,7 @@ def test_errors_of_pulses_and_speeds_are_one_standard_deviation(page):
 
 
 def test_the_law_is_the_chains(page):
-    fitted, A = page["fitted"].data, float(page["chain"].stiffnesses[0])
+    fitted, A = page["fitted"].document(), float(page["chain"].stiffnesses[0])
     assert abs(fitted["k_value"] - 1.5) < fitted["k_error_value"] < 0.005
     assert abs(fitted["A_value"] - A) < fitted["A_error_value"] < 0.04 * A
     assert fitted["correlation_value"] > 0.9

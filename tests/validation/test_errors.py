@@ -24,7 +24,7 @@ from validation.scenes import scenefile
 from validation.scenes.forcing import Damping, Drive
 from validation.scenes.scene import Scene
 from validation.studies import paper, run as runs
-from validation.studies.law import Medium, fit_power
+from validation.studies.law import fit_power
 from validation.waves.newton import Problem, SpecialRatio
 from validation.waves.solver import exact_wave, solve
 
@@ -204,11 +204,10 @@ def test_exact(masses, k, load, finer):
 def test_intervals_of_the_law_are_those_of_their_scatter():
     """The ± of k, ln A and curvature in 100 draws: two to three standard deviations, as of t."""
     rng, force = np.random.default_rng(6), np.geomspace(0.1, 10, 12)
-    medium = Medium.of(Cell((1,), spacing=1))
     true = exact_wave([1], 1.5).c * force ** (1 / 6)
     found = []
     for _ in range(100):
-        fit = fit_power(medium, force, true * (1 + 0.01 * rng.normal(size=12)))
+        fit = fit_power(force, true * (1 + 0.01 * rng.normal(size=12)))
         log = Estimate(math.log(fit.A.value), fit.A.relative_error)
         found.append([(x.value, x.error) for x in (fit.k, log, fit.curvature)])
     values, errors = np.moveaxis(found, 2, 0)

@@ -230,7 +230,11 @@ def _plan(motion: Motion, scheme: Pair | Splitting, rtol: float, **steps: Any) -
 
 
 def _pair_plan(motion: Motion, rtol: float, longest: float) -> tuple[Plan, int]:
-    """Return the plan of an embedded pair, and the greatest number of steps that are tried."""
+    """Return the plan of an embedded pair, and the greatest number of steps that are tried.
+
+    Steps end at the duration, at the end of a drive's ramp and at the knots of its file. The first
+    step is at most `_FIRST` times ``rtol^(1/order)`` of the scene's shortest time.
+    """
     scene = motion.scene
     time = motion.scales.time
     end = float(scene.duration)

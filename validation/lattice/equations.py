@@ -116,7 +116,11 @@ class Motion:
             self.start[0], self.start[n], _ = scene.drive.at(0.0)
 
     def _read_laws(self) -> None:
-        """Read the laws of the contacts and their damping."""
+        """Read the laws of the contacts and their damping.
+
+        Contacts with one law share a `Contact`; ``law_of`` says which one. A coefficient of damping
+        may depend on the exponent, the stiffness and the reduced mass ``1/(1/m_i + 1/m_{i+1})``.
+        """
         scene = self.scene
         damping = scene.damping
         contacts = len(self.stiffnesses)
@@ -317,7 +321,7 @@ class Motion:
             v = math.sqrt(energy / self.masses.mean())
             _check_range("displacement", y)
             _check_range("velocity", v)
-            # What a float cannot tell of the static compression, over the displacement y: the part
+            # The last digit of the static compression in a float, over the displacement y: the part
             # of the motion that rounding may hide.
             static = float(self.rest.max())
             lost = sys.float_info.epsilon * static

@@ -85,7 +85,11 @@ class Run(Pictured):
 
     @cached_property
     def _records(self) -> dict[str, Array]:
-        """All records, by their names in `RECORDS`."""
+        """All records, by their names in `RECORDS`.
+
+        The quantities are computed for all beads near sensors, from the path or the stored samples,
+        and the rows of the sensors are picked out.
+        """
         beads = sensed_beads(self.motion)
         samples: Any = self.samples
         if self.path is not None:

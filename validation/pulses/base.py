@@ -81,13 +81,11 @@ class Fit:
     def correlations(self) -> Array:
         """Mean products of the noise with itself by lag, up to the first lag without any."""
         count = len(self.noise)
-        # Twice as long, so that the end of the noise does not meet its start.
-        spectrum = np.fft.rfft(self.noise, 2 * count)
-        power = np.abs(spectrum) ** 2
-        products = np.fft.irfft(power)[:count] / count
+        sums = scipy.signal.correlate(self.noise, self.noise)
+        products = sums[count - 1 :] / count  # of negative lags, which are alike, none
         unlike = np.append(products, 0.0) <= 0
-        first = int(np.argmax(unlike))
-        return products[: max(1, first)]
+        first = np.argmax(unlike)
+        return np.asarray(products[: max(1, first)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,7 +143,7 @@ class Base:
             criteria.append(squares / scale + 2 * len(fit.sizes))
         exponents = -np.array(criteria) / 2
         weights = scipy.special.softmax(exponents)
-        best = fits[int(np.argmax(weights))]
+        best = fits[np.argmax(weights)]
         return cls(rise, width, x, fits, weights, best)
 
     @classmethod

@@ -86,7 +86,7 @@ def fitted(
         wanted, spline, variance = smoothed(left)
         variance = max(variance, left)
     pulse = spline(x)
-    peak = float(pulse.max())
+    peak = pulse.max()
     share = math.sqrt(variance) / peak
     if share > _LOUDEST:
         raise MeasureError(
@@ -160,7 +160,7 @@ def _read(splines: BSpline, ends: tuple[float, float]) -> Array:
     for f in splines(grid).T:
         # The vertex of the parabola through the highest value and its neighbours: it lies at
         # top - slope/bend, at most one interval away, and there f = f[top] - slope²/(2 bend).
-        top = int(np.argmax(f[1:-1])) + 1
+        top = np.argmax(f[1:-1]) + 1
         before, highest, after = f[top - 1 : top + 2]
         slope = (after - before) / 2
         bend = before - 2 * highest + after

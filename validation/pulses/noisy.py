@@ -144,7 +144,7 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
         pulse = _noisy(t, f, step, unit)
     # Times are known to the last digit of a float: 2e-7 s if they count from 1970.
     farthest = np.abs(t).max()
-    resolution = float(np.spacing(farthest))
+    resolution = np.spacing(farthest)
     numbers = {}
     for name, number in pulse.numbers.items():
         if name == "peak":
@@ -181,7 +181,7 @@ def _noisy(t: Array, f: Array, step: float, unit: str) -> NoisyPulse:
     missing = None
     if base is None:
         base = Base.guessed(means, _noise_by_neighbours(means))
-        spacing = float(np.median(np.diff(t)))
+        spacing = np.median(np.diff(t))
         # About as much as `Base.before` needs: the shortest base, and a width up to the rise.
         wanted = max(2 * width, FEWEST_FOR_BASE * spacing)
         missing = (
@@ -207,12 +207,16 @@ def _noisy(t: Array, f: Array, step: float, unit: str) -> NoisyPulse:
 
 
 def _is_exact(f: Array) -> bool:
-    """True for a record without noise before it first exceeds half of its maximum."""
+    """True for a record without noise before it first exceeds half of its maximum.
+
+    Such a record is, within `_EXACT` of its range, constant at its start, or rises without a fall
+    and with at most one change of the sign of its curvature.
+    """
     swing = f - f[0]
     if swing.max() < _UPRIGHT * -swing.min():
         return False  # the moving mean tells that it is inverted
     least = _EXACT * np.ptp(f)
-    rise = int(np.argmax(swing > swing.max() / 2))
+    rise = np.argmax(swing > swing.max() / 2)
     before = f[:rise]
     early = before[: len(before) // 4]
     if len(early) >= _EARLY and np.ptp(early) < least:
@@ -339,13 +343,13 @@ def _place(t: Array, f: Array) -> tuple[float, float]:
     # The first pulse: from where the mean first exceeds half of its maximum to where it next falls
     # below _LOW of the maximum.
     peak = g.max()
-    start = int(np.argmax(g > peak / 2))
+    start = np.argmax(g > peak / 2)
     fallen = np.append(g[start:] < _LOW * peak, True)
-    end = start + int(np.argmax(fallen))
-    top = start + int(np.argmax(g[start:end]))
+    end = start + np.argmax(fallen)
+    top = start + np.argmax(g[start:end])
     # The sides of the pulse, now by its own top: another pulse may be higher.
     below = np.flatnonzero(g < _LOW * g[top])
-    after = int(np.searchsorted(below, top))
+    after = np.searchsorted(below, top)
     if after in (0, len(below)):
         side = "back" if after else "front"
         raise MeasureError(
@@ -421,7 +425,7 @@ def suggested(t: Array, signal: Array, pulse: NoisyPulse, unit: str) -> str:
         if not 0 < _SURE * error < below.mean() > _SHALLOWEST * swing.max():
             return ""
         constant = charge[inside].mean() / below.mean()
-        constants.append(float(constant))
+        constants.append(constant)
     near, far = constants
     if not 1 / _ALIKE < near / far < _ALIKE:
         return ""

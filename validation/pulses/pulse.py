@@ -251,7 +251,7 @@ class _Grid:
         part = self.f[start:stop]
         # A point is named by its number in the whole grid, not in the part.
         # The highest point; at an end of the record the signal may go on to rise.
-        top = start + int(np.argmax(part))
+        top = start + np.argmax(part)
         if top in (0, len(self.f) - 1):
             end = "end" if top else "start"
             raise MeasureError(f"{_PARTLY} it peaks at the {end} of the record")
@@ -260,12 +260,12 @@ class _Grid:
         # The last point before the top, and the first one behind, at which the signal is below the
         # level: between each of them and its neighbour the signal passes the level.
         below = start + np.flatnonzero(part <= level)
-        place = int(np.searchsorted(below, top))
+        place = np.searchsorted(below, top)
         if place in (0, len(below)):
             side = "back" if place else "front"
             raise MeasureError(f"{_PARTLY} its {side} does not pass half its peak")
-        rise = self._crossing(int(below[place - 1]), level)
-        fall = self._crossing(int(below[place]) - 1, level)
+        rise = self._crossing(below[place - 1], level)
+        fall = self._crossing(below[place] - 1, level)
         return Pulse(arrival, peak, rise, fall)
 
     def _crossing(self, i: int, level: float) -> float:
@@ -277,7 +277,10 @@ class _Grid:
         return float(min(passed, default=high))
 
     def _crest(self, low: float, high: float) -> tuple[float, float]:
-        """Return the time and value of the signal's maximum between two times."""
+        """Return the time and value of the signal's maximum between two times.
+
+        The maximum of each smooth part is at an end or at a zero of its interpolant's derivative.
+        """
         # The signal is smooth between its times alone, and only there a polynomial follows it.
         times = self.signal.times
         inside = times[(times > low) & (times < high)]
@@ -287,8 +290,8 @@ class _Grid:
             flat = _zeros(series.deriv())
             times = np.append(flat, (a, b))
             values = series(times)
-            best = int(np.argmax(values))
-            tops.append((float(values[best]), float(times[best])))
+            best = np.argmax(values)
+            tops.append((values[best], times[best]))
         peak, arrival = max(tops)
         return arrival, peak
 

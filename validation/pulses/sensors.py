@@ -121,17 +121,17 @@ class Recording:
     ----------
     run : Run
         The run.
-    sensors : tuple of Track
+    sensors : sequence of Track
         Dynamic forces at the sensors, and their pulses.
-    speeds : tuple of Reading
+    speeds : sequence of Reading
         Speeds between sensors.
     end : mapping
         Velocity and displacement at the end, by these names, of the bead sensors, counted from 1.
     """
 
     run: Run
-    sensors: tuple[Track, ...]
-    speeds: tuple[Reading, ...]
+    sensors: Sequence[Track]
+    speeds: Sequence[Reading]
     end: Mapping[int, Mapping[str, Estimate]]
 
 
@@ -182,12 +182,12 @@ def record(
     firsts: list[Track] = []
     found: list[Track] = []
     for track, other in zip(tracks(run, velocities), checks, strict=True):
-        firsts += _readings(track, other, _first)
+        firsts += _readings(track, other, lambda signal: [first_pulse(signal)])
         if every:
             found += _readings(track, other, all_pulses)
 
-    def doubt(first: Track, second: Track, sites: float) -> str:
-        """Return the reason why two sensors do not see one pulse; "" if they may.
+    def doubt(first: Track, second: Track, sites: float) -> None:
+        """Raise `MeasureError` if two sensors do not see one pulse.
 
         The argument ``sites`` is the speed between the sensors, in sites per time.
         """
@@ -198,14 +198,13 @@ def record(
         time = _time_of_a_site(motion, between, max(peaks))
         # From site to site the pulse takes 1/sites.
         if 1 / sites < _QUICK * time:
-            return "no wave is so fast: the sensors see different pulses"
+            raise MeasureError("no wave is so fast: the sensors see different pulses")
         # From the arrival at the first sensor until a width before that at the second one
         start = first.numbers["arrival"].value
         end = second.numbers["arrival"].value - second.numbers["fwhm"].value
         looks = np.linspace(start, end, _LOOKS)
         if end > start and second.force(looks).max() > peaks[0] / 2:
-            return "another pulse passes the second sensor before"
-        return ""
+            raise MeasureError("another pulse passes the second sensor before")
 
     # Errors of both arrivals are added: in the other run's speed they may cancel.
     speeds = speeds_between(firsts, operator.add, doubt)
@@ -213,7 +212,7 @@ def record(
         i + 1: compared(partial(_state_at_end, bead=i), runs)
         for i in scene.bead_sensors
     }
-    return Recording(run, tuple(found or firsts), speeds, end)
+    return Recording(run, found or firsts, speeds, end)
 
 
 def _state_at_end(run: Run, bead: int) -> dict[str, float]:
@@ -250,7 +249,7 @@ def tracks(
     run: Run,
     velocities: Container[str] = (),
     every: int = 1,
-) -> tuple[Track, ...]:
+) -> list[Track]:
     """Return the dynamic forces at the sensors of a run; beads first.
 
     Parameters
@@ -282,9 +281,6 @@ def tracks(
                 signal: Signal = spline(run.time[::every], samples[::every])
             else:
                 signal = run.signal(kind, i, quantity)
-            dynamic = signal
-            if static:
-                dynamic = _above(signal, static)
             place = _place(scene, x, kind, i)
             found.append(
                 Track(
@@ -294,10 +290,10 @@ def tracks(
                     static,
                     quantity=quantity,
                     along=place,
-                    force=dynamic,
+                    force=_above(signal, static),
                 )
             )
-    return tuple(found)
+    return found
 
 
 def _place(scene: Scene, x: Array, kind: str, i: int) -> dict[str, float]:
@@ -341,11 +337,6 @@ def forces_at_start(scene: Scene) -> dict[str, float]:
     return forces
 
 
-def _first(signal: Signal) -> list[Pulse]:
-    """Measure the first pulse alone."""
-    return [first_pulse(signal)]
-
-
 def _readings(
     track: Track, other: Track, pulses: Callable[[Signal], list[Pulse]]
 ) -> list[Track]:
@@ -357,7 +348,7 @@ def _readings(
     found: list[Track] = []
     for pulse in measured:
         # One run may see a pulse more: those that arrive at nearly one time are the same pulse.
-        same = min(known, key=partial(_delay, pulse))
+        same = min(known, key=lambda other: abs(other.arrival - pulse.arrival))
         numbers = compared(readings, [pulse, same])
         if numbers["peak"].relative_error < _HIDDEN:
             found.append(replace(track, numbers=numbers, pulse=len(found) + 1))
@@ -367,16 +358,11 @@ def _readings(
     return found
 
 
-def _delay(pulse: Pulse, other: Pulse) -> float:
-    """Return the time between the arrivals of two pulses."""
-    return abs(other.arrival - pulse.arrival)
-
-
 def speeds_between(
     sensors: Sequence[Reading],
     total: Callable[[float, float], float],
-    doubt: Callable[[Any, Any, float], str] = lambda *_: "",
-) -> tuple[Reading, ...]:
+    doubt: Callable[[Any, Any, float], object] = lambda *_: None,
+) -> list[Reading]:
     """Return the speeds of the pulse from each sensor to the next one of its kind.
 
     Parameters
@@ -386,8 +372,8 @@ def speeds_between(
     total : callable
         Error of a time between two arrivals as a function of the errors of both.
     doubt : callable
-        Reason why two sensors do not see one pulse, as a function of both and of the speed between
-        them in sites per time; "" if they may see one.
+        Function of two sensors and of the speed between them in sites per time, which raises
+        `MeasureError` if they do not see one pulse.
     """
     legs = []
     for first, second in pairwise(sensors):
@@ -397,14 +383,12 @@ def speeds_between(
         leg = replace(first, places=both, numbers={}, missing=None)
         try:
             speeds = _speeds(first, second, total)
-            reason = doubt(first, second, speeds["speed_sites"].value)
-            if reason:
-                raise MeasureError(reason)
+            doubt(first, second, speeds["speed_sites"].value)
             leg = replace(leg, numbers=speeds)
         except MeasureError as error:
             leg = replace(leg, missing=str(error))
         legs.append(leg)
-    return tuple(legs)
+    return legs
 
 
 def _speeds(

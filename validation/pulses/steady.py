@@ -123,7 +123,7 @@ def _measured(
     rough = chain.passages(chain.run(distant, chain.crossing(far), less))
     # The accurate run ends when the leading pulse has passed all places, and a place's time later:
     # the front of a later, slower pulse is no leading pulse.
-    passed = float(rough["end"][:PLACES].max())
+    passed = rough["end"][:PLACES].max()
     until = (1 + 1 / PLACES) * passed
     fine = chain.passages(chain.run(near, until, rtol))
     numbers = chain.numbers(fine)
@@ -149,7 +149,7 @@ def _measured(
     worst = np.max(relative, axis=0)
     if np.isnan(worst).all():
         raise MeasureError("not steady: the pulse does not arrive later at each place")
-    best = int(np.nanargmin(worst))
+    best = np.nanargmin(worst)
     measured = {}
     for name, values in numbers.items():
         value = float(values[1 + best])
@@ -159,7 +159,7 @@ def _measured(
     decayed = math.exp(-measured["decay"].value * farther_sites)
     expected = fine["peak"][-1] * decayed
     ratios = rough["highest"][-1] / expected
-    higher = float(np.mean(ratios))
+    higher = np.mean(ratios)
     if not abs(higher - 1) <= STEADY:
         raise MeasureError(
             f"not steady: at {far} sites the highest pulse has {higher:.3g} times the force that "
@@ -208,7 +208,7 @@ class StruckDimer:
         found: dict[str, list[float]] = {}
         for contact in sensors:
             force = run.signal("contact", contact)
-            highest = float(force(force.times).max())
+            highest = force(force.times).max()
             try:
                 pulse = first_pulse(force, low)
                 strain = first_pulse(force, low, 0.5**self.k)
@@ -301,8 +301,5 @@ def stored(path: Path) -> Iterator[tuple[dict[Key, Point], Callable[[Point], Non
     except (sqlite3.Error, ValueError, TypeError, LookupError) as error:
         if isinstance(error, Refusal):
             raise
-        # The first name beside the file that is free
-        number = 2
-        while (free := path.with_stem(f"{path.stem}-{number}")).exists():
-            number += 1
-        raise InputError(f"file is {path}: {error}", file=str(free)) from None
+        beside = path.with_stem(f"{path.stem}-2")
+        raise InputError(f"file is {path}: {error}", file=str(beside)) from None

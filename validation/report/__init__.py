@@ -8,7 +8,7 @@ To add a study, write one file in `validation.studies`, its test, a line in ``ST
 
 
     @study(
-        option("--k", default=1.5, says="Exponent."),
+        option("--k", "Exponent.", default=1.5),
         page="reference",
         examples=["lwa-validate cubes --k 2"],
     )
@@ -18,7 +18,7 @@ To add a study, write one file in `validation.studies`, its test, a line in ``ST
         columns = (Column("n", "n"), Column("power_value", "n^k"))
         return Report(f"powers, k = {k:g}", (Table(columns, rows, "rows"),))
 
-A number with an error is an `lwa.Estimate` in a `Column` with ``error=True``; what must hold is a
+A number with an error is an `lwa.Estimate` in a column `Estimates`; what must hold is a
 `Finding`; a picture is a `Panel` of curves. Text, JSON, CSV, ``--plot``, the progress and the exit
 status follow. The same file in ``book/studies`` ends with ``cubes.main()`` and is a program.
 """

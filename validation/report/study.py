@@ -24,11 +24,21 @@ import click
 
 from lwa.base.exact import InputError, read_exact
 from lwa.base.files import reason
+from lwa.base.frozen import Estimate
 from lwa.base.progress import bar, shown
 from lwa.command.cli import HELP, called, help_end, run as run_command
 from lwa.command.options import Read, Reader, Words, count, quantities
 from validation.pictures import SUFFIXES, Panel, Pictured
-from validation.report.table import WIDTH, Finding, Table, findings_table, plain, wrap
+from validation.report.table import (
+    WIDTH,
+    Column,
+    Estimates,
+    Finding,
+    Table,
+    findings_table,
+    plain,
+    wrap,
+)
 from validation.scenes.checks import finite
 
 P = ParamSpec("P")
@@ -48,17 +58,18 @@ class Report(Pictured):
     ----------
     title : str
         Description of the computation, in one line or a few.
-    tables : tuple of Table
+    tables : sequence of Table
         Tables; text shows those with column labels. JSON has a table under its key, and tables
         without a key in the list ``tables``.
-    findings : tuple of Finding
+    findings : sequence of Finding
         Numbers with bounds. In a report with tables, text shows only the findings that fail.
-    panels : tuple of Panel
+    panels : sequence of Panel
         Panels of the picture.
-    notes : tuple of str
+    notes : sequence of str
         Explanations below the tables.
     data : mapping
-        Entries that go to JSON unchanged.
+        Entries of JSON by the names of columns: estimates become two numbers, and a dot stands for
+        an entry of a mapping.
 
     Examples
     --------
@@ -72,10 +83,10 @@ class Report(Pictured):
     """
 
     title: str
-    tables: tuple[Table, ...] = ()
-    findings: tuple[Finding, ...] = ()
-    panels: tuple[Panel, ...] = ()
-    notes: tuple[str, ...] = ()
+    tables: Sequence[Table] = ()
+    findings: Sequence[Finding] = ()
+    panels: Sequence[Panel] = ()
+    notes: Sequence[str] = ()
     data: Mapping[str, Any] = field(default_factory=dict)
 
     def __repr__(self) -> str:
@@ -126,7 +137,11 @@ class Report(Pictured):
 
         With findings: ``ok``, ``findings``, and KEY_value of each finding that has a key.
         """
-        result: dict[str, Any] = dict(plain(self.data))
+        columns = []
+        for name, value in self.data.items():
+            kind = Estimates if isinstance(value, Estimate) else Column
+            columns.append(kind(name))
+        (result,) = Table(columns, [self.data]).document()
         unnamed = []
         for table in self.tables:
             if table.key:
@@ -158,7 +173,7 @@ class Report(Pictured):
                 return table.csv()
         return self.tables[0].csv()  # its header
 
-    def pictured(self) -> tuple[Panel, ...]:
+    def pictured(self) -> Sequence[Panel]:
         """The panels, curves and maps, of which a picture of the result is made."""
         return self.panels
 
@@ -284,9 +299,11 @@ def printed_as(style: str, report: Report) -> str:
 
 
 def option(
-    *names: str,
+    name: str,
+    says: str,
+    *,
+    to: str | None = None,
     default: Any = None,
-    says: str = "",
     read: Reader | None = None,
     **settings: Any,
 ) -> Any:
@@ -294,12 +311,14 @@ def option(
 
     Parameters
     ----------
-    *names : str
-        Flags of the option, and the parameter's name where it differs from them.
-    default : object
-        Default value, shown in the help.
+    name : str
+        The option with its dashes.
     says : str
         Help text.
+    to : str, optional
+        Name of the parameter, where it differs from the option's.
+    default : object
+        Default value, shown in the help.
     read : callable, optional
         Reader of the text, a key of `READERS`; if none is given, `number` for a default that is a
         float, and `count` for an integer.
@@ -313,6 +332,7 @@ def option(
         # The default becomes a text, which the reader takes and a refusal proposes.
         default = default and str(default)
         settings |= {"type": Read(read, default), "metavar": READERS[read]}
+    names = filter(None, (name, to))
     return click.option(*names, default=default, help=says, **settings)
 
 
@@ -383,7 +403,7 @@ def output_option(name: str, suffixes: Sequence[str], says: str) -> Any:
     ) -> Path | None:
         return None if path is None else output_file(called(given), path, suffixes)
 
-    return option(name, callback=read, metavar="FILE", type=click.Path(), says=says)
+    return option(name, says, callback=read, metavar="FILE", type=click.Path())
 
 
 def number(text: str, name: str) -> float:
@@ -400,7 +420,7 @@ READERS: dict[Any, str] = {
 """Readers of options, with the words for their texts in the help."""
 
 EXPONENT = option(
-    "--k", read=number, default="3/2", says="Exponent k of the force F = A δ^k."
+    "--k", "Exponent k of the force F = A δ^k.", read=number, default="3/2"
 )
 
 
@@ -423,9 +443,9 @@ _OUTPUT = (
     ),
     option(
         "--format",
-        "style",
+        "How to print the result.",
+        to="style",
         type=Words(("text", "json", "csv")),
         default="text",
-        says="How to print the result.",
     ),
 )

@@ -23,9 +23,6 @@ WIDTH = 100
 Row = Mapping[str, Any]
 """Cells of a table by the keys of its columns, or by the label of a column that has no key."""
 
-Lines = Sequence[Sequence[str]]
-"""Lines of cells as texts, the first of them the column labels."""
-
 
 @dataclass(frozen=True)
 class Column:
@@ -42,15 +39,11 @@ class Column:
     format : str or callable
         Format of printed cells: a format specification such as ".1e", or a function of the cell; of
         cells that are estimates the number of digits, at most.
-    error : bool
-        True for cells that are `lwa.Estimate` (or None): in JSON two numbers, KEY_value and
-        KEY_error_value.
     """
 
     key: str = ""
     label: str = ""
     format: str | Callable[[Any], str] = ""
-    error: bool = False
 
     @property
     def name(self) -> str:
@@ -75,13 +68,19 @@ class Column:
         return format(cell, self.format or digits)
 
     def values(self, name: str, cell: Any) -> dict[str, Any]:
+        """Return the JSON names and values of a cell."""
+        return {name: plain(cell)}
+
+
+class Estimates(Column):
+    """Column of cells that are `lwa.Estimate` (or None): KEY_value and KEY_error_value in JSON."""
+
+    def values(self, name: str, cell: Any) -> dict[str, Any]:
         """Return the JSON names and values of a cell.
 
-        >>> Column(error=True).values("speed.m1", Estimate(2.0, 0.25))
+        >>> Estimates().values("speed.m1", Estimate(2.0, 0.25))
         {'speed_value.m1': 2.0, 'speed_error_value.m1': 0.25}
         """
-        if not self.error:
-            return {name: plain(cell)}
         # The endings belong to the name of the mapping, not to its entries.
         head, dot, entry = name.partition(".")
         return {
@@ -161,7 +160,7 @@ class Table:
     def csv(self) -> str:
         """The table as CSV: a header of names and a line for each row, with empty cells for None.
 
-        >>> print(Table((Column("k"), Column("c", error=True)), [{"k": 2}]).csv(), end="")
+        >>> print(Table((Column("k"), Estimates("c")), [{"k": 2}]).csv(), end="")
         k,c_value,c_error_value
         2,,
         """
@@ -327,7 +326,7 @@ def plain(value: Any) -> Any:
     return value
 
 
-def aligned(lines: Lines, width: int = WIDTH) -> str:
+def aligned(lines: Sequence[Sequence[str]], width: int = WIDTH) -> str:
     """Align columns of text: the first one left, the others right.
 
     Columns beyond the width of a line follow in a block of their own, after the first column.

@@ -15,6 +15,7 @@ from itertools import chain, islice, pairwise
 from pathlib import Path
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
 
 from lwa.base import files
@@ -39,7 +40,7 @@ HEADER = re.compile(
 """Pattern of the name and the unit of a column: "Force (N)", "Force [N]", "Force in N"; "Force N",
 "Force_N" and "Force/N" end in a usual unit."""
 
-# What recorders write in place of a value beyond their range, and the numbers that SCPI has for it
+# Texts of recorders in place of a value beyond their range, and the numbers that SCPI has for it
 # and for no number (SCPI-99, vol. 1, 7.2.1)
 _BEYOND = re.compile(r"[-+]?o(l|vld?|ver(load|flow|range)?)", re.IGNORECASE)
 _CLOCK = re.compile(r"(?:[-\d./]+[T ])?(\d\d):(\d\d):(\d\d\.?\d*)Z?")
@@ -234,7 +235,7 @@ class Cells:
         infinite = np.isinf(table[start:end])
         beyond = np.flatnonzero(infinite.any(axis=1))
         if len(beyond):
-            at, _ = self._line(start + int(beyond[0]))
+            at, _ = self._line(start + beyond[0])
             raise SceneError(
                 f"line {at} holds ∞, the signal is clipped: a larger range of the recorder is "
                 "wanted"
@@ -259,12 +260,9 @@ def runs(flags: ArrayLike) -> list[tuple[int, int]]:
     >>> runs([False, True, True, False, True])
     [(1, 3), (4, 5)]
     """
-    marked = np.asarray(flags, bool)
-    changes = np.diff(marked, prepend=False, append=False)
-    edges = np.flatnonzero(changes)
-    # Rising and falling edges take turns.
-    pairs = edges.reshape(-1, 2).tolist()
-    return [(start, end) for start, end in pairs]
+    numbered, _ = scipy.ndimage.label(np.append(flags, False))  # at least one flag
+    parts = scipy.ndimage.find_objects(numbered)
+    return [(part.start, part.stop) for (part,) in parts]
 
 
 def name_of(header: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import dataclass
 from functools import cache, cached_property
@@ -97,17 +98,14 @@ def restitution(ratio: float) -> float:
     2011, EPL 94, 50004, for spheres). As contacts do not pull, it ends where the force is zero
     (Schwager and Pöschel 2007, Granular Matter 9, 465).
     """
+    if ratio == 1:  # the limit of what follows, which is 0/0
+        return math.exp(-2)
     # s = e^{-ζτ} sin(√(1-ζ²) τ)/√(1-ζ²) in units of time of the undamped oscillator; its second
-    # derivative, proportional to the force, vanishes at the phase below.
-    if ratio < 1:
-        turn = math.sqrt(1 - ratio * ratio)
-        phase = math.pi - math.atan2(2 * ratio * turn, 1 - 2 * ratio * ratio)
-        return math.exp(-ratio / turn * phase)
-    # At ζ = 1 the phase over ``turn`` is 0/0, with the limit 2: the share is e^{-2}. A turn of 1e-8
-    # gives it to 2e-9.
-    turn = math.sqrt(ratio * ratio - 1) or 1e-8
-    phase = math.log((ratio + turn) / (ratio - turn))
-    return math.exp(-ratio / turn * phase)
+    # derivative, proportional to the force, vanishes at τ = 2 arccos(ζ)/√(1-ζ²), also for ζ > 1,
+    # where numerator and denominator are imaginary.
+    turn = cmath.sqrt(1 - ratio * ratio)
+    end = 2 * abs(cmath.acos(ratio) / turn)
+    return math.exp(-ratio * end)
 
 
 @cache  # a long chain has few kinds of contacts

@@ -247,7 +247,11 @@ class MeasuredFile(Columns):
         )
 
     def _record(self, columns: Sequence[Column]) -> Array:
-        """Return columns, (rows, columns), in the rows where all of them are numbers."""
+        """Return columns, (rows, columns), in the rows where all of them are numbers.
+
+        Values are in SI if a unit is stated. A column without a number is the times that a step
+        states, ``size`` apart.
+        """
         entries = [self._numbers[c.number] for c in columns if c.number is not None]
         # A record needs numbers in all wanted columns; other columns may have gaps.
         table = np.column_stack(entries)

@@ -165,14 +165,11 @@ class Scene:
         if not math.isfinite(sum(self.spacings)):
             raise SceneError("the chain's length comes out as inf: choose other units")
         self._read_laws()
-        for name, act in (
-            ("gravity", "pull towards"),
-            ("precompression", "push against"),
-        ):
+        for name in ("gravity", "precompression"):
             value = getattr(self, name)
             # Without a wall nothing holds a chain that is pushed, and it has no equilibrium.
             if value < 0 or (value > 0 and self.wall is None):
-                wanted = f"it must be positive and needs a wall to {act}"
+                wanted = "it must be positive and needs a wall"
                 raise SceneError(f"{name} is {value:g}: {wanted}")
         for name, count in (
             ("contact_sensors", self.contact_count),
@@ -212,7 +209,7 @@ class Scene:
         distances = (*self.spacings, self.spacings[-1] / 2)[: self.contact_count]
         passed = -np.diff(y)[: self.contact_count] > distances
         if passed.any():
-            i = int(np.argmax(passed))
+            i = np.argmax(passed)
             raise SceneError(
                 f"displacements[{i}] is {y[i]:g}, positive towards the wall: bead {i + 1} would "
                 f"start behind bead {i + 2}, or inside the wall, {distances[i]:g} from it"

@@ -19,9 +19,10 @@ import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, partial
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from lwa.base.exact import shorten
 from lwa.base.files import (
@@ -47,7 +48,7 @@ from validation.scenes.forcing import DAMPINGS, Damping, Drive
 from validation.scenes.measured import MeasuredFile
 from validation.scenes.scene import Scene, contacts_of
 
-MOST_BEADS = 1_000_000  # they are read in 2 s and 40 MB
+MOST_BEADS = 1_000_000  # so many are read in 2 s and 40 MB
 _STATED = ("columns", "units", "step")  # keys on the file of a drive
 # Keys of a striker or a defect that is a bead unlike the others
 _OTHER = ("like", "mass")
@@ -206,22 +207,19 @@ def _passage(fields: Mapping[str, Any]) -> float:
     the compression that holds its energy, ``A δ^{k+1}/(k+1) = m v²/2``: of equal spheres 0.9 of
     the pulse's time.
     """
-    masses = fields["masses"]
+    masses = np.array(fields["masses"])
     stiffnesses = [*fields["stiffnesses"]]
     if "wall" in fields:
         stiffnesses.append(fields["wall"])
     k = fields["k"]
     (velocity,) = fields["velocities"]
     # A heavy bead is as fast as the momentum of a light striker makes it.
-    speed = velocity * masses[0] / max(masses)
+    speed = velocity * masses[0] / masses.max()
     # At the wall the last bead moves alone.
-    beads = pairwise([*masses, masses[-1]])
-    total = last = 0.0
-    for (first, second), A in zip(beads, stiffnesses, strict=False):
-        energy = max(first, second) * speed**2 / 2
-        last = (energy * (k + 1) / A) ** (1 / (k + 1)) / speed
-        total += last
-    return 2 * (total + last)
+    heavier = np.maximum(masses, np.append(masses[1:], 0))[: len(stiffnesses)]
+    energies = heavier * speed**2 / 2
+    times = (energies * (k + 1) / stiffnesses) ** (1 / (k + 1)) / speed
+    return float(2 * (times.sum() + times[-1:].sum()))
 
 
 def _sensors(count: int) -> Reader:

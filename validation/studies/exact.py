@@ -6,18 +6,16 @@ from typing import Any
 
 import sympy as sp
 
-from lwa import Estimate
 from lwa.base.words import QUANTITIES
 from lwa.command.options import quantities
 from validation.report.study import EXPONENT, Report, option, study
-from validation.report.table import Column, Table
-from validation.waves.profile import Number
+from validation.report.table import Column, Estimates, Table
 from validation.waves.solver import exact_wave, resonances as special_ratios
 
 _COLUMNS = (
     Column("of", "of"),
-    Column("amplitude", "amplitude", error=True),
-    Column("fwhm", "FWHM (D)", error=True),
+    Estimates("amplitude", "amplitude"),
+    Estimates("fwhm", "FWHM (D)"),
 )
 _NOTE = """\
 Strain and force of a contact, velocity of a bead m1. Strains scale with the peak force F as
@@ -29,10 +27,7 @@ _ERRORS = "residual, tail and rounding"
 @study(
     EXPONENT,
     option(
-        "--masses",
-        read=quantities,
-        default="1",
-        says="Mass of all beads, or two in turn.",
+        "--masses", "Mass of all beads, or two in turn.", read=quantities, default="1"
     ),
     page="exact",
     examples=(
@@ -51,33 +46,31 @@ def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
     ``amplitude_value``, ``fwhm_value``; ``rows``, the printed table.
     """
     wave = exact_wave(masses, k)
-    # The numbers that text has in its title, under their names in JSON
+    # The numbers of the wave as a whole, then those of the rows again, by quantity.
     data: dict[str, Any] = {
         "k_value": wave.k,
         "masses_value": wave.masses,
         "half_period_value": wave.half_period,
         "residual_value": wave.residual,
         "solitary": wave.solitary,
+        "c2": wave.estimate("c2"),
+        "c": wave.estimate("c"),
+        "tail": wave.estimate("tail"),
     }
     rows: list[dict[str, Any]] = []
-    # The numbers of the wave as a whole, then the same ones as in the rows, by quantity.
-    numbers: tuple[Number, ...] = ("c2", "c", "tail")
-    found: dict[str, Estimate] = {name: wave.estimate(name) for name in numbers}
     for quantity in QUANTITIES:
         amplitude = wave.estimate("peak", quantity)
         fwhm = wave.estimate("fwhm", quantity)
         rows.append({"of": quantity, "amplitude": amplitude, "fwhm": fwhm})
-        found |= {f"amplitude.{quantity}": amplitude, f"fwhm.{quantity}": fwhm}
-    columns = [Column(name, error=True) for name in found]
-    data |= Table(columns, [found]).document()[0]
+        data |= {f"amplitude.{quantity}": amplitude, f"fwhm.{quantity}": fwhm}
     table = Table(_COLUMNS, rows, "rows", note=_NOTE, errors=_ERRORS)
     # The wave's own masses: a ratio that was given in seven digits is a special one.
     return Report(
         f"masses {wave.masses[0]:.6g}, {wave.masses[1]:.6g}; k = {wave.k:g}; A = D = 1\n"
-        f"c² = {wave.estimate('c2')}, c = {wave.estimate('c')}\n"
+        f"c² = {data['c2']}, c = {data['c']}\n"
         f"solitary: tail {wave.tail:.0e} of the peak strain, residual {wave.residual:.0e}",
         (table,),
-        panels=tuple(wave.pictured()),
+        panels=wave.pictured(),
         data=data,
     )
 
@@ -95,7 +88,7 @@ _RATIOS = (
 @study(
     EXPONENT,
     # Two are published (Jayaprakash et al. 2011); the third shows how the row goes on.
-    option("--count", default=3, says="Number of mass ratios, from the largest down."),
+    option("--count", "Number of mass ratios, from the largest down.", default=3),
     page="exact",
     examples=("lwa-validate resonances --count 1",),
 )

@@ -35,7 +35,7 @@ from lwa.command.options import quantities
 from lwa.spheres.beads import FILE, read_materials, spheres as read_spheres
 from validation.pictures import Curve, Panel
 from validation.report.study import Report, option, study
-from validation.report.table import Column, Table
+from validation.report.table import Column, Estimates, Table
 from validation.scenes.checks import SceneError, numeric
 from validation.scenes.columns import Stated
 from validation.scenes.measured import MeasuredFile
@@ -53,7 +53,7 @@ MOST = 4.0
 LARGEST = 700.0  # largest |ln A|: floats end at e^709
 RATIO_ERROR = 1e-10
 """Relative error of R(k), measured between the nodes of its interpolant."""
-_POWER = (Column("", "F = A δ^k"), Column("", "value", error=True))
+_POWER = (Column("", "F = A δ^k"), Estimates("", "value"))
 _UNITS = "A bead's mass or the distance is 1 as none is given: see --masses, --spacing, --spheres."
 _NOTE = "±: 95 % intervals by the scatter of the data."
 _FEWEST = 6  # pulses: three more than the coefficients of the curvature's fit
@@ -71,22 +71,18 @@ _EXAMPLE = """force (N),force_error (N),speed (m/s),speed_error (m/s)
 
 @study(
     click.argument("data", type=click.Path()),
-    option("--masses", read=quantities, says="Mass of a bead; by default 1."),
+    option("--masses", "Mass of a bead; by default 1.", read=quantities),
     option(
-        "--spacing",
-        read=read_exact,
-        says="Distance between bead centers; by default 1.",
+        "--spacing", "Distance between bead centers; by default 1.", read=read_exact
     ),
     option(
         "--spheres",
+        "File of equal spheres, in place of --masses.",
         metavar="FILE",
         type=click.Path(),
-        says="File of equal spheres, in place of --masses.",
     ),
     option(
-        "--material",
-        metavar="NAME",
-        says="Material in this file whose modulus E is wanted.",
+        "--material", "Material in this file whose modulus E is wanted.", metavar="NAME"
     ),
     print_option(
         "--example",
@@ -127,7 +123,12 @@ def law(
     else:
         content = load(spheres, "a list of spheres", lambda x: entries(x, "the file"))
         cell = Cell.of_spheres(read_spheres(content))
-    fit = fit_power(Medium.of(cell), force, speed, weight)
+    if cell.size > 1:
+        raise SceneError(f"the cell has {cell.size} beads: equal beads are wanted")
+    mass = numeric(cell.masses[0], "mass")
+    # V²/D² · m does not depend on the units of mass and length.
+    unit_speed = numeric(cell.spacing, "spacing") / math.sqrt(mass)
+    fit = fit_power(force, speed / unit_speed, weight)
     numbers = {"k": fit.k, "A": fit.A}
     if material is not None:
         if spheres is None:
@@ -153,24 +154,27 @@ def law(
     if not spheres and not (masses and spacing):
         notes.append(_UNITS)
     rows = []
-    values = {
-        "correlation_value": fit.correlation,
-        "one_power": fit.one_power,
-    }
     for name, number in numbers.items():
         rows.append({"F = A δ^k": name + units.get(name, ""), "value": number})
-        values |= {f"{name}_value": number.value, f"{name}_error_value": number.error}
     return Report(
         f"{len(force)} pulses, forces {force[0]:.4g} … {force[-1]:.4g}{' N' * file.si}",
         (Table(_POWER, rows),),
         panels=(Panel(*axes, curves, scale="xy"),),
         notes=(*file.notes, *notes, _NOTE),
-        data=values,
+        data={
+            "correlation_value": fit.correlation,
+            "one_power": fit.one_power,
+            **numbers,
+        },
     )
 
 
 def _pulses(file: MeasuredFile) -> tuple[Array, Array, Array | None]:
-    """Return rising forces of `_FEWEST` or more pulses, their speeds and weights (None if none)."""
+    """Return rising forces of `_FEWEST` or more pulses, their speeds and weights (None if none).
+
+    Refused are fewer pulses or forces, numbers that are not positive, which have no logarithm, and
+    standard deviations of the forces or of the speeds alone.
+    """
     errors = [n for n in ("force_error", "speed_error") if n in file.names]
     # Files of other programs call the speed of a pulse its velocity.
     name = "speed"
@@ -222,35 +226,21 @@ def speed_ratio(k: Any) -> Array:
     return np.asarray(_series()(np.clip(k, 1, 4)))
 
 
-@dataclass(frozen=True, eq=False)
-class Medium:
-    """Mass and spacing of the chain of equal beads in which pulses were measured."""
+def log_stiffness(slope: Any, constant: Any) -> Array:
+    """Return ln A of the contact law whose pulses have ``ln V = slope · ln F + constant``.
 
-    mass: float  # m
-    spacing: float  # D
+    V is the speed and F the peak contact force of a pulse, in a chain of mass and spacing 1. The
+    speed law of the module's docstring, ``V² = R(k) 2/(k+1) A^{1/k} F^{(k-1)/k}``, has the
+    logarithm::
 
-    @classmethod
-    def of(cls, cell: Cell) -> Medium:
-        """Make the medium of a chain whose cell is one bead, all numbers."""
-        if cell.size > 1:
-            raise SceneError(f"the cell has {cell.size} beads: equal beads are wanted")
-        mass = numeric(cell.masses[0], "mass")
-        return cls(mass, numeric(cell.spacing, "spacing"))
+        ln V = ln(R(k) 2/(k+1))/2 + ln A/(2k) + (k-1)/(2k) ln F,
 
-    def log_stiffness(self, slope: Any, constant: Any) -> Array:
-        """Return ln A of the contact law whose pulses have ``ln V = slope · ln F + constant``.
-
-        V is the speed and F the peak contact force of a pulse. The speed law of the module's
-        docstring, ``V²/D² = R(k) 2/((k+1) m) A^{1/k} F^{(k-1)/k}``, has the logarithm::
-
-            ln V = ln D + ln(R(k) 2/((k+1) m))/2 + ln A/(2k) + (k-1)/(2k) ln F,
-
-        where all but the last term is the constant. This is solved for ln A.
-        """
-        k = _exponent(slope)
-        # ln(V/D) at A = F = 1
-        log_rate = np.log(2 * speed_ratio(k) / ((k + 1) * self.mass)) / 2
-        return np.asarray(2 * k * (constant - math.log(self.spacing) - log_rate))
+    where all but the last term is the constant. This is solved for ln A.
+    """
+    k = _exponent(slope)
+    # ln V at A = F = 1
+    log_speed = np.log(2 * speed_ratio(k) / (k + 1)) / 2
+    return np.asarray(2 * k * (constant - log_speed))
 
 
 def _exponent(slope: Any) -> Any:
@@ -295,17 +285,13 @@ def weights(
     return np.asarray(1 / deviation)
 
 
-def fit_power(
-    medium: Medium, force: Array, speed: Array, weight: Array | None = None
-) -> PowerFit:
+def fit_power(force: Array, speed: Array, weight: Array | None = None) -> PowerFit:
     """Fit one power ``F = A δ^k`` to pulses by least squares of ln V.
 
     Parameters
     ----------
-    medium : Medium
-        The chain.
     force, speed : array
-        Peak contact forces and speeds (N,) of four or more pulses.
+        Peak contact forces F and speeds ``V √m/D`` (N,) of four or more pulses.
     weight : array, optional
         Weights (N,), see `weights`; by default all pulses weigh the same.
 
@@ -323,7 +309,7 @@ def fit_power(
     (slope, constant), middle = _fit(x, y, 1, weight)
     k = _exponent(slope)
     at_zero = constant - slope * middle
-    log_A = medium.log_stiffness(slope, at_zero)
+    log_A = log_stiffness(slope, at_zero)
     if not LEAST <= k[0] <= MOST:
         wanted = f"laws with k from {LEAST:g} to {MOST:g} are read"
         raise SceneError(f"k is {k[0]:.3g} by the best fit: {wanted}")
@@ -350,7 +336,7 @@ def fit_power(
         _interval(k),
         stiffness(log_A, float(k[0])),
         float(np.corrcoef(k, log_A)[0, 1]),
-        stiffness(medium.log_stiffness(sixth, hertz), _HERTZ),
+        stiffness(log_stiffness(sixth, hertz), _HERTZ),
         _interval(curvature),
     )
 
@@ -366,7 +352,7 @@ def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, 
         w = weight
         least = 1.0
     # Slope and constant are uncorrelated about it.
-    middle = float(np.average(x, weights=w**2))
+    middle = np.average(x, weights=w**2)
     best, covariance = np.polyfit(x - middle, y, degree, w=w, cov="unscaled")
     freedom = len(x) - degree - 1
     residuals = y - np.polyval(best, x - middle)

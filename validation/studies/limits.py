@@ -17,7 +17,7 @@ import sympy as sp
 from lwa import Cell, Estimate, homogenize
 from validation.pulses.pulse import derived
 from validation.report.study import Report, study
-from validation.report.table import Column, Finding, Table, percent
+from validation.report.table import Column, Estimates, Finding, Table, percent
 from validation.waves.solver import exact_wave
 
 # Spheres, and two exponents nearer to 1. At 11/10 the second term of an error is 2 % of the first
@@ -61,7 +61,7 @@ _COLUMNS = (
     Column("k", "k"),
     Column("theory"),
     Column("theory_value", "theory", format=".5g"),
-    Column("lattice", "lattice", error=True),
+    Estimates("lattice", "lattice"),
     Column("error_value", "error", format=percent),
     Column("bound_value", "bound", format=lambda bound: percent(bound).lstrip("+")),
     Column("ok", "holds"),
@@ -93,7 +93,7 @@ def limits() -> Report:
     return Report(
         "The theory's limit k → 1 on the lattice",
         (Table(_COLUMNS, records, "rows", note=_NOTE, errors=_ERRORS),),
-        tuple(map(finding, records)),
+        [*map(finding, records)],
     )
 
 

@@ -22,10 +22,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
-import scipy
 import sympy as sp
 
 from lwa import (
@@ -47,14 +47,16 @@ from validation.lattice.signal import sensors_of
 from validation.lattice.simulate import repeated, simulate, simulate_many
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import (
+    Piecewise,
     Pulse,
     compared,
     exponent,
     first_pulse,
+    highest_pulse,
     tolerances,
 )
 from validation.report.study import Report, option, study
-from validation.report.table import Column, Table, percent
+from validation.report.table import Column, Estimates, Table, percent
 from validation.scenes.chains import DIAMETER, PTFE, PTFE_BEAD, STEEL, STEEL_BEAD
 from validation.scenes.checks import between
 from validation.scenes.scene import Scene
@@ -131,16 +133,12 @@ def of_momentum(wave: CompactWave, momentum: float) -> PhysicalWave:
 
 def bead_fwhm(wave: PhysicalWave) -> float:
     """Return the FWHM of the force of a bead, the mean of its two contacts', as a length."""
-    half = number(wave.bead_force) / 2
-
     # Two arches, a spacing apart, have no FWHM in closed form.
-    def above_half(x: float) -> float:
-        return float(wave.along(x, of="bead")) - half
-
+    along = partial(wave.along, of="bead")
     end = number(wave.wave.width)  # farther than the arch of the farther contact
-    # The wave is even: half of its width is the root on one side, to some fifty roundings.
-    half_width = scipy.optimize.brentq(above_half, 0, end, xtol=1e-14 * end)
-    return 2 * float(half_width)
+    # Fifty points, more than enough: the width is exact to rounding with eight.
+    points = np.linspace(-end, end)
+    return highest_pulse(Piecewise(points, along)).fwhm
 
 
 def passing(run: Run, kind: str = "bead") -> dict[int, Pulse]:
@@ -196,7 +194,7 @@ QUANTITIES = (
 _COLUMNS = (
     Column("quantity", "quantity"),
     Column("unit", "unit"),
-    Column("lattice", "lattice", error=True),
+    Estimates("lattice", "lattice"),
     Column("theory_value.F_m", "by F_m", format=".5g"),
     Column("error_value.F_m", "error", format=percent),
     Column("theory_value.striker", "by striker", format=".5g"),
@@ -210,7 +208,7 @@ Between steel and PTFE, V_s compares peaks of different shape, and is not the pu
 
 
 @study(
-    option("--velocity", default=VELOCITY, says="Velocity of the striker in m/s."),
+    option("--velocity", "Velocity of the striker in m/s.", default=VELOCITY),
     page="column",
     examples=(
         "lwa-validate paper --velocity 2",
@@ -332,7 +330,7 @@ def _panel(run: Run, theory: PhysicalWave) -> Panel:
         wave = theory.curve(run.time - pulses[bead].arrival)
         curves.append(Curve(f"bead {bead}, lattice", run.time, force, f"C{i}-"))
         curves.append(Curve(f"bead {bead}, theory by F_m", run.time, wave, f"C{i}--"))
-    return Panel("time (s)", "force, mean of the bead's contacts (N)", tuple(curves))
+    return Panel("time (s)", "force, mean of the bead's contacts (N)", curves)
 
 
 # --- the figures ---
@@ -340,8 +338,8 @@ def _panel(run: Run, theory: PhysicalWave) -> Panel:
 _DROPS = (
     Column("modulus_value", "E of PTFE (Pa)"),
     Column("height_value", "drop height (m)"),
-    Column("speed", "V_s (m/s)", error=True),
-    Column("force", "F_m (N)", error=True),
+    Estimates("speed", "V_s (m/s)"),
+    Estimates("force", "F_m (N)"),
     Column("theory_value", "V_s theory (m/s)", format=".5g"),
 )
 _WIDTHS = (
@@ -366,15 +364,14 @@ def figures(progress: Progress[Any] = iter) -> Report:
     the first modulus; ``widths``: ``line``, ``stated_error_value`` and ``error_value`` of the FWHM.
     The force records are in the picture alone.
     """
-    records = {N: forces(N) for N in progress([*RECORDED])}
+    panels = []
+    for N in progress([*RECORDED]):
+        (panel,) = forces(N).pictured()
+        panels.append(replace(panel, title=f"{N}:1 chain"))
     scalings = {E: scaling(E) for E in progress(MODULI)}
     # Hertz's law alone demands 1/6, whatever the moduli: the second one is a check.
     exponents = [fitted_exponent(rows) for rows in scalings.values()]
     drops = [row for rows in scalings.values() for row in rows]
-    panels = []
-    for N, run in records.items():
-        (panel,) = run.pictured()
-        panels.append(replace(panel, title=f"{N}:1 chain"))
     panels.append(_scaling_panel(scalings))
     fitted = " and ".join(map(str, exponents))
     return Report(
@@ -383,7 +380,7 @@ def figures(progress: Progress[Any] = iter) -> Report:
             Table(_DROPS, drops, "rows", errors=_COMPARED),
             Table(_WIDTHS, stated_errors(), "widths", note=_WIDTH_NOTE),
         ),
-        panels=tuple(panels),
+        panels=panels,
         notes=(f"V_s ~ F_m^e: e = {fitted}; the paper fits 0.1666.",),
         data={
             "scaling": {
@@ -488,4 +485,4 @@ def _scaling_panel(scalings: dict[float, list[dict[str, Any]]]) -> Panel:
         curves.append(Curve(f"E = {E / 1e9:g} GPa", peaks, speeds, f"C{i}{'os'[i]}"))
         curves.append(Curve("theory, $F_m^{1/6}$", peaks, theory, f"C{i}-"))
     # On logarithmic axes a power is a straight line.
-    return Panel("peak force $F_m$ (N)", "speed $V_s$ (m/s)", tuple(curves), scale="xy")
+    return Panel("peak force $F_m$ (N)", "speed $V_s$ (m/s)", curves, scale="xy")

@@ -26,7 +26,7 @@ from validation.pulses.noisy import (
 from validation.pulses.pulse import MeasureError
 from validation.pulses.sensors import Reading, forces_at_start, record, speeds_between
 from validation.report.study import Report, number, option, study
-from validation.report.table import Column, Table
+from validation.report.table import Column, Estimates, Table
 from validation.scenes.checks import SceneError, one_of, positive
 from validation.scenes.columns import BASES, Stated, read_time
 from validation.scenes.measured import MeasuredFile, Record
@@ -80,19 +80,14 @@ def _pairs(
 COLUMN_OPTIONS = (
     option(
         "--column",
-        "columns",
+        _COLUMN,
+        to="columns",
         callback=_pairs,
         multiple=True,
         metavar="NAME=HEADER|NUMBER",
-        says=_COLUMN,
     ),
     option(
-        "--unit",
-        "units",
-        callback=_pairs,
-        multiple=True,
-        metavar="NAME=UNIT",
-        says=_UNIT,
+        "--unit", _UNIT, to="units", callback=_pairs, multiple=True, metavar="NAME=UNIT"
     ),
 )
 """Options of a study that reads a measured file."""
@@ -101,14 +96,14 @@ RECORD_OPTIONS = (
     *COLUMN_OPTIONS,
     option(
         "--step",
+        "Time from sample to sample, in place of a column, as in --step '0.4 ms'.",
         metavar="TIME",
-        says="Time from sample to sample, in place of a column, as in --step '0.4 ms'.",
     ),
     option(
         "--time-constant",
-        metavar="TIME",
-        says="Time in which sensors lose their charge, which is corrected, as in "
+        "Time in which sensors lose their charge, which is corrected, as in "
         "--time-constant '0.4 ms'.",
+        metavar="TIME",
     ),
 )
 """Options of a study that reads records."""
@@ -209,21 +204,21 @@ class Measured:
         for quantity in ("time", *sorted(quantities)):
             axes.append(f"{quantity} ({BASES[quantity]})" if self.si else quantity)
         time, *signals = axes
-        return Panel(time, ", ".join(signals), tuple(curves), legend_above=True)
+        return Panel(time, ", ".join(signals), curves, legend_above=True)
 
 
 @study(
     click.argument("records", type=click.Path(), nargs=-1, required=True),
     option(
         "--distance",
+        "Distance of neighbouring beads: in m, or in the unit of a file without units.",
         read=number,
-        says="Distance of neighbouring beads: in m, or in the unit of a file without units.",
     ),
     option(
         "--of",
+        "Where sensors sit whose columns do not say it.",
         default="contact",
         type=Words(_KINDS),
-        says="Where sensors sit whose columns do not say it.",
     ),
     *RECORD_OPTIONS,
     page="experiment",
@@ -309,9 +304,9 @@ _COLUMNS = (
     Column("kind"),
     Column("number"),
     Column("quantity"),
-    Column("simulated", "simulated", error=True),
-    Column("measured", "measured", error=True),
-    Column("difference", "difference", error=True),
+    Estimates("simulated", "simulated"),
+    Estimates("measured", "measured"),
+    Estimates("difference", "difference"),
 )
 _COMPARED = (
     "First pulses of dynamic forces. Measured times are shifted by {}, so that the pulses arrive "
@@ -425,7 +420,11 @@ def compare(
 def _by_sensor(
     read: Measured, sensors: Sequence[str], stated: Stated
 ) -> dict[str, Record]:
-    """Return the measured signals by the names of a scene's sensors, at least one."""
+    """Return the measured signals by the names of a scene's sensors, at least one.
+
+    Signals at other sensors are left out. If none is left, the error proposes the file's signals
+    for the scene's first sensors.
+    """
     named = {}
     for signal in read.signals:
         name = f"{signal.kind} {signal.number}"

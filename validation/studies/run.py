@@ -32,7 +32,7 @@ from validation.pulses.sensors import (
     record,
 )
 from validation.report.study import Report, option, output_option, replacing, study
-from validation.report.table import Column, Table, plain
+from validation.report.table import Column, Estimates, Table, plain
 from validation.scenes import scenefile
 from validation.scenes.checks import SceneError
 from validation.scenes.columns import BASES
@@ -104,8 +104,8 @@ def report(recording: Recording, every: bool = False) -> Report:
     columns = (
         Column("", "at the end"),
         Column("bead"),
-        Column("velocity", run.label("velocity"), error=True),
-        Column("displacement", run.label("displacement"), error=True),
+        Estimates("velocity", run.label("velocity")),
+        Estimates("displacement", run.label("displacement")),
     )
     end = [
         {"at the end": f"bead {bead}", "bead": bead, **state}
@@ -114,7 +114,7 @@ def report(recording: Recording, every: bool = False) -> Report:
     return Report(
         title,
         (*tables, Table(columns, end, "end")),
-        panels=tuple(run.pictured()),
+        panels=run.pictured(),
         notes=(missing, note),
         data=data,
     )
@@ -126,7 +126,7 @@ def reading_tables(
     peak: str,
     si: bool,
     every: bool = False,
-) -> tuple[tuple[Table, ...], str]:
+) -> tuple[list[Table], str]:
     """Return the tables ``sensors`` and ``speeds``, and lines on the numbers that are missing.
 
     The table of the sensors, which is the CSV, also holds the speeds of the first pulses from the
@@ -161,13 +161,13 @@ def reading_tables(
     if every:
         columns.append(Column("pulse", "pulse"))
     columns += [
-        Column("arrival", f"arrival{in_time}", _arrival_format(sensors), error=True),
-        Column("peak", peak, error=True),
-        Column("fwhm", f"FWHM{in_time}", error=True),
+        Estimates("arrival", f"arrival{in_time}", _arrival_format(sensors)),
+        Estimates("peak", peak),
+        Estimates("fwhm", f"FWHM{in_time}"),
         Column("static_force_value"),
         missing,
-        Column("speed_sites", error=True),
-        Column("speed", error=True),
+        Estimates("speed_sites"),
+        Estimates("speed"),
     ]
     # The speed from the sensor before, by the sensor at which the pulse arrives
     arriving = {(leg.kind, leg.places[1]): leg.numbers for leg in speeds}
@@ -183,8 +183,8 @@ def reading_tables(
         kind,
         Column("from"),
         Column("to"),
-        Column("speed_sites", f"sites/{time}", error=True),
-        Column("speed", speed, error=True),
+        Estimates("speed_sites", f"sites/{time}"),
+        Estimates("speed", speed),
         missing,
     ]
     leg_rows = [_row("between", leg) for leg in speeds]
@@ -196,7 +196,7 @@ def reading_tables(
     for reading in (*sensors, *speeds):
         if reading.missing:
             lines.append(f"{reading.name}: {reading.missing}")
-    return tuple(tables), "\n".join(lines)
+    return tables, "\n".join(lines)
 
 
 def _row(label: str, reading: Reading) -> dict[str, Any]:
@@ -244,7 +244,7 @@ def print_option(
             context.exit()
 
     settings |= {"is_eager": True, "expose_value": False, "callback": show}
-    return option(name, says=says, **settings)
+    return option(name, says, **settings)
 
 
 SUFFIXES = (".json", ".csv")
@@ -275,13 +275,13 @@ _RTOL = "Relative tolerance. Errors are differences to a more accurate run."
         SUFFIXES,
         "Store the records in a file: .csv or, with the result, .json.",
     ),
-    option("--method", default=COMPILED[0], type=_METHODS, says=_INTEGRATOR),
-    option("--rtol", default=TOLERANCE, says=_RTOL),
+    option("--method", _INTEGRATOR, default=COMPILED[0], type=_METHODS),
+    option("--rtol", _RTOL, default=TOLERANCE),
     option(
         "--pulses",
+        "Measure all pulses at each sensor, not only the first.",
         is_flag=True,
         default=False,
-        says="Measure all pulses at each sensor, not only the first.",
     ),
     page="recipes",
     examples=(

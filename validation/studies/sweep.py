@@ -35,7 +35,7 @@ from validation.lattice.threads import cluster, threads
 from validation.pictures import Curve, Panel
 from validation.pulses.steady import LABELS, Key, Point, point, stored
 from validation.report.study import Report, option, output_file, study
-from validation.report.table import Column, Table, percent
+from validation.report.table import Column, Estimates, Table, percent
 from validation.scenes.checks import Failure, SceneError, items
 
 RANGES = {
@@ -58,16 +58,16 @@ _COLUMNS = (
     # Heads a part of the table.
     Column("k", format="k = {}".format),
     Column("omega", _LABELS["omega"]),
-    Column("width", "width", error=True),
+    Estimates("width", "width"),
     Column("error.linear.width_value", "linear", format=percent),
     Column("error.canonical.width_value", "canonical", format=percent),
-    Column("speed", "speed", error=True),
+    Estimates("speed", "speed"),
     Column("error.linear.speed_value", "linear", format=percent),
     Column("error.canonical.speed_value", "canonical", format=percent),
-    Column("decay", "decay per site", error=True),
+    Estimates("decay", "decay per site"),
     Column("sites", "sites", format="{0[0]} … {0[1]}".format),
     # The columns from here on are for JSON and CSV alone: a terminal has no room.
-    Column("strain_width", error=True),
+    Estimates("strain_width"),
     Column("missing"),
     *(
         Column(f"theory.{closure}.{quantity}_value")
@@ -105,7 +105,7 @@ def report(points: Sequence[Point]) -> Report:
     return Report(
         "The steady pulse of a struck dimer chain",
         (Table(_COLUMNS, rows, "points", by="k", note=_NOTE, errors=_ERRORS),),
-        panels=tuple(_panels(rows)),
+        panels=[*_panels(rows)],
         notes=("\n".join(missing),),
         data={"missing": len(missing)},
     )
@@ -167,7 +167,7 @@ def _panels(rows: Sequence[Row]) -> Iterator[Panel]:
                 line = [row[f"theory.{closure}.{quantity}_value"] for row in rows]
                 curves.append(Curve(name, axis, line))
         scale = "y" if quantity == "decay" else ""
-        yield Panel(_LABELS[x], label, tuple(curves), scale)
+        yield Panel(_LABELS[x], label, curves, scale)
 
 
 _NONE = Estimate(math.nan, math.nan)
@@ -199,7 +199,7 @@ def theory(points: Sequence[Point]) -> dict[tuple[str, str], Array]:
 
 
 def _read(part: Any, name: str) -> list[sp.Expr]:
-    """Read a number, or the numbers of a range start:stop:count, exactly."""
+    """Read a number, or the numbers of a range start:stop:count, both ends included, exactly."""
     texts = str(part).split(":")
     numbers = [read_exact(text, name) for text in texts]
     if len(numbers) == 1:
@@ -266,26 +266,22 @@ _RANGES = "values and ranges start:stop:count, separated by commas."
 
 
 @study(
-    option("--k", "ks", default="5/4:3:8", says=f"Exponents of F = δ^k: {_RANGES}"),
+    option("--k", f"Exponents of F = δ^k: {_RANGES}", to="ks", default="5/4:3:8"),
     option(
-        "--omega", "omegas", default="1/20:1:20", says=f"Mass ratios m2/m1: {_RANGES}"
+        "--omega", f"Mass ratios m2/m1: {_RANGES}", to="omegas", default="1/20:1:20"
     ),
     option(
         "--file",
+        "File of finished points (.sqlite), to be continued.",
         metavar="FILE",
         type=click.Path(),
-        says="File of finished points (.sqlite), to be continued.",
     ),
-    option(
-        "--jobs",
-        read=count,
-        says="Number of threads; by default one a processor.",
-    ),
+    option("--jobs", "Number of threads; by default one a processor.", read=count),
     option(
         "--cluster",
-        "address",
+        "Dask scheduler, in place of threads.",
+        to="address",
         metavar="ADDRESS",
-        says="Dask scheduler, in place of threads.",
     ),
     page="recipes",
     examples=(

@@ -249,7 +249,13 @@ class Problem:
         return inverse - 1 / self.masses[1], derivatives
 
     def _step(self, unknowns: Array) -> Array:
-        """Return the Newton step to be subtracted from the unknowns."""
+        """Return the Newton step to be subtracted from the unknowns.
+
+        The equations ask that the forces are the `rise` of the strains a of these forces, that the
+        force at 0 is the peak's, and the condition of `_closing`. With the response R, the matrix
+        of c² a by the forces, and the slope s of the rise by c² a, the forces' own rows of the
+        Jacobian are ``1 - s R``, ``s a`` by c² and ``-s ∂(R F)/∂(1/m2)``.
+        """
         force = unknowns[:-2]
         c2, inverse = unknowns[-2:]
         first = 1 / self.masses[0]
@@ -313,7 +319,7 @@ def newton(change: Callable[[Array], Array], x: Array, sizes: Array) -> Array:
     for _ in range(MOST_STEPS):
         step = change(x)
         shares = np.abs(step) / sizes
-        size = float(shares.max())
+        size = shares.max()
         if not math.isfinite(size):
             break
         if size > _LONGEST_STEP:

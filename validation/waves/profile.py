@@ -185,7 +185,7 @@ class ExactWave(Pictured):
             profile = self._profile(name)
             share = profile(xi) / self.peak(name)
             curves.append(Curve(name, xi, share))
-        return [Panel("ξ / D", "over its peak", tuple(curves))]
+        return [Panel("ξ / D", "over its peak", curves)]
 
     def _hump(self, quantity: QuantityName) -> Pulse:
         """The highest hump of a quantity, over ξ in place of time."""

@@ -242,7 +242,7 @@ def solve(problem: newton.Problem, start: ExactWave | None = None) -> ExactWave:
         force = arch ** (2 * k / (k - 1))
         c2 = 4 / ((k + 1) * (m1 + m2))
     # c² of the wave scaled to peak force 1, as `newton.Problem.wave` scales the forces.
-    share = float(force[0]) / problem.height
+    share = force[0] / problem.height
     return _converged(problem, force, c2 * share ** ((1 - k) / k))
 
 

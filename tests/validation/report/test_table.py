@@ -11,13 +11,13 @@ import sympy as sp
 from hypothesis import example, given, strategies as st
 
 from lwa import Estimate
-from validation.report.table import Column, Finding, Table, aligned, plain
+from validation.report.table import Column, Estimates, Finding, Table, aligned, plain
 
 TABLE = Table(
     (
         Column("k", "k"),
         Column("chain", format=lambda name: f"chain {name}"),
-        Column("time", "arrival (s)", error=True),
+        Estimates("time", "arrival (s)"),
         Column("error_value.F_m", "by F_m", format="+.1%"),
         Column("", "unit"),
     ),
