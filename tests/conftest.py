@@ -46,7 +46,9 @@ def pytest_collection_modifyitems(items):
     """
     items.sort(key=lambda item: not item.nodeid.startswith(("tests/lwa/", "lwa/")))
     for item in items:
-        if item.nodeid.startswith(("tests/validation/", "tests/book/studies/")):
+        if item.nodeid.startswith(
+            ("tests/validation/", "tests/book/studies/", "tests/book/test_numbers.py")
+        ):
             item.fixturenames.insert(0, "engine")
         if (
             item.nodeid.startswith("tests/book/studies/")

@@ -214,7 +214,7 @@ def test_bad_input_prints_one_line_to_paste_with_status_2_and_leaves_no_file(
     capsys, folder, monkeypatch, line, message
 ):
     """The line to paste gives a result, or is refused for another reason."""
-    monkeypatch.setattr(sweep, "point", lambda k, omega, _: Point(k, omega, None, {}))
+    monkeypatch.setattr(sweep, "point", lambda *key: Point(*key, None, {}))
     Path("s.toml").write_text(SCENE.replace("sensors", "#"))
     status, out, err = run(capsys, *line.split())
     assert (status, out, err.count("\n")) == (2, "", 1)

@@ -69,13 +69,14 @@ class Cells:
         found = islice(_LINE.finditer(text), HEAD)
         lines = [line[0] for line in found]
         tables = {}
+        shares = {}
         for mark in _MARKS:
             tables[mark] = [_split(line, mark) for line in lines]
+            shares[mark] = [_share(row) for row in tables[mark]]
 
         def record(mark: str) -> tuple[int, int]:
             """Return start and end of the longest run of rows of numbers, with this separator."""
-            numeric = [_share(row) >= _LEAST for row in tables[mark]]
-            return longest(numeric)
+            return longest([share >= _LEAST for share in shares[mark]])
 
         def weight(mark: str) -> float:
             """Count the numbers of the record, each weighted by the share of numbers in its row.
@@ -83,8 +84,9 @@ class Cells:
             Without the weight a separator that also cuts texts into pieces would count as good.
             """
             start, end = record(mark)
-            rows = tables[mark][start:end]
-            return sum(len(row) * _share(row) ** 2 for row in rows)
+            rows = zip(tables[mark], shares[mark], strict=True)
+            record_rows = islice(rows, start, end)
+            return sum(len(row) * share**2 for row, share in record_rows)
 
         self._mark = mark = max(_MARKS, key=weight)
         self._text = text

@@ -148,11 +148,10 @@ OPTICAL = {"branch": "optical"}
     ("k", "cell", "kind"),
     [
         (3, Cell([1]), FIRST),
-        (3, Cell([3, 1], stiffnesses=[1, 8]), FIRST),
         (3, Cell([3, 1], stiffnesses=[1, 8]), CENTER),
         (3, Cell([1, 1, 4], stiffnesses=[1, 8, 27]), CENTER),
         (1, Cell([2, 1]), FIRST),
-        (5, Cell([2, 1]), FIRST),
+        (5, Cell([2, 1], stiffnesses=[1, 32]), FIRST),
         (3, Cell([3, 1], stiffnesses=[1, 8]), {}),
         (5, Cell([2, 3]), {}),
         (7, Cell([1, 1]), {}),

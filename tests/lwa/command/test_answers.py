@@ -123,7 +123,6 @@ ANSWERS = {
     "shock --masses 1 --spacing 1 --k 3/2 --behind m1": {
         "peak": shock(EQUAL, "m1", 0, k=HERTZ).peak, "leading_speed.dispersion": None,
     },
-    "shock --law magnetic:4,1 --masses 1 --spacing 1 --behind 0.123": {"kind": "shock"},
     "shock --masses 1 --spacing 1 --k 3/2 --behind 1 --ahead 2": {
         "kind": "rarefaction", "peak_value": None,
     },

@@ -111,7 +111,6 @@ FACTORS = {
         "wave --force 10",
         "wave --force 10 --precompression 1",
         "envelope --precompression 20 --detuning 1/200",
-        "shock --piston 1",
         "shock --piston 1 --ahead 1e-4",
         "strike --velocity 1",
     ],

@@ -28,7 +28,7 @@ def test_closed_forms_are_the_lattices_at_every_k():
     """
     ratios = {name: [] for name in RESULTS}
     # The errors of the last six are the nearest to the deviations.
-    spread = 1 + np.geomspace(0.01, 59, 12).round(3)
+    spread = 1 + np.geomspace(0.01, 59, 6).round(3)
     for k in (*spread.tolist(), 1.15, 1.9, 2.4, 2.83, 4.5, 5.1):
         wave, exact = lattice_wave(EQUAL, k=k), lattice(k)[0]
         assert float(wave.short_speed) == pytest.approx(exact["speed"], rel=2e-3)
@@ -101,9 +101,10 @@ def passage(k, omega, speed, length):
     }
 
 
-# Between the points of the grid of measured deviations; the paper's dimer is the first.
-STEADY = [("3/2", "41/150"), ("7", "8/9"), ("3/2", "7/9")]
-MORE = [("9/5", "1/35"), ("5/4", "1/9"), ("7/3", "1/7"), ("7/2", "3/7"), ("9/2", "1/60"),
+# Between the points of the grid of measured deviations.
+STEADY = [("7", "8/9"), ("3/2", "7/9")]
+MORE = [("3/2", "41/150"), # the paper's dimer
+        ("9/5", "1/35"), ("5/4", "1/9"), ("7/3", "1/7"), ("7/2", "3/7"), ("9/2", "1/60"),
         ("3/2", "1/3000"),
         ("8/5", "5/16"), ("6/5", "8/9"), ("11/2", "5/11"), ("16", "31/100"),
         ("50", "21/200")]  # fmt: skip

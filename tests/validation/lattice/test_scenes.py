@@ -7,8 +7,9 @@ from validation.lattice.kernel.advance import advance
 from validation.lattice.kernel.samples import interpolate
 from validation.lattice.simulate import simulate
 
-# All dampings and drives, laws that pull, open and jump, contacts of their own.
-FEW = 5, 6, 7, 19, 22, 24, 42
+# All dampings, chains with a drive and without, laws that pull and jump, contacts of their own;
+# contacts that amplify errors little, so that the reference tells.
+FEW = 2, 5, 6, 24, 29, 39, 42
 MANY = sorted({*range(60)} - {*FEW})
 
 

@@ -56,6 +56,7 @@ def test_relabelling_the_masses_changes_the_unit_of_mass_only():
     agree(at("3/2", "0.75"), at("3/2", R(4, 3)), math.sqrt(0.75))
 
 
+@pytest.mark.slow
 def test_the_errors_cover_other_distances():
     agree(at("3/2", "9/20"), at("3/2", "9/20", 3))
 
