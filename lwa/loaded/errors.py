@@ -25,7 +25,8 @@ from typing import NamedTuple
 
 from lwa.loaded.lattice import Lattice
 
-# A wave is without load if it adds more than this part of V² to the square of the sound's speed.
+# A wave is without load if it adds more than this part of V² to the square of the sound's speed,
+# which `wave` computes at 1e-280 of the peak: a power's waves without load are known for k > 1.03.
 _BARE = 1 - 1e-6
 
 

@@ -63,8 +63,9 @@ from lwa.loaded.statics import Function, Samples
 # Least ω0 D/(2πV) of a resonator for which the relation between speed and width is promised, by
 # measurements in struck chains (`book/studies/struck.py`): slower resonators take energy away.
 _SLOWEST = 1.2
-# Part of the rise at which the sound ahead of the wave is computed: a law may have no slope at 0
-_FOOT = 1e-40
+# Part of the rise at which the sound ahead of the wave is computed: a law may have no slope at 0.
+# So small that without load the slope of a power k = 1.03 is 4e-9 of the wave's V².
+_FOOT = 1e-280
 
 EstimatedName = Literal["speed", "fwhm"]
 """A result with a measured error."""

@@ -139,8 +139,9 @@ LINK = Link(0, 1, HERTZ)
         (Lattice([1, 2, 3], [Link(n, n + 1, HERTZ) for n in range(3)]), 2, 1),
         (HARD, 9, 1),
         (Lattice([1], [LINK], [Resonator(0, 1, 1000)]), 2, 1),
-        # It radiates.
+        # They radiate.
         (Lattice([1, 2], [LINK, Link(1, 2, HERTZ)]), 1, 0),
+        (Lattice([1, 2], [Link(n, n + 1, Power("1.04")) for n in range(2)]), 1, 0),
         (Lattice([1], [Link(0, 1, Power("1/2"))]), "1/2", 1),
         (HARD, 1, 0),
     ],
