@@ -291,7 +291,7 @@ class _Grid:
             times = np.append(flat, (a, b))
             values = series(times)
             best = np.argmax(values)
-            tops.append((values[best], times[best]))
+            tops.append((float(values[best]), float(times[best])))
         peak, arrival = max(tops)
         return arrival, peak
 
