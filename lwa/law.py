@@ -257,13 +257,14 @@ class ContactLaw(Value):
         return self.inverse(real(force, "force") / cell.stiffness(self.exponent))
 
     def inverse(self, force: sp.Expr) -> sp.Expr:
-        """The compression at which F is this force: exact for a power, else to 35 digits.
+        """The compression at which F is this force: exact for a `Power`, else to 35 digits.
 
         Raises
         ------
         InputError
             For a force beyond the law's reach, and for symbols under a law that is no power.
         """
+        # `Power` has a method of its own, which is exact.
         if self.formless:
             raise InputError(
                 f"law is {self.text}: the strain under a force needs an expression"

@@ -249,9 +249,11 @@ class Conversion:
         # The expressions that stand for these generators in results
         self._printed = [*symbols, *self._letters]
         self._context = _context(len(self._printed))
-        # Polynomials for the generators of the ring: values of the law, then total · w_i.
+        # What a generator of the model's ring becomes: the value of a law's parameter, or the
+        # numerator total · w_i of a fraction f_i (see the class).
         self._images = list(map(self._element, model.parameters.values()))
-        # For each partition the places of its generators, and the sum of its weights
+        # For each partition the places of its generators, and the denominator S of its fractions.
+        # The last distinct weight has no generator: the fractions have a known sum (`Partition`).
         self._blocks = []
         self._sums = []
         for partition in partitions:
@@ -263,6 +265,7 @@ class Conversion:
             for weight in partition.weights:
                 total = total + self._element(weight)
             self._sums.append(total)
+        # The polynomial's ring before it is composed: its own generators and one for each S
         self._source = _context(len(self._images) + len(self._sums))
 
     def _element(self, value: sp.Expr) -> fmpq_mpoly:

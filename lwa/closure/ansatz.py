@@ -71,7 +71,12 @@ def optical(model: Model, progress: Progress[int] = iter) -> Solution:
 
     Contacts also pull, by the odd law of ``δ^k``. The strains of the contacts are
     ``w - u = -(u/m̂_1)(1 + Y)`` and ``u(x + 2D) - w = (u/m̂_1)(1 + Z)``. Forces are those of a
-    `Force` with Y or Z for X.
+    `Force` with Y or Z for X: over that of ``X = 0`` they are ``1 + k Φ(Y)`` and ``1 + k Φ(Z)``.
+    With the wave equation ``u_ττ = -u^k E``, ``E = Σ D^n E_n``, and the shares c of the stiffness
+    the equations of motion of u and of w are::
+
+        1.  u^k E = c_0 u^k (1 + k Φ(Y)) + c_1 [u^k (1 + k Φ(Z))](x - 2D),
+        2.  (1 + Σ b_n D^n ∂_x^n) u^k E = c_0 u^k (1 + k Φ(Y)) + c_1 u^k (1 + k Φ(Z)).
     """
     algebra = JetAlgebra(model, model.order)
     k = algebra.k
@@ -84,8 +89,10 @@ def optical(model: Model, progress: Progress[int] = iter) -> Solution:
     b = [algebra.one]
     for n in progress(range(1, model.order + 1)):
         r_n = algebra.r[n]
-        # The accelerations by the two equations agree at r_n; b_n brings ∂_x^n u^k = k u^k r_n + ….
+        # Equation 1 has the second force at x - 2D: the change of this force from x to there.
         shifted = k * stiffness[1] * left.increment(-2, n)
+        # E_n by equation 1 less E_n by equation 2 is this change plus the terms of b_1 … b_n. It
+        # vanishes at r_n by the choice of b_n, which brings ∂_x^n u^k = k u^k r_n + ….
         lacking = shifted + _applied(b, first, n)
         b.append(-algebra.slope(lacking, n) / k)
         # With w = λ (u + Σ b_n D^n ∂_x^n u) and λ = -m̂_0/m̂_1: Y_n = m̂_0 b_n r_n, and Z_n has the

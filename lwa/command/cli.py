@@ -192,10 +192,11 @@ def next_step(
 
 
 def _changed(line: list[str], change: Mapping[str, object]) -> list[str]:
-    """Remove the options of a change from a line; return the words that take their place.
+    """Remove the options of a change from a line, in place; return the words that replace them.
 
-    A mapping is an option that is given several times, as ``--column force=2``; a sequence is
-    written with commas, and None or an empty one leaves the option out.
+    The change has the values of options by name that make a refused line valid. A mapping is an
+    option that is given several times, as ``--column force=2``; a tuple or list is written with
+    commas, and None, an empty tuple or an empty mapping leaves the option out.
     """
     words = []
     for name, value in change.items():

@@ -301,6 +301,7 @@ class LoadedMode(Parametric):
     @property
     def static_compressions(self) -> tuple[sp.Expr, ...]:
         """Static compression of each contact."""
+        # Contacts that differ have a power law; the shares of equal ones are 1 for every exponent.
         return tuple(c * self.compression for c in self.cell.shares(self.law.exponent))
 
     @cached_property

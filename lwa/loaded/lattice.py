@@ -200,6 +200,7 @@ class Lattice(Value):
             raise InputError(
                 f"particle {last}: the cell has particles 0 to {self.size - 1}"
             )
+        # All particles hang together, and the links carry a load from cell to cell.
         self._check_paths()
 
     @classmethod

@@ -88,6 +88,8 @@ class LoadedWave(States):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        # The law is None for a lattice, whose links have laws of their own. Under a power signs are
+        # enough, which symbols have, too.
         if self.law is not None and self.law.homogeneous:
             reason = _refusal_under_power(
                 self.law.exponent - 1, self.background, self.strain
@@ -105,6 +107,7 @@ class LoadedWave(States):
                 f"from F0 = {brief(self.precompression)} to F = {brief(self.force)}"
             )
             raise NoSolitaryWave(f"{strains}, {forces}: {reason}")
+        # Only a lattice has resonators; one with symbols has returned above.
         for resonator in self.lattice.resonators:
             rate = number(self.speed / self.chain.spacing)  # V/D
             ratio = self.lattice.resonance(resonator) / (2 * pi * rate)

@@ -92,7 +92,7 @@ def recorded_chain(
 ) -> Scene:
     """Return the N:1 chain of steel and PTFE, struck by its first bead.
 
-    The scene lasts until the pulse has run to the wall and most of the way back.
+    The scene lasts until the pulse has run to the wall and more than half of the way back.
 
     Parameters
     ----------
@@ -116,7 +116,8 @@ def recorded_chain(
         velocities=(velocity,),
         bead_sensors=[bead - 1 for bead in sensors],
         contact_sensors=sorted(contacts),
-        # A pulse with all of the striker's momentum needs two thirds of this time to the wall.
+        # A pulse with all of the striker's momentum needs 1/1.6, five eighths, of this time to the
+        # wall; measured, the pulse of the 1:1 chain 0.63, of the 2:1 chain 0.56.
         duration=1.6 * BEADS * DIAMETER / float(pulse.speed),
         # Some hundred of them in a pulse's FWHM of 2.5 sites.
         samples=60 * BEADS,

@@ -204,11 +204,14 @@ class Problem:
         Raises `numpy.linalg.LinAlgError` if Newton's method does not converge.
         """
         m1, m2 = self.masses
+        # The start has the wanted force at ξ = 0. 1/m2 is an unknown in every problem: where m2 is
+        # given, `_closing` sets it.
         share = self.height / force[0]
         scaled = share * force[: self.count]
         start = np.append(scaled, [c2, 1 / m2])
-        # Forces have the size of twice their peak; c² and 1/m2 their own, but c² may be 0 at a bad
-        # start.
+        # Shares of these sizes are the longest step and the last one. Forces have the size of twice
+        # their peak, so that a step changes them by a fifth of it at most; c² and 1/m2 have their
+        # own, but c² may be 0 at a bad start.
         sizes = np.where(start == 0, 1.0, np.abs(start))
         sizes[: self.count] = 2 * self.height
         x = newton(self._step, start, sizes)

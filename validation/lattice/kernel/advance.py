@@ -1,4 +1,7 @@
-"""The loop over the steps of an embedded pair, and the front of the motion."""
+"""The loop over the steps of an embedded pair, and the front of the motion.
+
+`inlined` is numba's ``njit`` with options (`validation.lattice.kernel.compiled`).
+"""
 
 from __future__ import annotations
 

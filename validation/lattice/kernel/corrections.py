@@ -10,6 +10,9 @@ The stages lack these corrections: the forces of the contact and its neighbours 
 displacements that err by the moment so far, and at velocities that err by the impulse. Over a step
 this changes their impulses by stiffness × ``h³ ∫ (1 - x)²/2 F dx``, and by damping × moment. The
 neighbours are corrected for it once more, and this second correction counts as error.
+
+`part`, `inlined` and `alone` are numba's ``njit`` with options, and `index` makes an index
+unsigned, so that a loop vectorises (`validation.lattice.kernel.compiled`).
 """
 
 from __future__ import annotations

@@ -3,6 +3,9 @@
 A contact is open, without a force, where ``δ ≤ 0``, unless its law pulls there. Damping may not
 pull, unless the law attracts where the contact opens: the force is at least the elastic force, or 0
 if that is less.
+
+`part` and `summed` are numba's ``njit`` with options, and `index` makes an index unsigned, so that
+a loop vectorises (`validation.lattice.kernel.compiled`).
 """
 
 from __future__ import annotations
@@ -143,7 +146,8 @@ def _damped_loop(value: Any, resistance: Any) -> Any:
     ) -> float:
         """Compute the forces of contacts lo … hi - 1 and return the power that they dissipate.
 
-        The arguments ``least`` and ``none`` are those of `_damped_loop`.
+        A contact has a force where δ is above ``least``, which is 0 or nearly, and -∞ if its law
+        pulls. ``none`` is the least force with damping: 0, or -∞ if damping may pull.
         """
         A = chain.A
         rest = chain.rest
@@ -155,6 +159,7 @@ def _damped_loop(value: Any, resistance: Any) -> Any:
         for i in range(index(lo), index(hi)):
             x = rest[i] + y[i] - y[i + ONE]
             rate = v[i] - v[i + ONE]
+            # Choices between two numbers in place of branches, so that the loop vectorises.
             d = x if x > least else 0.0
             force = value(law, k, d)
             lowest = force if force < none else none

@@ -9,6 +9,9 @@ in u, ``x = z + (e - z) u^q``, z the root of p at one end of an interval and e t
 that F is smooth in u.
 
 A damped contact that is pulled open can stop pushing before it parts: the force tells, not δ.
+
+`part` and `alone` are numba's ``njit`` with options, and `index` makes an index unsigned, so that a
+loop vectorises (`validation.lattice.kernel.compiled`).
 """
 
 from __future__ import annotations

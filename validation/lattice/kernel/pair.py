@@ -2,6 +2,9 @@
 
 h is the step, and x, from 0 to 1, the time within the step. Between the stages and the error the
 step is corrected for contacts that open or close (`validation.lattice.kernel.corrections`).
+
+`part`, `summed`, `inlined` and `alone` are numba's ``njit`` with options, and `index` makes an
+index unsigned, so that a loop vectorises (`validation.lattice.kernel.compiled`).
 """
 
 from __future__ import annotations
@@ -242,7 +245,10 @@ def estimate_errors(beads: Beads, plan: Plan, h: float, hi: int) -> None:
 
 @summed
 def _squared_error(errors: Array, row: int, hi: int) -> float:
-    """Return the sum over all beads of the squared errors of displacements and velocities."""
+    """Return the sum over all beads of the squared errors of displacements and velocities.
+
+    Both kinds of errors are in units of their tolerances (`error_scale`).
+    """
     total = 0.0
     ys = errors[row]
     vs = errors[row + 1]

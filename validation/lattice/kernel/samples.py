@@ -11,6 +11,8 @@ its force is integrated up to each sample.
 
 Letters: n numbers the steps, step n leading from knot n to knot n + 1; row q of the arrays belongs
 to bead ``watched[q]``, row q + 1 to the next bead; h is the step, x, from 0 to 1, the time in it.
+
+`part` and `inlined` are numba's ``njit`` with options (`validation.lattice.kernel.compiled`).
 """
 
 from __future__ import annotations
