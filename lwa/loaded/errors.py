@@ -25,9 +25,10 @@ from typing import NamedTuple
 
 from lwa.loaded.lattice import Lattice
 
-# A wave is without load if it adds more than this part of V² to the square of the sound's speed,
-# which `wave` computes at 1e-280 of the peak: a power's waves without load are known for k > 1.03.
-_BARE = 1 - 1e-6
+# A wave is without load if the squared speed of sound is less than this part of V². `wave` computes
+# it at 1e-280 of the peak, that of lattices at 1e-40. So the waves of a power without load are taken
+# for waves under a load at k < 1.03 (lattices: 1.15).
+_BARE = 1e-6
 
 
 class Rule(NamedTuple):
@@ -87,9 +88,7 @@ def bounds(
     dict
         Bounds of the "speed", and of the width of each quantity by its name.
     """
-    # Part of V² that the wave adds to the square of the sound's speed
-    added = 1 - slope_at_rest / square
-    rule = _rule(lattice, bare=added > _BARE)
+    rule = _rule(lattice, bare=slope_at_rest < _BARE * square)
     delta = log(slope_at_peak / square)
     if not rises or delta > rule.largest:
         rule = UNKNOWN

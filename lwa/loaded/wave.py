@@ -63,9 +63,8 @@ from lwa.loaded.statics import Function, Samples
 # Least ω0 D/(2πV) of a resonator for which the relation between speed and width is promised, by
 # measurements in struck chains (`book/studies/struck.py`): slower resonators take energy away.
 _SLOWEST = 1.2
-# Part of the rise at which the sound ahead of the wave is computed: a law may have no slope at 0.
-# So small that without load the slope of a power k = 1.03 is 4e-9 of the wave's V².
-_FOOT = 1e-280
+# Part of the rise at which the sound ahead of the wave is computed: a law may have no slope at 0
+_FOOT = 1e-40
 
 EstimatedName = Literal["speed", "fwhm"]
 """A result with a measured error."""
@@ -277,9 +276,12 @@ class LoadedWave(States):
         if spacing.is_Symbol and not self.exact_compression.has(spacing):
             return self.at(**{spacing.name: 1}).estimate(name, quantity, extent)
         wave = self._quadrature
+        # Without load the slope at the foot tends to 0, at 1e-40 slowly for k near 1. The slopes of
+        # a lattice's power k = 3 are no floats at 1e-280.
+        foot = _FOOT if self.law is None else 1e-280
         known = bounds(
             self.lattice,
-            slope_at_rest=float(wave.at(_FOOT).slope),
+            slope_at_rest=float(wave.at(foot).slope),
             slope_at_peak=float(wave.at(1).slope),
             square=wave.square,
             rises=wave.B > 0,
