@@ -26,8 +26,8 @@ from typing import NamedTuple
 from lwa.loaded.lattice import Lattice
 
 # A wave is without load if the squared speed of sound is less than this part of V². `wave` computes
-# it at 1e-280 of the peak, that of lattices at 1e-40. So the waves of a power without load are taken
-# for waves under a load at k < 1.03 (lattices: 1.15).
+# it at 1e-280 of the peak, that of lattices at 1e-40. So the waves of a power without load are
+# taken for waves under a load at k < 1.03 (lattices: 1.15).
 _BARE = 1e-6
 
 
