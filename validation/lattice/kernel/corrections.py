@@ -147,7 +147,8 @@ def mark_kinks(
         then = abs(end[i + ONE] + load[i])
         force = max(first, then)
         # Damping has stopped the force of a contact that expands: all its energy turns into heat.
-        force = force if force > 0.0 else math.inf
+        # Without damping this force is one at the front, too weak for a float.
+        force = math.inf if damped & (force <= 0.0) else force
         most = max(before, after)
         # The error of a kink grows with the force: a strong contact is corrected from farther away.
         share = near if force > _STRONG * least else _VERY_NEAR
