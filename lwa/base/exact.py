@@ -220,6 +220,8 @@ def brief(value: sp.Expr) -> str:
     return f"{number(value):.6g}"
 
 
+# SymPy's own powers fail: a decimal k of many digits, and masses of 1e-300 and 1e300, end in an
+# OverflowError, and a law with a long exponent fills the memory.
 class Unmultiplied(sp.UnevaluatedExpr):  # type: ignore[misc]  # untyped in SymPy
     """A number that SymPy does not multiply out in a power; it prints and evaluates as usual."""
 
