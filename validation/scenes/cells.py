@@ -153,8 +153,9 @@ class Cells:
         The lowest row with such a header counts. In a row, cells that are the header itself go
         before cells that are the header and a unit.
         """
-        if re.fullmatch(r"([1-9]\d{0,5},?)+", header):
-            return [int(number) for number in header.strip(",").split(",")]
+        number = r"[1-9]\d{0,5}"
+        if re.fullmatch(f"{number}(,{number})*", header):
+            return [*map(int, header.split(","))]
         wanted = header.lower()
         for row in reversed(self.head):
             for form in (str.lower, name_of):

@@ -224,6 +224,8 @@ STATED = {"columns": {"force": "2"}}
             "2 columns are 'time': .* columns={'time': '1'}",
         ),
         (f"{HEAD}1,2\n", {"columns": {"force": "9"}}, "no row .*'2'}$"),
+        # A long header of digits is no number of a column.
+        (f"{HEAD}1,2\n", {"columns": {"force": "1" * 40 + "x"}}, "no column is"),
         (f"{HEAD}1,2\n2,+OL\n3,4\n", {}, "line 3 holds ∞"),
         (f"{HEAD}1,2\n2,9.9E37\n3,4\n", {}, "line 3 holds ∞"),
         (f"{HEAD}1,2\n2,1_0\n3,4\n", {}, "line 3 is a gap in the record: '2,1_0'"),
