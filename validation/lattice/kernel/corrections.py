@@ -511,8 +511,10 @@ def correct_contact(
     if forcing is not None:
         # Heat and work see the stages' velocities, which err where a contact opens or closes: up to
         # 1,500 tolerances of energy. Where a neighbour does, too, its jump bends this curve, of
-        # which the stages know. Entry -1 of the marks, before contact 0, is padding: 0.
-        if sums.closed < 1.0 and beads.marks[i - 1] + beads.marks[i + 1] == 0.0:
+        # which the stages know. Entry -1 of the marks, before contact 0, is padding: 0. Beside a
+        # jump of the force the last round has followed the stages already.
+        lone = beads.marks[i - 1] + beads.marks[i + 1] == 0.0
+        if found.jump == 0.0 and sums.closed < 1.0 and lone:
             _follow_stages(chain, forcing, beads, pair, t, h, i)
         if forcing.damped:
             stored = kinks.stored(law, corrected[0]) - kinks.stored(law, start[0])
