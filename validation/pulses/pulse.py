@@ -187,7 +187,7 @@ def all_pulses(signal: Signal) -> list[Pulse]:
     grid = _Grid(signal)
     least = _LEAST * grid.f.max()
     _, sides = scipy.signal.find_peaks(grid.f, height=0.0, prominence=least)
-    whole: list[Pulse] = []
+    whole = []
     # From the lowest point before a top to the lowest one behind, up to higher neighbours
     for start, end in zip(sides["left_bases"], sides["right_bases"], strict=True):
         with suppress(MeasureError):

@@ -179,8 +179,8 @@ def record(
     run, check = runs
     # Splines through half of the samples show the error of the splines, too.
     checks = tracks(check, velocities, 2)
-    firsts: list[Track] = []
-    found: list[Track] = []
+    firsts = []
+    found = []
     for track, other in zip(tracks(run, velocities), checks, strict=True):
         firsts += _readings(track, other, lambda signal: [first_pulse(signal)])
         if every:

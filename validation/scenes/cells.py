@@ -92,7 +92,7 @@ class Cells:
         self._text = text
         rows = tables[mark]
         start, end = record(mark)
-        typical: list[str] = []
+        typical = []
         if end:
             # Which columns hold numbers is read from one row of the record, after the settings.
             place = min(start + _SETTINGS, end - 1)

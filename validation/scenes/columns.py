@@ -292,7 +292,7 @@ class Columns:
                 elif column.stated:
                     units[column.key] = column.stated
         # The options that the error proposes, by their names on the command line
-        change: dict[str, object] = {}
+        change = {}
         for option, given, wanted in (
             ("columns", self.headers, headers),
             ("step", self.step, proposed.step),

@@ -182,7 +182,7 @@ class Scene:
 
     def _read_laws(self) -> None:
         """Check the exponents and the laws; a law that is a power is kept as its exponent."""
-        k: Any = self.k
+        k = self.k
         if k is not MISSING:
             k = one_or_each(read_exponent)(k, "k")
         law = one_or_each(read_contact_law)(self.law, "law")

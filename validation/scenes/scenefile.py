@@ -181,7 +181,7 @@ def _line(fault: str) -> str:
     *tables, key = about[1].split(".")
     if about[2] == "unknown":
         tables = []
-    found: Any = _known()
+    found = _known()
     for name in tables:
         # Names of beads and of materials are free.
         found = found.get(name) or next(iter(found.values()))
@@ -259,7 +259,7 @@ def _defects(file: Table, striker: Table) -> list[Table]:
     own = {key: striker.entries[key] for key in _OTHER if key in striker}
     if own:
         given.append(_defect({"bead": 1, **own}, "striker"))
-    named: set[str] = set()
+    named = set()
     for defect in given:
         kind = defect.one("contact", "bead")
         at = f"{kind} {shorten(defect.entries[kind])}"
@@ -299,7 +299,7 @@ def _chain(
                 raise SceneError(f"{named} names a bead in a chain of masses")
             at = defect.read("bead", place(len(spheres)))
             spheres[at] = defect.read("like", among(beads))
-    fields: dict[str, Any] = {
+    fields = {
         "masses": row.masses * row.repeat,
         "stiffnesses": row.by_contact(row.stiffnesses) or [1.0] * (row.size - 1),
         "spacings": row.by_contact(row.spacings),

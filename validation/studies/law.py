@@ -117,7 +117,7 @@ def law(
     """
     file = MeasuredFile.read(data, **stated)
     force, speed, weight = _pulses(file)
-    content: dict[str, Any] = {}
+    content = {}
     if spheres is None:
         cell = Cell(masses or (1,), spacing=1 if spacing is None else spacing)
     else:

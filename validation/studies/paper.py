@@ -262,7 +262,7 @@ def paper(
     rows = []
     for quantity in QUANTITIES:
         found = lattice[quantity.name]
-        row: dict[str, Any] = {
+        row = {
             "quantity": quantity.name,
             "unit": quantity.unit,
             "lattice": found,
@@ -451,7 +451,7 @@ def scaling(E: float, rtol: float = RTOL) -> list[dict[str, Any]]:
     wave = canonical_wave(chain_cell(ptfe=ptfe), HERTZ)
     rows = []
     for height, *of_scene in zip(HEIGHTS, *runs, strict=True):
-        row: dict[str, Any] = {"modulus_value": E, "height_value": height}
+        row = {"modulus_value": E, "height_value": height}
         row |= compared(_speed_and_force, of_scene)
         theory = wave.at_force(row["force"].value, of="bead")
         row["theory_value"] = float(theory.speed)

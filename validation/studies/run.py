@@ -205,7 +205,7 @@ def _row(label: str, reading: Reading) -> dict[str, Any]:
     label : key of the column that holds the reading's name.
     """
     places = ("number",) if len(reading.places) == 1 else ("from", "to")
-    row: dict[str, Any] = dict(zip(places, reading.places, strict=True))
+    row = dict(zip(places, reading.places, strict=True))
     return row | {
         **reading.numbers,
         label: reading.name,

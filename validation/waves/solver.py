@@ -191,7 +191,7 @@ def _equal(k: float, p0: float) -> ExactWave:
 def _dimer(pair: newton.Pair, k: float) -> ExactWave:
     """Return the solitary wave of masses 1 and m2 < 1, in the ratio of a pair of masses."""
     ratio = min(pair) / max(pair)
-    special: list[ExactWave] = []
+    special = []
     for wave in special_waves(k):
         special.append(wave)
         if wave.omega < ratio:
