@@ -220,7 +220,7 @@ def _plan(motion: Motion, scheme: Pair | Splitting, rtol: float, **steps: Any) -
         y=rtol * scales.displacement,
         v=rtol * scales.velocity,
         energy=rtol * (scales.energy or 1.0),
-        end=float(motion.scene.duration),
+        end=motion.scene.duration,
         deepest=scales.compression,
         lightest=float(motion.masses.min()),
         size=motion.size,
@@ -237,7 +237,7 @@ def _pair_plan(motion: Motion, rtol: float, longest: float) -> tuple[Plan, int]:
     """
     scene = motion.scene
     time = motion.scales.time
-    end = float(scene.duration)
+    end = scene.duration
     pair = RKN86 if scene.damping is None else RK853
     stops = {end}
     if scene.drive is not None:
@@ -257,7 +257,7 @@ def _pair_plan(motion: Motion, rtol: float, longest: float) -> tuple[Plan, int]:
 
 def _splitting_plan(motion: Motion, rtol: float, step: float) -> tuple[Plan, int]:
     """Return the plan of the splitting, and the greatest number of steps."""
-    end = float(motion.scene.duration)
+    end = motion.scene.duration
     if math.isinf(step):
         stage = min((rtol / _KINKS) ** 0.4, _COARSEST)
         stages = len(BLANES_MOAN.drifts)

@@ -72,8 +72,6 @@ class Motion:
     ----------
     start : array, (2n + 2,)
         Initial state.
-    loaded : bool
-        True with gravity or precompression.
     rest, load : array, (contacts,)
         Static compressions and forces.
     laws : tuple of Contact
@@ -94,8 +92,7 @@ class Motion:
             self.stiffnesses = np.append(self.stiffnesses, scene.wall)
         self._read_laws()
         self.rest = self.load = np.zeros(len(self.stiffnesses))
-        self.loaded = bool(scene.gravity or scene.precompression)
-        if self.loaded:
+        if scene.gravity or scene.precompression:
             forces = np.array(scene.load) / self.stiffnesses
             # `_check_range` refuses an overflow below. The index `...` means all contacts.
             with np.errstate(over="ignore", invalid="ignore"):
@@ -141,7 +138,7 @@ class Motion:
         for exponent, law in numbers:
             power = None
             if damping is not None:
-                power = float(damping.power(exponent))
+                power = damping.power(exponent)
             kinds.append(Contact(exponent, law, power))
         self.laws = tuple(kinds)
 
@@ -233,10 +230,7 @@ class Motion:
         """
         change = self.rate(state[: self.size])
         v = state[self.size : 2 * self.size]
-        if self.loaded:
-            stored = self._each(..., Contact.energy_above, self.rest, change)
-        else:
-            stored = self._each(..., Contact.energy, change)
+        stored = self._each(..., Contact.energy_above, self.rest, change)
         kinetic = self.masses * v * v / 2
         return kinetic, self.stiffnesses * stored
 
