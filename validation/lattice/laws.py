@@ -246,5 +246,7 @@ def _refused(law: ContactLaw) -> Iterator[None]:
         with np.errstate(all="ignore"):
             yield
     except Exception:
-        text = "a force with an energy in elementary functions is wanted"
-        raise SceneError(f"law is {shorten(law.text)}: {text}") from None
+        raise SceneError(
+            f"law is {shorten(law.text)}: a force with an energy in elementary functions is "
+            "wanted"
+        ) from None

@@ -172,8 +172,9 @@ def measure(time: ArrayLike | Signal, values: ArrayLike | None = None) -> Pulse:
     in_pulse = (t > pulse.rise) & (t < pulse.fall)
     inside = np.count_nonzero(in_pulse)
     if values is not None and inside < FEWEST:
-        few = f"{inside} samples lie above half the pulse's peak"
-        raise MeasureError(f"{few}: at least {FEWEST} are wanted")
+        raise MeasureError(
+            f"{inside} samples lie above half the pulse's peak: at least {FEWEST} are wanted"
+        )
     return pulse
 
 

@@ -353,8 +353,11 @@ def _readings(
         if numbers["peak"].relative_error < _HIDDEN:
             found.append(replace(track, numbers=numbers, pulse=len(found) + 1))
     if not found:
-        reason = "no pulse: the force is the static one, but for errors"
-        return [replace(track, missing=reason)]
+        return [
+            replace(
+                track, missing="no pulse: the force is the static one, but for errors"
+            )
+        ]
     return found
 
 

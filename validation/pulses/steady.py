@@ -213,11 +213,10 @@ class StruckDimer:
                 pulse = first_pulse(force, low)
                 strain = first_pulse(force, low, 0.5**self.k)
             except MeasureError:
-                end = run.scene.duration
-                missing = (
-                    f"the pulse has not passed {sensors[-2]} sites by t = {end:.3g}"
-                )
-                raise MeasureError(f"not steady: {missing}") from None
+                raise MeasureError(
+                    f"not steady: the pulse has not passed {sensors[-2]} sites by t = "
+                    f"{run.scene.duration:.3g}"
+                ) from None
             numbers = {
                 "arrival": pulse.arrival,
                 "peak": pulse.peak,

@@ -113,8 +113,10 @@ def _evaluable(law: ContactLaw) -> ContactLaw:
         cases for cases in law.F.atoms(sp.Piecewise) if cases.args[-1][1] != sp.true
     )
     if law.F.has(*_OTHER_CASES) or any(open_ends):
-        cases = "a force by cases is a Piecewise whose last condition is True"
-        raise SceneError(f"law is {shorten(law.text)}: {cases}")
+        raise SceneError(
+            f"law is {shorten(law.text)}: a force by cases is a Piecewise whose last "
+            "condition is True"
+        )
     return law
 
 

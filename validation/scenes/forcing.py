@@ -51,8 +51,9 @@ class Damping:
         for number in {*numbers}:
             if self.kind == "restitution":
                 # At 0.01 the damping ratio ζ is 4.8: hardly any rebound is left.
-                wanted = "a coefficient from 0.01 to 1 is wanted"
-                between(number, self.kind, 0.01, 1, wanted)
+                between(
+                    number, self.kind, 0.01, 1, "a coefficient from 0.01 to 1 is wanted"
+                )
             elif number or isinstance(value, float):
                 positive(number, self.kind)
         object.__setattr__(self, "value", value)
@@ -174,14 +175,15 @@ class Drive:
         harmonic = self.amplitude is not None or self.frequency is not None
         recorded = bool(self.time or self.displacement)
         if constant + harmonic + recorded != 1:
-            wanted = (
-                "velocity, amplitude and frequency, or time and displacement are wanted"
+            raise SceneError(
+                "drive has not one motion: velocity, amplitude and frequency, or time and "
+                "displacement are wanted"
             )
-            raise SceneError(f"drive has not one motion: {wanted}")
         ramp = between(self.ramp, "drive.ramp", 0, math.inf, "it must not be negative")
         if ramp and not harmonic:
-            wrong = "it belongs to amplitude and frequency"
-            raise SceneError(f"drive.ramp is {ramp:g}: {wrong}")
+            raise SceneError(
+                f"drive.ramp is {ramp:g}: it belongs to amplitude and frequency"
+            )
         # Read for their refusals alone.
         if constant:
             finite(self.velocity, "drive.velocity")
@@ -197,9 +199,9 @@ class Drive:
         times, places = len(self.time), len(self.displacement)
         # A cubic spline without conditions at its ends takes four points.
         if times != places or times < 4:
-            wanted = "equally many, four or more, are wanted"
             raise SceneError(
-                f"drive has {times} times and {places} displacements: {wanted}"
+                f"drive has {times} times and {places} displacements: equally many, four or "
+                "more, are wanted"
             )
         if self.time[0] != 0 or min(np.diff(self.time)) <= 0:
             raise SceneError("drive.time must begin with 0 and increase")

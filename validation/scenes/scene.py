@@ -169,8 +169,9 @@ class Scene:
             value = getattr(self, name)
             # Without a wall nothing holds a chain that is pushed, and it has no equilibrium.
             if value < 0 or (value > 0 and self.wall is None):
-                wanted = "it must be positive and needs a wall"
-                raise SceneError(f"{name} is {value:g}: {wanted}")
+                raise SceneError(
+                    f"{name} is {value:g}: it must be positive and needs a wall"
+                )
         for name, count in (
             ("contact_sensors", self.contact_count),
             ("bead_sensors", n),
@@ -256,10 +257,10 @@ class Scene:
         if drive.time:
             end = drive.time[-1]
         if not self.duration <= end < _LONGEST * self.duration:
-            wanted = (
-                f"one to {_LONGEST} times the duration, {self.duration:g}, is wanted"
+            raise SceneError(
+                f"drive.time ends at {end:g}: one to {_LONGEST} times the duration, "
+                f"{self.duration:g}, is wanted"
             )
-            raise SceneError(f"drive.time ends at {end:g}: {wanted}")
 
     def __repr__(self) -> str:
         return f"Scene({self})"

@@ -121,8 +121,10 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     row = read_row(file, beads)
     # Counted before the beads are made: a chain too long would fill the memory.
     if row.size > MOST_BEADS:
-        made = f"chain.cell and repeat make {shorten(row.size)} beads"
-        raise SceneError(f"{made}: at most {MOST_BEADS} are wanted")
+        raise SceneError(
+            f"chain.cell and repeat make {shorten(row.size)} beads: at most {MOST_BEADS} are "
+            "wanted"
+        )
     spheres = row.spheres * row.repeat
     fields = _chain(row, spheres, beads, _defects(file, striker))
     contacts = row.size - 1
@@ -196,8 +198,12 @@ def _line(fault: str) -> str:
 @cache
 def _known() -> dict[str, Any]:
     """Return the list of all keys as a parsed file."""
-    text = Path(__file__).with_name("keys.toml").read_text(encoding="utf-8")
-    return tomllib.loads(text)
+    return tomllib.loads(packaged("keys.toml"))
+
+
+def packaged(name: str) -> str:
+    """Return the text of a file beside this module: the list of keys, or an example."""
+    return (Path(__file__).parent / name).read_text(encoding="utf-8")
 
 
 def _passage(fields: Mapping[str, Any]) -> float:

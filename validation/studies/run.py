@@ -11,7 +11,6 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Sequence
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -33,9 +32,9 @@ from validation.pulses.sensors import (
 )
 from validation.report.study import Report, option, output_option, replacing, study
 from validation.report.table import Column, Estimates, Table, plain
-from validation.scenes import scenefile
 from validation.scenes.checks import SceneError
 from validation.scenes.columns import BASES
+from validation.scenes.scenefile import packaged, read_scene
 
 EXAMPLES = ("paper", "vertical", "precompressed", "defect", "trimer", "striker")
 """Names of the examples of scene files."""
@@ -49,18 +48,7 @@ _DYNAMIC = (
 
 def example(name: str) -> str:
     """Return the text of an example scene file."""
-    return _scene_text(f"examples/{name}.toml")
-
-
-def keys(wanted: bool = True) -> str:
-    """Return the list of the keys of a scene file, with examples."""
-    return _scene_text("keys.toml")
-
-
-def _scene_text(name: str) -> str:
-    """Return the text of a file of `validation.scenes`."""
-    file = resources.files("validation.scenes").joinpath(name)
-    return file.read_text(encoding="utf-8")
+    return packaged(f"examples/{name}.toml")
 
 
 def report(recording: Recording, every: bool = False) -> Report:
@@ -266,7 +254,7 @@ _RTOL = "Relative tolerance. Errors are differences to a more accurate run."
     ),
     print_option(
         "--keys",
-        keys,
+        lambda _: packaged("keys.toml"),
         "Print all keys of a scene file, with examples.",
         is_flag=True,
     ),
@@ -298,7 +286,7 @@ def run(
     run_progress: RunProgress,
 ) -> Report:
     """A scene from a file, TOML or JSON: arrival, peak force, FWHM and speed at its sensors."""
-    chain = scenefile.read_scene(scene, enough_samples)
+    chain = read_scene(scene, enough_samples)
     # The files are compared, not their names: one may be a link to the other.
     if (
         out is not None

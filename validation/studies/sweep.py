@@ -208,8 +208,9 @@ def _read(part: Any, name: str) -> list[sp.Expr]:
         raise SceneError(f"{name} is {shorten(part)}: a range is start:stop:count")
     start, stop, count = numbers
     if not (count.is_Integer and 2 <= count <= _MOST):
-        wanted = f"the count of a range is an integer from 2 to {_MOST}"
-        raise SceneError(f"{name} is {shorten(part)}: {wanted}")
+        raise SceneError(
+            f"{name} is {shorten(part)}: the count of a range is an integer from 2 to {_MOST}"
+        )
     # Exact steps: 1/10 is a value of 1/20:1:20, and a file finds the point again.
     length = stop - start
     return [start + length * i / (count - 1) for i in range(count)]
@@ -223,12 +224,15 @@ def _values(given: str | Iterable[Any], name: str) -> tuple[Rational, ...]:
     for part in parts:
         for value in _read(part, name):
             if not (value.is_Rational and least <= value <= most):
-                wanted = f"a number from {least} to {most} is wanted"
-                raise SceneError(f"{name} is {shorten(value)}: {wanted}")
+                raise SceneError(
+                    f"{name} is {shorten(value)}: a number from {least} to {most} is wanted"
+                )
             values.add(value)
     if not 0 < len(values) <= _MOST:
-        fault = f"it has {len(values)} values, and 1 to {_MOST} are wanted"
-        raise SceneError(f"{name} is {shorten(given)}: {fault}")
+        raise SceneError(
+            f"{name} is {shorten(given)}: it has {len(values)} values, and 1 to {_MOST} are "
+            "wanted"
+        )
     return tuple(sorted(values))
 
 
@@ -252,8 +256,9 @@ def measured(
                 points[new.k, new.omega] = new
                 keep(new)
         except (BrokenExecutor, CancelledError) as error:
-            gone = "the workers are gone before the sweep is done: killed, or out of memory?"
-            raise Failure(gone) from error
+            raise Failure(
+                "the workers are gone before the sweep is done: killed, or out of memory?"
+            ) from error
         except KeyboardInterrupt:
             kept = f"the same line goes on from {path}"
             if path == MEMORY:

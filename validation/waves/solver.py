@@ -275,8 +275,10 @@ def resonances(k: Any, count: Any) -> tuple[ExactWave, ...]:
     count = integer(count, "count", 1, len(STARTS))
     known = _known(k)
     if count > known:
-        found = f"at k = {k:g} the {known} largest special mass ratios are found"
-        raise SceneError(f"count is {count}: {found}", count=known)
+        raise SceneError(
+            f"count is {count}: at k = {k:g} the {known} largest special mass ratios are found",
+            count=known,
+        )
     return tuple(islice(special_waves(float(k)), count))
 
 
