@@ -81,11 +81,10 @@ class Fit:
     def correlations(self) -> Array:
         """Mean products of the noise with itself by lag, up to the first lag without any."""
         count = len(self.noise)
-        # Twice as long, so that the end of the noise does not meet its start. `scipy.signal`, which
-        # has the sum, takes 0.4 s to load.
-        spectrum = np.fft.rfft(self.noise, 2 * count)
-        power = np.abs(spectrum) ** 2
-        products = np.fft.irfft(power)[:count] / count
+        # Lags of both signs: those from 0 on begin in the middle. A base has some thousand samples,
+        # whose sums take some milliseconds.
+        sums = np.correlate(self.noise, self.noise, "full")
+        products = sums[count - 1 :] / count
         unlike = np.append(products, 0.0) <= 0
         first = np.argmax(unlike)
         return products[: max(1, first)]

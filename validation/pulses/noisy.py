@@ -89,9 +89,6 @@ class NoisyPulse:
         Time at which the pulse rises through half of its peak.
     slope : float
         Growth of the base in time.
-    noise : float
-        Standard deviation, times ``√n``, of the mean noise of n samples; 0 in a record without
-        noise.
     """
 
     numbers: Mapping[str, Estimate]
@@ -99,7 +96,6 @@ class NoisyPulse:
     missing: str | None = None
     rise: float = 0.0
     slope: float = 0.0
-    noise: float = 0.0
 
 
 def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPulse:
@@ -157,7 +153,6 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
         numbers=numbers,
         base=pulse.base * size,
         slope=pulse.slope * size,
-        noise=pulse.noise * size,
     )
 
 
@@ -200,10 +195,7 @@ def _noisy(t: Array, f: Array, step: float, unit: str) -> NoisyPulse:
     ends = np.array([rise, fall])
     level, later = base.at(ends).tolist()
     slope = (later - level) / width
-    # Samples of correlated noise count as fewer; each of ``means`` counts as the block's.
-    correlated = base.best.variance * base.best.correlation_time
-    noise = math.sqrt(correlated * block)
-    return NoisyPulse(numbers, level, missing, rise, slope, noise)
+    return NoisyPulse(numbers, level, missing, rise, slope)
 
 
 def _is_exact(f: Array) -> bool:
