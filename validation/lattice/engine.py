@@ -122,7 +122,7 @@ class _Integration:
         self.motion = motion
         self.method = method
         check_memory(motion.scene, method, rows=_NUMBERS)
-        self.steps = rtol, longest
+        self.steps = rtol, longest  # the tolerance, and the greatest step
         self._make_plan(motion)
         self.chain = _chain(motion)
         self.forcing = _forcing(motion)
@@ -158,6 +158,7 @@ class _Integration:
                 if now["response"] > self.plan.most:
                     response = float(now["response"])
                     self._make_plan(Motion(self.motion.scene, response))
+                # The engine has stored the motion at the ends of its steps, until its room is full.
                 if t == end or now["stored"] == len(knots.time):
                     stored = int(now["stored"])
                     now["stored"] = self.recorder.take(stored)
@@ -336,6 +337,7 @@ def _forcing(motion: Motion) -> Forcing | None:
     if scene.drive is None and not damped:
         return None
     drive = scene.drive or _STILL
+    # The drive's cubics are two fields: when they begin, and their coefficients.
     amplitude, w = drive.oscillation
     return Forcing(
         *drive.cubics,

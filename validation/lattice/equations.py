@@ -242,7 +242,7 @@ class Motion:
 
     @cached_property
     def initial_energies(self) -> tuple[Array, Array]:
-        """The `energies` of the initial state."""
+        """Kinetic energies of the beads and elastic ones of the contacts at the start."""
         return self.energies(self.start)
 
     @cached_property

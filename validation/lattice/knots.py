@@ -125,7 +125,8 @@ class Recorder:
         watched = _watched(motion)
         most = 2  # the ends of a step
         if len(watched):
-            # A knot: four numbers a bead, and its time.
+            # A knot is its time, and for each bead displacement, velocity, acceleration and the
+            # mark of a kink of the contact ahead.
             most += BUFFER // (4 * len(watched) + 1)
         self.knots = Knots(
             time=np.empty(most),

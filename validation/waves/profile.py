@@ -266,12 +266,19 @@ def _tail(wave: ExactWave) -> float:
 
 
 def _residual(wave: ExactWave) -> float:
-    """The error in the equations of motion, see `ExactWave.residual`."""
-    # The strains give forces, and the forces give strains: for a solution the same strains.
+    """The greatest error of the strain in the equations of motion, over the peak strain.
+
+    The equations are those integrated twice (`validation.waves.newton.respond`).
+    """
+    # The contact law gives forces from the strains, and the equations give strains from the Fourier
+    # coefficients of these forces, ``series``: for a solution the same strains. Newton's method has
+    # made them equal at the points of the solution's grid: a grid twice as fine sees the error
+    # between these points, too.
     twice = 2 * (len(wave.series) - 1)
     xi = newton.periodic_grid(wave.half_period, twice)
     series = newton.coefficients(wave.force(xi))
     response = replace(wave, series=series)
     off = response.strain(xi) - wave.strain(xi)
     largest = float(np.abs(off).max())
+    # The peak force is 1, and so is the peak of the total strain. The wave's own is 1 - p0.
     return largest / (1 - wave.background)

@@ -106,7 +106,11 @@ def push(law: Any, r: float, d: float, rate: float) -> float:
 
 
 def _loop(value: Any) -> Any:
-    """Compile a loop over contacts with the force A value(law, k, d)."""
+    """Compile a loop over contacts with the elastic force A value(law, k, d), less the static one.
+
+    The loop takes contacts lo … hi - 1. Contact i presses where its compression is above ``least``,
+    which is 0 or nearly, and -∞ if its law pulls; its force goes to ``f[i + 1]``.
+    """
 
     @part
     def loop(
@@ -234,7 +238,8 @@ def contact_forces(
         Range of the contacts.
     """
     f = beads.force[1]
-    # The tiles of a step come in their order: that of the first contact begins the sum of the heat.
+    # Row 0 of the power is what all contacts dissipate, row 1 that of the drive, by stage. Tiles of
+    # a step come in their order: that of the first contact begins the sum of row 0.
     lost = beads.power[0, s] if lo > 0 else 0.0
     start = lo
     while lo < hi:

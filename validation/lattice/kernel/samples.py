@@ -40,8 +40,9 @@ _FIT = np.linalg.inv(_PLACES[:, None] ** _POWERS.T) / (_POWERS + 1) / (_POWERS +
 def store_knot(forcing: Forcing | None, beads: Beads, knots: Knots, now: Any) -> None:
     """Store the present motion of the watched beads as the next knot.
 
-    The four entries of a state are those of `Knots`. The acceleration is that of the first stage,
-    at the start of the next step. A driven bead, of infinite mass, has a given acceleration.
+    A state is displacement, velocity, acceleration, and 1 if the step to the knot was corrected for
+    a kink of the contact ahead of the bead. The acceleration is that of the first stage, at the
+    start of the next step. A driven bead, of infinite mass, has a given acceleration.
     """
     if len(knots.watched) == 0:
         return
@@ -91,6 +92,7 @@ def _fit_curve(a: Array, b: Array, pushes: Array, c: Array) -> None:
         c[m + 2] = 0.0
         for k in range(len(_PLACES)):
             c[m + 2] += _FIT[m, k] * pushes[k]
+    # Half of the acceleration at x = 0 that the smooth forces leave to the rest
     c2 = (a[2] - pushes[0]) / 2
     # The rest has c4 … c7 besides, from what is left of y, y' and y'' at x = 1, r0, r1 and r2.
     r0 = b[0] - c2
@@ -266,9 +268,10 @@ def interpolate(
             for s in range(first, last):
                 y[r, s] = v[r, s] = 0.0
             pushes[r] = 0.0
-        # The contact between the beads of rows r and r + 1. The beads of the first and the last
-        # row, and those beside a gap in the rows, may lack a contact: they are there as neighbours
-        # of the beads that are wanted.
+        # Contacts between the beads of rows r and r + 1. Entry 3 of a state is above 0 if the step
+        # to its knot was corrected for a kink of the contact ahead of the bead. The beads of the
+        # first and the last row, and those beside a gap in the rows, may lack a contact: they are
+        # there as neighbours of the beads that are wanted.
         moved[:] = 0.0
         for r in range(len(rows) - 1):
             q = rows[r]
