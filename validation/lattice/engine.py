@@ -202,6 +202,7 @@ class _Integration:
         samples = self.recorder.samples
         steps = int(now["steps"])
         if samples:
+            # Parts (2, beads, times), one after the other in time
             all_samples = np.concatenate(samples, axis=2)
             return Run(motion, end, steps, samples=all_samples)
         return Run(motion, end, steps, self.recorder.path())

@@ -160,6 +160,7 @@ class Recorder:
         path = self.path()
         assert path is not None
         time = sample_times(self.motion.scene)
+        # Parts of the samples: displacements and velocities (2, beads, times).
         done = sum(part.shape[2] for part in self.samples)
         last = path.time[-1]
         due = int(time.searchsorted(last, side="right"))

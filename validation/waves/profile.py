@@ -151,12 +151,15 @@ class ExactWave(Pictured):
         """Velocity of beads m1 (bead 0) or m2 (bead 1) at ξ, 0 at the end of the period."""
         kind = integer(bead, "bead", 0) % 2
         at = finite(xi, "xi")
-        # The contact half a site behind a bead m2 has the force F_a, whose series is known; the one
-        # behind a bead m1 has F_b, the mirror image of F_a, with the conjugate coefficients.
+        # The contact half a site behind a bead m2 has the force F_a, whose Fourier coefficients are
+        # ``series``. The one behind a bead m1 has F_b, the mirror image of F_a, with the conjugate
+        # coefficients.
         behind = self.series if kind else self.series.conj()
         q = self._wavenumbers[1:]
-        # m c v' is the force half a site ahead less the force half a site behind. The two are
-        # mirror images, Re g e^{∓iqξ}: their difference is 2 Im g sin qξ, and v a sum of cosines.
+        # In a wave v depends on ξ = x - ct, dv/dt = -c v', and so m c v' is the force half a site
+        # ahead less the force half a site behind. The latter is Re Σ g e^{iqξ}, g = ``shifted``,
+        # the former its mirror image, Re Σ g e^{-iqξ}: their difference is Σ 2 Im g sin qξ, and v
+        # the sum of -2 Im g cos qξ / (q m c).
         shifted = behind[1:] * np.exp(-0.5j * q)
         momenta = -2 * shifted.imag / (q * self.c)
         velocities = np.append(0.0, momenta) / self.masses[kind]

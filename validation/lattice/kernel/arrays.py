@@ -300,9 +300,9 @@ def initial_progress(plan: Plan, front: int, energy: float) -> Any:
     record
         The record's fields: the time t and its rounding error, late; the next step h; the numbers
         of steps that were made and tried; the first bead ahead of the motion, front; the number of
-        stored knots; the number of the next of ``plan.stops``, stop; the integral of
-        ``v (F - static force)`` of a driven bead, work; the dissipated energy, lost; and the
-        greatest energy on the way, response.
+        stored knots; the number of the next of ``plan.stops``, stop; the initial energy; the
+        integral of ``v (F - static force)`` of a driven bead, work; the dissipated energy, lost;
+        and the greatest energy on the way, response.
     """
     now = records(np.zeros(1, _PROGRESS))[0]
     now["front"], now["h"], now["energy"] = front, plan.h, energy

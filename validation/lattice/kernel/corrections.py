@@ -132,6 +132,7 @@ def mark_kinks(
     load = chain.load
     opens = chain.opens
     marks = beads.marks
+    # Forces at both ends of the step, less the static ones; that of contact i is in column i + 1.
     start = beads.force[0]
     end = beads.force[1]
     # A force F changes a velocity by h F/m. The error of a step is the root of the sum of the
@@ -276,6 +277,7 @@ def _clipped(
     law = chain.laws[chain.law[n]]
     last = len(pair.nodes) - 1
     _follow_stages(chain, forcing, beads, pair, t, h, n)
+    # At the stages: δ, h dδ/dt and the force for unit stiffness
     d, slope, force = beads.points
     missed = 0.0
     if not d[0] > 0.0:
@@ -329,6 +331,7 @@ def _correct_heat(
     law = chain.laws[chain.law[i]]
     last = len(pair.nodes) - 1
     heat = work - stored
+    # At the stages: δ, h dδ/dt and the force for unit stiffness
     d, slope, force = beads.points
     for s in range(last + 1):
         lost = (force[s] - elastic(law, d[s])) * slope[s]
@@ -350,6 +353,7 @@ def _correct_work(
     A = chain.A[0]
     beads.books[WORK] = A * work
     for s in range(last + 1):
+        # Speed and power by x: over the step they are h times those by time.
         _, speed = kinks.value_and_slope(drive, pair.nodes[s])
         power = A * beads.points[2, s] * speed
         beads.books[WORK] -= pair.impulses[last, s] * power

@@ -202,7 +202,9 @@ def evaluate_stages(
             contact_forces(
                 chain, forcing, beads, plan, next_y, next_v, s, first, behind
             )
-            # The stages share a row of forces: the last one of a tile is kept for the next tile.
+            # The stages share a row of forces. The first bead of a tile needs the force of the
+            # contact behind, which this stage has computed in the tile before: it was kept in
+            # ``border``, as the last one of this tile is for the next tile.
             if first > 0:
                 force[first] = beads.border[s]
             beads.border[s] = force[behind]

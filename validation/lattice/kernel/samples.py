@@ -159,7 +159,7 @@ def _take_kink_away(
     far = scale * chain.inverse[i + 1]
     begin = _scaled(chain, knots, n, q, h)
     over = _scaled(chain, knots, n + 1, q, h)
-    bend = -near - far
+    bend = -near - far  # change of p'' by a force of 1
     found = kinks.resolved(law, ratio, begin, over, h, bend, kinks.STRAIGHT, edges)
     p = found.curve
     # A force that jumps bends the curve: a second call knows the bend, p[6], of the size p[6][1].
