@@ -54,7 +54,8 @@ def widening(masses: Pair) -> float:
     """Return the canonical wave's width divided by its width at equal masses, ``√(12 I/D²)``.
 
     D is 1, and I the coefficient in the dispersion ``Ω² = κ² (1 - (I/D²) κ² + …)`` of the linear
-    chain: ``I/D² = (m1² - m1 m2 + m2²)/(3 (m1 + m2)²)``, which is 1/12 at equal masses.
+    chain, Ω the frequency in units in which its long waves have the speed 1, κ the wavenumber times
+    D: ``I/D² = (m1² - m1 m2 + m2²)/(3 (m1 + m2)²)``, which is 1/12 at equal masses.
     """
     m1, m2 = masses
     square = m1**2 - m1 * m2 + m2**2

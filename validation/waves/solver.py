@@ -249,7 +249,8 @@ def solve(problem: newton.Problem, start: ExactWave | None = None) -> ExactWave:
         arch = np.cos(np.clip(phase, -quarter, quarter))
         force = arch ** (2 * k / (k - 1))
         c2 = 4 / ((k + 1) * (m1 + m2))
-    # c² of the wave scaled to peak force 1, as `newton.Problem.wave` scales the forces.
+    # `newton.Problem.wave` divides the forces by this share. With the forces of a wave times f go
+    # its strains times f^{1/k} and c² times f^{(k-1)/k}.
     share = force[0] / problem.height
     return _converged(problem, force, c2 * share ** ((1 - k) / k))
 

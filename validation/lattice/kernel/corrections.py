@@ -577,6 +577,9 @@ def correct_contact(
         work = missed * beads.v[0] / plan.energy
         beads.books[SQUARES] += work * work
     _count_error(beads.books, math.hypot(missed, change) / plan.v, near, far)
+    # The stages lack this contact's own correction: its impulse errs by stiffness × third and by
+    # damping × moment. Beside a jump the force was taken from these stages, so that the correction
+    # made up for this, and what is left is the effect of that correction in turn.
     if top > 0.0:
         resisted = r * drag(law, top) * moment
         more = A * both * (stiffness(law, top) * third + resisted)

@@ -247,7 +247,7 @@ def interpolate(
     points, edges : array
         Working memory, as in `Beads`.
     """
-    c = points[0, : len(_PLACES) + 2]
+    c = points[0, : len(_PLACES) + 2]  # room for the coefficients of `_fit_curve`
     last = FIRST
     while last < len(time):
         # Samples first … last - 1 lie in one step, n.
