@@ -172,6 +172,7 @@ class _Integration:
         now = self.now
         end = self.plan.end
         where = f"t = {now['t']:g} of {end:g}"
+        # Row 1 of the forces is that of the stage computed last; row 0 belongs to the step's start.
         finite = np.isfinite(self.beads.force[1:])
         if not finite.all() or now["h"] == 0:
             return f"a force is not a number near {where}: no step is short enough for the law"
@@ -396,6 +397,7 @@ def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
     v[:n] = next_v[:n] = motion.start[n : 2 * n]
     given = np.zeros(2)
     if motion.scene.drive is not None:
+        # The bead's acceleration, after its displacement and velocity
         given[:] = motion.scene.drive.at(0.0)[2]
     return Beads(
         y=y,

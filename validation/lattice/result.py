@@ -154,6 +154,7 @@ class Run(Pictured):
     @property
     def dissipated(self) -> float:
         """Energy that damped contacts have turned into heat."""
+        # A state ends with the heat and the work of the drive.
         return float(self.end[-2])
 
     @cached_property

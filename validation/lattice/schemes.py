@@ -105,6 +105,8 @@ def _padded(exact: Array) -> Array:
 def _nystrom(table: str, order: int) -> Pair:
     """Read a pair for y'' = f(y)."""
     rows = _rows(table)
+    # The last row of a holds the weights of the displacement. Then come those of the velocity, and
+    # both of the less accurate solution.
     a = rows[:-3]
     speeds, low, low_speeds = rows[-3:]
     impulses = np.zeros_like(a)

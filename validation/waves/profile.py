@@ -175,8 +175,9 @@ class ExactWave(Pictured):
         return float(self._profile(quantity)(crest))
 
     def fwhm(self, quantity: QuantityName = "strain") -> float:
-        """Full width at half maximum of a quantity's highest hump, a length; see `peak`.
+        """Full width at half maximum of a quantity's highest hump, a length.
 
+        Strain and force are those of contact 0, the velocity is that of bead 0.
         Raises `MeasureError` for a hump that does not fall to half its peak.
         """
         return self._hump(quantity).fwhm
@@ -257,7 +258,7 @@ def at_unit_force(problem: newton.Problem, found: newton.Found) -> ExactWave:
 
 
 def _tail(wave: ExactWave) -> float:
-    """The largest odd part of the strain outside the pulse, see `ExactWave.tail`."""
+    """The largest odd part ``|o|`` of the strain outside the pulse, of a wave of peak strain 1."""
     L = wave.half_period
     # Some twenty points for each oscillation of the tail.
     count = 4 * len(wave.series)

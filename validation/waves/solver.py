@@ -256,7 +256,7 @@ def solve(problem: newton.Problem, start: ExactWave | None = None) -> ExactWave:
 
 
 def _converged(problem: newton.Problem, force: Any, c2: float) -> ExactWave:
-    """Return the wave that forces on the grid and c² converge to, see `solve`."""
+    """Return the wave of peak force 1 that forces on the grid and c² lead to, or raise `NoWave`."""
     try:
         found = problem.wave(force, c2)
     except np.linalg.LinAlgError:
@@ -279,7 +279,8 @@ def resonances(k: Any, count: Any) -> tuple[ExactWave, ...]:
     Raises
     ------
     SceneError
-        For numbers out of range, and for more ratios than are found at k, see `FOLLOWED`.
+        For numbers out of range, and for more ratios than are found at k: six from 1.3 on, two at
+        1.1 (`FOLLOWED`).
     """
     count = integer(count, "count", 1, len(STARTS))
     known = _known(k)

@@ -150,6 +150,9 @@ def _take_kink_away(
     the curve p of its compression, is integrated up to each sample and added to y and v there, and
     up to the `_PLACES` and added to ``moved``. From the accelerations in ``ends`` it is taken away,
     so that the polynomial follows the smooth rest of the motion.
+
+    ends : y, y' and y'' by x of each row, at both ends of the step. moved : what kinks add to y and
+    to y' of each row at the `_PLACES`. first, last : the samples first … last - 1 lie in the step.
     """
     i = knots.watched[q]
     law = chain.laws[chain.law[i]]
@@ -195,6 +198,10 @@ def _add_smooth_force(
     The contact is ahead of the bead of row r. Its compression is a quintic without the kinks of
     its neighbours, plus their effects, ``moved`` from the ``ends``. A quintic of the whole motion
     errs where a neighbour's force jumps: by up to 549 tolerances in four scenes, now 6.
+
+    ends : y, y' and y'' by x of each row, at both ends of the step, without the effects of kinks.
+    moved : what kinks add to y and to y' of each row at the `_PLACES`. pushes : accelerations of
+    each row by smooth forces there, by x.
     """
     law = chain.laws[chain.law[i]]
     rest = chain.rest[i]
@@ -245,7 +252,8 @@ def interpolate(
         Working memory: the motion at both ends; what kinks add to y and y' at the `_PLACES`; the
         accelerations by smooth forces there.
     points, edges : array
-        Working memory, as in `Beads`.
+        Working memory: three rows for the points of a quadrature, and the places between which a
+        contact's force is smooth.
     """
     c = points[0, : len(_PLACES) + 2]  # room for the coefficients of `_fit_curve`
     last = FIRST
