@@ -177,11 +177,15 @@ class StruckDimer:
     omega: float
     sites: int  # from one place of measurement to the next
 
+    @property
+    def q(self) -> float:
+        """Exponent of the speed, which is proportional to F^q of the peak contact force F."""
+        return (self.k - 1) / (2 * self.k)
+
     def crossing(self, sites: int) -> float:
         """Return the time in which the theory's pulse of force `_WEAKEST` passes sites."""
         # The speed is 2 F^q/√((k+1)(1+ω)), F the peak contact force.
-        q = (self.k - 1) / (2 * self.k)
-        weak = math.pow(_WEAKEST, q)
+        weak = math.pow(_WEAKEST, self.q)
         of_unit_force = 2 / math.sqrt((self.k + 1) * (1 + self.omega))
         return sites / (of_unit_force * weak)
 
@@ -241,10 +245,9 @@ class StruckDimer:
         elapsed[elapsed <= 0] = np.nan
         logarithms = np.log(passages["peak"])
         fall = -np.diff(logarithms, axis=0)
-        q = (self.k - 1) / (2 * self.k)
-        scaled = passages["peak"] ** q
+        scaled = passages["peak"] ** self.q
         # exprel(z) is (e^z - 1)/z.
-        distance = self.sites * scipy.special.exprel(q * fall)
+        distance = self.sites * scipy.special.exprel(self.q * fall)
         speed = distance / (elapsed * scaled[:-1])
         # A width is a duration at a contact times the speed there.
         at_end = speed * scaled[1:]

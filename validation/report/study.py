@@ -95,7 +95,12 @@ class Report(Pictured):
     @property
     def ok(self) -> bool:
         """True if every finding holds."""
-        return all(finding.ok for finding in self.findings)
+        return not self._failed
+
+    @property
+    def _failed(self) -> list[Finding]:
+        """Findings that do not hold."""
+        return [finding for finding in self.findings if not finding.ok]
 
     @property
     def verdict(self) -> str:
@@ -107,10 +112,9 @@ class Report(Pictured):
         count = len(self.findings)
         if not count:
             return ""
-        failed = [finding for finding in self.findings if not finding.ok]
         outcome = "all hold"
-        if failed:
-            outcome = f"{len(failed)} of {count} fail"
+        if self._failed:
+            outcome = f"{len(self._failed)} of {count} fail"
         return f"{count} check{'s' * (count > 1)}: {outcome}"
 
     def text(self, width: int = WIDTH) -> str:
@@ -123,10 +127,8 @@ class Report(Pictured):
         """
         parts = [wrap(self.title, width)]
         parts += [table.text(width) for table in self.tables]
-        printed = [finding for finding in self.findings if not finding.ok]
         # A report of findings alone shows them all.
-        if not any(parts[1:]):
-            printed = list(self.findings)
+        printed = self._failed if any(parts[1:]) else self.findings
         parts.append(findings_table(printed).text(width))
         parts += [wrap(note, width) for note in self.notes]
         parts.append(self.verdict)
@@ -168,10 +170,9 @@ class Report(Pictured):
         """
         if not self.tables:
             raise InputError("format is csv: this result has no table")
-        for table in self.tables:
-            if table.rows:
-                return table.csv()
-        return self.tables[0].csv()  # its header
+        filled = [table for table in self.tables if table.rows]
+        first, *_ = filled or self.tables  # without any row the header alone
+        return first.csv()
 
     def pictured(self) -> Sequence[Panel]:
         """The panels, curves and maps, of which a picture of the result is made."""

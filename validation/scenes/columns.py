@@ -378,8 +378,9 @@ def found_unit(cells: Sequence[str]) -> str:
     """Return the unit that the cells above a column state, "" for none; the lowest one counts."""
     for cell in reversed(cells):
         header = HEADER.fullmatch(cell)
-        if header and (header[2] or header[3]):
-            return header[2] or header[3]
+        unit = header and (header[2] or header[3])
+        if unit:
+            return unit
     # A row of units stands below names: the V of a single header is a speed, say.
     below = [*filter(None, cells)][1:]
     return next(filter(known, reversed(below)), "")

@@ -297,9 +297,9 @@ def run(
         raise SceneError(
             f"out is {out}: it is the scene's own file, which would be lost"
         )
-    sensors = chain.bead_sensors or chain.contact_sensors
     # A CSV holds the records alone; JSON has the result as well.
-    if out is not None and out.suffix.lower() == ".csv" and not sensors:
+    as_csv = out is not None and out.suffix.lower() == ".csv"
+    if as_csv and not (chain.bead_sensors or chain.contact_sensors):
         raise SceneError(f"out is {out}, but the scene names no sensors")
     recording = record(
         chain, method=method, rtol=rtol, every=pulses, progress=run_progress
@@ -309,7 +309,7 @@ def run(
         return result
     done = recording.run
     with replacing(out) as new, new.open("wb") as stream:
-        if out.suffix.lower() == ".csv":
+        if as_csv:
             columns = done.columns()
             # "%s" writes the shortest text that reads back as the same float.
             rows = np.column_stack(list(columns.values()))

@@ -9,7 +9,7 @@ with contact force 1 at its peak, in the paper's closure and for the full closur
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import (
     BrokenExecutor,
     CancelledError,
@@ -35,7 +35,7 @@ from validation.lattice.threads import cluster, threads
 from validation.pictures import Curve, Panel
 from validation.pulses.steady import LABELS, Key, Point, point, stored
 from validation.report.study import Report, option, output_file, study
-from validation.report.table import Column, Estimates, Table, percent
+from validation.report.table import Column, Estimates, Row, Table, percent
 from validation.scenes.checks import Failure, SceneError, items
 
 RANGES = {
@@ -85,10 +85,6 @@ _ERRORS = (
     "the largest change over a stretch, from a less accurate run, or twice that to 40 "
     "stretches"
 )
-
-
-Row = Mapping[str, Any]
-"""Cells of a point by the keys of columns."""
 
 
 def report(points: Sequence[Point]) -> Report:

@@ -330,8 +330,6 @@ def newton(change: Callable[[Array], Array], x: Array, sizes: Array) -> Array:
         step = change(x)
         shares = np.abs(step) / sizes
         size = shares.max()
-        if not math.isfinite(size):
-            break
         if size > _LONGEST_STEP:
             step *= _LONGEST_STEP / size
         x = x - step
