@@ -288,7 +288,6 @@ def _chain(motion: Motion) -> Chain:
     r[:contacts] = motion.damping / motion.stiffnesses
     rest[:contacts] = motion.rest
     load[:contacts] = motion.load
-    opens[:contacts] = 1.0
     laws = [*motion.laws] or [Contact(1.0)]  # of a single bead: the padding's
     # The padding, of stiffness 0, has the last contact's law, so that one loop takes both; but a
     # linear one where the last contact's force may overflow as a free end moves on (`_UNBOUNDED`).
@@ -298,18 +297,15 @@ def _chain(motion: Motion) -> Chain:
         beyond = len(laws)
         laws.append(Contact(1.0))
     law_of = np.full(padded, beyond)
-    alike = np.full(padded, padded)
     law_of[:contacts] = motion.law_of
-    if len(laws) > 1:
-        # Contacts at which another law begins: for each contact the first of them ahead of it, up
-        # to which a loop may take the contacts together
-        changes = np.flatnonzero(np.diff(law_of))
-        places = np.append(changes + 1, padded)
-        following = np.searchsorted(places, np.arange(padded), side="right")
-        alike = places[following]
-    for number, law in enumerate(laws):
-        if law.pulls:  # it holds at every δ, and has no kink
-            opens[:padded][law_of == number] = 0.0
+    # Contacts at which another law begins: for each contact the first of them ahead of it, up to
+    # which a loop may take the contacts together
+    changes = np.flatnonzero(np.diff(law_of))
+    places = np.append(changes + 1, padded)
+    following = np.searchsorted(places, np.arange(padded), side="right")
+    # A contact that pulls holds at every δ, and has no kink.
+    pulls = np.array([law.pulls for law in laws])
+    opens[:contacts] = ~pulls[motion.law_of]
     rows = [_record(law) for law in laws]
     return Chain(
         inverse=inverse,
@@ -320,7 +316,7 @@ def _chain(motion: Motion) -> Chain:
         opens=opens,
         laws=records(np.array(rows, LAW)),
         law=law_of,
-        alike=alike,
+        alike=places[following],
     )
 
 

@@ -274,9 +274,9 @@ class Motion:
             _check_range("energy", energy)
         # Greatest compression, and greatest spring without the factor k of a power.
         deepest = stiffest = 0.0
-        # springs[i] is the sum of F′ of the contacts behind and ahead of bead i; entry n is that of
-        # a wall, which has no equation of motion and is left out below.
-        springs = np.zeros(n + 1)
+        # F′ of the contacts, between zeros: nothing lies behind the first bead, or ahead of the
+        # last one, or of a wall.
+        stiff = np.zeros(len(self.rest) + 2)
         for number, law in enumerate(self.laws):
             own = self.law_of == number
             rest = self.rest[own]
@@ -297,13 +297,12 @@ class Motion:
             slope = law.steepest(static, depth)
             stiffest = max(stiffest, largest * slope)
             _check_range("stiffest spring", largest * slope)
-            stiff = law.k * slope * stiffnesses
-            springs[: len(self.rest)][own] += stiff
-            of_contact_behind = springs[1 : len(self.rest) + 1]
-            of_contact_behind[own] += stiff
+            stiff[1:-1][own] = law.k * slope * stiffnesses
         if not deepest:
             # Nothing presses: displacement and velocity have any scale, 1, and no time is short.
             return Scales(energy, 0.0, 1.0, 1.0, math.inf)
+        # Of the contacts behind and ahead of each bead; a wall has no equation of motion.
+        springs = stiff[:-1] + stiff[1:]
         squares = springs[:n] / self.masses  # of angular frequencies
         time = 1 / math.sqrt(squares.max())
         _check_range("shortest time", time)

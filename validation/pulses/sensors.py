@@ -307,8 +307,7 @@ def _place(scene: Scene, x: Array, kind: str, i: int) -> dict[str, float]:
     site = i + 0.5 if kind == "contact" else float(i)
     place = {"speed_sites": site}
     if scene.spacings:
-        sites = np.arange(len(x))
-        place["speed"] = float(np.interp(site, sites, x))
+        place["speed"] = float(np.interp(site, np.arange(len(x)), x))
     return place
 
 

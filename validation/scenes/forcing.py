@@ -249,13 +249,10 @@ class Drive:
     @property
     def fastest(self) -> float:
         """Approximate greatest speed of the bead."""
-        if self.velocity is not None:
-            return abs(self.velocity)
-        if self.time:
-            velocities = self._spline(self.time, 1)
-            return float(np.abs(velocities).max())
+        # One of the two is 0. A cubic's second coefficient is the velocity where it begins.
+        _, cubics = self.cubics
         amplitude, w = self.oscillation
-        return abs(amplitude) * w
+        return float(np.abs(cubics[:, 1]).max() + abs(amplitude) * w)
 
     @property
     def longest_step(self) -> float:
