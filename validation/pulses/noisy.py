@@ -200,7 +200,8 @@ def _noisy(t: Array, f: Array, step: float, unit: str) -> NoisyPulse:
     ends = np.array([rise, fall])
     level, later = base.at(ends).tolist()
     slope = (later - level) / width
-    # Samples of correlated noise count as fewer; each of ``means`` counts as the block's.
+    # The mean noise of n samples, n/block of the means, has the variance σ² · correlation time over
+    # their number, σ² being that of a mean: times n it no longer depends on n (`NoisyPulse.noise`).
     correlated = base.best.variance * base.best.correlation_time
     noise = math.sqrt(correlated * block)
     return NoisyPulse(numbers, level, missing, rise, slope, noise)
@@ -424,6 +425,7 @@ def suggested(t: Array, signal: Array, pulse: NoisyPulse, unit: str) -> str:
         error = pulse.numbers["peak"].error
         if not 0 < _SURE * error < below.mean() > _SHALLOWEST * swing.max():
             return ""
+        # Behind the pulse the force f = v + charge/T is 0: T = charge/(-v).
         constant = charge[inside].mean() / below.mean()
         constants.append(constant)
     near, far = constants
