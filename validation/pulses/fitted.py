@@ -80,6 +80,8 @@ def fitted(
     variance = base.best.variance + rounding**2
     most = min(_HIGHEST, int(_DENSEST * len(x)))
     smoothed = partial(_smoothed, x, f, base.best.correlation_time, most)
+    # `wanted` coefficients would be best, the spline has at most `most`; `left` is the variance of
+    # the samples about it.
     wanted, spline, left = smoothed(variance)
     if left > _MISFIT * variance:
         # The noise during the pulse is larger than before.
@@ -93,10 +95,12 @@ def fitted(
             f"the noise is {share:.1%} of the peak: at most {_LOUDEST:.0%} is read"
         )
     noise = base.drawn(rise + x, pulse, variance, step)
+    # A fit is linear: a record with drawn noise has the best fit's coefficients and the noise's.
     drawn = _fit(x, noise, len(spline.c))
     best = spline.c[:, np.newaxis]
     coefficients = np.hstack((best, best + drawn.c))
     splines = BSpline(spline.t, coefficients, _DEGREE)
+    # Arrival, peak and FWHM, in a row for each spline: the best fit's first, then the draws'.
     found = _read(splines, ends)
     numbers = found[0]
     off = np.abs(found[1:] - numbers)

@@ -416,6 +416,7 @@ def suggested(t: Array, signal: Array, pulse: NoisyPulse, unit: str) -> str:
         error = pulse.numbers["peak"].error
         if not 0 < _SURE * error < below.mean() > _SHALLOWEST * swing.max():
             return ""
+        # Behind the pulse the force f = v + charge/T is 0: T = charge/(-v).
         constant = charge[inside].mean() / below.mean()
         constants.append(constant)
     near, far = constants

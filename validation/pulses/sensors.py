@@ -191,9 +191,11 @@ def record(
 
         The argument ``sites`` is the speed between the sensors, in sites per time.
         """
+        # Total forces, which set the stiffness of the contacts
         peaks = [r.numbers["peak"].value + r.static for r in (first, second)]
         numbers = sorted(first.places + second.places)
-        # The contacts from one sensor to the other; sensors count from 1
+        # The contacts from one sensor to the other, and that behind a second bead; numbers count
+        # from 1.
         between = slice(numbers[0] - 1, numbers[1])
         time = _time_of_a_site(motion, between, max(peaks))
         # From site to site the pulse takes 1/sites.
@@ -396,9 +398,11 @@ def speeds_between(
 def _speeds(
     first: Reading, second: Reading, total: Callable[[float, float], float]
 ) -> dict[str, Estimate]:
-    """Return the speeds from one arrival to a later one, by name.
+    """Return the speeds of a pulse from one sensor to another, later one.
 
-    Raises `MeasureError` if there are none.
+    Names are ``speed_sites``, in sites per time, and ``speed``, in length per time, as far as both
+    sensors' `Reading.along` have them. The error of the time between is ``total`` of the errors of
+    both arrivals. Raises `MeasureError` if there are none.
     """
     if "arrival" not in first.numbers or "arrival" not in second.numbers:
         raise MeasureError("one of the two has no pulse")
@@ -411,7 +415,9 @@ def _speeds(
             "a speed needs a later second arrival, by more than its error"
         )
     if not (first.along and second.along):
-        raise MeasureError("a bead with one contact has a force of half a site away")
+        raise MeasureError(
+            "a bead with one contact shows the pulse of the contact, half a site away"
+        )
     speeds = {}
     for name, place in first.along.items():
         distance = abs(second.along[name] - place)

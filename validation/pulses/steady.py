@@ -207,7 +207,9 @@ class StruckDimer:
         Names are arrival, peak, width of the force, strain_width, end, and highest, the peak of the
         highest pulse. Raises `MeasureError` if a pulse does not pass all places in time.
         """
-        low = 0.25**self.k  # a quarter of the compression
+        # The leading pulse is the first whose compression exceeds a quarter of the greatest. As
+        # F = δ^k, its force exceeds this share of the greatest.
+        low = 0.25**self.k
         sensors = run.scene.contact_sensors
         found: dict[str, list[float]] = {}
         for contact in sensors:
@@ -215,6 +217,7 @@ class StruckDimer:
             highest = force(force.times).max()
             try:
                 pulse = first_pulse(force, low)
+                # Its width at half of its greatest compression is the FWHM of the strain.
                 strain = first_pulse(force, low, 0.5**self.k)
             except MeasureError:
                 raise MeasureError(
