@@ -293,11 +293,12 @@ class Motion:
             deepest = max(deepest, depth)
             # F′ = k A δ^{k-1}. From δ = 0 the depth is that of the energy A δ^{k+1}, and y, of
             # energy = F′ y² below, is this depth if F′ lacks the factor k. The shortest time is
-            # that of the true F′, with k.
-            slope = law.steepest(static, depth)
-            stiffest = max(stiffest, largest * slope)
-            _check_range("stiffest spring", largest * slope)
-            stiff[1:-1][own] = law.k * slope * stiffnesses
+            # that of the true F′, with k. Other laws have k = 1, and may soften when pressed.
+            slope = float(law.stiffness(np.array([static, depth])).max())
+            spring = largest * slope / law.k
+            stiffest = max(stiffest, spring)
+            _check_range("stiffest spring", spring)
+            stiff[1:-1][own] = slope * stiffnesses
         if not deepest:
             # Nothing presses: displacement and velocity have any scale, 1, and no time is short.
             return Scales(energy, 0.0, 1.0, 1.0, math.inf)

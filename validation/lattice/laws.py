@@ -187,18 +187,6 @@ class Contact:
             high = change[min(first + 1, _TRIED - 1)]
         return float(start + change[first])
 
-    def steepest(self, start: float, depth: float) -> float:
-        """Return the greater one of the stiffnesses at two compressions, ``start ≤ depth``.
-
-        The stiffness of a power is given without its factor k, which no scale needs.
-        """
-        if self.law is None:
-            # δ^{k-1} does not fall, as scenes have k ≥ 1: it is greatest at the greater depth. A
-            # NumPy float, which overflows to ∞; a Python one raises an exception.
-            return float(np.float64(depth) ** (self.k - 1))
-        ends = np.array([start, depth])
-        return float(self.stiffness(ends).max())
-
     @property
     def addresses(self) -> dict[str, int]:
         """Addresses of the machine code of the force, its slope and the energy; 0 for a power."""

@@ -21,7 +21,6 @@ from validation.lattice.signal import (
     quantities,
     sample_times,
     sensed_beads,
-    sensors_of,
 )
 from validation.pictures import Curve, Map, Panel, Pictured
 from validation.scenes.checks import SceneError, one_of
@@ -98,7 +97,7 @@ class Run(Pictured):
             # Without sensors there is no motion to sample: y and v of no beads.
             samples = np.zeros((2, 0, len(self.time)))
         found = quantities(self.motion, beads, *samples)
-        sensors = sensors_of(self.scene)
+        sensors = self.scene.sensors
         records = {}
         for (kind, _), name in RECORDS.items():
             rows: Any = beads.searchsorted(sensors[kind])
@@ -207,7 +206,7 @@ class Run(Pictured):
     def columns(self) -> dict[str, Array]:
         """Return time and all records, each (S,), by names such as "bead 15 force (N)"."""
         columns = {self.label("time"): self.time}
-        for kind, sensors in sensors_of(self.scene).items():
+        for kind, sensors in self.scene.sensors.items():
             for row, i in enumerate(sensors):
                 for (own, quantity), name in RECORDS.items():
                     if own == kind:
@@ -221,7 +220,7 @@ class Run(Pictured):
         force = self.label("force")
         curves = []
         maps = []
-        for kind, sensors in sensors_of(self.scene).items():
+        for kind, sensors in self.scene.sensors.items():
             forces = getattr(self, RECORDS[kind, "force"])
             if len(sensors) <= _MOST:
                 for i, row in zip(sensors, forces, strict=True):
@@ -264,7 +263,7 @@ class Run(Pictured):
             raise SceneError(
                 "the run has too many steps to keep the motion: read its samples"
             )
-        sensors = sensors_of(self.scene)
+        sensors = self.scene.sensors
         one_of(kind, tuple(sensors), "kind")
         one_of(quantity, tuple(q for own, q in RECORDS if own == kind), "quantity")
         if number not in sensors[kind]:

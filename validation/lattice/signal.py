@@ -55,11 +55,6 @@ class Path(Protocol):
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]: ...
 
 
-def sensors_of(scene: Scene) -> dict[str, tuple[int, ...]]:
-    """Return the numbers of a scene's sensors, by their kind."""
-    return {"bead": scene.bead_sensors, "contact": scene.contact_sensors}
-
-
 def beads_at(motion: Motion, sensors: Mapping[str, Sequence[int]]) -> NDArray[np.int_]:
     """Return increasing numbers of the beads on which sensors depend; bead n is the wall."""
     beads = {*sensors.get("bead", ())}
@@ -105,7 +100,7 @@ def quantities(
 
 def sensed_beads(motion: Motion) -> NDArray[np.int_]:
     """Return increasing numbers of the beads on which a scene's sensors depend."""
-    return beads_at(motion, sensors_of(motion.scene))
+    return beads_at(motion, motion.scene.sensors)
 
 
 def sample_times(scene: Scene) -> Array:

@@ -22,7 +22,7 @@ from lwa.base.frozen import Estimate
 from validation.lattice.cost import RunProgress, silent
 from validation.lattice.equations import Motion
 from validation.lattice.result import Run
-from validation.lattice.signal import RECORDS, quantities, sensed_beads, sensors_of
+from validation.lattice.signal import RECORDS
 from validation.lattice.simulate import COMPILED, repeated
 from validation.pulses.pulse import (
     MeasureError,
@@ -269,7 +269,7 @@ def tracks(
     # Places of the beads, and of one more, imagined a spacing after the last
     x = np.cumsum((0.0, *scene.spacings, *scene.spacings[-1:]))
     found = []
-    for kind, numbers in sensors_of(scene).items():
+    for kind, numbers in scene.sensors.items():
         for row, i in enumerate(numbers):
             name = f"{kind} {i + 1}"
             quantity = "force"
@@ -325,17 +325,16 @@ def forces_at_start(scene: Scene) -> dict[str, float]:
     damped contact of a moving bead resists at once, but a sensor has been at rest before.
     """
     motion = Motion(scene)
-    beads = sensed_beads(motion)
-    y = np.append(motion.start[: scene.size], 0.0)  # the wall stays at 0
-    at_rest = np.zeros((len(beads), 1))
-    records = quantities(motion, beads, y[beads, np.newaxis], at_rest)
-    forces = {}
-    for kind, numbers in sensors_of(scene).items():
+    at_start = motion.compression(motion.start[: scene.size])
+    contacts = motion.force(at_start)
+    # The force of a bead is the mean of its two contacts'; beyond both ends there is none.
+    beside = np.concatenate(([0.0], contacts, [0.0]))
+    forces = {"bead": (beside[:-1] + beside[1:]) / 2, "contact": contacts}
+    found = {}
+    for kind, numbers in scene.sensors.items():
         for i in numbers:
-            rows = records[RECORDS[kind, "force"]]
-            force = rows[beads.searchsorted(i)]
-            forces[f"{kind} {i + 1}"] = float(force[0])
-    return forces
+            found[f"{kind} {i + 1}"] = float(forces[kind][i])
+    return found
 
 
 def _readings(

@@ -299,6 +299,11 @@ class Scene:
         return tuple(zip(_row(self.k, count), _row(self.law, count), strict=True))
 
     @property
+    def sensors(self) -> dict[str, tuple[int, ...]]:
+        """Numbers of the sensors, from 0, by their kind, "bead" or "contact"."""
+        return {"bead": self.bead_sensors, "contact": self.contact_sensors}
+
+    @property
     def load(self) -> tuple[float, ...]:
         """Static force of each contact: F0 and the weight of the beads above."""
         above = accumulate(self.masses[: self.contact_count])

@@ -43,7 +43,6 @@ from lwa.base.progress import Progress
 from lwa.spheres.beads import GRAVITY
 from validation.lattice.cost import RunProgress, silent
 from validation.lattice.result import Run
-from validation.lattice.signal import sensors_of
 from validation.lattice.simulate import repeated, simulate, simulate_many
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import (
@@ -144,7 +143,7 @@ def bead_fwhm(wave: PhysicalWave) -> float:
 
 def passing(run: Run, kind: str = "bead") -> dict[int, Pulse]:
     """Measure the first pulses at the "bead" or "contact" sensors of a run, by number from 1."""
-    sensors = sensors_of(run.scene)[kind]
+    sensors = run.scene.sensors[kind]
     return {i + 1: first_pulse(run.signal(kind, i)) for i in sensors}
 
 

@@ -21,7 +21,6 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-import click
 import numpy as np
 import sympy as sp
 from sympy import Rational
@@ -34,7 +33,7 @@ from lwa.command.options import count
 from validation.lattice.threads import cluster, threads
 from validation.pictures import Curve, Panel
 from validation.pulses.steady import LABELS, Key, Point, point, stored
-from validation.report.study import Report, option, output_file, study
+from validation.report.study import Report, option, output_option, study
 from validation.report.table import Column, Estimates, Row, Table, percent
 from validation.scenes.checks import Failure, SceneError, items
 
@@ -275,11 +274,8 @@ _RANGES = "values and ranges start:stop:count, separated by commas."
     option(
         "--omega", f"Mass ratios m2/m1: {_RANGES}", to="omegas", default="1/20:1:20"
     ),
-    option(
-        "--file",
-        "File of finished points (.sqlite), to be continued.",
-        metavar="FILE",
-        type=click.Path(),
+    output_option(
+        "--file", (".sqlite",), "File of finished points (.sqlite), to be continued."
     ),
     option("--jobs", "Number of threads; by default one a processor.", read=count),
     option(
@@ -334,8 +330,6 @@ def sweep(
     # Checked before the file is made: a refusal leaves no file behind.
     if address is not None and jobs is not None:
         raise InputError(f"jobs is {jobs}: a cluster has its own workers", jobs=None)
-    path = MEMORY
-    if file is not None:
-        path = output_file("file", str(file), (".sqlite",))
+    path = MEMORY if file is None else Path(file)
     workers = threads(jobs, "jobs") if address is None else cluster(address)
     return report(measured(*grid, path, workers, progress))
