@@ -92,7 +92,7 @@ def integrate(
 ) -> Run:
     """Integrate a scene by a compiled method, in steps of at most ``longest``.
 
-    The method is one of `validation.lattice.schemes.SCHEMES`. The steps of a splitting have the
+    The method is one of `validation.lattice.simulate.COMPILED`. The steps of a splitting have the
     length ``longest``, unless it is infinite. A run whose tolerance is set by a drive, and whose
     response turns out far weaker, is made again.
     """
@@ -102,7 +102,7 @@ def integrate(
         if motion.scene.drive is None:
             return run.finished()
         energy = run.motion.scales.energy
-        response = float(run.now["response"])
+        response = run.now["response"]
         # A response of no more than eight roundings of the energy is no scale of a new run.
         if not 8 * _NOISE * energy < response < _WEAK * energy:
             return run.finished()
@@ -225,7 +225,7 @@ def _plan(motion: Motion, scheme: Pair | Splitting, rtol: float, **steps: Any) -
         energy=rtol * (scales.energy or 1.0),
         end=motion.scene.duration,
         deepest=scales.compression,
-        lightest=float(motion.masses.min()),
+        lightest=motion.masses.min(),
         size=motion.size,
         most=most,
         **steps,
@@ -291,7 +291,7 @@ def _chain(motion: Motion) -> Chain:
     laws = [*motion.laws] or [Contact(1.0)]  # of a single bead: the padding's
     # The padding, of stiffness 0, has the last contact's law, so that one loop takes both; but a
     # linear one where the last contact's force may overflow as a free end moves on (`_UNBOUNDED`).
-    beyond = int(motion.law_of[-1]) if contacts else 0
+    beyond = motion.law_of[-1] if contacts else 0
     last = laws[beyond]
     if last.law is not None or last.k >= _UNBOUNDED:
         beyond = len(laws)
@@ -370,8 +370,7 @@ def _front(motion: Motion) -> int:
     moving, _ = moves.nonzero()
     first = 0 if motion.scene.drive is None else 1
     if len(moving):
-        last = int(moving[-1])
-        first = max(first, last + 1)
+        first = max(first, moving[-1] + 1)
     return min(motion.size, MARGIN + first)
 
 

@@ -162,7 +162,7 @@ class Recorder:
         # Parts of the samples: displacements and velocities (2, beads, times).
         done = sum(part.shape[2] for part in self.samples)
         last = path.time[-1]
-        due = int(time.searchsorted(last, side="right"))
+        due = time.searchsorted(last, side="right")
         beads = sensed_beads(self.motion)
         motions = path(beads, time[done:due])
         self.samples.append(np.array(motions))

@@ -100,11 +100,7 @@ class Run(Pictured):
         sensors = self.scene.sensors
         records = {}
         for (kind, _), name in RECORDS.items():
-            rows: Any = beads.searchsorted(sensors[kind])
-            # Copies of whole records would take as long as the records.
-            every = np.arange(len(found[name]))
-            if np.array_equal(rows, every):
-                rows = slice(None)
+            rows = beads.searchsorted(sensors[kind])
             records[name] = found[name][rows]
             records[name].setflags(write=False)
         return records

@@ -138,7 +138,7 @@ def _smoothed(
         squares = np.sum(residuals**2)
         misfit = squares / (variance * correlation_time)
         criteria.append(misfit + count * penalty)
-    best = int(counts[np.argmin(criteria)])
+    best = counts[np.argmin(criteria)]
     wanted = math.ceil(_FINER * best)
     spline = _fit(t, f, min(wanted, most))
     residuals = spline(t) - f

@@ -78,8 +78,9 @@ def checked(time: ArrayLike, values: ArrayLike) -> tuple[Array, Array]:
         if f.size < 4 or not f.shape == t.shape == (f.size,):
             raise ValueError(f"the shapes are {t.shape} and {f.shape}")
     except (TypeError, ValueError, OverflowError) as reason:
-        wanted = "time and signal must be equally long rows of at least 4 numbers"
-        raise MeasureError(f"{wanted}: {reason}") from None
+        raise MeasureError(
+            f"time and signal must be equally long rows of at least 4 numbers: {reason}"
+        ) from None
     if not np.isfinite((t, f)).all():
         raise MeasureError("time and signal must be finite")
     if np.any(np.diff(t) <= 0):

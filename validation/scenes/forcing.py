@@ -266,4 +266,4 @@ class Drive:
             return 1 / (8 * self.frequency)
         # Between two times of a file the motion is a cubic, with one inflection at most.
         longest = np.diff(self.time).max(initial=0.0)
-        return float(longest) or math.inf
+        return longest or math.inf

@@ -338,7 +338,7 @@ def fit_power(force: Array, speed: Array, weight: Array | None = None) -> PowerF
 
     return PowerFit(
         _interval(k),
-        stiffness(log_A, float(k[0])),
+        stiffness(log_A, k[0]),
         float(np.corrcoef(k, log_A)[0, 1]),
         stiffness(log_stiffness(sixth, hertz), _HERTZ),
         _interval(curvature),
