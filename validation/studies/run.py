@@ -140,9 +140,8 @@ def reading_tables(
     if si:
         peak = f"{peak} ({', '.join(BASES[quantity] for quantity in quantities)})"
     kind = Column("kind")
-    number = Column("number")
     missing = Column("missing")
-    columns = [Column("", "sensor"), kind, number]
+    columns = [Column("", "sensor"), kind, Column("number")]
     # Columns with one value in all rows, force or pulse 1, are left out.
     if "velocity" in quantities:
         columns.append(Column("signal"))
@@ -163,8 +162,7 @@ def reading_tables(
     for reading in sensors:
         row = _row("sensor", reading)
         if reading.pulse == 1:
-            place = reading.places[0]
-            row |= arriving.get((reading.kind, place), {})
+            row |= arriving.get((reading.kind, reading.number), {})
         rows.append(row)
     legs = [
         Column("", "between"),
