@@ -258,7 +258,8 @@ def _exact(t: Array, f: Array) -> NoisyPulse:
     apart = distances.max(initial=0.0)
     if apart > _SAME * pulse.fwhm:
         errors["arrival"] = max(errors["arrival"], apart + _SAME * pulse.fwhm)
-    # A base that is off by this much moves the peak as much, and both flanks at its half.
+    # A base that is off by this much moves the peak as much, and both flanks at its half. As x
+    # begins with 0, x[1] is the time from sample to sample.
     doubt = _front(f, pulse.fwhm / x[1]) / pulse.peak
     for name in ("peak", "fwhm"):
         errors[name] += doubt * numbers[name]

@@ -243,6 +243,8 @@ def _time_of_a_site(motion: Motion, contacts: slice, force: float) -> float:
     beside = np.append(motion.masses, np.inf)  # the wall has no mass of its own
     lighter_of_all = np.minimum(beside[:-1], beside[1:])
     lighter = lighter_of_all[contacts]
+    # Sound passes a site of equal beads in √(m/spring); with the lighter of unlike beads this time
+    # is too short, if anything.
     times = np.sqrt(lighter[: len(A)] / springs)
     return float(np.mean(times))
 
@@ -303,6 +305,8 @@ def _place(scene: Scene, x: Array, kind: str, i: int) -> dict[str, float]:
 
     x : places of the beads, and of one more bead, imagined a spacing after the last.
     """
+    # The force of a bead between two contacts is their mean, at the bead; with one contact it is a
+    # force at this contact.
     if kind == "bead" and not 0 < i < scene.contact_count:
         return {}
     # A contact is midway between its beads; the wall's is half a spacing after the last bead.
@@ -334,6 +338,7 @@ def forces_at_start(scene: Scene) -> dict[str, float]:
     for kind, numbers in sensors_of(scene).items():
         for i in numbers:
             rows = records[RECORDS[kind, "force"]]
+            # A row for each of ``beads``, and for the contact ahead of it, which has its number
             force = rows[beads.searchsorted(i)]
             forces[f"{kind} {i + 1}"] = float(force[0])
     return forces

@@ -131,6 +131,8 @@ def _measured(
     errors = {}
     relative = []
     for name, values in numbers.items():
+        # A number for each stretch. The rough run's last one is that of the far stretch; that before
+        # it, of the long way there, means nothing.
         others = less_accurate[name]
         differences = (
             values[1:] - values[:-1],
@@ -179,7 +181,8 @@ class StruckDimer:
 
     def crossing(self, sites: int) -> float:
         """Return the time in which the theory's pulse of force `_WEAKEST` passes sites."""
-        # The speed is 2 F^q/√((k+1)(1+ω)), F the peak contact force.
+        # The speed is 2 F^q/√((k+1)(1+ω)), F the peak contact force, in the long-wave theory of
+        # equal beads with the mean mass (1+ω)/2.
         q = (self.k - 1) / (2 * self.k)
         weak = math.pow(_WEAKEST, q)
         of_unit_force = 2 / math.sqrt((self.k + 1) * (1 + self.omega))
