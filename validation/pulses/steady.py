@@ -131,8 +131,8 @@ def _measured(
     errors = {}
     relative = []
     for name, values in numbers.items():
-        # A number for each stretch. The rough run's last one is that of the far stretch; that before
-        # it, of the long way there, means nothing.
+        # A number for each stretch. The rough run's last one is that of the far stretch; the one
+        # before, of the long way there, means nothing.
         others = less_accurate[name]
         differences = (
             values[1:] - values[:-1],
