@@ -54,7 +54,8 @@ TOLERANCES = (2e-6, 1e-5)
 # Distance of the far stretch over that of the last place: there the pulse must still be the
 # highest. At four times the distance a number that nears its limit like n^{-1/2} is half way to it.
 FARTHER = 4
-STEADY = 0.1  # largest difference from the force that the decay predicts there, over this force
+# Largest difference of the force at the far stretch from that which the decay predicts, over it
+STEADY = 0.1
 _WEAKEST = 1 / 50  # peak force of the slowest pulse for which a run is long enough
 # Version of a file of points: another one for another definition of a quantity.
 VERSION = 5
