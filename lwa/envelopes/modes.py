@@ -199,13 +199,14 @@ def equal_beads(contacts: Contacts, wavenumber: sp.Expr) -> Mode:
     K4 = contacts.K4[0]
     S = sp.sin(wavenumber / 2)
     C = sp.cos(wavenumber / 2)
-    size = 4 * S**2 / m
-    mean = -8 * K3 / (K2 * m)
+    size = 4 * S**2 / m  # |d|²
+    mean = -8 * K3 / (K2 * m)  # e0
     harmonic = K3 * size / K2 * C**2 / S**2  # |e2|
     return Mode(
-        square=K2 * size,
-        slope=4 * S * C * K2 / m,
-        curvature=-(S**2) * K2 / m,
+        square=K2 * size,  # ω²
+        slope=4 * S * C * K2 / m,  # dω²/dκ
+        curvature=-(S**2) * K2 / m,  # ω d²ω/dκ²
+        # 2ωχ
         cubic=3 * K4 * size**2 + 2 * K3 * size * (harmonic + mean),
         mean=[mean],
         size=[size],

@@ -109,7 +109,7 @@ class Arch(Parametric):
         If k and the cell are numbers, the first root is the paper's. With symbols the order of the
         roots may differ, as ``√x²`` is written x, whatever the sign of x.
         """
-        # The equation of p, divided by I, is A p² - B p + 2 = 0.
+        # The equation of p, divided by I, is A p² - B p + 2 = 0, with B = h + 3 and h = H/I.
         _, h = self._ratios
         A = factored(self.coefficient_sum * self.D**2 / self.I)
         B = factored(h + 3)
