@@ -128,7 +128,8 @@ class Contacts:
             raise InputError(SOUND)
         c = 1 / self.K2
         # Derivatives of x by κ follow from those of T by x.
-        # T(x) - 2 cos κ = Π m Π c Π_j (x_j - x) over the modes j, differentiated at a root
+        # T(x) - 2 cos κ = Π m Π c Π_j (x_j - x) over the modes j, differentiated at a root: the
+        # root's own factor leaves a 1.
         T1 = -np.prod(self.masses * c * np.append(gaps, 1))
         T2 = -2 * T1 * (1 / gaps).sum()
         slope = -2 * z.imag / T1  # x′, as T′ x′ = -2 sin κ

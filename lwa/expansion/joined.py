@@ -52,7 +52,7 @@ def _width(x: sp.Expr) -> sp.Expr:
     """The sites that a wave passes while a contact's strain exceeds ``x^{1/(k+1)}`` of its peak.
 
     For large k a wave is one collision of two beads after another, each of which takes two sites:
-    ``(dδ/dt)² ~ 1 - δ^{k+1}``.
+    ``(dδ/dt)² ~ 1 - δ^{k+1}``. With ``y = δ^{k+1}`` the time is an incomplete beta function of y.
     """
     return 2 * (1 - sp.betainc_regularized(1 / (k + 1), sp.S.Half, 0, x))
 

@@ -134,6 +134,8 @@ class Arch(Parametric):
         _, h = self._ratios
         a = factored(3 + h - k) * p - 2  # 1 - kp + 3 (p - 1) + p H/I
         eta = 1 + p - k * p
+        # The integral is V² z^{p+a}/(p+a) = z^{kp+a}/(kp+a) + I z^{kp+a-1} z″. Divided by
+        # I z^{kp+a-1} it is the oscillator, which a cosine to the power s solves.
         return Reduction(
             p,
             a,
