@@ -125,7 +125,7 @@ class _Integration:
         self.motion = motion
         self.method = method
         check_memory(motion.scene, method, rows=_NUMBERS)
-        self.steps = rtol, longest
+        self.steps = rtol, longest  # the tolerance, and the greatest step
         self._make_plan(motion)
         self.chain = _chain(motion)
         self.forcing = _forcing(motion)
@@ -161,6 +161,7 @@ class _Integration:
                 if now["response"] > self.plan.most:
                     response = float(now["response"])
                     self._make_plan(Motion(self.motion.scene, response))
+                # The engine has stored the motion at the ends of its steps, until its room is full.
                 if t == end or now["stored"] == len(knots.time):
                     stored = int(now["stored"])
                     now["stored"] = self.recorder.take(stored)
@@ -174,6 +175,7 @@ class _Integration:
         now = self.now
         end = self.plan.end
         where = f"t = {now['t']:g} of {end:g}"
+        # Row 1 of the forces is that of the stage computed last; row 0 belongs to the step's start.
         finite = np.isfinite(self.beads.force[1:])
         if not finite.all() or now["h"] == 0:
             return f"a force is not a number near {where}: no step is short enough for the law"
@@ -204,6 +206,7 @@ class _Integration:
         samples = self.recorder.samples
         steps = int(now["steps"])
         if samples:
+            # Parts (2, beads, times), one after the other in time
             all_samples = np.concatenate(samples, axis=2)
             return Run(motion, end, steps, samples=all_samples)
         return Run(motion, end, steps, self.recorder.path())
@@ -339,6 +342,7 @@ def _forcing(motion: Motion) -> Forcing | None:
     if scene.drive is None and not damped:
         return None
     drive = scene.drive or _STILL
+    # The drive's cubics are two fields: when they begin, and their coefficients.
     amplitude, w = drive.oscillation
     return Forcing(
         *drive.cubics,
@@ -394,6 +398,7 @@ def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
     v[:n] = next_v[:n] = motion.start[n : 2 * n]
     given = np.zeros(2)
     if motion.scene.drive is not None:
+        # The bead's acceleration, after its displacement and velocity
         given[:] = motion.scene.drive.at(0.0)[2]
     return Beads(
         y=y,
