@@ -205,7 +205,8 @@ def record(
         start = first.numbers["arrival"].value
         end = second.numbers["arrival"].value - second.numbers["fwhm"].value
         looks = np.linspace(start, end, _LOOKS)
-        if end > start and second.force(looks).max() > peaks[0] / 2:
+        half = first.numbers["peak"].value / 2
+        if end > start and second.force(looks).max() > half:
             raise MeasureError("another pulse passes the second sensor before")
 
     # Errors of both arrivals are added: in the other run's speed they may cancel.
