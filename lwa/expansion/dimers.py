@@ -68,6 +68,7 @@ class FollowingRecursion(Recursion):
         In a free dimer the two contacts of the light bead are strained unequally, which adds m̂_2²
         to I. A bead that is held midway strains both alike.
         """
+        # mu[1] is m̂_2, the mass fraction of the light bead, the second of the cell.
         return super()._dispersion() - self.mu[1] ** 2
 
     def _next_force(self, i: int, n: int) -> fmpq_mpoly:

@@ -253,10 +253,11 @@ def _sum(b: Sequence[mpmath.mpf], x: mpmath.mpf) -> Estimate:
 
 
 def _truncated(b: Sequence[mpmath.mpf], x: mpmath.mpf) -> Estimate:
-    """Sum Σ b_n x^n up to the first term that is smaller than the next, if there is one."""
+    """Sum the terms b_n x^n before the first one that is smaller than the next, or all of them."""
     # A later term may be small by chance, next to a change of sign: the first growth decides.
     terms = [term * x**n for n, term in enumerate(b)]
     for n, (term, following) in enumerate(pairwise(terms)):
+        # The first term of a difference to equal beads is 0, and its growth tells nothing.
         if 0 < abs(term) < abs(following):
             return Estimate(mpmath.fsum(terms[:n]), LEFT_OUT * abs(term))
     return _sum(b, x)

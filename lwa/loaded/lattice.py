@@ -307,6 +307,7 @@ class Lattice(Value):
         demand_numbers(self.symbols, "numbers are wanted")
         links = self.links
         bonds = [Bond(link.i, link.j, float(link.cosine)) for link in links]
+        # The force of each link and its first two derivatives
         laws = [tuple(link.law.function(n) for n in range(3)) for link in links]
         return Statics(
             Network(self.size, tuple(bonds)),

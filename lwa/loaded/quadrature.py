@@ -309,8 +309,8 @@ class Nodes:
         first = g.ds * g.rest
         second = g.ds * g.rest**2
         change = self.wave.B / 3 * (self.law.bend @ second) / second.sum()
-        # A small wave, whose V² - F′(p0) has its digits; a change below a quarter cancels none of
-        # the digits of F′(p0).
+        # The change of a small wave keeps its digits in this sum, and would lose them as the
+        # difference V² - F′(p0). Where it is negative, a quarter cancels no digit of F′(p0).
         if abs(change) < F1[0] / 4:
             return np.asarray(F1[0] + change)
         return np.asarray((F1 @ first) / first.sum())

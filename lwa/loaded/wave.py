@@ -192,7 +192,8 @@ class LoadedWave(States):
             law = self._quadrature.at(0)
             slope = sp.Float(float(law.slope))
             bend = sp.Float(float(law.bend))
-            # Resonators follow the acceleration of a wave with V̂² = F′.
+            # Resonators add R V⁴ to J = F′ I. A small wave has V² = F′/m̄ at D = 1, so that they
+            # add R F′/m̄² to I.
             resonance = self.lattice.resonance_sum * slope / self.lattice.mass**2
             dispersion = sp.Float(float(law.dispersion)) + resonance
             I = D**2 * dispersion  # the dispersion of a lattice is that of D = 1
@@ -208,8 +209,9 @@ class LoadedWave(States):
         quantity : {"force", "strain", "velocity"}
             The quantity.
         extent : {"length", "time"}
-            A length, a multiple of a spacing that is a symbol, or the time of passage.
+            A length, in which the spacing may be a symbol, or the time of passage.
         """
+        # The particles move at V v: strain and velocity have one width.
         of_force = known_quantity(quantity) == "force"
         sites = 2 * self._quadrature.half_width(of_force)
         if known_extent(extent) == "time":

@@ -233,6 +233,7 @@ class Functions(dict[str, Function]):
 
     def __init__(self, *parts: sp.Expr) -> None:
         super().__init__()
+        # Each symbol once, in the order of the parts, those of one part by name
         ordered: dict[sp.Symbol, None] = {}
         for part in parts:
             ordered |= dict.fromkeys(sorted(part.free_symbols, key=str))

@@ -205,7 +205,8 @@ def record(
         start = first.numbers["arrival"].value
         end = second.numbers["arrival"].value - second.numbers["fwhm"].value
         looks = np.linspace(start, end, _LOOKS)
-        if end > start and second.force(looks).max() > peaks[0] / 2:
+        half = first.numbers["peak"].value / 2
+        if end > start and second.force(looks).max() > half:
             raise MeasureError("another pulse passes the second sensor before")
 
     # Errors of both arrivals are added: in the other run's speed they may cancel.
@@ -243,6 +244,8 @@ def _time_of_a_site(motion: Motion, contacts: slice, force: float) -> float:
     beside = np.append(motion.masses, np.inf)  # the wall has no mass of its own
     lighter_of_all = np.minimum(beside[:-1], beside[1:])
     lighter = lighter_of_all[contacts]
+    # Sound passes a site of equal beads in √(m/spring); with the lighter of unlike beads this time
+    # is too short, if anything.
     times = np.sqrt(lighter[: len(A)] / springs)
     return float(np.mean(times))
 
@@ -303,6 +306,8 @@ def _place(scene: Scene, x: Array, kind: str, i: int) -> dict[str, float]:
 
     x : places of the beads, and of one more bead, imagined a spacing after the last.
     """
+    # The force of a bead between two contacts is their mean, at the bead; with one contact it is a
+    # force at this contact.
     if kind == "bead" and not 0 < i < scene.contact_count:
         return {}
     # A contact is midway between its beads; the wall's is half a spacing after the last bead.
