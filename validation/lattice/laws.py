@@ -56,12 +56,8 @@ class Contact:
     @cached_property
     def sticks(self) -> bool:
         """True if damping may pull, as the law pulls, or attracts where the contact opens."""
-        if self.law is None:
-            return False
-        if self.pulls:
-            return True
         (opening,) = self.force(np.array([_OPENS]))
-        return bool(opening < 0)
+        return self.pulls or bool(opening < 0)
 
     def force(self, compression: Array) -> Array:
         """Return the force F at a compression δ, of any shape; ``[δ]_+^k`` for a power law."""
@@ -122,10 +118,9 @@ class Contact:
         """
         if self.damping_power is None:
             return elastic
-        # A law that pulls has k = 1 and so p = 0 (`validation.scenes.checks.contact_law`): no power
-        # of a negative compression is taken.
-        closed = compression if self.pulls else np.maximum(compression, 0.0)
-        resisted = closed**self.damping_power * rate
+        # A law that pulls has k = 1 (`validation.scenes.checks.contact_law`) and so p = 0: the power
+        # is 1 where δ < 0, too.
+        resisted = np.maximum(compression, 0.0) ** self.damping_power * rate
         force = elastic + (damping * resisted.T).T
         if not self.sticks:
             # Damping may weaken a push to 0, and add nothing to the pull of a law that attracts.

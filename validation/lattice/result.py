@@ -225,14 +225,12 @@ class Run(Pictured):
             # Rows in the order of the chain; of too many rows, or times, every second, third, …
             rows = np.argsort(sensors)[:: math.ceil(len(sensors) / _FINEST)]
             each = math.ceil(len(self.time) / _FINEST)
-            thinned = slice(None, None, each)
             places = np.array(sensors, float)[rows] + 1
-            values = forces[rows, thinned].T
-            drawn = Map(force, places, self.time[thinned], values)
+            drawn = Map(force, places, self.time[::each], forces[rows, ::each].T)
             maps.append(Panel(kind, time, map=drawn))
         if not curves:
             return maps
-        return [Panel(time, force, tuple(curves), legend_above=True), *maps]
+        return [Panel(time, force, curves, legend_above=True), *maps]
 
     def signal(self, kind: str, number: int, quantity: str = "force") -> SensorSignal:
         """Return a quantity at a sensor as a function of time; the records are its samples.

@@ -55,9 +55,19 @@ _SPELLINGS = {
 }
 # Names of prefixes by their powers of ten
 _PREFIXES = {
-    **{-15: "f femto", -12: "p pico", -9: "n nano", -6: "u µ micro", -3: "m milli"},
-    **{-2: "c centi", -1: "d deci", 0: "", 2: "h hecto", 3: "k kilo"},
-    **{6: "M mega", 9: "G giga", 12: "T tera"},
+    -15: "f femto",
+    -12: "p pico",
+    -9: "n nano",
+    -6: "u µ micro",
+    -3: "m milli",
+    -2: "c centi",
+    -1: "d deci",
+    0: "",
+    2: "h hecto",
+    3: "k kilo",
+    6: "M mega",
+    9: "G giga",
+    12: "T tera",
 }
 _POWERS = {
     name: power for power, names in _PREFIXES.items() for name in names.split(" ")
