@@ -118,8 +118,8 @@ class Contact:
         """
         if self.damping_power is None:
             return elastic
-        # A law that pulls has k = 1 (`validation.scenes.checks.contact_law`) and so p = 0: the power
-        # is 1 where δ < 0, too.
+        # A law that pulls has k = 1 (`validation.scenes.checks.contact_law`), and so p = 0: the
+        # power is 1 where δ < 0, too.
         resisted = np.maximum(compression, 0.0) ** self.damping_power * rate
         force = elastic + (damping * resisted.T).T
         if not self.sticks:
