@@ -13,12 +13,12 @@ import shutil
 import sys
 import tempfile
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import update_wrapper
+from functools import partial, update_wrapper
 from pathlib import Path
-from typing import Any, Generic, ParamSpec, TypeVar
+from typing import Any, Generic, ParamSpec
 
 import click
 
@@ -42,7 +42,6 @@ from validation.report.table import (
 from validation.scenes.checks import finite
 
 P = ParamSpec("P")
-T = TypeVar("T")
 
 _DELAY = 1.0  # seconds of a run without a bar: most runs end before
 _LONGEST = 120  # characters of a path in a message
@@ -248,7 +247,7 @@ class Study(Generic[P]):
         parameters = inspect.signature(function).parameters
         # Called from Python, a study shows no progress unless asked.
         if "progress" in parameters:
-            values["progress"] = progress
+            values["progress"] = partial(shown, label="cases")
         if "run_progress" in parameters:
             values["run_progress"] = run_progress
         with warnings.catch_warnings():
@@ -423,11 +422,6 @@ READERS: dict[Any, str] = {
 EXPONENT = option(
     "--k", "Exponent k of the force F = A δ^k.", read=number, default="3/2"
 )
-
-
-def progress(cases: Iterable[T]) -> Iterable[T]:
-    """Show how many cases are done."""
-    return shown(cases, "cases")
 
 
 @contextmanager
