@@ -173,8 +173,7 @@ class _Integration:
     def _failure(self) -> str:
         """Say why the run does not come to its end."""
         now = self.now
-        end = self.plan.end
-        where = f"t = {now['t']:g} of {end:g}"
+        where = f"t = {now['t']:g} of {self.plan.end:g}"
         # Row 1 of the forces is that of the stage computed last; row 0 belongs to the step's start.
         finite = np.isfinite(self.beads.force[1:])
         if not finite.all() or now["h"] == 0:

@@ -107,8 +107,7 @@ class Motion:
         # Displacements, velocities, dissipated energy and the drive's work, 0 at the start.
         self.start = np.zeros(2 * n + 2)
         self.start[: len(scene.displacements)] = scene.displacements
-        end = n + len(scene.velocities)
-        self.start[n:end] = scene.velocities
+        self.start[n : n + len(scene.velocities)] = scene.velocities
         if scene.drive is not None:
             # A drive tells displacement, velocity and acceleration; a state has none of the last.
             self.start[0], self.start[n], _ = scene.drive.at(0.0)
@@ -286,8 +285,7 @@ class Motion:
             largest = float(stiffnesses.max())
             depth = static
             if energy > 0:
-                reached = law.reached_by(energy / largest, static)
-                depth = max(depth, reached)
+                depth = max(depth, law.reached_by(energy / largest, static))
             if not depth:
                 continue
             deepest = max(deepest, depth)
@@ -319,8 +317,7 @@ class Motion:
             # The last digit of the static compression in a float, over the displacement y: the part
             # of the motion that rounding may hide.
             static = float(self.rest.max())
-            lost = sys.float_info.epsilon * static
-            rounding = lost / y
+            rounding = sys.float_info.epsilon * static / y
         # Energy, greatest compression, displacement, velocity, shortest time, and rounding
         return Scales(energy, deepest, y, v, time, rounding)
 

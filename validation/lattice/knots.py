@@ -161,10 +161,8 @@ class Recorder:
         time = sample_times(self.motion.scene)
         # Parts of the samples: displacements and velocities (2, beads, times).
         done = sum(part.shape[2] for part in self.samples)
-        last = path.time[-1]
-        due = time.searchsorted(last, side="right")
-        beads = sensed_beads(self.motion)
-        motions = path(beads, time[done:due])
+        due = time.searchsorted(path.time[-1], side="right")
+        motions = path(sensed_beads(self.motion), time[done:due])
         self.samples.append(np.array(motions))
         self._parts.clear()
 

@@ -124,8 +124,7 @@ class Contact:
         force = elastic + (damping * resisted.T).T
         if not self.sticks:
             # Damping may weaken a push to 0, and add nothing to the pull of a law that attracts.
-            least = np.minimum(elastic, 0.0)
-            force = np.maximum(force, least)
+            force = np.maximum(force, np.minimum(elastic, 0.0))
         return force if self.pulls else np.where(compression > 0.0, force, 0.0)
 
     def _evaluated(self, name: str, compression: Array) -> Array:

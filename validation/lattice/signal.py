@@ -140,8 +140,7 @@ class SensorSignal:
         inside = (t >= 0) & (t <= self.times[-1])
         values = np.full(t.shape, np.nan)
         y, v = self.path(self.beads, t[inside])
-        records = quantities(self.path.motion, self.beads, y, v)
-        rows = records[self.record]
+        rows = quantities(self.path.motion, self.beads, y, v)[self.record]
         # Row r belongs to bead ``beads[0] + r``, or to the contact ahead of it: the beads are
         # neighbours.
         row = self.number - self.beads[0]

@@ -133,8 +133,7 @@ class Base:
         counts: Sequence[int] = _BASES
         if length < _SLOW:
             counts = (_LINE,)
-        samples = f[calm]
-        fits = [Fit.of(x, samples, count) for count in counts]
+        fits = [Fit.of(x, f[calm], count) for count in counts]
         # Akaike's criterion, with the noise that the base with all terms leaves; correlated samples
         # count as fewer. Where no noise is left any scale will do.
         full = fits[-1]
@@ -145,8 +144,7 @@ class Base:
             criteria.append(squares / scale + 2 * len(fit.sizes))
         exponents = -np.array(criteria) / 2
         weights = scipy.special.softmax(exponents)
-        best = fits[np.argmax(weights)]
-        return cls(rise, width, x, fits, weights, best)
+        return cls(rise, width, x, fits, weights, fits[np.argmax(weights)])
 
     @classmethod
     def guessed(cls, f: Array, noise: float) -> Base:
@@ -172,8 +170,7 @@ class Base:
     def at(self, t: Array) -> Array:
         """Return the base at times of the pulse."""
         x = (t - self.rise) / self.width
-        bases = [fit.at(x) for fit in self.fits]
-        return self.weights @ bases
+        return self.weights @ [fit.at(x) for fit in self.fits]
 
     def drawn(self, t: Array, pulse: Array, variance: float, step: float) -> Array:
         """Draw errors that noise makes in a pulse over its base.
@@ -235,8 +232,7 @@ class Base:
         factors = np.sqrt(power / power.mean())
         spectra = np.fft.rfft(white, axis=0)
         spectra *= factors[:, np.newaxis]
-        shaped = np.fft.irfft(spectra, size, axis=0)
-        return shaped[:count]
+        return np.fft.irfft(spectra, size, axis=0)[:count]
 
 
 def _rounding(

@@ -78,8 +78,7 @@ def fitted(
     ends = (-margin, fall - rise + margin)
     x = t[near] - rise
     f = f[near]
-    size = np.abs(f).max()
-    rounding = np.finfo(float).eps * size
+    rounding = np.finfo(float).eps * np.abs(f).max()
     variance = base.best.variance + rounding**2
     most = min(_HIGHEST, int(_DENSEST * len(x)))
     smoothed = partial(_smoothed, x, f, base.best.correlation_time, most)
@@ -106,13 +105,10 @@ def fitted(
     # Arrival, peak and FWHM, in a row for each spline: the best fit's first, then the draws'.
     found = _read(splines, ends)
     numbers = found[0]
-    off = np.abs(found[1:] - numbers)
-    errors = np.quantile(off, _WITHIN, axis=0)
+    errors = np.quantile(np.abs(found[1:] - numbers), _WITHIN, axis=0)
     if wanted > most:
-        fewer = round(most / _COARSER)
-        count = max(_LOWEST, fewer)
-        samples = f[:, np.newaxis]
-        rough = _fit(x, samples, count)
+        count = max(_LOWEST, round(most / _COARSER))
+        rough = _fit(x, f[:, np.newaxis], count)
         (coarse,) = _read(rough, ends)
         errors = np.hypot(errors, numbers - coarse)
     numbers[0] += rise  # the arrival

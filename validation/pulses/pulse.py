@@ -171,8 +171,7 @@ def measure(time: ArrayLike | Signal, values: ArrayLike | None = None) -> Pulse:
         )
     pulse = highest_pulse(signal)
     t = signal.times
-    in_pulse = (t > pulse.rise) & (t < pulse.fall)
-    inside = np.count_nonzero(in_pulse)
+    inside = np.count_nonzero((t > pulse.rise) & (t < pulse.fall))
     if values is not None and inside < FEWEST:
         raise MeasureError(
             f"{inside} samples lie above half the pulse's peak: at least {FEWEST} are wanted"

@@ -330,8 +330,7 @@ def forces_at_start(scene: Scene) -> dict[str, float]:
     damped contact of a moving bead resists at once, but a sensor has been at rest before.
     """
     motion = Motion(scene)
-    at_start = motion.compression(motion.start[: scene.size])
-    contacts = motion.force(at_start)
+    contacts = motion.force(motion.compression(motion.start[: scene.size]))
     # The force of a bead is the mean of its two contacts'; beyond both ends there is none.
     beside = np.concatenate(([0.0], contacts, [0.0]))
     forces = {"bead": (beside[:-1] + beside[1:]) / 2, "contact": contacts}
@@ -412,8 +411,7 @@ def _speeds(
         raise MeasureError("one of the two has no pulse")
     start = first.numbers["arrival"]
     end = second.numbers["arrival"]
-    error = total(start.error, end.error)
-    time = Estimate(end.value - start.value, error)
+    time = Estimate(end.value - start.value, total(start.error, end.error))
     if time.value <= time.error:
         raise MeasureError(
             "a speed needs a later second arrival, by more than its error"

@@ -168,8 +168,7 @@ def _measured(
             f"not steady: at {far} sites the highest pulse has {higher:.3g} times the force that "
             f"the leading pulse's decay at {place} sites predicts"
         )
-    ends = (place, place + chain.sites)
-    return Point(k, omega, ends, measured)
+    return Point(k, omega, (place, place + chain.sites), measured)
 
 
 @dataclass(frozen=True)

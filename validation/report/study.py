@@ -247,7 +247,7 @@ class Study(Generic[P]):
         parameters = inspect.signature(function).parameters
         # Called from Python, a study shows no progress unless asked.
         if "progress" in parameters:
-            values["progress"] = partial(shown, label="cases")
+            values["progress"] = progress
         if "run_progress" in parameters:
             values["run_progress"] = run_progress
         with warnings.catch_warnings():
@@ -279,8 +279,7 @@ def study(
     examples : sequence of str
         Lines that run one after another in an empty folder, shown at the end of the help.
     """
-    end = help_end(examples, page)
-    return lambda function: Study(function, options, end)
+    return lambda function: Study(function, options, help_end(examples, page))
 
 
 def printed_as(style: str, report: Report) -> str:
@@ -422,6 +421,10 @@ READERS: dict[Any, str] = {
 EXPONENT = option(
     "--k", "Exponent k of the force F = A δ^k.", read=number, default="3/2"
 )
+
+
+progress = partial(shown, label="cases")
+"""Display of how many cases are done."""
 
 
 @contextmanager

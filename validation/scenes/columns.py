@@ -216,8 +216,7 @@ class Columns:
         # `validation.scenes.measured` refuses a header that is not unique.
         names: dict[int, str] = {}
         for name, header in self.headers.items():
-            numbers = self.cells.headed(header)
-            names |= dict.fromkeys(numbers, name)
+            names |= dict.fromkeys(self.cells.headed(header), name)
         columns = []
         if self.step:
             columns.append(Column("time", None, "", "", self.step))

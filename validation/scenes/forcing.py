@@ -170,8 +170,7 @@ class Drive:
 
     def __post_init__(self) -> None:
         for name in ("time", "displacement"):
-            given = getattr(self, name)
-            row = each(finite)(given, f"drive.{name}")
+            row = each(finite)(getattr(self, name), f"drive.{name}")
             object.__setattr__(self, name, row)
         # A piston may stand still: 0 is a velocity.
         constant = self.velocity is not None

@@ -142,8 +142,7 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     if "damping" in file:
         damping = part("damping")
         kind = damping.one(*DAMPINGS)
-        value = damping.read(kind, own(finite))
-        fields["damping"] = Damping(kind, value)
+        fields["damping"] = Damping(kind, damping.read(kind, own(finite)))
     fields |= start.entries
     if "striker" in file:
         if "start" in file:

@@ -311,8 +311,7 @@ def fit_power(force: Array, speed: Array, weight: Array | None = None) -> PowerF
     x, y = np.log(force), np.log(speed)
     (slope, constant), middle = _fit(x, y, 1, weight)
     k = _exponent(slope)
-    at_zero = constant - slope * middle
-    log_A = log_stiffness(slope, at_zero)
+    log_A = log_stiffness(slope, constant - slope * middle)
     if not LEAST <= k[0] <= MOST:
         raise SceneError(
             f"k is {k[0]:.3g} by the best fit: laws with k from {LEAST:g} to {MOST:g} are read"
@@ -368,8 +367,7 @@ def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, 
     # with the scatter of the residuals.
     shape = covariance * max(scatter, least)
     noise = scipy.stats.multivariate_t(None, shape, freedom, allow_singular=True)
-    drawn = noise.rvs(_DRAWS, random_state=0)
-    draws = drawn.reshape(_DRAWS, degree + 1)
+    draws = noise.rvs(_DRAWS, random_state=0).reshape(_DRAWS, degree + 1)
     return np.vstack((best, best + draws)).T, middle
 
 

@@ -324,8 +324,7 @@ def _panel(run: Run, theory: PhysicalWave) -> Panel:
     curves = []
     pulses = passing(run)
     for i, bead in enumerate(SENSORS):
-        place = run.scene.bead_sensors.index(bead - 1)
-        force = run.bead_force[place]
+        force = run.bead_force[run.scene.bead_sensors.index(bead - 1)]
         # The theory's peak is put upon the lattice's: the theory knows no time of the blow.
         wave = theory.curve(run.time - pulses[bead].arrival)
         curves.append(Curve(f"bead {bead}, lattice", run.time, force, f"C{i}-"))
@@ -421,8 +420,7 @@ def stated_errors() -> list[dict[str, Any]]:
     fwhm = mean(contacts, "fwhm", places)
     rows = []
     for (line, stated), cell in zip(STATED.items(), cells_of_lines(), strict=True):
-        of_cell = homogenize(cell, k=HERTZ).pde.traveling_wave()
-        wave = of_cell.at_force(peak)
+        wave = homogenize(cell, k=HERTZ).pde.traveling_wave().at_force(peak)
         error = float(wave.fwhm("force", "time")) / fwhm - 1
         rows.append(
             {

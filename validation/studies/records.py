@@ -71,8 +71,7 @@ def _pairs(
         # The line that is proposed keeps the valid pairs, and has an example if there are none.
         wanted = f"{given.metavar} is wanted, once a name"
         key = called(given)
-        example = {"time": _TIMES[key]}
-        change = {key: stated or example}
+        change = {key: stated or {"time": _TIMES[key]}}
         raise SceneError(f"{key} is {fault}: {wanted}", **change)
     return stated
 
