@@ -388,6 +388,7 @@ def envelope(
     law = for_cell(law, cell, k)
     if (background is None) == (precompression is None):
         raise InputError("background or precompression: one of the two is wanted")
+    # The load is a force here, and a strain below.
     if precompression is not None:
         load = positive(precompression, "precompression")
         static = law.compression(cell, load)

@@ -138,7 +138,10 @@ def _deviations() -> Array:
 
 
 def _mean(values: Array, k_value: sp.Expr, ratio: sp.Expr) -> float:
-    """The bilinear interpolation in k and m2/m1 of values by row of the file."""
+    """The bilinear interpolation in k and m2/m1 of values, one for each row of the file.
+
+    The rows go through all m2/m1 at one k after another.
+    """
     exponents, ratios = map(np.unique, _deviations().T[:2])
     rows = values.reshape(len(exponents), -1)
     at_ratio = [np.interp(float(ratio), ratios, row) for row in rows]
