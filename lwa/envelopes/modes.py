@@ -146,6 +146,7 @@ class Contacts:
         d = self._strains(z) @ phi
         size = np.abs(d) ** 2
         K3 = self.K3
+        # The mean of K3 |d|², weighted by c, and the lasting force f
         driven = (c * K3 * size).sum() / c.sum()
         force = 2 * driven * v2 / (v2 - 1)
         mean = c * (force - 2 * K3 * size)
@@ -335,6 +336,7 @@ class LoadedMode(Parametric):
         masses = np.array(self.cell.masses)
         contacts = Contacts(masses, K2=1 / c, K3=s / c**2, K4=t / c**3)
         mode = self._scaled(contacts)
+        # The spring constant A F′ of the first contact, in the units of the cell
         rate = sp.powsimp(self.cell.stiffnesses[0] * slope)
         return replace(
             mode,

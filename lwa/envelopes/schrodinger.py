@@ -304,7 +304,7 @@ class Breather(Value):
 
     @cached_property
     def opening_detuning(self) -> sp.Expr:
-        """Detuning at which contacts begin to open, to leading order; ∞ if contacts pull.
+        """Detuning at which contacts begin to open, to leading order; infinite if contacts pull.
 
         Under a power law it is the same at every load. In the lattice contacts open earlier: for
         spheres of mass ratios 0.3 to 0.5 at 0.018 instead of 3/128, which is 0.0234.
@@ -388,6 +388,7 @@ def envelope(
     law = for_cell(law, cell, k)
     if (background is None) == (precompression is None):
         raise InputError("background or precompression: one of the two is wanted")
+    # The load is a force here, and a strain below.
     if precompression is not None:
         load = positive(precompression, "precompression")
         static = law.compression(cell, load)

@@ -37,6 +37,7 @@ class Bloch:
     def __init__(self, model: Model) -> None:
         context = fmpq_mpoly_ctx.get(model.names, Ordering.degrevlex)
         self.P = model.cell.size
+        # Mass fractions m̂_i and strain shares C_i as elements of the ring
         self.mu = model.masses.elements(context)
         self.c = model.contacts.elements(context)
         self.one = context.constant(1)

@@ -120,9 +120,10 @@ class Grid:
     def peak_first(values: Array) -> Array:
         """Put values at the rows in the order from the peak to the foot.
 
-        The rows next to the foot go: there integrals by `to_peak` are not right.
+        The rows next to the foot go: there the integrals in `Nodes.places` are not right.
         """
-        # The rows next to the foot have less than half a window of nodes on one side.
+        # These integrals know dξ at the rows alone, and the end correction next to the foot would
+        # need it at the nodes before them, up to half a window.
         first = _WINDOW // 2
         return values[first:][::-1]
 

@@ -53,7 +53,7 @@ class States(Parametric):
     closed_form: bool = True
 
     def __post_init__(self) -> None:
-        # Text would be evaluated in a sum.
+        # Called for its refusal of text, NaN and infinities
         real(self.precompression, "precompression")
         real(self.force, "force")
         real(self.exact_static_compression, "static compression")

@@ -278,8 +278,9 @@ class LoadedWave(States):
         if spacing.is_Symbol and not self.exact_compression.has(spacing):
             return self.at(**{spacing.name: 1}).estimate(name, quantity, extent)
         wave = self._quadrature
-        # Without load the slope at the foot tends to 0, at 1e-40 slowly for k near 1. The slopes of
-        # a lattice's power k = 3 are no floats at 1e-280.
+        # `bounds` takes a wave for one without load if the slope F′ at its foot is nearly 0. For k
+        # near 1 it falls so slowly towards the foot that 1e-280 of the rise tells more than 1e-40.
+        # In a lattice the slopes of a power k = 3 would be no floats there.
         foot = _FOOT if self.law is None else 1e-280
         known = bounds(
             self.lattice,
@@ -305,6 +306,7 @@ class LoadedWave(States):
         B = self.exact_compression
         if self.law is None:
             lattice = self.lattice
+            # `Quadrature` has V̂² for V², and in J, at D = 1, R V⁴ is (R/m̄²) V̂⁴.
             resonance = number(lattice.resonance_sum / lattice.mass**2)
             return Quadrature(lattice.statics.samples, number(p0), number(B), resonance)
         if self.law.homogeneous:
