@@ -86,6 +86,7 @@ class Commands(click.Group):
         if name is not None:
             module, _ = self.table[name]
             loaded = getattr(import_module(f"{self.package}.{module}"), name)
+            # Not every module has a Click command: a study of `validation` holds its own one.
             command = getattr(loaded, "command", loaded)
         return name, command, rest
 
