@@ -249,8 +249,7 @@ class StruckDimer:
         """
         elapsed = np.diff(passages["arrival"], axis=0)
         elapsed[elapsed <= 0] = np.nan
-        logarithms = np.log(passages["peak"])
-        fall = -np.diff(logarithms, axis=0)
+        fall = -np.diff(np.log(passages["peak"]), axis=0)
         scaled = passages["peak"] ** self.q
         # exprel(z) is (e^z - 1)/z.
         distance = self.sites * scipy.special.exprel(self.q * fall)

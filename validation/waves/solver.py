@@ -189,8 +189,7 @@ def _equal(k: float, p0: float) -> ExactWave:
         return solve(problem, _equal(STEEP, p0))
     if not p0:
         return solve(problem)
-    strain = theory.along(problem.xi, "strain")
-    force = newton.rise(strain, k, p0)
+    force = newton.rise(theory.along(problem.xi, "strain"), k, p0)
     return _converged(problem, force, float(theory.speed) ** 2)
 
 
