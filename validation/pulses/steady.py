@@ -293,9 +293,10 @@ def stored(path: Path) -> Iterator[tuple[dict[Key, Point], Callable[[Point], Non
             points = {}
             for (row,) in data.execute(f"select point from {own}"):
                 entry = json.loads(row)
-                numbers = {}
-                for name, number in entry["numbers"].items():
-                    numbers[name] = Estimate(**number)
+                numbers = {
+                    name: Estimate(**number)
+                    for name, number in entry["numbers"].items()
+                }
                 # A tuple is a list in JSON, and exact numbers are texts.
                 sites = entry["sites"]
                 key = (
