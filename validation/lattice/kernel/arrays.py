@@ -128,13 +128,11 @@ class Beads(NamedTuple):
     force : array, (2, padded + 1)
         Force on each bead from behind, less the static force, at the start of the step and at the
         stage that was computed last.
-    border : array, (stages,)
-        Force on the bead at which a tile begins, by stage.
     push : array, (stages, padded + 1)
         Acceleration of each bead by its two contacts, by stage.
     errors : array, (2 or 4, padded + 1)
         The pair's estimates of each bead's error in displacement and velocity, in units of the
-        tolerance.
+        tolerance. While a stage is computed, row 0 is the power that each contact dissipates.
     marks : array, (padded + 1,)
         1 for each contact with a kink.
     power : array, (2, `ROOM`)
@@ -156,7 +154,6 @@ class Beads(NamedTuple):
     next_y: Array
     next_v: Array
     force: Array
-    border: Array
     push: Array
     errors: Array
     marks: Array

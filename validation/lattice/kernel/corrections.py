@@ -83,10 +83,10 @@ _SECOND = 0.5
 
 @inlined
 def _ends(
-    chain: Chain, beads: Beads, h: float, i: int
+    chain: Chain, beads: Beads, plan: Plan, h: float, i: int
 ) -> tuple[kinks.State, kinks.State]:
     """Return δ, δ' and δ'' of contact i at both ends of a step, in units of the step."""
-    last = len(beads.border) - 1
+    last = len(plan.scheme.nodes) - 1
     a = beads.push[0, i] - beads.push[0, i + 1]
     end_a = beads.push[last, i] - beads.push[last, i + 1]
     if i == 0:
@@ -449,7 +449,7 @@ def correct_contact(
     far = chain.inverse[i + 1]
     both = near + far
     bend = -A * h * h * both  # of the curve by a force of 1
-    start, end = _ends(chain, beads, h, i)
+    start, end = _ends(chain, beads, plan, h, i)
     damped = forcing is not None and forcing.damped
     if damped and _is_faint(chain, plan, h, i, start, end):
         beads.marks[i] = 0.0
