@@ -163,6 +163,8 @@ def evaluate_stages(
     # All stages go through a tile of beads while its memory is in the processor's cache. A force
     # depends on the bead ahead, so that stage s can be computed up to s beads before the tile's end
     # (`tile_bounds`): it lags by s beads, and ``hi + stages`` lets the last stage reach bead hi-1.
+    # The force behind the first of them is that of the same stage in the tile before: later stages
+    # of that tile end behind it.
     for tile in range(0, hi + stages, TILE):
         for s in range(stages - 1 if again else 1, stages):
             lo, up, first, behind = tile_bounds(tile, s, hi)
@@ -215,6 +217,7 @@ def estimate_errors(beads: Beads, plan: Plan, h: float, hi: int) -> None:
     for lo in range(0, hi, TILE):
         up = min(lo + TILE, hi)
         for q in range(0, len(beads.errors), 2):
+            # Rows of errors, and of their weights, are of displacement and velocity in turn.
             y = beads.errors[q]
             v = beads.errors[q + 1]
             for i in range(index(lo), index(up)):
@@ -259,6 +262,8 @@ def step_error(beads: Beads, plan: Plan, h: float, hi: int) -> float:
     books = beads.books
     total = least = 0.0
     for q in range(0, len(weights), 2):
+        # Row q of the weights is of displacements; row q + 1, of velocities, is of all integrals
+        # over the step. Corrected contacts are taken out of the estimates.
         heat = h * integral(weights[q + 1], beads.power[HEAT]) - books[HEAT_ERROR]
         work = h * integral(weights[q + 1], beads.power[WORK]) - books[WORK_ERROR]
         missed = (heat * heat + work * work) / plan.energy**2
@@ -268,6 +273,7 @@ def step_error(beads: Beads, plan: Plan, h: float, hi: int) -> float:
             least = _LEAST * missed
         elif squared > 0.0:
             total = total * total / (total + _THIRD * squared)
+    # Besides the pair's own errors: those of the corrections at kinks
     return math.sqrt(total + least + books[SQUARES])
 
 
@@ -286,6 +292,8 @@ def end_step(
     if error < _HOPELESS:
         # An error of 0 has no such power; from 1e-9 down `_GROWTH` is less than the factor.
         factor = _SAFETY * max(error, 1e-9) ** (-1.0 / pair.order)
+        # Share of the step after the first kink of a damped contact, 0 without one. The part before
+        # the kink is kept, and the part after it is shortened by its own error.
         after = beads.books[AFTER]
         if error > 1.0 and after > 0.0:
             kept = _KINK_SAFETY * error ** (-1.0 / _KINK_ORDER)
@@ -295,6 +303,8 @@ def end_step(
         if factor == 0.0:
             beads.push[1:] = 0.0  # overflows must not last
         return False
+    # The last row of ``impulses`` integrates over the step, here the dissipated power and that of
+    # the drive at the stages. The books hold what the corrections at kinks add to the integrals.
     impulses = pair.impulses[len(pair.impulses) - 1]
     now.lost += h * integral(impulses, beads.power[HEAT]) + beads.books[HEAT]
     now.work += h * integral(impulses, beads.power[WORK]) + beads.books[WORK]
@@ -318,14 +328,18 @@ def end_step(
 
 @inlined
 def begin_step(beads: Beads, plan: Plan, hi: int) -> None:
-    """Move the beads, and their forces, to the end of a step, which is the start of the next."""
-    last = len(plan.scheme.nodes) - 1
+    """Move beads 0 … hi-1, and their forces, to the end of a step, the start of the next one."""
+    last = len(plan.scheme.nodes) - 1  # the last stage, at the step's end
     for i in range(index(hi)):
         beads.y[i] = beads.next_y[i]
         beads.v[i] = beads.next_v[i]
+        # There are two rows of forces: row 0 of the step's start, row 1 of the stage computed last,
+        # which is the last stage. Column i + 1 holds the contact ahead of bead i. The accelerations
+        # ``push`` have a row for every stage, and column i belongs to bead i.
         beads.force[ZERO, i + ONE] = beads.force[ONE, i + ONE]
         beads.push[ZERO, i] = beads.push[index(last), i]
-    # Stage 0 of the next step is the last stage of this one: heat, and work of the drive.
+    # Stage 0 of the next step is the last stage of this one: dissipated power, power of the drive.
     for balance in (HEAT, WORK):
         beads.power[balance, 0] = beads.power[balance, last]
+    # The driven bead's accelerations at the step's start and end
     beads.given[0] = beads.given[1]

@@ -36,7 +36,9 @@ def advance_split(
     last = len(drifts)
     y = beads.y
     v = beads.v
+    # The accelerations, also for the knots
     push = beads.push[0]
+    # A stage for the dissipated power, and the first contact: both are number 0.
     contact_forces(chain, forcing, beads, plan, y, v, push, FIRST, FIRST, plan.size)
     if now.tries == 0:
         store_knot(forcing, beads, knots, now)
