@@ -377,11 +377,9 @@ def _front(motion: Motion) -> int:
 def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
     """Build the kernel's initial state, arrays with room for ``padded`` + 1 beads."""
     n = motion.size
-    stages = 1
     estimates = 0
     if isinstance(scheme, Pair):
         estimates = len(scheme.errors)
-        stages = len(scheme.nodes)
     # Five rows that have names below, the errors, room for the stages, and two rows of forces
     rows = _lines(7 + estimates + ROOM, padded + 2)
     # Two rows, one place ahead of the others: lines begin at column 1, the force of contact 0.
@@ -400,7 +398,6 @@ def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
         next_y=next_y,
         next_v=next_v,
         force=ahead.reshape(2, -1),
-        border=np.zeros(stages),
         push=rows[5 + estimates : -2],
         errors=rows[5 : 5 + estimates],
         marks=marks,
