@@ -17,7 +17,9 @@ from llvmlite import ir
 from numba import njit, types
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
+from numba.core.cpu import CPUTargetOptions
 from numba.core.event import Event, Listener, register
+from numba.core.options import TargetOptions
 from numba.core.typed_passes import IRLegalization, NopythonRewrites
 from numba.core.untyped_passes import InlineClosureLikes
 from numba.extending import intrinsic
@@ -80,6 +82,9 @@ class _Linker(_Compiler):
         return super().define_pipelines()
 
 
+# Numba has a flag for arguments that share no memory, but no option for it. Without it each
+# vectorised loop asks at run time whether its arrays overlap: short chains took a fifth more time.
+CPUTargetOptions.noalias = TargetOptions.Mapping("noalias")  # type: ignore[no-untyped-call]
 # Without "reassoc" sums keep their order, so that rounding is reproducible; without "nnan" and
 # "ninf" an overflow is detected. In numba's own error model a division by zero raises an exception,
 # a branch that keeps loops from vectorising. The code allocates nothing ("_nrt"): counting
@@ -89,6 +94,7 @@ _OUTER: Any = dict(
     error_model="numpy",
     nogil=True,
     no_cfunc_wrapper=True,
+    noalias=True,
     _nrt=False,
     pipeline_class=_Compiler,
 )
