@@ -227,7 +227,7 @@ class Row:
     ) -> str:
         """A value as text: its formula, its digits, or both.
 
-        `number` holds the digits of an exact value (`numbers`); None if symbols leave it open.
+        `number` is the number of the value among `numbers`; None where there is none.
         """
         unit = self.unit if scale.si else ""
         if isinstance(value, Estimate):

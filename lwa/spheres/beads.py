@@ -189,7 +189,7 @@ def period(*rows: Sequence[Any]) -> int:
 
 
 def spheres(content: Any) -> list[Sphere]:
-    """Read the spheres of the cell of a parsed file (see the module), in their order.
+    """Read the spheres of a cell, in their order, from the tables of a parsed file.
 
     >>> steel, ball = {"E": 193e9, "nu": 0.3}, {"mass": 1, "radius": 0.5, "material": "steel"}
     >>> content = {"materials": {"steel": steel}, "beads": {"ball": ball}}
