@@ -181,7 +181,7 @@ class StruckDimer:
 
     @property
     def q(self) -> float:
-        """Exponent of the speed, which is proportional to F^q of the peak contact force F."""
+        """Exponent of the speed, which is proportional to ``F^q`` of the peak contact force F."""
         return (self.k - 1) / (2 * self.k)
 
     def crossing(self, sites: int) -> float:
