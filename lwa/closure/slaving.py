@@ -84,7 +84,8 @@ class Force:
 
     def increment(self, h: int, n: int) -> fmpq_mpoly:
         """Coefficient of ``D^n`` in the force at x + hD minus the force at x, over ``p F'``."""
-        # F(p) adds h^n/n! ∂_x^n F(p) = h^n/n! ∂_x^{n-1} (p F' r_1), r_1 = p_x/p.
+        # The force is F(p) + p F' Φ. F(p) adds h^n/n! ∂_x^n F(p) = h^n/n! ∂_x^{n-1} (p F' r_1),
+        # r_1 = p_x/p; `_slope` is p F' r_1, over the p F' by which all is divided.
         of_strain = self._slope.dx(0, n - 1) * taylor(h, n)
         return self.Phi.increment(h, n) + of_strain
 
