@@ -155,6 +155,7 @@ class Estimate(Value):
         # NaN or infinite if either number is.
         if not math.isfinite(self.value + self.error):
             return f"{self.value:.{UNKNOWN_DIGITS}g}, error unknown"
+        # Powers of ten of the first and the last digit that are shown
         first = _place(self.value)
         last = first - most + 1
         if not self.error:
@@ -176,10 +177,10 @@ class Estimate(Value):
         if not PLAIN[0] <= first <= PLAIN[1]:
             return f"{self.value:.{first - last}e} ± {scientific}"
         decimals = max(0, -last)
-        width = scientific
+        bound = scientific
         if error >= LEAST_PLAIN:
-            width = f"{error:.{decimals}f}"
-        return f"{round(self.value, -last):.{decimals}f} ± {width}"
+            bound = f"{error:.{decimals}f}"
+        return f"{round(self.value, -last):.{decimals}f} ± {bound}"
 
     @property
     def relative_error(self) -> float:

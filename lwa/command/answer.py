@@ -193,7 +193,7 @@ class Row:
         """The values in JSON, by the ending of their names: "", "_value", "_error_value"."""
         if isinstance(self.value, InputError):
             return {"_value": None, "_error_value": None}
-        found: dict[str, Any] = {}
+        found = {}
         # A float is a result of numerics; closed forms of the lattice hold floats as factors.
         if not any(isinstance(x, Estimate | sp.Float) for x in self.values):
             found[""] = self.value
@@ -225,7 +225,10 @@ class Row:
     def _text(
         self, value: sp.Expr | Estimate, number: Estimate | None, scale: Scale
     ) -> str:
-        """A value as text: its formula, its digits, or both."""
+        """A value as text: its formula, its digits, or both.
+
+        `number` is the number of the value among `numbers`; None where there is none.
+        """
         unit = self.unit if scale.si else ""
         if isinstance(value, Estimate):
             return scale.digits(value, unit)
