@@ -219,6 +219,7 @@ class Cells:
         if self.entries and numbers:
             # NumPy's reader parses a million rows in a second, Python's in six.
             table = np.loadtxt(
+                # Each line has a cell of the last, and highest, number.
                 islice(self._lines(numbers[-1]), most),
                 delimiter=self._mark.strip(" ") or None,
                 comments=None,
@@ -288,8 +289,9 @@ class Cells:
         start, end = longest(joined)
         found = runs(joined)
         place = found.index((start, end))
-        # A preamble may hold a few rows of numbers, if lines without any number follow, and a
-        # footer a few. Any other run of rows beside the record is a part of it, beyond a gap.
+        # A preamble may hold a few rows of numbers, if lines without any number part them from the
+        # record, and a footer a few. Any other run of rows beside the record is a part of it,
+        # beyond a gap.
         many = joined.sum() > (1 + _FEW) * (end - start)
         gap = end if many else None
         if place:
