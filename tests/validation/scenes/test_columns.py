@@ -1,6 +1,5 @@
 """Measured files: cells, names and units of columns, and what is refused."""
 
-import json
 from contextlib import suppress
 
 import numpy as np
@@ -73,31 +72,12 @@ def test_rows_of_numbers_above_a_record_belong_to_the_preamble(read):
             file.rows("time", "force")
 
 
-def test_up_to_two_samples_in_a_row_may_be_lost_where_times_tell(read):
-    rows = "1,5\n{}4,NaN\n5,8\n6,9\n7,9\n"
-    text = HEAD + rows.format("2,5\n3,\n")
-    assert read(text).rows("time", "force")[:, 0].tolist() == [1, 2, 5, 6, 7]
-    for lost, stated in ((text, {"step": "1"}), (HEAD + rows.format("2,\n3,\n"), {})):
-        with pytest.raises(InputError, match="is a gap"):
-            read(lost, **stated).records()
-
-
-def test_rows_that_are_signals_and_rows_in_brackets(read):
-    pairs = [[n / 2, n**2.0] for n in range(18)]
-    rows = json.dumps(pairs)
-    signals = json.dumps([*zip(*pairs, strict=True)])
-    bare = signals[2:-2].replace("], [", "\nforce,")
-    for text in (
-        rows,
-        signals,
-        f"time,{bare}",
-        bare.replace("force,", ""),
-        rows.translate(str.maketrans({"[": "{", "]": "}", " ": "\n"})),
-        rows.translate(str.maketrans("[]", "{}")).replace(".0", ".*^0"),
-    ):
-        columns = {} if "time" in text else {"time": "1", "force": "2"}
-        found = read(text, columns=columns).rows("time", "force")
-        assert found.tolist() == pairs, text
+def test_a_table_that_lies_is_set_upright(read):
+    times = [*range(9)]
+    row = ",".join(map(str, times))
+    named, stated = f"time,{row}\nforce,{row}", {"time": "1", "force": "2"}
+    for file in (read(named), read(f"{row}\n{row}", columns=stated)):
+        assert file.rows("time", "force").T.tolist() == [times, times]
 
 
 @pytest.mark.parametrize(
@@ -280,6 +260,7 @@ STATED = {"columns": {"force": "2"}}
         (f"{HEAD}1,2\n", {"step": "x"}, "step is 'x': .* step='\\? us'$"),
         (f"{HEAD}1,2\n", {"units": {"time": "? s"}}, "unit of time is '\\? s'"),
         ("time (s),force (10 N)\n1,2\n", {}, "'10 N': .*units={'force': '10 N'}$"),
+        (f"{HEAD}1,2\n2,\n3,\n4,\n5,6\n6,7\n7,8\n8,9\n", {}, "line 3 is a gap"),
         ("rate 5\nSample rate: 2 MHz,\nn,CH1\n0,2\n1,3\n", {}, "step='2 MHz'"),
     ],
 )
