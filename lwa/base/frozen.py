@@ -177,10 +177,10 @@ class Estimate(Value):
         if not PLAIN[0] <= first <= PLAIN[1]:
             return f"{self.value:.{first - last}e} ± {scientific}"
         decimals = max(0, -last)
-        width = scientific
+        bound = scientific
         if error >= LEAST_PLAIN:
-            width = f"{error:.{decimals}f}"
-        return f"{round(self.value, -last):.{decimals}f} ± {width}"
+            bound = f"{error:.{decimals}f}"
+        return f"{round(self.value, -last):.{decimals}f} ± {bound}"
 
     @property
     def relative_error(self) -> float:

@@ -240,7 +240,7 @@ def _change(
 
     They are those of the refusal, else the example of the option that its reason is about.
     """
-    change: dict[str, object] = {}
+    change = {}
     for option in options:
         for known in (called(option), option.name):  # on the command line and in Python
             if known in refusal.change:

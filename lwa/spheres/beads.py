@@ -147,8 +147,8 @@ def read_row(file: Table, beads: Mapping[str, Sphere]) -> Row:
             "chain.cell is empty: names, or masses, of one bead or more are wanted"
         )
     repeat = given.read("repeat", partial(integer, low=1), 1)
-    spheres: list[Sphere] = []
-    masses: list[float] = []
+    spheres = []
+    masses = []
     if isinstance(cell[0], str):
         spheres = each(among(beads))(cell, "chain.cell")
         # Spheres have the law of Hertz, and touch where the chain is unloaded.
@@ -189,7 +189,7 @@ def period(*rows: Sequence[Any]) -> int:
 
 
 def spheres(content: Any) -> list[Sphere]:
-    """Read the spheres of the cell of a parsed file (see the module), in their order.
+    """Read the spheres of a cell, in their order, from the tables of a parsed file.
 
     >>> steel, ball = {"E": 193e9, "nu": 0.3}, {"mass": 1, "radius": 0.5, "material": "steel"}
     >>> content = {"materials": {"steel": steel}, "beads": {"ball": ball}}
@@ -208,7 +208,7 @@ def _material(value: Any, name: str) -> Material:
     entries = Table(value, name, ("like", "E", "nu", "density"))
     # Density is needed by beads without a mass alone, which ask for it.
     needed = {"E", "nu"}
-    values: dict[str, Any] = {}
+    values = {}
     if "like" in entries:
         values = vars(entries.read("like", among(BY_NAME)))
         needed = set()

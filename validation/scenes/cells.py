@@ -122,11 +122,10 @@ class Cells:
         found = map(_DECIMAL.fullmatch, chain(*rows[start:end]))
         decimal = {number[1] for number in found if number}
         self._thousands = {",": ".", ".": ","}.get("".join(decimal), "")
-        typical: list[str] = []
+        typical = []
         if end:
             # Which columns hold numbers is read from one row of the record, after the settings.
-            place = min(start + _SETTINGS, end - 1)
-            typical = rows[place]
+            typical = rows[min(start + _SETTINGS, end - 1)]
         else:
             # Without any row of numbers all lines are the head.
             start = len(rows)
@@ -403,8 +402,7 @@ def _split(line: str, mark: str) -> list[str]:
         bare = line.strip("#% \t")
         line = re.sub(r"[ \t]+(?![([])", mark, bare)
     # Cells in quotes may hold separators.
-    reader = csv.reader([line], delimiter=mark, skipinitialspace=True)
-    cells = next(reader)
+    cells = next(csv.reader([line], delimiter=mark, skipinitialspace=True))
     return [re.sub(" +", " ", cell.strip()) for cell in cells]
 
 
