@@ -80,7 +80,7 @@ class Force:
     def append(self, X_n: fmpq_mpoly) -> None:
         """Append the next term ``X_n`` to X, and ``Φ_n`` to Φ.
 
-        ``φ_1 = 1``: Φ_n is X_n and a part of the earlier terms, whose number tells n to `nonlinear`.
+        As φ_1 is 1, Φ_n is X_n and a part of the earlier terms, whose number tells `nonlinear` n.
         """
         self.Phi.append(X_n + self.nonlinear)
         self.X.append(X_n)
