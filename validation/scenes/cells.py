@@ -127,7 +127,10 @@ class Cells:
             encoding = "utf-16"
         # Recorders may pad a text with zeros at its end. JSON is what `run` stores beside CSV.
         elif b"\0" in content[:HEAD] or content.startswith(b"{"):
-            raise SceneError("it is no table: rows of text, CSV say, are wanted")
+            raise SceneError(
+                "it is no table: rows of text are wanted, as of the line; try: lwa-validate run "
+                "scene.toml --out forces.csv"
+            )
         try:
             text = content.decode(encoding)
         except UnicodeDecodeError:

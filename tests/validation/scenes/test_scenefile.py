@@ -302,9 +302,14 @@ def test_a_drive_is_read_from_a_file_beside_the_scene(tmp_path):
     found = drive(plain, columns=columns, units=units, step="0.5 s")
     assert found.displacement == pytest.approx((0, 5e-7, 1e-6, 2e-6), rel=1e-15)
     assert found.time == (0, 0.5, 1, 1.5)
-    proposed = r"shaker.csv: .*; try: columns={'time' = '1', 'displacement' = '2'}$"
-    with pytest.raises(SceneError, match=proposed):
-        drive("t [ms],x [mm]\n0,0\n0.5,1\n")
+    unnamed = in_units.replace("time (s)", "a's: 'b'").replace("displacement", "x")
+    with pytest.raises(
+        SceneError, match=r"shaker.csv: .*; try: .* # in \[drive\]$"
+    ) as fault:
+        drive(unnamed)
+    _, proposed = str(fault.value).split("; try: ")
+    proposed = tomllib.loads(proposed.replace(" and ", "\n"))
+    assert drive(unnamed, **proposed).displacement == (0, 1e-3, 2e-3, 0)
     with pytest.raises(SceneError, match=r"^none.csv: No such file"):
         scene(GOOD | {"drive": {"file": "none.csv"}})
 
