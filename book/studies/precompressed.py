@@ -30,7 +30,7 @@ from lwa import Cell, LoadedWave, Power, loaded_wave
 from lwa.base.arrays import Array
 from lwa.base.frozen import Estimate
 from lwa.base.progress import Progress
-from lwa.command.options import quantities, value
+from lwa.command import options
 from lwa.law import ContactLaw, read_law
 from lwa.loaded.background import Background
 from validation.lattice.result import Run
@@ -63,7 +63,7 @@ _WEAKEST, _STRONGEST = 1e-3, 1e4
 
 @study(
     EXPONENT,
-    value(
+    options.value(
         "--law",
         "Contact law in place of δ^k, such as hertz2:1,2.",
         "hertz2:1,2",
@@ -73,12 +73,12 @@ _WEAKEST, _STRONGEST = 1e-3, 1e4
     option(
         "--masses",
         "Masses of a cell, such as 1,1/2; by default three chains.",
-        read=quantities,
+        read=options.quantities,
     ),
     option(
         "--ratios",
         "Dynamic forces divided by the static force.",
-        read=quantities,
+        read=options.quantities,
         default=",".join(map(str, RATIOS)),
     ),
 )

@@ -147,6 +147,7 @@ def full(
     if chain.size > 1:
         second = chain.S[1]
         ansatz = [algebra.one, second[0]]
+        # b_{n+1} is the coefficient of r_n in S_n, as D φ_x · D^n r_n = D^{n+1} ∂_x^{n+1} φ.
         for n in range(1, model.order):
             ansatz.append(algebra.slope(second[n], n))
     return Solution(
@@ -181,10 +182,12 @@ class _Slaving:
         self.size = model.cell.size
         self.x = list(accumulate(algebra.c[:-1], initial=algebra.zero))
         self.weights = algebra.mu if field == "center" else [algebra.one]
+        # Terms of D^0: E begins with E_1, and every rate with D^1.
         self.E = GradedSeries(algebra, algebra.k, [algebra.zero])
         self.S = []
         self.rates = []
         self.forces = []
+        # At D^0 the field w_i = φ(x + D x_i) has S_i = x_i.
         for x in self.x:
             self.S.append(GradedSeries(algebra, algebra.one, [x]))
             self.rates.append(GradedSeries(algebra, algebra.half, [algebra.zero]))

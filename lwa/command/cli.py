@@ -242,6 +242,7 @@ def _change(
         for known in (called(option), option.name):  # on the command line and in Python
             if known in refusal.change:
                 change[called(option)] = refusal.change[known]
+    # [1] is the option that the reason names, [2] a symbol without a value; one of them is None.
     subject = _SUBJECT.match(refusal.reason)
     if change or subject is None:
         return change

@@ -151,8 +151,9 @@ def command(
                 if given(option) and others:
                     raise InputError(
                         f"--{option} and --{others[0]} are both given: one says the other",
-                        **dict.fromkeys(others),  # to be left out
+                        **dict.fromkeys(others),  # proposed: the line without them
                     )
+            # `take_chain` removes the options that describe the chain: the others are left.
             made = function(take_chain(options), **options)
             # The source code of a wave is a text already.
             click.echo(made if isinstance(made, str) else getattr(made, style)())

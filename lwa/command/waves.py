@@ -293,7 +293,7 @@ def _beside(
     scale : Scale
         Units of the numbers.
     """
-    # A time of passage is that of a force.
+    # Widths in time need the speed of the wave, which a force fixes.
     if force is None:
         symbol = "V_{s}"
         first = Row.of(wave, speed, "V_s at B = 1", 1, key="speed", symbol=symbol)

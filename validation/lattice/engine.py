@@ -85,6 +85,9 @@ _UNBOUNDED = 5.0
 _STILL = Drive(velocity=0.0)  # numba knows no tuple without numbers
 _LOOSER = 1e4  # factor of a tolerance that is proposed; a run for errors has 1/100 of the user's
 _ANY_POWER = 0.25  # a general law may begin with δ^{1/4}
+# From this power on δ^k is smooth enough for the correction's 25 points. In u, δ = u⁴, they err by
+# 130 tolerances at k = 40.5, where a collision by u = δ errs by 0.2; at k = 3.3 both err alike.
+_SMOOTH = 3.0
 
 
 def integrate(
@@ -122,7 +125,7 @@ class _Integration:
         self.motion = motion
         self.method = method
         check_memory(motion.scene, method, rows=_NUMBERS)
-        self.steps = rtol, longest
+        self.steps = rtol, longest  # the tolerance, and the greatest step
         self._make_plan(motion)
         self.chain = _chain(motion)
         self.forcing = _forcing(motion)
@@ -158,6 +161,7 @@ class _Integration:
                 if now["response"] > self.plan.most:
                     response = float(now["response"])
                     self._make_plan(Motion(self.motion.scene, response))
+                # The engine has stored the motion at the ends of its steps, until its room is full.
                 if t == end or now["stored"] == len(knots.time):
                     stored = int(now["stored"])
                     now["stored"] = self.recorder.take(stored)
@@ -171,6 +175,7 @@ class _Integration:
         now = self.now
         end = self.plan.end
         where = f"t = {now['t']:g} of {end:g}"
+        # Row 1 of the forces is that of the stage computed last; row 0 belongs to the step's start.
         finite = np.isfinite(self.beads.force[1:])
         if not finite.all() or now["h"] == 0:
             return f"a force is not a number near {where}: no step is short enough for the law"
@@ -201,6 +206,7 @@ class _Integration:
         samples = self.recorder.samples
         steps = int(now["steps"])
         if samples:
+            # Parts (2, beads, times), one after the other in time
             all_samples = np.concatenate(samples, axis=2)
             return Run(motion, end, steps, samples=all_samples)
         return Run(motion, end, steps, self.recorder.path())
@@ -336,6 +342,7 @@ def _forcing(motion: Motion) -> Forcing | None:
     if scene.drive is None and not damped:
         return None
     drive = scene.drive or _STILL
+    # The drive's cubics are two fields: when they begin, and their coefficients.
     amplitude, w = drive.oscillation
     return Forcing(
         *drive.cubics,
@@ -352,13 +359,11 @@ def _exponent(law: Contact) -> float:
 
     F is a series in powers of δ^k, δ^p and δ. For q = 4 weak singularities may be left.
     """
-    powers = [law.k if law.law is None else _ANY_POWER]
-    if law.damping_power:
-        powers.append(law.damping_power)
-    for q in (1.0, 2.0):
-        if all((q * power).is_integer() for power in powers):
-            return q
-    return 4.0
+    k = law.k if law.law is None else _ANY_POWER
+    for power in (k, law.damping_power or 0.0):
+        if power < _SMOOTH and not power.is_integer():
+            return 4.0
+    return 1.0
 
 
 @lru_cache(maxsize=1)
@@ -393,6 +398,7 @@ def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
     v[:n] = next_v[:n] = motion.start[n : 2 * n]
     given = np.zeros(2)
     if motion.scene.drive is not None:
+        # The bead's acceleration, after its displacement and velocity
         given[:] = motion.scene.drive.at(0.0)[2]
     return Beads(
         y=y,

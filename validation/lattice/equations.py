@@ -33,7 +33,8 @@ class Scales:
     Parameters
     ----------
     energy : float
-        Initial energy above equilibrium.
+        Energy of the motion above equilibrium: the initial energy, with an estimate of what a drive
+        adds, or the response that a run has measured.
     compression : float
         Greatest compression by the energy or the static forces.
     displacement, velocity : float
@@ -242,7 +243,7 @@ class Motion:
 
     @cached_property
     def initial_energies(self) -> tuple[Array, Array]:
-        """The `energies` of the initial state."""
+        """Kinetic energies of the beads and elastic ones of the contacts at the start."""
         return self.energies(self.start)
 
     @cached_property
@@ -326,6 +327,7 @@ class Motion:
             static = float(self.rest.max())
             lost = sys.float_info.epsilon * static
             rounding = lost / y
+        # Energy, greatest compression, displacement, velocity, shortest time, and rounding
         return Scales(energy, deepest, y, v, time, rounding)
 
 

@@ -125,7 +125,8 @@ class Recorder:
         watched = _watched(motion)
         most = 2  # the ends of a step
         if len(watched):
-            # A knot: four numbers a bead, and its time.
+            # A knot is its time, and for each bead displacement, velocity, acceleration and the
+            # mark of a kink of the contact ahead.
             most += BUFFER // (4 * len(watched) + 1)
         self.knots = Knots(
             time=np.empty(most),
@@ -159,6 +160,7 @@ class Recorder:
         path = self.path()
         assert path is not None
         time = sample_times(self.motion.scene)
+        # Parts of the samples: displacements and velocities (2, beads, times).
         done = sum(part.shape[2] for part in self.samples)
         last = path.time[-1]
         due = int(time.searchsorted(last, side="right"))

@@ -98,7 +98,7 @@ class Contact:
         if small.any():
             x = change[small]
             r = rest[small]
-            # ∫ (x - s) F′(r + s) ds, s = 0 … x
+            # ∫ (x - s) F′(r + s) ds from s = 0 to x is x² ∫ (1 - u) F′(r + u x) du, u = 0 … 1.
             points = r + np.multiply.outer(_NODES, x)
             stiffness = self.stiffness(points)
             weights = _WEIGHTS * (1 - _NODES)

@@ -154,19 +154,23 @@ class Run(Pictured):
     @property
     def dissipated(self) -> float:
         """Energy that damped contacts have turned into heat."""
+        # A state ends with the heat and the work of the drive.
         return float(self.end[-2])
 
     @cached_property
     def _gained(self) -> Array:
-        """Energies above equilibrium that the beads, then the contacts, gained."""
+        """Energies above equilibrium that each bead, then each contact, gained in the run."""
         # One by one: the differences of small energies keep their digits.
         after = self.motion.energies(self.end)
         return np.concatenate(after) - np.concatenate(self.motion.initial_energies)
 
     @property
     def work(self) -> float:
-        """Work of the drive."""
+        """Work of the drive, on the chain and on the driven bead itself; 0 without a drive."""
         driven = self.scene.drive is not None
+        # The last number of the final state is the work against the force of the driven bead's
+        # contact. The energies begin with the kinetic ones of the beads: ``[:driven]`` takes that
+        # of the driven bead, which is the first, and none without a drive.
         return float(self.end[-1] + self._gained[:driven].sum())
 
     @property
@@ -182,6 +186,7 @@ class Run(Pictured):
         initial energy, or of the energy of the response to a drive; 0 without energy.
         """
         # The energy of a driven bead, and its rounding, may be far greater than the response.
+        # So its energy, entry 0, is left out, and the work, end[-1], is that on the other beads.
         driven = self.scene.drive is not None
         change = self.dissipated - self.end[-1] + self._gained[driven:].sum()
         return float(change) / (self.motion.scales.energy or math.inf)

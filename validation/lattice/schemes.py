@@ -61,19 +61,23 @@ def _pair(
     thirds: Array,
     order: int,
 ) -> Pair:
-    """Build an embedded pair from exact coefficients.
+    """Build an embedded pair from exact coefficients: arrays of a row, or a number, for each stage.
 
-    The letters are those of `Pair`. With f the acceleration over the step, x from 0 to 1, and A the
-    matrix of a Runge–Kutta pair:
+    h is the step, x, from 0 to 1, the time in it, f the acceleration as a function of x, c_s the
+    place of stage s, and A the matrix of a Runge–Kutta pair:
 
-    - ``nodes``, floats: places of the stages in the step;
-    - ``moments``: weights of ``∫ (c_s - x) f dx``, which times h² moves stage s; the matrix a of a
-      Nyström table, or A²; the last row is the step's;
+    - ``nodes``, floats: the places c_s;
+    - ``moments``: weights of ``∫ (c_s - x) f dx``, x up to c_s, which times h² moves stage s; the
+      matrix a of a Nyström table, or A²; the last row is the step's;
     - ``impulses``: weights of ``∫ f dx``, which times h changes the velocity of stage s; A;
     - ``errors``: weights of the differences of step and less accurate solutions, rows of the
       displacement and of the velocity in turn;
-    - ``thirds``: weights of ``∫ (1 - x)²/2 f dx``, the third integral of f, by which kinks move the
-      neighbours; the velocity's weights times a, or the last row of A³.
+    - ``thirds``: weights of ``∫ (1 - x)²/2 f dx``, the third integral of f; the velocity's weights
+      times a, or the last row of A³. The error of f at a contact's kink changes the impulse of a
+      neighbouring contact in proportion to this integral of it.
+
+    The compiled loops sum moments, impulses and errors for all beads, several stages at a time:
+    these three are padded by zeros (`_padded`). Nodes and thirds they read stage by stage.
     """
     return Pair(
         nodes=nodes,
@@ -101,6 +105,8 @@ def _padded(exact: Array) -> Array:
 def _nystrom(table: str, order: int) -> Pair:
     """Read a pair for y'' = f(y)."""
     rows = _rows(table)
+    # The last row of a holds the weights of the displacement. Then come those of the velocity, and
+    # both of the less accurate solution.
     a = rows[:-3]
     speeds, low, low_speeds = rows[-3:]
     impulses = np.zeros_like(a)
@@ -120,10 +126,13 @@ def _explicit(table: str, order: int) -> Pair:
     a = np.zeros((stages, stages), object) + Fraction(0)
     a[:, :-1] = rows[:stages]
     errors = []
+    # Differences of the velocity's weights; those of the displacement's follow from them.
     for difference in rows[stages:]:
         full = np.array([*difference, Fraction(0)])
         errors += [full @ a, full]
     nodes = a.sum(axis=1).astype(float)
+    # A integrates over time from 0 to each stage, A² twice. The last row of A³ integrates three
+    # times up to the step's end: ∫ (1 - x)²/2 f dx.
     thirds = a[-1] @ a @ a
     return _pair(nodes, a @ a, a, np.array(errors), thirds, order)
 

@@ -53,8 +53,8 @@ def integrate(motion: Motion, method: str, rtol: float, longest: float) -> Run:
     if scene.drive is not None:
         longest = min(longest, scene.drive.longest_step)
     step_limit(scene, method, scene.duration / min(scales.time, longest))
-    # Implicit methods store a Jacobian, of 8 bytes an entry. Dense output gives the motion of all
-    # beads at the samples, and a copy with a wall's.
+    # Implicit methods, the last three, store a Jacobian, of 8 bytes an entry. Dense output gives
+    # the motion of all beads at the samples, and a copy with a wall's.
     numbers = 2 * n + 2
     jacobian = 8 * numbers**2 * (method in METHODS[3:])
     dense = 8 * 2 * numbers * scene.samples

@@ -44,7 +44,8 @@ FEWEST = 40  # fewest points on 0 … L
 _LONGEST_STEP = 0.1
 # Step over the unknowns' sizes after which a further step would be rounding.
 _CONVERGED = 1e-12
-_STALLED = 1e-9  # step below which a fall of less than four means rounding
+# Step below which the steps are rounding if one is more than a quarter of the one before.
+_STALLED = 1e-9
 Pair = tuple[float, float]  # m1 and m2, or their inverses
 Series = NDArray[np.complex128]  # coefficients of e^{iqξ}, q = 0, π/L, …, πn/L
 
@@ -53,7 +54,8 @@ def widening(masses: Pair) -> float:
     """Return the canonical wave's width divided by its width at equal masses, ``√(12 I/D²)``.
 
     D is 1, and I the coefficient in the dispersion ``Ω² = κ² (1 - (I/D²) κ² + …)`` of the linear
-    chain: ``I/D² = (m1² - m1 m2 + m2²)/(3 (m1 + m2)²)``, which is 1/12 at equal masses.
+    chain, Ω the frequency in units in which its long waves have the speed 1, κ the wavenumber times
+    D: ``I/D² = (m1² - m1 m2 + m2²)/(3 (m1 + m2)²)``, which is 1/12 at equal masses.
     """
     m1, m2 = masses
     square = m1**2 - m1 * m2 + m2**2
@@ -204,23 +206,28 @@ class Problem:
         Raises `numpy.linalg.LinAlgError` if Newton's method does not converge.
         """
         m1, m2 = self.masses
-        # The start has the wanted force at ξ = 0. 1/m2 is an unknown in every problem: where m2 is
-        # given, `_closing` sets it.
+        # The unknowns are the forces at the first ``count`` grid points, c² and 1/m2. The grid
+        # begins at ξ = 0, where the force, force[0], shall be ``height``. 1/m2 is an unknown in
+        # every problem: where m2 is given, `_closing` sets it.
         share = self.height / force[0]
         scaled = share * force[: self.count]
         start = np.append(scaled, [c2, 1 / m2])
-        # Shares of these sizes are the longest step and the last one. Forces have the size of twice
-        # their peak, so that a step changes them by a fifth of it at most; c² and 1/m2 have their
-        # own, but c² may be 0 at a bad start.
+        # `newton` measures its steps in these sizes, and no step is longer than a tenth of them.
+        # Forces have the size of twice their peak, so that a step changes them by a fifth of the
+        # peak at most; c² and 1/m2 have their own size, but c² may be 0 at a bad start.
         sizes = np.where(start == 0, 1.0, np.abs(start))
         sizes[: self.count] = 2 * self.height
         x = newton(self._step, start, sizes)
+        # For equal masses the unknown forces are those at 0 … L: the others are their mirror image.
         forces = self._everywhere(x[:-2])
         c2, inverse = x[-2:].tolist()
         return Found(forces, c2, (m1, 1 / inverse))
 
     def _everywhere(self, forces: Array) -> Array:
-        """F_a at all grid points, (…, 2n), from the unknown forces, (…, count)."""
+        """F_a at all grid points, (…, 2n), from the unknown forces, (…, count).
+
+        Those of equal masses are at 0 … L, and F_a is even; others are at all points already.
+        """
         if not self.uniform:
             return forces
         mirrored = forces[..., self.n - 1 : 0 : -1]

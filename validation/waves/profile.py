@@ -151,12 +151,15 @@ class ExactWave(Pictured):
         """Velocity of beads m1 (bead 0) or m2 (bead 1) at ξ, 0 at the end of the period."""
         kind = integer(bead, "bead", 0) % 2
         at = finite(xi, "xi")
-        # The contact half a site behind a bead m2 has the force F_a, whose series is known; the one
-        # behind a bead m1 has F_b, the mirror image of F_a, with the conjugate coefficients.
+        # The contact half a site behind a bead m2 has the force F_a, whose Fourier coefficients are
+        # ``series``. The one behind a bead m1 has F_b, the mirror image of F_a, with the conjugate
+        # coefficients.
         behind = self.series if kind else self.series.conj()
         q = self._wavenumbers[1:]
-        # m c v' is the force half a site ahead less the force half a site behind. The two are
-        # mirror images, Re g e^{∓iqξ}: their difference is 2 Im g sin qξ, and v a sum of cosines.
+        # In a wave v depends on ξ = x - ct, dv/dt = -c v', and so m c v' is the force half a site
+        # ahead less the force half a site behind. The latter is Re Σ g e^{iqξ}, g = ``shifted``,
+        # the former its mirror image, Re Σ g e^{-iqξ}: their difference is Σ 2 Im g sin qξ, and v
+        # the sum of -2 Im g cos qξ / (q m c).
         shifted = behind[1:] * np.exp(-0.5j * q)
         momenta = -2 * shifted.imag / (q * self.c)
         velocities = np.append(0.0, momenta) / self.masses[kind]
@@ -172,8 +175,9 @@ class ExactWave(Pictured):
         return float(self._profile(quantity)(crest))
 
     def fwhm(self, quantity: QuantityName = "strain") -> float:
-        """Full width at half maximum of a quantity's highest hump, a length; see `peak`.
+        """Full width at half maximum of a quantity's highest hump, a length.
 
+        Strain and force are those of contact 0, the velocity is that of bead 0.
         Raises `MeasureError` for a hump that does not fall to half its peak.
         """
         return self._hump(quantity).fwhm
@@ -254,7 +258,7 @@ def at_unit_force(problem: newton.Problem, found: newton.Found) -> ExactWave:
 
 
 def _tail(wave: ExactWave) -> float:
-    """The largest odd part of the strain outside the pulse, see `ExactWave.tail`."""
+    """The largest odd part ``|o|`` of the strain outside the pulse, of a wave of peak strain 1."""
     L = wave.half_period
     # Some twenty points for each oscillation of the tail.
     count = 4 * len(wave.series)
@@ -266,12 +270,19 @@ def _tail(wave: ExactWave) -> float:
 
 
 def _residual(wave: ExactWave) -> float:
-    """The error in the equations of motion, see `ExactWave.residual`."""
-    # The strains give forces, and the forces give strains: for a solution the same strains.
+    """The greatest error of the strain in the equations of motion, over the peak strain.
+
+    The equations are those integrated twice (`validation.waves.newton.respond`).
+    """
+    # The contact law gives forces from the strains, and the equations give strains from the Fourier
+    # coefficients of these forces, ``series``: for a solution the same strains. Newton's method has
+    # made them equal at the points of the solution's grid: a grid twice as fine sees the error
+    # between these points, too.
     twice = 2 * (len(wave.series) - 1)
     xi = newton.periodic_grid(wave.half_period, twice)
     series = newton.coefficients(wave.force(xi))
     response = replace(wave, series=series)
     off = response.strain(xi) - wave.strain(xi)
     largest = float(np.abs(off).max())
+    # The peak force is 1, and so is the peak of the total strain. The wave's own is 1 - p0.
     return largest / (1 - wave.background)

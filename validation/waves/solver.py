@@ -45,9 +45,9 @@ from validation.waves.profile import ExactWave, at_unit_force
 FALLEN = 38.0
 LIGHTEST = 1e-12  # background over peak strain, at least: a lighter one does not show
 SHALLOWEST = 1e-4  # rise of a wave on a background over the peak strain, at least
-# The theory's wave is too wide to start from above this k. There the wave at this k is near enough,
-# on a background up to a share of the peak strain (tried from k = 3.2 to 60, and to 8 under load);
-# on higher ones the theory's is.
+# The theory's wave is too wide to start from above this k. There the wave at this k is near enough
+# (tried from k = 3.2 to 60, and to 8 under load), on a background below HIGH, a share of the peak
+# strain; on higher ones the theory's is.
 STEEP = 3.0
 HIGH = 0.5
 STEEPEST = 60.0  # largest k: 1200 points take a second there
@@ -171,14 +171,20 @@ def _equal(k: float, p0: float) -> ExactWave:
         # The wave ends as e^{-κ|ξ|} with c/c0 = sinh(κ/2)/(κ/2) ≤ e^{κ²/24}: κ is at least this.
         fast = float(theory.speed / theory.sound_speed)
         decay = math.sqrt(24 * math.log(fast))
+        # Half of the L that a wave without a background needs, for the crest, and then the flank's
+        # e-foldings
         L = max(problem.L, problem.L / 2 + FALLEN / decay)
-        # Points in proportion to the width, which a background enlarges; 1.3 is a margin, and 80
-        # points are enough for the widest waves.
+        # `points_needed` gives as many points a site as the wave without a background needs. On a
+        # background the wave is wider, and the points a site are fewer by the factor ``narrower``,
+        # the width without a background over the width with it. 1.3 is a margin, and 80 points are
+        # enough for the widest waves.
         bare = loaded_wave(chain, rise=1, background=0, k=k)
         narrower = float(bare.fwhm("strain") / theory.fwhm("strain"))
         points = newton.points_needed(_EQUAL, k, L) * min(1, 1.3 * narrower)
         n = max(80, math.ceil(points))
         problem = newton.Problem(_EQUAL, k, L, n, p0)
+    # Three starts of Newton's method: the wave at a smaller k; without a background that of the
+    # theory, which `solve` takes; on one the theory's wave on this background.
     if k > STEEP and p0 < HIGH:
         return solve(problem, _equal(STEEP, p0))
     if not p0:
@@ -231,8 +237,10 @@ def solve(problem: newton.Problem, start: ExactWave | None = None) -> ExactWave:
         force = start.force(problem.xi)
         c2 = start.c2 * sum(start.masses) / (m1 + m2)
     else:
-        # The force cos^{2k/(k-1)}(βξ), and c² = 4/((k+1)(m1+m2)). The two contacts' forces are
-        # shifted by (m2-m1)/(m1+m2), so that both beads move alike.
+        # The wave of the long-wave theory at peak force 1: the force cos^{2k/(k-1)}(βξ), and
+        # c² = 4/((k+1)(m1+m2)). β is (k-1) √(6/(k(k+1))) at equal masses, and at others smaller by
+        # the factor by which the wave is wider. The forces F_a and F_b are shifted by
+        # (m2-m1)/(m1+m2) against each other, each by half of it, so that both beads move alike.
         of_equal = (k - 1) * math.sqrt(6 / (k * (k + 1)))
         beta = of_equal / newton.widening(problem.masses)
         middle = (m2 - m1) / (m1 + m2) / 2
@@ -241,13 +249,14 @@ def solve(problem: newton.Problem, start: ExactWave | None = None) -> ExactWave:
         arch = np.cos(np.clip(phase, -quarter, quarter))
         force = arch ** (2 * k / (k - 1))
         c2 = 4 / ((k + 1) * (m1 + m2))
-    # c² of the wave scaled to peak force 1, as `newton.Problem.wave` scales the forces.
+    # `newton.Problem.wave` divides the forces by this share. With the forces of a wave times f go
+    # its strains times f^{1/k} and c² times f^{(k-1)/k}.
     share = force[0] / problem.height
     return _converged(problem, force, c2 * share ** ((1 - k) / k))
 
 
 def _converged(problem: newton.Problem, force: Any, c2: float) -> ExactWave:
-    """Return the wave that forces on the grid and c² converge to, see `solve`."""
+    """Return the wave of peak force 1 that forces on the grid and c² lead to, or raise `NoWave`."""
     try:
         found = problem.wave(force, c2)
     except np.linalg.LinAlgError:
@@ -270,7 +279,8 @@ def resonances(k: Any, count: Any) -> tuple[ExactWave, ...]:
     Raises
     ------
     SceneError
-        For numbers out of range, and for more ratios than are found at k, see `FOLLOWED`.
+        For numbers out of range, and for more ratios than are found at k: six from 1.3 on, two at
+        1.1 (`FOLLOWED`).
     """
     count = integer(count, "count", 1, len(STARTS))
     known = _known(k)

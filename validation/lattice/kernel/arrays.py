@@ -129,24 +129,29 @@ class Beads(NamedTuple):
         Force on each bead from behind, less the static force, at the start of the step and at the
         stage that was computed last.
     border : array, (stages,)
-        Force on the bead at which a tile begins, by stage.
-    push : array, (stages, padded + 1)
-        Acceleration of each bead by its two contacts, by stage.
+        Force from behind on the bead at which the next tile begins, by stage.
+    push : array, (`ROOM`, padded + 1)
+        Acceleration of each bead by its two contacts, by stage: row 0 at the step's start, the row
+        of the last stage at its end. A driven bead, of infinite mass, has 0.
     errors : array, (2 or 4, padded + 1)
         The pair's estimates of each bead's error in displacement and velocity, in units of the
-        tolerance.
+        tolerance; two more rows for a third solution of lower order.
     marks : array, (padded + 1,)
         1 for each contact with a kink.
     power : array, (2, `ROOM`)
         Power that all contacts dissipate, and power of the drive, by stage.
     given : array, (2,)
-        Accelerations of a driven bead at the step's ends.
+        Accelerations of a driven bead at the step's two ends; 0 without a drive.
     books : array, (6,)
-        Corrections at kinks: heat, work of the drive, errors of both, the sum of the squared errors
-        of the corrections themselves, in units of the tolerance, and the share of the step after
-        the first kink of a damped contact.
+        Sums over the corrected contacts of a step. HEAT and WORK: corrections of the heat and of
+        the drive's work. HEAT_ERROR and WORK_ERROR: what these contacts contribute to the pair's
+        estimates of the errors of both. SQUARES: the squared errors of the corrections themselves,
+        in units of the tolerance. AFTER is no sum, but the greatest share of the step that comes
+        after the first kink of a damped contact.
     points : array, (3, `ROOM`)
-        Places in a step, their weights, and the forces there.
+        Working memory of one contact at a time. In `kinks.integrals` rows 0 and 1 are the places
+        and the weights of Gauss's rule. In `corrections` the rows are δ, δ' and the force for unit
+        stiffness at the stages of the pair.
     edges : array, (`kinks.EDGES`,)
         Places between which the force of a contact is smooth.
     """
@@ -196,13 +201,14 @@ class Pair(NamedTuple):
     ----------
     nodes : array, (stages,)
         The places ``c_s`` of the stages in the step.
-    moments, impulses : array, (stages, stages)
-        Weights; of the impulses only the last row counts if forces do not depend on velocities.
-    errors : array, (2 or 4, stages)
-        Differences of the two solutions, in displacement and velocity; two more rows for a third
-        solution of lower order.
+    moments, impulses : array, (stages, `ROOM`)
+        Weights, 0 beyond the last stage; of the impulses only the last row counts if forces do not
+        depend on velocities.
+    errors : array, (2 or 4, `ROOM`)
+        Weights of the differences of the two solutions, in displacement and velocity; two more rows
+        for a third solution of lower order.
     thirds : array, (stages,)
-        Weights of ``∫ (1 - x)²/2 f(x) dx``.
+        Weights of ``∫ (1 - x)²/2 f(x) dx``, x from 0 to 1.
     order : int
         The error of a step is estimated in proportion to ``h^order``.
     """
@@ -294,9 +300,9 @@ def initial_progress(plan: Plan, front: int, energy: float) -> Any:
     record
         The record's fields: the time t and its rounding error, late; the next step h; the numbers
         of steps that were made and tried; the first bead ahead of the motion, front; the number of
-        stored knots; the number of the next of ``plan.stops``, stop; the integral of
-        ``v (F - static force)`` of a driven bead, work; the dissipated energy, lost; and the
-        greatest energy on the way, response.
+        stored knots; the number of the next of ``plan.stops``, stop; the initial energy; the
+        integral of ``v (F - static force)`` of a driven bead, work; the dissipated energy, lost;
+        and the greatest energy on the way, response.
     """
     now = records(np.zeros(1, _PROGRESS))[0]
     now["front"], now["h"], now["energy"] = front, plan.h, energy

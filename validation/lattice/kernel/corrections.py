@@ -86,7 +86,9 @@ def _ends(
     chain: Chain, beads: Beads, h: float, i: int
 ) -> tuple[kinks.State, kinks.State]:
     """Return δ, δ' and δ'' of contact i at both ends of a step, in units of the step."""
-    last = len(beads.border) - 1
+    last = len(beads.border) - 1  # the last stage, at the step's end
+    # ``push`` holds the beads' accelerations by stage. A driven bead, which is bead 0, has 0 there,
+    # and its acceleration at the step's two ends is in ``given``, which is 0 without a drive.
     a = beads.push[0, i] - beads.push[0, i + 1]
     end_a = beads.push[last, i] - beads.push[last, i + 1]
     if i == 0:
@@ -130,6 +132,7 @@ def mark_kinks(
     load = chain.load
     opens = chain.opens
     marks = beads.marks
+    # Forces at both ends of the step, less the static ones; that of contact i is in column i + 1.
     start = beads.force[0]
     end = beads.force[1]
     # A force F changes a velocity by h F/m. The error of a step is the root of the sum of the
@@ -204,6 +207,7 @@ def _follow_curve(
 ) -> None:
     """Compute a contact's δ, δ' and force at the stages along a curve p; they go to ``points``.
 
+    δ' is the derivative by x, h times the rate; the force is that for unit stiffness.
     The correction is the integral of the force less the pair's quadrature of it. With both along p
     the error of p, a quintic, cancels in the difference.
     """
@@ -226,19 +230,23 @@ def _follow_stages(
 ) -> None:
     """Compute a contact's δ, δ' and force by the stages' own motion; they go to ``beads.points``.
 
-    The stages after a jump of the force are far off the curve of the contact.
+    δ' is the derivative by x, h times the rate; the force is that for unit stiffness. The stages
+    after a jump of the force are far off the curve of the contact.
     """
     points = beads.points
     for s in range(len(pair.nodes)):
-        ch = pair.nodes[s] * h
+        ch = pair.nodes[s] * h  # time from the step's start to stage s
         rate = beads.v[i]
         y = beads.y[i] + ch * rate
-        # The middle of the step tells the interval of the drive. The push below is 0 for a driven
-        # bead, whose inverse mass is 0.
+        # The motion of a driven bead is given. ``t + h/2``, the middle of the step, tells in which
+        # interval of the drive's file the step lies: a stage at its end may lie in two.
         if forcing is not None and forcing.driven and i == 0:
             y, rate, _ = drive_motion(forcing, t + h / 2, t + ch)
         d = chain.rest[i] + y - beads.y[i + 1] - ch * beads.v[i + 1]
         slope = h * (rate - beads.v[i + 1])
+        # Stage s has moved a bead by h² Σ_j moments[s, j] f_j and changed its velocity by
+        # h Σ_j impulses[s, j] f_j, with its accelerations f_j = ``beads.push[j]`` at the stages
+        # before. A driven bead has 0 there: its inverse mass is 0.
         for j in range(s):
             bend = h * h * (beads.push[j, i] - beads.push[j, i + 1])
             d += pair.moments[s, j] * bend
@@ -269,6 +277,7 @@ def _clipped(
     law = chain.laws[chain.law[n]]
     last = len(pair.nodes) - 1
     _follow_stages(chain, forcing, beads, pair, t, h, n)
+    # At the stages: δ, h dδ/dt and the force for unit stiffness
     d, slope, force = beads.points
     missed = 0.0
     if not d[0] > 0.0:
@@ -284,7 +293,12 @@ def _clipped(
 
 @part
 def _steepness(law: Any, r: float, d: float, h: float) -> float:
-    """Return the derivative of a contact's force by its compression over a step of length h."""
+    """Return how a contact's force ``F(d) + r d^p dδ/dt`` grows with its compression d in a step.
+
+    Stiffness is 1, and r the damping coefficient over stiffness. A compression that is greater by ε
+    at the end of the step h has grown faster by ε/h: damping adds ``r d^p/h`` to the elastic
+    stiffness. An open contact is not damped, and its negative d has no power p.
+    """
     return r * drag(law, max(d, 0.0)) / h + stiffness(law, d)
 
 
@@ -292,7 +306,11 @@ def _steepness(law: Any, r: float, d: float, h: float) -> float:
 def _replace_estimates(
     chain: Chain, beads: Beads, plan: Plan, h: float, i: int
 ) -> None:
-    """Take a corrected contact's share away from the pair's estimates of the errors."""
+    """Take a corrected contact's share away from the pair's estimates of the errors.
+
+    Row q of ``errors`` is in turn of displacement and of velocity, and column i belongs to bead i.
+    Row 2 of ``beads.points`` is the contact's force at the stages, for unit stiffness.
+    """
     for q in range(len(plan.scheme.errors)):
         seen = integral(plan.scheme.errors[q], beads.points[2])
         seen *= chain.A[i] * error_scale(plan, h, q)
@@ -313,6 +331,7 @@ def _correct_heat(
     law = chain.laws[chain.law[i]]
     last = len(pair.nodes) - 1
     heat = work - stored
+    # At the stages: δ, h dδ/dt and the force for unit stiffness
     d, slope, force = beads.points
     for s in range(last + 1):
         lost = (force[s] - elastic(law, d[s])) * slope[s]
@@ -334,6 +353,7 @@ def _correct_work(
     A = chain.A[0]
     beads.books[WORK] = A * work
     for s in range(last + 1):
+        # Speed and power by x: over the step they are h times those by time.
         _, speed = kinks.value_and_slope(drive, pair.nodes[s])
         power = A * beads.points[2, s] * speed
         beads.books[WORK] -= pair.impulses[last, s] * power
@@ -366,14 +386,17 @@ def _correct_neighbour(
     """Correct the impulse of contact n by the moments of a corrected contact beside it.
 
     share : ``-1/m`` of the bead between both contacts: a moment of the corrected contact changes δ
-    of contact n by ``moment/m``, and a force changes δ″ by ``force/m``. jump : jump of the force of
-    the corrected contact, 0 without one.
+    of contact n by ``moment/m``, and a force changes δ″ by ``force/m``. moment, third : corrections
+    of ``h² ∫ (1 - x) F dx`` and ``h³ ∫ (1 - x)²/2 F dx`` of the corrected contact. jump : jump of
+    its force, 0 without one.
     """
     law = chain.laws[chain.law[n]]
     A = chain.A[n]
     r = 0.0 if forcing is None else chain.r[n]
     near = chain.inverse[n]
     far = chain.inverse[n + 1]
+    # Compression and rate at the step's end, as they are corrected so far; ``pressed`` below is the
+    # total force there before the corrections.
     d = chain.rest[n] + beads.next_y[n] - beads.next_y[n + 1]
     rate = beads.next_v[n] - beads.next_v[n + 1]
     if jump != 0.0 and beads.marks[n] > 0.0:
@@ -397,7 +420,8 @@ def _correct_neighbour(
         beads.next_v[n] -= more * near
         beads.next_v[n + 1] += more * far
         _count_error(beads.books, _SECOND * more / plan.v, near, far)
-        # Heat c v² of a neighbour, whose velocity v changes by the correction.
+        # The neighbour's heat is ∫ c v² dt, with v its rate and c = A r d^p. The correction changes
+        # v by some Δv, whose integral is moment/m, and so the heat by 2 c v ∫ Δv dt.
         beads.books[HEAT] += 2.0 * resisted * rate
     elif r > 0.0 and not law.sticks:
         # The neighbour has stopped pushing: its elastic energy turns into heat.
@@ -410,13 +434,17 @@ def _is_faint(
 ) -> bool:
     """Return True for a contact that cannot push enough to matter, between a step's two ends."""
     law = chain.laws[chain.law[i]]
+    # A state is δ, δ' and δ'' by x: the tangent at the step's start comes to start[0] + start[1] at
+    # its end, the tangent at the end to end[0] - end[1] at the start. The greatest of these and of
+    # both δ is taken for the greatest compression.
     deepest = max(start[0], end[0], start[0] + start[1], end[0] - end[1])
     fastest = max(abs(start[1]), abs(end[1]))
     most = chain.A[i] * push(law, chain.r[i], deepest, fastest / h)
     kicked = h * most * max(chain.inverse[i], chain.inverse[i + 1]) / plan.v
     # While a contact opens, its elastic energy can turn into heat without a push.
     heated = most * (deepest + fastest) / plan.energy
-    # The force of a law that is no power may be greater before.
+    # Both are in units of the tolerances ``plan.v`` and ``plan.energy``. A law that is no power may
+    # push more at a compression less than the deepest: it counts as not faint.
     return not law.generated and max(kicked, heated) < _FAINT
 
 
@@ -448,7 +476,8 @@ def correct_contact(
     near = chain.inverse[i]
     far = chain.inverse[i + 1]
     both = near + far
-    bend = -A * h * h * both  # of the curve by a force of 1
+    bend = -A * h * h * both  # change of p'' by a force of 1
+    # States: δ, δ' and δ'' by x at the step's two ends
     start, end = _ends(chain, beads, h, i)
     damped = forcing is not None and forcing.damped
     if damped and _is_faint(chain, plan, h, i, start, end):
@@ -459,11 +488,13 @@ def correct_contact(
     if forcing is not None:
         driven = i == 0 and forcing.driven
         drive = _drive_curve(beads, h)
-    force = beads.points[2]
+    force = beads.points[2]  # the contact's, at the stages, for unit stiffness
     impulse = moment = change = steepness = top = closed = 0.0
     known = kinks.STRAIGHT
     # The force also depends on the corrected end, all the more the later it jumps.
     for _ in range(_ROUNDS):
+        # The state at the end with the corrections of the beads so far; ``own`` is the change of
+        # the contact's force by them.
         d = end[0] - both * moment
         rise = end[1] - both * h * impulse
         own = push(law, r, d, rise / h) - push(law, r, end[0], end[1] / h)
@@ -477,6 +508,7 @@ def correct_contact(
             _follow_curve(law, r, found.curve, pair, h, beads.points)
         else:
             _follow_stages(chain, forcing, beads, pair, t, h, i)
+        # Accurate integral less the pair's quadrature, as an impulse and as a moment
         before = impulse
         impulse = h * A * (sums.impulse - integral(pair.impulses[last], force))
         moment = h * h * A * (sums.moment - integral(pair.moments[last], force))
@@ -545,6 +577,9 @@ def correct_contact(
         work = missed * beads.v[0] / plan.energy
         beads.books[SQUARES] += work * work
     _count_error(beads.books, math.hypot(missed, change) / plan.v, near, far)
+    # The stages lack this contact's own correction: its impulse errs by stiffness × third and by
+    # damping × moment. Beside a jump the force was taken from these stages, so that the correction
+    # made up for this, and what is left is the effect of that correction in turn.
     if top > 0.0:
         resisted = r * drag(law, top) * moment
         more = A * both * (stiffness(law, top) * third + resisted)
@@ -552,6 +587,7 @@ def correct_contact(
             more *= bend * steepness
         _count_error(beads.books, _SECOND * more / plan.v, near, far)
     jump = A * found.jump
+    # The contact behind is joined by bead i, the contact ahead by bead i + 1.
     for n, share in ((i - 1, -near), (i + 1, -far)):
         if n >= 0:
             _correct_neighbour(

@@ -1,8 +1,8 @@
 """Forces of contacts, ``A (F(δ) + r [δ]_+^p dδ/dt)``, and the motion of a driven bead.
 
 A contact is open, without a force, where ``δ ≤ 0``, unless its law pulls there. Damping may not
-pull, unless the law attracts where the contact opens: the force is at least the elastic force, or 0
-if that is less.
+pull, unless the law attracts where the contact opens: the force is at least 0, or the elastic force
+where that is negative.
 
 `part` and `summed` are numba's ``njit`` with options, and `index` makes an index unsigned, so that
 a loop vectorises (`validation.lattice.kernel.compiled`).
@@ -95,7 +95,10 @@ def stiffness(law: Any, d: float) -> float:
 
 @part
 def push(law: Any, r: float, d: float, rate: float) -> float:
-    """Return the force for unit stiffness at a compression d and a rate dδ/dt."""
+    """Return the force for unit stiffness at a compression d and a rate dδ/dt.
+
+    r is the damping coefficient over stiffness. Unless the contact sticks, damping may not pull.
+    """
     force = elastic(law, d)
     if not r > 0.0 or not (d > 0.0 or law.pulls):
         return force
@@ -106,7 +109,11 @@ def push(law: Any, r: float, d: float, rate: float) -> float:
 
 
 def _loop(value: Any) -> Any:
-    """Compile a loop over contacts with the force A value(law, k, d)."""
+    """Compile a loop over contacts with the elastic force A value(law, k, d), less the static one.
+
+    The loop takes contacts lo … hi - 1. Contact i presses where its compression is above ``least``,
+    which is 0 or nearly, and -∞ if its law pulls; its force goes to ``f[i + 1]``.
+    """
 
     @part
     def loop(
@@ -234,7 +241,8 @@ def contact_forces(
         Range of the contacts.
     """
     f = beads.force[1]
-    # The tiles of a step come in their order: that of the first contact begins the sum of the heat.
+    # Row 0 of the power is what all contacts dissipate, row 1 that of the drive, by stage. Tiles of
+    # a step come in their order: that of the first contact begins the sum of row 0.
     lost = beads.power[0, s] if lo > 0 else 0.0
     start = lo
     while lo < hi:

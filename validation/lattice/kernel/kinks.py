@@ -99,7 +99,7 @@ class Integrals(NamedTuple):
 
 @part
 def stored(law: Any, d: float) -> float:
-    """Return the elastic energy; 0 for an open contact."""
+    """Return the elastic energy ``∫ F dδ``, from 0 to d, for unit stiffness; 0 if d is negative."""
     if not d > 0.0:
         return 0.0
     if law.generated:
@@ -109,7 +109,10 @@ def stored(law: Any, d: float) -> float:
 
 @part
 def bent(bend: Bend, x: float) -> tuple[float, float, float]:
-    """Return a bend at x, its slope and its second derivative."""
+    """Return a bend at x, its slope and its second derivative, ``s [x - e]_+^b``.
+
+    The bend is the tuple of e, s and b; it is 0 up to the place e.
+    """
     e, s, b = bend
     if s == 0.0 or not x > e:
         return 0.0, 0.0, 0.0
@@ -121,7 +124,7 @@ def bent(bend: Bend, x: float) -> tuple[float, float, float]:
 
 @part
 def value_and_slope(c: Curve, x: float) -> tuple[float, float]:
-    """Return ``p(x)`` and ``p'(x)``."""
+    """Return ``p(x)`` and ``p'(x)`` of a curve c: a polynomial of c[0] … c[5], and a bend c[6]."""
     p = c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))))
     slope = c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5])))
     more, steeper, _ = bent(c[6], x)
@@ -153,7 +156,9 @@ def fitted_curve(
 def _margin(law: Any, r: float, c: Curve, h: float, x: float) -> float:
     """Return a continuous function of x which is positive where damping does not pull.
 
-    Without damping, r = 0, the function is p.
+    With damping it is the force of a closed contact over ``r δ^p``, the factor of the rate dδ/dt in
+    it: elastic force/(r δ^p) + rate; of an open contact the rate alone. Without damping, r = 0, the
+    function is the compression.
     """
     p, slope = value_and_slope(c, x)
     if not r > 0.0:
@@ -164,7 +169,10 @@ def _margin(law: Any, r: float, c: Curve, h: float, x: float) -> float:
 
 @alone
 def _crossing(law: Any, r: float, c: Curve, h: float, a: float, b: float) -> float:
-    """Return the place between a and b at which `_margin` changes its sign."""
+    """Return the place between a and b at which `_margin` changes its sign; for r = 0 p does.
+
+    The places are within one of the `_PLACES` parts of a step, of which there are eight.
+    """
     left = _margin(law, r, c, h, a)
     right = _margin(law, r, c, h, b)
     # The Illinois variant of the rule of false position. Sixty steps are a bound: bisection of an
@@ -232,9 +240,10 @@ def _add_edges(
     edges: Array,
     n: int,
 ) -> int:
-    """Add the edges between a and b, where p is monotonic; return the number of edges so far.
+    """Add the edges between a and b, where p has one root at most; return their number so far.
 
-    first, last : the contact's states at a and b.
+    first, last : `_state` of the contact at a and b: p, p' and the margin, which is negative where
+    damping would pull. The margin has a root where damping begins or ceases.
     """
     closes = first[0] <= 0.0 and last[0] > 0.0
     opens = first[0] > 0.0 and last[0] <= 0.0
@@ -246,9 +255,9 @@ def _add_edges(
     if closes:
         edges[n] = a = root
         n += 1
-        margin = 1.0  # δ rises
+        margin = 1.0  # at the root of p the margin is the rate, and δ rises
     if opens and r > 0.0 and not law.sticks:
-        end_margin = -1.0  # δ falls
+        end_margin = -1.0  # the rate, and δ falls: damping ceased before the root
     if margin * end_margin < 0.0:
         edges[n] = _crossing(law, r, c, h, a, root if opens else b)
         n += 1
@@ -274,9 +283,11 @@ def find_edges(
     for m in range(1, _PLACES + 1):
         high = m / _PLACES
         after = _state(law, r, c, h, high)
+        # States are p, p' and the margin (`_state`).
         same = (before[0] > 0.0) == (after[0] > 0.0)
         sign = 1.0 if before[0] > 0.0 else -1.0
-        # A contact may open, or close, between two places.
+        # A contact may open and close again between two places, or the reverse: p has one sign at
+        # both, and comes nearer to 0 before it turns.
         if same and sign * before[1] < 0.0 and sign * after[1] > 0.0:
             turn = _turning_point(c, low, high)
             middle = _state(law, r, c, h, turn)
@@ -297,9 +308,11 @@ def find_edges(
 def _find_jump(
     law: Any, r: float, c: Curve, h: float, edges: Array, count: int
 ) -> Bend:
-    """Return the last jump of the force as a `Bend` of p, for a factor 1 from force to p''.
+    """Return the last jump of the force: its place e, its size s and an exponent b.
 
-    A force that begins as ``r δ^b dδ/dt`` with a small b almost jumps, and counts as a jump.
+    They are a `Bend` of p for a factor 1 from force to p''. A force that begins as ``r δ^b dδ/dt``
+    with b < 1 almost jumps, and counts as a jump: near its beginning e, δ = p'(e) (x - e), so that
+    it is ``s (x - e)^b``, ``s = r p'(e)^b p'(e)/h``. Other jumps have b = 0, and s = 0 is none.
     """
     found = 1.0, 0.0, 0.0
     for n in range(count):
@@ -349,6 +362,7 @@ def resolved(
     """
     c = fitted_curve(start, end, guess)
     count, top = find_edges(law, r, c, h, edges)
+    # The force changes by ``jump [x - place]_+^b``.
     place, jump, b = _find_jump(law, r, c, h, edges, count)
     # A jump that changes p' by less than 1e-12 of it counts as none. Between a driven bead and a
     # wall the force bends nothing, but its jump heats.
@@ -390,25 +404,26 @@ def _root(c: Curve, x: float, side: float) -> float:
 def _place_points(
     q: float, zero: float, near: float, far: float, points: Array
 ) -> None:
-    """Place Gauss's rule in u between near and far; x = zero + (far - zero) u^q, q = 1, 2 or 4."""
+    """Place Gauss's rule in u between near and far; x = zero + (far - zero) u^q, q = 1 or 4.
+
+    The places x go to row 0 of ``points``, their weights in an integral over x to row 1.
+    """
     span = far - zero
     start = (near - zero) / span
-    if q > 1.0:
-        start = math.sqrt(start)
     if q == 4.0:
-        start = math.sqrt(start)
+        start = math.sqrt(math.sqrt(start))
     scale = abs(span) * (1.0 - start)
     for m in range(index(POINTS)):
         u = start + (1.0 - start) * _U[m]
         # The derivative q u^{q-1} of u^q
-        pace = 1.0 if q == 1.0 else (2.0 * u if q == 2.0 else 4.0 * u * u * u)
+        pace = 4.0 * u * u * u if q == 4.0 else 1.0
         points[0, m] = zero + span * u * pace / q
         points[1, m] = scale * _W[m] * pace
 
 
 @part
 def _legendre(x: float) -> tuple[float, float]:
-    """Return Legendre's polynomials of degrees 4 and 5 for the interval from 0 to 1."""
+    """Return the values at x of Legendre's polynomials of degrees 4 and 5 on 0 … 1."""
     t = 2.0 * x - 1.0
     second = 1.5 * t * t - 0.5
     third = (5.0 * t * second - 2.0 * t) / 3.0
@@ -453,6 +468,7 @@ def integrals(
         The motion of the driven bead.
     """
     c = found.curve
+    # Places and weights of Gauss's rule (`_place_points`)
     x = points[0]
     w = points[1]
     once = twice = third = work = given = even = odd = closed = 0.0
@@ -468,6 +484,8 @@ def integrals(
         high = _root(c, b, 1.0)
         b = min(b, until)
         closed += b - a
+        # The rule is made for one root of p, where F is not smooth. With a root at both ends of the
+        # interval each half has its own rule; with one root, or none, one rule takes all of it.
         middle = 0.5 * (a + b)
         if math.isnan(high):
             middle = b
@@ -488,6 +506,8 @@ def integrals(
                 twice += left * force
                 third += 0.5 * left * left * force
                 work += slope * force
+                # What the force does to p'', less the second derivative of the bend that p has
+                # besides its quintic, times Legendre's polynomials.
                 if r > 0.0 or driven or found.jump != 0.0:
                     _, _, known = bent(c[6], x[m])
                     fourth, fifth = _legendre(x[m])

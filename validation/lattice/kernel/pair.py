@@ -202,7 +202,9 @@ def evaluate_stages(
             contact_forces(
                 chain, forcing, beads, plan, next_y, next_v, s, first, behind
             )
-            # The stages share a row of forces: the last one of a tile is kept for the next tile.
+            # The stages share a row of forces. The first bead of a tile needs the force of the
+            # contact behind, which this stage has computed in the tile before: it was kept in
+            # ``border``, as the last one of this tile is for the next tile.
             if first > 0:
                 force[first] = beads.border[s]
             beads.border[s] = force[behind]
@@ -224,6 +226,7 @@ def estimate_errors(beads: Beads, plan: Plan, h: float, hi: int) -> None:
     for lo in range(0, hi, TILE):
         up = min(lo + TILE, hi)
         for q in range(0, len(beads.errors), 2):
+            # Rows of errors, and of their weights, are of displacement and velocity in turn.
             y = beads.errors[q]
             v = beads.errors[q + 1]
             for i in range(index(lo), index(up)):
@@ -268,6 +271,8 @@ def step_error(beads: Beads, plan: Plan, h: float, hi: int) -> float:
     books = beads.books
     total = least = 0.0
     for q in range(0, len(weights), 2):
+        # Row q of the weights is of displacements; row q + 1, of velocities, is of all integrals
+        # over the step. Corrected contacts are taken out of the estimates.
         heat = h * integral(weights[q + 1], beads.power[HEAT]) - books[HEAT_ERROR]
         work = h * integral(weights[q + 1], beads.power[WORK]) - books[WORK_ERROR]
         missed = (heat * heat + work * work) / plan.energy**2
@@ -277,6 +282,7 @@ def step_error(beads: Beads, plan: Plan, h: float, hi: int) -> float:
             least = _LEAST * missed
         elif squared > 0.0:
             total = total * total / (total + _THIRD * squared)
+    # Besides the pair's own errors: those of the corrections at kinks
     return math.sqrt(total + least + books[SQUARES])
 
 
@@ -295,6 +301,8 @@ def end_step(
     if error < _HOPELESS:
         # An error of 0 has no such power; from 1e-9 down `_GROWTH` is less than the factor.
         factor = _SAFETY * max(error, 1e-9) ** (-1.0 / pair.order)
+        # Share of the step after the first kink of a damped contact, 0 without one. The part before
+        # the kink is kept, and the part after it is shortened by its own error.
         after = beads.books[AFTER]
         if error > 1.0 and after > 0.0:
             kept = _KINK_SAFETY * error ** (-1.0 / _KINK_ORDER)
@@ -304,6 +312,8 @@ def end_step(
         if factor == 0.0:
             beads.push[1:] = 0.0  # overflows must not last
         return False
+    # The last row of ``impulses`` integrates over the step, here the dissipated power and that of
+    # the drive at the stages. The books hold what the corrections at kinks add to the integrals.
     impulses = pair.impulses[len(pair.impulses) - 1]
     now.lost += h * integral(impulses, beads.power[HEAT]) + beads.books[HEAT]
     now.work += h * integral(impulses, beads.power[WORK]) + beads.books[WORK]
@@ -327,14 +337,19 @@ def end_step(
 
 @inlined
 def begin_step(beads: Beads, hi: int) -> None:
-    """Move the beads, and their forces, to the end of a step, which is the start of the next."""
+    """Move beads 0 … hi-1, and their forces, to the end of a step, the start of the next one."""
+    # ``border`` has an entry for each stage; the last stage is at the step's end.
     last = len(beads.border) - 1
     for i in range(index(hi)):
         beads.y[i] = beads.next_y[i]
         beads.v[i] = beads.next_v[i]
+        # There are two rows of forces: row 0 of the step's start, row 1 of the stage computed last,
+        # which is the last stage. Column i + 1 holds the contact ahead of bead i. The accelerations
+        # ``push`` have a row for every stage, and column i belongs to bead i.
         beads.force[ZERO, i + ONE] = beads.force[ONE, i + ONE]
         beads.push[ZERO, i] = beads.push[index(last), i]
-    # Stage 0 of the next step is the last stage of this one: heat, and work of the drive.
+    # Stage 0 of the next step is the last stage of this one: dissipated power, power of the drive.
     for balance in (HEAT, WORK):
         beads.power[balance, 0] = beads.power[balance, last]
+    # The driven bead's accelerations at the step's start and end
     beads.given[0] = beads.given[1]

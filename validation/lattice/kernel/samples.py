@@ -40,8 +40,9 @@ _FIT = np.linalg.inv(_PLACES[:, None] ** _POWERS.T) / (_POWERS + 1) / (_POWERS +
 def store_knot(forcing: Forcing | None, beads: Beads, knots: Knots, now: Any) -> None:
     """Store the present motion of the watched beads as the next knot.
 
-    The four entries of a state are those of `Knots`. The acceleration is that of the first stage,
-    at the start of the next step. A driven bead, of infinite mass, has a given acceleration.
+    A state is displacement, velocity, acceleration, and 1 if the step to the knot was corrected for
+    a kink of the contact ahead of the bead. The acceleration is that of the first stage, at the
+    start of the next step. A driven bead, of infinite mass, has a given acceleration.
     """
     if len(knots.watched) == 0:
         return
@@ -91,6 +92,7 @@ def _fit_curve(a: Array, b: Array, pushes: Array, c: Array) -> None:
         c[m + 2] = 0.0
         for k in range(len(_PLACES)):
             c[m + 2] += _FIT[m, k] * pushes[k]
+    # Half of the acceleration at x = 0 that the smooth forces leave to the rest
     c2 = (a[2] - pushes[0]) / 2
     # The rest has c4 … c7 besides, from what is left of y, y' and y'' at x = 1, r0, r1 and r2.
     r0 = b[0] - c2
@@ -148,6 +150,9 @@ def _take_kink_away(
     the curve p of its compression, is integrated up to each sample and added to y and v there, and
     up to the `_PLACES` and added to ``moved``. From the accelerations in ``ends`` it is taken away,
     so that the polynomial follows the smooth rest of the motion.
+
+    ends : y, y' and y'' by x of each row, at both ends of the step. moved : what kinks add to y and
+    to y' of each row at the `_PLACES`. first, last : the samples first … last - 1 lie in the step.
     """
     i = knots.watched[q]
     law = chain.laws[chain.law[i]]
@@ -157,7 +162,7 @@ def _take_kink_away(
     far = scale * chain.inverse[i + 1]
     begin = _scaled(chain, knots, n, q, h)
     over = _scaled(chain, knots, n + 1, q, h)
-    bend = -near - far
+    bend = -near - far  # change of p'' by a force of 1
     found = kinks.resolved(law, ratio, begin, over, h, bend, kinks.STRAIGHT, edges)
     p = found.curve
     # A force that jumps bends the curve: a second call knows the bend, p[6], of the size p[6][1].
@@ -193,6 +198,10 @@ def _add_smooth_force(
     The contact is ahead of the bead of row r. Its compression is a quintic without the kinks of
     its neighbours, plus their effects, ``moved`` from the ``ends``. A quintic of the whole motion
     errs where a neighbour's force jumps: by up to 549 tolerances in four scenes, now 6.
+
+    ends : y, y' and y'' by x of each row, at both ends of the step, without the effects of kinks.
+    moved : what kinks add to y and to y' of each row at the `_PLACES`. pushes : accelerations of
+    each row by smooth forces there, by x.
     """
     law = chain.laws[chain.law[i]]
     rest = chain.rest[i]
@@ -243,9 +252,10 @@ def interpolate(
         Working memory: the motion at both ends; what kinks add to y and y' at the `_PLACES`; the
         accelerations by smooth forces there.
     points, edges : array
-        Working memory, as in `Beads`.
+        Working memory: three rows for the points of a quadrature, and the places between which a
+        contact's force is smooth.
     """
-    c = points[0, : len(_PLACES) + 2]
+    c = points[0, : len(_PLACES) + 2]  # room for the coefficients of `_fit_curve`
     last = FIRST
     while last < len(time):
         # Samples first … last - 1 lie in one step, n.
@@ -266,9 +276,10 @@ def interpolate(
             for s in range(first, last):
                 y[r, s] = v[r, s] = 0.0
             pushes[r] = 0.0
-        # The contact between the beads of rows r and r + 1. The beads of the first and the last
-        # row, and those beside a gap in the rows, may lack a contact: they are there as neighbours
-        # of the beads that are wanted.
+        # Contacts between the beads of rows r and r + 1. Entry 3 of a state is above 0 if the step
+        # to its knot was corrected for a kink of the contact ahead of the bead. The beads of the
+        # first and the last row, and those beside a gap in the rows, may lack a contact: they are
+        # there as neighbours of the beads that are wanted.
         moved[:] = 0.0
         for r in range(len(rows) - 1):
             q = rows[r]

@@ -38,7 +38,9 @@ def advance_split(
     v = beads.v
     force = beads.force[1]
     inverse = chain.inverse
+    # The accelerations at the end of a step, for the knots
     push = beads.push[0]
+    # A stage for the dissipated power, and the first contact: both are number 0.
     contact_forces(chain, forcing, beads, plan, y, v, FIRST, FIRST, plan.size)
     if now.tries == 0:
         for i in range(index(plan.size)):
