@@ -10,24 +10,6 @@
 1.4119
 """
 
-from typing import Any
+from lwa.base import public_names
 
-from lwa.base import public_modules
-
-
-def __getattr__(name: str) -> Any:
-    """Load a public name on its first use (PEP 562): the command starts before NumPy does."""
-    if name == "__version__":
-        from lwa import __version__
-
-        return __version__
-    if name == "__all__":
-        return sorted(public_modules(__file__))
-    if name not in public_modules(__file__):
-        raise AttributeError(f"module 'validation' has no attribute {name!r}")
-    return getattr(__import__(public_modules(__file__)[name], fromlist=[name]), name)
-
-
-def __dir__() -> list[str]:
-    """Names that editors and shells complete, loaded or not."""
-    return sorted([*public_modules(__file__), "__version__"])
+__getattr__, __dir__ = public_names(__name__, __file__)

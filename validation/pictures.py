@@ -207,8 +207,8 @@ def draw(plot: Axes, panel: Panel) -> None:
         _draw_map(plot, panel.map)
     for i, curve in enumerate(panel.curves):
         _draw_curve(plot, curve, i)
-    _label(plot.xaxis, panel.x, "x" in panel.scale)
-    _label(plot.yaxis, panel.y, "y" in panel.scale)
+    _label(plot.xaxis)
+    _label(plot.yaxis)
     if not any(curve.label for curve in panel.curves):
         return
     if panel.legend_above:
@@ -248,16 +248,17 @@ def _draw_map(plot: Axes, colours: Map) -> None:
         colours.x, colours.y, values, shading="nearest", rasterized=True
     )
     bar = plot.figure.colorbar(image, ax=plot, label=colours.label)
-    _label(bar.ax.yaxis, colours.label, logarithmic=False)
+    _label(bar.ax.yaxis)
     # A hatch is unlike any colour of a map.
     plot.patch.set(facecolor="w", edgecolor="0.4", hatch="xxx")
 
 
-def _label(axis: Axis, label: str, logarithmic: bool) -> None:
-    """Label an axis and its ticks; the unit has a prefix if the ticks are plain numbers."""
+def _label(axis: Axis) -> None:
+    """Give the unit in an axis's label a prefix, if the ticks are plain numbers."""
+    logarithmic = axis.get_scale() == "log"
     low, high = sorted(axis.get_view_interval())
     largest = max(abs(low), abs(high))
-    unit = labelled(label, largest)
+    unit = labelled(axis.get_label_text(), largest)
     if logarithmic:
         # Plain numbers fit an axis of few decades, where powers of ten would overlap.
         # Three decades at most, in labels of at most six characters: 0.0015 to 100000.

@@ -283,7 +283,8 @@ class Conversion:
         """Convert the polynomial that has these terms in the ring's generators.
 
         The fractions f of masses and contacts become quotients ``total · w/S`` of the caller's
-        weights w and their sum S, all over one denominator, a power of S (see the class).
+        weights w and their sum S. For one denominator ``S^d`` each term of a degree
+        below d is multiplied by the power of ``S/S`` that it lacks.
         """
         # The polynomial's degree in the fractions of each partition
         degrees = []

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import signal
 from functools import cache
+from typing import Any
 
 INTERRUPTED = 128 + signal.SIGINT
 """Exit status of a command after Ctrl-C, as in shells."""
@@ -67,7 +68,7 @@ class NoSolitaryWave(Refusal):
 
 
 @cache
-def public_modules(package: str) -> dict[str, str]:
+def _modules(package: str) -> dict[str, str]:
     """Modules of the public names of a package; the stub beside the file `package` lists them."""
     from pathlib import Path  # here: no command needs it
 
@@ -75,3 +76,26 @@ def public_modules(package: str) -> dict[str, str]:
     # A name a line: "from lwa.cell import Cell as Cell".
     imports = re.findall(r"^from (\S+) import (\w+)", stub, re.MULTILINE)
     return {name: module for module, name in imports}
+
+
+def public_names(package: str, file: str) -> tuple[Any, Any]:
+    """Return the functions ``__getattr__`` and ``__dir__`` of a package, given its file.
+
+    A public name is loaded on its first use (PEP 562): commands start before SymPy and NumPy do.
+    """
+
+    def load(name: str) -> Any:
+        if name == "__version__":
+            from importlib.metadata import (
+                version,
+            )  # here: it takes as long as all the rest
+
+            return version("lwa")
+        modules = _modules(file)
+        if name == "__all__":
+            return sorted(modules.keys() - {"D", "k"})  # of `lwa`, bound by name only
+        if name not in modules:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        return getattr(__import__(modules[name], fromlist=[name]), name)
+
+    return load, lambda: sorted([*_modules(file), "__version__"])

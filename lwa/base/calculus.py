@@ -28,7 +28,7 @@ def integral(F: sp.Expr, x: sp.Symbol) -> sp.Expr:
 
 
 _FIRST_STEP = mpmath.mpf(2) ** -20
-"""The first step of a search; a root below it is found by bisection."""
+"""The first step of a search; a root below it lies in the first interval that is searched."""
 
 # Relative to the place: a root that is not found to 45 digits is none.
 _LEAST_STEP = mpmath.mpf(2) ** -150

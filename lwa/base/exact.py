@@ -139,7 +139,7 @@ def _from_text(text: str, name: str) -> sp.Expr:
 
 
 def real(value: Any, name: str) -> sp.Expr:
-    """Return a real expression, whose floats keep their digits, or an exact number; never text."""
+    """Return an expression that may be real as it is, or read a number exactly; refuse a text."""
     if isinstance(value, str):
         raise InputError(
             f"{name} is {shorten(value)}: a number or an expression is wanted"
@@ -287,7 +287,7 @@ def factored(value: sp.Expr) -> sp.Expr:
 
 
 def rearranged(method: Callable[[sp.Expr], Any], value: sp.Expr) -> sp.Expr:
-    """Apply SymPy's `factor` or `cancel`; powers with long exponents are taken for symbols.
+    """Apply SymPy's `factor` or `cancel`; a power ``x^{p/q}`` of large q is taken for a symbol.
 
     SymPy takes ``x^{p/q}`` for the power p of ``x^{1/q}``. Polynomials of such a degree fill the
     memory where an exponent comes from a decimal such as 1.2345.

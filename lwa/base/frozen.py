@@ -144,6 +144,7 @@ class Estimate(Value):
         # NaN or infinite if either number is.
         if not math.isfinite(self.value + self.error):
             return f"{self.value:.{UNKNOWN_DIGITS}g}, error unknown"
+        # Powers of ten of the first and the last digit that are shown
         first = _place(self.value or self.error)
         last = first - most + 1
         if not self.error:
@@ -161,14 +162,14 @@ class Estimate(Value):
         error = max(math.ceil(self.error / unit * (1 - 1e-12)), 1) * unit
         scientific = f"{error:.{max(_place(error) - last, 0)}e}"
         decimals = max(0, -last)
-        width = scientific
+        bound = scientific
         if error >= LEAST_PLAIN:
-            width = f"{error:.{decimals}f}"
+            bound = f"{error:.{decimals}f}"
         if not self.value:
-            return f"0 ± {width}"
+            return f"0 ± {bound}"
         if not PLAIN[0] <= first <= PLAIN[1]:
             return f"{self.value:.{first - last}e} ± {scientific}"
-        return f"{round(self.value, -last):.{decimals}f} ± {width}"
+        return f"{round(self.value, -last):.{decimals}f} ± {bound}"
 
     @property
     def relative_error(self) -> float:

@@ -204,6 +204,7 @@ class _Slaving:
             P (E_n + Σ m̂_i a_i) = F_{P-1}(x) - F_{P-1}(x - PD).
         """
         accelerations = [rate.dt(self.E, n) for rate in self.rates]
+        # A rate is the series of ∂_τ (D φ_x S): its term in D^n is that of ∂_τ (φ_x S) in D^{n-1}.
         # The rates of the last order would enter the next one.
         if n + 1 < self.order:
             for rate, S in zip(self.rates, self.S, strict=True):
@@ -246,11 +247,13 @@ class _Slaving:
         """Append ``S_n`` of each particle.
 
         Neighbours differ by a strain, ``S_{i+1} - S_i = C_i (1 + X_i)``. The term ``origin`` of the
-        first particle follows from the definition ``φ(x) = Σ g_i w_i(x - x_i D)``.
+        first particle follows from the definition ``φ(x) = Σ g_i w_i(x - x_i D)``, ``Σ g_i = 1``.
         """
         relative = [self.algebra.zero]  # S_n less that of the first particle
         for c, force in zip(self.algebra.c[:-1], self.forces, strict=False):
             relative.append(relative[-1] + c * force.X[n])
+        # With S_n = origin + relative the definition is 0 = origin + Σ g_i (relative_i + moved_i):
+        # `moved` is what the shift by h D adds to the field w_i = φ + D φ_x S_i at D^{n+1}.
         origin = self.algebra.zero
         for i, weight in enumerate(self.weights):
             h = -self.x[i]

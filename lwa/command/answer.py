@@ -193,7 +193,7 @@ class Row:
         """The values in JSON, by the ending of their names: "", "_value", "_error_value"."""
         if isinstance(self.value, InputError):
             return {"_value": None, "_error_value": None}
-        found: dict[str, Any] = {}
+        found = {}
         # A float is a result of numerics; closed forms of the lattice hold floats as factors.
         if not any(isinstance(x, Estimate | sp.Float) for x in self.values):
             found[""] = self.value
@@ -227,7 +227,7 @@ class Row:
     ) -> str:
         """A value as text: its formula, its digits, or both.
 
-        `number` holds the digits of an exact value (`numbers`); None if symbols leave it open.
+        `number` is the number of the value among `numbers`; None where there is none.
         """
         unit = self.unit if scale.si else ""
         if isinstance(value, Estimate):

@@ -86,6 +86,7 @@ class Commands(click.Group):
         if name is not None:
             module, _ = self.table[name]
             loaded = getattr(import_module(f"{self.package}.{module}"), name)
+            # Not every module has a Click command: a study of `validation` holds its own one.
             command = getattr(loaded, "command", loaded)
         return name, command, rest
 
@@ -237,7 +238,7 @@ def _change(
 
     They are those of the refusal, else the example of the option that its reason is about.
     """
-    change: dict[str, object] = {}
+    change = {}
     for option in options:
         for known in (called(option), option.name):  # on the command line and in Python
             if known in refusal.change:

@@ -226,6 +226,7 @@ def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
             shown.append(reduction)
         else:
             rows.append("  p, a, μ, η, σ and s are long: --format json has them")
+        # A row without a label stands in JSON alone.
         for name in ("p", "a", "mu", "eta", "sigma", "s"):
             rows.append(Row.of(reduction, name, name if short else ""))
     if depends_on_first(theory):

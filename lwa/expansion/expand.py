@@ -30,7 +30,7 @@ EPSILON_NAMES = ("ε", "varepsilon")
 """Names that no symbol of a cell may have: ``k - 1`` is printed as ε, in LaTeX as varepsilon."""
 
 DIGITS = 30
-"""Decimal digits of coefficients that are not exact; to ε^16 a sum cancels some ten of them."""
+"""Decimal digits of coefficients that are not exact; a sum of 16 orders cancels some ten."""
 
 LARGEST = 3_000_000
 """Most terms of the polynomials of an expansion: half a minute for equal beads (order 114)."""

@@ -1,6 +1,6 @@
 """Files of beads: materials, beads and the table of the chain, in scenes and lists of spheres.
 
-A file of spheres holds, in units that agree (SI if A is to be in ``N/m^{3/2}``)::
+A file of spheres holds, in SI, for which scenes and commands take the numbers of spheres::
 
     [materials.resin]             # any name
     E = 3e9                       # Young's modulus
@@ -19,9 +19,9 @@ A file of spheres holds, in units that agree (SI if A is to be in ``N/m^{3/2}``)
     [chain]
     cell = ["ball", "light"]      # names of beads, in their order
 
-These are tables of a scene (`validation.scenes.scenefile`), and any scene is such a file: the other
-entries of the scene are ignored. A chain of masses has numbers in ``cell`` and its contacts beside
-them.
+These are tables of a scene (`validation.scenes.scenefile`), and any scene is such a file: the
+readers of this module leave its other entries alone. A chain of masses has numbers in ``cell`` and
+its contacts beside them.
 """
 
 from __future__ import annotations
@@ -147,8 +147,8 @@ def read_row(file: Table, beads: Mapping[str, Sphere]) -> Row:
             "chain.cell is empty: names, or masses, of one bead or more are wanted"
         )
     repeat = given.read("repeat", partial(integer, low=1), 1)
-    spheres: list[Sphere] = []
-    masses: list[float] = []
+    spheres = []
+    masses = []
     if isinstance(cell[0], str):
         spheres = each(among(beads))(cell, "chain.cell")
         # Spheres have the law of Hertz, and touch where the chain is unloaded.
@@ -189,7 +189,7 @@ def period(*rows: Sequence[Any]) -> int:
 
 
 def spheres(content: Any) -> list[Sphere]:
-    """Read the spheres of the cell of a parsed file (see the module), in their order.
+    """Read the spheres of a cell, in their order, from the tables of a parsed file.
 
     >>> steel, ball = {"E": 193e9, "nu": 0.3}, {"mass": 1, "radius": 0.5, "material": "steel"}
     >>> content = {"materials": {"steel": steel}, "beads": {"ball": ball}}
@@ -206,7 +206,7 @@ def spheres(content: Any) -> list[Sphere]:
 def _material(value: Any, name: str) -> Material:
     """Read a material: E, ν and the density, or a known material and the numbers that differ."""
     entries = Table(value, name, ("like", "E", "nu", "density"))
-    values: dict[str, Any] = {}
+    values = {}
     if "like" in entries:
         values = vars(entries.read("like", among(BY_NAME)))
     for key, read in {"E": positive, "nu": finite, "density": positive}.items():

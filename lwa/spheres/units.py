@@ -38,6 +38,8 @@ class Unit:
 def fitting(unit: str, magnitude: float) -> Unit:
     """Return a unit in which a magnitude has one to three digits before the decimal point.
 
+    Beyond the `PREFIXES` it is the least or the largest of these units.
+
     Parameters
     ----------
     unit : str

@@ -95,7 +95,7 @@ def integrate(
 ) -> Run:
     """Integrate a scene by a compiled method, in steps of at most ``longest``.
 
-    The method is one of `validation.lattice.schemes.SCHEMES`. The steps of a splitting have the
+    The method is one of `validation.lattice.simulate.COMPILED`. The steps of a splitting have the
     length ``longest``, unless it is infinite. A run whose tolerance is set by a drive, and whose
     response turns out far weaker, is made again.
     """
@@ -105,7 +105,7 @@ def integrate(
         if motion.scene.drive is None:
             return run.finished()
         energy = run.motion.scales.energy
-        response = float(run.now["response"])
+        response = run.now["response"]
         # A response of no more than eight roundings of the energy is no scale of a new run.
         if not 8 * _NOISE * energy < response < _WEAK * energy:
             return run.finished()
@@ -173,8 +173,7 @@ class _Integration:
     def _failure(self) -> str:
         """Say why the run does not come to its end."""
         now = self.now
-        end = self.plan.end
-        where = f"t = {now['t']:g} of {end:g}"
+        where = f"t = {now['t']:g} of {self.plan.end:g}"
         # Row 1 of the forces is that of the stage computed last; row 0 belongs to the step's start.
         finite = np.isfinite(self.beads.force[1:])
         if not finite.all() or now["h"] == 0:
@@ -226,9 +225,9 @@ def _plan(motion: Motion, scheme: Pair | Splitting, rtol: float, **steps: Any) -
         y=rtol * scales.displacement,
         v=rtol * scales.velocity,
         energy=rtol * (scales.energy or 1.0),
-        end=float(motion.scene.duration),
+        end=motion.scene.duration,
         deepest=scales.compression,
-        lightest=float(motion.masses.min()),
+        lightest=motion.masses.min(),
         size=motion.size,
         most=most,
         **steps,
@@ -243,7 +242,7 @@ def _pair_plan(motion: Motion, rtol: float, longest: float) -> tuple[Plan, int]:
     """
     scene = motion.scene
     time = motion.scales.time
-    end = float(scene.duration)
+    end = scene.duration
     pair = RKN86 if scene.damping is None else RK853
     stops = {end}
     if scene.drive is not None:
@@ -263,7 +262,7 @@ def _pair_plan(motion: Motion, rtol: float, longest: float) -> tuple[Plan, int]:
 
 def _splitting_plan(motion: Motion, rtol: float, step: float) -> tuple[Plan, int]:
     """Return the plan of the splitting, and the greatest number of steps."""
-    end = float(motion.scene.duration)
+    end = motion.scene.duration
     if math.isinf(step):
         stage = min((rtol / _KINKS) ** 0.4, _COARSEST)
         stages = len(BLANES_MOAN.drifts)
@@ -291,28 +290,24 @@ def _chain(motion: Motion) -> Chain:
     r[:contacts] = motion.damping / motion.stiffnesses
     rest[:contacts] = motion.rest
     load[:contacts] = motion.load
-    opens[:contacts] = 1.0
     laws = [*motion.laws] or [Contact(1.0)]  # of a single bead: the padding's
     # The padding, of stiffness 0, has the last contact's law, so that one loop takes both; but a
     # linear one where the last contact's force may overflow as a free end moves on (`_UNBOUNDED`).
-    beyond = int(motion.law_of[-1]) if contacts else 0
+    beyond = motion.law_of[-1] if contacts else 0
     last = laws[beyond]
     if last.law is not None or last.k >= _UNBOUNDED:
         beyond = len(laws)
         laws.append(Contact(1.0))
     law_of = np.full(padded, beyond)
-    alike = np.full(padded, padded)
     law_of[:contacts] = motion.law_of
-    if len(laws) > 1:
-        # Contacts at which another law begins: for each contact the first of them ahead of it, up
-        # to which a loop may take the contacts together
-        changes = np.flatnonzero(np.diff(law_of))
-        places = np.append(changes + 1, padded)
-        following = np.searchsorted(places, np.arange(padded), side="right")
-        alike = places[following]
-    for number, law in enumerate(laws):
-        if law.pulls:  # it holds at every δ, and has no kink
-            opens[:padded][law_of == number] = 0.0
+    # Contacts at which another law begins: for each contact the first of them ahead of it, up to
+    # which a loop may take the contacts together
+    changes = np.flatnonzero(np.diff(law_of))
+    places = np.append(changes + 1, padded)
+    following = np.searchsorted(places, np.arange(padded), side="right")
+    # A contact that pulls holds at every δ, and has no kink.
+    pulls = np.array([law.pulls for law in laws])
+    opens[:contacts] = ~pulls[motion.law_of]
     rows = [_record(law) for law in laws]
     return Chain(
         inverse=inverse,
@@ -323,7 +318,7 @@ def _chain(motion: Motion) -> Chain:
         opens=opens,
         laws=records(np.array(rows, LAW)),
         law=law_of,
-        alike=alike,
+        alike=places[following],
     )
 
 
@@ -375,19 +370,16 @@ def _front(motion: Motion) -> int:
     moving, _ = moves.nonzero()
     first = 0 if motion.scene.drive is None else 1
     if len(moving):
-        last = int(moving[-1])
-        first = max(first, last + 1)
+        first = max(first, moving[-1] + 1)
     return min(motion.size, MARGIN + first)
 
 
 def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
     """Build the kernel's initial state, arrays with room for ``padded`` + 1 beads."""
     n = motion.size
-    stages = 1
     estimates = 0
     if isinstance(scheme, Pair):
         estimates = len(scheme.errors)
-        stages = len(scheme.nodes)
     # Five rows that have names below, the errors, room for the stages, and two rows of forces
     rows = _lines(7 + estimates + ROOM, padded + 2)
     # Two rows, one place ahead of the others: lines begin at column 1, the force of contact 0.
@@ -406,7 +398,6 @@ def _start(motion: Motion, padded: int, scheme: Pair | Splitting) -> Beads:
         next_y=next_y,
         next_v=next_v,
         force=ahead.reshape(2, -1),
-        border=np.zeros(stages),
         push=rows[5 + estimates : -2],
         errors=rows[5 : 5 + estimates],
         marks=marks,

@@ -73,8 +73,6 @@ class Motion:
     ----------
     start : array, (2n + 2,)
         Initial state.
-    loaded : bool
-        True with gravity or precompression.
     rest, load : array, (contacts,)
         Static compressions and forces.
     laws : tuple of Contact
@@ -95,8 +93,7 @@ class Motion:
             self.stiffnesses = np.append(self.stiffnesses, scene.wall)
         self._read_laws()
         self.rest = self.load = np.zeros(len(self.stiffnesses))
-        self.loaded = bool(scene.gravity or scene.precompression)
-        if self.loaded:
+        if scene.gravity or scene.precompression:
             forces = np.array(scene.load) / self.stiffnesses
             # `_check_range` refuses an overflow below. The index `...` means all contacts.
             with np.errstate(over="ignore", invalid="ignore"):
@@ -110,8 +107,7 @@ class Motion:
         # Displacements, velocities, dissipated energy and the drive's work, 0 at the start.
         self.start = np.zeros(2 * n + 2)
         self.start[: len(scene.displacements)] = scene.displacements
-        end = n + len(scene.velocities)
-        self.start[n:end] = scene.velocities
+        self.start[n : n + len(scene.velocities)] = scene.velocities
         if scene.drive is not None:
             # A drive tells displacement, velocity and acceleration; a state has none of the last.
             self.start[0], self.start[n], _ = scene.drive.at(0.0)
@@ -142,7 +138,7 @@ class Motion:
         for exponent, law in numbers:
             power = None
             if damping is not None:
-                power = float(damping.power(exponent))
+                power = damping.power(exponent)
             kinds.append(Contact(exponent, law, power))
         self.laws = tuple(kinds)
 
@@ -234,10 +230,7 @@ class Motion:
         """
         change = self.rate(state[: self.size])
         v = state[self.size : 2 * self.size]
-        if self.loaded:
-            stored = self._each(..., Contact.energy_above, self.rest, change)
-        else:
-            stored = self._each(..., Contact.energy, change)
+        stored = self._each(..., Contact.energy_above, self.rest, change)
         kinetic = self.masses * v * v / 2
         return kinetic, self.stiffnesses * stored
 
@@ -280,9 +273,9 @@ class Motion:
             _check_range("energy", energy)
         # Greatest compression, and greatest spring without the factor k of a power.
         deepest = stiffest = 0.0
-        # springs[i] is the sum of F′ of the contacts behind and ahead of bead i; entry n is that of
-        # a wall, which has no equation of motion and is left out below.
-        springs = np.zeros(n + 1)
+        # F′ of the contacts, between zeros: nothing lies behind the first bead, or ahead of the
+        # last one, or of a wall.
+        stiff = np.zeros(len(self.rest) + 2)
         for number, law in enumerate(self.laws):
             own = self.law_of == number
             rest = self.rest[own]
@@ -292,24 +285,23 @@ class Motion:
             largest = float(stiffnesses.max())
             depth = static
             if energy > 0:
-                reached = law.reached_by(energy / largest, static)
-                depth = max(depth, reached)
+                depth = max(depth, law.reached_by(energy / largest, static))
             if not depth:
                 continue
             deepest = max(deepest, depth)
             # F′ = k A δ^{k-1}. From δ = 0 the depth is that of the energy A δ^{k+1}, and y, of
             # energy = F′ y² below, is this depth if F′ lacks the factor k. The shortest time is
-            # that of the true F′, with k.
-            slope = law.steepest(static, depth)
-            stiffest = max(stiffest, largest * slope)
-            _check_range("stiffest spring", largest * slope)
-            stiff = law.k * slope * stiffnesses
-            springs[: len(self.rest)][own] += stiff
-            of_contact_behind = springs[1 : len(self.rest) + 1]
-            of_contact_behind[own] += stiff
+            # that of the true F′, with k. Other laws have k = 1, and may soften when pressed.
+            slope = float(law.stiffness(np.array([static, depth])).max())
+            spring = largest * slope / law.k
+            stiffest = max(stiffest, spring)
+            _check_range("stiffest spring", spring)
+            stiff[1:-1][own] = slope * stiffnesses
         if not deepest:
             # Nothing presses: displacement and velocity have any scale, 1, and no time is short.
             return Scales(energy, 0.0, 1.0, 1.0, math.inf)
+        # Of the contacts behind and ahead of each bead; a wall has no equation of motion.
+        springs = stiff[:-1] + stiff[1:]
         squares = springs[:n] / self.masses  # of angular frequencies
         time = 1 / math.sqrt(squares.max())
         _check_range("shortest time", time)
@@ -325,8 +317,7 @@ class Motion:
             # The last digit of the static compression in a float, over the displacement y: the part
             # of the motion that rounding may hide.
             static = float(self.rest.max())
-            lost = sys.float_info.epsilon * static
-            rounding = lost / y
+            rounding = sys.float_info.epsilon * static / y
         # Energy, greatest compression, displacement, velocity, shortest time, and rounding
         return Scales(energy, deepest, y, v, time, rounding)
 

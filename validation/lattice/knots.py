@@ -28,8 +28,7 @@ _MOST_BYTES = 2**28
 
 def _with_neighbours(beads: Beads) -> NDArray[np.int_]:
     """Return the increasing numbers of beads and their neighbours."""
-    numbers = np.asarray(beads, int)
-    triples = np.add.outer(numbers, (-1, 0, 1))
+    triples = np.add.outer(beads, (-1, 0, 1))
     near = np.unique(triples)
     return near[near >= 0]
 
@@ -162,10 +161,8 @@ class Recorder:
         time = sample_times(self.motion.scene)
         # Parts of the samples: displacements and velocities (2, beads, times).
         done = sum(part.shape[2] for part in self.samples)
-        last = path.time[-1]
-        due = int(time.searchsorted(last, side="right"))
-        beads = sensed_beads(self.motion)
-        motions = path(beads, time[done:due])
+        due = time.searchsorted(path.time[-1], side="right")
+        motions = path(sensed_beads(self.motion), time[done:due])
         self.samples.append(np.array(motions))
         self._parts.clear()
 

@@ -56,12 +56,8 @@ class Contact:
     @cached_property
     def sticks(self) -> bool:
         """True if damping may pull, as the law pulls, or attracts where the contact opens."""
-        if self.law is None:
-            return False
-        if self.pulls:
-            return True
         (opening,) = self.force(np.array([_OPENS]))
-        return bool(opening < 0)
+        return self.pulls or bool(opening < 0)
 
     def force(self, compression: Array) -> Array:
         """Return the force F at a compression δ, of any shape; ``[δ]_+^k`` for a power law."""
@@ -122,15 +118,13 @@ class Contact:
         """
         if self.damping_power is None:
             return elastic
-        # A law that pulls has k = 1 and so p = 0 (`validation.scenes.checks.contact_law`): no power
-        # of a negative compression is taken.
-        closed = compression if self.pulls else np.maximum(compression, 0.0)
-        resisted = closed**self.damping_power * rate
+        # A law that pulls has k = 1 (`validation.scenes.checks.contact_law`), and so p = 0: the
+        # power is 1 where δ < 0, too.
+        resisted = np.maximum(compression, 0.0) ** self.damping_power * rate
         force = elastic + (damping * resisted.T).T
         if not self.sticks:
             # Damping may weaken a push to 0, and add nothing to the pull of a law that attracts.
-            least = np.minimum(elastic, 0.0)
-            force = np.maximum(force, least)
+            force = np.maximum(force, np.minimum(elastic, 0.0))
         return force if self.pulls else np.where(compression > 0.0, force, 0.0)
 
     def _evaluated(self, name: str, compression: Array) -> Array:
@@ -187,18 +181,6 @@ class Contact:
             high = change[min(first + 1, _TRIED - 1)]
         return float(start + change[first])
 
-    def steepest(self, start: float, depth: float) -> float:
-        """Return the greater one of the stiffnesses at two compressions, ``start ≤ depth``.
-
-        The stiffness of a power is given without its factor k, which no scale needs.
-        """
-        if self.law is None:
-            # δ^{k-1} does not fall, as scenes have k ≥ 1: it is greatest at the greater depth. A
-            # NumPy float, which overflows to ∞; a Python one raises an exception.
-            return float(np.float64(depth) ** (self.k - 1))
-        ends = np.array([start, depth])
-        return float(self.stiffness(ends).max())
-
     @property
     def addresses(self) -> dict[str, int]:
         """Addresses of the machine code of the force, its slope and the energy; 0 for a power."""
@@ -246,5 +228,7 @@ def _refused(law: ContactLaw) -> Iterator[None]:
         with np.errstate(all="ignore"):
             yield
     except Exception:
-        text = "a force with an energy in elementary functions is wanted"
-        raise SceneError(f"law is {shorten(law.text)}: {text}") from None
+        raise SceneError(
+            f"law is {shorten(law.text)}: a force with an energy in elementary functions is "
+            "wanted"
+        ) from None

@@ -21,7 +21,6 @@ from validation.lattice.signal import (
     quantities,
     sample_times,
     sensed_beads,
-    sensors_of,
 )
 from validation.pictures import Curve, Map, Panel, Pictured
 from validation.scenes.checks import SceneError, one_of
@@ -98,14 +97,10 @@ class Run(Pictured):
             # Without sensors there is no motion to sample: y and v of no beads.
             samples = np.zeros((2, 0, len(self.time)))
         found = quantities(self.motion, beads, *samples)
-        sensors = sensors_of(self.scene)
+        sensors = self.scene.sensors
         records = {}
         for (kind, _), name in RECORDS.items():
-            rows: Any = beads.searchsorted(sensors[kind])
-            # Copies of whole records would take as long as the records.
-            every = np.arange(len(found[name]))
-            if np.array_equal(rows, every):
-                rows = slice(None)
+            rows = beads.searchsorted(sensors[kind])
             records[name] = found[name][rows]
             records[name].setflags(write=False)
         return records
@@ -207,7 +202,7 @@ class Run(Pictured):
     def columns(self) -> dict[str, Array]:
         """Return time and all records, each (S,), by names such as "bead 15 force (N)"."""
         columns = {self.label("time"): self.time}
-        for kind, sensors in sensors_of(self.scene).items():
+        for kind, sensors in self.scene.sensors.items():
             for row, i in enumerate(sensors):
                 for (own, quantity), name in RECORDS.items():
                     if own == kind:
@@ -221,7 +216,7 @@ class Run(Pictured):
         force = self.label("force")
         curves = []
         maps = []
-        for kind, sensors in sensors_of(self.scene).items():
+        for kind, sensors in self.scene.sensors.items():
             forces = getattr(self, RECORDS[kind, "force"])
             if len(sensors) <= _MOST:
                 for i, row in zip(sensors, forces, strict=True):
@@ -230,14 +225,12 @@ class Run(Pictured):
             # Rows in the order of the chain; of too many rows, or times, every second, third, …
             rows = np.argsort(sensors)[:: math.ceil(len(sensors) / _FINEST)]
             each = math.ceil(len(self.time) / _FINEST)
-            thinned = slice(None, None, each)
             places = np.array(sensors, float)[rows] + 1
-            values = forces[rows, thinned].T
-            drawn = Map(force, places, self.time[thinned], values)
+            drawn = Map(force, places, self.time[::each], forces[rows, ::each].T)
             maps.append(Panel(kind, time, map=drawn))
         if not curves:
             return maps
-        return [Panel(time, force, tuple(curves), legend_above=True), *maps]
+        return [Panel(time, force, curves, legend_above=True), *maps]
 
     def signal(self, kind: str, number: int, quantity: str = "force") -> SensorSignal:
         """Return a quantity at a sensor as a function of time; the records are its samples.
@@ -264,7 +257,7 @@ class Run(Pictured):
             raise SceneError(
                 "the run has too many steps to keep the motion: read its samples"
             )
-        sensors = sensors_of(self.scene)
+        sensors = self.scene.sensors
         one_of(kind, tuple(sensors), "kind")
         one_of(quantity, tuple(q for own, q in RECORDS if own == kind), "quantity")
         if number not in sensors[kind]:

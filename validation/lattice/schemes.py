@@ -181,5 +181,3 @@ BLANES_MOAN = Splitting(
     np.array([*_KICKS, 1 - 2 * sum(_KICKS), *_KICKS[::-1]]),
     np.array([*_HALF, *_HALF[::-1]]),
 )
-
-SCHEMES: dict[str, Pair | Splitting] = {"RKN86": RKN86, "symplectic": BLANES_MOAN}

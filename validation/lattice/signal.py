@@ -55,11 +55,6 @@ class Path(Protocol):
     def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]: ...
 
 
-def sensors_of(scene: Scene) -> dict[str, tuple[int, ...]]:
-    """Return the numbers of a scene's sensors, by their kind."""
-    return {"bead": scene.bead_sensors, "contact": scene.contact_sensors}
-
-
 def beads_at(motion: Motion, sensors: Mapping[str, Sequence[int]]) -> NDArray[np.int_]:
     """Return increasing numbers of the beads on which sensors depend; bead n is the wall."""
     beads = {*sensors.get("bead", ())}
@@ -105,7 +100,7 @@ def quantities(
 
 def sensed_beads(motion: Motion) -> NDArray[np.int_]:
     """Return increasing numbers of the beads on which a scene's sensors depend."""
-    return beads_at(motion, sensors_of(motion.scene))
+    return beads_at(motion, motion.scene.sensors)
 
 
 def sample_times(scene: Scene) -> Array:
@@ -145,8 +140,7 @@ class SensorSignal:
         inside = (t >= 0) & (t <= self.times[-1])
         values = np.full(t.shape, np.nan)
         y, v = self.path(self.beads, t[inside])
-        records = quantities(self.path.motion, self.beads, y, v)
-        rows = records[self.record]
+        rows = quantities(self.path.motion, self.beads, y, v)[self.record]
         # Row r belongs to bead ``beads[0] + r``, or to the contact ahead of it: the beads are
         # neighbours.
         row = self.number - self.beads[0]

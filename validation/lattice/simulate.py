@@ -22,13 +22,12 @@ from validation.lattice import steppers
 from validation.lattice.cost import RunProgress, silent
 from validation.lattice.equations import motion_of
 from validation.lattice.result import Run
-from validation.lattice.schemes import SCHEMES
 from validation.lattice.steppers import METHODS
 from validation.lattice.threads import cores, threads
 from validation.scenes.checks import SceneError, between, one_of, positive
 from validation.scenes.scene import Scene
 
-COMPILED = tuple(SCHEMES)
+COMPILED = ("RKN86", "symplectic")
 """The engine's: an adaptive Runge–Kutta–Nyström pair, the default, and a symplectic splitting."""
 
 _PART = 8  # scenes a thread that wait at once; at the end of a part a thread waits for half a run

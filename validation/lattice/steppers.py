@@ -36,7 +36,7 @@ class DensePath:
         states = np.zeros((2, n + 1, len(time)))  # the last row is a wall's
         if len(time):  # SciPy has no value at no time
             states[:, :-1] = self.solution(time)[: 2 * n].reshape(2, n, -1)
-        y, v = states[:, np.asarray(beads)]
+        y, v = states[:, beads]
         return y, v
 
 

@@ -20,8 +20,8 @@ def cores() -> int:
 
 
 @contextmanager
-def threads(count: int | None = None, name: str = "workers") -> Iterator[Executor]:
-    """Yield an executor of ``count`` threads, by default one for each core.
+def threads(count: int | None, name: str = "workers") -> Iterator[Executor]:
+    """Yield an executor of ``count`` threads, or one for each core (None).
 
     At the end, waiting tasks are dropped, and running tasks, which cannot be stopped, finish.
     Raises `lwa.InputError` for a bad count; the message calls it ``name``.
@@ -66,8 +66,8 @@ def cluster(address: str, patience: float = 5.0) -> Iterator[Executor]:
             client = distributed.Client(address, timeout=patience, set_as_default=False)
             stack.enter_context(client).wait_for_workers(1, timeout=patience)
         except Exception:
-            wanted = "no Dask scheduler with workers answers; one such as tcp://127.0.0.1:8786"
             raise InputError(
-                f"cluster is {shorten(address)}: {wanted} is wanted"
+                f"cluster is {shorten(address)}: no Dask scheduler with workers answers; one "
+                "such as tcp://127.0.0.1:8786 is wanted"
             ) from None
         yield client.get_executor()

@@ -81,11 +81,10 @@ class Fit:
     def correlations(self) -> Array:
         """Mean products of the noise with itself by lag, up to the first lag without any."""
         count = len(self.noise)
-        # Twice as long, so that the end of the noise does not meet its start. `scipy.signal`, which
-        # has the sum, takes 0.4 s to load.
-        spectrum = np.fft.rfft(self.noise, 2 * count)
-        power = np.abs(spectrum) ** 2
-        products = np.fft.irfft(power)[:count] / count
+        # Lags of both signs: those from 0 on begin in the middle. A base has some thousand samples,
+        # whose sums take some milliseconds.
+        sums = np.correlate(self.noise, self.noise, "full")
+        products = sums[count - 1 :] / count
         unlike = np.append(products, 0.0) <= 0
         first = np.argmax(unlike)
         return products[: max(1, first)]
@@ -134,8 +133,7 @@ class Base:
         counts: Sequence[int] = _BASES
         if length < _SLOW:
             counts = (_LINE,)
-        samples = f[calm]
-        fits = [Fit.of(x, samples, count) for count in counts]
+        fits = [Fit.of(x, f[calm], count) for count in counts]
         # Akaike's criterion, with the noise that the base with all terms leaves; correlated samples
         # count as fewer. Where no noise is left any scale will do.
         full = fits[-1]
@@ -146,8 +144,7 @@ class Base:
             criteria.append(squares / scale + 2 * len(fit.sizes))
         exponents = -np.array(criteria) / 2
         weights = scipy.special.softmax(exponents)
-        best = fits[np.argmax(weights)]
-        return cls(rise, width, x, fits, weights, best)
+        return cls(rise, width, x, fits, weights, fits[np.argmax(weights)])
 
     @classmethod
     def guessed(cls, f: Array, noise: float) -> Base:
@@ -173,8 +170,7 @@ class Base:
     def at(self, t: Array) -> Array:
         """Return the base at times of the pulse."""
         x = (t - self.rise) / self.width
-        bases = [fit.at(x) for fit in self.fits]
-        return self.weights @ bases
+        return self.weights @ [fit.at(x) for fit in self.fits]
 
     def drawn(self, t: Array, pulse: Array, variance: float, step: float) -> Array:
         """Draw errors that noise makes in a pulse over its base.
@@ -236,8 +232,7 @@ class Base:
         factors = np.sqrt(power / power.mean())
         spectra = np.fft.rfft(white, axis=0)
         spectra *= factors[:, np.newaxis]
-        shaped = np.fft.irfft(spectra, size, axis=0)
-        return shaped[:count]
+        return np.fft.irfft(spectra, size, axis=0)[:count]
 
 
 def _rounding(

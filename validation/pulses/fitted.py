@@ -78,8 +78,7 @@ def fitted(
     ends = (-margin, fall - rise + margin)
     x = t[near] - rise
     f = f[near]
-    size = np.abs(f).max()
-    rounding = np.finfo(float).eps * size
+    rounding = np.finfo(float).eps * np.abs(f).max()
     variance = base.best.variance + rounding**2
     most = min(_HIGHEST, int(_DENSEST * len(x)))
     smoothed = partial(_smoothed, x, f, base.best.correlation_time, most)
@@ -106,13 +105,10 @@ def fitted(
     # Arrival, peak and FWHM, in a row for each spline: the best fit's first, then the draws'.
     found = _read(splines, ends)
     numbers = found[0]
-    off = np.abs(found[1:] - numbers)
-    errors = np.quantile(off, _WITHIN, axis=0)
+    errors = np.quantile(np.abs(found[1:] - numbers), _WITHIN, axis=0)
     if wanted > most:
-        fewer = round(most / _COARSER)
-        count = max(_LOWEST, fewer)
-        samples = f[:, np.newaxis]
-        rough = _fit(x, samples, count)
+        count = max(_LOWEST, round(most / _COARSER))
+        rough = _fit(x, f[:, np.newaxis], count)
         (coarse,) = _read(rough, ends)
         errors = np.hypot(errors, numbers - coarse)
     numbers[0] += rise  # the arrival
@@ -141,7 +137,7 @@ def _smoothed(
         squares = np.sum(residuals**2)
         misfit = squares / (variance * correlation_time)
         criteria.append(misfit + count * penalty)
-    best = int(counts[np.argmin(criteria)])
+    best = counts[np.argmin(criteria)]
     wanted = math.ceil(_FINER * best)
     spline = _fit(t, f, min(wanted, most))
     residuals = spline(t) - f
@@ -171,9 +167,7 @@ def _read(splines: BSpline, ends: tuple[float, float]) -> Array:
         before, highest, after = f[top - 1 : top + 2]
         slope = (after - before) / 2
         bend = before - 2 * highest + after
-        shift = 0.0
-        if bend < 0:
-            shift = min(max(-slope / bend, -1.0), 1.0)
+        shift = min(max(-slope / bend, -1.0), 1.0)
         peak = highest + slope * shift / 2
         # SciPy measures the width at the height f[top] - prominence/2. The prominence
         # 2 f[top] - peak makes this peak/2, half of the vertex above the base, which is 0. Both

@@ -90,9 +90,6 @@ class NoisyPulse:
         Time at which the pulse rises through half of its peak.
     slope : float
         Growth of the base in time.
-    noise : float
-        Standard deviation, times ``√n``, of the mean noise of n samples; 0 in a record without
-        noise.
     """
 
     numbers: Mapping[str, Estimate]
@@ -100,7 +97,6 @@ class NoisyPulse:
     missing: str | None = None
     rise: float = 0.0
     slope: float = 0.0
-    noise: float = 0.0
 
 
 def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPulse:
@@ -144,8 +140,7 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
     else:
         pulse = _noisy(t, f, step, unit)
     # Times are known to the last digit of a float: 2e-7 s if they count from 1970.
-    farthest = np.abs(t).max()
-    resolution = np.spacing(farthest)
+    resolution = np.spacing(np.abs(t).max())
     numbers = {}
     for name, number in pulse.numbers.items():
         if name == "peak":
@@ -158,7 +153,6 @@ def noisy_pulse(time: ArrayLike, values: ArrayLike, unit: str = "") -> NoisyPuls
         numbers=numbers,
         base=pulse.base * size,
         slope=pulse.slope * size,
-        noise=pulse.noise * size,
     )
 
 
@@ -201,11 +195,7 @@ def _noisy(t: Array, f: Array, step: float, unit: str) -> NoisyPulse:
     ends = np.array([rise, fall])
     level, later = base.at(ends).tolist()
     slope = (later - level) / width
-    # The mean noise of n samples, n/block of the means, has the variance σ² · correlation time over
-    # their number, σ² being that of a mean: times n it no longer depends on n (`NoisyPulse.noise`).
-    correlated = base.best.variance * base.best.correlation_time
-    noise = math.sqrt(correlated * block)
-    return NoisyPulse(numbers, level, missing, rise, slope, noise)
+    return NoisyPulse(numbers, level, missing, rise, slope)
 
 
 def _is_exact(f: Array) -> bool:
@@ -249,14 +239,12 @@ def _exact(t: Array, f: Array) -> NoisyPulse:
         coarse = spline(x[first::2], above[first::2])
         rough = readings(first_pulse(coarse))
         for name, value in numbers.items():
-            difference = abs(value - rough[name])
-            errors[name] = max(errors[name], difference)
+            errors[name] = max(errors[name], abs(value - rough[name]))
     # Which of two humps is the higher is unsure within the error of the peak.
     times = np.linspace(pulse.rise, pulse.fall, _GRID + 1)
     least = pulse.peak - errors["peak"]
     tops, _ = find_peaks(signal(times), height=least)
-    distances = np.abs(times[tops] - pulse.arrival)
-    apart = distances.max(initial=0.0)
+    apart = np.abs(times[tops] - pulse.arrival).max(initial=0.0)
     if apart > _SAME * pulse.fwhm:
         errors["arrival"] = max(errors["arrival"], apart + _SAME * pulse.fwhm)
     # A base that is off by this much moves the peak as much, and both flanks at its half. As x
@@ -336,8 +324,7 @@ def _place(t: Array, f: Array) -> tuple[float, float]:
     highest = max(f.max(), np.finfo(float).tiny)
     noise = _noise_by_neighbours(f) / (_SMOOTH * highest)
     count = math.ceil(min(max(1.0, noise**2), len(f)))
-    weights = np.full(count, 1 / count)
-    g = np.convolve(f, weights, "same")
+    g = np.convolve(f, np.full(count, 1 / count), "same")
     if -g.min() > max(g.max(), 0):
         raise InvertedError(
             "the signal falls farther below its start than it rises: it begins in a pulse, or is "
@@ -428,8 +415,7 @@ def suggested(t: Array, signal: Array, pulse: NoisyPulse, unit: str) -> str:
         if not 0 < _SURE * error < below.mean() > _SHALLOWEST * swing.max():
             return ""
         # Behind the pulse the force f = v + charge/T is 0: T = charge/(-v).
-        constant = charge[inside].mean() / below.mean()
-        constants.append(constant)
+        constants.append(charge[inside].mean() / below.mean())
     near, far = constants
     if not 1 / _ALIKE < near / far < _ALIKE:
         return ""

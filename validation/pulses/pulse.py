@@ -78,8 +78,9 @@ def checked(time: ArrayLike, values: ArrayLike) -> tuple[Array, Array]:
         if f.size < 4 or not f.shape == t.shape == (f.size,):
             raise ValueError(f"the shapes are {t.shape} and {f.shape}")
     except (TypeError, ValueError, OverflowError) as reason:
-        wanted = "time and signal must be equally long rows of at least 4 numbers"
-        raise MeasureError(f"{wanted}: {reason}") from None
+        raise MeasureError(
+            f"time and signal must be equally long rows of at least 4 numbers: {reason}"
+        ) from None
     if not np.isfinite((t, f)).all():
         raise MeasureError("time and signal must be finite")
     if np.any(np.diff(t) <= 0):
@@ -170,11 +171,11 @@ def measure(time: ArrayLike | Signal, values: ArrayLike | None = None) -> Pulse:
         )
     pulse = highest_pulse(signal)
     t = signal.times
-    in_pulse = (t > pulse.rise) & (t < pulse.fall)
-    inside = np.count_nonzero(in_pulse)
+    inside = np.count_nonzero((t > pulse.rise) & (t < pulse.fall))
     if values is not None and inside < FEWEST:
-        few = f"{inside} samples lie above half the pulse's peak"
-        raise MeasureError(f"{few}: at least {FEWEST} are wanted")
+        raise MeasureError(
+            f"{inside} samples lie above half the pulse's peak: at least {FEWEST} are wanted"
+        )
     return pulse
 
 
@@ -188,7 +189,7 @@ def all_pulses(signal: Signal) -> list[Pulse]:
     grid = _Grid(signal)
     least = _LEAST * grid.f.max()
     _, sides = scipy.signal.find_peaks(grid.f, height=0.0, prominence=least)
-    whole: list[Pulse] = []
+    whole = []
     # From the lowest point before a top to the lowest one behind, up to higher neighbours
     for start, end in zip(sides["left_bases"], sides["right_bases"], strict=True):
         with suppress(MeasureError):

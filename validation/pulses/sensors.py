@@ -22,7 +22,7 @@ from lwa.base.frozen import Estimate
 from validation.lattice.cost import RunProgress, silent
 from validation.lattice.equations import Motion
 from validation.lattice.result import Run
-from validation.lattice.signal import RECORDS, quantities, sensed_beads, sensors_of
+from validation.lattice.signal import RECORDS
 from validation.lattice.simulate import COMPILED, repeated
 from validation.pulses.pulse import (
     MeasureError,
@@ -179,8 +179,8 @@ def record(
     run, check = runs
     # Splines through half of the samples show the error of the splines, too.
     checks = tracks(check, velocities, 2)
-    firsts: list[Track] = []
-    found: list[Track] = []
+    firsts = []
+    found = []
     for track, other in zip(tracks(run, velocities), checks, strict=True):
         firsts += _readings(track, other, lambda signal: [first_pulse(signal)])
         if every:
@@ -272,7 +272,7 @@ def tracks(
     # Places of the beads, and of one more, imagined a spacing after the last
     x = np.cumsum((0.0, *scene.spacings, *scene.spacings[-1:]))
     found = []
-    for kind, numbers in sensors_of(scene).items():
+    for kind, numbers in scene.sensors.items():
         for row, i in enumerate(numbers):
             name = f"{kind} {i + 1}"
             quantity = "force"
@@ -314,8 +314,7 @@ def _place(scene: Scene, x: Array, kind: str, i: int) -> dict[str, float]:
     site = i + 0.5 if kind == "contact" else float(i)
     place = {"speed_sites": site}
     if scene.spacings:
-        sites = np.arange(len(x))
-        place["speed"] = float(np.interp(site, sites, x))
+        place["speed"] = float(np.interp(site, np.arange(len(x)), x))
     return place
 
 
@@ -331,18 +330,15 @@ def forces_at_start(scene: Scene) -> dict[str, float]:
     damped contact of a moving bead resists at once, but a sensor has been at rest before.
     """
     motion = Motion(scene)
-    beads = sensed_beads(motion)
-    y = np.append(motion.start[: scene.size], 0.0)  # the wall stays at 0
-    at_rest = np.zeros((len(beads), 1))
-    records = quantities(motion, beads, y[beads, np.newaxis], at_rest)
-    forces = {}
-    for kind, numbers in sensors_of(scene).items():
+    contacts = motion.force(motion.compression(motion.start[: scene.size]))
+    # The force of a bead is the mean of its two contacts'; beyond both ends there is none.
+    beside = np.concatenate(([0.0], contacts, [0.0]))
+    forces = {"bead": (beside[:-1] + beside[1:]) / 2, "contact": contacts}
+    found = {}
+    for kind, numbers in scene.sensors.items():
         for i in numbers:
-            rows = records[RECORDS[kind, "force"]]
-            # A row for each of ``beads``, and for the contact ahead of it, which has its number
-            force = rows[beads.searchsorted(i)]
-            forces[f"{kind} {i + 1}"] = float(force[0])
-    return forces
+            found[f"{kind} {i + 1}"] = float(forces[kind][i])
+    return found
 
 
 def _readings(
@@ -361,8 +357,11 @@ def _readings(
         if numbers["peak"].relative_error < _HIDDEN:
             found.append(replace(track, numbers=numbers, pulse=len(found) + 1))
     if not found:
-        reason = "no pulse: the force is the static one, but for errors"
-        return [replace(track, missing=reason)]
+        return [
+            replace(
+                track, missing="no pulse: the force is the static one, but for errors"
+            )
+        ]
     return found
 
 
@@ -412,8 +411,7 @@ def _speeds(
         raise MeasureError("one of the two has no pulse")
     start = first.numbers["arrival"]
     end = second.numbers["arrival"]
-    error = total(start.error, end.error)
-    time = Estimate(end.value - start.value, error)
+    time = Estimate(end.value - start.value, total(start.error, end.error))
     if time.value <= time.error:
         raise MeasureError(
             "a speed needs a later second arrival, by more than its error"

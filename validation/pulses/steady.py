@@ -168,8 +168,7 @@ def _measured(
             f"not steady: at {far} sites the highest pulse has {higher:.3g} times the force that "
             f"the leading pulse's decay at {place} sites predicts"
         )
-    ends = (place, place + chain.sites)
-    return Point(k, omega, ends, measured)
+    return Point(k, omega, (place, place + chain.sites), measured)
 
 
 @dataclass(frozen=True)
@@ -180,12 +179,16 @@ class StruckDimer:
     omega: float
     sites: int  # from one place of measurement to the next
 
+    @property
+    def q(self) -> float:
+        """Exponent of the speed, which is proportional to F^q of the peak contact force F."""
+        return (self.k - 1) / (2 * self.k)
+
     def crossing(self, sites: int) -> float:
         """Return the time in which the theory's pulse of force `_WEAKEST` passes sites."""
         # The speed is 2 F^q/√((k+1)(1+ω)), F the peak contact force, in the long-wave theory of
         # equal beads with the mean mass (1+ω)/2.
-        q = (self.k - 1) / (2 * self.k)
-        weak = math.pow(_WEAKEST, q)
+        weak = math.pow(_WEAKEST, self.q)
         of_unit_force = 2 / math.sqrt((self.k + 1) * (1 + self.omega))
         return sites / (of_unit_force * weak)
 
@@ -220,11 +223,10 @@ class StruckDimer:
                 # Its width at half of its greatest compression is the FWHM of the strain.
                 strain = first_pulse(force, low, 0.5**self.k)
             except MeasureError:
-                end = run.scene.duration
-                missing = (
-                    f"the pulse has not passed {sensors[-2]} sites by t = {end:.3g}"
-                )
-                raise MeasureError(f"not steady: {missing}") from None
+                raise MeasureError(
+                    f"not steady: the pulse has not passed {sensors[-2]} sites by t = "
+                    f"{run.scene.duration:.3g}"
+                ) from None
             numbers = {
                 "arrival": pulse.arrival,
                 "peak": pulse.peak,
@@ -249,10 +251,9 @@ class StruckDimer:
         elapsed[elapsed <= 0] = np.nan
         logarithms = np.log(passages["peak"])
         fall = -np.diff(logarithms, axis=0)
-        q = (self.k - 1) / (2 * self.k)
-        scaled = passages["peak"] ** q
+        scaled = passages["peak"] ** self.q
         # exprel(z) is (e^z - 1)/z.
-        distance = self.sites * scipy.special.exprel(q * fall)
+        distance = self.sites * scipy.special.exprel(self.q * fall)
         speed = distance / (elapsed * scaled[:-1])
         # A width is a duration at a contact times the speed there.
         at_end = speed * scaled[1:]

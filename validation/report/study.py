@@ -13,12 +13,12 @@ import shutil
 import sys
 import tempfile
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import update_wrapper
+from functools import partial, update_wrapper
 from pathlib import Path
-from typing import Any, Generic, ParamSpec, TypeVar
+from typing import Any, Generic, ParamSpec
 
 import click
 
@@ -42,7 +42,6 @@ from validation.report.table import (
 from validation.scenes.checks import finite
 
 P = ParamSpec("P")
-T = TypeVar("T")
 
 _DELAY = 1.0  # seconds of a run without a bar: most runs end before
 _LONGEST = 120  # characters of a path in a message
@@ -95,7 +94,12 @@ class Report(Pictured):
     @property
     def ok(self) -> bool:
         """True if every finding holds."""
-        return all(finding.ok for finding in self.findings)
+        return not self._failed
+
+    @property
+    def _failed(self) -> list[Finding]:
+        """Findings that do not hold."""
+        return [finding for finding in self.findings if not finding.ok]
 
     @property
     def verdict(self) -> str:
@@ -107,10 +111,9 @@ class Report(Pictured):
         count = len(self.findings)
         if not count:
             return ""
-        failed = [finding for finding in self.findings if not finding.ok]
         outcome = "all hold"
-        if failed:
-            outcome = f"{len(failed)} of {count} fail"
+        if self._failed:
+            outcome = f"{len(self._failed)} of {count} fail"
         return f"{count} check{'s' * (count > 1)}: {outcome}"
 
     def text(self, width: int = WIDTH) -> str:
@@ -123,10 +126,8 @@ class Report(Pictured):
         """
         parts = [wrap(self.title, width)]
         parts += [table.text(width) for table in self.tables]
-        printed = [finding for finding in self.findings if not finding.ok]
         # A report of findings alone shows them all.
-        if not any(parts[1:]):
-            printed = list(self.findings)
+        printed = self._failed if any(parts[1:]) else self.findings
         parts.append(findings_table(printed).text(width))
         parts += [wrap(note, width) for note in self.notes]
         parts.append(self.verdict)
@@ -168,10 +169,9 @@ class Report(Pictured):
         """
         if not self.tables:
             raise InputError("format is csv: this result has no table")
-        for table in self.tables:
-            if table.rows:
-                return table.csv()
-        return self.tables[0].csv()  # its header
+        filled = [table for table in self.tables if table.rows]
+        first, *_ = filled or self.tables  # without any row the header alone
+        return first.csv()
 
     def pictured(self) -> Sequence[Panel]:
         """The panels, curves and maps, of which a picture of the result is made."""
@@ -279,8 +279,7 @@ def study(
     examples : sequence of str
         Lines that run one after another in an empty folder, shown at the end of the help.
     """
-    end = help_end(examples, page)
-    return lambda function: Study(function, options, end)
+    return lambda function: Study(function, options, help_end(examples, page))
 
 
 def printed_as(style: str, report: Report) -> str:
@@ -424,9 +423,8 @@ EXPONENT = option(
 )
 
 
-def progress(cases: Iterable[T]) -> Iterable[T]:
-    """Show how many cases are done."""
-    return shown(cases, "cases")
+progress = partial(shown, label="cases")
+"""Display of how many cases are done."""
 
 
 @contextmanager

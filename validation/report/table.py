@@ -356,7 +356,7 @@ def aligned(lines: Sequence[Sequence[str]], width: int = WIDTH) -> str:
     return "\n".join(texts[:-1])
 
 
-def wrap(text: str, width: int = WIDTH) -> str:
+def wrap(text: str, width: int) -> str:
     """Break the lines of a text that are longer than a width."""
     lines = (fill(line, width, break_long_words=False) for line in text.splitlines())
     return "\n".join(lines)
@@ -368,8 +368,6 @@ def bounds(low: float, high: float) -> str:
     >>> bounds(-1.0, 1.0), bounds(2.0, 3.0), bounds(-math.inf, 3.0), bounds(-math.inf, math.inf)
     ('± 1', '2 … 3', '≤ 3', '-')
     """
-    if low == high:
-        return f"{low:g}"
     if math.isinf(low):
         return "-" if math.isinf(high) else f"≤ {high:g}"
     if math.isinf(high):

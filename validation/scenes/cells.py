@@ -92,11 +92,10 @@ class Cells:
         self._text = text
         rows = tables[mark]
         start, end = record(mark)
-        typical: list[str] = []
+        typical = []
         if end:
             # Which columns hold numbers is read from one row of the record, after the settings.
-            place = min(start + _SETTINGS, end - 1)
-            typical = rows[place]
+            typical = rows[min(start + _SETTINGS, end - 1)]
         else:
             # Without any row of numbers all lines are the head.
             start = len(rows)
@@ -318,8 +317,7 @@ def _split(line: str, mark: str) -> list[str]:
         bare = line.strip("#% \t")
         line = re.sub(r"[ \t]+(?![([])", mark, bare)
     # Cells in quotes may hold separators.
-    reader = csv.reader([line], delimiter=mark, skipinitialspace=True)
-    cells = next(reader)
+    cells = next(csv.reader([line], delimiter=mark, skipinitialspace=True))
     return [" ".join(cell.split()) for cell in cells]
 
 

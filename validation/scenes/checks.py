@@ -9,19 +9,20 @@ from typing import Any
 
 import sympy as sp
 
-from lwa.base import Refusal, files
+from lwa.base import Refusal
 from lwa.base.exact import InputError, one_of as one_of, shorten
-from lwa.base.files import Reader
+from lwa.base.files import (
+    Reader,
+    finite as finite,
+    integer as integer,
+    items as items,
+    positive as positive,
+)
 from lwa.cell import exponent
 from lwa.law import ContactLaw
 
 SceneError = InputError
 """Invalid input of a scene, under the name that `validation` exports."""
-
-finite = files.finite
-integer = files.integer
-items = files.items
-positive = files.positive
 
 
 MISSING = math.nan
@@ -115,8 +116,10 @@ def _evaluable(law: ContactLaw) -> ContactLaw:
         cases for cases in law.F.atoms(sp.Piecewise) if cases.args[-1][1] != sp.true
     )
     if law.F.has(*_OTHER_CASES) or any(open_ends):
-        cases = "a force by cases is a Piecewise whose last condition is True"
-        raise SceneError(f"law is {shorten(law.text)}: {cases}")
+        raise SceneError(
+            f"law is {shorten(law.text)}: a force by cases is a Piecewise whose last "
+            "condition is True"
+        )
     return law
 
 

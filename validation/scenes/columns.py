@@ -55,9 +55,19 @@ _SPELLINGS = {
 }
 # Names of prefixes by their powers of ten
 _PREFIXES = {
-    **{-15: "f femto", -12: "p pico", -9: "n nano", -6: "u µ micro", -3: "m milli"},
-    **{-2: "c centi", -1: "d deci", 0: "", 2: "h hecto", 3: "k kilo"},
-    **{6: "M mega", 9: "G giga", 12: "T tera"},
+    -15: "f femto",
+    -12: "p pico",
+    -9: "n nano",
+    -6: "u µ micro",
+    -3: "m milli",
+    -2: "c centi",
+    -1: "d deci",
+    0: "",
+    2: "h hecto",
+    3: "k kilo",
+    6: "M mega",
+    9: "G giga",
+    12: "T tera",
 }
 _POWERS = {
     name: power for power, names in _PREFIXES.items() for name in names.split(" ")
@@ -206,8 +216,7 @@ class Columns:
         # `validation.scenes.measured` refuses a header that is not unique.
         names: dict[int, str] = {}
         for name, header in self.headers.items():
-            numbers = self.cells.headed(header)
-            names |= dict.fromkeys(numbers, name)
+            names |= dict.fromkeys(self.cells.headed(header), name)
         columns = []
         if self.step:
             columns.append(Column("time", None, "", "", self.step))
@@ -292,7 +301,7 @@ class Columns:
                 elif column.stated:
                     units[column.key] = column.stated
         # The options that the error proposes, by their names on the command line
-        change: dict[str, object] = {}
+        change = {}
         for option, given, wanted in (
             ("columns", self.headers, headers),
             ("step", self.step, proposed.step),
@@ -378,8 +387,9 @@ def found_unit(cells: Sequence[str]) -> str:
     """Return the unit that the cells above a column state, "" for none; the lowest one counts."""
     for cell in reversed(cells):
         header = HEADER.fullmatch(cell)
-        if header and (header[2] or header[3]):
-            return header[2] or header[3]
+        unit = header and (header[2] or header[3])
+        if unit:
+            return unit
     # A row of units stands below names: the V of a single header is a speed, say.
     below = [*filter(None, cells)][1:]
     return next(filter(known, reversed(below)), "")

@@ -51,8 +51,9 @@ class Damping:
         for number in {*numbers}:
             if self.kind == "restitution":
                 # At 0.01 the damping ratio ζ is 4.8: hardly any rebound is left.
-                wanted = "a coefficient from 0.01 to 1 is wanted"
-                between(number, self.kind, 0.01, 1, wanted)
+                between(
+                    number, self.kind, 0.01, 1, "a coefficient from 0.01 to 1 is wanted"
+                )
             elif number or isinstance(value, float):
                 positive(number, self.kind)
         object.__setattr__(self, "value", value)
@@ -169,22 +170,22 @@ class Drive:
 
     def __post_init__(self) -> None:
         for name in ("time", "displacement"):
-            given = getattr(self, name)
-            row = each(finite)(given, f"drive.{name}")
+            row = each(finite)(getattr(self, name), f"drive.{name}")
             object.__setattr__(self, name, row)
         # A piston may stand still: 0 is a velocity.
         constant = self.velocity is not None
         harmonic = self.amplitude is not None or self.frequency is not None
         recorded = bool(self.time or self.displacement)
         if constant + harmonic + recorded != 1:
-            wanted = (
-                "velocity, amplitude and frequency, or time and displacement are wanted"
+            raise SceneError(
+                "drive has not one motion: velocity, amplitude and frequency, or time and "
+                "displacement are wanted"
             )
-            raise SceneError(f"drive has not one motion: {wanted}")
         ramp = between(self.ramp, "drive.ramp", 0, math.inf, "it must not be negative")
         if ramp and not harmonic:
-            wrong = "it belongs to amplitude and frequency"
-            raise SceneError(f"drive.ramp is {ramp:g}: {wrong}")
+            raise SceneError(
+                f"drive.ramp is {ramp:g}: it belongs to amplitude and frequency"
+            )
         # Read for their refusals alone.
         if constant:
             finite(self.velocity, "drive.velocity")
@@ -200,9 +201,9 @@ class Drive:
         times, places = len(self.time), len(self.displacement)
         # A cubic spline without conditions at its ends takes four points.
         if times != places or times < 4:
-            wanted = "equally many, four or more, are wanted"
             raise SceneError(
-                f"drive has {times} times and {places} displacements: {wanted}"
+                f"drive has {times} times and {places} displacements: equally many, four or "
+                "more, are wanted"
             )
         if self.time[0] != 0 or min(np.diff(self.time)) <= 0:
             raise SceneError("drive.time must begin with 0 and increase")
@@ -250,13 +251,10 @@ class Drive:
     @property
     def fastest(self) -> float:
         """Approximate greatest speed of the bead."""
-        if self.velocity is not None:
-            return abs(self.velocity)
-        if self.time:
-            velocities = self._spline(self.time, 1)
-            return float(np.abs(velocities).max())
+        # One of the two is 0. A cubic's second coefficient is the velocity where it begins.
+        _, cubics = self.cubics
         amplitude, w = self.oscillation
-        return abs(amplitude) * w
+        return float(np.abs(cubics[:, 1]).max() + abs(amplitude) * w)
 
     @property
     def longest_step(self) -> float:
@@ -267,4 +265,4 @@ class Drive:
             return 1 / (8 * self.frequency)
         # Between two times of a file the motion is a cubic, with one inflection at most.
         longest = np.diff(self.time).max(initial=0.0)
-        return float(longest) or math.inf
+        return longest or math.inf

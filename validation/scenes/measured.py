@@ -162,8 +162,7 @@ class MeasuredFile(Columns):
         for name in missing:
             self._demand(name, there.count(name), missing)
         by_name = {column.name: column for column in self.named}
-        columns = [by_name[name] for name in names]
-        return self._record(columns)
+        return self._record([by_name[name] for name in names])
 
     def records(
         self, of: str = "contact", wanted: Sequence[str] = ("force",)
@@ -207,8 +206,7 @@ class MeasuredFile(Columns):
             self._demand(name, names.count(name), missing)
         records = []
         for time, signal in zip(cycle(times), sensors, strict=False):
-            found = self._signal(time, signal, of)
-            records.append(found)
+            records.append(self._signal(time, signal, of))
         # "bead" before "contact": the order in which `run` writes its sensors.
         return sorted(records, key=lambda record: record.kind)
 

@@ -169,8 +169,9 @@ class Scene:
             value = getattr(self, name)
             # Without a wall nothing holds a chain that is pushed, and it has no equilibrium.
             if value < 0 or (value > 0 and self.wall is None):
-                wanted = "it must be positive and needs a wall"
-                raise SceneError(f"{name} is {value:g}: {wanted}")
+                raise SceneError(
+                    f"{name} is {value:g}: it must be positive and needs a wall"
+                )
         for name, count in (
             ("contact_sensors", self.contact_count),
             ("bead_sensors", n),
@@ -182,7 +183,7 @@ class Scene:
 
     def _read_laws(self) -> None:
         """Check the exponents and the laws; a law that is a power is kept as its exponent."""
-        k: Any = self.k
+        k = self.k
         if k is not MISSING:
             k = one_or_each(read_exponent)(k, "k")
         law = one_or_each(read_contact_law)(self.law, "law")
@@ -256,10 +257,10 @@ class Scene:
         if drive.time:
             end = drive.time[-1]
         if not self.duration <= end < _LONGEST * self.duration:
-            wanted = (
-                f"one to {_LONGEST} times the duration, {self.duration:g}, is wanted"
+            raise SceneError(
+                f"drive.time ends at {end:g}: one to {_LONGEST} times the duration, "
+                f"{self.duration:g}, is wanted"
             )
-            raise SceneError(f"drive.time ends at {end:g}: {wanted}")
 
     def __repr__(self) -> str:
         return f"Scene({self})"
@@ -296,6 +297,11 @@ class Scene:
         """Exponent k and law (None for a power) of each contact."""
         count = self.contact_count
         return tuple(zip(_row(self.k, count), _row(self.law, count), strict=True))
+
+    @property
+    def sensors(self) -> dict[str, tuple[int, ...]]:
+        """Numbers of the sensors, from 0, by their kind, "bead" or "contact"."""
+        return {"bead": self.bead_sensors, "contact": self.contact_sensors}
 
     @property
     def load(self) -> tuple[float, ...]:

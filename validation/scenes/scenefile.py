@@ -121,8 +121,10 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     row = read_row(file, beads)
     # Counted before the beads are made: a chain too long would fill the memory.
     if row.size > MOST_BEADS:
-        made = f"chain.cell and repeat make {shorten(row.size)} beads"
-        raise SceneError(f"{made}: at most {MOST_BEADS} are wanted")
+        raise SceneError(
+            f"chain.cell and repeat make {shorten(row.size)} beads: at most {MOST_BEADS} are "
+            "wanted"
+        )
     spheres = row.spheres * row.repeat
     fields = _chain(row, spheres, beads, _defects(file, striker))
     contacts = row.size - 1
@@ -140,8 +142,7 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     if "damping" in file:
         damping = part("damping")
         kind = damping.one(*DAMPINGS)
-        value = damping.read(kind, own(finite))
-        fields["damping"] = Damping(kind, value)
+        fields["damping"] = Damping(kind, damping.read(kind, own(finite)))
     fields |= start.entries
     if "striker" in file:
         if "start" in file:
@@ -185,7 +186,7 @@ def _lines(fault: SceneError) -> str:
         if about[2] == "unknown":
             tables = []
         table = ".".join(tables)
-        found: Any = _known()
+        found = _known()
         for name in tables:
             # Names of beads and of materials are free.
             found = found.get(name) or next(iter(found.values()))
@@ -210,8 +211,12 @@ def _toml(value: Any) -> str:
 @cache
 def _known() -> dict[str, Any]:
     """Return the list of all keys as a parsed file."""
-    text = Path(__file__).with_name("keys.toml").read_text(encoding="utf-8")
-    return tomllib.loads(text)
+    return tomllib.loads(packaged("keys.toml"))
+
+
+def packaged(name: str) -> str:
+    """Return the text of a file beside this module: the list of keys, or an example."""
+    return (Path(__file__).parent / name).read_text(encoding="utf-8")
 
 
 def _passage(fields: Mapping[str, Any]) -> float:
@@ -273,7 +278,7 @@ def _defects(file: Table, striker: Table) -> list[Table]:
     own = {key: striker.entries[key] for key in _OTHER if key in striker}
     if own:
         given.append(_defect({"bead": 1, **own}, "striker"))
-    named: set[str] = set()
+    named = set()
     for defect in given:
         kind = defect.one("contact", "bead")
         at = f"{kind} {shorten(defect.entries[kind])}"
@@ -313,7 +318,7 @@ def _chain(
                 raise SceneError(f"{named} names a bead in a chain of masses")
             at = defect.read("bead", place(len(spheres)))
             spheres[at] = defect.read("like", among(beads))
-    fields: dict[str, Any] = {
+    fields = {
         "masses": row.masses * row.repeat,
         "stiffnesses": row.by_contact(row.stiffnesses) or [1.0] * (row.size - 1),
         "spacings": row.by_contact(row.spacings),

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import sympy as sp
 
 from lwa.base.words import QUANTITIES
@@ -47,7 +45,7 @@ def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
     """
     wave = exact_wave(masses, k)
     # The numbers of the wave as a whole, then those of the rows again, by quantity.
-    data: dict[str, Any] = {
+    data = {
         "k_value": wave.k,
         "masses_value": wave.masses,
         "half_period_value": wave.half_period,
@@ -57,7 +55,7 @@ def exact(k: float, masses: tuple[sp.Expr, ...]) -> Report:
         "c": wave.estimate("c"),
         "tail": wave.estimate("tail"),
     }
-    rows: list[dict[str, Any]] = []
+    rows = []
     for quantity in QUANTITIES:
         amplitude = wave.estimate("peak", quantity)
         fwhm = wave.estimate("fwhm", quantity)

@@ -117,7 +117,7 @@ def law(
     """
     file = MeasuredFile.read(data, **stated)
     force, speed, weight = _pulses(file)
-    content: dict[str, Any] = {}
+    content = {}
     if spheres is None:
         cell = Cell(masses or (1,), spacing=1 if spacing is None else spacing)
     else:
@@ -185,18 +185,21 @@ def _pulses(file: MeasuredFile) -> tuple[Array, Array, Array | None]:
     force, speed, *deviations = read[:, rising]
     positive = force[0] > 0 and speed.min() > 0
     if len(force) < _FEWEST or not positive:
-        wanted = f"at least {_FEWEST} pulses of positive force and speed are wanted"
-        raise SceneError(f"{file.path}: {wanted}")
+        raise SceneError(
+            f"{file.path}: at least {_FEWEST} pulses of positive force and speed are wanted"
+        )
     # Blows of one height tell one point of the law, however many they are.
     different = len(np.unique(force))
     if different < _FEWEST - 2:
-        wanted = f"{_FEWEST - 2} or more are wanted"
-        raise SceneError(f"{file.path}: {different} different forces: {wanted}")
+        raise SceneError(
+            f"{file.path}: {different} different forces: {_FEWEST - 2} or more are wanted"
+        )
     if not deviations:
         return force, speed, None
     if len(deviations) != 2 or not np.min(deviations) > 0:
-        wanted = "force_error and speed_error are wanted together, and positive"
-        raise SceneError(f"{file.path}: {wanted}")
+        raise SceneError(
+            f"{file.path}: force_error and speed_error are wanted together, and positive"
+        )
     return force, speed, weights(force, speed, *deviations)
 
 
@@ -308,11 +311,11 @@ def fit_power(force: Array, speed: Array, weight: Array | None = None) -> PowerF
     x, y = np.log(force), np.log(speed)
     (slope, constant), middle = _fit(x, y, 1, weight)
     k = _exponent(slope)
-    at_zero = constant - slope * middle
-    log_A = log_stiffness(slope, at_zero)
+    log_A = log_stiffness(slope, constant - slope * middle)
     if not LEAST <= k[0] <= MOST:
-        wanted = f"laws with k from {LEAST:g} to {MOST:g} are read"
-        raise SceneError(f"k is {k[0]:.3g} by the best fit: {wanted}")
+        raise SceneError(
+            f"k is {k[0]:.3g} by the best fit: laws with k from {LEAST:g} to {MOST:g} are read"
+        )
     # Hertz's law: the slope (k - 1)/(2k) of ln V is given, and the constant alone is fitted.
     sixth = (_HERTZ - 1) / (2 * _HERTZ)
     (hertz,), _ = _fit(x, y - sixth * x, 0, weight)
@@ -334,7 +337,7 @@ def fit_power(force: Array, speed: Array, weight: Array | None = None) -> PowerF
 
     return PowerFit(
         _interval(k),
-        stiffness(log_A, float(k[0])),
+        stiffness(log_A, k[0]),
         float(np.corrcoef(k, log_A)[0, 1]),
         stiffness(log_stiffness(sixth, hertz), _HERTZ),
         _interval(curvature),
@@ -364,8 +367,7 @@ def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, 
     # with the scatter of the residuals.
     shape = covariance * max(scatter, least)
     noise = scipy.stats.multivariate_t(None, shape, freedom, allow_singular=True)
-    drawn = noise.rvs(_DRAWS, random_state=0)
-    draws = drawn.reshape(_DRAWS, degree + 1)
+    draws = noise.rvs(_DRAWS, random_state=0).reshape(_DRAWS, degree + 1)
     return np.vstack((best, best + draws)).T, middle
 
 

@@ -15,6 +15,7 @@ import numpy as np
 import sympy as sp
 
 from lwa import Cell, Estimate, homogenize
+from lwa.base.exact import number
 from validation.pulses.pulse import derived
 from validation.report.study import Report, study
 from validation.report.table import Column, Estimates, Finding, Table, percent
@@ -123,8 +124,7 @@ def compared(
     """Compare a quantity at each of `EXPONENTS`, and the coefficient of its error as ε → 0."""
     law = LEADING_POWERS[quantity]
     epsilon = np.array([float(k - 1) for k in EXPONENTS])
-    # Seventeen digits, those of a float: evalf's default is fifteen.
-    numbers = np.array([float(sp.N(value, 17)) for value in theory])
+    numbers = np.array([*map(number, theory)])
 
     def coefficient(*values: float) -> float:
         """Fit the limit of ``error/ε^order`` as ``ε → 0``."""
@@ -133,22 +133,22 @@ def compared(
         *_, limit = np.polyfit(epsilon, ratios, len(EXPONENTS) - 1)
         return float(limit)
 
-    for k, value, number in zip(EXPONENTS, theory, lattice, strict=True):
+    for k, value, found in zip(EXPONENTS, theory, lattice, strict=True):
         bound = law.constant * float(k - 1) ** law.order
-        yield _row(quantity, value, number, bound) | {"k": k}
+        yield _row(quantity, value, found, bound) | {"k": k}
     fitted = derived(coefficient, *lattice)
     yield _row(f"{quantity} limit", law.coefficient, fitted, COEFFICIENT_BOUND)
 
 
-def _row(quantity: str, theory: sp.Expr, number: Estimate, bound: float) -> Record:
-    """The row that compares a number with the theory's."""
-    value = float(sp.N(theory, 17))
+def _row(quantity: str, theory: sp.Expr, lattice: Estimate, bound: float) -> Record:
+    """The row that compares a number of the lattice with the theory's."""
+    value = number(theory)
     row = {
         "quantity": quantity,
         "theory": theory,
         "theory_value": value,
-        "lattice": number,
-        "error_value": value / number.value - 1,
+        "lattice": lattice,
+        "error_value": value / lattice.value - 1,
         "bound_value": bound,
     }
     return row | {"ok": finding(row).ok}

@@ -43,7 +43,6 @@ from lwa.base.progress import Progress
 from lwa.spheres.beads import GRAVITY
 from validation.lattice.cost import RunProgress, silent
 from validation.lattice.result import Run
-from validation.lattice.signal import sensors_of
 from validation.lattice.simulate import repeated, simulate, simulate_many
 from validation.pictures import Curve, Panel
 from validation.pulses.pulse import (
@@ -144,7 +143,7 @@ def bead_fwhm(wave: PhysicalWave) -> float:
 
 def passing(run: Run, kind: str = "bead") -> dict[int, Pulse]:
     """Measure the first pulses at the "bead" or "contact" sensors of a run, by number from 1."""
-    sensors = sensors_of(run.scene)[kind]
+    sensors = run.scene.sensors[kind]
     return {i + 1: first_pulse(run.signal(kind, i)) for i in sensors}
 
 
@@ -262,7 +261,7 @@ def paper(
     rows = []
     for quantity in QUANTITIES:
         found = lattice[quantity.name]
-        row: dict[str, Any] = {
+        row = {
             "quantity": quantity.name,
             "unit": quantity.unit,
             "lattice": found,
@@ -325,8 +324,7 @@ def _panel(run: Run, theory: PhysicalWave) -> Panel:
     curves = []
     pulses = passing(run)
     for i, bead in enumerate(SENSORS):
-        place = run.scene.bead_sensors.index(bead - 1)
-        force = run.bead_force[place]
+        force = run.bead_force[run.scene.bead_sensors.index(bead - 1)]
         # The theory's peak is put upon the lattice's: the theory knows no time of the blow.
         wave = theory.curve(run.time - pulses[bead].arrival)
         curves.append(Curve(f"bead {bead}, lattice", run.time, force, f"C{i}-"))
@@ -422,8 +420,7 @@ def stated_errors() -> list[dict[str, Any]]:
     fwhm = mean(contacts, "fwhm", places)
     rows = []
     for (line, stated), cell in zip(STATED.items(), cells_of_lines(), strict=True):
-        of_cell = homogenize(cell, k=HERTZ).pde.traveling_wave()
-        wave = of_cell.at_force(peak)
+        wave = homogenize(cell, k=HERTZ).pde.traveling_wave().at_force(peak)
         error = float(wave.fwhm("force", "time")) / fwhm - 1
         rows.append(
             {
@@ -451,7 +448,7 @@ def scaling(E: float, rtol: float = RTOL) -> list[dict[str, Any]]:
     wave = canonical_wave(chain_cell(ptfe=ptfe), HERTZ)
     rows = []
     for height, *of_scene in zip(HEIGHTS, *runs, strict=True):
-        row: dict[str, Any] = {"modulus_value": E, "height_value": height}
+        row = {"modulus_value": E, "height_value": height}
         row |= compared(_speed_and_force, of_scene)
         theory = wave.at_force(row["force"].value, of="bead")
         row["theory_value"] = float(theory.speed)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Unpack
+from typing import Unpack
 
 import click
 
@@ -59,7 +59,7 @@ def _pairs(
     context: click.Context, given: click.Parameter, pairs: Sequence[str]
 ) -> dict[str, str]:
     """Read the texts NAME=VALUE of an option."""
-    stated: dict[str, str] = {}
+    stated = {}
     fault = ""
     for pair in pairs:
         name, equals, value = (part.strip() for part in pair.partition("="))
@@ -71,8 +71,7 @@ def _pairs(
         # The line that is proposed keeps the valid pairs, and has an example if there are none.
         wanted = f"{given.metavar} is wanted, once a name"
         key = called(given)
-        example = {"time": _TIMES[key]}
-        change = {key: stated or example}
+        change = {key: stated or {"time": _TIMES[key]}}
         raise SceneError(f"{key} is {fault}: {wanted}", **change)
     return stated
 
@@ -164,7 +163,7 @@ class Measured:
                     f"{file.path}: it has units, {names[0]} not, or the reverse"
                 )
         records = [record for file in files for record in file.records(of, wanted)]
-        signals: dict[tuple[str, int | None], Record] = {}
+        signals = {}
         for place, signal in enumerate(records, start=1):
             # A single sensor needs no number.
             if len(records) > 1:
@@ -251,10 +250,10 @@ def pulses(
     one_of(of, _KINDS, "of")
     apart = None if distance is None else positive(distance, "distance")
     read = Measured.read(records, of, time_constant, stated)
-    found: list[Reading] = []
+    found = []
     curves = []
     notes = [*read.notes]
-    refusals: list[MeasureError] = []
+    refusals = []
     for i, signal in enumerate(read.signals):
         # Beads, and contacts, lie a site apart; where they begin does not matter to a speed.
         site = signal.number or 1
@@ -373,8 +372,8 @@ def compare(
     late = found[first].numbers["arrival"]
     early = leader.numbers["arrival"]
     shift = Estimate(early.value - late.value, late.error)
-    rows: list[dict[str, Any]] = []
-    curves: list[Curve] = []
+    rows = []
+    curves = []
     for i, (name, track) in enumerate(simulated.items()):
         theirs = dict(found[name].numbers)
         arrival = theirs["arrival"]

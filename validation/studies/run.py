@@ -11,7 +11,6 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Sequence
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -33,9 +32,9 @@ from validation.pulses.sensors import (
 )
 from validation.report.study import Report, option, output_option, replacing, study
 from validation.report.table import Column, Estimates, Table, plain
-from validation.scenes import scenefile
 from validation.scenes.checks import SceneError
 from validation.scenes.columns import BASES
+from validation.scenes.scenefile import packaged, read_scene
 
 EXAMPLES = ("paper", "vertical", "precompressed", "defect", "trimer", "striker")
 """Names of the examples of scene files."""
@@ -49,18 +48,7 @@ _DYNAMIC = (
 
 def example(name: str) -> str:
     """Return the text of an example scene file."""
-    return _scene_text(f"examples/{name}.toml")
-
-
-def keys(wanted: bool = True) -> str:
-    """Return the list of the keys of a scene file, with examples."""
-    return _scene_text("keys.toml")
-
-
-def _scene_text(name: str) -> str:
-    """Return the text of a file of `validation.scenes`."""
-    file = resources.files("validation.scenes").joinpath(name)
-    return file.read_text(encoding="utf-8")
+    return packaged(f"examples/{name}.toml")
 
 
 def report(recording: Recording, every: bool = False) -> Report:
@@ -152,9 +140,8 @@ def reading_tables(
     if si:
         peak = f"{peak} ({', '.join(BASES[quantity] for quantity in quantities)})"
     kind = Column("kind")
-    number = Column("number")
     missing = Column("missing")
-    columns = [Column("", "sensor"), kind, number]
+    columns = [Column("", "sensor"), kind, Column("number")]
     # Columns with one value in all rows, force or pulse 1, are left out.
     if "velocity" in quantities:
         columns.append(Column("signal"))
@@ -175,8 +162,7 @@ def reading_tables(
     for reading in sensors:
         row = _row("sensor", reading)
         if reading.pulse == 1:
-            place = reading.places[0]
-            row |= arriving.get((reading.kind, place), {})
+            row |= arriving.get((reading.kind, reading.number), {})
         rows.append(row)
     legs = [
         Column("", "between"),
@@ -205,7 +191,7 @@ def _row(label: str, reading: Reading) -> dict[str, Any]:
     label : key of the column that holds the reading's name.
     """
     places = ("number",) if len(reading.places) == 1 else ("from", "to")
-    row: dict[str, Any] = dict(zip(places, reading.places, strict=True))
+    row = dict(zip(places, reading.places, strict=True))
     return row | {
         **reading.numbers,
         label: reading.name,
@@ -266,7 +252,7 @@ _RTOL = "Relative tolerance. Errors are differences to a more accurate run."
     ),
     print_option(
         "--keys",
-        keys,
+        lambda _: packaged("keys.toml"),
         "Print all keys of a scene file, with examples.",
         is_flag=True,
     ),
@@ -298,7 +284,7 @@ def run(
     run_progress: RunProgress,
 ) -> Report:
     """A scene from a file, TOML or JSON: arrival, peak force, FWHM and speed at its sensors."""
-    chain = scenefile.read_scene(scene, enough_samples)
+    chain = read_scene(scene, enough_samples)
     # The files are compared, not their names: one may be a link to the other.
     if (
         out is not None
@@ -309,9 +295,9 @@ def run(
         raise SceneError(
             f"out is {out}: it is the scene's own file, which would be lost"
         )
-    sensors = chain.bead_sensors or chain.contact_sensors
     # A CSV holds the records alone; JSON has the result as well.
-    if out is not None and out.suffix.lower() == ".csv" and not sensors:
+    as_csv = out is not None and out.suffix.lower() == ".csv"
+    if as_csv and not (chain.bead_sensors or chain.contact_sensors):
         raise SceneError(f"out is {out}, but the scene names no sensors")
     recording = record(
         chain, method=method, rtol=rtol, every=pulses, progress=run_progress
@@ -321,7 +307,7 @@ def run(
         return result
     done = recording.run
     with replacing(out) as new, new.open("wb") as stream:
-        if out.suffix.lower() == ".csv":
+        if as_csv:
             columns = done.columns()
             # "%s" writes the shortest text that reads back as the same float.
             rows = np.column_stack(list(columns.values()))

@@ -9,7 +9,7 @@ with contact force 1 at its peak, in the paper's closure and for the full closur
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import (
     BrokenExecutor,
     CancelledError,
@@ -21,7 +21,6 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-import click
 import numpy as np
 import sympy as sp
 from sympy import Rational
@@ -34,8 +33,8 @@ from lwa.command.options import count
 from validation.lattice.threads import cluster, threads
 from validation.pictures import Curve, Panel
 from validation.pulses.steady import LABELS, Key, Point, point, stored
-from validation.report.study import Report, option, output_file, study
-from validation.report.table import Column, Estimates, Table, percent
+from validation.report.study import Report, option, output_option, study
+from validation.report.table import Column, Estimates, Row, Table, percent
 from validation.scenes.checks import Failure, SceneError, items
 
 RANGES = {
@@ -85,10 +84,6 @@ _ERRORS = (
     "the largest change over a stretch, from a less accurate run, or twice that to 40 "
     "stretches"
 )
-
-
-Row = Mapping[str, Any]
-"""Cells of a point by the keys of columns."""
 
 
 def report(points: Sequence[Point]) -> Report:
@@ -212,8 +207,9 @@ def _read(part: Any, name: str) -> list[sp.Expr]:
         raise SceneError(f"{name} is {shorten(part)}: a range is start:stop:count")
     start, stop, count = numbers
     if not (count.is_Integer and 2 <= count <= _MOST):
-        wanted = f"the count of a range is an integer from 2 to {_MOST}"
-        raise SceneError(f"{name} is {shorten(part)}: {wanted}")
+        raise SceneError(
+            f"{name} is {shorten(part)}: the count of a range is an integer from 2 to {_MOST}"
+        )
     # Exact steps: 1/10 is a value of 1/20:1:20, and a file finds the point again.
     length = stop - start
     return [start + length * i / (count - 1) for i in range(count)]
@@ -227,12 +223,15 @@ def _values(given: str | Iterable[Any], name: str) -> tuple[Rational, ...]:
     for part in parts:
         for value in _read(part, name):
             if not (value.is_Rational and least <= value <= most):
-                wanted = f"a number from {least} to {most} is wanted"
-                raise SceneError(f"{name} is {shorten(value)}: {wanted}")
+                raise SceneError(
+                    f"{name} is {shorten(value)}: a number from {least} to {most} is wanted"
+                )
             values.add(value)
     if not 0 < len(values) <= _MOST:
-        fault = f"it has {len(values)} values, and 1 to {_MOST} are wanted"
-        raise SceneError(f"{name} is {shorten(given)}: {fault}")
+        raise SceneError(
+            f"{name} is {shorten(given)}: it has {len(values)} values, and 1 to {_MOST} are "
+            "wanted"
+        )
     return tuple(sorted(values))
 
 
@@ -256,8 +255,9 @@ def measured(
                 points[new.k, new.omega] = new
                 keep(new)
         except (BrokenExecutor, CancelledError) as error:
-            gone = "the workers are gone before the sweep is done: killed, or out of memory?"
-            raise Failure(gone) from error
+            raise Failure(
+                "the workers are gone before the sweep is done: killed, or out of memory?"
+            ) from error
         except KeyboardInterrupt:
             kept = f"the same line goes on from {path}"
             if path == MEMORY:
@@ -274,11 +274,8 @@ _RANGES = "values and ranges start:stop:count, separated by commas."
     option(
         "--omega", f"Mass ratios m2/m1: {_RANGES}", to="omegas", default="1/20:1:20"
     ),
-    option(
-        "--file",
-        "File of finished points (.sqlite), to be continued.",
-        metavar="FILE",
-        type=click.Path(),
+    output_option(
+        "--file", (".sqlite",), "File of finished points (.sqlite), to be continued."
     ),
     option("--jobs", "Number of threads; by default one a processor.", read=count),
     option(
@@ -333,8 +330,6 @@ def sweep(
     # Checked before the file is made: a refusal leaves no file behind.
     if address is not None and jobs is not None:
         raise InputError(f"jobs is {jobs}: a cluster has its own workers", jobs=None)
-    path = MEMORY
-    if file is not None:
-        path = output_file("file", str(file), (".sqlite",))
+    path = MEMORY if file is None else Path(file)
     workers = threads(jobs, "jobs") if address is None else cluster(address)
     return report(measured(*grid, path, workers, progress))

@@ -114,8 +114,7 @@ def respond(force: Series, inverse: Pair, half_period: float) -> Series:
     # which 1/q² would enlarge.
     if inverse[0] == inverse[1]:
         force = force.real.astype(complex)
-    count = force.shape[-1]
-    q = np.pi * np.arange(count) / half_period
+    q = np.pi * np.arange(force.shape[-1]) / half_period
     # The right side nearly cancels at small q. Without the difference of large terms it is
     # (1/m1 + 1/m2)(f - f*) - [(e^{-iq} - 1)/m1 + (e^{iq} - 1)/m2] f*, and f - f* = 2i Im f.
     by_first = inverse[0] * np.expm1(-1j * q)
@@ -197,8 +196,7 @@ class Problem:
         self.count = 2 * self.n
         if self.uniform:  # half of the matrix's rows and columns, an eighth of the time
             self.count = self.n + 1
-        grid = periodic_grid(self.L, self.n)
-        self.xi = grid[: self.count]
+        self.xi = periodic_grid(self.L, self.n)[: self.count]
 
     def wave(self, force: Array, c2: float) -> Found:
         """Solve for the wave near a force on the grid and a squared speed.
@@ -330,8 +328,6 @@ def newton(change: Callable[[Array], Array], x: Array, sizes: Array) -> Array:
         step = change(x)
         shares = np.abs(step) / sizes
         size = shares.max()
-        if not math.isfinite(size):
-            break
         if size > _LONGEST_STEP:
             step *= _LONGEST_STEP / size
         x = x - step

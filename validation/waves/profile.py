@@ -198,8 +198,7 @@ class ExactWave(Pictured):
         L = self.half_period
         count = len(self.series) + 1
         points = np.linspace(-L, L, count)
-        profile = self._profile(quantity)
-        return highest_pulse(Piecewise(points, profile))
+        return highest_pulse(Piecewise(points, self._profile(quantity)))
 
     def _profile(self, quantity: QuantityName) -> Callable[[ArrayLike], Array]:
         """The method that computes a quantity as a function of ξ."""

@@ -197,7 +197,7 @@ def _equal(k: float, p0: float) -> ExactWave:
 def _dimer(pair: newton.Pair, k: float) -> ExactWave:
     """Return the solitary wave of masses 1 and m2 < 1, in the ratio of a pair of masses."""
     ratio = min(pair) / max(pair)
-    special: list[ExactWave] = []
+    special = []
     for wave in special_waves(k):
         special.append(wave)
         if wave.omega < ratio:
@@ -285,8 +285,10 @@ def resonances(k: Any, count: Any) -> tuple[ExactWave, ...]:
     count = integer(count, "count", 1, len(STARTS))
     known = _known(k)
     if count > known:
-        found = f"at k = {k:g} the {known} largest special mass ratios are found"
-        raise SceneError(f"count is {count}: {found}", count=known)
+        raise SceneError(
+            f"count is {count}: at k = {k:g} the {known} largest special mass ratios are found",
+            count=known,
+        )
     return tuple(islice(special_waves(float(k)), count))
 
 

@@ -9,7 +9,7 @@ import pytest
 from tests.validation.lattice.scenes import TODA, chain
 from validation.lattice import knots
 from validation.lattice.laws import Contact
-from validation.lattice.signal import RECORDS, sensors_of
+from validation.lattice.signal import RECORDS
 from validation.lattice.simulate import simulate
 from validation.scenes.forcing import Damping
 from validation.scenes.scene import SceneError
@@ -55,7 +55,7 @@ def test_samples_are_values_of_the_signals(method, damping):
         run.time[0] = 1
     table = np.arange(500)[::-1].reshape(5, 100)  # in any order
     for (kind, quantity), name in RECORDS.items():
-        numbers = sensors_of(scene)[kind]
+        numbers = scene.sensors[kind]
         for number, row in zip(numbers, getattr(run, name), strict=True):
             signal = run.signal(kind, number, quantity)
             np.testing.assert_allclose(signal(run.time[table]), row[table], atol=1e-14)

@@ -21,9 +21,9 @@ from validation.lattice.simulate import simulate
 from validation.scenes.chains import STEEL
 from validation.scenes.forcing import Damping, Drive
 from validation.scenes.scene import Scene, SceneError
-from validation.scenes.scenefile import read_scene, scene
+from validation.scenes.scenefile import packaged, read_scene, scene
 from validation.studies.paper import recorded_chain
-from validation.studies.run import example, keys
+from validation.studies.run import example
 
 PAPER = example("paper")
 
@@ -63,7 +63,7 @@ def test_every_other_key():
 
 def test_the_list_of_keys_reads_as_a_scene():
     """Once the keys that exclude each other are taken out."""
-    text = keys()
+    text = packaged("keys.toml")
     assert text.isascii()
     content = tomllib.loads(text)
     # The keys that `lwa` knows are these, too.

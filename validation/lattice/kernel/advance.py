@@ -108,6 +108,6 @@ def advance(
             made = end_step(beads, plan, now, h, error, stopping)
             again = made and corrected
         if made and not again:
-            begin_step(beads, hi)
+            begin_step(beads, plan, hi)
             advance_front(beads, plan, now)
             store_knot(forcing, beads, knots, now)

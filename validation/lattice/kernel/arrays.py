@@ -128,14 +128,13 @@ class Beads(NamedTuple):
     force : array, (2, padded + 1)
         Force on each bead from behind, less the static force, at the start of the step and at the
         stage that was computed last.
-    border : array, (stages,)
-        Force from behind on the bead at which the next tile begins, by stage.
     push : array, (`ROOM`, padded + 1)
         Acceleration of each bead by its two contacts, by stage: row 0 at the step's start, the row
         of the last stage at its end. A driven bead, of infinite mass, has 0.
     errors : array, (2 or 4, padded + 1)
         The pair's estimates of each bead's error in displacement and velocity, in units of the
-        tolerance; two more rows for a third solution of lower order.
+        tolerance; two more rows for a third solution of lower order. While a stage is computed, row
+        0 is the power that each contact dissipates.
     marks : array, (padded + 1,)
         1 for each contact with a kink.
     power : array, (2, `ROOM`)
@@ -161,7 +160,6 @@ class Beads(NamedTuple):
     next_y: Array
     next_v: Array
     force: Array
-    border: Array
     push: Array
     errors: Array
     marks: Array

@@ -83,10 +83,10 @@ _SECOND = 0.5
 
 @inlined
 def _ends(
-    chain: Chain, beads: Beads, h: float, i: int
+    chain: Chain, beads: Beads, plan: Plan, h: float, i: int
 ) -> tuple[kinks.State, kinks.State]:
     """Return δ, δ' and δ'' of contact i at both ends of a step, in units of the step."""
-    last = len(beads.border) - 1  # the last stage, at the step's end
+    last = len(plan.scheme.nodes) - 1  # the last stage, at the step's end
     # ``push`` holds the beads' accelerations by stage. A driven bead, which is bead 0, has 0 there,
     # and its acceleration at the step's two ends is in ``given``, which is 0 without a drive.
     a = beads.push[0, i] - beads.push[0, i + 1]
@@ -478,7 +478,7 @@ def correct_contact(
     both = near + far
     bend = -A * h * h * both  # change of p'' by a force of 1
     # States: δ, δ' and δ'' by x at the step's two ends
-    start, end = _ends(chain, beads, h, i)
+    start, end = _ends(chain, beads, plan, h, i)
     damped = forcing is not None and forcing.damped
     if damped and _is_faint(chain, plan, h, i, start, end):
         beads.marks[i] = 0.0

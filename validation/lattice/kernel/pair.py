@@ -30,7 +30,6 @@ from validation.lattice.kernel.arrays import (
 from validation.lattice.kernel.compiled import (
     ONE,
     ZERO,
-    alone,
     index,
     inlined,
     part,
@@ -61,7 +60,7 @@ _THIRD = 0.01
 _LEAST = 1e-3**2
 
 
-@alone
+@part
 def _add_stages(
     target: Array,
     scale: float,
@@ -90,7 +89,7 @@ def _add_stages(
             )
 
 
-@alone
+@part
 def _add_stages_twice(
     y: Array,
     v: Array,
@@ -158,14 +157,14 @@ def evaluate_stages(
     v = beads.v
     next_y = beads.next_y
     next_v = beads.next_v
-    # Row 0 of the forces, and entry 0 of ``beads.given`` below, hold the start of the step, which
-    # estimates of errors compare with its end; row 1, and entry 1, the stage computed last.
-    force = beads.force[1]
+    # Entry 0 of ``beads.given`` below holds the start of the step, entry 1 the stage computed last,
+    # and so do rows 0 and 1 of the forces.
     push = beads.push
-    inverse = chain.inverse
     # All stages go through a tile of beads while its memory is in the processor's cache. A force
     # depends on the bead ahead, so that stage s can be computed up to s beads before the tile's end
     # (`tile_bounds`): it lags by s beads, and ``hi + stages`` lets the last stage reach bead hi-1.
+    # The force behind the first of them is that of the same stage in the tile before: later stages
+    # of that tile end behind it.
     for tile in range(0, hi + stages, TILE):
         for s in range(stages - 1 if again else 1, stages):
             lo, up, first, behind = tile_bounds(tile, s, hi)
@@ -200,16 +199,8 @@ def evaluate_stages(
                     given = drive_motion(forcing, t + h / 2, t + ch)
                     next_y[0], next_v[0], beads.given[1] = given
             contact_forces(
-                chain, forcing, beads, plan, next_y, next_v, s, first, behind
+                chain, forcing, beads, plan, next_y, next_v, push[s], s, first, behind
             )
-            # The stages share a row of forces. The first bead of a tile needs the force of the
-            # contact behind, which this stage has computed in the tile before: it was kept in
-            # ``border``, as the last one of this tile is for the next tile.
-            if first > 0:
-                force[first] = beads.border[s]
-            beads.border[s] = force[behind]
-            for i in range(index(first), index(behind)):
-                push[s, i] = (force[i] - force[i + ONE]) * inverse[i]
 
 
 @part
@@ -336,10 +327,9 @@ def end_step(
 
 
 @inlined
-def begin_step(beads: Beads, hi: int) -> None:
+def begin_step(beads: Beads, plan: Plan, hi: int) -> None:
     """Move beads 0 … hi-1, and their forces, to the end of a step, the start of the next one."""
-    # ``border`` has an entry for each stage; the last stage is at the step's end.
-    last = len(beads.border) - 1
+    last = len(plan.scheme.nodes) - 1  # the last stage, at the step's end
     for i in range(index(hi)):
         beads.y[i] = beads.next_y[i]
         beads.v[i] = beads.next_v[i]

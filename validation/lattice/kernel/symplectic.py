@@ -10,7 +10,7 @@ from typing import Any
 
 from validation.lattice.kernel.advance import advance_front, moving
 from validation.lattice.kernel.arrays import TILE, Beads, Chain, Forcing, Knots, Plan
-from validation.lattice.kernel.compiled import FIRST, ONE, cached, index
+from validation.lattice.kernel.compiled import FIRST, cached, index
 from validation.lattice.kernel.force import contact_forces, tile_bounds
 from validation.lattice.kernel.samples import store_knot
 
@@ -36,15 +36,11 @@ def advance_split(
     last = len(drifts)
     y = beads.y
     v = beads.v
-    force = beads.force[1]
-    inverse = chain.inverse
-    # The accelerations at the end of a step, for the knots
+    # The accelerations, also for the knots
     push = beads.push[0]
     # A stage for the dissipated power, and the first contact: both are number 0.
-    contact_forces(chain, forcing, beads, plan, y, v, FIRST, FIRST, plan.size)
+    contact_forces(chain, forcing, beads, plan, y, v, push, FIRST, FIRST, plan.size)
     if now.tries == 0:
-        for i in range(index(plan.size)):
-            push[i] = (force[i] - force[i + ONE]) * inverse[i]
         store_knot(forcing, beads, knots, now)
     while now.t < plan.end and now.tries < until and now.stored < len(knots.time):
         hi = moving(now)
@@ -56,13 +52,14 @@ def advance_split(
                 b = h * kicks[s]
                 a = h * drifts[s]
                 for i in range(index(lo), index(up)):
-                    u = v[i] + b * (force[i] - force[i + ONE]) * inverse[i]
+                    u = v[i] + b * push[i]
                     v[i] = u
                     y[i] = y[i] + a * u
-                contact_forces(chain, forcing, beads, plan, y, v, FIRST, first, behind)
+                contact_forces(
+                    chain, forcing, beads, plan, y, v, push, FIRST, first, behind
+                )
         b = h * kicks[last]
         for i in range(index(hi)):
-            push[i] = (force[i] - force[i + ONE]) * inverse[i]
             v[i] = v[i] + b * push[i]
         now.tries += 1
         now.steps += 1
