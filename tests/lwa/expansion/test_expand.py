@@ -112,8 +112,8 @@ def test_three_unlike_contacts_in_numbers_have_the_decimals_of_their_exact_serie
     exact = Observables(Recursion(shares_model(cell, sp.Rational(3, 2)), 2))
     found = expand(cell, 2, k="3/2").fwhm("force", 1)
     for a, true in zip(found.coefficients, exact.coefficients("force", 1), strict=True):
+        assert a.is_Float
         assert abs(a / true.n(40) - 1) < 1e-28
-    assert expand(cell, 8, k="3/2").c2.coefficients[1] == sp.Float("-0.5", 30)
 
 
 def test_first_correction_of_a_dimer_is_a_closed_form():
