@@ -107,7 +107,8 @@ def derive(chain: ChainInput, **options: Any) -> Answer:
 def _defect_latex(theory: Theory) -> Iterator[str]:
     """LaTeX of the difference between the equations of motion of the two beads in a cell."""
     if theory.defect:
-        defect = latex_by_order([], theory.defect, theory.cell.spacing)
+        base = theory.closure.model.base
+        defect = latex_by_order([], theory.defect, theory.cell.spacing, base)
         yield rf"{{u_{{\tau\tau}}^{{(1)}} - u_{{\tau\tau}}^{{(2)}}}} = {defect}"
 
 

@@ -77,7 +77,7 @@ def strike(
         )
     # Options stand above the file, whose striker may have the velocity 0.
     if velocity is None and drop is None:
-        velocity = chain.striker.get("velocity") or None
+        velocity = chain.striker.get("velocity")
         drop = chain.striker.get("drop")
     if not (velocity or drop):
         raise InputError(f"{chain.file} has no striker that moves", velocity="1")

@@ -123,8 +123,7 @@ class Motion:
         contacts = len(self.stiffnesses)
         # Pairs: an exponent, and a law in place of the power, or None
         laws = scene.contact_laws
-        different = dict.fromkeys(laws)
-        numbers = {law: n for n, law in enumerate(different)}
+        numbers = {law: n for n, law in enumerate(dict.fromkeys(laws))}
         self.law_of = np.array([numbers[law] for law in laws], int)
         self.damping = np.zeros(contacts)
         if damping is not None:

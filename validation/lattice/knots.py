@@ -28,8 +28,7 @@ _MOST_BYTES = 2**28
 
 def _with_neighbours(beads: Beads) -> NDArray[np.int_]:
     """Return the increasing numbers of beads and their neighbours."""
-    triples = np.add.outer(beads, (-1, 0, 1))
-    near = np.unique(triples)
+    near = np.unique(np.add.outer(beads, (-1, 0, 1)))
     return near[near >= 0]
 
 

@@ -168,8 +168,7 @@ class Contact:
         high = 1e15
         for _ in range(2):
             change = np.geomspace(low, high, _TRIED)
-            starts = np.full(_TRIED, start)
-            work = self.energy_above(starts, change)
+            work = self.energy_above(np.full(_TRIED, start), change)
             # Not `work >= energy`: beyond a pole the work is NaN, and the energy is reached there.
             reached = ~(work < energy)
             if not reached.any():
@@ -186,8 +185,7 @@ class Contact:
         """Addresses of the machine code of the force, its slope and the energy; 0 for a power."""
         if self.law is None:
             return dict.fromkeys(_NAMES, 0)
-        functions = _machine_code(self.law)
-        return {name: f.address for name, f in functions.items()}
+        return {name: f.address for name, f in _machine_code(self.law).items()}
 
 
 _NAMES = ("force", "slope", "energy")

@@ -59,8 +59,7 @@ def beads_at(motion: Motion, sensors: Mapping[str, Sequence[int]]) -> NDArray[np
     """Return increasing numbers of the beads on which sensors depend; bead n is the wall."""
     beads = {*sensors.get("bead", ())}
     contacts = {*sensors.get("contact", ())}
-    behind = {i - 1 for i in beads}
-    contacts |= beads | behind
+    contacts |= beads | {i - 1 for i in beads}
     for i in contacts:
         # An end bead has one contact.
         if 0 <= i < len(motion.rest):
@@ -165,8 +164,7 @@ def contact_changes(path: Path, contact: int) -> Array:
     d, _ = compression(time)
     # Signs are compared, as products of compressions over- or underflow.
     sign = np.sign(d)
-    turns = sign[1:] * sign[:-1] < 0
-    step = np.flatnonzero(turns)
+    step = np.flatnonzero(sign[1:] * sign[:-1] < 0)
     early = time[step]
     late = time[step + 1]
     # The root of the straight line through both ends of the step

@@ -142,8 +142,7 @@ class Base:
         for fit in fits:
             squares = np.sum(fit.noise**2)
             criteria.append(squares / scale + 2 * len(fit.sizes))
-        exponents = -np.array(criteria) / 2
-        weights = scipy.special.softmax(exponents)
+        weights = scipy.special.softmax(-np.array(criteria) / 2)
         return cls(rise, width, x, fits, weights, fits[np.argmax(weights)])
 
     @classmethod

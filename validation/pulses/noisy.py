@@ -231,8 +231,7 @@ def _exact(t: Array, f: Array) -> NoisyPulse:
     x = t - start
     signal = spline(x, above)
     pulse = first_pulse(signal)
-    sides = (start + pulse.rise, start + pulse.fall)
-    _check_top(t, f, sides, _FEWEST_EXACT)
+    _check_top(t, f, (start + pulse.rise, start + pulse.fall), _FEWEST_EXACT)
     numbers = readings(pulse)
     errors = dict.fromkeys(numbers, 0.0)
     for first in (0, 1):
@@ -242,8 +241,7 @@ def _exact(t: Array, f: Array) -> NoisyPulse:
             errors[name] = max(errors[name], abs(value - rough[name]))
     # Which of two humps is the higher is unsure within the error of the peak.
     times = np.linspace(pulse.rise, pulse.fall, _GRID + 1)
-    least = pulse.peak - errors["peak"]
-    tops, _ = find_peaks(signal(times), height=least)
+    tops, _ = find_peaks(signal(times), height=pulse.peak - errors["peak"])
     apart = np.abs(times[tops] - pulse.arrival).max(initial=0.0)
     if apart > _SAME * pulse.fwhm:
         errors["arrival"] = max(errors["arrival"], apart + _SAME * pulse.fwhm)

@@ -219,8 +219,7 @@ def first_pulse(signal: Signal, low: float = 0.5, share: float = 0.5) -> Pulse:
         Fraction of the peak, ``low`` at least, at which the pulse rises and falls.
     """
     grid = _Grid(signal)
-    exceeds = grid.f > low * grid.f.max()
-    start = int(np.argmax(exceeds))
+    start = int(np.argmax(grid.f > low * grid.f.max()))
     f = grid.f[start:]
     highest = np.maximum.accumulate(f)
     fallen = np.append(f < low * highest, True)

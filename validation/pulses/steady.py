@@ -181,7 +181,7 @@ class StruckDimer:
 
     @property
     def q(self) -> float:
-        """Exponent of the speed, which is proportional to F^q of the peak contact force F."""
+        """Exponent of the speed, which is proportional to ``F^q`` of the peak contact force F."""
         return (self.k - 1) / (2 * self.k)
 
     def crossing(self, sites: int) -> float:
@@ -249,8 +249,7 @@ class StruckDimer:
         """
         elapsed = np.diff(passages["arrival"], axis=0)
         elapsed[elapsed <= 0] = np.nan
-        logarithms = np.log(passages["peak"])
-        fall = -np.diff(logarithms, axis=0)
+        fall = -np.diff(np.log(passages["peak"]), axis=0)
         scaled = passages["peak"] ** self.q
         # exprel(z) is (e^z - 1)/z.
         distance = self.sites * scipy.special.exprel(self.q * fall)
@@ -294,9 +293,10 @@ def stored(path: Path) -> Iterator[tuple[dict[Key, Point], Callable[[Point], Non
             points = {}
             for (row,) in data.execute(f"select point from {own}"):
                 entry = json.loads(row)
-                numbers = {}
-                for name, number in entry["numbers"].items():
-                    numbers[name] = Estimate(**number)
+                numbers = {
+                    name: Estimate(**number)
+                    for name, number in entry["numbers"].items()
+                }
                 # A tuple is a list in JSON, and exact numbers are texts.
                 sites = entry["sites"]
                 key = (

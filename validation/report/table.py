@@ -187,9 +187,10 @@ class Table:
         """
         if not (self.rows and any(column.label for column in self.columns)):
             return ""
-        blocks = []
-        for heading, lines in self._parts().items():
-            blocks.append(f"{heading}\n{aligned(lines, width)}".strip("\n"))
+        blocks = [
+            f"{heading}\n{aligned(lines, width)}".strip("\n")
+            for heading, lines in self._parts().items()
+        ]
         text = "\n\n".join(blocks)
         if self.note:
             # A note is one paragraph, however its lines are broken in the source.

@@ -319,8 +319,7 @@ def _rank(cells: Cells, steps: dict[int, Array], name: str, number: int) -> int:
     a unit of the quantity is the better.
     """
     base = BASES[name.split()[-1]]
-    unit = found_unit(cells.above(number))
-    unknown = in_si(unit, base) is None
+    unknown = in_si(found_unit(cells.above(number)), base) is None
     own = steps[number]
     if name == "time":
         # A column without a unit that rises by 1 counts the lines; times in a unit may do so.

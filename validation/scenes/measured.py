@@ -204,9 +204,10 @@ class MeasuredFile(Columns):
             missing += wanted
         for name in missing:
             self._demand(name, names.count(name), missing)
-        records = []
-        for time, signal in zip(cycle(times), sensors, strict=False):
-            records.append(self._signal(time, signal, of))
+        records = [
+            self._signal(time, signal, of)
+            for time, signal in zip(cycle(times), sensors, strict=False)
+        ]
         # "bead" before "contact": the order in which `run` writes its sensors.
         return sorted(records, key=lambda record: record.kind)
 

@@ -153,9 +153,10 @@ def law(
     notes = [f"One power is {'enough' if fit.one_power else 'not enough'}: {bend}."]
     if not spheres and not (masses and spacing):
         notes.append(_UNITS)
-    rows = []
-    for name, number in numbers.items():
-        rows.append({"F = A δ^k": name + units.get(name, ""), "value": number})
+    rows = [
+        {"F = A δ^k": name + units.get(name, ""), "value": number}
+        for name, number in numbers.items()
+    ]
     return Report(
         f"{len(force)} pulses, forces {force[0]:.4g} … {force[-1]:.4g}{' N' * file.si}",
         (Table(_POWER, rows),),

@@ -370,8 +370,7 @@ def compare(
     # together at the first sensor.
     first, leader = next(iter(simulated.items()))
     late = found[first].numbers["arrival"]
-    early = leader.numbers["arrival"]
-    shift = Estimate(early.value - late.value, late.error)
+    shift = Estimate(leader.numbers["arrival"].value - late.value, late.error)
     rows = []
     curves = []
     for i, (name, track) in enumerate(simulated.items()):

@@ -278,8 +278,7 @@ class Problem:
         slope = self.k * pressed ** (self.k - 1) / c2
         by_first, by_second = self._responses
         response = by_first * first + by_second * inverse
-        of_rows = slope[:, np.newaxis]
-        by_forces = np.eye(self.count) - of_rows * response
+        by_forces = np.eye(self.count) - slope[:, np.newaxis] * response
         by_c2 = slope * a
         by_inverse = -slope * (by_second @ force)
         of_forces = np.column_stack((by_forces, by_c2, by_inverse))

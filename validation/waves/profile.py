@@ -263,8 +263,7 @@ def _tail(wave: ExactWave) -> float:
     count = 4 * len(wave.series)
     outside = np.linspace(OUTSIDE * L, L, count)
     # The other contact's strain is the mirror image.
-    mirrored = wave.strain(outside, 1)
-    twice_odd = wave.strain(outside) - mirrored
+    twice_odd = wave.strain(outside) - wave.strain(outside, 1)
     return float(np.abs(twice_odd).max()) / 2
 
 

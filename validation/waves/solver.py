@@ -114,9 +114,8 @@ def exact_wave(masses: Sequence[Any], k: Any, *, background: Any = 0) -> ExactWa
     >>> round(wave.fwhm("force"), 6), round(wave.fwhm("strain"), 6), wave.solitary
     (1.411928, 1.725713, True)
     """
-    numbers = items(masses, "masses")
     # Squares and inverses of masses within these limits are floats.
-    given = [between(m, "masses", 1e-100, 1e100) for m in numbers]
+    given = [between(m, "masses", 1e-100, 1e100) for m in items(masses, "masses")]
     if len(given) not in (1, 2):
         raise SceneError(
             f"{len(given)} masses: exact waves are found for cells of 1 or 2 beads; others are "
@@ -189,8 +188,7 @@ def _equal(k: float, p0: float) -> ExactWave:
         return solve(problem, _equal(STEEP, p0))
     if not p0:
         return solve(problem)
-    strain = theory.along(problem.xi, "strain")
-    force = newton.rise(strain, k, p0)
+    force = newton.rise(theory.along(problem.xi, "strain"), k, p0)
     return _converged(problem, force, float(theory.speed) ** 2)
 
 

@@ -15,9 +15,13 @@ from typing import Any, TypeVar
 import numpy as np
 from llvmlite import ir
 from numba import njit, types
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
 from numba.core.cpu import CPUTargetOptions
 from numba.core.event import Event, Listener, register
 from numba.core.options import TargetOptions
+from numba.core.typed_passes import IRLegalization, NopythonRewrites
+from numba.core.untyped_passes import InlineClosureLikes
 from numba.extending import intrinsic
 
 from validation.scenes import forcing
@@ -29,6 +33,54 @@ SOURCES = hashlib.blake2b(
     b"".join(file.read_bytes() for files in _FILES for file in files)
 ).hexdigest()
 """A hash of all files with compiled functions."""
+
+
+class _Linked(JITCodeLibrary):
+    """Code that is optimised and translated in its callers alone.
+
+    Numba would do both for each function besides, in a tenth of a first command's time.
+    """
+
+    def _optimize_final_module(self) -> None:
+        """Leave the optimisation to the callers."""
+
+    def _finalize_final_module(self) -> None:
+        """Leave the translation to the callers."""
+        self._finalized = True
+
+    @property
+    def codegen(self) -> Any:
+        """The object of which numba calls `set_env`, and nothing else: this library."""
+        return self
+
+    def set_env(self, name: str, environment: Any) -> None:
+        """Do nothing: numba would write to an address of the translated code."""
+
+
+class _Compiler(Compiler):
+    """Numba's compiler without passes that take a twentieth of the time and change nothing here.
+
+    They look for arithmetic of whole arrays, for functions within functions, and for the ends of
+    references to Python's objects.
+    """
+
+    def define_pipelines(self) -> list[Any]:
+        """Return the one list of passes."""
+        idle = NopythonRewrites, InlineClosureLikes, IRLegalization
+        [pipeline] = super().define_pipelines()  # type: ignore[no-untyped-call]
+        pipeline.passes = [step for step in pipeline.passes if step[0] not in idle]
+        return [pipeline]
+
+
+class _Linker(_Compiler):
+    """The compiler of functions that compiled functions alone call."""
+
+    def define_pipelines(self) -> list[Any]:
+        """Return the one list of passes, which fill a library that is linked."""
+        state = self.state
+        state.library = _Linked(state.targetctx.codegen(), state.func_id.func_name)  # type: ignore[no-untyped-call]
+        return super().define_pipelines()
+
 
 # Numba has a flag for arguments that share no memory, but no option for it. Without it each
 # vectorised loop asks at run time whether its arrays overlap: short chains took a fifth more time.
@@ -44,24 +96,22 @@ _OUTER: Any = dict(
     no_cfunc_wrapper=True,
     noalias=True,
     _nrt=False,
+    pipeline_class=_Compiler,
 )
 # Called by compiled functions alone: wrappers for Python took a third of the time to compile.
-_INNER: Any = _OUTER | {"no_cpython_wrapper": True}
-# Functions with one caller, which numba inlines before it compiles them: each function that is
-# compiled apart is optimised and translated twice, by itself and in its caller, which took a fifth
-# of the compilation.
+_INNER: Any = _OUTER | {"no_cpython_wrapper": True, "pipeline_class": _Linker}
+# Functions with one caller, which numba inlines before it compiles them.
 inlined: Callable[[Function], Function] = njit(inline="always", **_INNER)
 # Long functions with several callers, which stay apart.
 alone: Callable[[Function], Function] = njit(**_INNER)
 # Small functions with many callers, inlined by LLVM, as the calls would take a quarter of a run's
 # time. Inlining by numba gives the same code, but takes three times as long to compile.
 part: Callable[[Function], Function] = njit(forceinline=True, **_INNER)
-# Sums and maxima in the order of the machine's registers, the same in every run: inlined, too. Of a
-# function that stays apart there are two translations, its own and its caller's. The process that
-# compiles the engine would take the first, later processes the second, which rounds differently.
-summed: Callable[[Function], Function] = njit(
-    forceinline=True, **_INNER | {"fastmath": {"nsz", "arcp", "contract", "reassoc"}}
-)
+# Sums and maxima in the order of the machine's registers, the same in every run: inlined, too. They
+# are optimised before, by numba's own compiler, so that the order is the same in every caller.
+_SUMMED: Any = _INNER | {"pipeline_class": Compiler}
+_SUMMED["fastmath"] = _OUTER["fastmath"] | {"reassoc"}
+summed: Callable[[Function], Function] = njit(forceinline=True, **_SUMMED)
 # Unsigned indices: a signed one may count from the end, which keeps a loop from vectorising.
 # Sums take `ONE`: of an unsigned integer plus a plain 1 numba makes a signed one.
 index = np.uint64
