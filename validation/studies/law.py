@@ -161,7 +161,7 @@ def law(
         f"{len(force)} pulses, forces {force[0]:.4g} … {force[-1]:.4g}{' N' * file.si}",
         (Table(_POWER, rows),),
         panels=(Panel(*axes, curves, scale="xy"),),
-        notes=(*file.notes, *notes, _NOTE),
+        notes=(*notes, _NOTE),
         data={
             "correlation_value": fit.correlation,
             "one_power": fit.one_power,
