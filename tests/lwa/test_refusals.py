@@ -87,7 +87,10 @@ CALLS = [
         "canonical",
     ),
     (lambda: Link(1, 1, HERTZ), "second particle"),
-    (lambda: Lattice([1], [Link(1, 2, HERTZ)]), "particles 0 to 0"),
+    (
+        lambda: Lattice([1], [Link(0, 1, HERTZ), Link(1, 2, HERTZ)]),
+        "particles 0 to 0",
+    ),
     (lambda: Lattice([1, 1], [Link(0, 2, HERTZ)]), "free"),
     (lambda: Lattice([1, 1], [LINK]), "carry no load"),
     (lambda: front(1, -1), "ahead is -1: contacts of a power law only push"),

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from lwa.base import progress
+from lwa.command import cli as theory
 from tests.commands import ended, small_disk, terminal
 from validation import cli
 from validation.pulses.steady import Point
@@ -245,23 +246,30 @@ def test_without_arguments_the_commands_are_listed(capsys):
 
 
 LONG_ONES = ("figures", "sweep")  # a few seconds each
-COMMANDS = [
-    pytest.param(name, marks=[pytest.mark.slow] * (name in LONG_ONES))
-    for name in ["", *sorted(cli.STUDIES)]
+PROGRAMS = {
+    "lwa": (theory.main, theory.COMMANDS),
+    "lwa-validate": (cli.main, sorted(cli.STUDIES)),
+}
+HELPS = [
+    pytest.param(program, name, marks=[pytest.mark.slow] * (name in LONG_ONES))
+    for program, (_, names) in PROGRAMS.items()
+    for name in ["", *names]
 ]
 
 
-@pytest.mark.parametrize("name", COMMANDS)
-def test_the_examples_of_a_help_run_and_its_page_is_in_the_book(capsys, folder, name):
+@pytest.mark.parametrize(("program", "name"), HELPS)
+def test_the_examples_of_a_help_run_and_its_page_is_in_the_book(
+    capsys, folder, program, name
+):
     """One after another in an empty folder."""
-    status, text, _ = run(capsys, *name.split(), "--help")
-    assert (status, max(map(len, text.splitlines())) <= 80) == (0, True)
+    _, text, _ = ended(capsys, PROGRAMS[program][0], *name.split(), "--help")
+    assert max(map(len, text.splitlines())) <= 80
     _, _, end = text.partition("Examples:\n")
-    examples = re.findall(r"^ +lwa-validate (.*)$", end, re.MULTILINE)
+    examples = re.findall(r"^ +(lwa\S*) (.*)$", end, re.MULTILINE)
     assert len(examples) >= 1
-    for line in examples:
+    for of, line in examples:
         arguments, _, file = line.partition(" > ")
-        status, out, err = run(capsys, *shlex.split(arguments))
+        status, out, err = ended(capsys, PROGRAMS[of][0], *shlex.split(arguments))
         assert (status, err) == (0, ""), line
         if file:
             Path(file).write_text(out)

@@ -395,6 +395,8 @@ def suggested(t: Array, signal: Array, pulse: NoisyPulse, unit: str) -> str:
 
     Waves behind a pulse rarely swing alike in both stretches. Times have the ``unit``.
     """
+    if "peak" not in pulse.numbers:
+        return ""
     arrival = pulse.numbers["arrival"].value
     width = pulse.numbers["fwhm"].value
     # A base that falls is no undershoot.

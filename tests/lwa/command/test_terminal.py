@@ -1,12 +1,9 @@
 """Between a command and its user: encodings, closed and full outputs, completion, digits."""
 
 import os
-import re
-import shlex
 import time
 from contextlib import redirect_stdout
 from itertools import pairwise
-from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
@@ -18,7 +15,6 @@ from tests.commands import encoded, ended
 from tests.lwa.command.answers import said
 from validation.cli import main, validate
 
-ROOT = Path(__file__).parents[3]
 MAINS = {"lwa": cli.main, "lwa-validate": main}
 
 
@@ -86,24 +82,6 @@ def test_a_shell_completes_names_and_files(words, offered):
     shown = CliRunner(env=asked).invoke(command, prog_name=program)
     expected = [name if "," in name else f"plain,{name}" for name in offered.split()]
     assert shown.output.split() == expected
-
-
-@pytest.mark.parametrize("name", ["", *cli.COMMANDS])
-def test_the_examples_of_a_help_run_and_its_page_is_in_the_book(capsys, folder, name):
-    """One after another in an empty folder."""
-    text = said(capsys, *name.split(), "--help")
-    assert max(map(len, text.splitlines())) <= 80
-    _, _, end = text.partition("Examples:\n")
-    examples = re.findall(r"^ +(lwa\S*) (.*)$", end, re.MULTILINE)
-    assert 2 <= len(examples) <= 3
-    for program, line in examples:
-        arguments, _, file = line.partition(" > ")
-        status, out, err = ended(capsys, MAINS[program], *shlex.split(arguments))
-        assert (status, err) == (0, ""), line
-        if file:
-            Path(file).write_text(out)
-    (page,) = re.findall(r"In the book: (\w+)\.html", text)
-    assert (ROOT / "book" / f"{page}.md").exists()
 
 
 @pytest.mark.slow

@@ -15,33 +15,19 @@ LONG = canonical_wave(Dimer("m1", "m2", 3, stiffnesses=["A"] * 4))
 def test_closed_forms_are_good_to_1e11(wave):
     """Against 50 digits."""
     numeric = wave.numeric()
-    for k, w in ((1 + 1e-6, 3.0), (1.5, 0.2733), (2.7, 1e-6), (4.0, 0.9)):
+    for k, w in ((1 + 1e-6, 3.0), (1.5, 0.2733), (2.7, 1e-6), (4.0, 0.9), (1.5, 1e6)):
         found = (
             numeric.beta(k, w),
             numeric.width(k, w),
             numeric.fwhm(k, w, "force"),
             numeric.speed(k, w, 2.0),
-            numeric.log_amplitude(k, w),
+            numeric.log_amplitude(k, w, 2.0),
         )
         at = wave.at(k=sp.Rational(k), m1=1, m2=sp.Rational(w), D=1)
-        log_B = -sp.log(at.speed_factor) / (at.k - 1)
+        log_B = sp.log(4 / at.speed_factor) / (at.k - 1)
         exact = (at.beta, at.width, at.fwhm("force"), at.speed(2), log_B)
         known = [float(sp.N(value, 50)) for value in exact]
         assert found == pytest.approx(known, rel=1e-11)
-
-
-def test_mass_ratios_at_the_end_of_the_range_and_arrays():
-    """At k = 3/2 the paper's β tends to √(3/8) and V² to 0 as ω → ∞."""
-    assert float(NUMERIC.beta(1.5, 1e6)) == pytest.approx(np.sqrt(3 / 8), rel=2e-6)
-    assert 0 < float(NUMERIC.speed(1.5, 1e6)) < 1e-5
-    k, w = np.array([[1.25], [1.5]]), np.array([0.1, 1.0, 10.0])
-    beta = NUMERIC.beta(k, w)
-    assert beta.shape == (2, 3)
-    assert beta[1, 1] == NUMERIC.beta(1.5, 1.0)
-    # B = 2^(2/(k - 1)) is beyond a double
-    assert float(NUMERIC.log_amplitude(1 + 2**-30, 1.0, V=2.0)) == pytest.approx(
-        2**31 * np.log(2)
-    )
 
 
 @pytest.mark.parametrize(
@@ -50,6 +36,6 @@ def test_mass_ratios_at_the_end_of_the_range_and_arrays():
 )
 def test_missing_waves_raise_or_are_nan_on_request(k, omega, words):
     with pytest.raises(NoSolitaryWave, match=f"k = {k}, ω = {omega}: .*{words}"):
-        NUMERIC.width([1.5, k], [1.0, omega])
-    found = WAVE.numeric(missing="nan").width([1.5, k], [1.0, omega])
-    assert np.isnan(found).tolist() == [False, True]
+        NUMERIC.width([[1.5], [k]], [1.0, omega])
+    found = WAVE.numeric(missing="nan").width([[1.5], [k]], [1.0, omega])
+    assert np.isnan(found[[0, 1], [0, 1]]).tolist() == [False, True]

@@ -6,7 +6,7 @@ import pytest
 from validation.lattice.simulate import simulate
 from validation.pulses.pulse import first_pulse
 from validation.scenes.chains import DIAMETER
-from validation.studies.paper import SENSORS, paper, recorded_chain
+from validation.studies.paper import SENSORS, paper, recorded_chain, stated_errors
 
 
 @pytest.fixture(scope="module")
@@ -39,6 +39,24 @@ def test_unlike_beads_do_not_time_the_pulse(rows):
         row = rows[f"speed from bead {pair}"]
         assert 164.05 < row["lattice_value"] < 164.2
         assert row["error_value"]["F_m"] == pytest.approx(-0.0087, abs=3e-4)
+
+
+@pytest.mark.parametrize("kind", ["bead", "contact"])
+def test_widths_in_sites_err_as_those_in_time_times_the_speed(rows, kind):
+    names = "speed V_s", f"FWHM of {kind} force in time", f"FWHM of {kind} force"
+    for theory in ("F_m", "striker"):
+        errors = (rows[name]["error_value"][theory] for name in names)
+        speed, time, sites = (1 + error for error in errors)
+        assert time * speed == pytest.approx(sites, rel=1e-9)
+
+
+def test_the_error_that_figure_3b_states_is_that_of_both_kinds_of_contacts(rows):
+    """At the contacts' own force: the FWHM in time goes as F^{-1/6}."""
+    names = "FWHM of contact force in time", "peak contact force"
+    time, peak = (1 + rows[name]["error_value"]["F_m"] for name in names)
+    _, real, _ = stated_errors()
+    # With one contact less, of one kind, it is 0.0034 more.
+    assert 1 + real["error_value"] == pytest.approx(time * peak ** (1 / 6), abs=1e-3)
 
 
 def test_the_chain_scales_exactly_with_the_blow(rows):
