@@ -98,7 +98,8 @@ def _light() -> Observables:
 @cache
 def exponent_of_light_beads(quantity: str) -> sp.Expr:
     """The exponent e of a quantity as a function of the symbol k."""
-    # Series in ε of the quantity over its leading term, at the mass ratios 0 and `LIGHT`
+    # Series in ε of the quantity over its leading term, at the mass ratios 0 and `LIGHT`, with so
+    # many digits (`lwa.expansion.joined.decimals`) that their difference keeps enough
     heavy = decimals(equal_beads(quantity, ORDER))
     light = decimals(_light().coefficients(quantity))
     leading = _LEADING.get(quantity, 1.5)
