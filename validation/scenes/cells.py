@@ -241,11 +241,14 @@ class Cells:
         return partial(number_of, thousands=self._thousands)
 
     def _lines(self, count: int) -> Iterator[str]:
-        """Yield the lines, with so many cells more that the reader finds all columns."""
-        # The reader refuses a line that is too short.
+        """Yield the lines, each with ``count`` cells "nan" more.
+
+        NumPy's reader refuses a line with fewer cells than the columns that are read: with the
+        number of the last column as ``count`` no line has too few.
+        """
         more = f"{self._mark}nan" * count
         for line in self._data():
-            text = line[0]
+            text = line[0]  # the whole line, of the match
             if '"' in text:
                 # NumPy takes quotes right after a separator; a single one would join lines.
                 text = text.replace(f'{self._mark} "', f'{self._mark}"')

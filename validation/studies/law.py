@@ -140,10 +140,12 @@ def law(
     if file.si:
         units |= {"A": f" (N/m^{fit.k.value:.3g})", "E": " (Pa)"}
         axes = ("peak contact force (N)", "speed (m/s)")
-    # Speeds beside one power, for which ln V is linear in ln F.
+    # The speeds, in the units of the file, beside those of the law: under one power ln V is linear
+    # in ln F, and the line is that of `fit_power`.
     x = np.log(force)
-    fitted = np.polyfit(x, np.log(speed), 1)
+    fitted = np.polyfit(x, np.log(speed), 1, w=weight)
     line = np.exp(np.polyval(fitted, x))
+    # A weight is the inverse standard deviation of ln V.
     bars = None if weight is None else speed / weight
     curves = (
         Curve("measured", force, speed, "C0o", bars),

@@ -283,6 +283,7 @@ def contact_forces(
         none = -math.inf if law.sticks else 0.0
         fast = is_quarters(law.k) and not law.generated
         if forcing is not None and forcing.damped:
+            # Room until the next errors are estimated: here the dissipated power by contact
             heat = beads.errors[0]
             if fast and law.k in (1.0, 1.5) and law.p in (0.0, 0.25, 0.5):
                 _damped_hertz(chain, law, y, v, f, push, heat, lo, up, least, none)
