@@ -21,8 +21,8 @@ from sympy.printing.jscode import JavascriptCodePrinter
 from sympy.printing.numpy import NumPyPrinter
 
 from lwa.base.exact import InputError, shorten
-from lwa.base.frozen import QUANTITIES, strain_power
-from lwa.base.words import LanguageName, one_of
+from lwa.base.frozen import strain_power
+from lwa.base.words import QUANTITIES, LanguageName, one_of
 from lwa.law import Power
 from lwa.wave.arch import Arch
 

@@ -341,7 +341,7 @@ def _place(t: Array, f: Array) -> tuple[float, float]:
     if after in (0, len(below)):
         side = "back" if after else "front"
         raise MeasureError(
-            f"the pulse is not wholly in the record: its {side} does not pass half its peak"
+            f"the pulse is not wholly in the record: its {side} does not pass 50% of its peak"
         )
     rise, fall = t[below[after - 1 : after + 1]]
     return float(rise), float(fall)

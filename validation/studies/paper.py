@@ -414,9 +414,11 @@ def cells_of_lines() -> tuple[Cell, ...]:
 def stated_errors() -> list[dict[str, Any]]:
     """Return the lines of figure 3b: the paper's error of the FWHM, and the error on the lattice.
 
+    Each line is the theory at one mass ratio; all three are held against the one measured chain.
     The FWHM is a time, of the contacts' force from bead `FIRST_BEAD` on, at an equal peak force.
     """
-    # These contacts the whole pulse has passed before its front reaches the wall.
+    # Numbers of beads, which serve as numbers of contacts, too: each bead's contact ahead has its
+    # number. The whole pulse has passed these contacts before its front reaches the wall.
     places = range(FIRST_BEAD, BEADS - 2)
     run = simulate(recorded_chain(places), rtol=RTOL)
     contacts = passing(run, "contact")

@@ -242,7 +242,7 @@ STATED = {"columns": {"force": "2"}}
         (f"{HEAD}1,2\n", {"columns": {"force": "fource"}}, "near: force .N.: found"),
         ("time,force\n1,2\n", {"columns": {"bead x": "1"}}, "column is 'bead x'"),
         ("\x00\xff\n", {"encoding": "latin-1"}, "record.csv: it is no table"),
-        ('{"time_value": [0, 1]}', {}, "record.csv: it is no table"),
+        ('{"time_value": [0, 1]}', {}, "it is no table but JSON; try: lwa-"),
         ("a,b\nc,d\n", {}, "found no numbers$"),
         ("time,force\n1,2\n1.5,∞\n2,3\n", {}, "line 3 holds ∞, the signal is clipped"),
         (
