@@ -111,7 +111,8 @@ class Theory(OfClosure):
     def latex_rows(self, most: int | None = None) -> list[str]:
         """LaTeX of a law that is no power, of all fields, and of the equation to ``D^{k+most}``.
 
-        Fields are written to ``D^{most + 1}``; None stands for all orders.
+        Fields are written to ``D^{most + 1}``, the order of the ansatz that the equation to
+        ``D^{k+most}`` needs; None stands for all orders.
         """
         return [
             *self._law_rows(),

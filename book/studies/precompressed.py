@@ -30,8 +30,8 @@ from lwa import Cell, LoadedWave, Power, loaded_wave
 from lwa.base.arrays import Array
 from lwa.base.frozen import Estimate
 from lwa.base.progress import Progress
-from lwa.command.options import law_option, quantities
-from lwa.law import ContactLaw
+from lwa.command import options
+from lwa.law import ContactLaw, read_law
 from lwa.loaded.background import Background
 from validation.lattice.result import Run
 from validation.lattice.simulate import repeated
@@ -63,16 +63,22 @@ _WEAKEST, _STRONGEST = 1e-3, 1e4
 
 @study(
     EXPONENT,
-    law_option("Contact law in place of δ^k, such as hertz2:1,2."),
+    options.value(
+        "--law",
+        "Contact law in place of δ^k, such as hertz2:1,2.",
+        "hertz2:1,2",
+        read_law,
+        metavar="NAME[:PARAM,…]",
+    ),
     option(
         "--masses",
         "Masses of a cell, such as 1,1/2; by default three chains.",
-        read=quantities,
+        read=options.quantities,
     ),
     option(
         "--ratios",
         "Dynamic forces divided by the static force.",
-        read=quantities,
+        read=options.quantities,
         default=",".join(map(str, RATIOS)),
     ),
 )

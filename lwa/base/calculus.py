@@ -32,8 +32,8 @@ _FIRST_STEP = mpmath.mpf(2) ** -20
 
 # Relative to the place: a root that is not found to 45 digits is none.
 _LEAST_STEP = mpmath.mpf(2) ** -150
-_FARTHEST = 2**40  # no strain is that large, and no compression in m
-# Ratio of a step to the one before: 2^-20 grows to 2^40 in 230 steps.
+_FARTHEST = 2**1024  # no float is that large
+# Ratio of a step to the one before: 2^-20 grows to 2^1024 in 4000 steps, a tenth of a second.
 _LONGER = mpmath.mpf("1.2")
 
 
@@ -67,7 +67,8 @@ def growing_root(F: sp.Expr, x: sp.Symbol) -> Any:
         grows = slope(low + step) > 0
         if above >= 0 and grows:
             break  # the root is within this step
-        if above > value(low) and grows:
+        # Beside a large constant of F growth is lost in rounding.
+        if above >= value(low) and grows:
             low += step
             step *= _LONGER
         else:
@@ -75,13 +76,14 @@ def growing_root(F: sp.Expr, x: sp.Symbol) -> Any:
         if step < _LEAST_STEP * max(low, 1) or low > _FARTHEST:
             return None
     # F rises through 0 in this interval, and Anderson's method keeps a bracket. It took at most 35
-    # values of F under named laws (forces from 1e-30 to 1e20): 200 steps are a bound. mpmath's own
-    # check compares F² with the tolerance, which here is a tolerance of x.
+    # values of F under named laws (forces from 1e-30 to 1e20): 200 steps are a bound. mpmath takes
+    # the tolerance times x where x is above 1; its own check compares F² with the tolerance, which
+    # here is a tolerance of x.
     high = low + step
     return mpmath.findroot(
         value,
         (low, high),
-        tol=mpmath.eps * high,
+        tol=mpmath.eps * min(high, 1),
         maxsteps=200,
         solver="anderson",
         verify=False,

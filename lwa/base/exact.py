@@ -170,6 +170,15 @@ def positive(value: Any, name: str) -> sp.Expr:
     return expression
 
 
+def not_negative(value: Any, name: str) -> sp.Expr:
+    """Read an exact positive number, or an expression as `positive` does, or zero."""
+    # A load of zero is no load, and as valid as a missing one.
+    number = read_exact(value, name)
+    if number.is_zero:
+        return number
+    return positive(number, name)
+
+
 def integer(value: Any, name: str, low: int, high: int = _UNLIMITED) -> int:
     """Read an integer (Python's, NumPy's or SymPy's) from ``low`` to ``high``."""
     try:

@@ -74,7 +74,7 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
     except (InputError, OSError) as error:
         fault = reason(error)
         if isinstance(error, FileNotFoundError):
-            raise InputError(f"{path}: {fault}; {_WRITTEN}") from None
+            fault += f"; {_WRITTEN}"
     except UnicodeDecodeError:
         fault = "not a text in UTF-8"
     except RecursionError:

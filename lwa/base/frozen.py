@@ -10,13 +10,7 @@ from typing import Any, ClassVar, Self
 import sympy as sp
 
 from lwa.base import NoSolitaryWave as NoSolitaryWave, latex
-from lwa.base.words import (
-    EXTENTS as EXTENTS,
-    QUANTITIES as QUANTITIES,
-    ExtentName,
-    QuantityName,
-    one_of,
-)
+from lwa.base.words import QUANTITIES, QuantityName, one_of
 
 RISE = sp.Symbol("B", positive=True)
 """B, the peak strain of a wave, unless the caller gives another."""
@@ -39,11 +33,6 @@ def strain_power(quantity: str, k: Any) -> Any:
 def known_quantity(quantity: Any) -> QuantityName:
     """Return the quantity; raise `lwa.InputError` unless it is among `QUANTITIES`."""
     return one_of(quantity, QUANTITIES, "quantity")
-
-
-def known_extent(extent: Any) -> ExtentName:
-    """Return the extent; raise `lwa.InputError` unless it is among `EXTENTS`."""
-    return one_of(extent, EXTENTS, "extent")
 
 
 EXACT_DIGITS = 15
@@ -156,15 +145,13 @@ class Estimate(Value):
         if not math.isfinite(self.value + self.error):
             return f"{self.value:.{UNKNOWN_DIGITS}g}, error unknown"
         # Powers of ten of the first and the last digit that are shown
-        first = _place(self.value)
+        first = _place(self.value or self.error)
         last = first - most + 1
         if not self.error:
             # An exact number has no ±, unless digits are left out.
             short = f"{self.value:.{most}g}"
             if most == EXACT_DIGITS or float(short) == self.value:
                 return short
-        elif not self.value:
-            return f"0 ± {self.error:.2g}"
         else:
             own = _place(self.error)
             if self.error < 2 * 10.0**own:
@@ -174,12 +161,14 @@ class Estimate(Value):
         # An error of 3e-06 is 3.0000000000000004 units of 1e-06 in floats: no reason for 4e-06.
         error = max(math.ceil(self.error / unit * (1 - 1e-12)), 1) * unit
         scientific = f"{error:.{max(_place(error) - last, 0)}e}"
-        if not PLAIN[0] <= first <= PLAIN[1]:
-            return f"{self.value:.{first - last}e} ± {scientific}"
         decimals = max(0, -last)
         bound = scientific
         if error >= LEAST_PLAIN:
             bound = f"{error:.{decimals}f}"
+        if not self.value:
+            return f"0 ± {bound}"
+        if not PLAIN[0] <= first <= PLAIN[1]:
+            return f"{self.value:.{first - last}e} ± {scientific}"
         return f"{round(self.value, -last):.{decimals}f} ± {bound}"
 
     @property

@@ -39,7 +39,9 @@ LANGUAGES: tuple[LanguageName, ...] = get_args(LanguageName)
 # A message has `LONGEST_MESSAGE` characters, a third of them for the line to paste.
 _SHOWN = 60  # characters of an offending value: most of a line of a terminal
 _NEAR = 3  # similar words that a message names; more are no hint
-_LISTED = 12  # known words where none is similar: all laws, closures and materials
+_LISTED = (
+    15  # known words where none is similar: all laws, closures, and keys of a file
+)
 
 Word = TypeVar("Word", bound=str)
 
@@ -101,7 +103,8 @@ def similar(value: Any, known: Collection[str]) -> list[str]:
     word = value[:_SHOWN].casefold()
     names = {name.casefold(): name for name in known}
     near = [folded for folded in names if len(word) > 2 and word in folded]
-    near += get_close_matches(word, names, _NEAR)
+    # Of ten letters seven agree: "friction" has five of eight letters of "duration".
+    near += get_close_matches(word, names, _NEAR, 0.65)
     return [names[folded] for folded in dict.fromkeys(near)][:_NEAR]
 
 

@@ -82,6 +82,8 @@ class Closure(Parametric):
     def solution(self) -> Solution:
         """Wave equation and fields as polynomials."""
         progress = iter if self.model.order < SLOW_ORDER else shown
+        # The optical branch has one closure: the full one is admitted at k = 1 alone, where the
+        # equations are linear and both are the same.
         if self.model.branch == "optical":
             return optical(self.model, progress)
         # The equation of motion of a single particle is its wave equation.

@@ -78,13 +78,17 @@ class Force:
         return total / m
 
     def append(self, X_n: fmpq_mpoly) -> None:
-        """Append the next term ``X_n`` to X, and ``Φ_n`` to Φ."""
+        """Append the next term ``X_n`` to X, and ``Φ_n`` to Φ.
+
+        As φ_1 is 1, Φ_n is X_n and a part of the earlier terms, whose number tells `nonlinear` n.
+        """
         self.Phi.append(X_n + self.nonlinear)
         self.X.append(X_n)
 
     def increment(self, h: int, n: int) -> fmpq_mpoly:
         """Coefficient of ``D^n`` in the force at x + hD minus the force at x, over ``p F'``."""
-        # F(p) adds h^n/n! ∂_x^n F(p) = h^n/n! ∂_x^{n-1} (p F' r_1), r_1 = p_x/p.
+        # The force is F(p) + p F' Φ. F(p) adds h^n/n! ∂_x^n F(p) = h^n/n! ∂_x^{n-1} (p F' r_1),
+        # r_1 = p_x/p; `_slope` is p F' r_1, over the p F' by which all is divided.
         of_strain = self._slope.dx(0, n - 1) * taylor(h, n)
         return self.Phi.increment(h, n) + of_strain
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import repeat
 from typing import Any, Self
@@ -157,10 +158,9 @@ class Row:
         # A result that knows the errors of its numbers has a method `estimate`.
         estimate = None
         if hasattr(result, "estimate"):
-            estimate = attempt(result.estimate, name, *arguments)
             # Numbers with symbols have no estimate, and some names have none.
-            if isinstance(estimate, InputError):
-                estimate = None
+            with suppress(InputError):
+                estimate = result.estimate(name, *arguments)
         return cls(key or name, label, value, symbol, estimate)
 
     @property

@@ -125,8 +125,9 @@ def _status(command: click.Command, name: str, arguments: Sequence[str]) -> int:
     except click.ClickException as error:
         fault = error.format_message()
         context = getattr(error, "ctx", None)
-        if context is not None:
-            fault += f" Try: {context.command_path} --help"
+        # Click knows no context where an option at the end of a line has no value.
+        called_as = context.command_path if context else f"{name} {arguments[0]}"
+        fault += f" Try: {called_as} --help"
     except Refusal as refusal:
         fault = next_step(refusal, command, name, arguments)
     except (click.Abort, KeyboardInterrupt) as error:
@@ -171,7 +172,9 @@ def next_step(
     # A file stands in place of the options of a chain: a wrong one is left out.
     if "--spheres" in line and change.keys() & CHAIN:
         change = {name: None for name in change if f"--{name}" in line}
-    files = [*filter(os.path.isfile, line)]
+    # The file that the reason names, else the last one
+    named = [word for word in line if refusal.reason.startswith(f"{word}:")]
+    files = [*filter(os.path.isfile, named or line)]
     if files and not change and files[-1].endswith((".toml", ".json")):
         return cut(f"{refusal.reason}; change it in the file{TRY}{KEYS}")
     examples = re.findall(rf"^  ({name} .*)", chosen.epilog or "", re.MULTILINE)
@@ -181,39 +184,34 @@ def next_step(
         examples = examples[: examples.index(refused)]
     proposed = [f"{name} --help", *examples][-1]
     if change or files:
-        changes = _changed(line, change)
-        whole = shlex.join([name, *line, *changes])
+        _put(line, change)
+        whole = shlex.join([name, *line])
         # A message is cut in its middle: the whole line stands at its end, or is not there.
         if len(whole) < LONGEST_MESSAGE - _SHORTEST_REASON:
             proposed = whole
-        elif changes:
-            proposed = shlex.join(changes)
     room = LONGEST_MESSAGE - len(f"{name}: {TRY}{proposed}")
     return f"{cut(refusal.reason, room)}{TRY}{proposed}"
 
 
-def _changed(line: list[str], change: Mapping[str, object]) -> list[str]:
-    """Remove the options of a change from a line, in place; return the words that replace them.
+def _put(line: list[str], change: Mapping[str, object]) -> None:
+    """Put the options of a change at the end of a line, in place of the line's own.
 
     The change has the values of options by name that make a refused line valid. A mapping is an
     option that is given several times, as ``--column force=2``; a tuple or list is written with
-    commas, and None, an empty tuple or an empty mapping leaves the option out.
+    commas, and None, or an empty tuple, list or mapping, leaves the option out.
     """
-    words = []
     for name, value in change.items():
         flag = f"--{name}"
         while flag in line:
             at = line.index(flag)
             del line[at : at + 2]  # the option and its value
-        texts = [str(value)]
+        texts = [] if value is None else [str(value)]
         if isinstance(value, Mapping):
             texts = [f"{key}={part}" for key, part in value.items()]
         elif isinstance(value, tuple | list):
             texts = [",".join(map(str, value))]
-        for text in texts:
-            if value not in (None, ()):
-                words += [flag, text]
-    return words
+        for text in filter(None, texts):
+            line += [flag, text]
 
 
 _SHORTEST_REASON = 100

@@ -8,11 +8,11 @@ from contextlib import suppress
 import sympy as sp
 
 from lwa.base import InputError
-from lwa.base.exact import positive
+from lwa.base.exact import not_negative, positive
 from lwa.command.answer import Answer, Lines, Row, rows_of
 from lwa.command.chain import STRIKER_FILE, ChainInput
 from lwa.command.cli import KEYS
-from lwa.command.options import CELL, SPHERES, command, not_negative, value
+from lwa.command.options import CELL, SPHERES, command, value
 from lwa.expansion.strike import pulse_of_strike
 from lwa.shocks import front as fronts
 from lwa.shocks.riemann import RULES
@@ -77,9 +77,9 @@ def strike(
         )
     # Options stand above the file, whose striker may have the velocity 0.
     if velocity is None and drop is None:
-        velocity = chain.striker.get("velocity") or None
+        velocity = chain.striker.get("velocity")
         drop = chain.striker.get("drop")
-    if velocity is None and drop is None:
+    if not (velocity or drop):
         raise InputError(f"{chain.file} has no striker that moves", velocity="1")
     # A striker is one of the beads unless it is described.
     if mass is None:

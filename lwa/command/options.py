@@ -12,7 +12,7 @@ import click
 import sympy as sp
 from click.core import ParameterSource
 
-from lwa.base.exact import InputError, integer, positive, read_exact
+from lwa.base.exact import InputError, integer, not_negative, positive, read_exact
 from lwa.base.words import BRANCHES, CLOSURES, FIELDS, one_of
 from lwa.cell import D, exponent, k
 from lwa.command.answer import Answer
@@ -74,20 +74,6 @@ def row(read: Reader) -> Reader:
 
 quantities = row(read_exact)
 """Reader of quantities that are separated by commas."""
-
-
-def _exponent(text: str, name: str) -> sp.Expr:
-    """Read an exponent k, a positive number or a name."""
-    return exponent(positive(text, name))
-
-
-def not_negative(text: str, name: str) -> sp.Expr:
-    """Read a positive quantity or zero."""
-    # A load of zero is no load, and as valid as a missing one.
-    number = read_exact(text, name)
-    if number.is_zero:
-        return number
-    return positive(number, name)
 
 
 def angle(text: str, name: str) -> sp.Expr:
@@ -161,12 +147,12 @@ def command(
         def answer(style: str, **options: Any) -> None:
             # Click has no options that exclude each other.
             for option, replaced in ALTERNATIVES.items():
-                for other in filter(given, replaced):
-                    if given(option):
-                        raise InputError(
-                            f"--{option} and --{other} are both given: one says the other",
-                            **{other: None},  # proposed: the line without this option
-                        )
+                others = [*filter(given, replaced)]
+                if given(option) and others:
+                    raise InputError(
+                        f"--{option} and --{others[0]} are both given: one says the other",
+                        **dict.fromkeys(others),  # proposed: the line without them
+                    )
             # `take_chain` removes the options that describe the chain: the others are left.
             made = function(take_chain(options), **options)
             # The source code of a wave is a text already.
@@ -226,18 +212,18 @@ def together(*options: Option) -> Option:
 def exponent_option(default: str) -> Option:
     """Make the option ``--k``."""
     # 3/2 is the exponent of spheres, and the example of every refusal.
-    says = "Exponent k of the force A δ^k of a contact."
-    return value("--k", says, "3/2", _exponent, default)
+    return value(
+        "--k",
+        "Exponent k of the force A δ^k of a contact.",
+        "3/2",
+        lambda text, name: exponent(text),
+        default,
+    )
 
 
 def order_option(says: str, default: str | None = "4") -> Option:
     """Make the option ``--order``; without a default the command chooses."""
     return value("--order", says, "4", count, default, "N")
-
-
-def law_option(says: str) -> Option:
-    """Make the option ``--law``."""
-    return value("--law", says, "hertz2:1,2", read_law, metavar="NAME[:PARAM,…]")
 
 
 # The file is read by the command, whose refusals have the line to paste.
@@ -293,9 +279,13 @@ PRECOMPRESSION = value(
 # Names alone: what their parameters mean stands in the book.
 CELL = together(
     exponent_option(k.name),
-    law_option(
+    value(
+        "--law",
         "Contact force A F(δ) by the name and the parameters of F, in place of --k: "
-        f"{', '.join(NAMES)}."
+        f"{', '.join(NAMES)}.",
+        "hertz2:1,2",
+        read_law,
+        metavar="NAME[:PARAM,…]",
     ),
     MASSES,
     STIFFNESSES,

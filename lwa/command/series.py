@@ -18,12 +18,6 @@ from lwa.command.options import (
 from lwa.expansion.expand import expand
 from lwa.expansion.series import EpsilonSeries
 
-_ORDER = 8
-"""Order of a series in numbers: of equal spheres, sums then err by 1e-5."""
-
-_SYMBOLIC_ORDER = 4
-"""Order of a series with symbols, whose terms grow with the order."""
-
 _ERRORS = "estimate of a sum's error, by its last terms and by radiation"
 
 
@@ -50,10 +44,11 @@ def expansion(chain: ChainInput, order: int | None) -> Answer:
     that of the second where contacts are unlike, and so on.
     """
     cell = chain.cell
-    expanded = expand(cell, order or _SYMBOLIC_ORDER, law=chain.law)
-    # Whether an expansion is one in numbers is known when it is made; four orders take no time.
+    # Four orders with symbols, whose terms grow with the order
+    expanded = expand(cell, order or 4, law=chain.law)
+    # Eight in numbers: sums of equal spheres then err by 1e-5
     if order is None and expanded.numeric:
-        expanded = expand(cell, _ORDER, law=chain.law)
+        expanded = expand(cell, 8, law=chain.law)
     # The coefficients of c² alone are in JSON: the other series are computed from its parts.
     head: Values = {
         "k": expanded.k,

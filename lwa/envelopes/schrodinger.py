@@ -249,8 +249,7 @@ class Breather(Value):
 
     def _refuse(self, why: str) -> NoReturn:
         """Raise an error that names the detuning."""
-        detuning = sp.sstr(sp.N(self.detuning, 5), full_prec=False)
-        raise InputError(f"detuning 1 - f/f0 is {detuning}: {why}")
+        raise InputError(f"detuning 1 - f/f0 is {brief(self.detuning)}: {why}")
 
     def __repr__(self) -> str:
         beads = ", ".join(map(brief, self.amplitude))

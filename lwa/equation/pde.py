@@ -72,7 +72,8 @@ class PDE(OfClosure):
         The leading term ``u_xx u_x^{k-1}`` (optical: ``-u^k``) is left out. The terms of an order
         that vanishes are {}.
         """
-        # The leading term is E_1 on the acoustic branch, E_0 on the optical one.
+        # The wave equation is u_ττ = u_x^k Σ D^{n-1} E_n with the leading term E_1 on the acoustic
+        # branch, and u_ττ = -u^k Σ D^n E_n with E_0 on the optical one.
         base = self.closure.model.base
         sign = 1 if self.acoustic else -1
         acceleration = self.closure.solution.acceleration

@@ -77,7 +77,13 @@ class FollowingRecursion(Recursion):
         return self.force[0].series[n]
 
     def _last_force(self, n: int) -> fmpq_mpoly:
-        """Coefficient of t^n in the force on the next cell, with half of the inertia of bead 1."""
+        """Coefficient of t^n in the force on the next cell, with half of the inertia of bead 1.
+
+        The light bead, bead 1, has the mass m2 and the acceleration a. Lagrange's equations of the
+        reduced chain share m2 a between its neighbours: with the mean force F of its contacts,
+        ``F + m2 a/2`` acts on the heavy bead before, and ``F - m2 a/2`` on the heavy bead behind.
+        """
+        # The inertia of a `Recursion` is -m2 a, and its last force is F here.
         return super()._last_force(n) + self._inertia(1, n) / 2
 
 
@@ -92,7 +98,8 @@ def _light() -> Observables:
 @cache
 def exponent_of_light_beads(quantity: str) -> sp.Expr:
     """The exponent e of a quantity as a function of the symbol k."""
-    # Series in ε of the quantity over its leading term, at the mass ratios 0 and `LIGHT`
+    # Series in ε of the quantity over its leading term, at the mass ratios 0 and `LIGHT`, with so
+    # many digits (`lwa.expansion.joined.decimals`) that their difference keeps enough
     heavy = decimals(equal_beads(quantity, ORDER))
     light = decimals(_light().coefficients(quantity))
     leading = _LEADING.get(quantity, 1.5)

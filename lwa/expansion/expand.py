@@ -29,6 +29,9 @@ from lwa.law import ContactLaw, power_exponent
 EPSILON_NAMES = ("ε", "varepsilon")
 """Names that no symbol of a cell may have: ``k - 1`` is printed as ε, in LaTeX as varepsilon."""
 
+DIGITS = 30
+"""Decimal digits of coefficients that are not exact; a sum of 16 orders cancels some ten."""
+
 LARGEST = 3_000_000
 """Most terms of the polynomials of an expansion: half a minute for equal beads (order 114)."""
 
@@ -62,7 +65,7 @@ class Expansion(Parametric):
                 )
         if not self.k.free_symbols and self.k <= 1:
             raise InputError(f"k is {self.k}: the expansion in k - 1 wants k > 1")
-        terms = _terms(shares_model(self.cell, self.k), self.order)
+        terms = _terms(self._model, self.order)
         if terms > LARGEST:
             raise InputError(
                 f"order is {self.order}: polynomials of some {terms:.0e} terms take hours; a lower "
@@ -77,7 +80,22 @@ class Expansion(Parametric):
     @cached_property
     def _observables(self) -> Observables:
         """The quantities of the wave as polynomials."""
-        return Observables(Recursion(shares_model(self.cell, self.k), self.order))
+        return Observables(Recursion(self._model, self.order))
+
+    @cached_property
+    def _model(self) -> Model:
+        """The model of the cell; of numbers with two irrational shares or more, with decimals.
+
+        Polynomials in two shares took eight minutes at order 8, those in decimals take a second.
+        """
+        model = shares_model(self.cell, self.k)
+        if len(model.contacts.names) < 2 or not self.numeric:
+            return model
+        # The shares at k are those of contacts with the stiffnesses A^{1/k} at an exponent of 1.
+        # Longer decimals would not be multiplied out (`lwa.base.exact.power`).
+        compliances = self.cell.compliances(self.k)
+        contacts = [sp.N(1 / each, DIGITS + 10) for each in compliances]
+        return shares_model(Cell(self.cell.masses, contacts), sp.S.One)
 
     @cached_property
     def numeric(self) -> bool:
@@ -154,13 +172,20 @@ class Expansion(Parametric):
     ) -> EpsilonSeries:
         """The series ``unit · ε^power · Σ a_n ε^n`` of a quantity; only widths need a contact."""
         coefficients = self._observables.coefficients(quantity, contact)
+        if self._model.cell is not self.cell:
+            unit = sp.N(unit, DIGITS)
+            coefficients = tuple(sp.N(a, DIGITS) for a in coefficients)
         return EpsilonSeries(unit, power, coefficients, self.k, self.cell, quantity)
 
     def latex_rows(self) -> list[str]:
         """LaTeX of the series of c², the widths, momentum and energy."""
-        widths = [self.fwhm(quantity) for quantity in QUANTITIES]
         rows = []
-        for series in (self.c2, *widths, self.momentum, self.energy):
+        for series in (
+            self.c2,
+            *map(self.fwhm, QUANTITIES),
+            self.momentum,
+            self.energy,
+        ):
             rows += series.latex_rows()
         return rows
 
@@ -173,7 +198,8 @@ def expand(
     Parameters
     ----------
     cell : Cell
-        The periodic cell; numbers give rational coefficients, symbols rational functions.
+        The periodic cell; numbers give rational coefficients, symbols rational functions. Unlike
+        contacts have irrational shares: two of them or more, in numbers, give `DIGITS` decimals.
     order : int
         Highest power of ε relative to the leading term.
     k : number or symbol

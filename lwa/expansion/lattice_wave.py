@@ -24,8 +24,15 @@ import sympy as sp
 
 from lwa.base import latex
 from lwa.base.exact import InputError, demand_numbers, number, positive, power, shorten
-from lwa.base.frozen import RISE, Estimate, NoSolitaryWave, known_extent, known_quantity
-from lwa.base.words import QUANTITIES, ExtentName, LanguageName, QuantityName, one_of
+from lwa.base.frozen import RISE, Estimate, NoSolitaryWave, known_quantity
+from lwa.base.words import (
+    EXTENTS,
+    QUANTITIES,
+    ExtentName,
+    LanguageName,
+    QuantityName,
+    one_of,
+)
 from lwa.cell import Cell, Parametric, exponent, k as symbol_k, read_cell
 from lwa.expansion.dimers import ALIKE, dimer_error, exponent_of_light_beads, steadiness
 from lwa.expansion.joined import FORMS, joined, joined_error
@@ -234,7 +241,7 @@ class LatticeWave(Parametric):
         sympy.Expr
         """
         length = self._result(known_quantity(quantity))
-        if known_extent(extent) == "length":
+        if one_of(extent, EXTENTS, "extent") == "length":
             return length
         return length / self.speed
 

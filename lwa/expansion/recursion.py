@@ -223,7 +223,10 @@ class Recursion:
         return self.force[-1].series[n]
 
     def _inertia(self, i: int, n: int) -> fmpq_mpoly:
-        """Coefficient of t^n in P m̂_i γ ∂s_i, mass times acceleration of bead i."""
+        """Coefficient of t^n in P m̂_i γ ∂s_i, minus mass times acceleration of bead i.
+
+        The velocity of a bead is c s(x - ct), whose derivative by time is -c² ∂s.
+        """
         # The derivative raises the power of t by one.
         if n == 0:
             return self.zero

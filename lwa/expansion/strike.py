@@ -103,10 +103,10 @@ class Strike(Value):
         try:
             force = factor**power * velocity ** (2 * power)
         except OverflowError:
-            reason = (
-                f"velocity is {shorten(self.velocity)}: its force exceeds any float"
-            )
-            raise InputError(reason, velocity=1) from None
+            raise InputError(
+                f"velocity is {shorten(self.velocity)}: its force exceeds any float",
+                velocity=1,
+            ) from None
         return unit.at_force(force)
 
     @property

@@ -43,14 +43,15 @@ from lwa.base.exact import (
     InputError,
     Quantity,
     brief,
+    not_negative,
     number,
     positive,
     power,
     read_exact,
     shorten,
 )
-from lwa.base.frozen import Estimate, NoSolitaryWave, known_extent, known_quantity
-from lwa.base.words import ExtentName, QuantityName, one_of
+from lwa.base.frozen import Estimate, NoSolitaryWave, known_quantity
+from lwa.base.words import EXTENTS, ExtentName, QuantityName, one_of
 from lwa.cell import Cell, k as symbol_k
 from lwa.law import ContactLaw, for_cell
 from lwa.loaded.background import Background, KdV, squared_speed
@@ -214,7 +215,7 @@ class LoadedWave(States):
         # The particles move at V v: strain and velocity have one width.
         of_force = known_quantity(quantity) == "force"
         sites = 2 * self._quadrature.half_width(of_force)
-        if known_extent(extent) == "time":
+        if one_of(extent, EXTENTS, "extent") == "time":
             return sp.Float(sites / number(self.speed / self.chain.spacing))
         return sp.Float(sites) * self.chain.spacing
 
@@ -417,9 +418,9 @@ def loaded_wave(
             if B.is_zero:
                 raise InputError("rise is 0: `kdv` is the limit of small waves")
             return LoadedWave.of_strains(field, B)
-    load = read_exact(0 if precompression is None else precompression, "precompression")
-    if not load.is_zero:
-        load = positive(load, "precompression")
+    load = not_negative(
+        0 if precompression is None else precompression, "precompression"
+    )
     peak = positive("F" if force is None else force, "force")
     if load == peak:
         raise NoSolitaryWave(

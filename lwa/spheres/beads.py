@@ -206,15 +206,13 @@ def spheres(content: Any) -> list[Sphere]:
 def _material(value: Any, name: str) -> Material:
     """Read a material: E, ν and the density, or a known material and the numbers that differ."""
     entries = Table(value, name, ("like", "E", "nu", "density"))
-    # Density is needed by beads without a mass alone, which ask for it.
-    needed = {"E", "nu"}
     values = {}
     if "like" in entries:
         values = vars(entries.read("like", among(BY_NAME)))
-        needed = set()
     for key, read in {"E": positive, "nu": finite, "density": positive}.items():
-        # A needed key that is missing is refused by its reader.
-        if key in entries or key in needed:
+        # A missing key is refused by its reader. Density is needed by beads without a mass alone,
+        # which ask for it.
+        if key in entries or key not in (*values, "density"):
             values = values | {key: entries.read(key, read)}
     try:
         return Material(**values)

@@ -54,11 +54,10 @@ def fitting(unit: str, magnitude: float) -> Unit:
     if unit == "kg":  # prefixes stand before the gram
         own = 1e-3
         unit = "g"
-    # A prefix stands for a power of a thousand.
+    # A prefix stands for a power of a thousand, from -4 to 4.
     thousands = math.floor(math.log10(magnitude / own) / 3)
-    place = min(max(thousands + PREFIXES.index(""), 0), len(PREFIXES) - 1)
-    power = 3 * (place - PREFIXES.index(""))
-    return Unit(PREFIXES[place] + unit, 10.0**power * own)
+    thousands = min(max(thousands, -4), 4)
+    return Unit(PREFIXES[thousands + 4] + unit, 1000.0**thousands * own)
 
 
 def labelled(label: str, magnitude: float) -> Unit:

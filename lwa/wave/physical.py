@@ -17,8 +17,8 @@ import sympy as sp
 
 from lwa.base import latex
 from lwa.base.exact import InputError, brief, number, positive, power, shorten
-from lwa.base.frozen import known_extent, known_quantity, strain_power
-from lwa.base.words import ExtentName, QuantityName, one_of
+from lwa.base.frozen import known_quantity, strain_power
+from lwa.base.words import EXTENTS, ExtentName, QuantityName, one_of
 from lwa.cell import Parametric
 from lwa.law import Power
 from lwa.wave.arch import Arch
@@ -79,13 +79,14 @@ class PhysicalWave(Parametric):
         )
 
     def latex_rows(self) -> list[str]:
-        rows = {
-            "F": self.contact_force,
-            "B": self.strain,
-            latex.SPEED: self.speed,
-            latex.fwhm("force"): self.fwhm("force"),
-        }
-        return latex.rows(rows)
+        return latex.rows(
+            {
+                "F": self.contact_force,
+                "B": self.strain,
+                latex.SPEED: self.speed,
+                latex.fwhm("force"): self.fwhm("force"),
+            }
+        )
 
     @cached_property
     def _bead_share(self) -> sp.Expr:
@@ -183,7 +184,7 @@ class PhysicalWave(Parametric):
         """
         # A wave of constant shape passes a place in the time that it needs for its own length.
         length = self.wave.fwhm(quantity)
-        if known_extent(extent) == "length":
+        if one_of(extent, EXTENTS, "extent") == "length":
             return length
         return length / self.speed
 

@@ -21,8 +21,8 @@ from sympy.printing.jscode import JavascriptCodePrinter
 from sympy.printing.numpy import NumPyPrinter
 
 from lwa.base.exact import InputError, shorten
-from lwa.base.frozen import QUANTITIES, strain_power
-from lwa.base.words import LanguageName, one_of
+from lwa.base.frozen import strain_power
+from lwa.base.words import QUANTITIES, LanguageName, one_of
 from lwa.law import Power
 from lwa.wave.arch import Arch
 
@@ -232,6 +232,7 @@ class Functions(dict[str, Function]):
     """
 
     def __init__(self, *parts: sp.Expr) -> None:
+        """Begin without functions; `define` adds them, with ``symbols`` as possible arguments."""
         super().__init__()
         # Each symbol once, in the order of the parts, those of one part by name
         ordered: dict[sp.Symbol, None] = {}

@@ -233,6 +233,8 @@ def test_a_fault_in_a_file_ends_in_the_users_own_line(capsys, folder):
     Path("s.toml").write_text(SCENE.replace("30", "1e12"))
     for line, proposed in (
         ("pulses r.csv --of bead",) * 2,
+        ("law r.csv --spheres s.toml",) * 2,
+        ("pulses r.csv none.csv", "pulses forces.csv --distance 4.76e-3"),
         ("run s.toml", "run --keys"),
     ):
         status, _, err = run(capsys, *line.split())

@@ -158,6 +158,7 @@ class _Integration:
                 t = go(
                     self.chain, self.forcing, self.beads, self.plan, knots, now, glance
                 )
+                # The new plan has a greater tolerance; steps go on from the present motion.
                 if now["response"] > self.plan.most:
                     response = float(now["response"])
                     self._make_plan(Motion(self.motion.scene, response))
@@ -166,6 +167,7 @@ class _Integration:
                     stored = int(now["stored"])
                     now["stored"] = self.recorder.take(stored)
                 stuck = t + now["h"] == t
+                # The proposal is the user's rtol, loosened; `steps` begins with it.
                 if t < end and (now["tries"] > self.most_tries or stuck):
                     looser = f"{_LOOSER * self.steps[0]:.0e}"
                     raise IntegrationError(self._failure(), rtol=looser)

@@ -27,7 +27,10 @@ _MOST_BYTES = 2**28
 
 
 def _with_neighbours(beads: Beads) -> NDArray[np.int_]:
-    """Return the increasing numbers of beads and their neighbours."""
+    """Return the increasing numbers of beads and their neighbours.
+
+    Behind bead 0 is none. Beyond the last bead the wall and the chain's padding are beads at rest.
+    """
     near = np.unique(np.add.outer(beads, (-1, 0, 1)))
     return near[near >= 0]
 
@@ -154,9 +157,13 @@ class Recorder:
         return 1
 
     def _sample(self) -> None:
-        """Compute the samples up to the last knot, and drop the knots."""
+        """Compute the samples up to the last knot, and drop the knots.
+
+        `take` has put the last knot first in the engine's arrays: the next part begins with it. The
+        bytes stay counted: once they are too many, the samples of each later part are computed too.
+        """
         path = self.path()
-        assert path is not None
+        assert path is not None  # `take` has just appended a part
         time = sample_times(self.motion.scene)
         # Parts of the samples: displacements and velocities (2, beads, times).
         done = sum(part.shape[2] for part in self.samples)

@@ -52,7 +52,9 @@ class Path(Protocol):
         """The equations of motion."""
         ...
 
-    def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]: ...
+    def __call__(self, beads: Beads, time: Array) -> tuple[Array, Array]:
+        """Return displacements and velocities, (beads, S), of every bead at every time."""
+        ...
 
 
 def beads_at(motion: Motion, sensors: Mapping[str, Sequence[int]]) -> NDArray[np.int_]:

@@ -341,7 +341,7 @@ def _place(t: Array, f: Array) -> tuple[float, float]:
     if after in (0, len(below)):
         side = "back" if after else "front"
         raise MeasureError(
-            f"the pulse is not wholly in the record: its {side} does not pass half its peak"
+            f"the pulse is not wholly in the record: its {side} does not pass 50% of its peak"
         )
     rise, fall = t[below[after - 1 : after + 1]]
     return float(rise), float(fall)
@@ -395,6 +395,8 @@ def suggested(t: Array, signal: Array, pulse: NoisyPulse, unit: str) -> str:
 
     Waves behind a pulse rarely swing alike in both stretches. Times have the ``unit``.
     """
+    if "peak" not in pulse.numbers:
+        return ""
     arrival = pulse.numbers["arrival"].value
     width = pulse.numbers["fwhm"].value
     # A base that falls is no undershoot.

@@ -264,7 +264,9 @@ class _Grid:
         place = np.searchsorted(below, top)
         if place in (0, len(below)):
             side = "back" if place else "front"
-            raise MeasureError(f"{_PARTLY} its {side} does not pass half its peak")
+            raise MeasureError(
+                f"{_PARTLY} its {side} does not pass {share:.0%} of its peak"
+            )
         rise = self._crossing(below[place - 1], level)
         fall = self._crossing(below[place] - 1, level)
         return Pulse(arrival, peak, rise, fall)

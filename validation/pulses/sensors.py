@@ -304,6 +304,9 @@ def tracks(
 def _place(scene: Scene, x: Array, kind: str, i: int) -> dict[str, float]:
     """Return the place of a sensor as in `Reading.along`; empty for a bead with one contact.
 
+    The key is the name of the speed that is computed from the place: "speed_sites" from the place
+    in sites, "speed" from the place in lengths, where the scene has spacings.
+
     x : places of the beads, and of one more bead, imagined a spacing after the last.
     """
     # The force of a bead between two contacts is their mean, at the bead; with one contact it is a

@@ -1,7 +1,10 @@
 """Tables of cells: the texts of recorders and programs, whatever stands around their numbers.
 
 Cells are separated by tabs, semicolons, commas or blanks, by those that make most numbers. A comma
-inside a cell, where others separate or in quotes, is a decimal comma.
+inside a cell, where others separate or in quotes, is a decimal comma. Where cells such as 0,5 tell
+the decimal sign of a file, 1.234 is a number with its thousands marked.
+
+A table that lies, with a signal in each row, is set upright; rows may stand in brackets, as lists.
 """
 
 from __future__ import annotations
@@ -10,19 +13,23 @@ import codecs
 import csv
 import math
 import re
-from collections.abc import Iterator, Sequence
-from itertools import chain, islice, pairwise
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from itertools import chain, islice, zip_longest
 from pathlib import Path
+from statistics import median
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from lwa.base import files
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
 from validation.scenes.checks import SceneError
 
+_FOLDED = re.compile(r'"(?<![^;,\t\n]")[^"\n]*(?:\n[^"\n]*){1,3}"(?=[;,\t\r\n])')
+"""Pattern of a cell of several lines, such as a header above its unit."""
 _LINE = re.compile(r"[^\r\n]*\S[^\r\n]*")  # a line that is not blank
 # Signs with several codes, and the sign of recorders for a value beyond their range
 _SIGNS = {"μ": "µ", "−": "-", "∞": "inf"}
@@ -35,16 +42,30 @@ As many bytes at the start of a file show whether the file is a text, without a 
 _MARKS = "\t;, "
 _UNIT = r"[pnuµmckMG]?(?:m/s|[smNV])"  # units that are told without brackets
 HEADER = re.compile(
-    rf"^(.*?) ?(?:(?:[([] ?|\bin )([^][()\s]+) ?[])]?|(?<=\w)[ _/]({_UNIT}))?$"
+    r"^(.*?) ?(?:(?:[([] ?|\bin |(?<= )/ )((?:\S*\d )?[^][()\s]+) ?[])]?"
+    rf"|(?<=\w)(?:,? |[_/])({_UNIT}))?$"
 )
-"""Pattern of the name and the unit of a column: "Force (N)", "Force [N]", "Force in N"; "Force N",
-"Force_N" and "Force/N" end in a usual unit."""
+"""Pattern of the name and the unit of a column: "Force (N)", "Force [10 N]", "Force in N",
+"Force / N"; "Force N", "Force, N", "Force_N" and "Force/N" end in a usual unit."""
 
 # Texts of recorders in place of a value beyond their range, and the numbers that SCPI has for it
 # and for no number (SCPI-99, vol. 1, 7.2.1)
 _BEYOND = re.compile(r"[-+]?o(l|vld?|ver(load|flow|range)?)", re.IGNORECASE)
-_CLOCK = re.compile(r"(?:[-\d./]+[T ])?(\d\d):(\d\d):(\d\d\.?\d*)Z?")
-"""Pattern of a time of day, also behind a date."""
+_CLOCK = re.compile(
+    r"(?:[-\d./]+[T ])?(?:(\d\d?):)?(\d\d?):(\d\d[.,]\d*|(?<=:\d\d:)\d\d)"
+    r"(?:Z|[-+]\d\d:\d\d| ?([AP])M)?"
+)
+"""Pattern of a time of day, also behind a date; without hours the seconds have a fraction."""
+_THOUSANDS = re.compile(r" *[-+]?[1-9]\d{0,2}([.,]\d{3})+(?!\d)")
+_DECIMAL = re.compile(
+    r"(?![-+]?[1-9]\d{0,2}(?:[.,]\d{3})+$)"
+    r"[-+]?(?:\d*|\d{1,3}(?:[.,]\d{3})+)([.,])\d+(?:[eE][-+]?\d+)?"
+)
+"""Pattern of a number whose last sign is a decimal one: that of 1.234 may mark thousands."""
+_MARKED = re.compile(
+    r"(?<=\d)(?:['’\xa0\u202f](?=\d{3}(?!\d))|([.,])(?=(?:\d{3}\1)*\d{3}(?!\1)[.,]))"
+)
+"""Pattern of a sign that only marks thousands: a hard blank, an apostrophe, the first of two."""
 _SCPI = {9.9e37: math.inf, -9.9e37: -math.inf, 9.91e37: math.nan}
 
 # Chosen: a preamble with numbers is short beside its record.
@@ -52,6 +73,9 @@ _FEW = 0.1  # rows of numbers outside of the record, at most, over those of the 
 # Least share of numbers in a row of a record: a date and a time may stand in front.
 _LEAST = 1 / 3
 _SETTINGS = 20  # lines in whose first columns recorders write settings
+# Chosen: a pulse of 16 samples above its half keeps its shape without two of them.
+_LOST = 3.5  # least time from row to row that is a gap, over the usual one
+_WIDE = 3  # least length of the rows of a table that lies, over their number
 
 
 class Cells:
@@ -61,37 +85,43 @@ class Cells:
     ----------
     head : list of rows
         Cells of the lines above the numbers.
+    top : list of rows
+        The head, and the first line of numbers, which may hold settings.
+    turned : str
+        The text of the table upright if it lies, else "".
     entries : dict of str
         Cells of a line of numbers, by the numbers of the columns, from 1; without other cells.
     """
 
     def __init__(self, text: str) -> None:
-        found = islice(_LINE.finditer(text), HEAD)
-        lines = [line[0] for line in found]
+        lines = [line[0] for line in islice(_LINE.finditer(text), HEAD)]
         tables = {}
-        shares = {}
+        weights = {}
         for mark in _MARKS:
             tables[mark] = [_split(line, mark) for line in lines]
-            shares[mark] = [_share(row) for row in tables[mark]]
+            weights[mark] = [*map(_weight, tables[mark])]
 
         def record(mark: str) -> tuple[int, int]:
             """Return start and end of the longest run of rows of numbers, with this separator."""
-            return longest([share >= _LEAST for share in shares[mark]])
+            return longest(np.array(weights[mark]) > 0)
 
-        def weight(mark: str) -> float:
-            """Count the numbers of the record, each weighted by the share of numbers in its row.
+        def total(mark: str) -> float:
+            """Sum the weights of the record's usual rows.
 
-            Without the weight a separator that also cuts texts into pieces would count as good.
+            A line of the head that one separator cuts into numbers does not decide.
             """
             start, end = record(mark)
-            rows = zip(tables[mark], shares[mark], strict=True)
-            record_rows = islice(rows, start, end)
-            return sum(len(row) * share**2 for row, share in record_rows)
+            own = weights[mark][start:end]
+            usual = median(own or [0])
+            return usual * sum(weight >= usual for weight in own)
 
-        self._mark = mark = max(_MARKS, key=weight)
+        self._mark = mark = max(_MARKS, key=total)
         self._text = text
         rows = tables[mark]
         start, end = record(mark)
+        found = map(_DECIMAL.fullmatch, chain(*rows[start:end]))
+        decimal = {number[1] for number in found if number}
+        self._thousands = {",": ".", ".": ","}.get("".join(decimal), "")
         typical = []
         if end:
             # Which columns hold numbers is read from one row of the record, after the settings.
@@ -100,14 +130,16 @@ class Cells:
             # Without any row of numbers all lines are the head.
             start = len(rows)
         self.head = rows[:start]
-        self._texts = set()
-        for line, row in zip(lines, self.head, strict=False):
-            if any(row) and not _share(row):
-                self._texts.add(line)
+        self.top = rows[: start + 1]
         self.entries = {}
         for number, cell in enumerate(typical, start=1):
-            if not math.isnan(number_of(cell)):
+            if not math.isnan(self._reader(cell)(cell)):
                 self.entries[number] = cell
+        self.turned = ""
+        # In a table that lies all rows begin alike, with a name or with a number.
+        begins = {math.isnan(number_of(row[0])) for row in rows}
+        if len(typical) > _WIDE * end == _WIDE * len(rows) and len(begins) == 1:
+            self.turned = "\n".join(map("\t".join, zip_longest(*rows, fillvalue="")))
         if mark == " ":
             # A header of several words, in a table of blanks: two blanks or more part the headers.
             for i, above in enumerate(lines[:start]):
@@ -124,9 +156,15 @@ class Cells:
         encoding = "utf-8-sig"
         if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
             encoding = "utf-16"
-        # Recorders may pad a text with zeros at its end. JSON is what `run` stores beside CSV.
-        elif b"\0" in content[:HEAD] or content.startswith(b"{"):
+        elif not content[1:HEAD:2].strip(b"\0"):
+            encoding = "utf-16-le"
+        # Recorders may pad a text with zeros at its end.
+        elif b"\0" in content[:HEAD]:
             raise SceneError("it is no table: rows of text, CSV say, are wanted")
+        if re.match(rb'\{\s*"', content):
+            raise SceneError(
+                "it is no table but JSON; try: lwa-validate run scene.toml --out FILE.csv"
+            )
         try:
             text = content.decode(encoding)
         except UnicodeDecodeError:
@@ -135,7 +173,12 @@ class Cells:
         # A translation would take as much memory again.
         for sign, plain in _SIGNS.items():
             text = text.replace(sign, plain)
-        return cls(text)
+        text = _FOLDED.sub(lambda cell: " ".join(cell[0].split()), text)
+        if text.startswith(("{{", "[[")):  # rows in brackets; Mathematica's 2.*^-6
+            text = "".join(text.replace("*^", "e").split())
+            text = re.sub(r"[]}],[{[]", "\n", text).strip("[]{}")
+        cells = cls(text)
+        return cls(cells.turned) if cells.turned else cells
 
     @property
     def headers(self) -> set[str]:
@@ -179,19 +222,33 @@ class Cells:
                 islice(self._lines(numbers[-1]), most),
                 delimiter=self._mark.strip(" ") or None,
                 comments=None,
-                converters=number_of,
+                converters={
+                    n - 1: self._reader(self.entries.get(n, "")) for n in numbers
+                },
                 quotechar='"',
                 usecols=[number - 1 for number in numbers],
                 ndmin=2,
             )
         return dict(zip(numbers, table.T, strict=True))
 
+    def _reader(self, entry: str) -> Callable[[str], float]:
+        """Return the reader of a column with this entry.
+
+        Times of day may stand above signals, too: they are no numbers there.
+        """
+        if _CLOCK.fullmatch(entry):
+            return seconds_of
+        return partial(number_of, thousands=self._thousands)
+
     def _lines(self, count: int) -> Iterator[str]:
-        """Yield the lines, with so many cells more that the reader finds all columns."""
-        # The reader refuses a line that is too short.
+        """Yield the lines, each with ``count`` cells "nan" more.
+
+        NumPy's reader refuses a line with fewer cells than the columns that are read: with the
+        number of the last column as ``count`` no line has too few.
+        """
         more = f"{self._mark}nan" * count
         for line in self._data():
-            text = line[0]
+            text = line[0]  # the whole line, of the match
             if '"' in text:
                 # NumPy takes quotes right after a separator; a single one would join lines.
                 text = text.replace(f'{self._mark} "', f'{self._mark}"')
@@ -200,40 +257,54 @@ class Cells:
             yield text + more
 
     def _data(self) -> Iterator[re.Match[str]]:
-        """Yield the lines, without comments among the numbers and without repeated headers.
-
-        A recorder may write its header again after each block.
-        """
-        seen = set()
+        """Yield the lines, without comments among the numbers."""
         for place, line in enumerate(_LINE.finditer(self._text)):
-            text = line[0]
-            comment = text.startswith("#") and place >= len(self.head)
-            if not comment and text not in seen:
+            if place < len(self.head) or not line[0].startswith("#"):
                 yield line
-            if text in self._texts:
-                seen.add(text)
 
-    def rows(self, table: Array) -> tuple[int, int]:
-        """Return start and end of the record in a table of columns: the rows without any NaN.
+    def rows(self, table: Array, timed: bool) -> NDArray[np.intp]:
+        """Return the places of the rows of the record in a table of columns: those without any NaN.
 
         There must be such a row. Raises `SceneError` for a gap or an infinite value in the record.
+
+        Parameters
+        ----------
+        table : array
+            Columns, (lines, columns).
+        timed : bool
+            Whether the first column is the time: rows between two whose times are near, as where
+            single samples are lost or channels take turns, are then no gap.
         """
         numbers = ~np.isnan(table)
         # A row of the record has a number in each wanted column.
         complete = np.all(numbers, axis=1)
-        start, end = longest(complete)
-        found = runs(complete)
+        joined = complete
+        kept = np.flatnonzero(complete)
+        if timed and len(kept) > 1:
+            with np.errstate(invalid="ignore"):  # ∞ - ∞
+                steps = np.diff(table[kept, 0])
+                near = (steps > 0) & (steps < _LOST * np.median(steps))
+            # The sum is the number of whole rows so far, behind which a row is bridged.
+            bridged = np.pad(near, 1)
+            joined = complete | bridged[np.cumsum(complete)]
+        start, end = longest(joined)
+        found = runs(joined)
         place = found.index((start, end))
-        # A preamble or a footer may hold a few rows of numbers, if lines without any number part
-        # them from the record. Any other run of rows beside the record is a part of it, beyond a
-        # gap.
-        many = complete.sum() > (1 + _FEW) * (end - start)
-        first = max(place - 1, 0)
-        for before, after in pairwise(found[first : place + 2]):
-            _, gap = before
-            if many or numbers[gap : after[0]].any():
-                at, text = self._line(gap)
-                raise SceneError(f"line {at} is a gap in the record: {shorten(text)}")
+        # A preamble may hold a few rows of numbers, if lines without any number part them from the
+        # record, and a footer a few. Any other run of rows beside the record is a part of it,
+        # beyond a gap.
+        many = joined.sum() > (1 + _FEW) * (end - start)
+        gap = end if many else None
+        if place:
+            _, above = found[place - 1]
+            if many or numbers[above:start].any():
+                gap = above
+        if gap is not None:
+            at, text = self._line(gap)
+            raise SceneError(
+                f"line {at} is a gap in the record: {shorten(text)}; head -n {at - 1} "
+                "keeps the part above"
+            )
         infinite = np.isinf(table[start:end])
         beyond = np.flatnonzero(infinite.any(axis=1))
         if len(beyond):
@@ -242,7 +313,7 @@ class Cells:
                 f"line {at} holds ∞, the signal is clipped: a larger range of the recorder is "
                 "wanted"
             )
-        return start, end
+        return start + np.flatnonzero(complete[start:end])
 
     def _line(self, row: int) -> tuple[int, str]:
         """Return the number, from 1, and the text of the line of a row of `columns`."""
@@ -277,33 +348,52 @@ def name_of(header: str) -> str:
     return name.replace("dynamic ", "").strip("#% ")
 
 
-def number_of(cell: str) -> float:
-    """Return the number in a cell, of a time of day its seconds; NaN for other text.
+def number_of(cell: str, thousands: str = "") -> float:
+    """Return the number in a cell, NaN for other text.
 
-    >>> [number_of(cell) for cell in ("-1,5", "1.5D-3", "+ 4", "12:03", "1_0", "-OL")]
-    [-1.5, 0.0015, 4.0, nan, nan, -inf]
-    >>> number_of("2026-11-28T00:02:03.5Z")
-    123.5
+    The sign ``thousands`` marks thousands where three digits follow it.
+
+
+    >>> [number_of(cell) for cell in ("-1,5", "1.5D-3", "+ 4", "1'234,5", "1_0", "-OL")]
+    [-1.5, 0.0015, 4.0, 1234.5, nan, -inf]
+    >>> number_of("1.234"), number_of("1.234", thousands="."), number_of("1,234,567.5")
+    (1.234, 1234.0, 1234567.5)
     """
     if "_" in cell:  # Python reads 1_0 as 10
         return math.nan
-    plain = cell.replace(",", ".")
+    if thousands and thousands in cell and _THOUSANDS.match(cell):
+        cell = cell.replace(thousands, "")
     try:
-        value = float(plain)
+        value = float(cell.replace(",", "."))
         return _SCPI.get(value, value)
     except ValueError:
         # Fortran writes 1.5D-3, and some loggers write + 1.5.
-        plain = plain.replace("D", "e").replace("+ ", "+").replace("- ", "-")
+        plain = _MARKED.sub("", cell).replace(",", ".").replace("D", "e")
+        plain = plain.replace("+ ", "+").replace("- ", "-")
     if _BEYOND.fullmatch(plain):
         return -math.inf if plain.startswith("-") else math.inf
-    clock = _CLOCK.fullmatch(plain)
-    if clock:
-        hours, minutes, seconds = map(float, clock.groups())
-        return 3600 * hours + 60 * minutes + seconds
     try:
         return float(plain)
     except ValueError:
         return math.nan
+
+
+def seconds_of(stamp: str) -> float:
+    """Return the seconds of a time of day, NaN for other text.
+
+    >>> seconds_of("2026-11-28T00:02:03.5Z"), seconds_of("02:03,5"), seconds_of("12:03")
+    (123.5, 123.5, nan)
+    >>> seconds_of("28.11.2026 12:00:01 AM"), seconds_of("12:00:01 pm")
+    (1.0, nan)
+    """
+    found = _CLOCK.fullmatch(stamp.strip())
+    if not found:
+        return math.nan
+    hours, minutes, seconds, half = found.groups("0")
+    hour = float(hours)
+    if half != "0":
+        hour = hour % 12 + 12 * (half == "P")
+    return 3600 * hour + 60 * float(minutes) + number_of(seconds)
 
 
 def _split(line: str, mark: str) -> list[str]:
@@ -315,11 +405,15 @@ def _split(line: str, mark: str) -> list[str]:
         line = re.sub(r"[ \t]+(?![([])", mark, bare)
     # Cells in quotes may hold separators.
     cells = next(csv.reader([line], delimiter=mark, skipinitialspace=True))
-    return [" ".join(cell.split()) for cell in cells]
+    return [re.sub(" +", " ", cell.strip()) for cell in cells]
 
 
-def _share(row: Sequence[str]) -> float:
-    """Return the share of numbers among the cells of a row that are not blank, or 0."""
+def _weight(row: Sequence[str]) -> float:
+    """Count the numbers of a row, weighted by their share; 0 if the share is below `_LEAST`.
+
+    Without the weight a separator that also cuts texts into pieces would count as good.
+    """
     filled = [*filter(None, row)]
     numbers = [cell for cell in filled if not math.isnan(number_of(cell))]
-    return len(numbers) / max(len(filled), 1)
+    share = len(numbers) / max(len(filled), 1)
+    return len(row) * share**2 * (share >= _LEAST)

@@ -6,29 +6,40 @@ Units are stated, never guessed, in the spellings of recorders and with any SI p
 in brackets after a header, as in "Force (mN)", or in a row of units; or by the user, whose word
 stands above the file's. A statement of the user such as "12.5 N/V" holds a number, a unit, and
 after the first slash the file's own name of its unit. All but one of the parts may be left out:
-"us", "0.04 us", "N/V"; a number alone, "4e-8", is the value in SI of an entry 1.
+"us", "0.04 us", "N/V"; a number alone, "4e-8", is the value in SI of an entry 1. Where both name a
+unit of one other quantity, V and mV, the prefixes count.
 
 Values are in SI. A file whose named columns have no unit at all is in the scene's own numbers; if
 one has a unit, each that is used needs one.
 
 A refusal lists the columns and proposes statements that read the file. For a name without a column
 it is the column that has a unit of the quantity; else one that behaves like it: times rise, but do
-not count their lines, signals vary. Where no column may be the time, a step is proposed.
+not count their lines, signals vary. Where no column may be the time, a step is proposed, as the
+head tells it. A "?" stands for a number that the user alone knows, of a calibration, say.
 """
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from itertools import zip_longest
 from typing import TypedDict
 
 import numpy as np
 
 from lwa.base.arrays import Array
 from lwa.base.exact import shorten
-from validation.scenes.cells import HEAD, HEADER, Cells, longest, name_of
+from validation.scenes.cells import (
+    HEAD,
+    HEADER,
+    Cells,
+    longest,
+    name_of,
+    number_of,
+)
 from validation.scenes.checks import SceneError
 
 BASES = {
@@ -47,11 +58,13 @@ BASES = {
 
 # Other spellings; upper and lower case are alike.
 _SPELLINGS = {
-    "s": "s|secs?|seconds?",
+    "s": "s|se[ck](onde?s?|s|unden?)?",
     "m": "m|met(er|re)s?",
     "N": "N|newtons?",
     "m/s": "m/s|m/sec",
     "V": "V|volts?",
+    "C": "C|coulombs?",
+    "Hz": "Hz|hertz",
 }
 # Names of prefixes by their powers of ten
 _PREFIXES = {
@@ -63,6 +76,7 @@ _PREFIXES = {
     -2: "c centi",
     -1: "d deci",
     0: "",
+    1: "da deca",
     2: "h hecto",
     3: "k kilo",
     6: "M mega",
@@ -82,11 +96,17 @@ NAME = re.compile(
 NAMES = ("time", "bead 8 force", "bead 8 velocity", "contact 8 force", "speed")
 """Examples of names."""
 
-STEP = "1 us"
-"""An example of a time: a usual step of recorders."""
+STEP = "? us"
+"""A time that the user alone knows; what stands for a number that is not known is refused."""
 
 # A number without a sign
 _UNSIGNED = r"(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_TOLD = re.compile(
+    r"(?:interval|increment|[xt]_?inc|delta_?x|hresolution|sampl\w* ?period"
+    rf"|(sampl\w*[ _]?(?:rate|frequency)))\W*({_UNSIGNED}) ?([kMGmnuµ]?(?:s|Hz)\b)?",
+    re.IGNORECASE,
+)
+"""Pattern of the time from sample to sample, or of the rate, in a head."""
 # Columns in a message, which is to have 300 characters at most: of a column its number, up to 20
 # characters of its header and up to 12 of an entry
 _LISTED = 4
@@ -147,13 +167,25 @@ class Column:
         if not self.stated:
             return in_si(self.unit, self.base)
         statement = read_statement(self.stated, self.base)
-        return statement and statement[0]
+        if statement is None:
+            return None
+        size, named = statement
+        # The unit of a sensitivity, mV in 80 mV/N, may have another prefix than the file's, V.
+        theirs = known(named)
+        own = known(self.unit)
+        if theirs and own and theirs[0] == own[0] != self.base:
+            size *= own[1] / theirs[1]
+        return size
 
     @property
     def proposed(self) -> str:
         """A statement that is valid, in place of a unit that is missing or of another quantity."""
+        # A scale in the header, as of "force (10 N)", may be meant as a range: the user says it.
+        if read_statement(self.unit, self.base):
+            return self.unit
         # After the slash stands the file's own name of its unit.
-        return f"1 {self.base}/{self.unit}" if self.unit else self.base
+        unit = f"{self.base}/{self.unit}" if self.unit else self.base
+        return unit if unit == "s" else f"? {unit}"
 
     @property
     def fault(self) -> str:
@@ -164,25 +196,8 @@ class Column:
             found = shorten(self.stated or self.unit)
         return (
             f"unit of {self.name} is {found}: such as {base}, m{base}, 0.04 {base} or 12.5 "
-            f"{base}/{self.unit or 'V'} is wanted"
+            f"{base}/V is wanted"
         )
-
-    @property
-    def note(self) -> str:
-        """A line on a unit that the user states otherwise than the file; "" for none."""
-        statement = read_statement(self.stated, self.base)
-        if not (self.stated and self.unit and statement):
-            return ""
-        # The file's own name of its unit, by the user's statement: the V of "12.5 N/V"
-        _, named = statement
-        if not named:
-            return ""
-        # Spellings of one unit are alike: us, µs, usec.
-        theirs = known(named) or named
-        own = known(self.unit) or self.unit
-        if theirs == own:
-            return ""
-        return f"{self.name}: {self.stated} is stated, the file says {self.unit}."
 
 
 @dataclass(frozen=True, eq=False)
@@ -281,7 +296,7 @@ class Columns:
             rank = partial(_rank, cells, steps, name)
             best = min(free, key=rank, default=None)
             if name == "time" and (step or best is None or rank(best) >= _UNLIKE):
-                step = step or STEP
+                step = step or _told_step(cells)
             elif best is not None:
                 # Each sensor may have a time of its own.
                 alike = [number for number in free if rank(number) == rank(best)]
@@ -342,6 +357,17 @@ def _steps(cells: Cells) -> dict[int, Array]:
     return steps
 
 
+def _told_step(cells: Cells) -> str:
+    """Return the time from sample to sample, or the rate, that the head tells; else `STEP`."""
+    # The number stands beside its name, or below it.
+    for row in (*cells.top, *zip_longest(*cells.top, fillvalue="")):
+        found = _TOLD.search(" ".join(row))
+        if found:
+            rate, number, unit = found.groups()
+            return f"{number} {unit or (rate and 'Hz') or 's'}"
+    return STEP
+
+
 def _listed(cells: Cells) -> str:
     """Return words on the first columns of numbers: number, header and an entry."""
     found = []
@@ -386,9 +412,11 @@ def found_unit(cells: Sequence[str]) -> str:
     """Return the unit that the cells above a column state, "" for none; the lowest one counts."""
     for cell in reversed(cells):
         header = HEADER.fullmatch(cell)
-        unit = header and (header[2] or header[3])
-        if unit:
-            return unit
+        if header:
+            name, *units = header.groups("")
+            # "0.5 ms", and "rate = 0.5 ms", are settings.
+            if any(units) and math.isnan(number_of(name.rpartition("=")[2])):
+                return "".join(units)
     # A row of units stands below names: the V of a single header is a speed, say.
     below = [*filter(None, cells)][1:]
     return next(filter(known, reversed(below)), "")
@@ -413,10 +441,13 @@ def read_statement(text: str, base: str) -> tuple[float, str] | None:
     --------
     >>> read_statement("12.5 mN/V", "N"), read_statement("us", "s"), read_statement("us", "N")
     ((0.0125, 'V'), (1e-06, 'us'), None)
-    >>> read_statement("10 mV/N", "N")
-    (0.1, 'mV')
+    >>> read_statement("10 mV/N", "N"), read_statement("x10^-6 s", "s")
+    ((0.1, 'mV'), (1e-06, ''))
+    >>> read_statement("2 MHz", "s")
+    (5e-07, '')
     """
-    plain = text.replace("μ", "µ").strip()
+    plain = text.replace("μ", "µ").replace("10^", "1e").strip()
+    plain = re.sub(r"^[x×*] ?(?=\d)", "", plain)
     parts = re.fullmatch(rf"(-?)({_UNSIGNED})? *(.*)", plain)
     assert parts is not None  # all may be empty
     # A sign alone turns an inverted signal: -N/V.
@@ -433,6 +464,9 @@ def read_statement(text: str, base: str) -> tuple[float, str] | None:
             named = "/".join(words[count:])
             # A unit alone is the file's, too.
             return size * multiple, named or ("" if number else unit)
+    rate = in_si(unit, "Hz")
+    if base == "s" and rate and size:
+        return 1 / (size * rate), ""
     # A sensitivity, as of a data sheet, is the other way around: 10 mV/N.
     *theirs, ours = unit.split("/")
     multiple = in_si(ours.strip(), base)
@@ -441,7 +475,7 @@ def read_statement(text: str, base: str) -> tuple[float, str] | None:
     return None
 
 
-def read_time(text: str, name: str, example: str) -> float:
+def read_time(text: str, name: str) -> float:
     """Return a time above 0 in SI, as a statement of the user; `SceneError` for another text.
 
     Parameters
@@ -450,13 +484,11 @@ def read_time(text: str, name: str, example: str) -> float:
         The statement.
     name : str
         Name of its option in Python.
-    example : str
-        A statement that is proposed in its place.
     """
     statement = read_statement(text, "s")
     if statement is None or not statement[0] > 0:
         option = name.replace("_", "-")
         raise SceneError(
-            f"{option} is {shorten(text)}: a time above 0 is wanted", **{name: example}
+            f"{option} is {shorten(text)}: a time above 0 is wanted", **{name: STEP}
         )
     return statement[0]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import cycle
 from pathlib import Path
@@ -29,6 +29,10 @@ from validation.scenes.columns import (
     Columns,
     Stated,
     read_time,
+)
+
+_TOLD = (
+    100  # different times that tell a step to 1e-4, the square of one over their number
 )
 
 
@@ -53,6 +57,9 @@ class Record:
     turned : mapping of str
         The user's statements of units, but with the opposite sign in that of ``key``: they turn an
         inverted signal upright.
+    doubt : str
+        The user's statement of the signal's unit if its number is "?": values are in that unit
+        times an unknown number then; else "".
     """
 
     kind: str
@@ -63,6 +70,7 @@ class Record:
     column: int
     key: str
     turned: Mapping[str, str]
+    doubt: str
 
 
 class MeasuredFile(Columns):
@@ -96,7 +104,7 @@ class MeasuredFile(Columns):
             raise SceneError(f"{source}: {reason(error)}") from None
         step = stated.get("step") or ""
         if step:
-            read_time(step, "step", STEP)
+            read_time(step, "step")
         headers: dict[str, str] = {}
         columns = stated.get("columns") or {}
         for given, header in columns.items():
@@ -145,11 +153,6 @@ class MeasuredFile(Columns):
             if near:
                 words += f", near: {', '.join(near)}"
         raise self.refusal(words, missing)
-
-    @property
-    def notes(self) -> list[str]:
-        """Lines on units that the user states otherwise than the file."""
-        return [column.note for column in self.named if column.note]
 
     def rows(self, *names: str) -> Array:
         """Return the record of columns, (rows, columns), in SI if a unit is stated.
@@ -222,13 +225,24 @@ class MeasuredFile(Columns):
         kind, number, quantity = sensor.groups()
         if quantity == "velocity":
             kind = "bead"  # contacts have none
-        t, values = self._record([time, signal]).T
+        doubt = signal.stated if "?" in signal.stated else ""
+        # Times and widths do not depend on the number.
+        counted = replace(signal, stated=signal.stated.replace("?", "1"))
+        t, values = self._record([time, counted]).T
         steps = np.diff(t)
-        if np.any(steps <= 0):
-            step = ""
-            # Times of few digits repeat; those of a second part of the file begin anew.
-            if steps.max() > 0:
-                step = f"{steps[steps >= 0].mean():.6g}{' s' * self.si}"
+        falls = np.flatnonzero(steps < 0)
+        if len(falls):
+            last = f"{t[falls[0]]:.6g}"
+            words = (
+                f"time falls behind {last}: one part of the file, cut there, is wanted"
+            )
+            raise self.refusal(words, ["time"])
+        if not steps.all():
+            # Times of few digits repeat: their line has the step, if they differ often enough.
+            slope, _ = np.polyfit(np.arange(len(t)), t, 1)
+            step = f"{slope:.6g}{' s' * self.si}"
+            if np.count_nonzero(steps) < _TOLD:
+                step = STEP
             words = "time must increase, --step states it of evenly spaced samples"
             raise self.refusal(words, ["time"], step)
         # The last entry, `Record.turned`: the user's calibration of this signal, "2 N/V" say, with
@@ -243,6 +257,7 @@ class MeasuredFile(Columns):
             signal.number,
             signal.key,
             {**self.units, signal.key: f"-{given}".removeprefix("--")},
+            doubt,
         )
 
     def _record(self, columns: Sequence[Column]) -> Array:
@@ -261,7 +276,8 @@ class MeasuredFile(Columns):
             missing = [column.name for column in columns if column.number not in known]
             raise self.refusal(f"no row has numbers in {names}", missing)
         try:
-            start, end = self.cells.rows(table)
+            timed = columns[0].name == "time" and columns[0].number is not None
+            kept = self.cells.rows(table, timed)
         except SceneError as error:
             raise SceneError(f"{self.path}: {names}: {error}") from None
         record = []
@@ -273,9 +289,9 @@ class MeasuredFile(Columns):
                 raise self.refusal(column.fault)
             if column.number is None:
                 # The times that a step states start with the record.
-                values = np.arange(end - start, dtype=float)
+                values = np.arange(len(kept), dtype=float)
             else:
-                values = self._numbers[column.number][start:end]
+                values = self._numbers[column.number][kept]
             record.append(size * values)
         return np.column_stack(record)
 

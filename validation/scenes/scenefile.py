@@ -81,7 +81,7 @@ def read_scene(
         try:
             found = scene(content, Path(path).parent)
         except SceneError as fault:
-            raise SceneError(f"{fault}{_line(str(fault))}") from None
+            raise SceneError(f"{fault.reason}{_lines(fault)}") from None
         if samples is None or "samples" in content:
             return found
         return replace(found, samples=samples(found))
@@ -171,27 +171,41 @@ def scene(content: Any, folder: Path = Path()) -> Scene:
     )
 
 
-def _line(fault: str) -> str:
-    """Return the example, in the list of keys, of the key that a fault is about; "" for none.
+def _lines(fault: SceneError) -> str:
+    """Return the lines of TOML that a fault proposes, behind "; try: "; "" for none.
 
-    The key is missing, has a value of another type, or stands in a table, not above all tables.
+    The measured file of a drive proposes statements on its columns. For a key that is missing, has
+    a value of another type, or stands in a table, not above all tables, it is the example of the
+    list of keys.
     """
-    about = _ABOUT.fullmatch(fault)
-    if about is None:
+    table = "drive"
+    values = fault.change
+    about = _ABOUT.fullmatch(fault.reason)
+    if about is not None:
+        *tables, key = about[1].split(".")
+        if about[2] == "unknown":
+            tables = []
+        table = ".".join(tables)
+        found = _known()
+        for name in tables:
+            # Names of beads and of materials are free.
+            found = found.get(name) or next(iter(found.values()))
+        if not isinstance(found.get(key, {}), dict):
+            values = {key: found[key]}
+    if not values:
         return ""
-    *tables, key = about[1].split(".")
-    if about[2] == "unknown":
-        tables = []
-    found = _known()
-    for name in tables:
-        # Names of beads and of materials are free.
-        found = found.get(name) or next(iter(found.values()))
-    value = found.get(key)
-    if value is None or isinstance(value, dict):
-        return ""
-    where = f"in [{'.'.join(tables)}]" if tables else "above all tables"
+    where = f"in [{table}]" if table else "above all tables"
+    lines = (f"{key} = {_toml(value)}" for key, value in values.items())
+    return f"; try: {' and '.join(lines)}  # {where}"
+
+
+def _toml(value: Any) -> str:
+    """Return a value of a file as TOML writes it."""
+    if isinstance(value, Mapping):
+        entries = (f"{json.dumps(key)} = {_toml(x)}" for key, x in value.items())
+        return f"{{{', '.join(entries)}}}"
     # A number, a text or a list of them is written in TOML as in JSON.
-    return f"; try: {key} = {json.dumps(value)}  # {where}"
+    return json.dumps(value, ensure_ascii=False)
 
 
 @cache
@@ -343,15 +357,9 @@ def _drive(given: Table, units: str, folder: Path) -> Drive:
         name = motion.pop("file")
         if not isinstance(name, str):
             raise SceneError(f"drive.file is {shorten(name)}: a file's name is wanted")
-        try:
-            file = MeasuredFile.read(folder / name, **stated)
-            check_units(file.si, units, file.path)
-            motion["time"], motion["displacement"] = file.rows("time", "displacement").T
-        except SceneError as error:
-            # The error proposes arguments of Python, as in "; try columns={'time': '1'}". But for
-            # the colons these are lines of a TOML file, which "; try: " proposes.
-            fault = str(error).replace("': '", "' = '")
-            raise SceneError(fault.replace("; try ", "; try: ")) from None
+        file = MeasuredFile.read(folder / name, **stated)
+        check_units(file.si, units, file.path)
+        motion["time"], motion["displacement"] = file.rows("time", "displacement").T
     return Drive(**motion)
 
 

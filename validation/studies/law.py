@@ -140,10 +140,12 @@ def law(
     if file.si:
         units |= {"A": f" (N/m^{fit.k.value:.3g})", "E": " (Pa)"}
         axes = ("peak contact force (N)", "speed (m/s)")
-    # Speeds beside one power, for which ln V is linear in ln F.
+    # The speeds, in the units of the file, beside those of the law: under one power ln V is linear
+    # in ln F, and the line is that of `fit_power`.
     x = np.log(force)
-    fitted = np.polyfit(x, np.log(speed), 1)
+    fitted = np.polyfit(x, np.log(speed), 1, w=weight)
     line = np.exp(np.polyval(fitted, x))
+    # A weight is the inverse standard deviation of ln V.
     bars = None if weight is None else speed / weight
     curves = (
         Curve("measured", force, speed, "C0o", bars),
@@ -161,7 +163,7 @@ def law(
         f"{len(force)} pulses, forces {force[0]:.4g} … {force[-1]:.4g}{' N' * file.si}",
         (Table(_POWER, rows),),
         panels=(Panel(*axes, curves, scale="xy"),),
-        notes=(*file.notes, *notes, _NOTE),
+        notes=(*notes, _NOTE),
         data={
             "correlation_value": fit.correlation,
             "one_power": fit.one_power,
@@ -226,7 +228,11 @@ def _series() -> np.polynomial.Chebyshev:
 
 
 def speed_ratio(k: Any) -> Array:
-    """Return R(k), squared speed of the lattice's pulse over the theory's, for k from 1 to 4."""
+    """Return R(k), squared speed of the lattice's pulse over the theory's, for k from 1 to 4.
+
+    R is that of exact waves. Any other k takes R of the nearer end: draws of the fit may lie there,
+    but `fit_power` refuses a best fit outside.
+    """
     return np.asarray(_series()(np.clip(k, 1, 4)))
 
 

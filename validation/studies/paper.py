@@ -397,10 +397,14 @@ def forces(N: int) -> Run:
 
 
 def cells_of_lines() -> tuple[Cell, ...]:
-    """Return the unit cells of the lines `STATED`: the chain's contacts, and three masses m2."""
+    """Return the unit cells of the three lines of figure 3b, in the order of `STATED`.
+
+    The paper's lines are its theory at three mass ratios, m2/m1 → 0, 0.27 and 1, each drawn for
+    the contacts of steel on PTFE of the measured chain: the mass m2 alone differs.
+    """
     cell = chain_cell()
     heavy, light = cell.masses
-    # the first for m2 → 0, exact to 12 digits
+    # a mass ratio of 1e-12 for m2 → 0: 12 digits are those of the limit
     return tuple(
         Dimer(heavy, m2, stiffnesses=cell.stiffnesses, spacing=cell.spacing)
         for m2 in (heavy / 10**12, light, heavy)
@@ -410,9 +414,11 @@ def cells_of_lines() -> tuple[Cell, ...]:
 def stated_errors() -> list[dict[str, Any]]:
     """Return the lines of figure 3b: the paper's error of the FWHM, and the error on the lattice.
 
+    Each line is the theory at one mass ratio; all three are held against the one measured chain.
     The FWHM is a time, of the contacts' force from bead `FIRST_BEAD` on, at an equal peak force.
     """
-    # These contacts the whole pulse has passed before its front reaches the wall.
+    # Numbers of beads, which serve as numbers of contacts, too: each bead's contact ahead has its
+    # number. The whole pulse has passed these contacts before its front reaches the wall.
     places = range(FIRST_BEAD, BEADS - 2)
     run = simulate(recorded_chain(places), rtol=RTOL)
     contacts = passing(run, "contact")

@@ -45,7 +45,7 @@ _PULSES = (
 _UNIT = (
     "Unit of a column, as in --unit time=us, --unit 'time=0.04 us' (of an entry 1), --unit "
     "'CH1=12.5 N/V', 'CH1=80 mV/N' or, in SI, --unit CH1=12.5; repeatable. It stands above the "
-    "file's own. If one unit is stated, all are wanted."
+    "file's own. With 'CH1=? N/V' no peak is read. If one unit is stated, all are wanted."
 )
 _COLUMN = (
     "Header or number, from 1, of a column, as in --column time=1 --column 'bead 8 force=CH1'; "
@@ -95,7 +95,7 @@ RECORD_OPTIONS = (
     *COLUMN_OPTIONS,
     option(
         "--step",
-        "Time from sample to sample, in place of a column, as in --step '0.4 ms'.",
+        "Time from sample to sample, or the rate, in place of a column, as in --step '0.4 ms'.",
         metavar="TIME",
     ),
     option(
@@ -118,13 +118,10 @@ class Measured:
         Records, each sensor once.
     si : bool
         Whether they are in SI.
-    notes : sequence of str
-        Lines on their units.
     """
 
     signals: Sequence[Record]
     si: bool
-    notes: Sequence[str]
 
     @classmethod
     def read(
@@ -144,7 +141,7 @@ class Measured:
         """
         constant = math.inf
         if time_constant:
-            constant = read_time(time_constant, "time_constant", "1 ms")
+            constant = read_time(time_constant, "time_constant")
         names = [paths] if isinstance(paths, str | Path) else [*paths]
         # Files of one sensor each may have one header: its names are those of the files in turn.
         by_header: dict[str, list[str]] = {}
@@ -174,8 +171,7 @@ class Measured:
             if (signal.kind, signal.number) in signals:
                 raise SceneError(f"{signal.kind} {signal.number} is there twice")
             signals[signal.kind, signal.number] = signal
-        notes = [note for file in files for note in file.notes]
-        return cls([*signals.values()], files[0].si, notes)
+        return cls([*signals.values()], files[0].si)
 
     def pulse(self, signal: Record) -> NoisyPulse:
         """Measure the first pulse of a record.
@@ -187,9 +183,15 @@ class Measured:
             user's statements of units with the sign changed, which turn the record upright.
         """
         try:
-            return noisy_pulse(signal.time, signal.values, self.unit)
+            pulse = noisy_pulse(signal.time, signal.values, self.unit)
         except InvertedError as error:
             raise MeasureError(str(error), units=signal.turned) from None
+        if signal.doubt:
+            numbers = {**pulse.numbers}
+            numbers.pop("peak", None)
+            missing = f"no peak: a number in place of the ? in {signal.doubt} is wanted"
+            pulse = replace(pulse, numbers=numbers, base=math.nan, missing=missing)
+        return pulse
 
     @property
     def unit(self) -> str:
@@ -252,7 +254,7 @@ def pulses(
     read = Measured.read(records, of, time_constant, stated)
     found = []
     curves = []
-    notes = [*read.notes]
+    notes = []
     refusals = []
     for i, signal in enumerate(read.signals):
         # Beads, and contacts, lie a site apart; where they begin does not matter to a speed.
@@ -410,7 +412,7 @@ def compare(
         str(chain),
         (Table(_COLUMNS, rows, "rows"),),
         panels=(read.panel(curves),),
-        notes=(*read.notes, _COMPARED.format(shown, leader.name)),
+        notes=(_COMPARED.format(shown, leader.name),),
         data={"shift_value": shift.value},
     )
 

@@ -232,7 +232,13 @@ class Problem:
         return np.concatenate((forces, mirrored), axis=-1)
 
     def _strains(self, forces: Array, inverse: Pair) -> Array:
-        """Return c² a, shifted to 0 at L, from the unknown forces, one row or an array of rows."""
+        """Return c² a, shifted to 0 at L, from the unknown forces, one row or an array of rows.
+
+        The ``count`` unknown forces, and the strains returned, are those at the first points of
+        the periodic grid, which begins at the peak: for equal masses at ξ = 0 … L, the other half
+        is their mirror image; else at all 2n points. The shift sets the mean of the strain, which
+        the response leaves open, such that a is 0 far from the peak.
+        """
         force = scipy.fft.rfft(self._everywhere(forces))
         response = respond(force, inverse, self.L)
         strain = scipy.fft.irfft(response, 2 * self.n)

@@ -9,6 +9,7 @@ from hypothesis import given, strategies as st
 from lwa import Estimate, InputError
 from lwa.base import LONGEST_MESSAGE, arrays, files
 from lwa.base.words import CLOSURES, QUANTITIES, one_of, similar
+from lwa.spheres.beads import FILE
 
 
 class Unprintable:
@@ -25,6 +26,7 @@ class Unprintable:
         ("x", QUANTITIES, "one of strain, force, velocity is wanted"),
         (b"full", CLOSURES, "linear or full is wanted"),
         ("mm", ("", "SI"), "'mm': SI is wanted"),
+        ("friction", FILE, "start, sensors is wanted"),
         (Unprintable(), CLOSURES, "type Unprintable"),
         ("9" * 10**6, CLOSURES, "'999"),
     ],
@@ -77,7 +79,7 @@ def test_a_printed_error_covers_the_printed_digits(size, relative):
         (34.6712, 0.05, "34.67 ± 0.05"),
         (1.41, 1.21e-3, "1.4100 ± 0.0013"),
         (505e6, 3e6, "5.05e+08 ± 3e+06"),
-        (0.0, 0.1, "0 ± 0.1"),
+        (0.0, 0.0144, "0 ± 0.015"),
         (2.5, 0.0, "2.5"),
         (2.54321, math.nan, "2.543, error unknown"),
     ],

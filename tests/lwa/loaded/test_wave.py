@@ -19,7 +19,7 @@ from lwa import (
     hexagonal,
     loaded_wave,
 )
-from lwa.base.frozen import QUANTITIES
+from lwa.base.words import QUANTITIES
 from lwa.law import named
 from validation import exact_wave
 

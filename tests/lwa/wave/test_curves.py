@@ -5,7 +5,7 @@ import pytest
 import sympy as sp
 
 from lwa import Cell, Dimer, InputError, Material, Sphere, canonical_wave, homogenize
-from lwa.base.frozen import QUANTITIES
+from lwa.base.words import QUANTITIES
 from tests.identity import same
 
 STEEL = Material.named("steel 316")

@@ -13,7 +13,7 @@ import pytest
 import sympy as sp
 
 from lwa import Cell, Dimer, canonical_wave, homogenize
-from lwa.base.frozen import QUANTITIES
+from lwa.base.words import QUANTITIES
 from lwa.wave.source import LANGUAGES, module, wave_functions
 from tests.lwa.command.answers import run
 

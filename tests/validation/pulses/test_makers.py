@@ -53,6 +53,7 @@ def written(layout, record):
     for i, row in enumerate(zip(time, *forces / 12.5, *forces, lost, strict=True)):
         numbers = dict(zip("tabFGQ", row, strict=True))
         numbers |= {"i": i, "us": 1e6 * row[0], "late": CLOCK + row[0]}
+        numbers["milli"] = 1e3 * numbers["F"]
         form = forms[i] if i < len(forms) else last
         lines.append(form.format(**numbers))
     lines.append(LAYOUTS[layout].get("end", ""))
@@ -105,7 +106,8 @@ def test_a_refusal_ends_in_the_line_that_reads_the_file(record, folder, capsys, 
             assert reason not in refused
             refused.append(reason)
             assert proposed, err
-            _, *line = shlex.split(proposed)
+            # A step that the file does not tell is the user's own.
+            _, *line = shlex.split(proposed.replace("'? us'", "'1 us'"))
     assert status == 0, refused
 
 
@@ -130,5 +132,9 @@ def test_sensors_without_numbers_are_numbered_in_the_order_of_files_and_columns(
         assert [row["number"] for row in found] == numbers
         peaks = [row["peak_value"] for row in found]
         assert peaks == pytest.approx([*PEAKS.values()], rel=0.01)
+    # An unknown sensitivity moves no arrival.
+    unknown, _ = pulses("c.csv", units={"2": "? N/V"}).document()["sensors"]
+    assert unknown["peak_value"] is None
+    assert unknown["arrival_value"] == pytest.approx(found[0]["arrival_value"])
     with pytest.raises(SceneError, match="bead 3 is there twice"):
         pulses(files, columns={"time": "1", "bead 3 force": "2"})

@@ -61,6 +61,8 @@ def test_the_first_pulse_is_not_a_later_and_higher_one(places, low, arrival, cou
     late = math.sqrt(-math.log(low) / 4)
     assert found.fall == pytest.approx(arrival + late, abs=0.01)
     assert len(all_pulses(humps(*places))) == count
+    with pytest.raises(MeasureError, match=f"front does not pass {low:.0%} of its"):
+        first_pulse(humps((1, -3.9)), low, low)
 
 
 @given(st.lists(st.tuples(st.floats(0.2, 1), st.floats(1, 9)), min_size=1, max_size=5))
@@ -84,7 +86,7 @@ T = np.linspace(-2, 2, 401)
     ("time", "signal", "message"),
     [
         (T[:200], arch(T[:200]), "the pulse is not wholly .*: it peaks at the end"),
-        (T[180:], arch(T[180:]), "the pulse .*: its front does not pass half"),
+        (T[180:], arch(T[180:]), "the pulse .*: its front does not pass 50%"),
         (T, 0 * T, "no pulse is in the record"),
         (T, T * np.nan, "time and signal must be finite"),
         (-T, arch(T), "time must increase"),

@@ -399,14 +399,18 @@ def _correct_neighbour(
     # total force there before the corrections.
     d = chain.rest[n] + beads.next_y[n] - beads.next_y[n + 1]
     rate = beads.next_v[n] - beads.next_v[n + 1]
+    # A mark of 1 says that the neighbour has a kink of its own in this step and is corrected by
+    # itself; what is missed by that, or without a mark, is counted as error.
     if jump != 0.0 and beads.marks[n] > 0.0:
-        # The jump bends the neighbour's curve, too, and shifts the place of its own jump.
+        # The jump bends the neighbour's curve, too, and shifts the place of its own jump: by the
+        # distance over the speed, at most a step. `OPENS` stands for a δ, or a speed, of 0.
         fast = abs(rate)
         own = A * push(law, r, kinks.OPENS, fast)
         shift = _UNBENT * h * h * abs(jump * share)
         missed = own * min(shift / max(fast, kinks.OPENS), h)
         _count_error(beads.books, missed / plan.v, near, far)
     elif forcing is not None and jump != 0.0 and r > 0.0 and not law.sticks:
+        # The jump changes velocities, so that damping is cut off at the wrong stages.
         missed = _clipped(chain, forcing, beads, plan.scheme, t, h, n)
         _count_error(beads.books, missed / plan.v, near, far)
     pressed = beads.force[1, n + 1] + chain.load[n]

@@ -79,7 +79,10 @@ def elastic(law: Any, d: float) -> float:
 
 @part
 def drag(law: Any, d: float) -> float:
-    """Return the factor ``d^p`` of ``r dδ/dt`` in the damping force."""
+    """Return the factor ``d^p`` of ``r dδ/dt`` in the damping force.
+
+    The contact pushes, d > 0, or its law pulls: such a law has k = 1 and p = 0, and the factor 1.
+    """
     return power(law.p, d)
 
 
@@ -283,6 +286,7 @@ def contact_forces(
         none = -math.inf if law.sticks else 0.0
         fast = is_quarters(law.k) and not law.generated
         if forcing is not None and forcing.damped:
+            # Room until the next errors are estimated: here the dissipated power by contact
             heat = beads.errors[0]
             if fast and law.k in (1.0, 1.5) and law.p in (0.0, 0.25, 0.5):
                 _damped_hertz(chain, law, y, v, f, push, heat, lo, up, least, none)
