@@ -239,7 +239,7 @@ class Parametric(Value):
         sqrt(10)/(5*D)
         """
         parts = self._parts()
-        symbols: set[sp.Symbol] = set()
+        symbols = set()
         for part in parts:
             # Expressions have free symbols, cells and laws symbols; words and numbers have none.
             own = getattr(part, "symbols", ())
@@ -331,7 +331,7 @@ def exponent(value: Any) -> sp.Expr:
 
 def by_name(symbols: Collection[sp.Symbol]) -> dict[str, sp.Symbol]:
     """Symbols by their names; raises `lwa.InputError` for a name of two symbols."""
-    known: dict[str, sp.Symbol] = {}
+    known = {}
     # SymPy tells symbols of one name and different assumptions apart; a caller's keyword cannot.
     for symbol in sorted(symbols, key=str):
         if symbol.name in known:

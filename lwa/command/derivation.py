@@ -159,7 +159,7 @@ def _lines(theory: Theory) -> Iterator[str]:
 def _terms_json(coefficients: Mapping[int, Terms]) -> list[Values]:
     """JSON of the terms by their orders."""
     # A row a term, whose jet is a list of [derivative, power]: JSON has no jets as keys.
-    rows: list[Values] = []
+    rows = []
     for n, terms in coefficients.items():
         for jet, coefficient in terms.items():
             row = {"order": n, "jet": jet.x, "jet_t": jet.t, "coefficient": coefficient}

@@ -410,7 +410,7 @@ def number(text: str, name: str) -> float:
     return finite(read_exact(text, name), name)
 
 
-READERS: dict[Any, str] = {
+READERS = {
     number: "NUMBER",
     count: "INTEGER",
     read_exact: "NUMBER",

@@ -36,7 +36,7 @@ OUTSIDE = 0.6  # share of the half period at which a dimer's pulse has ended and
 Number = Literal["c2", "c", "tail", "peak", "fwhm"]
 """Numbers of an exact wave that have errors."""
 
-_NUMBERS: tuple[Number, ...] = get_args(Number)
+_NUMBERS = get_args(Number)
 
 
 @dataclass(frozen=True, eq=False)

@@ -122,8 +122,8 @@ loop.correct_contact = counted
 
 def test_a_contact_is_corrected_as_often_as_it_closes_and_opens(tmp_path):
     """A contact of a struck chain closes once and opens once. Weak ones are left out, and steps
-    that are tried again correct theirs again: 20 corrections of 15 contacts. With marks at the front,
-    where forces are no floats, there were 63, and long chains took twice the time."""
+    that are tried again correct theirs again: 20 corrections of 15 contacts. With marks at the
+    front, where forces are no floats, there were 63, and long chains took twice the time."""
     program = COUNT + RUN + "print(len(corrected))"
     found = output(tmp_path, program, NUMBA_DISABLE_JIT="1", BEADS="16").split()
     assert 0 < int(found[-1]) <= 2 * 15

@@ -403,7 +403,7 @@ def _correct_neighbour(
     # itself; what is missed by that, or without a mark, is counted as error.
     if jump != 0.0 and beads.marks[n] > 0.0:
         # The jump bends the neighbour's curve, too, and shifts the place of its own jump: by the
-        # distance over the speed, at most a step. `OPENS` stands for a δ of 0, and for a speed of 0.
+        # distance over the speed, at most a step. `OPENS` stands for a δ, or a speed, of 0.
         fast = abs(rate)
         own = A * push(law, r, kinks.OPENS, fast)
         shift = _UNBENT * h * h * abs(jump * share)

@@ -37,8 +37,8 @@ def advance_split(
     y = beads.y
     v = beads.v
     # The steps go through the chain in tiles, since memory is slow: all stages of a step are done
-    # in a tile before the next tile. Stage s ends s beads before the end of the tile, since the force
-    # of the last bead needs the bead ahead, which belongs to the next tile (`tile_bounds`).
+    # in a tile before the next tile. Stage s ends s beads before the end of the tile: the force of
+    # the last bead needs the bead ahead, which belongs to the next tile (`tile_bounds`).
     # The accelerations, also for the knots
     push = beads.push[0]
     # A stage for the dissipated power, and the first contact: both are number 0.
