@@ -232,6 +232,7 @@ class Functions(dict[str, Function]):
     """
 
     def __init__(self, *parts: sp.Expr) -> None:
+        """Begin without functions; `define` adds them, with ``symbols`` as possible arguments."""
         super().__init__()
         # Each symbol once, in the order of the parts, those of one part by name
         ordered: dict[sp.Symbol, None] = {}

@@ -284,9 +284,8 @@ class Cells:
             with np.errstate(invalid="ignore"):  # ∞ - ∞
                 steps = np.diff(table[kept, 0])
                 near = (steps > 0) & (steps < _LOST * np.median(steps))
-            # Of a row without numbers the sum is the number of whole rows before.
-            ends = np.array([False])
-            bridged = np.concatenate((ends, near, ends))
+            # The sum is the number of whole rows so far, behind which a row is bridged.
+            bridged = np.pad(near, 1)
             joined = complete | bridged[np.cumsum(complete)]
         start, end = longest(joined)
         found = runs(joined)

@@ -228,7 +228,11 @@ def _series() -> np.polynomial.Chebyshev:
 
 
 def speed_ratio(k: Any) -> Array:
-    """Return R(k), squared speed of the lattice's pulse over the theory's, for k from 1 to 4."""
+    """Return R(k), squared speed of the lattice's pulse over the theory's, for k from 1 to 4.
+
+    R is that of exact waves. Any other k takes R of the nearer end: draws of the fit may lie there,
+    but `fit_power` refuses a best fit outside.
+    """
     return np.asarray(_series()(np.clip(k, 1, 4)))
 
 

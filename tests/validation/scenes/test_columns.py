@@ -78,6 +78,9 @@ def test_a_table_that_lies_is_set_upright(read):
     named, stated = f"time,{row}\nforce,{row}", {"time": "1", "force": "2"}
     for file in (read(named), read(f"{row}\n{row}", columns=stated)):
         assert file.rows("time", "force").T.tolist() == [times, times]
+    # Numbers of beads in a header do not make the table lie.
+    file = read(f"t,{row}\n{row},9\n", columns=stated)
+    assert file.rows("time", "force").tolist() == [[0, 1]]
 
 
 @pytest.mark.parametrize(

@@ -79,7 +79,10 @@ def elastic(law: Any, d: float) -> float:
 
 @part
 def drag(law: Any, d: float) -> float:
-    """Return the factor ``d^p`` of ``r dδ/dt`` in the damping force."""
+    """Return the factor ``d^p`` of ``r dδ/dt`` in the damping force.
+
+    The contact pushes, or its law pulls: such a law has no power, and its factor is 1.
+    """
     return power(law.p, d)
 
 
