@@ -81,7 +81,7 @@ def elastic(law: Any, d: float) -> float:
 def drag(law: Any, d: float) -> float:
     """Return the factor ``d^p`` of ``r dδ/dt`` in the damping force.
 
-    The contact pushes, d > 0, or its law pulls: such a law has k = 1 and p = 0, and the factor 1.
+    The contact pushes, or its law pulls: such a law has no power, and its factor is 1.
     """
     return power(law.p, d)
 
