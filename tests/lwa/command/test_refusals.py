@@ -70,7 +70,6 @@ LINES = [
     ("expansion --masses a,b,c,d,e,f,g,h --order 4", "try: lwa expansion --k 11/10"),
     ("derive --law hertz2:delta,1", "'delta': the name means the compression"),
     ("wave --k D --masses 3,1", "D has two meanings"),
-    ("derive --masses D,2", "D has two meanings"),
     ("wave --k 29000", "exponents from 1/100 to 1000"),
     ("wave --order 3", "order is 3"),
     # the speed of the canonical field, √(1/6)

@@ -109,11 +109,11 @@ def test_equal_beads_in_any_cell_are_the_uniform_chain(size):
 
 def test_three_unlike_contacts_in_numbers_have_the_decimals_of_their_exact_series():
     cell = Cell([1, 2, 1], [1, 2, "3e-9"])
-    exact = Observables(Recursion(shares_model(cell, sp.Rational(3, 2)), 2))
-    found = expand(cell, 2, k="3/2").fwhm("force", 1)
-    for a, true in zip(found.coefficients, exact.coefficients("force", 1), strict=True):
-        assert a.is_Float
-        assert abs(a / true.n(40) - 1) < 1e-28
+    exact = Observables(Recursion(shares_model(cell, sp.Rational(3, 2)), 1))
+    _, true = exact.coefficients("force", 1)
+    _, found = expand(cell, 1, k="3/2").fwhm("force", 1).coefficients
+    assert found.is_Float
+    assert abs(found / true.n(40) - 1) < 1e-28
 
 
 def test_first_correction_of_a_dimer_is_a_closed_form():

@@ -143,6 +143,9 @@ BOUNCED = passed(
 BRIEF = passed(
     4157908.151795557, 2.942557258678451, -0.9312122237740694, 3.5110333088754055, k=1.25
 )  # fmt: skip
+SHORT = passed(
+    4.8e7, np.sin(0.927) - 0.927 * np.cos(0.927) - 1.2e-8, np.cos(0.927), 1.527, k=1
+)  # fmt: skip
 GRAZE = passed(
     224.74561040028715, 0.24763140564507657, 0.5956896767371712, 6.821425172704302, k=2,
     damping=Damping("contact", 0.326),
@@ -159,6 +162,8 @@ GRAZE = passed(
         (GRAZE, 1, 0.595, 10),
         # A hard contact is closed briefly; its curve, once corrected, misses it.
         (BRIEF, 1, -0.931, 1e3),
+        # The curve of a hard contact hardly closes; the contact may be deeper by its misfit.
+        (SHORT, 1, 0.6, 100),
         # A contact that closes early in a long step, along no quintic
         (CLOSED, 1, -0.03, 10),
         # The curve of a hard bounce, once corrected, misses its contact.
