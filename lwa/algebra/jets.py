@@ -100,8 +100,8 @@ class JetAlgebra:
         self._s0 = self._r1 + weight
         self.r = [self.one, *generators[self._r1 : self._s0]]
         self.s = list(generators[self._s0 :])
-        # The φ_n, which come first among the parameters, depend on x; other parameters, and k, are
-        # constants.
+        # The φ_n of a law that is no power (`highest` above 0) are the first generators and depend
+        # on x. All other parameters, k of a power among them, are constants.
         first_constant = len(model.parameters) if model.highest else 0
         self._constants = range(first_constant, self._r1)
         # The jets that stand in the derivative of the jet below them, highest first: r_1 and s_0
@@ -227,9 +227,11 @@ class JetAlgebra:
         linear in the highest of all its jets: nothing is left of it.
         """
         for index in self._derived:
+            # The generator at index - 1 is the jet j below this jet J: J = ∂_x j + …. So a linear
+            # part c J is ∂_x ∫ c dj but for terms whose highest jet is j or a lower one.
             part = self._linear_part(f, index).integral(index - 1)
             f = f - self.dx(part, exponent)
-        # r_1 alone is the derivative of p^e / e.
+        # r_1 times a constant is a total derivative, too: p^e r_1 = ∂_x (p^e / e).
         return f - self._linear_part(f, self._r1) * self.r[1]
 
     def _linear_part(self, f: fmpq_mpoly, index: int) -> fmpq_mpoly:
@@ -278,6 +280,7 @@ class GradedSeries:
         return self._derivatives[n][0]
 
     def __iter__(self) -> Iterator[fmpq_mpoly]:
+        # The first of a term's derivatives is the term itself.
         return (derivatives[0] for derivatives in self._derivatives)
 
     def append(self, f_n: fmpq_mpoly) -> None:

@@ -208,6 +208,8 @@ class Model(Parametric):
     def expression(self) -> Conversion:
         """The conversion of polynomials to factored SymPy expressions in the caller's symbols.
 
+        A polynomial is given by its terms, pairs of the generators' exponents and a factor.
+
         >>> from lwa import Power
         >>> model = Model(Cell(["m1", "m2"]), Power("k"))
         >>> model.expression([((1, 1), fmpq(1)), ((1, 2), fmpq(-1))])  # k m̂_0 - k m̂_0²
@@ -250,10 +252,11 @@ class Conversion:
         self._printed = [*symbols, *self._letters]
         self._context = _context(len(self._printed))
         # What a generator of the model's ring becomes: the value of a law's parameter, or the
-        # numerator total · w_i of a fraction f_i (see the class).
+        # numerator total · w_i of a fraction f_i = total · w_i / S, S the sum of all weights w.
         self._images = list(map(self._element, model.parameters.values()))
-        # For each partition the places of its generators, and the denominator S of its fractions.
-        # The last distinct weight has no generator: the fractions have a known sum (`Partition`).
+        # For each partition the places of its generators among the images, and the denominator S of
+        # its fractions. The last distinct weight has no generator: its fraction follows from the
+        # others, as the sum of all is known (`Partition.elements`).
         self._blocks = []
         self._sums = []
         for partition in partitions:
@@ -265,7 +268,8 @@ class Conversion:
             for weight in partition.weights:
                 total = total + self._element(weight)
             self._sums.append(total)
-        # The polynomial's ring before it is composed: its own generators and one for each S
+        # The ring of a polynomial before `compose` puts the images in: one generator for each image
+        # and one for each S
         self._source = _context(len(self._images) + len(self._sums))
 
     def _element(self, value: sp.Expr) -> fmpq_mpoly:

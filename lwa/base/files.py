@@ -89,7 +89,7 @@ def load(path: str | Path, what: str, reader: Callable[[Any], T]) -> T:
 
 
 def content(file: Path, most: int = 10**9) -> bytes:
-    """Read a regular file, or "-", standard input, of at most ``most`` bytes, or a gigabyte.
+    """Read a regular file of at most ``most`` bytes; of "-", standard input, the first ``most``.
 
     Raises
     ------

@@ -155,6 +155,7 @@ class Estimate(Value):
         # NaN or infinite if either number is.
         if not math.isfinite(self.value + self.error):
             return f"{self.value:.{UNKNOWN_DIGITS}g}, error unknown"
+        # Powers of ten of the first and the last digit that are shown
         first = _place(self.value)
         last = first - most + 1
         if not self.error:

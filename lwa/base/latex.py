@@ -146,7 +146,8 @@ def total(terms: Iterable[tuple[sp.Expr, str]]) -> str:
     """
     parts: list[str] = []
     for coefficient, factor in terms:
-        # The sign of digits is that of the number; of a formula the first term decides.
+        # A sum of symbols has a minus sign in front if most of its terms do (SymPy's rule); digits
+        # that stand for a long number have the sign of that number.
         coefficient = _short(coefficient)
         sign = "+" if parts else ""
         if coefficient.could_extract_minus_sign():

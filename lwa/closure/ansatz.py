@@ -39,18 +39,23 @@ def acoustic(model: Model, progress: Progress[int] = iter) -> Solution:
     # At the leading order w - u is the strain of the first contact: its share C_0 of D u_x.
     b = [algebra.one, c[0]]
     for n in progress(range(1, model.order)):
-        # The strains of both contacts sum to u(x + 2D) - u(x). Let the two differ by ξ r_n at D^n.
-        # The forces on the particles are evaluated without ξ r_n, which enters with the factors ±1.
+        # Let X_n of the right contact exceed that of the left one by ξ r_n. The forces on the two
+        # particles are evaluated without ξ r_n, which then is added to force_1 and taken from
+        # force_2.
         r_n = algebra.r[n]
         difference = right.nonlinear - left.nonlinear
         force_1 = difference - left.increment(-2, n)
         force_2 = -difference
-        # u_ττ is the same at r_n, m̂_0 + m̂_1 = 1, and b_n cancels:
-        # m̂_1 (force_1 + ξ r_n) = m̂_0 (force_2 - ξ r_n - 2 m̂_1 applied).
+        # The equations of motion are 2 m̂_0 E_n = force_1 + ξ r_n of u and, of w,
+        # 2 m̂_1 (E_n + applied) = force_2 - ξ r_n with applied = Σ_j b_j ∂_x^j E_{n-j}. The choice
+        # of ξ makes E_n the same in both at r_n:
+        # m̂_1 (force_1 + ξ r_n) = m̂_0 (force_2 - ξ r_n - 2 m̂_1 applied), m̂_0 + m̂_1 = 1.
         condition = mu[1] * force_1
         condition = condition - mu[0] * force_2
         inertia = mu[0] * mu[1] * _applied(b, first, n)
         xi = -algebra.slope(condition + 2 * inertia, n)
+        # The strains sum to u(x + 2D) - u(x): C_0 X_n + C_1 X_n (left) = 2^{n+1}/(n+1)! r_n, and
+        # C_0 + C_1 = 2.
         mean = algebra.one * taylor(2, n + 1) / 2
         strain = mean + c[1] * xi / 2
         right.append(strain * r_n)
@@ -62,6 +67,7 @@ def acoustic(model: Model, progress: Progress[int] = iter) -> Solution:
         first.append(force_1 / (2 * mu[0]))
         of_second = force_2 / (2 * mu[1])  # acceleration of w
         second.append(of_second - _applied(b, second, n))
+        # w - u is the strain C_0 D u_x (1 + X) of the right contact.
         b.append(c[0] * strain)
     return _solution(b, first, second)
 

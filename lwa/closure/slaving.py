@@ -147,6 +147,7 @@ def full(
     if chain.size > 1:
         second = chain.S[1]
         ansatz = [algebra.one, second[0]]
+        # b_{n+1} is the coefficient of r_n in S_n, as D φ_x · D^n r_n = D^{n+1} ∂_x^{n+1} φ.
         for n in range(1, model.order):
             ansatz.append(algebra.slope(second[n], n))
     return Solution(
@@ -181,10 +182,12 @@ class _Slaving:
         self.size = model.cell.size
         self.x = list(accumulate(algebra.c[:-1], initial=algebra.zero))
         self.weights = algebra.mu if field == "center" else [algebra.one]
+        # Terms of D^0: E begins with E_1, and every rate with D^1.
         self.E = GradedSeries(algebra, algebra.k, [algebra.zero])
         self.S = []
         self.rates = []
         self.forces = []
+        # At D^0 the field w_i = φ(x + D x_i) has S_i = x_i.
         for x in self.x:
             self.S.append(GradedSeries(algebra, algebra.one, [x]))
             self.rates.append(GradedSeries(algebra, algebra.half, [algebra.zero]))
@@ -201,6 +204,7 @@ class _Slaving:
             P (E_n + Σ m̂_i a_i) = F_{P-1}(x) - F_{P-1}(x - PD).
         """
         accelerations = [rate.dt(self.E, n) for rate in self.rates]
+        # A rate is the series of ∂_τ (D φ_x S): its term in D^n is that of ∂_τ (φ_x S) in D^{n-1}.
         # The rates of the last order would enter the next one.
         if n + 1 < self.order:
             for rate, S in zip(self.rates, self.S, strict=True):
@@ -243,11 +247,13 @@ class _Slaving:
         """Append ``S_n`` of each particle.
 
         Neighbours differ by a strain, ``S_{i+1} - S_i = C_i (1 + X_i)``. The term ``origin`` of the
-        first particle follows from the definition ``φ(x) = Σ g_i w_i(x - x_i D)``.
+        first particle follows from the definition ``φ(x) = Σ g_i w_i(x - x_i D)``, ``Σ g_i = 1``.
         """
         relative = [self.algebra.zero]  # S_n less that of the first particle
         for c, force in zip(self.algebra.c[:-1], self.forces, strict=False):
             relative.append(relative[-1] + c * force.X[n])
+        # With S_n = origin + relative the definition is 0 = origin + Σ g_i (relative_i + moved_i):
+        # `moved` is what the shift by h D adds to the field w_i = φ + D φ_x S_i at D^{n+1}.
         origin = self.algebra.zero
         for i, weight in enumerate(self.weights):
             h = -self.x[i]

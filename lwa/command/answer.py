@@ -225,7 +225,10 @@ class Row:
     def _text(
         self, value: sp.Expr | Estimate, number: Estimate | None, scale: Scale
     ) -> str:
-        """A value as text: its formula, its digits, or both."""
+        """A value as text: its formula, its digits, or both.
+
+        `number` holds the digits of an exact value (`numbers`); None if symbols leave it open.
+        """
         unit = self.unit if scale.si else ""
         if isinstance(value, Estimate):
             return scale.digits(value, unit)

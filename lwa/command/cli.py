@@ -86,6 +86,7 @@ class Commands(click.Group):
         if name is not None:
             module, _ = self.table[name]
             loaded = getattr(import_module(f"{self.package}.{module}"), name)
+            # Not every module has a Click command: a study of `validation` holds its own one.
             command = getattr(loaded, "command", loaded)
         return name, command, rest
 
@@ -244,6 +245,7 @@ def _change(
         for known in (called(option), option.name):  # on the command line and in Python
             if known in refusal.change:
                 change[called(option)] = refusal.change[known]
+    # [1] is the option that the reason names, [2] a symbol without a value; one of them is None.
     subject = _SUBJECT.match(refusal.reason)
     if change or subject is None:
         return change

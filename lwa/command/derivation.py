@@ -75,6 +75,7 @@ def derive(chain: ChainInput, **options: Any) -> Answer:
 
     In JSON `terms` is the right-hand side of u_ττ after its leading term.
     """
+    # The options are order, closure, field and branch.
     theory = homogenize(chain.cell, law=chain.law, **options)
     pde = theory.pde
     head = settings_json(theory) | {
@@ -98,6 +99,7 @@ def derive(chain: ChainInput, **options: Any) -> Answer:
         canonical = canonical_wave(theory.cell, theory.k)
         letters = rows_of(canonical, G="G", H="H", I="I")
         rows.append(Answer({}, ["", FIRST, *letters], key="canonical"))
+    # In LaTeX: the rows of the theory, and the defect's.
     shown = theory, _defect_latex(theory)
     return Answer(head, rows, shown=shown)
 

@@ -189,7 +189,8 @@ def shock(
             peak="peak strain, doubling",
             peak_force="peak force, doubling (N)",
         )
-    # The closed form takes the strain behind for constant.
+    # The closed form takes the strain behind for constant. c₋ and c₊ are the speeds of sound behind
+    # the front and ahead of it.
     notes = []
     if front.oscillates:
         notes.append(

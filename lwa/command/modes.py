@@ -169,7 +169,8 @@ def envelope(
     frequencies are in Hz, displacements in m and forces in N. In JSON `amplitude` is the largest
     displacement of each bead, and `width` is 1/b of the envelope sech(bn) or tanh(bn).
     """
-    # Without a load nothing is linear, and no mode exists.
+    # `mode` holds the wavenumber and the branch. Without a load nothing is linear, and no mode
+    # exists.
     if background is None and chain.precompression is None:
         raise InputError(
             "neither --background nor --precompression is given: a mode is that of a loaded chain",

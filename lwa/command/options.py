@@ -165,8 +165,9 @@ def command(
                     if given(option):
                         raise InputError(
                             f"--{option} and --{other} are both given: one says the other",
-                            **{other: None},  # to be left out
+                            **{other: None},  # proposed: the line without this option
                         )
+            # `take_chain` removes the options that describe the chain: the others are left.
             made = function(take_chain(options), **options)
             # The source code of a wave is a text already.
             click.echo(made if isinstance(made, str) else getattr(made, style)())

@@ -43,7 +43,8 @@ def expansion(chain: ChainInput, order: int | None) -> Answer:
     and with lengths in D; k and the cell must be numbers. `lwa wave` has the closed form of the
     lattice's wave, where there is one, for every k.
 
-    A dimer's numbers are those of the mean of its two contacts, which differ behind a striker.
+    Behind a striker the two contacts of a dimer bear different forces: the widths and their errors
+    hold for the mean of the two.
 
     In JSON c² is the sum of ``c2[n] ε^n``. `fwhm` is that of the first contact, `fwhm_contact_2`
     that of the second where contacts are unlike, and so on.

@@ -226,6 +226,7 @@ def compact(chain: ChainInput, theory: Theory, force: sp.Expr | None) -> Answer:
             shown.append(reduction)
         else:
             rows.append("  p, a, μ, η, σ and s are long: --format json has them")
+        # A row without a label stands in JSON alone.
         for name in ("p", "a", "mu", "eta", "sigma", "s"):
             rows.append(Row.of(reduction, name, name if short else ""))
     if depends_on_first(theory):
@@ -293,7 +294,7 @@ def _beside(
     scale : Scale
         Units of the numbers.
     """
-    # A time of passage is that of a force.
+    # Widths in time need the speed of the wave, which a force fixes.
     if force is None:
         symbol = "V_{s}"
         first = Row.of(wave, speed, "V_s at B = 1", 1, key="speed", symbol=symbol)

@@ -128,7 +128,8 @@ class Contacts:
             raise InputError(SOUND)
         c = 1 / self.K2
         # Derivatives of x by κ follow from those of T by x.
-        # T(x) - 2 cos κ = Π m Π c Π_j (x_j - x) over the modes j, differentiated at a root
+        # T(x) - 2 cos κ = Π m Π c Π_j (x_j - x) over the modes j, differentiated at a root: the
+        # root's own factor leaves a 1.
         T1 = -np.prod(self.masses * c * np.append(gaps, 1))
         T2 = -2 * T1 * (1 / gaps).sum()
         slope = -2 * z.imag / T1  # x′, as T′ x′ = -2 sin κ
@@ -145,6 +146,7 @@ class Contacts:
         d = self._strains(z) @ phi
         size = np.abs(d) ** 2
         K3 = self.K3
+        # The mean of K3 |d|², weighted by c, and the lasting force f
         driven = (c * K3 * size).sum() / c.sum()
         force = 2 * driven * v2 / (v2 - 1)
         mean = c * (force - 2 * K3 * size)
@@ -199,13 +201,14 @@ def equal_beads(contacts: Contacts, wavenumber: sp.Expr) -> Mode:
     K4 = contacts.K4[0]
     S = sp.sin(wavenumber / 2)
     C = sp.cos(wavenumber / 2)
-    size = 4 * S**2 / m
-    mean = -8 * K3 / (K2 * m)
+    size = 4 * S**2 / m  # |d|²
+    mean = -8 * K3 / (K2 * m)  # e0
     harmonic = K3 * size / K2 * C**2 / S**2  # |e2|
     return Mode(
-        square=K2 * size,
-        slope=4 * S * C * K2 / m,
-        curvature=-(S**2) * K2 / m,
+        square=K2 * size,  # ω²
+        slope=4 * S * C * K2 / m,  # dω²/dκ
+        curvature=-(S**2) * K2 / m,  # ω d²ω/dκ²
+        # 2ωχ
         cubic=3 * K4 * size**2 + 2 * K3 * size * (harmonic + mean),
         mean=[mean],
         size=[size],
@@ -333,6 +336,7 @@ class LoadedMode(Parametric):
         masses = np.array(self.cell.masses)
         contacts = Contacts(masses, K2=1 / c, K3=s / c**2, K4=t / c**3)
         mode = self._scaled(contacts)
+        # The spring constant A F′ of the first contact, in the units of the cell
         rate = sp.powsimp(self.cell.stiffnesses[0] * slope)
         return replace(
             mode,

@@ -121,7 +121,7 @@ class Envelope(LoadedMode):
 
     @cached_property
     def mean_strain(self) -> tuple[sp.Expr, ...]:
-        """Lasting compression of each contact over ``|Ψ|²``, with the mean flow's part."""
+        """Lasting compression e0 of each contact over ``|Ψ|²``, with the lasting force's part."""
         return self._each(self._mode.mean)
 
     @cached_property
@@ -186,7 +186,8 @@ class Envelope(LoadedMode):
     def opening(self) -> sp.Expr:
         """The ``|Ψ|²`` at which the first contact opens; ∞ for a law that pulls, or is no formula.
 
-        A contact opens where the mode takes away its static compression.
+        A contact opens where the mode takes away its static compression. Under a law that pulls
+        none opens, and of a law without an expression it is not known if it pulls.
         """
         if self.law.pulls or self.law.formless:
             return sp.oo
@@ -295,6 +296,7 @@ class Breather(Value):
     @cached_property
     def width(self) -> sp.Expr:
         """Width 1/b, in cells, of the envelope sech(bn) or tanh(bn)."""
+        # `_shift` is Ω, and `_share` 2 for a bright breather, 1 for a dark one.
         squared = self.envelope.dispersion / (self._share * self._shift)
         if self.kind == "bright":  # ω″ b² = -2Ω
             squared = -squared
@@ -302,7 +304,7 @@ class Breather(Value):
 
     @cached_property
     def opening_detuning(self) -> sp.Expr:
-        """Detuning at which contacts begin to open, to leading order; ∞ if contacts pull.
+        """Detuning at which contacts begin to open, to leading order; infinite if contacts pull.
 
         Under a power law it is the same at every load. In the lattice contacts open earlier: for
         spheres of mass ratios 0.3 to 0.5 at 0.018 instead of 3/128, which is 0.0234.
@@ -386,6 +388,7 @@ def envelope(
     law = for_cell(law, cell, k)
     if (background is None) == (precompression is None):
         raise InputError("background or precompression: one of the two is wanted")
+    # The load is a force here, and a strain below.
     if precompression is not None:
         load = positive(precompression, "precompression")
         static = law.compression(cell, load)

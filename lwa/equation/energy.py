@@ -103,9 +103,12 @@ def _elastic(solution: Solution, n: int) -> fmpq_mpoly:
         return total
     for c, force in zip(algebra.c, solution.forces, strict=True):
         total = total + c * force.work(n)
-    # The rest of `work` is F(p) Σ C_i p X_i / P = F(p) ∂_x Y / P, by parts -p F′ r_1 Y / P,
-    # with Y = Σ_j P (PD∂_x)^j/(j+1)! w_0 - Pφ.
+    # W(p (1 + X)) is W(p) + F(p) p X + p² F′ · work: the terms F(p) p X of all contacts are left.
+    # The strains of a cell sum to Σ C_i p (1 + X_i) = [w_0(x + PD) - w_0(x)]/D. As Σ C_i = P, this
+    # gives Σ C_i p X_i = ∂_x Y with Y = Σ_j P (PD∂_x)^j/(j+1)! w_0 - Pφ. By parts F(p) ∂_x Y / P
+    # becomes -∂_x F(p) Y / P = -p F′ r_1 Y / P.
     P = len(solution.fields)
+    # The coefficient of D^n in Y/p, from w_0 = φ + D p S_0
     Y = algebra.r[n - 1] * taylor(P, n + 1)
     for j in range(n):
         Y = Y + solution.fields[0].dx(n - 1 - j, j) * taylor(P, j + 1)

@@ -50,9 +50,10 @@ LIGHT = sp.Rational(1, 10**14)
 """A mass ratio near 0: e, a derivative by the ratio at 0, is a quotient of differences, between the
 chains of the ratios 0 and `LIGHT`, with an error of about `LIGHT`."""
 
-# At k = 1, c² goes as 1/(1 + ω), and I as (1 + ω)^{-3}.
+# At k = 1, c² goes as 1/(1 + ω), and I as (1 + ω)^{-3}; widths and the energy go as √I, the
+# momentum as mass · c √I.
 _LEADING = {"speed": 0.5, "momentum": 1.0}
-"""e in the limit of k to 1; a quantity that is not named goes as ``√I``."""
+"""e in the limit of k to 1; a quantity that is not named has 3/2, that of ``√I``."""
 
 
 class FollowingRecursion(Recursion):
@@ -68,6 +69,7 @@ class FollowingRecursion(Recursion):
         In a free dimer the two contacts of the light bead are strained unequally, which adds m̂_2²
         to I. A bead that is held midway strains both alike.
         """
+        # mu[1] is m̂_2, the mass fraction of the light bead, the second of the cell.
         return super()._dispersion() - self.mu[1] ** 2
 
     def _next_force(self, i: int, n: int) -> fmpq_mpoly:
@@ -90,6 +92,7 @@ def _light() -> Observables:
 @cache
 def exponent_of_light_beads(quantity: str) -> sp.Expr:
     """The exponent e of a quantity as a function of the symbol k."""
+    # Series in ε of the quantity over its leading term, at the mass ratios 0 and `LIGHT`
     heavy = decimals(equal_beads(quantity, ORDER))
     light = decimals(_light().coefficients(quantity))
     leading = _LEADING.get(quantity, 1.5)
@@ -125,8 +128,8 @@ def _deviations() -> Array:
     """The file ``dimers.csv``: the closed forms' relative deviations from struck lattices.
 
     A row holds k, ``ω = m2/m1`` and six deviations, in the order of `FORMS`: of the speed, the
-    widths of strain and force, the velocity, the momentum and the energy of the leading pulse. Each
-    is ``Q_lattice/Q_form - 1``, where ``Q_form`` is the closed form of a
+    widths of strain, force and velocity, the momentum and the energy of the leading pulse. Each is
+    ``Q_lattice/Q_form - 1``, where ``Q_form`` is the closed form of a
     `lwa.expansion.lattice_wave.LatticeWave`: that of light beads that follow for ω below `ALIKE`,
     else that of equal beads of the mean mass. It is NaN if no pulse is steady.
     """
@@ -135,7 +138,10 @@ def _deviations() -> Array:
 
 
 def _mean(values: Array, k_value: sp.Expr, ratio: sp.Expr) -> float:
-    """The bilinear interpolation in k and m2/m1 of values by row of the file."""
+    """The bilinear interpolation in k and m2/m1 of values, one for each row of the file.
+
+    The rows go through all m2/m1 at one k after another.
+    """
     exponents, ratios = map(np.unique, _deviations().T[:2])
     rows = values.reshape(len(exponents), -1)
     at_ratio = [np.interp(float(ratio), ratios, row) for row in rows]

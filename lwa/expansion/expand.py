@@ -209,11 +209,12 @@ def _terms(model: Model, order: int) -> int:
     Most are those of the derivatives of strain and force: the coefficient of t^n
     (`lwa.expansion.recursion`) has n of them, each with about 3n/4 powers of Z, and n runs to
     2·order: the sum of 3n²/4 is 2·order³. Each power has a polynomial of degree 3n in each of the
-    R symbolic ratios of the cell, for which C(9·order + R, R) terms are reckoned, n being 2·order.
-    Counted: 1.06 million terms for equal beads to order 80 (estimated: 1.02), 1.4 million for
-    unlike contacts to 16 (1.2). Only the fields themselves are kept: 11 MB at order 80.
+    R symbolic ratios of the cell. C(9·order + R, R) terms are reckoned for each, those of a total
+    degree of 9·order, with which the estimate is near the counts. Counted: 1.06 million terms for
+    equal beads to order 80 (estimated: 1.02), 1.4 million for unlike contacts to 16 (1.2). Only the
+    fields themselves are kept: 11 MB at order 80.
     """
     ratios = len(model.masses.names) + len(model.contacts.names)
-    # Any larger order is refused, and binomials of it take long.
+    # The order: any larger one is refused, and binomials of it take long.
     n = min(order, 10**6)
     return 2 * n**3 * comb(9 * n + ratios, ratios)

@@ -52,7 +52,7 @@ def _width(x: sp.Expr) -> sp.Expr:
     """The sites that a wave passes while a contact's strain exceeds ``x^{1/(k+1)}`` of its peak.
 
     For large k a wave is one collision of two beads after another, each of which takes two sites:
-    ``(dδ/dt)² ~ 1 - δ^{k+1}``.
+    ``(dδ/dt)² ~ 1 - δ^{k+1}``. With ``y = δ^{k+1}`` the time is an incomplete beta function of y.
     """
     return 2 * (1 - sp.betainc_regularized(1 / (k + 1), sp.S.Half, 0, x))
 
@@ -164,15 +164,18 @@ def phi_series(quantity: str, order: int) -> list[mpmath.mpf]:
     limit = form.two_bodies
     # The quantity over its leading term, √(q/ε) or 1
     whole = sp.Symbol("whole")
+    # The closed form of the quantity (see the module), solved for the exponential e^{-εφ}
     if form.growth is None:
         rest = (whole / limit - 1) / (1 / limit.subs(k, 1) - 1)
     else:
         rest = whole**2 - (k - 1) * limit**2 / form.growth
     numeric = sp.lambdify((k, whole), rest, [_REGULARIZED, "mpmath"])
+    # The series in ε of the quantity over its leading term
     series = decimals(equal_beads(quantity, order + 1))
 
     def exponent(epsilon: mpmath.mpf) -> mpmath.mpf:
         """The exponent εφ."""
+        # At k = 1 + ε the sum of the series is `whole`, and of it `numeric` makes the rest e^{-εφ}.
         return -mpmath.log(numeric(1 + epsilon, power_series(series, epsilon)))
 
     # εφ has no constant, as the rest is 1 at k = 1.

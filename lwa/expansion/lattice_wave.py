@@ -190,7 +190,7 @@ class LatticeWave(Parametric):
     def scaled_speed(self, B: Any = RISE) -> sp.Expr:
         """Speed ``V_s = dx/dτ`` of the wave whose strain peaks at B, as `lwa.CompactWave.speed`."""
         scale = power(positive(B, "B"), (self.k - 1) / 2)
-        # τ/t = √(k A D^{k+1}/m)
+        # The unit of speeds is D √(F/(m δ)), with F/δ = A (D B)^{k-1}, and τ/t = √(k A D^{k+1}/m).
         return self._value("speed") * scale / sp.sqrt(self.k)
 
     @property

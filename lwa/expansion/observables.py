@@ -148,5 +148,8 @@ def _equal_beads(order: int) -> Observables:
 
 @cache
 def equal_beads(quantity: str, order: int) -> tuple[sp.Expr, ...]:
-    """Coefficients of the chain of equal beads; cached, as the sums of other chains need them."""
+    """Coefficients of a quantity of `Observables` for equal beads, of the powers of ε from 0 on.
+
+    They are cached, as the sums of other chains need them.
+    """
     return _equal_beads(order).coefficients(quantity)

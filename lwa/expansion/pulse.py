@@ -23,6 +23,7 @@ def log_term(S: Series, log: Series) -> fmpq_mpoly:
 
 def exp_term(log: Series, S: Series) -> fmpq_mpoly:
     """The next coefficient of ``exp Σ log_n t^n``, where log_0 is 0."""
+    # S_n is log_n and products of earlier coefficients.
     n = len(S)
     return log[n] + _products(log, S, n)
 

@@ -104,11 +104,14 @@ class Recursion:
         # (ε/I)^{1/2} = I t, so that ε = I³ t²
         self.epsilon = self.I**3
         self.gamma: Series = [self.context.constant(1)]
+        # The fields, still without a term: forces and strains of the contacts, slopes of the
+        # beads' displacements, the mean strain, and the last contact's push on the next cell
         self.force = [Pulse() for _ in range(self.P)]
         self.strain = [Pulse() for _ in range(self.P)]
         self.slope: list[Series] = [[] for _ in range(self.P)]
         self.mean: Series = []
         self.push: Series = []
+        # ε is in proportion to t²
         self._solve(2 * order)
 
     def _dispersion(self) -> fmpq_mpoly:

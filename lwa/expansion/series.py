@@ -253,10 +253,11 @@ def _sum(b: Sequence[mpmath.mpf], x: mpmath.mpf) -> Estimate:
 
 
 def _truncated(b: Sequence[mpmath.mpf], x: mpmath.mpf) -> Estimate:
-    """Sum Σ b_n x^n up to the first term that is smaller than the next, if there is one."""
+    """Sum the terms b_n x^n before the first one that is smaller than the next, or all of them."""
     # A later term may be small by chance, next to a change of sign: the first growth decides.
     terms = [term * x**n for n, term in enumerate(b)]
     for n, (term, following) in enumerate(pairwise(terms)):
+        # The first term of a difference to equal beads is 0, and its growth tells nothing.
         if 0 < abs(term) < abs(following):
             return Estimate(mpmath.fsum(terms[:n]), LEFT_OUT * abs(term))
     return _sum(b, x)
@@ -267,11 +268,12 @@ def radiated(cell: Cell, k: sp.Expr) -> float:
     """Relative error of the sums of unlike beads by radiation, which no order in ε removes.
 
     Light beads rattle under the pulse and leave an oscillating tail. An oscillation that stands in
-    the frame of the pulse has the wavenumber K, ``K² = Ω_o² - 1``, Ω_o the lowest optical frequency
-    of long waves, and the pulse, a Gaussian of width ``√(I/ε)``, excites it the less the larger
-    ``s = I K²/ε`` is. The bound, times the contrast 4I - 1/3 to equal beads ((m1 - m2)²/(m1 + m2)²
-    of a dimer), was fitted to the widths of 215 struck chains at k from 1.1 to 2 and m2/m1 from
-    0.01 to 0.995. It is measured, not proved.
+    the frame of the pulse has ``Ω = K`` on the optical branch, as the pulse runs nearly with sound,
+    which has ``Ω = κ``. This K is near ``K² = Ω_o² - 1`` for light beads, Ω_o the lowest optical
+    frequency of long waves, and is taken from there for all. The pulse, a Gaussian of width
+    ``√(I/ε)``, excites the oscillation the less the larger ``s = I K²/ε`` is. The bound, times the
+    contrast 4I - 1/3 to equal beads ((m1 - m2)²/(m1 + m2)² of a dimer), was fitted to the widths of
+    215 struck chains at k from 1.1 to 2 and m2/m1 from 0.01 to 0.995. It is measured, not proved.
     """
     epsilon = float(k - 1)
     chain = Dispersion(cell, shares_model(cell, k).k)

@@ -93,13 +93,15 @@ class Strike(Value):
         if self._ratio > 1:
             particle = unit.estimate("effective_mass").value
             share = 1.0
+        # w, with which the particle leaves the striker
         velocity = 2 * float(self.mass * self.velocity) / (float(self.mass) + particle)
         # The square of the velocity may be beyond a double where its power is not.
         power = float(self.k / (self.k + 1))
-        # The energy of the wave of force 1 times F^{(k+1)/k} is the share of ½ M w².
-        at_rest = share * particle / (2 * unit.estimate("energy").value)
+        # The energy of the wave of force 1 times F^{(k+1)/k} is the share of ½ M w², M the mass of
+        # the particle: F^{(k+1)/k} is a factor times w².
+        factor = share * particle / (2 * unit.estimate("energy").value)
         try:
-            force = at_rest**power * velocity ** (2 * power)
+            force = factor**power * velocity ** (2 * power)
         except OverflowError:
             reason = (
                 f"velocity is {shorten(self.velocity)}: its force exceeds any float"
@@ -145,6 +147,7 @@ class Strike(Value):
     @property
     def speed(self) -> Estimate:
         """Speed dx/dt of the pulse."""
+        # The closed form of the wave has an error, and the rule for its force another one.
         return self.wave.estimate("speed").widened(self._share)
 
     def fwhm(

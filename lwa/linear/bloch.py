@@ -37,6 +37,7 @@ class Bloch:
     def __init__(self, model: Model) -> None:
         context = fmpq_mpoly_ctx.get(model.names, Ordering.degrevlex)
         self.P = model.cell.size
+        # Mass fractions m̂_i and strain shares C_i as elements of the ring
         self.mu = model.masses.elements(context)
         self.c = model.contacts.elements(context)
         self.one = context.constant(1)
@@ -84,7 +85,7 @@ class Bloch:
         P = self.P
         trace = self.trace(order)
         omega2 = [self.zero]
-        powers = {1: omega2}  # powers[m] is that of Ω^{2m}
+        powers = {1: omega2}  # powers[m] is that of Ω^{2m}; powers[1] grows with Ω²
         for n in range(1, order + 1):
             # (2 - 2 cos Pκ)/P² = Σ -2 (-1)^n P^{2n-2} κ^{2n}/(2n)!
             above = -2 * (-1) ** n * P ** (2 * n - 2)

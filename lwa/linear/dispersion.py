@@ -255,11 +255,13 @@ class LoadedChain(Value):
     @cached_property
     def springs(self) -> Dispersion:
         """The dispersion of the chain of these springs, Ω(κ) in the theory's units."""
+        # `Dispersion` has k = 1 unless told: stiffnesses are spring constants.
         return Dispersion(replace(self.cell, stiffnesses=self.spring_constants))
 
     @cached_property
     def sound_speed(self) -> sp.Expr:
         """The speed dω/dq of long waves."""
+        # They have Ω = κ, which is dx/dτ = 1: dx/dt is τ/t.
         return self.springs.cell.time_scale(1)
 
     @cached_property

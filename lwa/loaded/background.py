@@ -76,7 +76,8 @@ class Background(Value):
     def __post_init__(self) -> None:
         # Called for its refusal of unlike contacts under a law that is no power
         for_cell(self.law, self.cell)
-        # Floats in an expression keep the digits of a shock's strains.
+        # The floats of an expression, such as the strains of a shock, stay floats: `read_exact`
+        # makes fractions of them, whose powers have thousands of digits.
         read = real if isinstance(self.p0, sp.Expr) else read_exact
         self._set(p0=read(self.p0, "background"))
         if self.law.homogeneous and self.p0.is_negative:

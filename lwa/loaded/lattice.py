@@ -265,7 +265,8 @@ class Lattice(Value):
             strain = length / (self.size * self.spacing)
             return Equilibrium(strain, compressions)
         demand_numbers(load.free_symbols, "numbers are wanted")
-        # Without a force all links are open or slack, whatever their laws.
+        # e is the mean compression D p. Without a force all links are open or slack, whatever their
+        # laws.
         e = self.statics.mean_compression(float(load)) if load else 0.0
         found = self.statics.compressions(np.array(e))
         return Equilibrium(sp.Float(e) / self.spacing, tuple(map(sp.Float, found)))
@@ -307,6 +308,7 @@ class Lattice(Value):
         demand_numbers(self.symbols, "numbers are wanted")
         links = self.links
         bonds = [Bond(link.i, link.j, float(link.cosine)) for link in links]
+        # The force of each link and its first two derivatives
         laws = [tuple(link.law.function(n) for n in range(3)) for link in links]
         return Statics(
             Network(self.size, tuple(bonds)),

@@ -120,9 +120,10 @@ class Grid:
     def peak_first(values: Array) -> Array:
         """Put values at the rows in the order from the peak to the foot.
 
-        The rows next to the foot go: there integrals by `to_peak` are not right.
+        The rows next to the foot go: there the integrals in `Nodes.places` are not right.
         """
-        # The rows next to the foot have less than half a window of nodes on one side.
+        # These integrals know dξ at the rows alone, and the end correction next to the foot would
+        # need it at the nodes before them, up to half a window.
         first = _WINDOW // 2
         return values[first:][::-1]
 
@@ -309,8 +310,8 @@ class Nodes:
         first = g.ds * g.rest
         second = g.ds * g.rest**2
         change = self.wave.B / 3 * (self.law.bend @ second) / second.sum()
-        # A small wave, whose V² - F′(p0) has its digits; a change below a quarter cancels none of
-        # the digits of F′(p0).
+        # The change of a small wave keeps its digits in this sum, and would lose them as the
+        # difference V² - F′(p0). Where it is negative, a quarter cancels no digit of F′(p0).
         if abs(change) < F1[0] / 4:
             return np.asarray(F1[0] + change)
         return np.asarray((F1 @ first) / first.sum())

@@ -1,8 +1,9 @@
 """The static states ahead of a wave and at its peak.
 
 Under a power law, and in links in series whose laws are powers, compressions under a force are
-closed forms. Those of another law are exact fractions of 35 digits, so that the difference of
-nearly equal ones keeps its digits; results then are floats of 20 digits.
+closed forms. Under another law those of a cell are exact fractions of 35 digits, so that the
+difference of nearly equal ones keeps its digits, and results are floats of 20 digits. Those of a
+lattice are floats then: of 35 digits for links in series, else doubles.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ class States(Parametric):
     exact_compression : Expr
         Rise D B of the mean compression at the peak.
     closed_form : bool
-        False for compressions that are fractions of 35 digits in place of closed forms.
+        False for compressions of a cell that are fractions of 35 digits: results become floats.
     """
 
     chain: Cell | Lattice
@@ -52,7 +53,7 @@ class States(Parametric):
     closed_form: bool = True
 
     def __post_init__(self) -> None:
-        # Text would be evaluated in a sum.
+        # Called for its refusal of text, NaN and infinities
         real(self.precompression, "precompression")
         real(self.force, "force")
         real(self.exact_static_compression, "static compression")
@@ -66,11 +67,14 @@ class States(Parametric):
         if isinstance(chain, Cell):
             ahead = _compression(chain, law, load)
             rise = _compression(chain, law, force) - ahead
+            # The last argument is `closed_form`: compressions under a power are closed forms.
             return cls(chain, law, load, force, ahead, rise, law.homogeneous)
         ahead = chain.equilibrium(load).strain * chain.spacing
         if chain.in_series:  # exact: no digits are lost in the difference
             rise = chain.equilibrium(force).strain * chain.spacing - ahead
         else:
+            # As floats two nearly equal compressions, or forces, lose digits in their difference.
+            # `Statics.rise` divides the difference of the exact forces by the mean slope F′.
             gap = number(force - load)
             rise = sp.Float(chain.statics.rise(float(ahead), float(force), gap))
         return cls(chain, law, load, force, ahead, rise)

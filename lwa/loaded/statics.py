@@ -149,7 +149,8 @@ class Statics:
         # The first particle stays where it is.
         incidence = self.network.incidence[:, 1:]
         delta = e[..., None] * self.network.spans
-        with np.errstate(all="ignore"):  # far beyond the wave forces are infinite
+        # Trial values far above the wave's have infinite forces.
+        with np.errstate(all="ignore"):
             for _ in range(_MOST):
                 force = self.values(delta, 0)
                 springs = self.values(delta, 1)
@@ -234,8 +235,10 @@ class Statics:
     def rise(self, e: float, force: float, added: float) -> float:
         """The rise of the mean compression from e to that under ``force``.
 
-        The lattice at e carries ``force`` less ``added``. A small difference of compressions has
-        lost its digits; ``added`` over the mean ``F′`` between them, by Gauss's rule, has not.
+        The lattice at e carries ``force`` less ``added``: the difference of two forces has more
+        digits than the forces, if it is computed before they become floats. A small difference of
+        compressions has lost its digits; ``added`` over the mean ``F′`` between them, by Gauss's
+        rule, has not.
         """
         rough = self.mean_compression(force) - e
         if abs(rough) > _SMALL * e:

@@ -192,7 +192,8 @@ class LoadedWave(States):
             law = self._quadrature.at(0)
             slope = sp.Float(float(law.slope))
             bend = sp.Float(float(law.bend))
-            # Resonators follow the acceleration of a wave with V̂² = F′.
+            # Resonators add R V⁴ to J = F′ I. A small wave has V² = F′/m̄ at D = 1, so that they
+            # add R F′/m̄² to I.
             resonance = self.lattice.resonance_sum * slope / self.lattice.mass**2
             dispersion = sp.Float(float(law.dispersion)) + resonance
             I = D**2 * dispersion  # the dispersion of a lattice is that of D = 1
@@ -208,8 +209,9 @@ class LoadedWave(States):
         quantity : {"force", "strain", "velocity"}
             The quantity.
         extent : {"length", "time"}
-            A length, a multiple of a spacing that is a symbol, or the time of passage.
+            A length, in which the spacing may be a symbol, or the time of passage.
         """
+        # The particles move at V v: strain and velocity have one width.
         of_force = known_quantity(quantity) == "force"
         sites = 2 * self._quadrature.half_width(of_force)
         if known_extent(extent) == "time":
@@ -276,8 +278,9 @@ class LoadedWave(States):
         if spacing.is_Symbol and not self.exact_compression.has(spacing):
             return self.at(**{spacing.name: 1}).estimate(name, quantity, extent)
         wave = self._quadrature
-        # Without load the slope at the foot tends to 0, at 1e-40 slowly for k near 1. The slopes of
-        # a lattice's power k = 3 are no floats at 1e-280.
+        # `bounds` takes a wave for one without load if the slope F′ at its foot is nearly 0. For k
+        # near 1 it falls so slowly towards the foot that 1e-280 of the rise tells more than 1e-40.
+        # In a lattice the slopes of a power k = 3 would be no floats there.
         foot = _FOOT if self.law is None else 1e-280
         known = bounds(
             self.lattice,
@@ -303,6 +306,7 @@ class LoadedWave(States):
         B = self.exact_compression
         if self.law is None:
             lattice = self.lattice
+            # `Quadrature` has V̂² for V², and in J, at D = 1, R V⁴ is (R/m̄²) V̂⁴.
             resonance = number(lattice.resonance_sum / lattice.mass**2)
             return Quadrature(lattice.statics.samples, number(p0), number(B), resonance)
         if self.law.homogeneous:

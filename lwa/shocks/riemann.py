@@ -319,6 +319,7 @@ class Shock(Parametric):
             )
         # The doubling rule
         pulse = Pulse(self._field, 2 * self._wall_velocity)
+        # Refused where F″ changes its sign within the pulse; F″ of a power does not.
         if not self.law.homogeneous:
             demand_one_sign(self._field, self.ahead, self.ahead + pulse.rise)
         return pulse
@@ -366,8 +367,9 @@ class Shock(Parametric):
     def _sound_gain(self) -> sp.Expr:
         """Difference c₋ - c₊, negative for a rarefaction; symbols are taken to mean a shock."""
         gain = self._sound(self.behind) - self._sound(self.ahead)
+        # A symbol for the spacing counts as the unit in which the law has its lengths.
         if self.cell.spacing.is_Symbol and not self.law.homogeneous:
-            gain = gain.xreplace({self.cell.spacing: sp.S.One})  # its unit of length
+            gain = gain.xreplace({self.cell.spacing: sp.S.One})
         if not gain.free_symbols:
             return sp.N(gain, 5)  # its sign is wanted alone
         # SymPy knows the sign of an expression in symbols in simple forms alone.

@@ -1,6 +1,6 @@
 """Files of beads: materials, beads and the table of the chain, in scenes and lists of spheres.
 
-A file of spheres holds, in units that agree (SI if A is to be in ``N/m^{3/2}``)::
+A file of spheres holds, in SI, for which scenes and commands take the numbers of spheres::
 
     [materials.resin]             # any name
     E = 3e9                       # Young's modulus
@@ -19,9 +19,9 @@ A file of spheres holds, in units that agree (SI if A is to be in ``N/m^{3/2}``)
     [chain]
     cell = ["ball", "light"]      # names of beads, in their order
 
-These are tables of a scene (`validation.scenes.scenefile`), and any scene is such a file: the other
-entries of the scene are ignored. A chain of masses has numbers in ``cell`` and its contacts beside
-them.
+These are tables of a scene (`validation.scenes.scenefile`), and any scene is such a file: the
+readers of this module leave its other entries alone. A chain of masses has numbers in ``cell`` and
+its contacts beside them.
 """
 
 from __future__ import annotations

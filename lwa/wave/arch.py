@@ -109,7 +109,7 @@ class Arch(Parametric):
         If k and the cell are numbers, the first root is the paper's. With symbols the order of the
         roots may differ, as ``√x²`` is written x, whatever the sign of x.
         """
-        # The equation of p, divided by I, is A p² - B p + 2 = 0.
+        # The equation of p, divided by I, is A p² - B p + 2 = 0, with B = h + 3 and h = H/I.
         _, h = self._ratios
         A = factored(self.coefficient_sum * self.D**2 / self.I)
         B = factored(h + 3)
@@ -134,6 +134,8 @@ class Arch(Parametric):
         _, h = self._ratios
         a = factored(3 + h - k) * p - 2  # 1 - kp + 3 (p - 1) + p H/I
         eta = 1 + p - k * p
+        # The integral is V² z^{p+a}/(p+a) = z^{kp+a}/(kp+a) + I z^{kp+a-1} z″. Divided by
+        # I z^{kp+a-1} it is the oscillator, which a cosine to the power s solves.
         return Reduction(
             p,
             a,

@@ -126,6 +126,7 @@ class NumericWave(Value):
         # The closed forms are homogeneous in the masses, and lengths are in units of D.
         m1, m2 = dict.fromkeys(self.wave.cell.masses)
         numbers = {self.wave.k: k, m1: 1.0, m2: omega, self.wave.D: 1.0}
+        # B or V, which come first, are no symbols of the chain.
         arguments = self._functions[name].arguments[len(first) :]
         with np.errstate(all="ignore"):  # outside of the domain of waves
             found = self._compiled[name](*first, *map(numbers.get, arguments))

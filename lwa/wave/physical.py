@@ -151,7 +151,10 @@ class PhysicalWave(Parametric):
 
     @cached_property
     def momentum(self) -> sp.Expr:
-        """The momentum ``Σ m u_t = M/(P D) · B dx/dt · ∫ cos^m(βξ) dξ`` of the chain."""
+        """The momentum ``Σ m u_t = M/(P D) · B dx/dt · ∫ cos^m(βξ) dξ`` of the chain.
+
+        In the sum m is the mass of a bead, in the power 2/(k-1).
+        """
         cell = self.wave.cell
         m = self.wave.m
         # P beads of the mass M fill the length P D.

@@ -233,6 +233,7 @@ class Functions(dict[str, Function]):
 
     def __init__(self, *parts: sp.Expr) -> None:
         super().__init__()
+        # Each symbol once, in the order of the parts, those of one part by name
         ordered: dict[sp.Symbol, None] = {}
         for part in parts:
             ordered |= dict.fromkeys(sorted(part.free_symbols, key=str))
@@ -263,6 +264,7 @@ def wave_functions(wave: Arch) -> Functions:
     D = cell.spacing
     functions = Functions(k, *cell.masses, *cell.stiffnesses, D, wave.coefficient_sum)
     define = functions.define
+    # f - 1 of the speed factor f, for ln f below
     excess = sp.factor(sp.cancel(wave.speed_factor - 1))
     total = define("coefficient_sum", "(G + H + I)/D^2", wave.coefficient_sum)
     factor = define("speed_factor", "V_s^2/B^(k - 1)", wave.speed_factor)

@@ -211,11 +211,13 @@ class Base:
         for i, fit in enumerate(self.fits):
             draws = chosen == i
             samples = calm[:, draws]
-            # A base of as many terms is fitted to the drawn samples. Its error is that of this fit,
-            # and the distance of the base, the mean of all fits, from the fit that was drawn.
-            drawn = Fit.of(self.x, samples, len(fit.sizes))
+            # The pulse is the record less its base. If the drawn fit is the base, and not the mean
+            # of all fits, the pulse is higher by mean - fit.
             apart = mean - fit.at(x)
             added[:, draws] += apart[:, np.newaxis]
+            # The noise before the pulse moves a base of as many terms by the fit to this noise, and
+            # the pulse the other way.
+            drawn = Fit.of(self.x, samples, len(fit.sizes))
             added[:, draws] -= drawn.at(x)
         return added
 
@@ -250,7 +252,12 @@ def _rounding(
 
 
 def _terms(x: Array, count: int) -> Array:
-    """Return the first terms of a base, (len(x), count): level, slope, exponentials."""
+    """Return the first terms of a base, (len(x), count): level, slope, exponentials.
+
+    x : times in widths of the pulse, 0 where the pulse rises through half of its peak.
+    """
+    # Exponentials are fitted before the rise alone, where x < 0. Behind it no base has them
+    # (`Fit.at`); there they stay 1, so that they do not overflow.
     before = np.minimum(x, 0.0)
     columns = [np.ones_like(x), x]
     for growth in _GROWTHS:

@@ -31,13 +31,16 @@ _LOWEST = 8  # fewest coefficients of the spline
 _HIGHEST = 120  # most coefficients
 _RATIO = 1.2  # number of coefficients that is tried over the one before
 # Coefficients in the end over the best number. With 1.5 the arrivals of records of 8 bits with
-# little noise are off by their scatter; with 2 the arrivals of loud records cover 59 %.
+# little noise are off by their scatter; with 2 only 59 % of those of loud records lie within their
+# errors.
 _FINER = 1.7
 _DENSEST = 0.8  # most coefficients over samples
 _COARSER = 1.3  # ratio of the coefficients to those of a coarser spline, which shows what is missed
 _WITHIN = 0.7  # 0.68 and a little: the number of coefficients depends on the noise
 _GRID = 400  # intervals on which splines are read
-_MISFIT = 2.0  # mean squared residual over σ² from which on the residuals are the noise
+# Mean squared residual over the variance of the noise before the pulse, from which on the residuals
+# count as the noise.
+_MISFIT = 2.0
 _LOUDEST = 0.05  # greatest noise over the peak, for which the pulse is located
 
 
@@ -80,6 +83,8 @@ def fitted(
     variance = base.best.variance + rounding**2
     most = min(_HIGHEST, int(_DENSEST * len(x)))
     smoothed = partial(_smoothed, x, f, base.best.correlation_time, most)
+    # `wanted` coefficients would be best, the spline has at most `most`; `left` is the variance of
+    # the samples about it.
     wanted, spline, left = smoothed(variance)
     if left > _MISFIT * variance:
         # The noise during the pulse is larger than before.
@@ -93,10 +98,12 @@ def fitted(
             f"the noise is {share:.1%} of the peak: at most {_LOUDEST:.0%} is read"
         )
     noise = base.drawn(rise + x, pulse, variance, step)
+    # A fit is linear: a record with drawn noise has the best fit's coefficients and the noise's.
     drawn = _fit(x, noise, len(spline.c))
     best = spline.c[:, np.newaxis]
     coefficients = np.hstack((best, best + drawn.c))
     splines = BSpline(spline.t, coefficients, _DEGREE)
+    # Arrival, peak and FWHM, in a row for each spline: the best fit's first, then the draws'.
     found = _read(splines, ends)
     numbers = found[0]
     off = np.abs(found[1:] - numbers)

@@ -41,7 +41,7 @@ from validation.pulses.pulse import (
 from validation.scenes.cells import longest
 
 _EARLY = 5  # samples at the start of the record that locate its base
-_FEWEST = 16  # samples above half the peak; with 12 the errors no longer cover
+_FEWEST = 16  # samples above half the peak; with 12 the errors are too small
 _FEWEST_EXACT = 6  # samples above half the peak in a record without noise
 _MOST = 400  # samples above half the peak; of more, neighbours are averaged
 _SMOOTH = 0.01  # noise of the moving mean over the peak
@@ -62,7 +62,8 @@ _UPRIGHT = 0.1  # least rise of a record over its fall; with less the record is 
 # Widths behind the arrival: ends of two stretches that are searched for an undershoot
 _BEHIND = (1.5, 2.5, 3.5)
 # Least depth of an undershoot, the mean of a stretch, in errors of the peak, which hold that of the
-# base: of 540 records without an undershoot none had the line (29 had it by the noise alone).
+# base. Of 540 records without an undershoot none has the line of `suggested`; with the noise in
+# place of this error 29 had it.
 _SURE = 2.0
 _SHALLOWEST = 0.002  # least depth over the peak
 _ALIKE = 1.5  # largest ratio of the time constants by the two stretches
@@ -200,7 +201,8 @@ def _noisy(t: Array, f: Array, step: float, unit: str) -> NoisyPulse:
     ends = np.array([rise, fall])
     level, later = base.at(ends).tolist()
     slope = (later - level) / width
-    # Samples of correlated noise count as fewer; each of ``means`` counts as the block's.
+    # The mean noise of n samples, n/block of the means, has the variance σ² · correlation time over
+    # their number, σ² being that of a mean: times n it no longer depends on n (`NoisyPulse.noise`).
     correlated = base.best.variance * base.best.correlation_time
     noise = math.sqrt(correlated * block)
     return NoisyPulse(numbers, level, missing, rise, slope, noise)
@@ -257,7 +259,8 @@ def _exact(t: Array, f: Array) -> NoisyPulse:
     apart = distances.max(initial=0.0)
     if apart > _SAME * pulse.fwhm:
         errors["arrival"] = max(errors["arrival"], apart + _SAME * pulse.fwhm)
-    # A base that is off by this much moves the peak as much, and both flanks at its half.
+    # A base that is off by this much moves the peak as much, and both flanks at its half. As x
+    # begins with 0, x[1] is the time from sample to sample.
     doubt = _front(f, pulse.fwhm / x[1]) / pulse.peak
     for name in ("peak", "fwhm"):
         errors[name] += doubt * numbers[name]
@@ -424,6 +427,7 @@ def suggested(t: Array, signal: Array, pulse: NoisyPulse, unit: str) -> str:
         error = pulse.numbers["peak"].error
         if not 0 < _SURE * error < below.mean() > _SHALLOWEST * swing.max():
             return ""
+        # Behind the pulse the force f = v + charge/T is 0: T = charge/(-v).
         constant = charge[inside].mean() / below.mean()
         constants.append(constant)
     near, far = constants

@@ -36,9 +36,9 @@ _AT_AN_END = 1e-6  # part of an interval beyond its ends in which a zero is the 
 _NOISE = 1e-6
 # Chosen: what is lower counts as a ripple.
 _LEAST = 0.01  # smallest prominence of a pulse over the highest peak
-# Tolerance, over that of a run, of a second run whose differences give the errors, and the factor
-# of a difference. The error of a step is nearly random: the difference to a less accurate run may
-# be large or vanish by chance, the one to a far more accurate run is the error. Counted over 27,030
+# A second run, at FINER times the tolerance, gives the errors: SHARE times the differences of both
+# runs' numbers. The error of a step is nearly random: the difference to a less accurate run may be
+# large or vanish by chance, the one to a far more accurate run is the error. Counted over 27,030
 # numbers of struck, damped, driven, loaded and colliding scenes at rtol 1e-8 and 1e-10, 0.1 % of
 # the errors are too small (colliding beads 0.2 %) and 0.8 % more than thirty times too large; at a
 # tenth of the tolerance, for a fifth less time, 2 and 1 %.
@@ -46,8 +46,9 @@ FINER = 0.01
 SHARE = 2.0
 _FINEST = 1e-13  # smallest tolerance: rounding hides a smaller one
 # The time of a broad crest is known to some 1e-12, as rounding of the slope moves it: both runs may
-# then err alike, and a smaller difference is small by chance. At rtol 1e-10 this factor leaves 15
-# of 2,208 errors too small, the one above 45.
+# then err alike, and a smaller difference is small by chance. So the error is at least the smaller
+# of _BY_CHANCE differences and _NOISY of the number. At rtol 1e-10 this leaves 15 of 2,208 errors
+# too small, SHARE alone 45.
 _NOISY = 5e-12
 _BY_CHANCE = 5.0
 ROUNDING = 1e-13  # relative error of a number, at least
@@ -373,6 +374,7 @@ def compared(
         difference = abs(value - checks[name])
         rounding = min(_BY_CHANCE * difference, _NOISY * abs(value))
         least = max(rounding, ROUNDING * abs(value))
-        # NaN is the error of a number that the other run lacks.
+        # A number that the other run lacks is NaN there and has the error NaN: `min` and `max` of
+        # Python keep a NaN that is their first argument.
         measured[name] = Estimate(value, max(SHARE * difference, least))
     return measured

@@ -191,9 +191,11 @@ def record(
 
         The argument ``sites`` is the speed between the sensors, in sites per time.
         """
+        # Total forces, which set the stiffness of the contacts
         peaks = [r.numbers["peak"].value + r.static for r in (first, second)]
         numbers = sorted(first.places + second.places)
-        # The contacts from one sensor to the other; sensors count from 1
+        # The contacts from one sensor to the other, and that behind a second bead; numbers count
+        # from 1.
         between = slice(numbers[0] - 1, numbers[1])
         time = _time_of_a_site(motion, between, max(peaks))
         # From site to site the pulse takes 1/sites.
@@ -203,7 +205,8 @@ def record(
         start = first.numbers["arrival"].value
         end = second.numbers["arrival"].value - second.numbers["fwhm"].value
         looks = np.linspace(start, end, _LOOKS)
-        if end > start and second.force(looks).max() > peaks[0] / 2:
+        half = first.numbers["peak"].value / 2
+        if end > start and second.force(looks).max() > half:
             raise MeasureError("another pulse passes the second sensor before")
 
     # Errors of both arrivals are added: in the other run's speed they may cancel.
@@ -241,6 +244,8 @@ def _time_of_a_site(motion: Motion, contacts: slice, force: float) -> float:
     beside = np.append(motion.masses, np.inf)  # the wall has no mass of its own
     lighter_of_all = np.minimum(beside[:-1], beside[1:])
     lighter = lighter_of_all[contacts]
+    # Sound passes a site of equal beads in √(m/spring); with the lighter of unlike beads this time
+    # is too short, if anything.
     times = np.sqrt(lighter[: len(A)] / springs)
     return float(np.mean(times))
 
@@ -301,6 +306,8 @@ def _place(scene: Scene, x: Array, kind: str, i: int) -> dict[str, float]:
 
     x : places of the beads, and of one more bead, imagined a spacing after the last.
     """
+    # The force of a bead between two contacts is their mean, at the bead; with one contact it is a
+    # force at this contact.
     if kind == "bead" and not 0 < i < scene.contact_count:
         return {}
     # A contact is midway between its beads; the wall's is half a spacing after the last bead.
@@ -332,6 +339,7 @@ def forces_at_start(scene: Scene) -> dict[str, float]:
     for kind, numbers in sensors_of(scene).items():
         for i in numbers:
             rows = records[RECORDS[kind, "force"]]
+            # A row for each of ``beads``, and for the contact ahead of it, which has its number
             force = rows[beads.searchsorted(i)]
             forces[f"{kind} {i + 1}"] = float(force[0])
     return forces
@@ -394,9 +402,11 @@ def speeds_between(
 def _speeds(
     first: Reading, second: Reading, total: Callable[[float, float], float]
 ) -> dict[str, Estimate]:
-    """Return the speeds from one arrival to a later one, by name.
+    """Return the speeds of a pulse from one sensor to another, later one.
 
-    Raises `MeasureError` if there are none.
+    Names are ``speed_sites``, in sites per time, and ``speed``, in length per time, as far as both
+    sensors' `Reading.along` have them. The error of the time between is ``total`` of the errors of
+    both arrivals. Raises `MeasureError` if there are none.
     """
     if "arrival" not in first.numbers or "arrival" not in second.numbers:
         raise MeasureError("one of the two has no pulse")
@@ -409,7 +419,9 @@ def _speeds(
             "a speed needs a later second arrival, by more than its error"
         )
     if not (first.along and second.along):
-        raise MeasureError("a bead with one contact has a force of half a site away")
+        raise MeasureError(
+            "a bead with one contact shows the pulse of the contact, half a site away"
+        )
     speeds = {}
     for name, place in first.along.items():
         distance = abs(second.along[name] - place)

@@ -54,7 +54,8 @@ TOLERANCES = (2e-6, 1e-5)
 # Distance of the far stretch over that of the last place: there the pulse must still be the
 # highest. At four times the distance a number that nears its limit like n^{-1/2} is half way to it.
 FARTHER = 4
-STEADY = 0.1  # largest difference from the force that the decay predicts there, over this force
+# Largest difference of the force at the far stretch from that which the decay predicts, over it
+STEADY = 0.1
 _WEAKEST = 1 / 50  # peak force of the slowest pulse for which a run is long enough
 # Version of a file of points: another one for another definition of a quantity.
 VERSION = 5
@@ -131,6 +132,8 @@ def _measured(
     errors = {}
     relative = []
     for name, values in numbers.items():
+        # A number for each stretch. The rough run's last one is that of the far stretch; the one
+        # before, of the long way there, means nothing.
         others = less_accurate[name]
         differences = (
             values[1:] - values[:-1],
@@ -179,7 +182,8 @@ class StruckDimer:
 
     def crossing(self, sites: int) -> float:
         """Return the time in which the theory's pulse of force `_WEAKEST` passes sites."""
-        # The speed is 2 F^q/√((k+1)(1+ω)), F the peak contact force.
+        # The speed is 2 F^q/√((k+1)(1+ω)), F the peak contact force, in the long-wave theory of
+        # equal beads with the mean mass (1+ω)/2.
         q = (self.k - 1) / (2 * self.k)
         weak = math.pow(_WEAKEST, q)
         of_unit_force = 2 / math.sqrt((self.k + 1) * (1 + self.omega))
@@ -203,7 +207,9 @@ class StruckDimer:
         Names are arrival, peak, width of the force, strain_width, end, and highest, the peak of the
         highest pulse. Raises `MeasureError` if a pulse does not pass all places in time.
         """
-        low = 0.25**self.k  # a quarter of the compression
+        # The leading pulse is the first whose compression exceeds a quarter of the greatest. As
+        # F = δ^k, its force exceeds this share of the greatest.
+        low = 0.25**self.k
         sensors = run.scene.contact_sensors
         found: dict[str, list[float]] = {}
         for contact in sensors:
@@ -211,6 +217,7 @@ class StruckDimer:
             highest = force(force.times).max()
             try:
                 pulse = first_pulse(force, low)
+                # Its width at half of its greatest compression is the FWHM of the strain.
                 strain = first_pulse(force, low, 0.5**self.k)
             except MeasureError:
                 end = run.scene.duration

@@ -176,6 +176,7 @@ class Cells:
         if self.entries and numbers:
             # NumPy's reader parses a million rows in a second, Python's in six.
             table = np.loadtxt(
+                # Each line has a cell of the last, and highest, number.
                 islice(self._lines(numbers[-1]), most),
                 delimiter=self._mark.strip(" ") or None,
                 comments=None,
@@ -224,8 +225,9 @@ class Cells:
         start, end = longest(complete)
         found = runs(complete)
         place = found.index((start, end))
-        # A preamble may hold a few rows of numbers, if lines without any number follow. Any other
-        # run of rows beside the record is a part of it, beyond a gap.
+        # A preamble or a footer may hold a few rows of numbers, if lines without any number part
+        # them from the record. Any other run of rows beside the record is a part of it, beyond a
+        # gap.
         many = complete.sum() > (1 + _FEW) * (end - start)
         first = max(place - 1, 0)
         for before, after in pairwise(found[first : place + 2]):

@@ -27,8 +27,9 @@ positive = files.positive
 MISSING = math.nan
 """The exponent of a scene that gives a law."""
 
-# SymPy integrates F for δ > 0. Where a contact that pulls has δ < 0, a Piecewise goes on with its
-# first case, as the energy does, and these functions do not.
+# Functions whose form changes at a compression. A contact that pulls also has compressions δ < 0,
+# but SymPy derives the energy for δ > 0. At δ < 0 force and energy of a Piecewise both go on with
+# its first case; force and energy of these functions would not agree.
 _OTHER_CASES = sp.Max, sp.Min, sp.Abs, sp.sign, sp.Heaviside, sp.floor, sp.ceiling
 
 
@@ -109,6 +110,7 @@ def _evaluable(law: ContactLaw) -> ContactLaw:
         raise SceneError(
             f"law is {law.text}: the lattice needs numbers in place of symbols"
         )
+    # Without a last case, of the condition True, F would be undefined beyond the other cases.
     open_ends = (
         cases for cases in law.F.atoms(sp.Piecewise) if cases.args[-1][1] != sp.true
     )

@@ -93,16 +93,19 @@ class Damping:
 def restitution(ratio: float) -> float:
     """Return the coefficient of restitution at a damping ratio ζ.
 
-    In the variable ``s = δ^{(k+1)/2}`` a collision under ``F = A δ^k + c δ^{(k-1)/2} dδ/dt`` is a
-    damped linear oscillator, ``ζ = c/√(2(k+1) m A)`` with the reduced mass m (Antypov and Elliott
-    2011, EPL 94, 50004, for spheres). As contacts do not pull, it ends where the force is zero
-    (Schwager and Pöschel 2007, Granular Matter 9, 465).
+    Two beads of reduced mass m collide under ``F = A δ^k + c δ^{(k-1)/2} dδ/dt``: ``m d²δ/dt² =
+    -F``. In the variable ``s = δ^{(k+1)/2}`` and the time τ with ``dτ = √((k+1)A/(2m)) δ^{(k-1)/2}
+    dt`` this is a damped linear oscillator, ``s'' + 2ζ s' + s = 0`` with ``ζ = c/√(2(k+1) m A)``
+    (Antypov and Elliott 2011, EPL 94, 50004, for spheres). There s' is proportional to the velocity
+    dδ/dt, and ``δ^{(k-1)/2} s''`` to -F. As contacts do not pull, the collision ends where the
+    force is zero (Schwager and Pöschel 2007, Granular Matter 9, 465), at ``s'' = 0``.
     """
     if ratio == 1:  # the limit of what follows, which is 0/0
         return math.exp(-2)
-    # s = e^{-ζτ} sin(√(1-ζ²) τ)/√(1-ζ²) in units of time of the undamped oscillator; its second
-    # derivative, proportional to the force, vanishes at τ = 2 arccos(ζ)/√(1-ζ²), also for ζ > 1,
-    # where numerator and denominator are imaginary.
+    # From s = 0 and s' = 1 on, s = e^{-ζτ} sin(uτ)/u with u = √(1-ζ²), here `turn`. For ζ = cos a,
+    # u = sin a, s'' is proportional to sin(uτ - 2a): it vanishes at the end τ = 2a/u. There s' is
+    # -e^{-ζτ}, and without its sign the restitution, as it began with 1. For ζ > 1 both a and u are
+    # imaginary, and their ratio is real.
     turn = cmath.sqrt(1 - ratio * ratio)
     end = 2 * abs(cmath.acos(ratio) / turn)
     return math.exp(-ratio * end)
@@ -257,10 +260,11 @@ class Drive:
 
     @property
     def longest_step(self) -> float:
-        """Longest step in time that resolves the drive."""
-        # Less than a quarter of a wave: a step holds at most one extremum.
+        """Longest step in time that resolves the drive; infinite at a constant velocity."""
+        # An eighth of a period. Extrema and inflections of a sine take turns a quarter of a period
+        # apart: a step holds one of them at most.
         if self.frequency is not None:
             return 1 / (8 * self.frequency)
-        # In an interval of a file the motion is a cubic, with one inflection.
+        # Between two times of a file the motion is a cubic, with one inflection at most.
         longest = np.diff(self.time).max(initial=0.0)
         return float(longest) or math.inf

@@ -282,6 +282,6 @@ class MeasuredFile(Columns):
 
     @cached_property
     def _numbers(self) -> dict[int, Array]:
-        """Columns of all lines by number, with NaN where a cell is no number."""
+        """Named columns by number, an entry for each line, NaN where a cell is no number."""
         numbers = [c.number for c in self.named if c.number is not None]
         return self.cells.columns(numbers)

@@ -343,7 +343,8 @@ def _drive(given: Table, units: str, folder: Path) -> Drive:
             check_units(file.si, units, file.path)
             motion["time"], motion["displacement"] = file.rows("time", "displacement").T
         except SceneError as error:
-            # A dictionary of Python is a table of TOML but for its colons.
+            # The error proposes arguments of Python, as in "; try columns={'time': '1'}". But for
+            # the colons these are lines of a TOML file, which "; try: " proposes.
             fault = str(error).replace("': '", "' = '")
             raise SceneError(fault.replace("; try ", "; try: ")) from None
     return Drive(**motion)

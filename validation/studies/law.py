@@ -342,7 +342,10 @@ def fit_power(force: Array, speed: Array, weight: Array | None = None) -> PowerF
 
 
 def _fit(x: Array, y: Array, degree: int, weight: Array | None) -> tuple[Array, float]:
-    """Fit a polynomial in x - middle; return coefficients (degree + 1, 1 + draws) and middle."""
+    """Fit a polynomial in x - middle; return coefficients (degree + 1, 1 + draws) and middle.
+
+    weight : inverse standard deviations of y, None if they are unknown.
+    """
     # On data without scatter the rounding of ln F, of ln V and of the fit is left.
     rounding = 2 * np.finfo(float).eps * (1 + np.abs(x) + np.abs(y))
     w = np.ones_like(x)

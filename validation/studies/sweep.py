@@ -176,11 +176,14 @@ _NONE = Estimate(math.nan, math.nan)
 def theory(points: Sequence[Point]) -> dict[tuple[str, str], Array]:
     """Return widths and speed of the compact waves at contact force 1, (points,).
 
-    The keys are closures and quantities. NaN where a closure has no wave.
+    The keys are pairs of a closure, of `CLOSURES`, and a quantity: "width" or "strain_width", the
+    FWHM of force or strain in sites, or "speed", sites over time. NaN where a closure has no wave.
     """
     k = np.array([point.k for point in points], float)
     omega = np.array([point.omega for point in points], float)
-    scale = np.sqrt(2 * k / (1 + omega))  # τ/t, for A = D = m1 = 1
+    # The theory's speed is dx/dτ in the scaled time τ = t √(2k A D^{k+1}/(m1 + m2)). Here
+    # A = D = m1 = 1 and m2 = ω: the factor is τ/t.
+    scale = np.sqrt(2 * k / (1 + omega))
     # One derivation in symbols serves all points.
     cell = Dimer("m1", "m2", spacing=1)
     waves = {
@@ -194,6 +197,7 @@ def theory(points: Sequence[Point]) -> dict[tuple[str, str], Array]:
         wave = exact.numeric(missing="nan")
         found[closure, "width"] = wave.fwhm(k, omega, "force")
         found[closure, "strain_width"] = wave.fwhm(k, omega, "strain")
+        # The peak strain is 1 by default: with A = D = 1 that is a compression and a force of 1.
         found[closure, "speed"] = wave.speed(k, omega) * scale
     return found
 

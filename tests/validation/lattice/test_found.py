@@ -70,6 +70,8 @@ KEEP_ENERGY = [
         1, wall=1, duration=20, damping=Damping("contact", 0.22),
         drive=Drive(amplitude=0.7, frequency=0.6),
     ),
+    # A power so steep that the correction's points in u, δ = u⁴, were too few
+    chain((0.3, 1), k=40.3, displacements=(-0.2,), velocities=(1,), duration=6),
     # Damping stops a force within a step, whose stages' velocities err.
     drawn(30073),
     # Beyond a free end 0 times the force of no contact, 2,090^100 at last, is no number.
@@ -219,6 +221,14 @@ LEAVING = chain(
     1, k=1.1, wall=1, precompression=0.1, damping=Damping("kuwabara_kono", 0.05),
     drive=Drive(velocity=-1), duration=10,
 )  # fmt: skip
+# A shaker's noise: a bead hits another again and again, often just behind a knot.
+NOISE = chain(
+    2, wall=1, duration=2, damping=Damping("contact", 0.1),
+    drive=Drive(
+        time=np.arange(201) / 100,
+        displacement=[0, *np.random.default_rng(1).normal(0, 0.003, 200)],
+    ),
+)  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -231,6 +241,8 @@ LEAVING = chain(
         # A piston leaves the wall: the energy of its contact turns into heat without a push.
         # 12 steps where such a contact counts as too faint for a correction
         (LEAVING, 1e-8, 8),
+        # 26 % more steps where the curve of a drive is compared with the interval before
+        (NOISE, 1e-5, 480),
     ],
 )
 def test_a_kink_of_one_contact_shortens_no_steps_of_the_chain(scene, rtol, most):

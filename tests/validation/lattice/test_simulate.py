@@ -39,8 +39,7 @@ def test_two_beads_collide(k, m1, m2, A, v):
     )  # fmt: skip
     run = simulate(pair, **TIGHT)
     common = m1 * v / (m1 + m2)
-    # The step in which the contact opens holds a kink that the error estimate can miss.
-    assert run.velocities == pytest.approx([2 * common - v, 2 * common], abs=2e-7 * v)
+    assert run.velocities == pytest.approx([2 * common - v, 2 * common], abs=2e-11 * v)
     pulse = measure(run.signal("contact", 0))
     assert pulse.peak == pytest.approx(A * deepest**k, rel=1e-9)
     assert pulse.arrival == pytest.approx(lasting / 2, rel=1e-9)

@@ -410,21 +410,19 @@ def _root(c: Curve, x: float, side: float) -> float:
 def _place_points(
     q: float, zero: float, near: float, far: float, points: Array
 ) -> None:
-    """Place Gauss's rule in u between near and far; x = zero + (far - zero) u^q, q = 1, 2 or 4.
+    """Place Gauss's rule in u between near and far; x = zero + (far - zero) u^q, q = 1 or 4.
 
     The places x go to row 0 of ``points``, their weights in an integral over x to row 1.
     """
     span = far - zero
     start = (near - zero) / span
-    if q > 1.0:
-        start = math.sqrt(start)
     if q == 4.0:
-        start = math.sqrt(start)
+        start = math.sqrt(math.sqrt(start))
     scale = abs(span) * (1.0 - start)
     for m in range(index(POINTS)):
         u = start + (1.0 - start) * _U[m]
         # The derivative q u^{q-1} of u^q
-        pace = 1.0 if q == 1.0 else (2.0 * u if q == 2.0 else 4.0 * u * u * u)
+        pace = 4.0 * u * u * u if q == 4.0 else 1.0
         points[0, m] = zero + span * u * pace / q
         points[1, m] = scale * _W[m] * pace
 
