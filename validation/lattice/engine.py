@@ -224,6 +224,7 @@ def _plan(motion: Motion, scheme: Pair | Splitting, rtol: float, **steps: Any) -
         most = _STRONG * scales.energy
     return Plan(
         scheme=scheme,
+        rtol=rtol,
         y=rtol * scales.displacement,
         v=rtol * scales.velocity,
         energy=rtol * (scales.energy or 1.0),

@@ -137,3 +137,44 @@ def test_the_energy_is_kept_at_each_of_61_tolerances(scene, most):
     contact that a jump beside it clips 11 of SHAKEN."""
     for rtol in np.geomspace(1e-5, 1e-10, 61):
         assert abs(simulate(scene, rtol=rtol).energy_drift) < most * rtol
+
+
+@pytest.mark.parametrize(
+    ("k", "damping", "duration", "most"),
+    [(120, 0.01, 1.2, 10), (200, 0.01, 2.2, 25), (200, None, 1.2, 1)],
+)
+def test_steep_forces_at_each_of_91_tolerances(k, damping, duration, most):
+    """Errors were 40 and 85 tolerances, where an estimate was small by chance, and 3,790, where the
+    rule of a contact's integrals saw little of the force."""
+    scene = chain(
+        3, k=k, velocities=(1,), duration=duration,
+        damping=damping and Damping("contact", damping),
+    )  # fmt: skip
+    exact = simulate(scene, rtol=1e-13, step=2e-4).velocities
+    tolerances = np.geomspace(3e-5, 1e-9, 91)
+    if damping is None:
+        tolerances = np.geomspace(3e-12, 1e-12, 20)
+    for rtol in tolerances:
+        off = np.abs(simulate(scene, rtol=rtol).velocities - exact).max()
+        assert off < most * rtol
+
+
+def test_a_bead_between_a_record_and_a_wall():
+    """No motion of another bead limits the steps: the energy was off by 37 tolerances."""
+    drive = Drive(time=range(9), displacement=(0, 1, 0, 3, -1, -4, 9, 6, 2))
+    scene = chain(1, k=5.25, wall=1, duration=8, drive=drive)
+    assert abs(simulate(scene, rtol=1e-12).energy_drift) < 1e-12
+
+
+def test_heat_where_a_record_touches_the_wall_at_a_knot():
+    """δ^0.3 dδ/dt makes 1e-5 of the rounding of δ there: it was 79 and 2,340 tolerances."""
+    y = 0, 0.3, 0, 1.1, 0, -0.7, 0, 2, 0
+    scene = chain(
+        1, k=1.3, wall=1, duration=0.1, damping=Damping("kuwabara_kono", 0.02),
+        drive=Drive(time=np.linspace(0, 0.1, 9), displacement=y),
+    )  # fmt: skip
+    exact = simulate(scene, rtol=1e-13, step=1e-5).dissipated
+    for rtol in (1e-6, 1e-8, 1e-10):
+        run = simulate(scene, rtol=rtol)
+        most = 3 * rtol * run.motion.scales.energy
+        assert run.dissipated == pytest.approx(exact, abs=most)

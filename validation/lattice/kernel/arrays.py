@@ -233,6 +233,8 @@ class Plan(NamedTuple):
     ----------
     scheme : Pair or Splitting
         The coefficients.
+    rtol : float
+        The tolerance relative to the scene's scales.
     y, v, energy : float
         Tolerances: the errors of displacement, velocity and work allowed in a step.
     h : float
@@ -255,6 +257,7 @@ class Plan(NamedTuple):
     """
 
     scheme: Any
+    rtol: float
     y: float
     v: float
     energy: float

@@ -240,7 +240,9 @@ def _follow_stages(
         y = beads.y[i] + ch * rate
         # The motion of a driven bead is given. ``t + h/2``, the middle of the step, tells in which
         # interval of the drive's file the step lies: a stage at its end may lie in two.
-        if forcing is not None and forcing.driven and i == 0:
+        # Stage 0 is the last one of the step before: at a knot the cubics of both intervals differ
+        # by rounding, of which a power such as δ^{1/4} makes 1e-4.
+        if forcing is not None and forcing.driven and i == 0 and s > 0:
             y, rate, _ = drive_motion(forcing, t + h / 2, t + ch)
         d = chain.rest[i] + y - beads.y[i + 1] - ch * beads.v[i + 1]
         slope = h * (rate - beads.v[i + 1])
@@ -578,7 +580,13 @@ def correct_contact(
     if driven:
         # Damping c δ^p brakes a graze by the impulse c δ^p times the depth.
         missed += resisted
-        work = missed * beads.v[0] / plan.energy
+        # No motion of another bead may limit the step: the rule of the integrals errs, too.
+        share = 1.0
+        if top > 0.0 and not law.generated:
+            # Its errors of damping and of the elastic force are as their sizes.
+            fastest = max(abs(start[1]), abs(end[1])) / h
+            share += r * drag(law, top) * fastest / elastic(law, top)
+        work = (missed * abs(beads.v[0]) + A * sums.missed * share) / plan.energy
         beads.books[SQUARES] += work * work
     _count_error(beads.books, math.hypot(missed, change) / plan.v, near, far)
     # The stages lack this contact's own correction: its impulse errs by stiffness × third and by
