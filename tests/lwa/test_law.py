@@ -15,7 +15,6 @@ from tests.identity import same
 from tests.lwa.fields import of_fields, rational, right_side
 
 x = sp.Symbol("x")
-y = sp.Symbol("y", positive=True)
 
 
 OF_POWER = {phi_symbol(n): sp.ff(k - 1, n - 1) for n in range(2, 8)}

@@ -17,14 +17,14 @@ from lwa import (
 )
 from lwa.law import DELTA, named
 
-y = sp.Symbol("y", positive=True)
-STEEL = lwa.Material(1, 0)
 CHAIN = Cell([1])
 TWO_A = Cell([sp.Symbol("a"), sp.Symbol("a", positive=True)])
 DIMER = Dimer("m1", "m2")
 WAVE = canonical_wave(DIMER)
 PAPERS = homogenize(DIMER).pde.traveling_wave()
-HERTZ, LINK = Power("3/2"), Link(0, 1, Power("3/2"))
+GENERAL = lwa.general()
+HERTZ = Power("3/2")
+LINK = Link(0, 1, HERTZ)
 EQUAL, BEADS = Cell([1], spacing=1), Lattice([1], [LINK])
 PRESSED = Law(DELTA + sp.Rational(1, 10))  # pushes with 1/10 before it is compressed
 BENT = named("polynomial", "1/2", "-1/4")  # F″ = 1 - 3δ/2
@@ -45,15 +45,15 @@ CALLS = [
     (lambda: TWO_A.at(a=1), "'a' names two symbols"),
     (lambda: canonical_wave(CHAIN, k="3/2", law=3), "one of them"),
     (
-        lambda: homogenize(Cell([1, 2], [1, 2]), law=lwa.general()),
+        lambda: homogenize(Cell([1, 2], [1, 2]), law=GENERAL),
         "shares of the strain",
     ),
     (lambda: homogenize(Dimer(3, 1)).pde.energy, "closure='full'"),
     (
-        lambda: homogenize(DIMER, law=lwa.general(), branch="optical"),
+        lambda: homogenize(DIMER, law=GENERAL, branch="optical"),
         "its contacts also pull",
     ),
-    (lambda: homogenize(CHAIN, law=lwa.general()).pde.traveling_wave(), "power law"),
+    (lambda: homogenize(CHAIN, law=GENERAL).pde.traveling_wave(), "power law"),
     (lambda: named("general", 1), "none are wanted"),
     (
         lambda: lwa.Dispersion(Cell(["a", "b"], ["d", "e"])).acoustic(10000),
@@ -74,9 +74,9 @@ CALLS = [
     (lambda: expand(CHAIN, 6).c2.at(1), "k is 1"),
     (lambda: expand(CHAIN, 5).c2.at("3/2"), "from order 6 on"),
     (lambda: expand(Cell(["ε", 1])), "ε is the series' parameter"),
-    (lambda: lwa.piston(Cell([1], spacing=1), 2, "m1", k=1), "as fast behind as ahead"),
+    (lambda: lwa.piston(EQUAL, 2, "m1", k=1), "as fast behind as ahead"),
     (lambda: loaded(HERTZ, -1, 1), "must not be negative"),
-    (lambda: loaded(lwa.general(), 1, 1).fwhm(), "no expression"),
+    (lambda: loaded(GENERAL, 1, 1).fwhm(), "no expression"),
     (lambda: lwa.loaded_wave(EQUAL, force=2, rise=1), "not by both"),
     (
         lambda: PRESSED.inverse(sp.Rational(1, 50)),
@@ -88,7 +88,7 @@ CALLS = [
     ),
     (lambda: Link(1, 1, HERTZ), "second particle"),
     (
-        lambda: Lattice([1], [Link(0, 1, HERTZ), Link(1, 2, HERTZ)]),
+        lambda: Lattice([1], [LINK, Link(1, 2, HERTZ)]),
         "particles 0 to 0",
     ),
     (lambda: Lattice([1, 1], [Link(0, 2, HERTZ)]), "free"),

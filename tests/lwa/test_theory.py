@@ -41,13 +41,16 @@ def test_derivations_are_refused_by_an_estimate_of_their_terms():
 
 
 def test_high_orders_show_their_progress_on_a_terminal(capsys):
+    def derived(order):
+        return homogenize(Dimer(1, 2), order, k="3/2").pde.coefficients
+
     # One that says no size, as that of `docker exec`.
     with terminal(0, 0) as shown:
-        assert homogenize(Dimer(1, 2), 11, k="3/2").pde.coefficients
+        assert derived(11)
         assert shown() == ""
-        assert homogenize(Dimer(1, 2), 12, k="3/2").pde.coefficients
+        assert derived(12)
         assert "orders:" in shown()
-    assert homogenize(Dimer(1, 2), 12, k="3/2").pde.coefficients
+    assert derived(12)
     assert capsys.readouterr().err == ""
 
 

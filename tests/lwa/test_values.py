@@ -22,8 +22,16 @@ from lwa.linear.dispersion import LoadedChain
 m1, m2 = sp.symbols("m1 m2", positive=True)
 
 
+def dimer():
+    return Dimer(m1, m2)
+
+
 def theory(order=4, **kind):
-    return homogenize(Dimer(m1, m2), order, **kind)
+    return homogenize(dimer(), order, **kind)
+
+
+def paper():
+    return theory().pde.traveling_wave()
 
 
 MADE = {
@@ -36,30 +44,28 @@ MADE = {
     "closure": lambda: theory(5, closure="full", field="first").closure,
     "terms": lambda: theory().pde.coefficients[3],
     "energy": lambda: theory(closure="full", field="first").pde.energy[2],
-    "wave": lambda: theory().pde.traveling_wave(),
-    "physical": lambda: theory().pde.traveling_wave().at_force("F"),
-    "reduction": lambda: theory().pde.traveling_wave().reduction(),
-    "numeric": lambda: theory().pde.traveling_wave().numeric(),
-    "dispersion": lambda: Dispersion(Dimer(m1, m2)),
+    "wave": paper,
+    "physical": lambda: paper().at_force("F"),
+    "reduction": lambda: paper().reduction(),
+    "numeric": lambda: paper().numeric(),
+    "dispersion": lambda: Dispersion(dimer()),
     "law": lambda: lwa.general(),
     "power": lambda: Power("k"),
     "of a law": lambda: theory(5, law=lwa.general(), closure="full", field="center"),
-    "background": lambda: loaded_wave(Dimer(m1, m2), background="p0"),
-    "kdv": lambda: loaded_wave(Dimer(m1, m2), background="p0").kdv,
-    "precompressed": lambda: canonical_wave(Dimer(m1, m2)).at_force(
-        "F", precompression="F0"
-    ),
-    "envelope": lambda: lwa.envelope(Dimer(m1, m2), law=Power("k"), background="p0"),
+    "background": lambda: loaded_wave(dimer(), background="p0"),
+    "kdv": lambda: loaded_wave(dimer(), background="p0").kdv,
+    "precompressed": lambda: canonical_wave(dimer()).at_force("F", precompression="F0"),
+    "envelope": lambda: lwa.envelope(dimer(), law=Power("k"), background="p0"),
     "breather": lambda: lwa.envelope(Dimer(2, 1), law=Power(2), background=1).breather(
         detuning="1/100"
     ),
     "shock": lambda: lwa.shock(Dimer(2, 1), 2, 1, law=Power(2)),
-    "expansion": lambda: expand(Dimer(m1, m2), 2),
+    "expansion": lambda: expand(dimer(), 2),
     "series": lambda: expand(Cell(["m", 2]), 1).fwhm("velocity"),
     "sum": lambda: expand(Cell([1, "1/3"]), 6, k="6/5").c2.at(),
     "lattice": lambda: lwa.lattice_wave(Dimer("m1", "m2"), force="F"),
     "sphere": lambda: lwa.Sphere.solid("R", lwa.Material.named("PTFE")),
-    "loaded": lambda: LoadedChain(Dimer(m1, m2), Power("3/2"), "F0"),
+    "loaded": lambda: LoadedChain(dimer(), Power("3/2"), "F0"),
 }
 
 
@@ -108,6 +114,6 @@ def test_at_substitutes_everywhere():
         assert derived.at(k="3/2", m1=2, m2=3) == own
         assert derived.at(k="3/2", m1=2, omega="3/2") == own
         assert derived.pde.at(k="3/2", m1=2, m2=3) == own.pde
-    wave = theory().pde.traveling_wave()
+    wave = paper()
     assert wave.at(omega=1, k="3/2").beta == sp.sqrt(10) / (5 * wave.D)
-    assert Dispersion(Dimer(m1, m2)).at(omega=1).I == lwa.D**2 / 12
+    assert Dispersion(dimer()).at(omega=1).I == lwa.D**2 / 12

@@ -75,7 +75,7 @@ def test_why_dimers_are_worse():
     run = simulate(wave.scene, method="symplectic", rtol=1e-7)
     found = wave.read(run, 1)
     assert found["decay"] > 1e-5
-    chain = LoadedChain(Cell([1, "1/2"], spacing=1), Power("3/2"), 1)
+    chain = LoadedChain(wave.cell, wave.law, 1)
     speed = found["speed"] * wave.sound
 
     q = scipy.optimize.brentq(

@@ -18,7 +18,6 @@ from validation.waves.solver import exact_wave
 
 WIDTHS = ("strain", "force", "velocity")
 NAMES = ("c2", "momentum", "energy", "effective_mass")
-EXPONENTS = ("1.1", "3/2", "4", "8", "20")
 
 
 @cache
@@ -96,7 +95,7 @@ def test_these_waves_are_exact(k):
             assert other.fwhm(name) == pytest.approx(values[name], rel=1e-10)
 
 
-@pytest.mark.parametrize("k", EXPONENTS)
+@pytest.mark.parametrize("k", ["1.1", "3/2", "4", "8", "20"])
 def test_a_sum_is_right_within_its_error_or_refused(k):
     """At order 10 none is refused up to k = 8; c² is from k = 12 on."""
     values, _, _ = lattice(float(sp.Rational(k)))

@@ -120,11 +120,3 @@ def test_first_correction_of_a_dimer_is_a_closed_form():
     w_1 = expand(Dimer(1, OMEGA), 1).fwhm("force").coefficients[1]
     top = (6 - sp.log(2)) * (OMEGA**4 + 34 * OMEGA**3 - 69 * OMEGA**2 + 34 * OMEGA + 1)
     assert same(w_1, top / (60 * (OMEGA**2 - OMEGA + 1) ** 2))
-
-
-def test_unlike_contacts_have_unlike_widths():
-    """The widths of both contacts of a struck chain, contacts 1 and 6/25 at k = 11/10."""
-    wave = expand(Cell([1, 1], [1, "6/25"]), 6, k="11/10")
-    for contact, width in enumerate((5.035, 4.549)):
-        found = wave.fwhm("force", contact).at()
-        assert abs(found.value - width) <= found.error < (5.035 - 4.549) / 10

@@ -85,15 +85,13 @@ def passage(k, omega, speed, length):
     # In units of the cell the pulse of force F is slower by F^{(k-1)/2k}.
     site = 1 / (speed * first.max() ** ((k - 1) / (2 * k)))
     time = np.linspace(front - length * site, front + 2.5 * length * site, 60001)
-    forces = [run.signal("contact", at + i)(time) for i in (0, 1)]
-    velocities = [run.signal("bead", at + i, "velocity")(time) for i in (0, 1, 2)]
-    peak = np.mean([force.max() for force in forces])
+    forces = np.array([run.signal("contact", at + i)(time) for i in (0, 1)])
+    beads = (run.signal("bead", at + i, "velocity")(time) for i in (0, 1, 2))
+    velocities = np.array([*beads])
+    peak = forces.max(axis=1).mean()
     speed *= peak ** ((k - 1) / (2 * k))
-    momentum = energy = 0.0
-    for i, force in enumerate(forces):
-        power = force * (velocities[i] + velocities[i + 1]) / 2
-        momentum += np.trapezoid(force, time) / 2
-        energy += np.trapezoid(power, time) / 2
+    powers = forces * (velocities[:-1] + velocities[1:]) / 2
+    momentum, energy = np.trapezoid((forces, powers), time).mean(axis=1)
     return {
         "momentum": momentum / peak ** ((k + 1) / (2 * k)),
         "energy": energy / peak ** ((k + 1) / k),

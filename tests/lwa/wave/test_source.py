@@ -55,11 +55,10 @@ def answers(language, source, calls, folder):
     return found
 
 
-RATIOS = (1e-3, 0.2733, 1.0, 3.0, 99.0)
 GRID = {
     "k": (1.01, 1.5, 1.6, 1.999, 2.0, 3.5, 7.875),
     "m1": (1.0,),
-    "m2": RATIOS,
+    "m2": (1e-3, 0.2733, 1.0, 3.0, 99.0),
     "D": (1.0,),
 }
 NEAR_1 = {"k": tuple(1 + 2.0**-n for n in (10, 20, 40))}

@@ -13,8 +13,6 @@ from validation.pulses.pulse import highest_pulse, measure
 from validation.scenes.chains import struck
 from validation.scenes.scene import Scene
 
-TIGHT = dict(rtol=1e-11)
-
 exponents = st.floats(1.0, 3.0)
 positive = st.floats(0.1, 10.0)
 
@@ -37,7 +35,7 @@ def test_two_beads_collide(k, m1, m2, A, v):
         (m1, m2), stiffnesses=(A,), k=k, velocities=(v,), duration=1.2 * lasting,
         contact_sensors=(0,),
     )  # fmt: skip
-    run = simulate(pair, **TIGHT)
+    run = simulate(pair, rtol=1e-11)
     common = m1 * v / (m1 + m2)
     assert run.velocities == pytest.approx([2 * common - v, 2 * common], abs=2e-11 * v)
     pulse = measure(run.signal("contact", 0))
@@ -109,7 +107,7 @@ some_chains = st.integers(2, 6).flatmap(
 @given(some_chains)
 def test_what_the_equations_of_motion_keep(scene):
     """Energy, momentum, and the motion if time is reversed."""
-    run = simulate(scene, **TIGHT)
+    run = simulate(scene, rtol=1e-11)
     # Contacts that open are kinks of F''; with k near 1 they cost the step control digits.
     assert abs(run.energy_drift) < 1e-7
     # By Newton's third law, to rounding; every Runge–Kutta step keeps what is linear.
@@ -117,7 +115,7 @@ def test_what_the_equations_of_motion_keep(scene):
     assert abs(gained.sum()) < 1e-12 * np.dot(scene.masses, np.abs(run.velocities))
     # Collisions amplify the integrator's error, here by at most some thousand.
     end = {"velocities": -run.velocities, "displacements": run.displacements}
-    back = simulate(replace(scene, **end), **TIGHT)
+    back = simulate(replace(scene, **end), rtol=1e-11)
     np.testing.assert_allclose(-back.velocities, scene.velocities, atol=1e-6)
     np.testing.assert_allclose(back.displacements, 0, atol=1e-6)
 

@@ -46,7 +46,8 @@ LAYOUTS = tomllib.loads(Path(__file__).with_name("layouts.toml").read_text("utf-
 def written(layout, record):
     """Write the record in a layout to the folder; return the file's name."""
     time, forces = record
-    *_, last = forms = LAYOUTS[layout]["rows"]
+    given = LAYOUTS[layout]
+    *_, last = forms = given["rows"]
     kept = math.exp(-1e-6 / CONSTANT)
     lost = lfilter(math.sqrt(kept) * np.array([1, -1]), [1, -kept], forces[0])
     lines = []
@@ -56,9 +57,9 @@ def written(layout, record):
         numbers["milli"] = 1e3 * numbers["F"]
         form = forms[i] if i < len(forms) else last
         lines.append(form.format(**numbers))
-    lines.append(LAYOUTS[layout].get("end", ""))
-    text = LAYOUTS[layout]["head"] + "\n".join(lines)
-    for plain, other in LAYOUTS[layout].get("other", {}).items():
+    lines.append(given.get("end", ""))
+    text = given["head"] + "\n".join(lines)
+    for plain, other in given.get("other", {}).items():
         text = text.replace(plain, other)
     Path("record.txt").write_bytes(text.encode("latin-1"))
     return "record.txt"
@@ -67,15 +68,16 @@ def written(layout, record):
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_pulses_are_read_within_three_errors(capsys, record, folder, layout):
     """A column without a kind is of the kind that is given; by a step the clock starts at 0."""
-    stated = LAYOUTS[layout]["options"]
+    given = LAYOUTS[layout]
+    stated = given["options"]
     line = ["pulses", written(layout, record), *shlex.split(stated), "--of", "bead"]
     line += ["--distance", str(SPACING), "--format", "json"]
     status, out, err = ended(capsys, cli.main, *line)
     assert status == 0, err
     found = json.loads(out)
-    both = "14 force" in stated + LAYOUTS[layout]["head"]
+    both = "14 force" in stated + given["head"]
     assert [row["kind"] for row in found["sensors"]] == ["bead"] * (1 + both)
-    start = TRIGGER - LAYOUTS[layout].get("clock", 0)
+    start = TRIGGER - given.get("clock", 0)
     if "--step" in stated:
         start = 0.0
     for row in found["sensors"]:

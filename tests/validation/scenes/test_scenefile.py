@@ -26,6 +26,7 @@ from validation.studies.paper import recorded_chain
 from validation.studies.run import example
 
 PAPER = example("paper")
+CONTENT = tomllib.loads(PAPER)
 
 # All other keys: a trimer in units of its own, pressed together, with a defect and a soft contact.
 TRIMER = """
@@ -41,9 +42,7 @@ sensors = {beads = [9, 1]}
 
 def test_the_experiment_of_the_paper():
     own = {"duration": 1.2e-3, "contact_sensors": (), "samples": 1001}
-    assert scene(tomllib.loads(PAPER)) == dataclasses.replace(
-        recorded_chain((15, 34)), **own
-    )
+    assert scene(CONTENT) == dataclasses.replace(recorded_chain((15, 34)), **own)
 
 
 def test_every_other_key():
@@ -99,7 +98,7 @@ like = "big"
 
 def test_a_defect_may_be_another_bead_of_the_file():
     """The contacts beside it are those of its radius and its material."""
-    plain = scene(tomllib.loads(PAPER))
+    plain = scene(CONTENT)
     steel = Sphere(mass=0.45e-3, radius=2.38e-3, material=STEEL)
     big = Sphere(mass=1e-3, radius=5e-3, material=Material(72e9, 0.17))
     beside = (float(stiffness(steel, big)),) * 2
@@ -222,7 +221,7 @@ def test_a_bad_file_is_refused_by_its_name(tmp_path, name, content, named):
 
 
 words = st.sampled_from(["ball", "steel", "bead", "mass", "stiffness", "material", "x"])
-FULL = tomllib.loads(PAPER) | {
+FULL = CONTENT | {
     "defects": [{"bead": 1, "mass": 1.0}],
     "precompression": 1.0,
 }
@@ -314,13 +313,12 @@ def test_a_drive_is_read_from_a_file_beside_the_scene(folder):
 
 @pytest.mark.parametrize("other", [{"like": "ptfe"}, {"mass": 1e-3}])
 def test_a_striker_unlike_the_beads_is_a_defect_of_bead_1(other):
-    paper = tomllib.loads(PAPER)
-    struck = scene(paper | {"striker": paper["striker"] | other})
-    assert struck == scene(paper | {"defects": [{"bead": 1, **other}]})
-    assert struck.masses[0] != scene(paper).masses[0]
+    struck = scene(CONTENT | {"striker": CONTENT["striker"] | other})
+    assert struck == scene(CONTENT | {"defects": [{"bead": 1, **other}]})
+    assert struck.masses[0] != scene(CONTENT).masses[0]
 
 
 def test_a_scene_is_read_from_standard_input(monkeypatch):
-    for text in (PAPER, json.dumps(tomllib.loads(PAPER))):
+    for text in (PAPER, json.dumps(CONTENT)):
         monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(text.encode())))
-        assert read_scene("-") == scene(tomllib.loads(PAPER))
+        assert read_scene("-") == scene(CONTENT)
