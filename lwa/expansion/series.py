@@ -82,7 +82,7 @@ LEFT_OUT = 3.2
 Measured with the error by radiation on 645 sums of dimers to order 10, speeds and widths at k from
 1.1 to 2 and m2/m1 from 0.01 to 0.995, against the pulses of struck chains: no deviation of a sum
 that is not refused is larger than its estimate. To order 8 one is known that is, by 3 %: the width
-at k = 1.15 and m2/m1 = 1/2.
+at k of 1.15 and m2/m1 of 1/2.
 """
 
 TERM_DIGITS = 60
