@@ -167,7 +167,10 @@ def _read(splines: BSpline, ends: tuple[float, float]) -> Array:
         before, highest, after = f[top - 1 : top + 2]
         slope = (after - before) / 2
         bend = before - 2 * highest + after
-        shift = min(max(-slope / bend, -1.0), 1.0)
+        shift = 0.0
+        # At an end of the grid, or where values are equal, there is no vertex.
+        if bend < 0:
+            shift = min(max(-slope / bend, -1.0), 1.0)
         peak = highest + slope * shift / 2
         # SciPy measures the width at the height f[top] - prominence/2. The prominence
         # 2 f[top] - peak makes this peak/2, half of the vertex above the base, which is 0. Both

@@ -582,10 +582,12 @@ def correct_contact(
         missed += resisted
         # No motion of another bead may limit the step: the rule of the integrals errs, too.
         share = 1.0
-        if top > 0.0 and not law.generated:
+        # A steep force of a small δ is 0 as a float, and tells nothing of damping.
+        own = elastic(law, top)
+        if own > 0.0 and not law.generated:
             # Its errors of damping and of the elastic force are as their sizes.
             fastest = max(abs(start[1]), abs(end[1])) / h
-            share += r * drag(law, top) * fastest / elastic(law, top)
+            share += r * drag(law, top) * fastest / own
         work = (missed * abs(beads.v[0]) + A * sums.missed * share) / plan.energy
         beads.books[SQUARES] += work * work
     _count_error(beads.books, math.hypot(missed, change) / plan.v, near, far)
